@@ -1,0 +1,103 @@
+"""The one place that reads colour-science's tables: observers, illuminants, RGB spaces → `Sensor`, `Light`."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import warnings
+from collections.abc import Iterable, Mapping
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from uplift.errors import UnknownNameError
+from uplift.sensor import Array, Light, Sensor
+
+DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
+START, END, STEP = 380.0, 780.0, 5.0
+"""Where every table of the CIE has data (nm)."""
+
+
+@functools.cache
+def _colour() -> ModuleType:
+    """colour-science, imported when first needed (it takes about a second) and silent about optional parts."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        import colour
+    return colour
+
+
+def grid() -> Array:
+    """(81,) wavelengths of every sensor: 380–780 nm at 5 nm."""
+    return np.arange(START, END + STEP / 2, STEP)
+
+
+def sensor(space: str = "sRGB", illuminant: str = "D65", observer: str = DEFAULT_OBSERVER) -> Sensor:
+    """A sensor by names of colour-science.
+
+    The illuminant's white is taken to the space's white by Bradford adaptation, and each row is scaled so that
+    the perfect reflector gives (1, 1, 1) to the last bit that counts.
+
+    Raises
+    ------
+    UnknownNameError : with the nearest name that exists.
+    """
+    colour = _colour()
+    rgb_space = _look_up(colour.RGB_COLOURSPACES, space, "RGB space")
+    lit = light(illuminant, observer)
+    white = colour.xy_to_XYZ(rgb_space.whitepoint)
+    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(lit.white, white, transform="Bradford")
+    matrix = rgb_space.matrix_XYZ_to_RGB @ adapt
+    return Sensor(
+        space=rgb_space.name,
+        illuminant=lit.name,
+        observer=_look_up(colour.MSDS_CMFS, observer, "observer").name,
+        wavelengths=grid(),
+        cmfs=_samples(colour.MSDS_CMFS, observer, "observer"),
+        power=_samples(colour.SDS_ILLUMINANTS, illuminant, "illuminant"),
+        xyz_to_rgb=matrix / (matrix @ lit.white)[:, None],
+        decoding=np.asarray(rgb_space.cctf_decoding(np.arange(256) / 255), dtype=float),
+    )
+
+
+def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:
+    """An illuminant to look under, on the grid of every sensor. Raises `UnknownNameError`."""
+    colour = _colour()
+    weights = _samples(colour.MSDS_CMFS, observer, "observer")
+    weights = weights * _samples(colour.SDS_ILLUMINANTS, illuminant, "illuminant")[:, None]
+    return Light(
+        _look_up(colour.SDS_ILLUMINANTS, illuminant, "illuminant").name, (weights / weights[:, 1].sum()).T
+    )
+
+
+def axis_nodes(spacing: str, dim: int) -> Array:
+    """(dim,) linear RGB positions of the nodes of a lattice axis, from 0 to 1, spaced as ``spacing`` says."""
+    even = np.linspace(0.0, 1.0, dim)
+    if spacing == "linear":
+        return even
+    if spacing == "srgb":
+        return np.asarray(_colour().models.eotf_sRGB(even), dtype=float)
+    raise suggest(spacing, ("srgb", "linear"), "axis spacing")
+
+
+def suggest(name: str, known: Iterable[str], kind: str) -> UnknownNameError:
+    """The error for an unknown name, with the nearest that exists."""
+    by_folded = {entry.casefold(): entry for entry in known}
+    near = difflib.get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.4) or list(by_folded)[:6]
+    choices = ", ".join(f"'{by_folded[entry]}'" for entry in near)
+    return UnknownNameError(f"unknown {kind} '{name}'", remedy=f"did you mean {choices}?")
+
+
+def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:
+    try:
+        return table[name]
+    except KeyError:
+        raise suggest(name, table, kind) from None
+
+
+def _samples(table: Mapping[str, Any], name: str, kind: str) -> Array:
+    """Samples of a colour-science table on the grid; outside its data held flat, as colour-science aligns."""
+    colour = _colour()
+    shape = colour.SpectralShape(START, END, STEP)
+    return np.asarray(_look_up(table, name, kind).copy().align(shape).values, dtype=float)

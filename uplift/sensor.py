@@ -1,0 +1,73 @@
+"""A sensor turns reflectances into linear RGB: plain arrays, stored in every cube (DESIGN 3.1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Light:
+    """An illuminant seen by an observer: a reflectance's XYZ under it (white has Y = 1).
+
+    Parameters
+    ----------
+    name : the illuminant's name.
+    xyz : (3, N) weights; ``xyz @ reflectance`` is XYZ.
+    """
+
+    name: str
+    xyz: Array
+
+    @cached_property
+    def white(self) -> Array:
+        """(3,) XYZ of the perfect reflector."""
+        return self.xyz.sum(axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Sensor:
+    """Observer, illuminant and RGB space folded into one 3×N matrix.
+
+    Parameters
+    ----------
+    space, illuminant, observer : names, as colour-science spells them.
+    wavelengths : (N,) nm, evenly spaced, ascending.
+    cmfs : (N, 3) colour-matching functions.
+    power : (N,) relative spectral power of the illuminant.
+    xyz_to_rgb : (3, 3) XYZ under the illuminant (white has Y = 1) to linear RGB; white gives (1, 1, 1).
+    decoding : (256,) linear value of every 8-bit code of the space.
+    """
+
+    space: str
+    illuminant: str
+    observer: str
+    wavelengths: Array
+    cmfs: Array
+    power: Array
+    xyz_to_rgb: Array
+    decoding: Array
+
+    @cached_property
+    def light(self) -> Light:
+        """The build illuminant."""
+        weights = self.cmfs * self.power[:, None]
+        return Light(self.illuminant, (weights / weights[:, 1].sum()).T)
+
+    @cached_property
+    def matrix(self) -> Array:
+        """(3, N) W: ``W @ reflectance`` is linear RGB; the perfect reflector gives (1, 1, 1)."""
+        return self.xyz_to_rgb @ self.light.xyz
+
+    def rgb(self, reflectance: ArrayLike) -> Array:
+        """Linear RGB (…, 3) of reflectances (…, N) sampled at ``wavelengths``."""
+        return np.asarray(reflectance, dtype=float) @ self.matrix.T
+
+    def xyz(self, rgb: ArrayLike) -> Array:
+        """XYZ (…, 3) under the build illuminant of linear RGB (…, 3)."""
+        return np.asarray(rgb, dtype=float) @ np.linalg.inv(self.xyz_to_rgb).T
