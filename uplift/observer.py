@@ -1,4 +1,4 @@
-"""The one place that reads colour-science's tables: observers, illuminants, RGB spaces → `Sensor`, `Light`."""
+"""The one place that reads colour-science's tables: observers, illuminants and RGB spaces by name."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ START, END, STEP = 380.0, 780.0, 5.0
 
 @functools.cache
 def _colour() -> ModuleType:
-    """colour-science, imported when first needed (it takes about a second) and silent about optional parts."""
+    """colour-science, imported when first needed (a second) and silent about its optional parts."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         import colour
@@ -36,8 +36,8 @@ def grid() -> Array:
 def sensor(space: str = "sRGB", illuminant: str = "D65", observer: str = DEFAULT_OBSERVER) -> Sensor:
     """A sensor by names of colour-science.
 
-    The illuminant's white is taken to the space's white by Bradford adaptation, and each row is scaled so that
-    the perfect reflector gives (1, 1, 1) to the last bit that counts.
+    The illuminant's white is taken to the space's white by Bradford adaptation, and each row is scaled
+    so that the perfect reflector gives (1, 1, 1) to the last bit that counts.
 
     Raises
     ------
