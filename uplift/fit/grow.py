@@ -1,0 +1,95 @@
+"""Growth: rounds outward from the seeds, each point from its fitted neighbours (thesis 3.1.3, algorithm 2)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from uplift.fit.seed import Seeds
+from uplift.fit.solve import solve
+from uplift.lattice import Indices, Lattice, Mask
+from uplift.models import Model
+from uplift.models.least_change import Forward
+from uplift.sensor import Array
+
+PASSES = 6
+NEVER = -1
+"""The round of a point that no round has fitted."""
+
+
+@dataclass(frozen=True)
+class Round:
+    """What a round did, for whoever watches: points tried in it, fitted so far, and in all."""
+
+    number: int
+    tried: int
+    fitted: int
+    total: int
+
+
+Watch = Callable[[Round], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Growth:
+    """Multipliers (n, C), distance (n,) and round (n,) of every lattice point, −1 where none fitted it."""
+
+    multipliers: Array
+    distance: Array
+    round: Indices
+
+
+def grow(
+    model: Model,
+    forward: Forward,
+    lattice: Lattice,
+    seeds: Seeds,
+    entries: Array,
+    *,
+    threshold: float,
+    tolerance: float,
+    watch: Watch,
+) -> Growth:
+    """Fit the whole lattice. ``entries`` (E, C) are the multipliers of the atlas entries.
+
+    A point that fails is tried again whenever another of its neighbours has been fitted.
+    """
+    multipliers = np.zeros((lattice.size, model.count))
+    distance = np.full(lattice.size, np.inf)
+    rounds = np.full(lattice.size, NEVER, dtype=np.int64)
+    points, start = _beginning(model, lattice, seeds, entries)
+    number = 0
+    while points.size:
+        found = solve(model, forward, start, lattice.points[points], tolerance=tolerance, passes=PASSES)
+        better = found.distance < distance[points]
+        multipliers[points[better]] = found.multipliers[better]
+        distance[points[better]] = found.distance[better]
+        fresh = points[found.distance <= threshold]
+        rounds[fresh] = number
+        watch(Round(number, len(points), int((rounds != NEVER).sum()), lattice.size))
+        points, start = _frontier(lattice, fresh, rounds != NEVER, multipliers)
+        number += 1
+    return Growth(multipliers, distance, rounds)
+
+
+def _beginning(model: Model, lattice: Lattice, seeds: Seeds, entries: Array) -> tuple[Indices, Array]:
+    """The seeds with their entries' spectra or, without an atlas, the middle of the lattice with a grey."""
+    if len(seeds.points):
+        return seeds.points, entries[seeds.entry]
+    middle = np.abs(lattice.points - 0.5).sum(axis=1).argmin()
+    return np.array([middle]), np.zeros((1, model.count))
+
+
+def _frontier(lattice: Lattice, fresh: Indices, fitted: Mask, multipliers: Array) -> tuple[Indices, Array]:
+    """The unfitted neighbours of freshly fitted points, and the mean of their own fitted neighbours."""
+    around, inside = lattice.neighbours(fresh)
+    points = np.unique(around[inside])
+    points = points[~fitted[points]]
+    around, inside = lattice.neighbours(points)
+    known = inside & fitted[around]
+    total = np.zeros((len(points), multipliers.shape[1]))
+    for column in range(around.shape[1]):
+        total += np.where(known[:, column, None], multipliers[around[:, column]], 0)
+    return points, total / np.maximum(known.sum(axis=1), 1)[:, None]

@@ -1,0 +1,98 @@
+"""The improvement pass for points that growth left over the threshold (thesis 3.1.4, steps 1–5).
+
+The thesis nudged Ceres out of local minima in moment space. In multipliers the first step, more iterations,
+has mended every realisable point so far; the others stay for the colours nobody has met yet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from uplift.fit.solve import solve
+from uplift.lattice import Lattice
+from uplift.models import Model
+from uplift.models.least_change import Forward
+from uplift.sensor import Array
+
+PASSES = 96
+NUDGE = 0.5
+EXTREME = 100.0
+"""Linear part of a nearly white (+) or nearly black (−) spectrum."""
+
+
+@dataclass(frozen=True)
+class Improvement:
+    """One step of the pass: points over the threshold that it was tried on, and how many of them it mended."""
+
+    step: str
+    tried: int
+    mended: int
+
+
+Start = Callable[[Array, Array], Array]
+"""Multipliers (k, C) to begin from, of the best so far (k, C) and the way (k, C) to white or black, if nearer."""
+
+
+def _onwards(best: Array, way: Array) -> Array:
+    return best
+
+
+def _constant_nudged(best: Array, way: Array) -> Array:
+    return best + NUDGE * way
+
+
+def _all_nudged(best: Array, way: Array) -> Array:
+    """The same nudges for every point and every run: alternating, as no direction is better founded."""
+    return best + NUDGE * (-1.0) ** np.arange(best.shape[1])
+
+
+def _extreme(best: Array, way: Array) -> Array:
+    return EXTREME * way
+
+
+STEPS: dict[str, Start] = {
+    "more iterations": _onwards,
+    "constant multiplier nudged": _constant_nudged,
+    "all multipliers nudged": _all_nudged,
+    "from white or black": _extreme,
+}
+
+
+def improve(
+    model: Model,
+    forward: Forward,
+    lattice: Lattice,
+    multipliers: Array,
+    distance: Array,
+    *,
+    threshold: float,
+    tolerance: float,
+) -> tuple[Array, Array, tuple[Improvement, ...]]:
+    """Multipliers (n, C) and distances (n,) after the pass, none worse than before, and what each step did.
+
+    The first step also takes the points between ``tolerance`` and ``threshold`` on; the others only what
+    is still over the threshold.
+    """
+    multipliers, distance = multipliers.copy(), distance.copy()
+    done = []
+    goal = tolerance
+    for name, start in STEPS.items():
+        points = np.flatnonzero(distance > goal)
+        over = distance > threshold
+        goal = threshold
+        if not points.size:
+            continue
+        target = lattice.points[points]
+        toward = np.where(target.mean(axis=1) >= 0.5, 1.0, -1.0)
+        begin = start(multipliers[points], toward[:, None] * model.constant())
+        found = solve(model, forward, begin, target, tolerance=tolerance, passes=PASSES)
+        better = found.distance < distance[points]
+        multipliers[points[better]] = found.multipliers[better]
+        distance[points[better]] = found.distance[better]
+        if over.any():
+            mended = int((over & (distance <= threshold)).sum())
+            done.append(Improvement(name, int(over.sum()), mended))
+    return multipliers, distance, tuple(done)

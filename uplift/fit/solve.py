@@ -1,0 +1,103 @@
+"""Many small least-squares problems at once: multipliers that reach their colours (DESIGN 3.4, 3.5).
+
+Points travel in chunks of fixed shapes, four damped steps a pass; those that have arrived leave the batch.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from uplift.lattice import Indices
+from uplift.models import Model
+from uplift.models.least_change import Forward, residual, step
+from uplift.sensor import Array
+
+CHUNKS = (4096, 256)
+"""Rows of a batch: few shapes, so that little is compiled, and small ones for small rounds."""
+STEPS = 4
+FIRST_DAMPING = 1e-2
+"""μ at the start; a quarter of it after a step that helped, four times after one that did not."""
+
+
+class Solution(NamedTuple):
+    """Multipliers (n, C) and their distance (n,), max |target − RGB|."""
+
+    multipliers: Array
+    distance: Array
+
+
+def solve(
+    model: Model, forward: Forward, start: Array, target: Array, *, tolerance: float, passes: int
+) -> Solution:
+    """Move multipliers ``start`` (n, C) to linear RGB ``target`` (n, 3), to ``tolerance`` where it can be had.
+
+    No point ends further from its target than it began. That some do not converge is no error: the
+    distance says so.
+    """
+    multipliers, damping = start.copy(), np.full(len(start), FIRST_DAMPING)
+    distance = np.full(len(start), np.inf)
+    left = np.arange(len(start))
+    with jax.enable_x64(True):
+        arrays = jax.device_put(forward)
+        for _ in range(passes):
+            for rows in _chunks(left):
+                padded = _pad(rows)
+                found = _advance(
+                    model, arrays, multipliers[padded], damping[padded], target[padded], tolerance
+                )
+                for whole, part in zip((multipliers, damping, distance), found, strict=True):
+                    whole[rows] = np.asarray(part)[: len(rows)]
+            left = left[distance[left] > tolerance]
+            if not left.size:
+                break
+    return Solution(multipliers, distance)
+
+
+def _chunks(rows: Indices) -> list[Indices]:
+    """Split rows into the largest chunk as long as it fills, the rest into the smallest that holds it."""
+    whole = len(rows) // CHUNKS[0] * CHUNKS[0]
+    parts = [rows[i : i + CHUNKS[0]] for i in range(0, whole, CHUNKS[0])]
+    rest = rows[whole:]
+    size = CHUNKS[0] if len(rest) > 4 * CHUNKS[1] else CHUNKS[1]
+    return parts + [rest[i : i + size] for i in range(0, len(rest), size)]
+
+
+def _pad(rows: Indices) -> Indices:
+    """Rows, the last repeated up to the nearest chunk size."""
+    size = min(chunk for chunk in CHUNKS if chunk >= len(rows))
+    return np.concatenate([rows, np.full(size - len(rows), rows[-1])])
+
+
+@partial(jax.jit, static_argnums=0)
+def _advance(
+    model: Model,
+    forward: Forward,
+    multipliers: jax.Array,
+    damping: jax.Array,
+    target: jax.Array,
+    tolerance: float,
+) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """Up to four damped steps; a step counts only where it lowers the squared distance."""
+
+    def damped_step(state: tuple[jax.Array, ...]) -> tuple[jax.Array, ...]:
+        count, here, damping, off = state
+        there = here + step(model, forward, here, off, damping)
+        off_there = residual(model, forward, there, target)
+        better = (off_there**2).sum(axis=1) < (off**2).sum(axis=1)
+        active = abs(off).max(axis=1) > tolerance
+        move = (better & active)[:, None]
+        damping = jnp.where(better, damping / 4, damping * 4)
+        return count + 1, jnp.where(move, there, here), damping, jnp.where(move, off_there, off)
+
+    def unfinished(state: tuple[jax.Array, ...]) -> jax.Array:
+        count, *_, off = state
+        return (count < STEPS) & (abs(off).max() > tolerance)
+
+    begin = (jnp.asarray(0), multipliers, damping, residual(model, forward, multipliers, target))
+    _, multipliers, damping, off = jax.lax.while_loop(unfinished, damped_step, begin)
+    return multipliers, damping, abs(off).max(axis=1)

@@ -1,0 +1,92 @@
+"""The lattice over RGB: its axis, points, cells and neighbours. Points count with blue fastest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.errors import OptionError
+from uplift.sensor import Array
+
+Indices = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+CORNERS = np.array(list(product((0, 1), repeat=3)))
+"""(8, 3) steps from a cell's lowest point to its corners."""
+
+
+class Status(IntEnum):
+    """How a lattice point came by its spectrum."""
+
+    ATLAS_PRIMARY = 0
+    ATLAS_CORNER = 1
+    REGULAR = 2
+    IMPROVED = 3
+    UNFITTED = 4
+    UNREALISABLE = 5
+
+    @property
+    def label(self) -> str:
+        return self.name.lower().replace("_", " ")
+
+
+@dataclass(frozen=True, eq=False)
+class Lattice:
+    """dim³ points at every combination of the axis ``nodes`` (dim,): linear RGB, 0 to 1, increasing."""
+
+    nodes: Array
+
+    def __post_init__(self) -> None:
+        if self.nodes.ndim != 1 or len(self.nodes) < 2 or not (np.diff(self.nodes) > 0).all():
+            raise OptionError("a lattice needs at least 2 increasing nodes", remedy="use --dim 2 or more")
+
+    @property
+    def dim(self) -> int:
+        return len(self.nodes)
+
+    @property
+    def size(self) -> int:
+        return self.dim**3
+
+    @cached_property
+    def points(self) -> Array:
+        """(dim³, 3) target RGB of every point."""
+        grid = np.meshgrid(self.nodes, self.nodes, self.nodes, indexing="ij")
+        return np.stack(grid, axis=-1).reshape(-1, 3)
+
+    def index(self, position: Indices) -> Indices:
+        """Point numbers (…) of positions (…, 3) along the axes."""
+        return (position[..., 0] * self.dim + position[..., 1]) * self.dim + position[..., 2]
+
+    def position(self, index: Indices) -> Indices:
+        """Positions (…, 3) along the axes of point numbers (…)."""
+        return np.stack(np.unravel_index(index, (self.dim,) * 3), axis=-1)
+
+    def cell(self, rgb: Array) -> tuple[Indices, Array]:
+        """Lowest corner (n, 3) and fraction (n, 3) in [0, 1] of the cells that hold linear RGB (n, 3)."""
+        low = np.clip(np.searchsorted(self.nodes, rgb, side="right") - 1, 0, self.dim - 2)
+        start = self.nodes[low]
+        return low, (rgb - start) / (self.nodes[low + 1] - start)
+
+    def corners(self, rgb: Array) -> tuple[Indices, Array]:
+        """Point numbers (n, 8) and trilinear weights (n, 8), summing to 1, around linear RGB (n, 3)."""
+        low, fraction = self.cell(rgb)
+        weights = np.where(CORNERS, fraction[:, None, :], 1 - fraction[:, None, :]).prod(axis=-1)
+        return self.index(low[:, None, :] + CORNERS), weights
+
+    @cached_property
+    def steps(self) -> Indices:
+        """(26, 3) steps from a point to its neighbours."""
+        steps = np.array(list(product((-1, 0, 1), repeat=3)))
+        return steps[(steps != 0).any(axis=1)]
+
+    def neighbours(self, index: Indices) -> tuple[Indices, Mask]:
+        """Point numbers (n, 26) of the neighbours of points (n,), and which of them exist."""
+        position = self.position(index)[:, None, :] + self.steps
+        inside: Mask = np.all((position >= 0) & (position < self.dim), axis=-1)
+        return self.index(np.clip(position, 0, self.dim - 1)), inside

@@ -1,0 +1,126 @@
+"""Trigonometric moments ↔ multipliers of the bounded maximum-entropy spectrum (DESIGN 3.4).
+
+Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded signals for spectral
+rendering", ACM TOG 38(4); Markoff 1896 for the duality between bounded and unbounded moment problems.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.errors import UpliftError
+from uplift.sensor import Array
+
+Complex = NDArray[np.complex128]
+
+_FIRST_NODES = 256
+_MOST_NODES = 1 << 16
+_AGREEMENT = 1e-13
+_INWARD = (0.0, 1e-10, 1e-8, 1e-6, 1e-4)
+
+
+def cosines(phase: Array, count: int) -> Array:
+    """(N, C) table of 1, 2 cos φ, …, 2 cos mφ: the linear part of the spectrum."""
+    table = 2 * np.cos(phase[:, None] * np.arange(count))
+    table[:, 0] = 1
+    return table
+
+
+def moments_from_multipliers(multipliers: Array) -> Array:
+    """Moments (n, C) of the spectra with multipliers (n, C), by the trapezoid rule over the phase.
+
+    The rule is doubled for the spectra (those near a box) whose moments still move by more than 1e−13.
+    """
+    nodes = _FIRST_NODES
+    moments = _trapezoid(multipliers, nodes)
+    rough = np.arange(len(multipliers))
+    while rough.size and nodes < _MOST_NODES:
+        nodes *= 2
+        finer = _trapezoid(multipliers[rough], nodes)
+        moved = np.abs(finer - moments[rough]).max(axis=1) > _AGREEMENT
+        moments[rough] = finer
+        rough = rough[moved]
+    return moments
+
+
+def multipliers_from_moments(moments: Array) -> Array:
+    """Multipliers (n, C) of the bounded maximum-entropy spectra with moments (n, C).
+
+    Moments so near the boundary of the moment space that the recursion breaks down are blended with
+    those of a grey, by 1e−10 at first and 1e−4 at the most.
+
+    Raises
+    ------
+    UpliftError : no reflectance has these moments.
+    """
+    grey = np.zeros(moments.shape[1])
+    grey[0] = 0.5
+    multipliers = np.empty_like(moments)
+    left = np.arange(len(moments))
+    for share in _INWARD:
+        found, valid = _dual((1 - share) * moments[left] + share * grey)
+        multipliers[left[valid]] = found[valid]
+        left = left[~valid]
+        if not left.size:
+            return multipliers
+    raise UpliftError(f"{len(left)} sets of coefficients are not the moments of any reflectance")
+
+
+def levinson(column: Complex) -> tuple[Complex, NDArray[np.bool_]]:
+    """Solve T q = e₀ for Hermitian Toeplitz T with first ``column`` (n, C); also say where T is positive.
+
+    Levinson's recursion: a solution of order k, padded, plus its own mirror image, solves order k + 1.
+    """
+    solution = 1 / column[:, :1]
+    positive = column[:, 0].real > 0
+    zero = np.zeros_like(solution)
+    for order in range(1, column.shape[1]):
+        spill = (column[:, order:0:-1] * solution).sum(axis=1, keepdims=True)
+        mirror = np.concatenate([zero, solution[:, ::-1].conj()], axis=1)
+        margin = 1 - np.abs(spill) ** 2
+        positive &= margin[:, 0] > 0
+        solution = (np.concatenate([solution, zero], axis=1) - spill * mirror) / margin
+    return solution, positive
+
+
+def _trapezoid(multipliers: Array, nodes: int) -> Array:
+    count = multipliers.shape[1]
+    table = cosines(np.linspace(-np.pi, 0, nodes + 1), count)
+    weights = np.full(nodes + 1, 1 / nodes)
+    weights[[0, -1]] /= 2
+    projection = weights[:, None] * table
+    projection[:, 1:] /= 2
+    moments = np.empty_like(multipliers)
+    rows = max(1, (1 << 21) // nodes)
+    for start in range(0, len(multipliers), rows):
+        part = slice(start, start + rows)
+        moments[part] = (0.5 + np.arctan(multipliers[part] @ table.T) / np.pi) @ projection
+    return moments
+
+
+def _dual(moments: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Multipliers by DESIGN 3.4, and where they can be trusted."""
+    with np.errstate(all="ignore"):
+        exponential = _exponential_moments(moments)
+        column = exponential / 2
+        column[:, 0] = exponential[:, 0].real
+        q, positive = levinson(column)
+        multipliers = _bounded(exponential, q)
+    return multipliers, positive & np.isfinite(multipliers).all(axis=1)
+
+
+def _exponential_moments(moments: Array) -> Complex:
+    h = np.empty(moments.shape, dtype=complex)
+    h[:, 0] = np.exp(1j * np.pi * (moments[:, 0] - 0.5))
+    for order in range(1, moments.shape[1]):
+        steps = np.arange(order, 0, -1)
+        h[:, order] = 2j * np.pi / order * (steps * moments[:, order:0:-1] * h[:, :order]).sum(axis=1)
+    return h
+
+
+def _bounded(h: Complex, q: Complex) -> Array:
+    count = h.shape[1]
+    n = np.stack([(h[:, : k + 1] * q[:, k::-1]).sum(axis=1) for k in range(count)], axis=1)
+    lags = [(n[:, lag:] * q[:, : count - lag].conj()).sum(axis=1) for lag in range(count)]
+    return (np.stack(lags, axis=1) / (1j * q[:, :1])).real

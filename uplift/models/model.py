@@ -1,0 +1,57 @@
+"""What a spectrum model is: a sigmoid of a linear function of its multipliers (DESIGN 3.2)."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from numpy.typing import ArrayLike
+
+from uplift.sensor import Array
+
+
+class Model(Protocol):
+    """A family of reflectance spectra g(λ) = squash(basis(λ) · p), every p a valid spectrum in (0, 1).
+
+    The fit works on the multipliers p; a cube stores the coefficients c. ``squash`` and ``slope`` are
+    written to the array API, so that numpy and JAX run the same lines.
+    """
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def count(self) -> int:
+        """Numbers per spectrum, C."""
+        ...
+
+    def basis(self, wavelengths: ArrayLike) -> Array:
+        """(N, C) values of the linear part at ``wavelengths`` (nm)."""
+        ...
+
+    def squash(self, x: Any) -> Any:
+        """Reflectance in (0, 1) of the linear part; monotone, ½ at 0."""
+        ...
+
+    def slope(self, x: Any) -> Any:
+        """Derivative of ``squash``."""
+        ...
+
+    def constant(self) -> Array:
+        """(C,) multipliers whose linear part is 1 everywhere."""
+        ...
+
+    def roughness(self) -> Array:
+        """(C,) diagonal of the smoothness metric M (DESIGN 3.5)."""
+        ...
+
+    def to_storage(self, multipliers: ArrayLike) -> Array:
+        """Coefficients (…, C) of multipliers (…, C)."""
+        ...
+
+    def from_storage(self, coefficients: ArrayLike) -> Array:
+        """Multipliers (…, C) of coefficients (…, C)."""
+        ...
+
+    def describe(self) -> dict[str, Any]:
+        """What `uplift.models.from_description` needs to make this model again."""
+        ...
