@@ -1,7 +1,8 @@
 """The improvement pass for points that growth left over the threshold (thesis 3.1.4, steps 1–5).
 
 The thesis nudged Ceres out of local minima in moment space. In multipliers the first step, more iterations,
-has mended every realisable point so far; the others stay for the colours nobody has met yet.
+mends nearly every realisable point; starting over from grey mends points whose neighbours were black or white,
+where the gradient vanishes; the thesis's own steps stay for the colours nobody has met yet.
 """
 
 from __future__ import annotations
@@ -40,6 +41,10 @@ def _onwards(best: Array, way: Array) -> Array:
     return best
 
 
+def _grey(best: Array, way: Array) -> Array:
+    return np.zeros_like(best)
+
+
 def _constant_nudged(best: Array, way: Array) -> Array:
     return best + NUDGE * way
 
@@ -55,6 +60,7 @@ def _extreme(best: Array, way: Array) -> Array:
 
 STEPS: dict[str, Start] = {
     "more iterations": _onwards,
+    "from grey": _grey,
     "constant multiplier nudged": _constant_nudged,
     "all multipliers nudged": _all_nudged,
     "from white or black": _extreme,

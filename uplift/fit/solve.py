@@ -24,6 +24,10 @@ FIRST_DAMPING = 1e-2
 """μ at the start; a quarter of it after a step that helped, four times after one that did not."""
 
 
+State = tuple[jax.Array, jax.Array, jax.Array, jax.Array]
+"""Steps taken, multipliers, damping, residual."""
+
+
 class Solution(NamedTuple):
     """Multipliers (n, C) and their distance (n,), max |target − RGB|."""
 
@@ -84,7 +88,7 @@ def _advance(
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
     """Up to four damped steps; a step counts only where it lowers the squared distance."""
 
-    def damped_step(state: tuple[jax.Array, ...]) -> tuple[jax.Array, ...]:
+    def damped_step(state: State) -> State:
         count, here, damping, off = state
         there = here + step(model, forward, here, off, damping)
         off_there = residual(model, forward, there, target)
@@ -94,7 +98,7 @@ def _advance(
         damping = jnp.where(better, damping / 4, damping * 4)
         return count + 1, jnp.where(move, there, here), damping, jnp.where(move, off_there, off)
 
-    def unfinished(state: tuple[jax.Array, ...]) -> jax.Array:
+    def unfinished(state: State) -> jax.Array:
         count, *_, off = state
         return (count < STEPS) & (abs(off).max() > tolerance)
 

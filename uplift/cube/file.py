@@ -1,0 +1,191 @@
+"""The cube file: a safetensors container with one JSON text of metadata (DESIGN 4). Same cube, same bytes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.cube.data import AtlasTable, CubeData
+from uplift.errors import CubeFileError, UpliftError
+from uplift.files import replacing
+from uplift.lattice import Lattice, Status
+from uplift.models import from_description
+from uplift.sensor import Sensor
+
+FORMAT = "uplift cube"
+VERSION = 1
+KEY = "uplift"
+"""The one metadata entry: safetensors does not keep several in a fixed order."""
+
+Tensors = dict[str, NDArray[Any]]
+
+SENSOR_ARRAYS = ("wavelengths", "cmfs", "power", "xyz_to_rgb", "decoding")
+POINT_TYPES: dict[str, type] = {
+    "coefficients": np.float64,
+    "rgb": np.float32,
+    "distance": np.float32,
+    "status": np.uint8,
+    "entry": np.int32,
+    "round": np.int16,
+}
+
+
+def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Write atomically. Raises `OutputError`."""
+    from safetensors import SafetensorError
+    from safetensors.numpy import save_file
+
+    tensors, metadata = _tensors(data), _metadata(data)
+    metadata["digest"] = _digest(tensors, metadata)
+    with replacing(path, force=force) as temporary:
+        try:
+            save_file(tensors, temporary, metadata={KEY: _json(metadata)})
+        except SafetensorError as error:
+            raise OSError(str(error)) from error
+
+
+def read(path: str | os.PathLike[str]) -> CubeData:
+    """Read and check everything. Raises `CubeFileError` for whatever is no whole cube of this version."""
+    path = Path(path)
+    tensors, metadata = _load(path)
+    if metadata.get("format") != FORMAT:
+        raise _broken(path, "is a safetensors file, but no uplift cube")
+    if metadata.get("version") != VERSION:
+        raise CubeFileError(
+            f"is a cube of format version {metadata.get('version')}, this uplift reads version {VERSION}",
+            path=path,
+            remedy="rebuild it, or use the uplift that wrote it",
+        )
+    digest = metadata.pop("digest", None)
+    if digest != _digest(tensors, metadata):
+        raise _broken(path, "is damaged: the content does not match its digest")
+    try:
+        data = _data(tensors, metadata)
+        _check(data)
+    except (KeyError, TypeError, ValueError, UpliftError) as error:
+        raise _broken(path, f"is not a complete cube ({type(error).__name__}: {error})") from error
+    return data
+
+
+def digest(data: CubeData) -> str:
+    """Hex SHA-256 of the content; the same for cubes that answer alike in every bit."""
+    return _digest(_tensors(data), _metadata(data))
+
+
+def _load(path: Path) -> tuple[Tensors, dict[str, Any]]:
+    from safetensors import SafetensorError, safe_open
+
+    if not path.is_file():
+        raise CubeFileError("no such file", path=path, remedy="'uplift build' makes cubes")
+    try:
+        with safe_open(path, framework="numpy") as file:
+            metadata = json.loads((file.metadata() or {}).get(KEY, "{}"))
+            tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
+    except (SafetensorError, ValueError, TypeError, OSError, RecursionError) as error:
+        raise _broken(path, f"is not a cube file, or is cut short ({error})") from error
+    if not isinstance(metadata, dict):
+        raise _broken(path, "is a safetensors file, but no uplift cube")
+    return tensors, metadata
+
+
+def _broken(path: Path, problem: str) -> CubeFileError:
+    return CubeFileError(problem, path=path, remedy="rebuild it with 'uplift build'")
+
+
+def _json(metadata: Mapping[str, Any]) -> str:
+    return json.dumps(metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":"))
+
+
+def _digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
+    content = hashlib.sha256(_json(metadata).encode())
+    for name in sorted(tensors):
+        array = np.ascontiguousarray(tensors[name])
+        content.update(f"{name} {array.dtype.str} {array.shape}".encode())
+        content.update(array.data)
+    return content.hexdigest()
+
+
+def _tensors(data: CubeData) -> Tensors:
+    tensors: Tensors = {"nodes": data.lattice.nodes}
+    tensors |= {f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR_ARRAYS}
+    tensors |= {"atlas.rgb": data.atlas.rgb, "atlas.coefficients": data.atlas.coefficients}
+    for name, kind in POINT_TYPES.items():
+        if getattr(data, name) is not None:
+            tensors[name] = np.ascontiguousarray(getattr(data, name), dtype=kind)
+    return tensors
+
+
+def _metadata(data: CubeData) -> dict[str, Any]:
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "features": [] if data.round is None else ["debug"],
+        "model": data.model.describe(),
+        "dim": data.lattice.dim,
+        "space": data.sensor.space,
+        "illuminant": data.sensor.illuminant,
+        "observer": data.sensor.observer,
+        "threshold": data.threshold,
+        "entries": list(data.atlas.names),
+        "provenance": dict(data.provenance),
+    }
+
+
+def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
+    debug = "debug" in metadata["features"]
+    points = {name: tensors[name] for name in POINT_TYPES if name != "round" or debug}
+    return CubeData(
+        model=from_description(metadata["model"]),
+        lattice=Lattice(tensors["nodes"]),
+        sensor=Sensor(
+            metadata["space"],
+            metadata["illuminant"],
+            metadata["observer"],
+            *(tensors[f"sensor.{name}"] for name in SENSOR_ARRAYS),
+        ),
+        threshold=float(metadata["threshold"]),
+        atlas=AtlasTable(tuple(metadata["entries"]), tensors["atlas.rgb"], tensors["atlas.coefficients"]),
+        provenance=metadata["provenance"],
+        **{"round": None, **points},
+    )
+
+
+def _check(data: CubeData) -> None:
+    """Shapes, types and ranges that a lookup relies on."""
+    points, count, samples = data.lattice.size, data.model.count, len(data.sensor.wavelengths)
+    entries = len(data.atlas.names)
+    shapes = {
+        "coefficients": (points, count),
+        "rgb": (points, 3),
+        "distance": (points,),
+        "status": (points,),
+        "entry": (points,),
+        "round": (points,),
+    }
+    for name, kind in POINT_TYPES.items():
+        array = getattr(data, name)
+        _require(
+            array is None or (array.shape == shapes[name] and array.dtype == kind), f"{name} has its shape"
+        )
+    sensor_shapes = ((samples,), (samples, 3), (samples,), (3, 3), (256,))
+    for name, shape in zip(SENSOR_ARRAYS, sensor_shapes, strict=True):
+        _require(getattr(data.sensor, name).shape == shape, f"the sensor's {name} has its shape")
+    _require(data.atlas.rgb.shape == (entries, 3), "every entry has its RGB")
+    _require(data.atlas.coefficients.shape == (entries, count), "every entry has its coefficients")
+    floats = (data.coefficients, data.rgb, data.distance, data.atlas.rgb, data.atlas.coefficients)
+    sensor = [getattr(data.sensor, name) for name in SENSOR_ARRAYS]
+    _require(all(np.isfinite(array).all() for array in (*floats, *sensor)), "every number is finite")
+    _require(bool((data.status < len(Status)).all()), "every status is known")
+    _require(bool(((data.entry >= -1) & (data.entry < entries)).all()), "every entry is in the atlas table")
+
+
+def _require(holds: bool, law: str) -> None:
+    if not holds:
+        raise ValueError(f"it does not hold that {law}")

@@ -1,0 +1,66 @@
+"""Files that are whole or not there: written beside their place, then renamed into it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from uplift.errors import OutputError
+
+
+def check_output(path: str | os.PathLike[str], *, force: bool = False) -> Path:
+    """The path, if it can be written. Raises `OutputError`; asks before long work, not after."""
+    path = Path(path)
+    if path.is_dir():
+        raise OutputError("is a folder", path=path, remedy="name a file in it")
+    if path.exists() and not force:
+        raise OutputError("exists already", path=path, remedy="use --force to replace it, or another name")
+    folder = path.resolve().parent
+    if not folder.is_dir():
+        raise OutputError(f"there is no folder {folder}", path=path, remedy="make it first")
+    if not os.access(folder, os.W_OK):
+        raise OutputError(f"no permission to write in {folder}", path=path, remedy="choose another place")
+    return path
+
+
+@contextlib.contextmanager
+def replacing(path: str | os.PathLike[str], *, force: bool = False) -> Iterator[Path]:
+    """A temporary path in the same folder; renamed to ``path`` if the block ends well, removed if not.
+
+    Raises `OutputError` where the path cannot be written, the disk is full, or the file exists and
+    ``force`` is off.
+    """
+    path = check_output(path, force=force)
+    target = path.resolve()
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
+        os.close(handle)
+    except OSError as error:
+        raise _cannot_write(path, error) from error
+    temporary = Path(name)
+    try:
+        yield temporary
+        _settle(temporary)
+        os.replace(temporary, target)
+    except OSError as error:
+        raise _cannot_write(path, error) from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _settle(temporary: Path) -> None:
+    """On the disk, with the permissions of any new file, before it takes the name."""
+    umask = os.umask(0)
+    os.umask(umask)
+    temporary.chmod(0o666 & ~umask)
+    with temporary.open("rb+") as file:
+        os.fsync(file.fileno())
+
+
+def _cannot_write(path: Path, error: OSError) -> OutputError:
+    return OutputError(
+        f"cannot be written: {error.strerror or error}", path=path, remedy="the old file is intact"
+    )
