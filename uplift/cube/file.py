@@ -140,7 +140,7 @@ def _metadata(data: CubeData) -> dict[str, Any]:
 
 def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
     debug = "debug" in metadata["features"]
-    points = {name: tensors[name] for name in POINT_TYPES if name != "round" or debug}
+    points: dict[str, Any] = {name: tensors[name] for name in POINT_TYPES if name != "round" or debug}
     return CubeData(
         model=from_description(metadata["model"]),
         lattice=Lattice(tensors["nodes"]),
