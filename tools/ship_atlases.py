@@ -1,6 +1,6 @@
-"""Write the atlases shipped in atlases/ from colour-science's tables: ``python tools/ship_atlases.py [FOLDER]``.
+"""Write the atlases of atlases/ from colour-science's tables: ``python tools/ship_atlases.py [FOLDER]``.
 
-The table in atlases/README.md describes the files; tests/atlas/test_shipped.py checks that they are as written.
+atlases/README.md describes the files; tests/atlas/test_shipped.py checks that they are as written here.
 """
 
 from __future__ import annotations
