@@ -1,0 +1,223 @@
+"""``uplift atlas``: what an atlas holds, how it looks, and its other format."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+    from uplift.atlas import Spectra
+    from uplift.sensor import Sensor
+
+TOLERANCE = 1e-9
+"""By how much a channel may leave [0, 1] through rounding: the perfect reflector is in gamut."""
+
+PIPE_WIDTH = 160
+"""Columns of a table that no terminal limits."""
+
+DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
+"""As in `uplift.observer`, whose import would cost every ``--help`` the time numpy takes."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One entry as it is listed: nm, linear RGB, display RGB (8 bit), and what was clipped."""
+
+    name: str
+    start: float
+    end: float
+    step: float | None
+    rgb: tuple[float, float, float]
+    swatch: tuple[int, int, int]
+    in_gamut: bool
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Listing:
+    """An atlas seen under one sensor."""
+
+    spectra: Spectra
+    sensor: Sensor
+    rows: tuple[Row, ...]
+
+
+@click.command("atlas")
+@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path())
+@click.option("--space", default="sRGB", show_default=True, help="RGB space of the colours.")
+@click.option("--illuminant", default="D65", show_default=True, help="Light the entries are seen under.")
+@click.option("--observer", default=DEFAULT_OBSERVER, show_default=True, help="Colour-matching functions.")
+@click.option(
+    "--format",
+    "style",
+    type=click.Choice(["table", "json", "csv"]),
+    default="table",
+    show_default=True,
+    help="How to list; JSON and CSV go to standard output alone.",
+)
+@click.option(
+    "--convert", metavar="OUT", type=click.Path(), help="Write all entries to OUT and list nothing."
+)
+@click.option("--force", is_flag=True, help="Let --convert replace a file.")
+def command(
+    files: tuple[str, ...],
+    space: str,
+    illuminant: str,
+    observer: str,
+    style: str,
+    convert: str | None,
+    force: bool,
+) -> None:
+    """List the entries of atlas files: range, colour, gamut, oddities.
+
+    An atlas holds measured reflectances, as text (the ART measurement archive) or as a CSV table, a row or a
+    column per sample. Several files are read as one atlas. --convert writes CSV where OUT ends in .csv, text
+    otherwise.
+
+    \b
+    Examples:
+      uplift atlas atlases/macbeth.txt
+      uplift atlas --space "Display P3" --illuminant A atlases/macbeth.txt
+      uplift atlas --format json atlases/*.txt
+      uplift atlas paints.csv --convert paints.txt
+    """
+    from uplift.atlas import read_atlas
+
+    spectra = read_atlas(*files)
+    if convert is not None:
+        _convert(spectra, convert, force)
+        return
+    from uplift.observer import sensor
+
+    PRINTERS[style](_listing(spectra, sensor(space, illuminant, observer)))
+
+
+def _convert(spectra: Spectra, path: str, force: bool) -> None:
+    from uplift.atlas import write_atlas
+    from uplift.errors import OutputError
+
+    if os.path.lexists(path) and not force:
+        raise OutputError(
+            "the file exists", path=path, remedy="choose another name or replace it with --force"
+        )
+    write_atlas(spectra, path)
+    click.echo(f"{path}: {len(spectra)} entries written", err=True)
+
+
+def _listing(spectra: Spectra, sensor: Sensor) -> Listing:
+    from uplift.atlas import resample
+    from uplift.observer import sensor as make_sensor
+
+    resampled = resample(spectra, sensor.wavelengths)
+    display = make_sensor("sRGB", sensor.illuminant, sensor.observer)
+    clips = {clip.name: (str(clip),) for clip in resampled.clips}
+    colours = sensor.rgb(resampled.values).tolist()
+    codes = display.decoding.searchsorted(display.rgb(resampled.values)).clip(0, 255).tolist()
+    rows = [
+        Row(
+            entry.name,
+            float(entry.wavelengths[0]),
+            float(entry.wavelengths[-1]),
+            entry.step,
+            tuple(rgb),
+            tuple(code),
+            all(-TOLERANCE <= channel <= 1 + TOLERANCE for channel in rgb),
+            clips.get(entry.name, ()),
+        )
+        for entry, rgb, code in zip(spectra.entries, colours, codes, strict=True)
+    ]
+    return Listing(spectra, sensor, tuple(rows))
+
+
+def _print_json(listing: Listing) -> None:
+    rows = [{key: value for key, value in asdict(row).items() if key != "swatch"} for row in listing.rows]
+    sensor = listing.sensor
+    answer = {
+        "space": sensor.space,
+        "illuminant": sensor.illuminant,
+        "observer": sensor.observer,
+        "sources": [{"name": source.name, "digest": source.digest} for source in listing.spectra.sources],
+        "entries": rows,
+        "skipped": [asdict(skipped) for skipped in listing.spectra.skipped],
+    }
+    click.echo(json.dumps(answer, indent=2, ensure_ascii=False))
+
+
+def _print_csv(listing: Listing) -> None:
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"])
+    for row in listing.rows:
+        gamut, notes = str(row.in_gamut).lower(), "; ".join(row.warnings)
+        writer.writerow([row.name, row.start, row.end, row.step, *row.rgb, gamut, notes])
+    click.echo(out.getvalue(), nl=False)
+
+
+def _print_table(listing: Listing) -> None:
+    from rich.console import Console
+
+    console = Console(file=sys.stdout, highlight=False)
+    if not console.is_terminal:
+        console.width = max(console.width, PIPE_WIDTH)
+    console.print(_table(listing, console))
+    console.print(_summary(listing), markup=False)
+
+
+def _table(listing: Listing, console: Console) -> Table:
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    sensor = listing.sensor
+    table = Table(box=box.SIMPLE_HEAD, caption=f"linear {sensor.space} under {sensor.illuminant}")
+    swatches = console.color_system is not None
+    for title in [""] * swatches + ["name", "range (nm)", "step", "R", "G", "B", "gamut", "warnings"]:
+        right = title in ("step", "R", "G", "B")
+        table.add_column(title, justify="right" if right else "left", no_wrap=right, overflow="fold")
+    for row in listing.rows:
+        red, green, blue = row.swatch
+        swatch = [Text("   ", style=f"on rgb({red},{green},{blue})")] * swatches
+        table.add_row(*swatch, *map(Text, _cells(row)))
+    return table
+
+
+def _cells(row: Row) -> Iterator[str]:
+    yield row.name
+    yield f"{row.start:g}–{row.end:g}"
+    yield "irregular" if row.step is None else f"{row.step:g}"
+    yield from (f"{channel:.4f}" for channel in row.rgb)
+    yield "in" if row.in_gamut else "out"
+    yield "; ".join(row.warnings)
+
+
+def _summary(listing: Listing) -> str:
+    outside = [row.name for row in listing.rows if not row.in_gamut]
+    skipped = [skipped.name for skipped in listing.spectra.skipped]
+    parts = [
+        f"{len(listing.rows)} entries",
+        _counted(outside, f"out of the {listing.sensor.space} gamut"),
+        _counted(skipped, "skipped"),
+    ]
+    return ", ".join(parts)
+
+
+def _counted(names: Sequence[str], what: str) -> str:
+    return f"{len(names)} {what}" + (f" ({', '.join(names)})" if names else "")
+
+
+PRINTERS: dict[str, Callable[[Listing], None]] = {
+    "table": _print_table,
+    "json": _print_json,
+    "csv": _print_csv,
+}
