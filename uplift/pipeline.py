@@ -14,7 +14,7 @@ from uplift import __version__, fit, observer
 from uplift.atlas import Spectra, on_grid, read_atlas
 from uplift.cube import AtlasTable, CubeData
 from uplift.errors import OptionError, UpliftWarning
-from uplift.lattice import Lattice, Status
+from uplift.lattice import Lattice, Mask, Status
 from uplift.lookup import Cube
 from uplift.models import Model, Moments, Phase, Sigmoid
 from uplift.models.least_change import forward
@@ -55,7 +55,7 @@ class Options:
         raise observer.suggest(self.model, MODELS, "model")
 
 
-def build(atlas: Atlas = None, *, watch: fit.Watch = lambda round: None, **options: Any) -> Cube:
+def build(atlas: Atlas = None, *, watch: fit.Watch = lambda done: None, **options: Any) -> Cube:
     """Build a cube, constrained by measured spectra if any are given.
 
     Parameters
@@ -139,7 +139,7 @@ def _read(atlas: Atlas) -> Spectra:
     if isinstance(atlas, Spectra):
         return atlas
     if atlas is None:
-        return Spectra((), (), ())
+        return Spectra()
     return read_atlas(atlas) if isinstance(atlas, str | os.PathLike) else read_atlas(*atlas)
 
 
@@ -147,7 +147,7 @@ def _in_gamut(spectra: Spectra, sensor: Sensor) -> tuple[tuple[str, ...], Array,
     """Names, linear RGB (E, 3) and reflectances (E, N) of the entries within the space; the rest is named."""
     measured = on_grid(spectra, sensor.wavelengths)
     rgb = sensor.rgb(measured)
-    inside = ((rgb >= 0) & (rgb <= 1)).all(axis=1)
+    inside: Mask = np.all((rgb >= 0) & (rgb <= 1), axis=1)
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
         _warn(f"entry '{spectra.names[row]}' is left out: its colour ({values}) lies outside {sensor.space}")
@@ -178,7 +178,7 @@ def _provenance(
     return {
         "uplift": __version__,
         "options": asdict(options) | {"lights": list(options.lights)},
-        "atlases": [asdict(source) for source in spectra.sources],
+        "atlases": [{"name": source.name, "digest": source.digest} for source in spectra.sources],
         "left_out": [name for name in spectra.names if name not in names],
         "skipped": [entry.name for entry in spectra.skipped],
         "improvements": [asdict(step) for step in fitted.improvements],

@@ -12,6 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from uplift.cube import CubeData
+from uplift.lattice import Indices
 from uplift.models.least_change import Forward, forward, residual, step
 from uplift.sensor import Array
 
@@ -63,7 +64,9 @@ def refined_multipliers(data: CubeData, rgb: Array) -> Array:
     return multipliers
 
 
-def _refine(data: CubeData, ahead: Forward, multipliers: Array, off: Array, rgb: Array, rows: Array) -> None:
+def _refine(
+    data: CubeData, ahead: Forward, multipliers: Array, off: Array, rgb: Array, rows: Indices
+) -> None:
     """One step for ``rows``, in place, where it helps."""
     here = multipliers[rows]
     there = here + step(data.model, ahead, here, off[rows], np.zeros(len(rows)))
