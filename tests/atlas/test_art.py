@@ -183,6 +183,7 @@ FAULTS = [
     (lambda text: text.replace("}", "}\n\n\nabc"), 20, "unexpected text after the sample list"),
     (lambda text: text.replace("0.25", "0.25x"), 17, "sample '0.25x' is not a number; write a plain number"),
     (lambda text: text.replace("0.25,", "\n0.25,\n oops,"), 19, "sample 'oops' is not a number"),
+    (lambda text: text.replace("0.25", "0.\n25"), 17, "sample '0. 25' is not a number"),
     (lambda text: text.replace("0.0625", "0.06 0.02\n"), 17, "sample '0.06 0.02' is not a number"),
     (lambda text: text.replace("0.25,", ","), 17, "sample '' is not a number"),
     (lambda text: text.replace("0.25", "0_2"), 17, "sample '0_2' is not a number"),

@@ -80,6 +80,11 @@ def test_percent(save, text):
         (WIDE.replace("550", "350"), 2, "entry 'red': wavelengths do not ascend: 400 nm, then 350 nm; sort"),
         (WIDE.replace("700", "690"), 2, "entry 'red': covers 400–690 nm, not the visible 400–700 nm; add"),
         (WIDE.replace("blue", "red"), 3, "entry 'red': the name is taken: first used at"),
+        (
+            WIDE.replace("blue", '"bl\nue"'),
+            3,
+            "entry 'bl ue': the name has line breaks or blanks around it; give",
+        ),
         (WIDE.replace("blue", ""), 3, "entry '': an entry has no name; give every entry a name"),
         (
             WIDE.replace("0.2", "-0.2"),
