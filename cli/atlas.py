@@ -8,49 +8,24 @@ import json
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import click
+
+from .atlas_listing import Listing, Row, list_entries
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
     from uplift.atlas import Spectra
-    from uplift.sensor import Sensor
-
-TOLERANCE = 1e-9
-"""By how much a channel may leave [0, 1] through rounding: the perfect reflector is in gamut."""
 
 PIPE_WIDTH = 160
 """Columns of a table that no terminal limits."""
 
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
 """As in `uplift.observer`, whose import would cost every ``--help`` the time numpy takes."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """One entry as it is listed: nm, linear RGB, display RGB (8 bit), and what was clipped."""
-
-    name: str
-    start: float
-    end: float
-    step: float | None
-    rgb: tuple[float, float, float]
-    swatch: tuple[int, int, int]
-    in_gamut: bool
-    warnings: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Listing:
-    """An atlas seen under one sensor."""
-
-    spectra: Spectra
-    sensor: Sensor
-    rows: tuple[Row, ...]
 
 
 @click.command("atlas")
@@ -100,7 +75,7 @@ def command(
         return
     from uplift.observer import sensor
 
-    PRINTERS[style](_listing(spectra, sensor(space, illuminant, observer)))
+    PRINTERS[style](list_entries(spectra, sensor(space, illuminant, observer)))
 
 
 def _convert(spectra: Spectra, path: str, force: bool) -> None:
@@ -113,31 +88,6 @@ def _convert(spectra: Spectra, path: str, force: bool) -> None:
         )
     write_atlas(spectra, path)
     click.echo(f"{path}: {len(spectra)} entries written", err=True)
-
-
-def _listing(spectra: Spectra, sensor: Sensor) -> Listing:
-    from uplift.atlas import resample
-    from uplift.observer import sensor as make_sensor
-
-    resampled = resample(spectra, sensor.wavelengths)
-    display = make_sensor("sRGB", sensor.illuminant, sensor.observer)
-    clips = {clip.name: (str(clip),) for clip in resampled.clips}
-    colours = sensor.rgb(resampled.values).tolist()
-    codes = display.decoding.searchsorted(display.rgb(resampled.values)).clip(0, 255).tolist()
-    rows = [
-        Row(
-            entry.name,
-            float(entry.wavelengths[0]),
-            float(entry.wavelengths[-1]),
-            entry.step,
-            tuple(rgb),
-            tuple(code),
-            all(-TOLERANCE <= channel <= 1 + TOLERANCE for channel in rgb),
-            clips.get(entry.name, ()),
-        )
-        for entry, rgb, code in zip(spectra.entries, colours, codes, strict=True)
-    ]
-    return Listing(spectra, sensor, tuple(rows))
 
 
 def _print_json(listing: Listing) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from uplift.atlas.art_fields import NOT_STATED, Block, Fields, Line, fold, key_of, parse_fields, split
 from uplift.atlas.art_samples import SampleText, enclosed, pairs, plain
 from uplift.atlas.checks import Array
-from uplift.atlas.document import Document, Place, nanometres, number
+from uplift.atlas.document import Document, Place, nanometres, number, shown
 from uplift.atlas.spectra import Entry, Header, Skipped, Source, Spectra
 
 MAGIC = "ART measurement archive"
@@ -77,7 +77,7 @@ def _check_version(line: Line, place: Place) -> None:
     number, text = line
     version = text.split()[-1]
     if not version.startswith("1."):
-        problem = f"archive version '{version}' is not known"
+        problem = f"archive version '{shown(version)}' is not known"
         raise place.at(number).error(problem, "write the archive as version 1.0, 1.1 or 1.2")
 
 
@@ -109,7 +109,7 @@ def _why_skipped(block: Block) -> str:
         return f"its type is '{kind}', not '{REFLECTANCE}'"
     if fold(kind) != REFLECTANCE:
         known = ", ".join(f"'{name}'" for name in (REFLECTANCE, *OTHER_TYPES[:4]))
-        raise place.error(f"unknown type '{kind}'", f"the types are {known}")
+        raise place.error(f"unknown type '{shown(kind)}'", f"the types are {known}")
     return "it is fluorescent (bispectral): no plain reflectance" if _is_fluorescent(block) else ""
 
 
@@ -118,7 +118,7 @@ def _is_fluorescent(block: Block) -> bool:
         return bool(block.sampling.text("Reflectance start"))
     answer, place = block.fields.required("Fluorescence data")
     if fold(answer) not in ("yes", "no"):
-        raise place.error(f"'Fluorescence data' is '{answer}'", "write 'yes' or 'no'")
+        raise place.error(f"'Fluorescence data' is '{shown(answer)}'", "write 'yes' or 'no'")
     return fold(answer) == "yes"
 
 
@@ -126,7 +126,7 @@ def _sampled(sampling: Fields, samples: SampleText) -> tuple[Array, Array]:
     """Wavelengths (N,) nm and reflectances (N,) in units of 1."""
     kind, place = sampling.required("Type")
     if fold(kind) not in SAMPLINGS:
-        raise place.error(f"unknown sampling type '{kind}'", "write 'regular' or 'point sampled'")
+        raise place.error(f"unknown sampling type '{shown(kind)}'", "write 'regular' or 'point sampled'")
     sampling.check_known(SAMPLINGS[fold(kind)])
     scale = _scale(sampling)
     read: Callable[[Fields, SampleText], tuple[Array, Array]] = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from uplift.atlas.document import Document, Place
+from uplift.atlas.document import Document, Place, shown
 
 Line = tuple[int, str]
 """Number, counted from 1, and text."""
@@ -40,7 +40,7 @@ class Fields:
         for key, (line, _) in self.values.items():
             if key not in map(fold, known):
                 remedy = "the fields are " + ", ".join(f"'{name}'" for name in known)
-                raise self.place.at(line).error(f"unknown field '{key}'", remedy)
+                raise self.place.at(line).error(f"unknown field '{shown(key)}'", remedy)
 
 
 @dataclass(frozen=True)
@@ -85,9 +85,9 @@ def parse_fields(lines: Iterable[Line], place: Place) -> Fields:
     for number, text in spoken(lines):
         key, colon, value = text.partition(":")
         if not colon:
-            raise place.at(number).error(f"unexpected text '{text[:40]}'", "write 'key : value'")
+            raise place.at(number).error(f"unexpected text '{shown(text)}'", "write 'key : value'")
         if fold(key) in values:
-            raise place.at(number).error(f"the field '{key.strip()}' stands twice", "remove one of the two")
+            raise place.at(number).error(f"the field '{shown(key)}' stands twice", "remove one of the two")
         values[fold(key)] = number, value.strip()
     return Fields(values, place)
 

@@ -16,7 +16,7 @@ LOWEST, HIGHEST = -0.05, 2.0
 """Sensor noise goes a little below 0, fluorescent whites above 1; anything beyond is a wrong scale."""
 
 SLACK = 1e-6
-"""nm by which a range may miss its end: start + n × increment rounds."""
+"""nm that make no difference: by this a range may miss its end, as start + n × increment rounds."""
 
 
 def check_name(name: str, place: Place) -> None:
@@ -55,7 +55,7 @@ def _check_finite(wavelengths: Array, values: Array, place: Place) -> None:
 def _check_ascending(wavelengths: Array, place: Place) -> None:
     if wavelengths[0] <= 0:
         raise place.error(f"wavelength {wavelengths[0]:g} nm is not positive", "give wavelengths in nm")
-    bad = np.flatnonzero(np.diff(wavelengths) <= 0)
+    bad = np.flatnonzero(np.diff(wavelengths) < SLACK)
     if len(bad):
         i = bad[0]
         problem = f"wavelengths do not ascend: {wavelengths[i]:g} nm, then {wavelengths[i + 1]:g} nm"

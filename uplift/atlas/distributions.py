@@ -52,7 +52,7 @@ def _sampled(distribution: Any, name: str) -> tuple[Any, Any]:
     try:
         return distribution.wavelengths, distribution.values
     except AttributeError:
-        problem = f"a {type(distribution).__name__} is no spectral distribution"
+        problem = f"'{type(distribution).__name__}' is no spectral distribution"
         raise Place(entry=name).error(problem, FORMS) from None
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from uplift.errors import AtlasError, OutputError
 
 SHOWN = 40
-"""Characters of a faulty token that a message shows."""
+"""Characters of a faulty token or name that a message shows."""
 
 StrPath = str | os.PathLike[str]
 
@@ -36,7 +36,8 @@ class Place:
 
     def error(self, problem: str, remedy: str) -> AtlasError:
         """The error to raise for a problem here."""
-        return AtlasError(problem, path=self.path, line=self.line, entry=self.entry, remedy=remedy)
+        entry = None if self.entry is None else shown(self.entry)
+        return AtlasError(problem, path=self.path, line=self.line, entry=entry, remedy=remedy)
 
 
 @dataclass(frozen=True)
@@ -99,9 +100,14 @@ def number(token: str, place: Place, what: str) -> float:
             raise ValueError
         return float(token)
     except ValueError:
-        shown = token.strip()
-        shown = shown if len(shown) <= SHOWN else shown[:SHOWN] + "…"
-        raise place.error(f"{what} '{shown}' is not a number", "write a plain number such as 0.125") from None
+        problem = f"{what} '{shown(token)}' is not a number"
+        raise place.error(problem, "write a plain number such as 0.125") from None
+
+
+def shown(text: str) -> str:
+    """Text as a message quotes it: one line, not too long."""
+    text = " ".join(text.replace("\0", " ").split())
+    return text if len(text) <= SHOWN else text[:SHOWN] + "…"
 
 
 def nanometres(token: str, place: Place, what: str) -> float:

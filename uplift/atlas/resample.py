@@ -59,7 +59,8 @@ def resample(spectra: Spectra, wavelengths: ArrayLike) -> Resampled:
 def _interpolate(entry: Entry, grid: Array) -> Array:
     from scipy.interpolate import PchipInterpolator
 
-    curve = PchipInterpolator(entry.wavelengths, entry.values)
+    with np.errstate(over="ignore"):  # slopes near 0 go through their reciprocals
+        curve = PchipInterpolator(entry.wavelengths, entry.values)
     return np.asarray(curve(np.clip(grid, entry.wavelengths[0], entry.wavelengths[-1])), dtype=np.float64)
 
 

@@ -136,6 +136,6 @@ def _samples(samples: ArrayLike, key: str, place: Place) -> Array:
 
 
 def _duplicate(first: Entry, second: Entry) -> Exception:
-    where = "among these" if first.path is None else f"{first.path}:{first.line}"
+    where = "" if first.path is None else f": first used at {first.path}:{first.line}"
     place = Place(second.path, second.line, second.name)
-    return place.error(f"the name is taken: first used at {where}", "rename or remove one of the two")
+    return place.error(f"the name is taken{where}", "rename or remove one of the two")
