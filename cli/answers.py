@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from .output import console
+
 if TYPE_CHECKING:
     from uplift.lookup import Answer, Cube
 
@@ -86,7 +88,6 @@ def _columns(answer: Answer) -> None:
 
 
 def _lines(cube: Cube, answers: Iterable[Answer]) -> None:
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
@@ -103,7 +104,7 @@ def _lines(cube: Cube, answers: Iterable[Answer]) -> None:
             answer.entry or "",
             _sparkline(answer, 20),
         )
-    Console().print(table)
+    console().print(table)
 
 
 def _codes(cube: Cube, answer: Answer) -> tuple[int, int, int]:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import os
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING
@@ -14,6 +12,8 @@ from typing import TYPE_CHECKING
 import click
 
 from .atlas_listing import Listing, Row, list_entries
+from .options import force_option, format_option, sensor_options
+from .output import console
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -21,35 +21,20 @@ if TYPE_CHECKING:
 
     from uplift.atlas import Spectra
 
-PIPE_WIDTH = 160
-"""Columns of a table that no terminal limits."""
-
-DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
-"""As in `uplift.observer`, whose import would cost every ``--help`` the time numpy takes."""
-
 
 @click.command("atlas")
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path())
-@click.option("--space", default="sRGB", show_default=True, help="RGB space of the colours.")
-@click.option("--illuminant", default="D65", show_default=True, help="Light the entries are seen under.")
-@click.option("--observer", default=DEFAULT_OBSERVER, show_default=True, help="Colour-matching functions.")
-@click.option(
-    "--format",
-    "style",
-    type=click.Choice(["table", "json", "csv"]),
-    default="table",
-    show_default=True,
-    help="How to list; JSON and CSV go to standard output alone.",
-)
+@sensor_options
+@format_option("table", "json", "csv")
 @click.option(
     "--convert", metavar="OUT", type=click.Path(), help="Write all entries to OUT and list nothing."
 )
-@click.option("--force", is_flag=True, help="Let --convert replace a file.")
+@force_option()
 def command(
     files: tuple[str, ...],
     space: str,
     illuminant: str,
-    observer: str,
+    observer: str | None,
     style: str,
     convert: str | None,
     force: bool,
@@ -73,20 +58,16 @@ def command(
     if convert is not None:
         _convert(spectra, convert, force)
         return
-    from uplift.observer import sensor
+    from uplift.observer import DEFAULT_OBSERVER, sensor
 
-    PRINTERS[style](list_entries(spectra, sensor(space, illuminant, observer)))
+    PRINTERS[style](list_entries(spectra, sensor(space, illuminant, observer or DEFAULT_OBSERVER)))
 
 
 def _convert(spectra: Spectra, path: str, force: bool) -> None:
     from uplift.atlas import write_atlas
-    from uplift.errors import OutputError
+    from uplift.files import check_output
 
-    if os.path.lexists(path) and not force:
-        raise OutputError(
-            "the file exists", path=path, remedy="choose another name or replace it with --force"
-        )
-    write_atlas(spectra, path)
+    write_atlas(spectra, check_output(path, force=force))
     click.echo(f"{path}: {len(spectra)} entries written", err=True)
 
 
@@ -115,23 +96,19 @@ def _print_csv(listing: Listing) -> None:
 
 
 def _print_table(listing: Listing) -> None:
-    from rich.console import Console
-
-    console = Console(file=sys.stdout, highlight=False)
-    if not console.is_terminal:
-        console.width = max(console.width, PIPE_WIDTH)
-    console.print(_table(listing, console))
-    console.print(_summary(listing), markup=False)
+    out = console()
+    out.print(_table(listing, out))
+    out.print(_summary(listing), markup=False)
 
 
-def _table(listing: Listing, console: Console) -> Table:
+def _table(listing: Listing, out: Console) -> Table:
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
     sensor = listing.sensor
     table = Table(box=box.SIMPLE_HEAD, caption=f"linear {sensor.space} under {sensor.illuminant}")
-    swatches = console.color_system is not None
+    swatches = out.color_system is not None
     for title in [""] * swatches + ["name", "range (nm)", "step", "R", "G", "B", "gamut", "warnings"]:
         right = title in ("step", "R", "G", "B")
         table.add_column(title, justify="right" if right else "left", no_wrap=right, overflow="fold")

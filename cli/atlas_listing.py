@@ -9,9 +9,6 @@ if TYPE_CHECKING:
     from uplift.atlas import Spectra
     from uplift.sensor import Sensor
 
-TOLERANCE = 1e-9
-"""By how much a channel may leave [0, 1] through rounding: the perfect reflector is in gamut."""
-
 
 @dataclass(frozen=True)
 class Row:
@@ -54,7 +51,7 @@ def list_entries(spectra: Spectra, sensor: Sensor) -> Listing:
             entry.step,
             tuple(rgb),
             tuple(code),
-            all(-TOLERANCE <= channel <= 1 + TOLERANCE for channel in rgb),
+            bool(sensor.holds(rgb)),
             clips.get(entry.name, ()),
         )
         for entry, rgb, code in zip(spectra.entries, colours, codes, strict=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .options import force_option, verbosity_options
+from .options import force_option, sensor_options, verbosity_options
 
 if TYPE_CHECKING:
     from uplift.lookup import Cube
@@ -28,9 +28,7 @@ if TYPE_CHECKING:
 )
 @click.option("--warp", default="none", show_default=True, help="Phase of the moments: none, or vision.")
 @click.option("--axis", default="srgb", show_default=True, help="Spacing of the lattice: srgb or linear.")
-@click.option("--space", default="sRGB", show_default=True, help="RGB space, as colour-science names it.")
-@click.option("--illuminant", default="D65", show_default=True, help="Illuminant the RGB are meant under.")
-@click.option("--observer", help="Standard observer. [default: CIE 1931 2 Degree Standard Observer]")
+@sensor_options
 @click.option(
     "--light", "lights", multiple=True, help="Lights entries must hold under. [default: D65 A FL2 FL11]"
 )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .options import format_option, verbosity_options
+from .output import console
 
 if TYPE_CHECKING:
     from uplift.report.regression import Comparison
@@ -41,31 +42,26 @@ def command(
     from .startup import keep_compiled
 
     keep_compiled()
-    from uplift.report.regression import check
+    from uplift.lookup import load
+    from uplift.rebuild import rebuild
+    from uplift.report.regression import compare
 
     from .progress import watching
 
+    stored = {Path(file): load(file) for file in files}
     with watching(quiet=quiet, verbose=verbose) as watch:
-        comparisons = [check(file, folders, watch) for file in files]
+        rebuilt = {path: rebuild(cube, path, folders, watch=watch) for path, cube in stored.items()}
+    comparisons = [compare(path, cube.data, rebuilt[path].data) for path, cube in stored.items()]
     if style == "json":
         click.echo(json.dumps([_object(comparison) for comparison in comparisons], indent=2))
     elif not quiet:
         _table(comparisons)
-    failed = [comparison for comparison in comparisons if comparison.failures]
-    if update:
-        _update([comparison.path for comparison in failed], folders, quiet=quiet)
-    elif failed:
+    failed = [comparison.path for comparison in comparisons if comparison.failures]
+    if failed and not update:
         raise SystemExit(1)
-
-
-def _update(paths: Sequence[Path], folders: Sequence[str], *, quiet: bool) -> None:
-    from uplift.lookup import load
-    from uplift.report.regression import rebuild
-
-    for path in paths:
-        rebuild(path, load(path), folders).save(path, force=True)
-        if not quiet:
-            click.echo(f"{path}: replaced", err=True)
+    for path in failed:
+        rebuilt[path].save(path, force=True)
+        click.echo(f"{path}: replaced", err=True)
 
 
 def _object(comparison: Comparison) -> dict[str, object]:
@@ -79,14 +75,13 @@ def _object(comparison: Comparison) -> dict[str, object]:
 
 
 def _table(comparisons: Sequence[Comparison]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     from uplift.report.regression import LIMITS
 
     table = Table(box=None, pad_edge=False)
     headings = {"rgb": "RGB", "spectra_max": "spectra max", "spectra_rms": "rms"}
-    table.add_column("cube", overflow="fold")
+    table.add_column("cube", no_wrap=True)
     for name in LIMITS:
         table.add_column(headings.get(name, name.replace("delta_e_", "ΔE00 ")), justify="right", no_wrap=True)
     table.add_column("status", no_wrap=True)
@@ -96,7 +91,7 @@ def _table(comparisons: Sequence[Comparison]) -> None:
     table.add_row(
         "[dim]limit[/dim]", *(f"[dim]{limit:.0e}[/dim]" for limit in LIMITS.values()), "[dim]same[/dim]", ""
     )
-    Console().print(table)
+    console().print(table)
 
 
 def _row(comparison: Comparison) -> list[str]:

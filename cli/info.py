@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from .options import format_option
+from .output import console
 
 
 @click.command("info")
@@ -32,7 +33,6 @@ def command(file: str | None, style: str) -> None:
 
 
 def _table(name: str, facts: dict[str, Any]) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     table = Table(title=name, title_justify="left", show_header=False, box=None, pad_edge=False)
@@ -40,7 +40,7 @@ def _table(name: str, facts: dict[str, Any]) -> None:
     table.add_column()
     for key, value in facts.items():
         table.add_row(key.replace("_", " "), _text(value))
-    Console().print(table)
+    console().print(table)
 
 
 def _text(value: Any) -> str:

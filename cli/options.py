@@ -27,6 +27,20 @@ def format_option(*choices: str) -> Decorator:
     )
 
 
+def sensor_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """--space, --illuminant, --observer; the observer stays None for the library's own default."""
+    space = click.option(
+        "--space", default="sRGB", show_default=True, help="RGB space, as colour-science names it."
+    )
+    illuminant = click.option(
+        "--illuminant", default="D65", show_default=True, help="Light the RGB are meant under."
+    )
+    observer = click.option(
+        "--observer", help="Standard observer. [default: CIE 1931 2 Degree Standard Observer]"
+    )
+    return space(illuminant(observer(function)))
+
+
 def force_option() -> Decorator:
     return click.option("--force", is_flag=True, help="Replace an existing file.")
 

@@ -14,7 +14,7 @@ from uplift import __version__, fit, observer
 from uplift.atlas import Spectra, on_grid, read_atlas
 from uplift.cube import AtlasTable, CubeData
 from uplift.errors import OptionError, UpliftWarning
-from uplift.lattice import Lattice, Mask, Status
+from uplift.lattice import Lattice, Status
 from uplift.lookup import Cube
 from uplift.models import Model, Moments, Phase, Sigmoid
 from uplift.models.least_change import forward
@@ -147,12 +147,12 @@ def _in_gamut(spectra: Spectra, sensor: Sensor) -> tuple[tuple[str, ...], Array,
     """Names, linear RGB (E, 3) and reflectances (E, N) of the entries within the space; the rest is named."""
     measured = on_grid(spectra, sensor.wavelengths)
     rgb = sensor.rgb(measured)
-    inside: Mask = np.all((rgb >= 0) & (rgb <= 1), axis=1)
+    inside = sensor.holds(rgb)
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
         _warn(f"entry '{spectra.names[row]}' is left out: its colour ({values}) lies outside {sensor.space}")
     names = tuple(name for name, kept in zip(spectra.names, inside, strict=True) if kept)
-    return names, rgb[inside], measured[inside]
+    return names, np.clip(rgb[inside], 0, 1), measured[inside]
 
 
 def _warn_of_collisions(seeds: fit.Seeds, names: tuple[str, ...], rgb: Array, options: Options) -> None:

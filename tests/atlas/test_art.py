@@ -6,10 +6,11 @@ import time
 
 import numpy as np
 import pytest
-from atlas_texts import ORANGE, PLAIN, THESIS
 
 from uplift.atlas import read_atlas
 from uplift.errors import AtlasError, UpliftWarning
+
+from .atlas_texts import ORANGE, PLAIN, THESIS
 
 HEADER_1_0 = "ART measurement archive version 1.0\n\nArchive content: greys\n\n"
 HEADER_1_1 = (

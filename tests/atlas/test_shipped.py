@@ -7,10 +7,11 @@ import runpy
 import colour
 import numpy as np
 import pytest
-from atlas_texts import ATLASES
 
 from uplift.atlas import on_grid, read_atlas
 from uplift.errors import UpliftWarning
+
+from .atlas_texts import ATLASES
 
 GRID = np.arange(380.0, 785.0, 5.0)
 SHIPPED = {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import hashlib
 import os
@@ -10,7 +9,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from uplift.errors import AtlasError, OutputError
+from uplift.errors import AtlasError
+from uplift.files import replacing
 
 SHOWN = 40
 """Characters of a faulty token or name that a message shows."""
@@ -121,29 +121,9 @@ def without_unit(token: str) -> str:
 
 
 def write_whole(path: StrPath, text: str) -> None:
-    """Write UTF-8 text at once: readers see the old file or the new one, never a part.
-
-    Raises
-    ------
-    OutputError : the place cannot be written, or is no regular file.
-    """
-    if os.path.exists(path) and not os.path.isfile(path):
-        raise OutputError("not a regular file", path=path, remedy="name a file to write to")
-    try:
-        _write(Path(os.path.realpath(path)), text)
-    except (OSError, ValueError) as error:  # ValueError: text or a path that no encoding holds
-        remedy = "name a file in a folder that can be written"
-        raise OutputError(f"cannot be written: {_reason(error)}", path=path, remedy=remedy) from None
-
-
-def _write(target: Path, text: str) -> None:
-    part = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
-        part.write_text(text, encoding="utf-8", newline="\n")
-        os.replace(part, target)
-    finally:
-        with contextlib.suppress(OSError):
-            part.unlink()
+    """Write UTF-8 text at once, replacing ``path``. Raises `OutputError`."""
+    with replacing(path, force=True) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
 def _reason(error: Exception) -> str:

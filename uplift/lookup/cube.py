@@ -14,10 +14,7 @@ from numpy.typing import ArrayLike
 from uplift.cube import CubeData, read, write
 from uplift.errors import ColourError, OptionError
 from uplift.lookup.interpolate import BLOCK, MODES, coefficients
-from uplift.sensor import Array
-
-SLACK = 1e-9
-"""How far outside [0, 1] a colour may lie by rounding alone."""
+from uplift.sensor import Array, Sensor
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +28,7 @@ class Cube:
 
         Raises `ColourError` for a colour outside [0, 1].
         """
-        return _blockwise(lambda block: coefficients(self.data, block), rgb)
+        return self._blockwise(lambda block: coefficients(self.data, block), rgb)
 
     def reflectance(
         self, rgb: ArrayLike, wavelengths: ArrayLike | None = None, mode: str = "spectra"
@@ -53,7 +50,7 @@ class Cube:
         if mode not in MODES:
             raise OptionError(f"unknown mode '{mode}'", remedy=f"use one of {', '.join(MODES)}")
         at = self.data.sensor.wavelengths if wavelengths is None else _wavelengths(wavelengths)
-        return _blockwise(lambda block: MODES[mode](self.data, block, at), rgb)
+        return self._blockwise(lambda block: MODES[mode](self.data, block, at), rgb)
 
     def decode(self, codes: ArrayLike) -> Array:
         """Linear RGB (…) of 8-bit codes (…) as the cube's space encodes them.
@@ -73,6 +70,13 @@ class Cube:
         """Write the cube file, atomically. Raises `OutputError`."""
         write(self.data, path, force=force)
 
+    def _blockwise(self, function: Callable[[Array], Array], rgb: ArrayLike) -> Array:
+        """Apply to (n, 3) blocks of (…, 3), so that memory for the work does not grow with the question."""
+        array = _colours(rgb, self.data.sensor)
+        flat = array.reshape(-1, 3)
+        blocks = [function(flat[i : i + BLOCK]) for i in range(0, max(len(flat), 1), BLOCK)]
+        return np.concatenate(blocks).reshape(*array.shape[:-1], blocks[0].shape[-1])
+
 
 def load(path: str | os.PathLike[str] | None = None) -> Cube:
     """The cube in a file, or the default cube of the package (sRGB, D65, no atlas).
@@ -85,24 +89,11 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
         return Cube(read(default))
 
 
-def _blockwise(function: Callable[[Array], Array], rgb: ArrayLike) -> Array:
-    """Apply to (n, 3) blocks of (…, 3), so that memory for the work does not grow with the question."""
-    array = _colours(rgb)
-    flat = array.reshape(-1, 3)
-    blocks = [function(flat[i : i + BLOCK]) for i in range(0, max(len(flat), 1), BLOCK)]
-    found = blocks[0] if len(blocks) == 1 else np.concatenate(blocks)
-    return (
-        found.reshape(*array.shape[:-1], -1)
-        if flat.size
-        else found.reshape(*array.shape[:-1], found.shape[-1])
-    )
-
-
-def _colours(rgb: ArrayLike) -> Array:
+def _colours(rgb: ArrayLike, sensor: Sensor) -> Array:
     array = _floats(rgb, "a colour is three numbers")
     if array.ndim == 0 or array.shape[-1] != 3:
         raise ColourError(f"a colour is three numbers, not an array of shape {array.shape}")
-    outside = ~((array >= -SLACK) & (array <= 1 + SLACK)).all(axis=-1)
+    outside = ~sensor.holds(array)
     if outside.any():
         first = np.argwhere(outside)[0]
         values = ", ".join(f"{value:g}" for value in array[tuple(first)])

@@ -1,0 +1,42 @@
+"""What many tests share. Building is dear, so cubes are built once a run, or read from ``cubes/``."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import pytest
+
+import uplift
+from uplift import observer
+from uplift.lookup import Cube
+from uplift.sensor import Sensor
+
+ROOT = Path(__file__).parents[1]
+MACBETH = ROOT / "atlases" / "macbeth.txt"
+
+
+@pytest.fixture(scope="session")
+def sensor() -> Sensor:
+    """sRGB under D65."""
+    return observer.sensor()
+
+
+@pytest.fixture(scope="session")
+def macbeth_cube() -> Cube:
+    """The main job: the ColorChecker at dim 32, with debug information. Built in this run."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        return uplift.build(MACBETH, dim=32, debug=True)
+
+
+@pytest.fixture(scope="session")
+def small_cube() -> Cube:
+    """The ColorChecker at dim 8 with 9 moments coefficients, as stored; costs no build."""
+    return uplift.load(ROOT / "cubes" / "moments-8-macbeth.uplift")
+
+
+@pytest.fixture(scope="session")
+def small_sigmoid_cube() -> Cube:
+    """Dim 8, sigmoid, no atlas, as stored; costs no build."""
+    return uplift.load(ROOT / "cubes" / "sigmoid-8.uplift")
