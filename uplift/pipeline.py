@@ -17,10 +17,13 @@ from uplift.errors import OptionError, UpliftWarning
 from uplift.lattice import Lattice, Status
 from uplift.lookup import Cube
 from uplift.models import Model, Moments, Phase, Sigmoid
-from uplift.models.least_change import forward
+from uplift.models.least_change import Forward, forward
 from uplift.sensor import Array, Sensor
 
 MODELS = ("moments", "sigmoid")
+
+BLOCK = 16384
+"""Lattice points evaluated at a time."""
 
 Atlas = Spectra | str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
 
@@ -87,7 +90,7 @@ def build(atlas: Atlas = None, *, watch: fit.Watch = lambda done: None, **option
     entries = fit.fit_entries(model, ahead, measured, rgb, lights, chosen.threshold / 100)
     fitted = fit.fit_lattice(model, ahead, lattice, seeds, entries, threshold=chosen.threshold, watch=watch)
     stored = model.to_storage(fitted.multipliers)
-    back = sensor.rgb(model.squash(model.from_storage(stored) @ ahead.basis.T))
+    back = _evaluate(model, ahead, stored)
     distance = np.abs(back - lattice.points).max(axis=1)
     data = CubeData(
         model=model,
@@ -104,6 +107,14 @@ def build(atlas: Atlas = None, *, watch: fit.Watch = lambda done: None, **option
         provenance=_provenance(chosen, spectra, names, fitted),
     )
     return Cube(data)
+
+
+def _evaluate(model: Model, ahead: Forward, stored: Array) -> Array:
+    """Linear RGB (n, 3) of stored coefficients (n, C), as any reader will see it."""
+    blocks = np.array_split(stored, -(-len(stored) // BLOCK))
+    return np.concatenate(
+        [model.squash(model.from_storage(block) @ ahead.basis.T) @ ahead.sensor.T for block in blocks]
+    )
 
 
 def check_size(options: Options) -> None:
