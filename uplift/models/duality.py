@@ -107,12 +107,14 @@ def _projection(table: Array) -> Array:
 def _dual(moments: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Multipliers by DESIGN 3.4, and where they can be trusted."""
     with np.errstate(all="ignore"):
+        # The dual knows the zeroth moment only up to whole numbers.
+        bounded = (moments[:, 0] >= 0) & (moments[:, 0] <= 1)
         exponential = _exponential_moments(moments)
         column = exponential / 2
         column[:, 0] = exponential[:, 0].real
         q, positive = levinson(column)
         multipliers = _bounded(exponential, q)
-    return multipliers, positive & np.isfinite(multipliers).all(axis=1)
+    return multipliers, bounded & positive & np.isfinite(multipliers).all(axis=1)
 
 
 def _exponential_moments(moments: Array) -> Complex:
