@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench atlases cubes lock clean
+.PHONY: build test bench accuracy atlases cubes lock clean
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -24,6 +24,9 @@ test: $(INSTALLED)
 
 bench: $(INSTALLED)
 	$(BIN)/python -m benchmarks.bench
+
+accuracy: $(INSTALLED)
+	$(BIN)/python -m benchmarks.accuracy
 
 # Data made by the project's own tools; commit what they write.
 atlases: $(INSTALLED)

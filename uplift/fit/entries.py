@@ -19,15 +19,20 @@ BATCH = 64
 LIGHT_WEIGHT = 0.03
 """How much a unit of CIE L*a*b* under a light weighs against the rms difference of the spectra.
 
-Macbeth, 9 coefficients: 0.003, 0.01, 0.03, 0.1 give rmse .013, .014, .015, .020 and a mean ΔE00 under FL11
-of .44, .26, .16, .11.
+More brings the lights nearer and the spectrum away: docs/accuracy.md has the curve.
 """
 FLATNESS = 1e-5
 """Keeps multipliers finite where neither the spectrum nor the lights have a say."""
 
 
 def fit_entries(
-    model: Model, forward: Forward, measured: Array, rgb: Array, lights: Sequence[Light], tolerance: float
+    model: Model,
+    forward: Forward,
+    measured: Array,
+    rgb: Array,
+    lights: Sequence[Light],
+    tolerance: float,
+    light_weight: float = LIGHT_WEIGHT,
 ) -> Array:
     """Multipliers (E, C) of measured reflectances (E, N) on the sensor's wavelengths.
 
@@ -39,19 +44,21 @@ def fit_entries(
         for first in range(0, len(measured), BATCH):
             batch = measured[first : first + BATCH]
             padded = np.concatenate([batch, np.full((BATCH - len(batch), batch.shape[1]), 0.5)])
-            fitted = _fit_batch(model, forward.basis, weights, padded)
+            fitted = _fit_batch(model, forward.basis, weights, padded, light_weight)
             found.append(np.asarray(fitted)[: len(batch)])
     return solve(model, forward, np.concatenate(found), rgb, tolerance=tolerance, passes=16).multipliers
 
 
 @partial(jax.jit, static_argnums=0)
-def _fit_batch(model: Model, basis: jax.Array, weights: jax.Array, measured: jax.Array) -> jax.Array:
+def _fit_batch(
+    model: Model, basis: jax.Array, weights: jax.Array, measured: jax.Array, light_weight: float
+) -> jax.Array:
     solver = optimistix.Dogleg(rtol=1e-6, atol=1e-8)
 
     def residuals(multipliers: jax.Array, goal: jax.Array) -> tuple[jax.Array, ...]:
         spectrum = model.squash(basis @ multipliers)
         shape = (spectrum - goal) / np.sqrt(len(basis))
-        colours = LIGHT_WEIGHT * (_lab(weights, spectrum) - _lab(weights, goal))
+        colours = light_weight * (_lab(weights, spectrum) - _lab(weights, goal))
         return shape, colours, FLATNESS * multipliers
 
     def fit(goal: jax.Array) -> jax.Array:

@@ -12,13 +12,15 @@ from collections.abc import Callable
 import numpy as np
 
 from uplift.cube import CubeData
-from uplift.lattice import Indices
+from uplift.models import Model
 from uplift.models.least_change import Forward, forward, residual, step
 from uplift.sensor import Array
 
 REFINED = 1e-8
 """Residual, max |linear RGB|, at which ``refined`` stops."""
-MOST_STEPS = 4
+MOST_STEPS = 24
+FIRST_DAMPING = 1e-2
+"""μ after a full step that did not help; nearly all colours need two full steps and no damping."""
 BLOCK = 8192
 """Colours worked on at a time, so that memory does not grow with the number asked."""
 
@@ -52,28 +54,36 @@ def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 
 
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
-    """Multipliers (n, C) that start at the interpolated coefficients and evaluate to ``rgb`` (n, 3)."""
-    multipliers = data.model.from_storage(coefficients(data, rgb))
+    """Multipliers (n, C) that start at the interpolated coefficients and evaluate to ``rgb`` (n, 3).
+
+    Where the cell is so coarse that this start is hopeless (the sigmoid near white), they start from grey.
+    """
     ahead = forward(data.model, data.sensor.wavelengths, data.sensor.matrix)
-    off = residual(data.model, ahead, multipliers, rgb)
+    multipliers, distance = _descend(data.model, ahead, data.model.from_storage(coefficients(data, rgb)), rgb)
+    rows = np.flatnonzero(distance > data.threshold)
+    if rows.size:
+        again, distance_again = _descend(data.model, ahead, np.zeros_like(multipliers[rows]), rgb[rows])
+        better = distance_again < distance[rows]
+        multipliers[rows[better]] = again[better]
+    return multipliers
+
+
+def _descend(model: Model, ahead: Forward, multipliers: Array, rgb: Array) -> tuple[Array, Array]:
+    """Steps of least change, in place, each only where it helps; multipliers (n, C) and distance (n,)."""
+    off = residual(model, ahead, multipliers, rgb)
+    damping = np.zeros(len(rgb))
     for _ in range(MOST_STEPS):
         rows = np.flatnonzero(np.abs(off).max(axis=1) > REFINED)
         if not rows.size:
             break
-        _refine(data, ahead, multipliers, off, rgb, rows)
-    return multipliers
-
-
-def _refine(
-    data: CubeData, ahead: Forward, multipliers: Array, off: Array, rgb: Array, rows: Indices
-) -> None:
-    """One step for ``rows``, in place, where it helps."""
-    here = multipliers[rows]
-    there = here + step(data.model, ahead, here, off[rows], np.zeros(len(rows)))
-    off_there = residual(data.model, ahead, there, rgb[rows])
-    better = (off_there**2).sum(axis=1) < (off[rows] ** 2).sum(axis=1)
-    multipliers[rows[better]] = there[better]
-    off[rows[better]] = off_there[better]
+        here = multipliers[rows]
+        there = here + step(model, ahead, here, off[rows], damping[rows])
+        off_there = residual(model, ahead, there, rgb[rows])
+        better = (off_there**2).sum(axis=1) < (off[rows] ** 2).sum(axis=1)
+        multipliers[rows[better]] = there[better]
+        off[rows[better]] = off_there[better]
+        damping[rows] = np.where(better, damping[rows] / 16, 4 * damping[rows] + FIRST_DAMPING)
+    return multipliers, np.abs(off).max(axis=1)
 
 
 def _evaluate(data: CubeData, multipliers: Array, wavelengths: Array) -> Array:

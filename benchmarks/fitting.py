@@ -1,0 +1,66 @@
+"""The fit of the Macbeth cube, phase by phase: compile and run apart, the answer checked first."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmarks.timing import ROOT, Spread, timed
+from uplift import fit, observer
+from uplift.atlas import on_grid, read_atlas
+from uplift.lattice import Lattice
+from uplift.models import Moments
+from uplift.models.least_change import forward
+
+THRESHOLD = 1e-4
+
+
+@dataclass(frozen=True)
+class FitTiming:
+    """One dim: seconds to compile (and run once, less a run), of runs, per phase; and how good the answer is."""
+
+    dim: int
+    compile_seconds: float
+    entries: Spread
+    lattice: Spread
+    lattice_cpu: Spread
+    storage: Spread
+    worst: float
+
+
+def time_fit(dim: int, runs: int) -> FitTiming:
+    model, sensor = Moments(9), observer.sensor()
+    lattice = Lattice(observer.axis_nodes("srgb", dim))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        spectra = on_grid(read_atlas(ROOT / "atlases" / "macbeth.txt"), sensor.wavelengths)
+    measured = spectra[sensor.holds(sensor.rgb(spectra))]
+    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11")]
+    rgb = sensor.rgb(measured)
+    seeds = fit.seed(lattice, rgb)
+
+    def entries() -> np.ndarray:
+        return fit.fit_entries(model, ahead, measured, rgb, lights, THRESHOLD / 100)
+
+    begin = time.perf_counter()
+    found = entries()
+
+    def points() -> fit.Fit:
+        return fit.fit_lattice(model, ahead, lattice, seeds, found, threshold=THRESHOLD)
+
+    fitted = points()
+    first = time.perf_counter() - begin
+    back = model.squash(model.from_storage(model.to_storage(fitted.multipliers)) @ ahead.basis.T)
+    worst = float(np.abs(sensor.rgb(back) - lattice.points).max())
+    if worst > THRESHOLD:
+        raise RuntimeError(f"dim {dim}: a wrong answer ({worst:.1e}) is not worth timing")
+    entry_wall, _ = timed(entries, runs)
+    wall, cpu = timed(points, runs)
+    storage, _ = timed(lambda: model.from_storage(model.to_storage(fitted.multipliers)), runs)
+    return FitTiming(
+        dim, max(first - entry_wall.median - wall.median, 0), entry_wall, wall, cpu, storage, worst
+    )

@@ -1,0 +1,25 @@
+"""Generated pages of docs/: a title, the circumstances, tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from benchmarks.timing import ROOT, circumstances
+
+
+def write(name: str, introduction: str, sections: Iterable[str]) -> str:
+    """Write docs/``name``.md and return it."""
+    facts = "\n".join(f"- {key}: {value}" for key, value in circumstances().items())
+    page = "\n".join([introduction, facts, *sections])
+    (ROOT / "docs" / f"{name}.md").write_text(page, encoding="utf-8")
+    return page
+
+
+def table(title: str, words: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A section with one Markdown table."""
+    lines = [f"\n## {title}\n", words + "\n", _row(head), _row(["---"] * len(head)), *map(_row, rows)]
+    return "\n".join(lines) + "\n"
+
+
+def _row(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cells) + " |"

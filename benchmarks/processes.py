@@ -1,0 +1,73 @@
+"""Whole processes, as a user starts them: cold, warm and without the cache of compiled code."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from benchmarks.timing import ROOT, Spread, process
+
+UPLIFT = str(Path(sys.executable).parent / "uplift")
+MACBETH = str(ROOT / "atlases" / "macbeth.txt")
+
+
+@dataclass(frozen=True)
+class ProcessTiming:
+    """A command, wall seconds and peak memory in MB."""
+
+    what: str
+    wall: Spread
+    megabytes: float
+
+
+def time_processes(runs: int) -> list[ProcessTiming]:
+    with tempfile.TemporaryDirectory() as folder:
+        return [*_builds(folder, runs), *_starts(runs)]
+
+
+def _builds(folder: str, runs: int) -> list[ProcessTiming]:
+    def build(dim: int) -> list[str]:
+        return [
+            UPLIFT,
+            "build",
+            "--atlas",
+            MACBETH,
+            "--dim",
+            str(dim),
+            "-o",
+            f"{folder}/{dim}.uplift",
+            "--force",
+            "-q",
+        ]
+
+    timings = []
+    for dim in (16, 32, 64):
+        cold = [
+            process(build(dim), 1, {"JAX_COMPILATION_CACHE_DIR": f"{folder}/cache-{dim}-{run}"})
+            for run in range(runs)
+        ]
+        warm_cache = {"JAX_COMPILATION_CACHE_DIR": f"{folder}/cache-{dim}-0"}
+        timings.append(_joined(f"uplift build --dim {dim}, nothing compiled yet", cold))
+        timings.append(
+            ProcessTiming(
+                f"uplift build --dim {dim}, compiled before", *process(build(dim), runs, warm_cache)
+            )
+        )
+    return timings
+
+
+def _joined(what: str, parts: list[tuple[Spread, float]]) -> ProcessTiming:
+    from benchmarks.timing import spread
+
+    return ProcessTiming(what, spread([wall.median for wall, _ in parts]), max(peak for _, peak in parts))
+
+
+def _starts(runs: int) -> list[ProcessTiming]:
+    commands = {
+        "python -c 'import numpy'": [sys.executable, "-c", "import numpy"],
+        "uplift query '#cc3319' --format json": [UPLIFT, "query", "#cc3319", "--format", "json"],
+        "uplift --help": [UPLIFT, "--help"],
+    }
+    return [ProcessTiming(what, *process(command, 2 * runs)) for what, command in commands.items()]
