@@ -4,5 +4,14 @@ from __future__ import annotations
 
 from uplift.cube.data import AtlasTable, CubeData
 from uplift.cube.file import digest, read, write
+from uplift.cube.slices import check_slices, write_slices
 
-__all__ = ["AtlasTable", "CubeData", "digest", "read", "write"]
+__all__ = [
+    "AtlasTable",
+    "CubeData",
+    "check_slices",
+    "digest",
+    "read",
+    "write",
+    "write_slices",
+]
