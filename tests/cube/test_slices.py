@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 import time
 from itertools import product
 from pathlib import Path
@@ -11,7 +13,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from uplift.cube import digest, write_slices
+from uplift.cube import digest, write, write_slices
 from uplift.difference import delta_e_2000, lab
 from uplift.errors import OutputError
 
@@ -169,3 +171,15 @@ def test_a_full_disk_leaves_nothing(hand_made, tmp_path, monkeypatch):
     with pytest.raises(OutputError, match="No space left"):
         write_slices(hand_made(2), tmp_path / "slices.exr")
     assert not list(tmp_path.iterdir())
+
+
+def test_writing_images_takes_nothing_of_the_fit(hand_made, tmp_path):
+    write(hand_made(), tmp_path / "small.uplift")
+    script = (
+        "import sys; from uplift.cube import read, write_sheet, write_slices\n"
+        "early = {'OpenEXR', 'matplotlib'} & set(sys.modules)\n"
+        "data = read('small.uplift'); write_slices(data, 'a.exr'); write_sheet(data, 'a.png')\n"
+        "print(early, {'jax', 'optimistix', 'colour', 'uplift.fit'} & set(sys.modules))"
+    )
+    found = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert found.stdout == "set() set()\n", found.stderr
