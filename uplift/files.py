@@ -14,9 +14,13 @@ from uplift.errors import OutputError
 def check_output(path: str | os.PathLike[str], *, force: bool = False) -> Path:
     """The path, if it can be written. Raises `OutputError`; asks before long work, not after."""
     path = Path(path)
-    if path.is_dir():
-        raise OutputError("is a folder", path=path, remedy="name a file in it")
-    if path.exists() and not force:
+    try:
+        exists, regular = path.exists(), path.is_file()
+    except (OSError, ValueError) as error:  # a name too long, or with a NUL in it
+        raise OutputError(f"cannot be written: {error}", path=path, remedy="choose another name") from error
+    if exists and not regular:
+        raise OutputError("is no regular file", path=path, remedy="name a file to write to")
+    if exists and not force:
         raise OutputError("exists already", path=path, remedy="use --force to replace it, or another name")
     folder = path.resolve().parent
     if not folder.is_dir():

@@ -10,6 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
+SLACK = 1e-9
+"""How far outside [0, 1] a colour may lie by rounding alone."""
+
 
 @dataclass(frozen=True, eq=False)
 class Light:
@@ -67,6 +70,11 @@ class Sensor:
     def rgb(self, reflectance: ArrayLike) -> Array:
         """Linear RGB (…, 3) of reflectances (…, N) sampled at ``wavelengths``."""
         return np.asarray(reflectance, dtype=float) @ self.matrix.T
+
+    def holds(self, rgb: ArrayLike) -> NDArray[np.bool_]:
+        """Whether linear RGB (…, 3) lies within the space; rounding takes nothing out of it."""
+        array = np.asarray(rgb, dtype=float)
+        return np.asarray(((array >= -SLACK) & (array <= 1 + SLACK)).all(axis=-1))
 
     def xyz(self, rgb: ArrayLike) -> Array:
         """XYZ (…, 3) under the build illuminant of linear RGB (…, 3)."""

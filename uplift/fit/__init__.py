@@ -49,7 +49,7 @@ def fit_lattice(
     entries: Array,
     *,
     threshold: float,
-    watch: Watch = lambda round: None,
+    watch: Watch = lambda done: None,
 ) -> Fit:
     """Fit every point of the lattice to within ``threshold``, max |linear RGB|.
 

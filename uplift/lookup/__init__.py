@@ -1,0 +1,9 @@
+"""Asking a cube. Starts in the time that numpy takes: neither the fit nor colour-science is needed."""
+
+from __future__ import annotations
+
+from uplift.lookup.answer import Answer, answers
+from uplift.lookup.cube import Cube, load
+from uplift.lookup.interpolate import MODES
+
+__all__ = ["MODES", "Answer", "Cube", "answers", "load"]

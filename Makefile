@@ -1,0 +1,50 @@
+# Two commands do everything on a machine with Python 3.11 or later, make and git:
+#   make build    environment, installation, the Macbeth cube at dim 32, its slices, one query
+#   make test     environment, installation, all checks
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALLED := $(VENV)/.installed
+OUT := out
+
+.PHONY: build test bench atlases cubes lock clean
+
+build: $(INSTALLED)
+	mkdir -p $(OUT)
+	$(BIN)/uplift build --atlas atlases/macbeth.txt --dim 32 --debug -o $(OUT)/macbeth-32.uplift --force
+	$(BIN)/uplift slices $(OUT)/macbeth-32.uplift $(OUT)/macbeth-32.exr --sheet $(OUT)/macbeth-32.png --force
+	$(BIN)/uplift query --cube $(OUT)/macbeth-32.uplift '#e27a29' --plot $(OUT)/orange.png --force
+
+test: $(INSTALLED)
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
+	$(BIN)/pytest
+
+bench: $(INSTALLED)
+	$(BIN)/python -m benchmarks.bench
+
+# Data made by the project's own tools; commit what they write.
+atlases: $(INSTALLED)
+	$(BIN)/python tools/ship_atlases.py
+
+cubes: $(INSTALLED)
+	$(BIN)/python tools/store_cubes.py
+
+# Newer versions of everything: writes constraints.txt anew.
+lock:
+	$(BIN)/pip install --quiet uv
+	$(BIN)/uv pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 --upgrade \
+	  --all-extras --no-header --no-annotate pyproject.toml -o constraints.txt
+
+$(INSTALLED): pyproject.toml constraints.txt Makefile
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "uplift needs Python 3.11 or later: make PYTHON=python3.12")'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check pip==26.3
+	$(BIN)/pip install --quiet -c constraints.txt setuptools wheel
+	$(BIN)/pip install --quiet -c constraints.txt --no-build-isolation -e '.[dev]'
+	touch $(INSTALLED)
+
+clean:
+	rm -rf $(VENV) $(OUT) build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

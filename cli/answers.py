@@ -1,0 +1,130 @@
+"""Answers on paper: table, JSON, CSV. Only the table is meant for eyes."""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .output import console
+
+if TYPE_CHECKING:
+    from uplift.lookup import Answer, Cube
+
+BLOCKS = "▁▂▃▄▅▆▇█"
+Writer = Callable[["Cube", Iterable["Answer"], bool], None]
+
+
+def as_json(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
+    """One object for one colour asked on the command line, an array otherwise."""
+    if single:
+        click.echo(json.dumps(_object(next(iter(answers)))))
+        return
+    for number, answer in enumerate(answers):
+        click.echo(("[\n" if number == 0 else ",\n") + json.dumps(_object(answer)), nl=False)
+    click.echo("\n]")
+
+
+def _object(answer: Answer) -> dict[str, Any]:
+    return {
+        "rgb": answer.rgb.tolist(),
+        "wavelengths": answer.wavelengths.tolist(),
+        "reflectance": answer.reflectance.tolist(),
+        "round_trip": {"rgb": answer.round_trip.tolist(), "delta_e_2000": answer.delta_e_2000},
+        "cell": list(answer.cell),
+        "status": [status.label for status in answer.statuses],
+        "entry": answer.entry,
+    }
+
+
+def as_csv(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
+    """A row a colour: r, g, b, ΔE00 of the round trip, entry, then the reflectance at each wavelength."""
+    writer = csv.writer(sys.stdout, lineterminator="\n")
+    for number, answer in enumerate(answers):
+        if number == 0:
+            wavelengths = [f"{wavelength:g}" for wavelength in answer.wavelengths]
+            writer.writerow(["r", "g", "b", "delta_e_2000", "entry", *wavelengths])
+        numbers = [*answer.rgb.tolist(), answer.delta_e_2000]
+        writer.writerow([*numbers, answer.entry or "", *answer.reflectance.tolist()])
+
+
+def as_table(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
+    """A sheet for one colour, a line each for several."""
+    if single:
+        _sheet(cube, next(iter(answers)))
+    else:
+        _lines(cube, answers)
+
+
+def _sheet(cube: Cube, answer: Answer) -> None:
+    data = cube.data
+    patch = click.style("        ", bg=_codes(cube, answer))
+    facts = {
+        "linear RGB": f"{_triple(answer.rgb)}  {_hex(cube, answer)}  {patch}",
+        "cell": f"{answer.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in answer.statuses)}",
+        "round trip": f"{_triple(answer.round_trip)}  ΔE00 {answer.delta_e_2000:.2g} ({data.sensor.illuminant})",
+        "atlas entry": answer.entry or "none here",
+        "spectrum": f"{_sparkline(answer)}  {answer.wavelengths[0]:g}–{answer.wavelengths[-1]:g} nm",
+    }
+    for name, text in facts.items():
+        click.echo(f"{name:<12}{text}")
+    click.echo()
+    _columns(answer)
+
+
+def _columns(answer: Answer) -> None:
+    """Wavelengths and reflectances, four pairs a line, to be read downwards."""
+    cells = [
+        f"{wavelength:>6g} nm {value:8.5f}"
+        for wavelength, value in zip(answer.wavelengths, answer.reflectance, strict=True)
+    ]
+    height = -(-len(cells) // 4)
+    for line in range(height):
+        click.echo("  ".join(cells[line::height]))
+
+
+def _lines(cube: Cube, answers: Iterable[Answer]) -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, pad_edge=False)
+    for heading in ("", "hex", "linear RGB", "ΔE00", "atlas entry", "spectrum"):
+        table.add_column(heading, no_wrap=True)
+    for answer in answers:
+        red, green, blue = _codes(cube, answer)
+        table.add_row(
+            Text("   ", style=f"on rgb({red},{green},{blue})"),
+            _hex(cube, answer),
+            " ".join(f"{value:.3f}" for value in answer.rgb),
+            f"{answer.delta_e_2000:.2g}",
+            answer.entry or "",
+            _sparkline(answer, 20),
+        )
+    console().print(table)
+
+
+def _codes(cube: Cube, answer: Answer) -> tuple[int, int, int]:
+    red, green, blue = (round(float(code)) for code in cube.encode(answer.rgb))
+    return red, green, blue
+
+
+def _hex(cube: Cube, answer: Answer) -> str:
+    return "#" + "".join(f"{code:02x}" for code in _codes(cube, answer))
+
+
+def _triple(rgb: Iterable[float]) -> str:
+    return " ".join(f"{value:.6f}" for value in rgb)
+
+
+def _sparkline(answer: Answer, width: int = 40) -> str:
+    """The spectrum in eighths of a line, 0 to 1."""
+    count = len(answer.reflectance)
+    picks = [round(i * (count - 1) / max(min(width, count) - 1, 1)) for i in range(min(width, count))]
+    return "".join(BLOCKS[round(float(answer.reflectance[pick]) * (len(BLOCKS) - 1))] for pick in picks)
+
+
+WRITERS: dict[str, Writer] = {"table": as_table, "json": as_json, "csv": as_csv}

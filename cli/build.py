@@ -1,0 +1,101 @@
+"""``uplift build``: a cube from an atlas."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .options import force_option, sensor_options, verbosity_options
+
+if TYPE_CHECKING:
+    from uplift.lookup import Cube
+
+
+@click.command("build")
+@click.option(
+    "--atlas", "atlases", multiple=True, metavar="FILE", help="Measured spectra; may be given several times."
+)
+@click.option(
+    "-o", "--output", metavar="FILE", help="Cube to write. [default: named after atlas and dim, here]"
+)
+@click.option("--dim", default=32, show_default=True, help="Lattice points along each axis.")
+@click.option("--model", default="moments", show_default=True, help="Spectrum model: moments or sigmoid.")
+@click.option(
+    "--moments", default=8, show_default=True, help="Moments per spectrum, 2 to 16; one coefficient more."
+)
+@click.option("--warp", default="none", show_default=True, help="Phase of the moments: none, or vision.")
+@click.option("--axis", default="srgb", show_default=True, help="Spacing of the lattice: srgb or linear.")
+@sensor_options
+@click.option(
+    "--light", "lights", multiple=True, help="Lights entries must hold under. [default: D65 A FL2 FL11]"
+)
+@click.option(
+    "--threshold", default=1e-4, show_default=True, help="Largest miss of a lattice point, |linear RGB|."
+)
+@click.option("--debug", is_flag=True, help="Keep the round of every point, for the slices.")
+@force_option()
+@verbosity_options
+def command(
+    atlases: tuple[str, ...],
+    output: str | None,
+    force: bool,
+    quiet: bool,
+    verbose: bool,
+    moments: int,
+    **chosen: Any,
+) -> None:
+    """Build an uplifting cube, constrained by measured spectra.
+
+    \b
+    Examples:
+      uplift build --atlas atlases/macbeth.txt --dim 32
+      uplift build --atlas paints.csv --atlas macbeth.txt --moments 16 -o book.uplift
+      uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
+
+    Warnings name every entry that was left out or clipped, and every two entries that share a lattice
+    point. Without --atlas the cube grows from the middle and its spectra are as smooth as can be.
+    """
+    from .startup import keep_compiled
+
+    keep_compiled()
+    from uplift.files import check_output
+    from uplift.pipeline import build
+
+    from .progress import watching
+
+    path = check_output(output or _default_name(atlases, chosen), force=force)
+    given = {name: value for name, value in chosen.items() if value not in (None, ())}
+    begin = time.perf_counter()
+    with watching(quiet=quiet, verbose=verbose) as watch:
+        cube = build(atlases or None, watch=watch, coefficients=moments + 1, **given)
+    cube.save(path, force=force)
+    if verbose:
+        _tell_improvements(cube)
+    if not quiet:
+        _tell(cube, path, time.perf_counter() - begin)
+
+
+def _default_name(atlases: tuple[str, ...], chosen: dict[str, Any]) -> str:
+    stem = "+".join(Path(atlas).stem for atlas in atlases) or chosen["space"].replace(" ", "-").lower()
+    return f"{stem}-{chosen['dim']}.uplift"
+
+
+def _tell_improvements(cube: Cube) -> None:
+    for step in cube.data.provenance["improvements"]:
+        click.echo(f"improvement, {step['step']}: tried {step['tried']}, mended {step['mended']}", err=True)
+
+
+def _tell(cube: Cube, path: Path, seconds: float) -> None:
+    data, counts = cube.data, cube.data.counts()
+    missed = counts["unfitted"] + counts["unrealisable"]
+    fitted = (
+        f"all within {data.threshold:g}" if not missed else f"{missed} MISS the threshold {data.threshold:g}"
+    )
+    entries = f"{len(data.atlas.names)} atlas entries, " if data.provenance["atlases"] else ""
+    click.echo(
+        f"{path}: {data.lattice.size} points, {entries}{fitted} (worst {data.distance.max():.1e}), "
+        f"{counts['improved']} improved, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
+    )

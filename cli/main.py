@@ -1,0 +1,66 @@
+"""``uplift``: finds the command, runs it, and turns errors and warnings of the library into one line each."""
+
+from __future__ import annotations
+
+import importlib
+import warnings
+from typing import Any
+
+import click
+
+from uplift import __version__
+from uplift.errors import UpliftError, UpliftWarning
+
+COMMANDS = ("build", "query", "check", "info", "slices", "atlas")
+
+
+class Refusal(click.ClickException):
+    """Bad input: one line, exit code 2."""
+
+    exit_code = 2
+
+    def show(self, file: Any = None) -> None:
+        click.echo(f"{click.style('error:', fg='red', bold=True)} {self.message}", err=True)
+
+
+class Commands(click.Group):
+    """The commands, each imported when it is asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        if name not in COMMANDS:
+            return None
+        command = importlib.import_module(f".{name}", __package__).command
+        return command if isinstance(command, click.Command) else None
+
+    def invoke(self, ctx: click.Context) -> Any:
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", UpliftWarning)
+            warnings.showwarning = _show_warning
+            try:
+                return super().invoke(ctx)
+            except UpliftError as error:
+                raise Refusal(str(error)) from error
+
+
+def _show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
+    if issubclass(category, UpliftWarning):
+        click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {message}", err=True)
+
+
+@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, package_name="uplift", message="uplift %(version)s")
+def main() -> None:
+    """Spectral uplifting: from RGB to reflectance spectra, constrained by measured ones.
+
+    \b
+    Examples:
+      uplift build --atlas atlases/macbeth.txt --dim 32
+      uplift query --cube macbeth-32.uplift '#cc3319'
+      uplift query 0.8 0.2 0.1 --format json
+      uplift check cubes/*.uplift
+
+    'uplift COMMAND --help' tells more.
+    """

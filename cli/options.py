@@ -1,0 +1,53 @@
+"""Options that several commands share, each defined once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def cube_option() -> Decorator:
+    return click.option(
+        "--cube", "cube_path", metavar="FILE", help="Cube to ask. [default: the package's own, sRGB]"
+    )
+
+
+def format_option(*choices: str) -> Decorator:
+    return click.option(
+        "--format",
+        "style",
+        type=click.Choice(choices),
+        default=choices[0],
+        show_default=True,
+        help="Output format.",
+    )
+
+
+def sensor_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """--space, --illuminant, --observer; the observer stays None for the library's own default."""
+    space = click.option(
+        "--space", default="sRGB", show_default=True, help="RGB space, as colour-science names it."
+    )
+    illuminant = click.option(
+        "--illuminant", default="D65", show_default=True, help="Light the RGB are meant under."
+    )
+    observer = click.option(
+        "--observer", help="Standard observer. [default: CIE 1931 2 Degree Standard Observer]"
+    )
+    return space(illuminant(observer(function)))
+
+
+def force_option() -> Decorator:
+    return click.option("--force", is_flag=True, help="Replace an existing file.")
+
+
+def verbosity_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    quiet = click.option("-q", "--quiet", is_flag=True, help="Say nothing but warnings and errors.")
+    verbose = click.option(
+        "-v", "--verbose", is_flag=True, help="A line for every round and improvement step."
+    )
+    return quiet(verbose(function))

@@ -1,0 +1,132 @@
+"""``uplift query``: ask a cube for spectra."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from .answers import WRITERS
+from .options import cube_option, force_option, format_option
+
+if TYPE_CHECKING:
+    from uplift.lookup import Cube
+    from uplift.sensor import Array
+
+
+MOST_WAVELENGTHS = 100_000
+
+
+class QueryCommand(click.Command):
+    """Takes '-0.1' for the number it is, so that the error speaks of the colour."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        first = next(
+            (i for i, arg in enumerate(args) if arg[:1] == "-" and arg[1:2] in tuple("0123456789.")), None
+        )
+        if first is not None and "--" not in args:
+            args = [*args[:first], "--", *args[first:]]
+        return super().parse_args(ctx, args)
+
+
+@click.command("query", cls=QueryCommand)
+@click.argument("colour", nargs=-1)
+@cube_option()
+@click.option(
+    "--input", "input_path", metavar="FILE", help="CSV of colours, a line each; '-' is standard input."
+)
+@click.option("--8bit", "codes", is_flag=True, help="Numbers are encoded 8-bit codes, 0 to 255.")
+@click.option(
+    "--wavelengths", metavar="NM", help="'START:END:STEP' or a list '450,550,650'. [default: the cube's]"
+)
+@click.option(
+    "--mode",
+    type=click.Choice(("spectra", "moments", "refined")),
+    default="spectra",
+    show_default=True,
+    help="Interpolate spectra (exact), coefficients (fast), or coefficients and refine them.",
+)
+@format_option("table", "json", "csv")
+@click.option("--plot", "plot_path", metavar="PNG", help="Draw the spectra into a picture.")
+@force_option()
+def command(
+    colour: tuple[str, ...],
+    cube_path: str | None,
+    input_path: str | None,
+    codes: bool,
+    wavelengths: str | None,
+    mode: str,
+    style: str,
+    plot_path: str | None,
+    force: bool,
+) -> None:
+    """Ask a cube for the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
+
+    Numbers are linear RGB from 0 to 1 in the cube's space; hex colours, and numbers with --8bit, are
+    encoded as the space has it.
+
+    \b
+    Examples:
+      uplift query 0.8 0.2 0.1
+      uplift query --cube macbeth-32.uplift '#cc3319' --plot red.png
+      uplift query --8bit 204 51 25 --wavelengths 400:700:10 --format json
+      uplift query --input colours.csv --format csv > spectra.csv
+      echo 0.5,0.5,0.5 | uplift query - --format json
+    """
+    from uplift.files import check_output
+    from uplift.lookup import answers, load
+
+    if plot_path is not None:
+        check_output(plot_path, force=force)
+    cube = load(cube_path)
+    rgb = _colours(colour, input_path, cube, codes=codes)
+    found = list(answers(cube, rgb, _wavelengths(wavelengths), mode))
+    WRITERS[style](cube, found, bool(colour) and colour != ("-",))
+    if plot_path is not None:
+        from uplift.report.spectra import plot_answers
+
+        plot_answers(cube, found, plot_path, force=force)
+
+
+def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: bool) -> Array:
+    from uplift.errors import ColourError
+
+    from .colours import from_arguments, from_table
+
+    if words == ("-",):
+        words, path = (), path or "-"
+    if bool(words) == (path is not None):
+        raise click.UsageError("Give one colour, or --input FILE, or '-'. See 'uplift query --help'.")
+    if path is None:
+        return from_arguments(words, cube, codes=codes)
+    try:
+        with click.open_file(path, encoding="utf-8-sig") as file:
+            return from_table(file, "standard input" if path == "-" else path, cube, codes=codes)
+    except OSError as error:
+        raise ColourError(f"{path}: {error.strerror}", remedy="name a CSV file of colours") from error
+
+
+def _wavelengths(text: str | None) -> Array | None:
+    """'380:780:5' (end included) or '450,550,650' → (N,) nm. Raises `OptionError`."""
+    import numpy as np
+
+    if text is None:
+        return None
+    try:
+        if ":" not in text:
+            return np.array([float(part) for part in text.split(",")])
+        start, end, step = (float(part) for part in text.split(":"))
+        count = int((end - start) / step + 1e-9) + 1
+    except (ValueError, ZeroDivisionError, OverflowError) as error:
+        raise _unclear(text) from error
+    if not (step > 0 and end >= start and count <= MOST_WAVELENGTHS):
+        raise _unclear(text)
+    return start + step * np.arange(count, dtype=float)
+
+
+def _unclear(text: str) -> Exception:
+    from uplift.errors import OptionError
+
+    return OptionError(
+        f"wavelengths '{text}' are not clear", remedy="write START:END:STEP or a list, in nm: 380:780:5"
+    )

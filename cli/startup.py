@@ -1,0 +1,14 @@
+"""What only a whole process may set, before JAX is imported."""
+
+from __future__ import annotations
+
+import os
+
+
+def keep_compiled() -> None:
+    """Keep what JAX compiles in the user's cache folder, so that the next build starts at once."""
+    from platformdirs import user_cache_dir
+
+    os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", user_cache_dir("uplift"))
+    os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0")
+    os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")

@@ -1,0 +1,20 @@
+"""Fixtures of the atlas tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture
+def save(tmp_path: Path) -> Callable[..., Path]:
+    """Write text or bytes to a file in a folder of its own."""
+
+    def save(content: str | bytes, name: str = "atlas.txt") -> Path:
+        path = tmp_path / name
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        return path
+
+    return save

@@ -1,0 +1,110 @@
+"""Growth and improvement: whatever the seeds, the lattice is fitted, and every point says how."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from uplift import observer
+from uplift.fit import fit_lattice, seed
+from uplift.fit.grow import NEVER, grow
+from uplift.fit.improve import improve
+from uplift.lattice import Lattice, Status
+from uplift.models import Moments, Sigmoid
+from uplift.models.least_change import forward, residual
+
+MODEL = Moments(9)
+LATTICE = Lattice(observer.axis_nodes("srgb", 7))
+NOBODY = np.zeros((0, 3))
+
+
+def ahead_of(model, sensor):
+    return forward(model, sensor.wavelengths, sensor.matrix)
+
+
+@settings(max_examples=8, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@given(arrays(float, st.tuples(st.integers(0, 6), st.just(3)), elements=st.floats(0.02, 0.98), unique=True))
+def test_any_set_of_seeds_fits_the_lattice(sensor, rgb):
+    seeds = seed(LATTICE, rgb)
+    greys = np.zeros((len(rgb), MODEL.count))
+    fit = fit_lattice(MODEL, ahead_of(MODEL, sensor), LATTICE, seeds, greys, threshold=1e-4)
+    off = residual(MODEL, ahead_of(MODEL, sensor), fit.multipliers, LATTICE.points)
+    assert np.abs(off).max() <= 1e-4
+    assert Status.UNFITTED not in fit.status
+    assert np.isfinite(fit.multipliers).all()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize(
+    "model", [Moments(3), MODEL, Moments(17), Sigmoid()], ids=lambda m: f"{m.name}{m.count}"
+)
+def test_tiny_lattices_are_fitted_to_their_corners(model, dim, sensor):
+    lattice = Lattice(observer.axis_nodes("srgb", dim))
+    nobody = np.zeros((0, model.count))
+    fit = fit_lattice(model, ahead_of(model, sensor), lattice, seed(lattice, NOBODY), nobody, threshold=1e-4)
+    off = residual(model, ahead_of(model, sensor), fit.multipliers, lattice.points)
+    assert np.abs(off).max() <= 1e-4
+
+
+def test_without_an_atlas_growth_starts_in_the_middle_and_goes_outward(sensor):
+    rounds = []
+    grown = grow(
+        MODEL,
+        ahead_of(MODEL, sensor),
+        LATTICE,
+        seed(LATTICE, NOBODY),
+        np.zeros((0, 9)),
+        threshold=1e-4,
+        tolerance=1e-6,
+        watch=rounds.append,
+    )
+    start = int(np.flatnonzero(grown.round == 0)[0])
+    assert np.abs(LATTICE.points[start] - 0.5).max() < 0.2
+    steps = np.abs(LATTICE.position(np.arange(LATTICE.size)) - LATTICE.position(np.array(start))).max(axis=1)
+    fitted = grown.round != NEVER
+    assert (grown.round[fitted] >= steps[fitted]).all()
+    assert [done.number for done in rounds] == list(range(len(rounds)))
+    assert rounds[-1].fitted == fitted.sum()
+    assert all(done.total == LATTICE.size for done in rounds)
+
+
+def test_an_unrealisable_colour_is_left_unfitted_and_said_to_be(sensor):
+    """ProPhoto's green corner: no reflectance has it. The rest of the lattice does not suffer."""
+    wide = observer.sensor("ProPhoto RGB", "D65")
+    lattice = Lattice(np.linspace(0, 1, 3))
+    ahead = ahead_of(MODEL, wide)
+    fit = fit_lattice(MODEL, ahead, lattice, seed(lattice, NOBODY), np.zeros((0, 9)), threshold=1e-4)
+    green = int(lattice.index(np.array([0, 2, 0])))
+    grey = int(lattice.index(np.array([1, 1, 1])))
+    assert fit.status[green] == Status.UNFITTED
+    assert fit.status[grey] == Status.REGULAR
+    assert np.isfinite(fit.multipliers).all()
+    assert len(fit.improvements) == 5
+    assert fit.improvements[0].tried > fit.improvements[0].mended
+
+
+def test_improvement_mends_points_from_a_hopeless_start(sensor):
+    """Spectra so near black that their gradient has vanished; only a new start helps."""
+    ahead = ahead_of(MODEL, sensor)
+    stuck = np.zeros((LATTICE.size, 9))
+    stuck[:, 0] = -1e9
+    distance = np.abs(residual(MODEL, ahead, stuck, LATTICE.points)).max(axis=1)
+    _, mended, steps = improve(MODEL, ahead, LATTICE, stuck, distance, threshold=1e-4, tolerance=1e-6)
+    assert (mended <= 1e-4).all()
+    by_name = {step.step: step for step in steps}
+    assert by_name["more iterations"].mended == 1  # black itself
+    assert by_name["from grey"].mended > 300
+
+
+def test_improvement_leaves_what_is_well_alone(sensor):
+    ahead = ahead_of(MODEL, sensor)
+    fit = fit_lattice(MODEL, ahead, LATTICE, seed(LATTICE, NOBODY), np.zeros((0, 9)), threshold=1e-4)
+    distance = np.abs(residual(MODEL, ahead, fit.multipliers, LATTICE.points)).max(axis=1)
+    again, _, steps = improve(
+        MODEL, ahead, LATTICE, fit.multipliers, distance, threshold=1e-4, tolerance=2e-6
+    )
+    np.testing.assert_array_equal(again, fit.multipliers)
+    assert steps == ()

@@ -1,0 +1,93 @@
+"""Seeding: nobody is lost unsaid, primaries come first, the order of the atlas has no say."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from uplift import observer
+from uplift.fit.seed import seed, separating_dim
+from uplift.lattice import Lattice
+
+LATTICE = Lattice(np.linspace(0, 1, 6))
+atlases = arrays(float, st.tuples(st.integers(1, 12), st.just(3)), elements=st.floats(0, 1), unique=True)
+
+
+def nearest_points(rgb):
+    apart = np.linalg.norm(LATTICE.points[None] - rgb[:, None], axis=-1)
+    return apart.argmin(axis=1)
+
+
+@given(atlases)
+def test_every_entry_has_its_primary_point_or_is_named_in_a_collision(rgb):
+    seeds = seed(LATTICE, rgb)
+    with_primary = set(seeds.entry[seeds.primary])
+    lost = {collision.lost for collision in seeds.collisions}
+    assert with_primary | lost == set(range(len(rgb)))
+    assert not with_primary & lost
+
+
+@given(atlases)
+def test_no_point_is_given_twice_and_none_outside_the_entry_s_voxel(rgb):
+    seeds = seed(LATTICE, rgb)
+    assert len(set(seeds.points)) == len(seeds.points)
+    corners, _ = LATTICE.corners(rgb)
+    assert all(point in corners[entry] for point, entry in zip(seeds.points, seeds.entry, strict=True))
+
+
+@given(atlases)
+def test_all_corners_of_all_voxels_are_taken(rgb):
+    corners, _ = LATTICE.corners(rgb)
+    assert set(seed(LATTICE, rgb).points) == set(corners.ravel())
+
+
+@given(atlases, st.randoms(use_true_random=False))
+def test_the_order_of_the_atlas_has_no_say(rgb, random):
+    order = list(range(len(rgb)))
+    random.shuffle(order)
+    here, there = seed(LATTICE, rgb), seed(LATTICE, rgb[order])
+    owners = dict(zip(here.points, here.entry, strict=True))
+    assert owners == {point: order[entry] for point, entry in zip(there.points, there.entry, strict=True)}
+
+
+def test_a_lone_entry_takes_its_eight_corners_nearest_first():
+    rgb = np.array([[0.33, 0.5, 0.71]])
+    seeds = seed(LATTICE, rgb)
+    apart = np.linalg.norm(LATTICE.points[seeds.points] - rgb, axis=1)
+    assert len(seeds.points) == 8
+    assert (np.diff(apart) >= 0).all()
+    assert seeds.primary.tolist() == [True] + 7 * [False]
+    assert seeds.points[0] == nearest_points(rgb)[0]
+
+
+def test_neighbours_in_a_voxel_share_its_corners_fairly():
+    rgb = np.array([[0.42, 0.42, 0.42], [0.58, 0.58, 0.58]])
+    seeds = seed(LATTICE, rgb)
+    assert np.bincount(seeds.entry).tolist() == [4, 4]
+    assert seeds.collisions == ()
+
+
+def test_of_two_with_one_primary_point_the_nearer_has_it():
+    rgb = np.array([[0.45, 0.4, 0.4], [0.41, 0.4, 0.4]])
+    seeds = seed(LATTICE, rgb)
+    assert seeds.collisions == ((1, 0),)
+    assert seeds.entry[seeds.primary].tolist() == [1]
+
+
+def test_the_separating_dim_separates_and_one_less_does_not():
+    rgb = np.array([[0.45, 0.4, 0.4], [0.41, 0.4, 0.4]])
+    dim = separating_dim(*rgb, lambda dim: observer.axis_nodes("srgb", dim), 6)
+    assert dim is not None
+    for size, collides in ((dim, False), (dim - 1, True)):
+        assert bool(seed(Lattice(observer.axis_nodes("srgb", size)), rgb).collisions) == collides
+
+
+def test_twins_cannot_be_separated():
+    rgb = np.array([[0.4, 0.4, 0.4], [0.4, 0.4, 0.4]])
+    assert separating_dim(*rgb, lambda dim: np.linspace(0, 1, dim), 6) is None
+
+
+def test_no_atlas_no_seeds():
+    assert len(seed(LATTICE, np.zeros((0, 3))).points) == 0

@@ -1,0 +1,90 @@
+"""The batched solver against scipy, one problem at a time."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+
+from uplift.fit.solve import CHUNKS, solve
+from uplift.models import Moments, Sigmoid
+from uplift.models.least_change import forward, residual
+
+RNG = np.random.default_rng(2)
+TARGETS = RNG.uniform(0.05, 0.95, (40, 3))
+
+
+@pytest.mark.parametrize("model", [Moments(9), Sigmoid()], ids=["moments", "sigmoid"])
+def test_it_reaches_what_scipy_reaches(model, sensor):
+    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    found = solve(model, ahead, np.zeros((40, model.count)), TARGETS, tolerance=1e-9, passes=40)
+    for target, distance in zip(TARGETS, found.distance, strict=True):
+        oracle = least_squares(
+            lambda p, target=target: residual(model, ahead, p[None], target[None])[0], np.zeros(model.count)
+        )
+        assert distance <= 1e-9 or distance <= np.abs(oracle.fun).max() * 1.01
+
+
+def test_three_unknowns_have_one_answer(sensor):
+    """With as many unknowns as colours the spectrum is scipy's own, not only the colour."""
+    model = Sigmoid()
+    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    found = solve(model, ahead, np.zeros((40, 3)), TARGETS, tolerance=1e-12, passes=40)
+    for target, multipliers in zip(TARGETS[:8], found.multipliers, strict=False):
+        oracle = least_squares(
+            lambda p, target=target: residual(model, ahead, p[None], target[None])[0],
+            np.zeros(3),
+            xtol=1e-15,
+            ftol=1e-15,
+            gtol=1e-15,
+        )
+        np.testing.assert_allclose(multipliers, oracle.x, rtol=1e-5, atol=1e-6)
+
+
+def test_the_distance_is_that_of_the_multipliers(sensor):
+    model = Moments(5)
+    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    found = solve(model, ahead, np.zeros((40, 5)), TARGETS, tolerance=1e-3, passes=1)
+    expected = np.abs(residual(model, ahead, found.multipliers, TARGETS)).max(axis=1)
+    np.testing.assert_allclose(found.distance, expected, atol=1e-12)
+
+
+def test_no_point_ends_further_than_it_began(sensor):
+    """Unrealisable targets: distance is data, and no step makes it worse."""
+    model = Moments(9)
+    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    wild = RNG.uniform(-1, 2, (50, 3))
+    start = RNG.normal(size=(50, 9))
+    before = (residual(model, ahead, start, wild) ** 2).sum(axis=1)
+    found = solve(model, ahead, start, wild, tolerance=1e-6, passes=3)
+    after = (residual(model, ahead, found.multipliers, wild) ** 2).sum(axis=1)
+    assert (after <= before * (1 + 1e-12)).all()
+    assert np.isfinite(found.multipliers).all()
+    assert (found.distance > 1e-6).any()
+
+
+def test_the_batch_does_not_matter(sensor):
+    """Alone, among others, or in another chunk size: the same answer."""
+    model = Moments(9)
+    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    many = np.resize(TARGETS, (CHUNKS[0] + 5, 3))
+    crowd = solve(model, ahead, np.zeros((len(many), 9)), many, tolerance=1e-8, passes=8)
+    alone = solve(model, ahead, np.zeros((1, 9)), TARGETS[3:4], tolerance=1e-8, passes=8)
+    np.testing.assert_allclose(crowd.multipliers[3], alone.multipliers[0], rtol=1e-9)
+    np.testing.assert_allclose(crowd.multipliers[len(TARGETS) + 3], crowd.multipliers[3], rtol=1e-9)
+
+
+def test_nothing_to_solve_is_nothing():
+    model = Sigmoid()
+    ahead = forward(model, np.arange(380.0, 781, 5), np.ones((3, 81)) / 81)
+    assert (
+        len(solve(model, ahead, np.zeros((0, 3)), np.zeros((0, 3)), tolerance=1e-6, passes=1).distance) == 0
+    )
+
+
+def test_the_start_is_not_touched(sensor):
+    model = Sigmoid()
+    start = np.zeros((40, 3))
+    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    solve(model, ahead, start, TARGETS, tolerance=1e-6, passes=1)
+    assert not start.any()

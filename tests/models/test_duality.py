@@ -1,0 +1,97 @@
+"""Moments and multipliers: the dual of DESIGN 3.4 against definitions and dense solvers."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from scipy.integrate import quad
+from scipy.linalg import toeplitz
+
+from uplift.errors import UpliftError
+from uplift.models import duality
+
+small = st.floats(-3, 3)
+
+
+@given(arrays(float, (4, 9), elements=small))
+def test_the_moments_of_the_reconstruction_are_the_moments(multipliers):
+    moments = duality.moments_from_multipliers(multipliers)
+    again = duality.moments_from_multipliers(duality.multipliers_from_moments(moments))
+    np.testing.assert_allclose(again, moments, atol=1e-12)
+
+
+def test_moments_are_the_integrals_they_are_named_after():
+    multipliers = np.array([[0.3, -1.2, 0.5, 0.1]])
+    moments = duality.moments_from_multipliers(multipliers)[0]
+    for j, moment in enumerate(moments):
+
+        def integrand(phi, j=j):
+            x = (duality.cosines(np.array([phi]), 4) @ multipliers[0])[0]
+            return (0.5 + np.arctan(x) / np.pi) * np.cos(j * phi) / np.pi
+
+        assert moment == pytest.approx(quad(integrand, -np.pi, 0, epsabs=1e-13)[0], abs=1e-12)
+
+
+def test_a_grey_has_its_reflectance_as_moment_and_nothing_else():
+    multipliers = np.zeros((3, 5))
+    multipliers[:, 0] = [-1, 0, 2]
+    moments = duality.moments_from_multipliers(multipliers)
+    np.testing.assert_allclose(moments[:, 0], 0.5 + np.arctan([-1, 0, 2]) / np.pi, atol=1e-15)
+    np.testing.assert_allclose(moments[:, 1:], 0, atol=1e-15)
+
+
+def test_levinson_solves_what_a_dense_solver_solves():
+    rng = np.random.default_rng(5)
+    column = rng.normal(size=(20, 9)) + 1j * rng.normal(size=(20, 9))
+    column[:, 0] = 12
+    solution, positive = duality.levinson(column)
+    assert positive.all()
+    for row, q in zip(column, solution, strict=True):
+        np.testing.assert_allclose(toeplitz(row) @ q, np.eye(9)[0], atol=1e-12)
+
+
+def test_levinson_says_where_the_matrix_is_not_positive():
+    column = np.array([[1.0, 2.0], [-1.0, 0.1], [2.0, 0.5]], dtype=complex)
+    with np.errstate(all="ignore"):
+        _, positive = duality.levinson(column)
+    assert positive.tolist() == [False, False, True]
+
+
+def test_near_boxes_take_more_nodes_and_are_as_exact():
+    """A nearly black spectrum with one steep peak, against adaptive integration."""
+    multipliers = np.array([[-2e4, 1.3e4, -4e3]])
+    moments = duality.moments_from_multipliers(multipliers)[0]
+
+    def zeroth(phi):
+        x = (duality.cosines(np.array([phi]), 3) @ multipliers[0])[0]
+        return (0.5 + np.arctan(x) / np.pi) / np.pi
+
+    expected = quad(zeroth, -np.pi, 0, epsabs=1e-14, limit=500)[0]
+    assert moments[0] == pytest.approx(expected, abs=1e-12)
+
+
+def test_black_and_white_are_taken_in_from_the_boundary():
+    moments = np.zeros((2, 9))
+    moments[1, 0] = 1
+    multipliers = duality.multipliers_from_moments(moments)
+    assert np.isfinite(multipliers).all()
+    reflectance = 0.5 + np.arctan(multipliers @ duality.cosines(np.linspace(-np.pi, 0, 9), 9).T) / np.pi
+    np.testing.assert_allclose(reflectance, np.repeat([[0], [1]], 9, axis=1), atol=1e-4)
+
+
+def test_a_box_on_the_boundary_is_taken_in():
+    """The moments of an exact box, ½ sinc-like, whose Toeplitz matrix is singular."""
+    orders = np.arange(1, 9)
+    box = np.concatenate([[0.5], np.sin(-orders * np.pi / 2) / (np.pi * orders)])[None]
+    multipliers = duality.multipliers_from_moments(box)
+    assert np.isfinite(multipliers).all()
+    np.testing.assert_allclose(duality.moments_from_multipliers(multipliers), box, atol=1e-3)
+
+
+@pytest.mark.parametrize("moments", [[[1.0, 1.0, 1.0]], [[0.5, 2.0, 0.0]], [[np.nan, 0, 0]], [[5.0, 0, 0]]])
+def test_what_no_reflectance_has_is_refused(moments):
+    with pytest.raises(UpliftError, match="not the moments of any reflectance"):
+        duality.multipliers_from_moments(np.array(moments))

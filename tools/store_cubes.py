@@ -1,0 +1,28 @@
+"""Builds the stored cubes of ``cubes/`` that ``uplift check`` guards, and the package's own default cube."""
+
+from __future__ import annotations
+
+import shutil
+import warnings
+from itertools import product
+from pathlib import Path
+
+import uplift
+
+ROOT = Path(__file__).parents[1]
+DEFAULT = "moments-16"
+"""The stored cube that the package carries: sRGB, D65, no atlas, small enough for a wheel."""
+
+
+def main() -> None:
+    warnings.simplefilter("ignore", uplift.UpliftWarning)
+    for model, dim, atlas in product(("moments", "sigmoid"), (8, 16), (None, "macbeth")):
+        source = ROOT / "atlases" / f"{atlas}.txt" if atlas else None
+        path = ROOT / "cubes" / ("-".join(filter(None, (model, str(dim), atlas))) + ".uplift")
+        uplift.build(source, dim=dim, model=model, debug=True).save(path, force=True)
+        print(path.relative_to(ROOT))
+    shutil.copyfile(ROOT / "cubes" / f"{DEFAULT}.uplift", ROOT / "uplift" / "lookup" / "default.uplift")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,80 @@
+"""Writer of the ART measurement archive: what it writes, `art` reads back to the last bit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from uplift.atlas.art_fields import NOT_STATED
+from uplift.atlas.checks import Array
+from uplift.atlas.spectra import Entry, Header, Spectra
+
+
+def text(spectra: Spectra, header: Header) -> str:
+    """The archive as text: version 1.1, or 1.2 where an entry has an additional description."""
+    version = "1.2" if any(entry.additional for entry in spectra.entries) else "1.1"
+    lines = [f"ART measurement archive version {version}", ""]
+    lines += [
+        f"Archive content: {_one_line(header.content) or NOT_STATED}",
+        f"Archive copyright: {_one_line(header.copyright) or NOT_STATED}",
+        f"Archive license: {_one_line(header.licence) or NOT_STATED}",
+        "",
+    ]
+    for entry in spectra.entries:
+        lines += _entry(entry)
+    return "\n".join(lines)
+
+
+def _entry(entry: Entry) -> Iterator[str]:
+    yield f"Entry ID:   {entry.name}"
+    yield "-" * 75
+    yield _field("Description", _quote(entry.description))
+    if entry.additional:
+        yield _field("Additional description", _quote(entry.additional))
+    yield _field("Type", "reflectance spectrum")
+    yield _field("Fluorescence data", "no")
+    yield _field("Measurement device", entry.device)
+    yield _field("Measured by", entry.measured_by)
+    yield _field("Measurement date", entry.date)
+    yield from _samples(entry.wavelengths, entry.values)
+    yield ""
+
+
+def _samples(wavelengths: Array, values: Array) -> Iterator[str]:
+    yield from ("Sampling information", "-" * 20)
+    step = _exact_step(wavelengths)
+    if step is None:
+        yield _field("Type", "point sampled")
+        samples = (f"{{{x!r}, {y!r}}}" for x, y in zip(wavelengths.tolist(), values.tolist(), strict=True))
+    else:
+        yield _field("Type", "regular")
+        yield _field("Start", f"{float(wavelengths[0])!r} nm")
+        yield _field("Increment", f"{step!r} nm")
+        samples = (repr(value) for value in values.tolist())
+    yield _field("Maximum sample value", "1.0")
+    yield from ("ASCII sample data", "-" * 17, f"{{{', '.join(samples)}}}")
+
+
+def _exact_step(wavelengths: Array) -> float | None:
+    """The step from which the reader makes exactly these wavelengths, if there is one."""
+    n = len(wavelengths)
+    first, last = wavelengths[0], wavelengths[-1]
+    for step in (wavelengths[1] - first, (last - first) / (n - 1), round((last - first) / (n - 1), 9)):
+        if np.array_equal(first + step * np.arange(n), wavelengths):
+            return float(step)
+    return None
+
+
+def _field(key: str, value: str) -> str:
+    return f"{key:<22}:  {_one_line(value)}".rstrip()
+
+
+def _quote(text: str) -> str:
+    """Quotes around text that has some at both ends already: the reader takes one pair off."""
+    text = _one_line(text)
+    return f'"{text}"' if len(text) > 1 and text[0] == text[-1] == '"' else text
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.replace("\0", " ").split())

@@ -1,0 +1,79 @@
+"""What a query says about a colour: its spectrum, where it came from, and how exactly it comes back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.difference import delta_e_2000, lab
+from uplift.lattice import Status
+from uplift.lookup.cube import Cube
+from uplift.lookup.interpolate import BLOCK
+from uplift.sensor import Array
+
+HALF_A_CODE = 0.5
+"""A colour sits on an entry if both round to the same 8-bit codes, give or take half of one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """One colour: linear RGB (3,), its reflectance (N,) at wavelengths (N,) nm, and its round trip.
+
+    ``cell`` is the lowest corner's position along the axes (r, g, b); ``statuses`` are those of the cell's
+    corners; ``entry`` is the atlas entry that the colour sits on, if any.
+    """
+
+    rgb: Array
+    wavelengths: Array
+    reflectance: Array
+    round_trip: Array
+    delta_e_2000: float
+    cell: tuple[int, int, int]
+    statuses: tuple[Status, ...]
+    entry: str | None
+
+
+def answers(
+    cube: Cube, rgb: Array, wavelengths: ArrayLike | None = None, mode: str = "spectra"
+) -> Iterator[Answer]:
+    """Answers for linear RGB (n, 3), in order, as they are made. Raises as `Cube.reflectance`."""
+    at = (
+        cube.data.sensor.wavelengths
+        if wavelengths is None
+        else np.atleast_1d(np.asarray(wavelengths, dtype=float))
+    )
+    for start in range(0, len(rgb), BLOCK):
+        yield from _block(cube, rgb[start : start + BLOCK], at, mode)
+
+
+def _block(cube: Cube, rgb: Array, at: Array, mode: str) -> Iterator[Answer]:
+    sensor, lattice = cube.data.sensor, cube.data.lattice
+    count = len(sensor.wavelengths)
+    both = cube.reflectance(rgb, np.concatenate([sensor.wavelengths, at]), mode)
+    back = sensor.rgb(both[:, :count])
+    apart = delta_e_2000(*(lab(sensor.xyz(colour), sensor.light.white) for colour in (rgb, back)))
+    cells, _ = lattice.cell(rgb)
+    corners, _ = lattice.corners(rgb)
+    for row, cell in enumerate(cells):
+        yield Answer(
+            rgb=rgb[row],
+            wavelengths=at,
+            reflectance=both[row, count:],
+            round_trip=back[row],
+            delta_e_2000=float(apart[row]),
+            cell=(int(cell[0]), int(cell[1]), int(cell[2])),
+            statuses=tuple(Status(code) for code in sorted(set(cube.data.status[corners[row]].tolist()))),
+            entry=_entry(cube, rgb[row]),
+        )
+
+
+def _entry(cube: Cube, rgb: Array) -> str | None:
+    atlas = cube.data.atlas
+    if not atlas.names:
+        return None
+    apart = np.abs(cube.encode(atlas.rgb) - cube.encode(rgb)).max(axis=1)
+    nearest = int(apart.argmin())
+    return atlas.names[nearest] if apart[nearest] <= HALF_A_CODE else None

@@ -1,0 +1,31 @@
+"""The facts of a cube in JSON values: what 'uplift info' and the end of a build tell."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from uplift.cube import CubeData, digest
+
+
+def summary(data: CubeData) -> dict[str, Any]:
+    """Plain facts, most general first; distances are max |linear RGB|."""
+    return {
+        "model": data.model.describe(),
+        "coefficients": data.model.count,
+        "dim": data.lattice.dim,
+        "points": data.lattice.size,
+        "space": data.sensor.space,
+        "illuminant": data.sensor.illuminant,
+        "observer": data.sensor.observer,
+        "threshold": data.threshold,
+        "worst_distance": float(data.distance.max()),
+        "mean_distance": float(data.distance.mean(dtype=np.float64)),
+        "status": data.counts(),
+        "entries": list(data.atlas.names),
+        "debug": data.round is not None,
+        "rounds": None if data.round is None else int(data.round.max()) + 1,
+        "provenance": dict(data.provenance),
+        "digest": digest(data),
+    }
