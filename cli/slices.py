@@ -6,12 +6,14 @@ import os
 
 import click
 
+from .options import force_option
+
 
 @click.command("slices")
 @click.argument("cube", metavar="CUBE", type=click.Path())
 @click.argument("out", metavar="[OUT.exr]", required=False, type=click.Path())
 @click.option("--sheet", metavar="FILE", type=click.Path(), help="Contact sheet to write, .exr or .png.")
-@click.option("--force", is_flag=True, help="Replace existing files.")
+@force_option()
 def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
     """Write the blue slices of a cube as images.
 

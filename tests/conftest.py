@@ -1,43 +1,42 @@
-"""Cubes made by hand: every number known, no fit."""
+"""What many tests share. Building is dear, so cubes are built once a run, or read from ``cubes/``."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+import warnings
+from pathlib import Path
 
-import numpy as np
 import pytest
 
-from uplift.cube import AtlasTable, CubeData
-from uplift.lattice import Lattice, Status
-from uplift.models import Moments
-from uplift.observer import axis_nodes, sensor
+import uplift
+from uplift import observer
+from uplift.lookup import Cube
+from uplift.sensor import Sensor
+
+ROOT = Path(__file__).parents[1]
+MACBETH = ROOT / "atlases" / "macbeth.txt"
 
 
-@pytest.fixture
-def hand_made() -> Callable[..., CubeData]:
-    """Makes cubes of ``dim``³ points, all numbers different; point 0 is 0.25 off, over the threshold."""
+@pytest.fixture(scope="session")
+def sensor() -> Sensor:
+    """sRGB under D65."""
+    return observer.sensor()
 
-    def make(dim: int = 4, **changes: object) -> CubeData:
-        lattice, rng = Lattice(axis_nodes("srgb", dim)), np.random.default_rng(7)
-        points = np.arange(lattice.size)
-        rgb = (lattice.points + rng.uniform(-1e-4, 1e-4, lattice.points.shape)).astype(np.float32)
-        rgb[0] = 0.25
-        entries = AtlasTable(("grey", "über"), np.full((2, 3), 0.5), np.full((2, 3), 0.25))
-        data = CubeData(
-            model=Moments(3),
-            lattice=lattice,
-            sensor=sensor(),
-            threshold=1e-4,
-            atlas=entries,
-            coefficients=rng.normal(size=(lattice.size, 3)),
-            rgb=rgb,
-            distance=np.abs(rgb - lattice.points).max(axis=1).astype(np.float32),
-            status=(points % len(Status)).astype(np.uint8),
-            entry=(points % 3 - 1).astype(np.int32),
-            round=(points % 5 - 1).astype(np.int16),
-            provenance={},
-        )
-        return replace(data, **changes)
 
-    return make
+@pytest.fixture(scope="session")
+def macbeth_cube() -> Cube:
+    """The main job: the ColorChecker at dim 32, with debug information. Built in this run."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        return uplift.build(MACBETH, dim=32, debug=True)
+
+
+@pytest.fixture(scope="session")
+def small_cube() -> Cube:
+    """The ColorChecker at dim 8 with 9 moments coefficients, as stored; costs no build."""
+    return uplift.load(ROOT / "cubes" / "moments-8-macbeth.uplift")
+
+
+@pytest.fixture(scope="session")
+def small_sigmoid_cube() -> Cube:
+    """Dim 8, sigmoid, no atlas, as stored; costs no build."""
+    return uplift.load(ROOT / "cubes" / "sigmoid-8.uplift")

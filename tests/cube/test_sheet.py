@@ -17,6 +17,8 @@ from uplift.cube.sheet import BACKGROUND, GAP, Layout, compose
 from uplift.errors import OutputError
 from uplift.lattice import Status
 
+from .hand_made import hand_made
+
 COLOUR, DISTANCE, STATE, ROUND = range(4)
 
 
@@ -30,7 +32,7 @@ def pixel(data, image, panel, position):
     return image[row, x + red * layout.scale + half]
 
 
-def test_every_point_is_where_it_belongs(hand_made):
+def test_every_point_is_where_it_belongs():
     data = hand_made()
     image = compose(data).image
     shown = panels(data)
@@ -42,7 +44,7 @@ def test_every_point_is_where_it_belongs(hand_made):
             )
 
 
-def test_colours_mean_what_the_keys_say(hand_made):
+def test_colours_mean_what_the_keys_say():
     data = hand_made()
     image = compose(data).image
     np.testing.assert_array_equal(pixel(data, image, COLOUR, (3, 1, 2)), data.rgb[3 * 16 + 1 * 4 + 2])
@@ -64,12 +66,12 @@ def test_colours_mean_what_the_keys_say(hand_made):
         (9.0, LOUD[0]),
     ],
 )
-def test_distance_is_logarithmic_up_to_the_threshold(hand_made, distance, colour):
+def test_distance_is_logarithmic_up_to_the_threshold(distance, colour):
     panel = panels(hand_made(distance=np.full(64, distance)))[DISTANCE]
     np.testing.assert_allclose(panel.colours, np.broadcast_to(colour, (64, 3)), atol=1e-9)
 
 
-def test_keys_count_the_points(hand_made):
+def test_keys_count_the_points():
     data = hand_made()
     keys = [[key.text for key in panel.keys] for panel in panels(data)]
     over = int((data.distance > data.threshold).sum())
@@ -82,12 +84,12 @@ def test_every_status_has_a_colour_of_its_own():
     assert len({tuple(colour) for colour in STATUS}) == len(STATUS) == len(Status)
 
 
-def test_a_cube_that_no_round_fitted(hand_made):
+def test_a_cube_that_no_round_fitted():
     panel = panels(hand_made(round=np.full(64, -1, dtype=np.int16)))[ROUND]
     assert (panel.colours == LOUD).all()
 
 
-def test_no_round_without_debug_information(hand_made):
+def test_no_round_without_debug_information():
     data = hand_made(round=None)
     sheet = compose(data)
     assert sheet.image.shape[1::-1] == Layout(4, 3).size
@@ -111,7 +113,7 @@ def test_layout(dim, count):
     assert layout.pitch - side == GAP
 
 
-def test_text_lies_inside(hand_made):
+def test_text_lies_inside():
     sheet = compose(hand_made())
     height, width = sheet.image.shape[:2]
     for label in sheet.labels:
@@ -119,7 +121,7 @@ def test_text_lies_inside(hand_made):
         assert label.size < label.y < height - label.size
 
 
-def test_exr_is_flat_linear_rgb(hand_made, tmp_path):
+def test_exr_is_flat_linear_rgb(tmp_path):
     data = hand_made()
     write_sheet(data, tmp_path / "sheet.exr")
     file = OpenEXR.File(str(tmp_path / "sheet.exr"))
@@ -133,7 +135,7 @@ def test_exr_is_flat_linear_rgb(hand_made, tmp_path):
     assert (image[0] == np.float32(BACKGROUND)).all()
 
 
-def test_text_is_written(hand_made, tmp_path):
+def test_text_is_written(tmp_path):
     data = hand_made()
     write_sheet(data, tmp_path / "sheet.exr")
     lettered = OpenEXR.File(str(tmp_path / "sheet.exr")).channels()["RGB"].pixels
@@ -144,7 +146,7 @@ def test_text_is_written(hand_made, tmp_path):
         assert (lettered[area] > sheet.image[area]).any(), label.text
 
 
-def test_png_is_the_same_in_srgb(hand_made, tmp_path):
+def test_png_is_the_same_in_srgb(tmp_path):
     data = hand_made()
     write_sheet(data, tmp_path / "sheet.png")
     image = imread(tmp_path / "sheet.png")
@@ -155,27 +157,27 @@ def test_png_is_the_same_in_srgb(hand_made, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["sheet.exr", "sheet.png"])
-def test_same_cube_same_bytes(hand_made, tmp_path, name):
+def test_same_cube_same_bytes(tmp_path, name):
     write_sheet(hand_made(), tmp_path / name)
     first = (tmp_path / name).read_bytes()
     write_sheet(hand_made(), tmp_path / name, force=True)
     assert (tmp_path / name).read_bytes() == first
 
 
-def test_a_cube_far_outside_the_screen(hand_made, tmp_path):
+def test_a_cube_far_outside_the_screen(tmp_path):
     data = hand_made()
     write_sheet(replace(data, rgb=data.rgb * 4 - 1), tmp_path / "wide.png")
     assert np.isfinite(imread(tmp_path / "wide.png")).all()
 
 
 @pytest.mark.parametrize("name", ["sheet.jpg", "sheet", "sheet.exr.gz"])
-def test_other_formats_are_refused(hand_made, tmp_path, name):
+def test_other_formats_are_refused(tmp_path, name):
     with pytest.raises(OutputError, match=r"\.exr or \.png"):
         write_sheet(hand_made(), tmp_path / name)
 
 
 @pytest.mark.parametrize("name", ["sheet.EXR", "sheet.PNG"])
-def test_an_existing_file_is_replaced_by_force_alone(hand_made, tmp_path, name):
+def test_an_existing_file_is_replaced_by_force_alone(tmp_path, name):
     path = tmp_path / name
     path.write_text("old")
     with pytest.raises(OutputError, match="exists already"):
@@ -185,7 +187,7 @@ def test_an_existing_file_is_replaced_by_force_alone(hand_made, tmp_path, name):
     assert path.stat().st_size > 1000
 
 
-def test_srgb_curve_is_that_of_the_sensor(hand_made):
+def test_srgb_curve_is_that_of_the_sensor():
     codes = np.arange(256) / 255
     np.testing.assert_allclose(decode(codes), hand_made().sensor.decoding, atol=1e-6)
     np.testing.assert_allclose(encode(decode(codes)), codes, atol=1e-6)

@@ -17,13 +17,15 @@ from uplift.cube import digest, write, write_slices
 from uplift.difference import delta_e_2000, lab
 from uplift.errors import OutputError
 
+from .hand_made import hand_made
+
 
 def parts(path: Path) -> list[OpenEXR.Part]:
     return list(OpenEXR.File(str(path), separate_channels=True).parts)
 
 
 @pytest.fixture
-def written(hand_made, tmp_path):
+def written(tmp_path):
     data, path = hand_made(), tmp_path / "slices.exr"
     write_slices(data, path)
     return data, parts(path)
@@ -99,12 +101,12 @@ def test_chromaticities_are_those_of_the_space(written):
     np.testing.assert_allclose(slices[0].header["chromaticities"], srgb, atol=2e-4)
 
 
-def test_no_round_without_debug_information(hand_made, tmp_path):
+def test_no_round_without_debug_information(tmp_path):
     write_slices(hand_made(round=None), tmp_path / "plain.exr")
     assert all("round" not in part.channels for part in parts(tmp_path / "plain.exr"))
 
 
-def test_large_and_negative_whole_numbers_stay_exact(hand_made, tmp_path):
+def test_large_and_negative_whole_numbers_stay_exact(tmp_path):
     entry = np.full(64, 9_999, dtype=np.int32)
     entry[1] = -1
     write_slices(hand_made(entry=entry), tmp_path / "many.exr")
@@ -113,7 +115,7 @@ def test_large_and_negative_whole_numbers_stay_exact(hand_made, tmp_path):
     assert second.channels["entry"].pixels[3, 0] == -1
 
 
-def test_what_float32_cannot_hold_is_the_largest_it_can(hand_made, tmp_path):
+def test_what_float32_cannot_hold_is_the_largest_it_can(tmp_path):
     coefficients = np.zeros((64, 3))
     coefficients[0] = 1e300, -1e300, 1.0
     write_slices(hand_made(coefficients=coefficients), tmp_path / "large.exr")
@@ -124,20 +126,20 @@ def test_what_float32_cannot_hold_is_the_largest_it_can(hand_made, tmp_path):
     assert all(np.isfinite(channel.pixels).all() for channel in channels.values())
 
 
-def test_nan_is_refused(hand_made, tmp_path):
+def test_nan_is_refused(tmp_path):
     with pytest.raises(OutputError, match=r"channel 'coefficient\.00' holds NaN"):
         write_slices(hand_made(coefficients=np.full((64, 3), np.nan)), tmp_path / "nan.exr")
     assert not list(tmp_path.iterdir())
 
 
-def test_same_cube_same_bytes(hand_made, tmp_path):
+def test_same_cube_same_bytes(tmp_path):
     write_slices(hand_made(), tmp_path / "first.exr")
     time.sleep(1.1)  # so that a time stamp would show
     write_slices(hand_made(), tmp_path / "second.exr")
     assert (tmp_path / "first.exr").read_bytes() == (tmp_path / "second.exr").read_bytes()
 
 
-def test_an_existing_file_is_replaced_by_force_alone(hand_made, tmp_path):
+def test_an_existing_file_is_replaced_by_force_alone(tmp_path):
     path = tmp_path / "old.exr"
     path.write_text("old")
     with pytest.raises(OutputError, match="exists already"):
@@ -151,18 +153,18 @@ def test_an_existing_file_is_replaced_by_force_alone(hand_made, tmp_path):
     ("name", "problem"),
     [("slices.png", "slices are OpenEXR"), ("slices", "slices are OpenEXR"), ("no/slices.exr", "no folder")],
 )
-def test_names_that_cannot_be(hand_made, tmp_path, name, problem):
+def test_names_that_cannot_be(tmp_path, name, problem):
     with pytest.raises(OutputError, match=problem):
         write_slices(hand_made(), tmp_path / name)
 
 
-def test_a_folder_without_permission(hand_made, tmp_path, monkeypatch):
+def test_a_folder_without_permission(tmp_path, monkeypatch):
     monkeypatch.setattr("os.access", lambda *_: False)  # root may write anywhere
     with pytest.raises(OutputError, match="no permission"):
         write_slices(hand_made(), tmp_path / "slices.exr")
 
 
-def test_a_full_disk_leaves_nothing(hand_made, tmp_path, monkeypatch):
+def test_a_full_disk_leaves_nothing(tmp_path, monkeypatch):
     full = Path("/dev/full")
     if not full.exists():
         pytest.skip("no /dev/full here")
@@ -173,7 +175,7 @@ def test_a_full_disk_leaves_nothing(hand_made, tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_writing_images_takes_nothing_of_the_fit(hand_made, tmp_path):
+def test_writing_images_takes_nothing_of_the_fit(tmp_path):
     write(hand_made(), tmp_path / "small.uplift")
     script = (
         "import sys; from uplift.cube import read, write_sheet, write_slices\n"
@@ -183,3 +185,12 @@ def test_writing_images_takes_nothing_of_the_fit(hand_made, tmp_path):
     )
     found = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True)
     assert found.stdout == "set() set()\n", found.stderr
+
+
+def test_a_cube_as_it_is_built(small_cube, tmp_path):
+    data = small_cube.data
+    write_slices(data, tmp_path / "real.exr")
+    slices = parts(tmp_path / "real.exr")
+    found = np.stack([part.channels["distance"].pixels for part in slices])
+    assert found.max() == data.distance.max()
+    assert max(part.channels["deltaE2000"].pixels.max() for part in slices) < 0.1
