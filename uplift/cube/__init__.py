@@ -4,5 +4,17 @@ from __future__ import annotations
 
 from uplift.cube.data import AtlasTable, CubeData
 from uplift.cube.file import digest, read, write
+from uplift.cube.sheet_file import check_sheet, write_sheet
+from uplift.cube.slices import check_slices, write_slices
 
-__all__ = ["AtlasTable", "CubeData", "digest", "read", "write"]
+__all__ = [
+    "AtlasTable",
+    "CubeData",
+    "check_sheet",
+    "check_slices",
+    "digest",
+    "read",
+    "write",
+    "write_sheet",
+    "write_slices",
+]

@@ -1,0 +1,35 @@
+"""A cube made by hand: every number known, no fit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from uplift.cube import AtlasTable, CubeData
+from uplift.lattice import Lattice, Status
+from uplift.models import Moments
+from uplift.observer import axis_nodes, sensor
+
+
+def hand_made(dim: int = 4, **changes: object) -> CubeData:
+    """A cube of ``dim``³ points, all numbers different; point 0 is 0.25 off, over the threshold."""
+    lattice, rng = Lattice(axis_nodes("srgb", dim)), np.random.default_rng(7)
+    points = np.arange(lattice.size)
+    rgb = (lattice.points + rng.uniform(-1e-4, 1e-4, lattice.points.shape)).astype(np.float32)
+    rgb[0] = 0.25
+    data = CubeData(
+        model=Moments(3),
+        lattice=lattice,
+        sensor=sensor(),
+        threshold=1e-4,
+        atlas=AtlasTable(("grey", "über"), np.full((2, 3), 0.5), np.full((2, 3), 0.25)),
+        coefficients=rng.normal(size=(lattice.size, 3)),
+        rgb=rgb,
+        distance=np.abs(rgb - lattice.points).max(axis=1).astype(np.float32),
+        status=(points % len(Status)).astype(np.uint8),
+        entry=(points % 3 - 1).astype(np.int32),
+        round=(points % 5 - 1).astype(np.int16),
+        provenance={},
+    )
+    return replace(data, **changes)

@@ -1,0 +1,22 @@
+"""The sRGB curve: from linear values to what a PNG holds, and back (IEC 61966-2-1).
+
+Screens and viewers take a PNG for sRGB whatever the cube's space, so this is not the cube's own encoding.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.sensor import Array
+
+
+def decode(codes: Array) -> Array:
+    """Linear values of encoded ones, both in [0, 1]."""
+    return np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
+
+
+def encode(linear: ArrayLike) -> Array:
+    """Encoded values of linear ones; both in [0, 1], what is outside is clipped."""
+    inside = np.clip(np.asarray(linear, dtype=float), 0, 1)
+    return np.where(inside <= 0.0031308, inside * 12.92, 1.055 * inside ** (1 / 2.4) - 0.055)
