@@ -13,7 +13,7 @@ build: $(INSTALLED)
 	mkdir -p $(OUT)
 	$(BIN)/uplift build --atlas atlases/macbeth.txt --dim 32 --debug -o $(OUT)/macbeth-32.uplift --force
 	$(BIN)/uplift slices $(OUT)/macbeth-32.uplift $(OUT)/macbeth-32.exr --sheet $(OUT)/macbeth-32.png --force
-	$(BIN)/uplift query --cube $(OUT)/macbeth-32.uplift '#e27a29' --plot $(OUT)/orange.png --force
+	$(BIN)/uplift query --cube $(OUT)/macbeth-32.uplift '#da7b2a' --plot $(OUT)/orange.png --force
 
 test: $(INSTALLED)
 	$(BIN)/ruff format --check .

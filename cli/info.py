@@ -35,24 +35,22 @@ def command(file: str | None, style: str) -> None:
 def _table(name: str, facts: dict[str, Any]) -> None:
     from rich.table import Table
 
-    table = Table(title=name, title_justify="left", show_header=False, box=None, pad_edge=False)
-    table.add_column(style="bold")
-    table.add_column()
-    for key, value in facts.items():
-        table.add_row(key.replace("_", " "), _text(value))
+    click.echo(name)
+    table = Table(show_header=False, box=None, pad_edge=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    provenance = facts.pop("provenance")
+    options = provenance.pop("options", {})
+    for section in (facts, provenance, {f"option {key}": value for key, value in options.items()}):
+        for key, value in section.items():
+            table.add_row(key.replace("_", " "), _text(value))
     console().print(table)
 
 
 def _text(value: Any) -> str:
-    """Nested facts on lines of their own."""
+    """One line, however nested; no more digits than tell something."""
     if isinstance(value, dict):
-        return "\n".join(f"{key.replace('_', ' ')}: {_flat(inner)}" for key, inner in value.items())
-    return _flat(value)
-
-
-def _flat(value: Any) -> str:
-    if isinstance(value, dict):
-        return ", ".join(f"{key} {_flat(inner)}" for key, inner in value.items())
+        return ", ".join(f"{key} {_text(inner)}" for key, inner in value.items())
     if isinstance(value, list):
-        return "; ".join(_flat(inner) for inner in value) or "none"
+        return "; ".join(_text(inner) for inner in value) or "none"
     return f"{value:.3g}" if isinstance(value, float) else str(value)

@@ -117,3 +117,11 @@ def test_bad_phases_are_refused():
         Phase(warp="eye")
     with pytest.raises(OptionError, match="cannot run from 780"):
         Phase(780, 380)
+
+
+@each
+def test_outside_their_range_spectra_are_held_flat(model):
+    multipliers = random_multipliers(model, 5)
+    ends = model.squash(multipliers @ model.basis([300, 380, 780, 900]).T)
+    np.testing.assert_array_equal(ends[:, 0], ends[:, 1])
+    np.testing.assert_array_equal(ends[:, 2], ends[:, 3])

@@ -18,7 +18,8 @@ from uplift.sensor import Array
 class Sigmoid:
     """g(x) = S(c₀x² + c₁x + c₂), S(t) = ½ + t / (2√(1 + t²)), x = λ taken from [start, end] nm to [−1, 1].
 
-    The scaled wavelength keeps the coefficients alike in size. They are stored as they are.
+    The scaled wavelength keeps the coefficients alike in size. They are stored as they are. Outside [start, end]
+    the spectrum is held flat: what the fit has not seen, the quadratic would make up.
     """
 
     start: float = 380.0
@@ -28,7 +29,7 @@ class Sigmoid:
 
     def basis(self, wavelengths: ArrayLike) -> Array:
         middle, half = (self.start + self.end) / 2, (self.end - self.start) / 2
-        x = (np.asarray(wavelengths, dtype=float) - middle) / half
+        x = (np.clip(wavelengths, self.start, self.end) - middle) / half
         return np.stack([x * x, x, np.ones_like(x)], axis=-1)
 
     def squash(self, x: Any) -> Any:
