@@ -6,6 +6,7 @@ import time
 import warnings
 from dataclasses import dataclass
 
+import jax
 import numpy as np
 
 from benchmarks.timing import ROOT, Spread, timed
@@ -46,6 +47,7 @@ def time_fit(dim: int, runs: int) -> FitTiming:
     def entries() -> np.ndarray:
         return fit.fit_entries(model, ahead, measured, rgb, lights, THRESHOLD / 100)
 
+    jax.clear_caches()
     begin = time.perf_counter()
     found = entries()
 

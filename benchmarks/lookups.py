@@ -15,11 +15,12 @@ WAVELENGTHS = np.linspace(400, 700, 16)
 
 @dataclass(frozen=True)
 class LookupTiming:
-    """Seconds for a hundred thousand colours; ``worst`` is max |linear RGB| of the round trip, where there is one."""
+    """Seconds for ``colours`` colours at once; ``worst`` is max |linear RGB| of the round trip, where there is one."""
 
     what: str
     wall: Spread
     worst: float | None
+    colours: int = COLOURS
 
 
 def time_lookups(runs: int) -> list[LookupTiming]:

@@ -7,7 +7,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.timing import ROOT, Spread, process
+from benchmarks.timing import ROOT, Spread, process, spread
 
 UPLIFT = str(Path(sys.executable).parent / "uplift")
 MACBETH = str(ROOT / "atlases" / "macbeth.txt")
@@ -59,8 +59,6 @@ def _builds(folder: str, runs: int) -> list[ProcessTiming]:
 
 
 def _joined(what: str, parts: list[tuple[Spread, float]]) -> ProcessTiming:
-    from benchmarks.timing import spread
-
     return ProcessTiming(what, spread([wall.median for wall, _ in parts]), max(peak for _, peak in parts))
 
 

@@ -24,6 +24,12 @@ FIRST_DAMPING = 1e-2
 """μ at the start; a quarter of it after a step that helped, four times after one that did not."""
 
 
+GAIN, PATIENCE = 1e-3, 4
+"""A point leaves when this many passes on end have each brought less than this share of its distance.
+
+Unrealisable points would otherwise stay to the last pass: a quarter of the time in wide gamuts, same cubes.
+"""
+
 State = tuple[jax.Array, jax.Array, jax.Array, jax.Array]
 """Steps taken, multipliers, damping, residual."""
 
@@ -45,10 +51,12 @@ def solve(
     """
     multipliers, damping = start.copy(), np.full(len(start), FIRST_DAMPING)
     distance = np.full(len(start), np.inf)
+    stale = np.zeros(len(start), dtype=np.int64)
     left = np.arange(len(start))
     with jax.enable_x64(True):
         arrays = jax.device_put(forward)
         for _ in range(passes):
+            before = distance[left]
             for rows in _chunks(left):
                 padded = _pad(rows)
                 found = _advance(
@@ -56,7 +64,8 @@ def solve(
                 )
                 for whole, part in zip((multipliers, damping, distance), found, strict=True):
                     whole[rows] = np.asarray(part)[: len(rows)]
-            left = left[distance[left] > tolerance]
+            stale[left] = np.where(distance[left] > (1 - GAIN) * before, stale[left] + 1, 0)
+            left = left[(distance[left] > tolerance) & (stale[left] < PATIENCE)]
             if not left.size:
                 break
     return Solution(multipliers, distance)
