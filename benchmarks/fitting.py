@@ -40,19 +40,20 @@ def time_fit(dim: int, runs: int) -> FitTiming:
         spectra = on_grid(read_atlas(ROOT / "atlases" / "macbeth.txt"), sensor.wavelengths)
     measured = spectra[sensor.holds(sensor.rgb(spectra))]
     ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    problem = fit.Problem(model, ahead, lattice, THRESHOLD)
     lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11")]
     rgb = sensor.rgb(measured)
     seeds = fit.seed(lattice, rgb)
 
     def entries() -> np.ndarray:
-        return fit.fit_entries(model, ahead, measured, rgb, lights, THRESHOLD / 100)
+        return fit.fit_entries(model, ahead, measured, rgb, lights, problem.tolerance)
 
     jax.clear_caches()
     begin = time.perf_counter()
     found = entries()
 
     def points() -> fit.Fit:
-        return fit.fit_lattice(model, ahead, lattice, seeds, found, threshold=THRESHOLD)
+        return fit.fit_lattice(problem, seeds, found)
 
     fitted = points()
     first = time.perf_counter() - begin

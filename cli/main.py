@@ -8,7 +8,6 @@ from typing import Any
 
 import click
 
-from uplift import __version__
 from uplift.errors import UpliftError, UpliftWarning
 
 COMMANDS = ("build", "query", "check", "info", "slices", "atlas")
@@ -51,7 +50,7 @@ def _show_warning(message: Warning | str, category: type[Warning], *_: Any, **__
 
 
 @click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__, package_name="uplift", message="uplift %(version)s")
+@click.version_option(package_name="uplift", message="uplift %(version)s")
 def main() -> None:
     """Spectral uplifting: from RGB to reflectance spectra, constrained by measured ones.
 

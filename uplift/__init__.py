@@ -14,6 +14,7 @@ Importing this module is light and changes nothing; each name below brings in wh
 from __future__ import annotations
 
 import importlib
+import importlib.metadata
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
     from uplift.errors import UpliftError, UpliftWarning
     from uplift.lookup import Cube, load
     from uplift.pipeline import build
-
-__version__ = "0.1.0"
 
 __all__ = [
     "Cube",
@@ -48,6 +47,8 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return importlib.metadata.version("uplift")
     if name not in _HOMES:
         raise AttributeError(f"module 'uplift' has no attribute '{name}'")
     return getattr(importlib.import_module(_HOMES[name]), name)

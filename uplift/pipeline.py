@@ -5,57 +5,26 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, replace
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 
-from uplift import __version__, fit, observer
+from uplift import fit, observer
 from uplift.atlas import Spectra, on_grid, read_atlas
 from uplift.cube import AtlasTable, CubeData
-from uplift.errors import OptionError, UpliftWarning
+from uplift.errors import UpliftWarning
 from uplift.lattice import Lattice, Status
 from uplift.lookup import Cube
-from uplift.models import Model, Moments, Phase, Sigmoid
-from uplift.models.least_change import Forward, forward
+from uplift.models.least_change import forward
+from uplift.options import Options, check_size
 from uplift.sensor import Array, Sensor
-
-MODELS = ("moments", "sigmoid")
 
 BLOCK = 16384
 """Lattice points evaluated at a time."""
 
 Atlas = Spectra | str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
-
-
-@dataclass(frozen=True)
-class Options:
-    """What a build can be told; recorded in the cube, so that it can be made again.
-
-    ``coefficients`` counts moments + 1 (3 to 17; the sigmoid has 3); ``lights`` are those that the atlas
-    entries' colours should hold under; ``threshold`` is the largest |linear RGB| a lattice point may miss
-    its target by.
-    """
-
-    dim: int = 32
-    model: str = "moments"
-    coefficients: int = 9
-    warp: str = "none"
-    axis: str = "srgb"
-    space: str = "sRGB"
-    illuminant: str = "D65"
-    observer: str = observer.DEFAULT_OBSERVER
-    lights: tuple[str, ...] = ("D65", "A", "FL2", "FL11")
-    threshold: float = 1e-4
-    debug: bool = False
-
-    def spectrum_model(self) -> Model:
-        """Raises `OptionError`."""
-        if self.model == Moments.name:
-            return Moments(self.coefficients, Phase(observer.START, observer.END, self.warp))
-        if self.model == Sigmoid.name:
-            return Sigmoid(observer.START, observer.END)
-        raise observer.suggest(self.model, MODELS, "model")
 
 
 def build(atlas: Atlas = None, *, watch: fit.Watch = lambda done: None, **options: Any) -> Cube:
@@ -86,64 +55,49 @@ def build(atlas: Atlas = None, *, watch: fit.Watch = lambda done: None, **option
     _warn_of_collisions(seeds, names, rgb, chosen)
 
     ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    problem = fit.Problem(model, ahead, lattice, chosen.threshold)
     lights = [observer.light(name, chosen.observer) for name in chosen.lights]
-    entries = fit.fit_entries(model, ahead, measured, rgb, lights, chosen.threshold / 100)
-    fitted = fit.fit_lattice(model, ahead, lattice, seeds, entries, threshold=chosen.threshold, watch=watch)
-    stored = model.to_storage(fitted.multipliers)
-    back = _evaluate(model, ahead, stored)
-    distance = np.abs(back - lattice.points).max(axis=1)
-    data = CubeData(
-        model=model,
-        lattice=lattice,
+    entries = fit.fit_entries(model, ahead, measured, rgb, lights, problem.tolerance)
+    fitted = fit.fit_lattice(problem, seeds, entries, watch)
+    atlas_table = AtlasTable(names, rgb, model.to_storage(entries))
+    data = _cube_data(problem, sensor, fitted, atlas_table, _provenance(chosen, spectra, names, fitted))
+    return Cube(data if chosen.debug else replace(data, round=None))
+
+
+def _cube_data(
+    problem: fit.Problem,
+    sensor: Sensor,
+    fitted: fit.Fit,
+    atlas: AtlasTable,
+    provenance: dict[str, Any],
+) -> CubeData:
+    """What is stored, judged by what is stored: RGB, distance and status are those any reader will see."""
+    coefficients = problem.model.to_storage(fitted.multipliers)
+    rgb = _evaluate(problem, coefficients)
+    distance = np.abs(rgb - problem.lattice.points).max(axis=1)
+    missed = distance > problem.threshold
+    return CubeData(
+        model=problem.model,
+        lattice=problem.lattice,
         sensor=sensor,
-        threshold=chosen.threshold,
-        atlas=AtlasTable(names, rgb, model.to_storage(entries)),
-        coefficients=stored,
-        rgb=back.astype(np.float32),
+        threshold=problem.threshold,
+        atlas=atlas,
+        coefficients=coefficients,
+        rgb=rgb.astype(np.float32),
         distance=distance.astype(np.float32),
-        status=np.where(distance > chosen.threshold, Status.UNFITTED, fitted.status).astype(np.uint8),
+        status=np.where(missed, Status.UNFITTED, fitted.status).astype(np.uint8),
         entry=fitted.entry.astype(np.int32),
-        round=fitted.round.astype(np.int16) if chosen.debug else None,
-        provenance=_provenance(chosen, spectra, names, fitted),
-    )
-    return Cube(data)
-
-
-def _evaluate(model: Model, ahead: Forward, stored: Array) -> Array:
-    """Linear RGB (n, 3) of stored coefficients (n, C), as any reader will see it."""
-    blocks = np.array_split(stored, -(-len(stored) // BLOCK))
-    return np.concatenate(
-        [model.squash(model.from_storage(block) @ ahead.basis.T) @ ahead.sensor.T for block in blocks]
+        round=fitted.round.astype(np.int16),
+        provenance=provenance,
     )
 
 
-def check_size(options: Options) -> None:
-    """Raises `OptionError` for a lattice too small to be one, or too large for this machine's memory."""
-    if options.dim < 2:
-        raise OptionError(f"a lattice of dim {options.dim} has no cells", remedy="use --dim 2 or more")
-    if not 0 < options.threshold <= 0.1:
-        raise OptionError(f"a threshold of {options.threshold:g} makes no sense", remedy="use 1e-6 to 0.1")
-    count = options.spectrum_model().count
-    need, have = _bytes_needed(options.dim, count), _memory()
-    if need > have:
-        largest = next(dim for dim in range(options.dim, 1, -1) if _bytes_needed(dim, count) <= have)
-        raise OptionError(
-            f"dim {options.dim} needs about {need / 1e9:.3g} GB of memory, this machine has {have / 1e9:.3g} GB",
-            remedy=f"use --dim {largest} or less",
-        )
-
-
-def _bytes_needed(dim: int, count: int) -> int:
-    """Peak memory: five arrays of multipliers or coefficients, and what else a point carries."""
-    return int(dim) ** 3 * (5 * 8 * count + 250)
-
-
-def _memory() -> int:
-    """Bytes of memory in this machine; where it does not tell, as if there were no end to it."""
-    try:
-        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    except (AttributeError, ValueError, OSError):
-        return 1 << 62
+def _evaluate(problem: fit.Problem, coefficients: Array) -> Array:
+    """Linear RGB (n, 3) of stored coefficients (n, C), block by block."""
+    model, ahead = problem.model, problem.forward
+    blocks = np.array_split(coefficients, -(-len(coefficients) // BLOCK))
+    spectra = (model.squash(model.from_storage(block) @ ahead.basis.T) for block in blocks)
+    return np.concatenate([block @ ahead.sensor.T for block in spectra])
 
 
 def _read(atlas: Atlas) -> Spectra:
@@ -187,7 +141,7 @@ def _provenance(
 ) -> dict[str, Any]:
     """How the cube was made, in JSON values."""
     return {
-        "uplift": __version__,
+        "uplift": version("uplift"),
         "options": asdict(options) | {"lights": list(options.lights)},
         "atlases": [{"name": source.name, "digest": source.digest} for source in spectra.sources],
         "left_out": [name for name in spectra.names if name not in names],

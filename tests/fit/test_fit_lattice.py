@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from uplift import observer
-from uplift.fit import fit_lattice, seed
+from uplift.fit import Problem, fit_lattice, seed
 from uplift.fit.grow import NEVER, grow
 from uplift.fit.improve import improve
 from uplift.lattice import Lattice, Status
@@ -30,7 +30,7 @@ def ahead_of(model, sensor):
 def test_any_set_of_seeds_fits_the_lattice(sensor, rgb):
     seeds = seed(LATTICE, rgb)
     greys = np.zeros((len(rgb), MODEL.count))
-    fit = fit_lattice(MODEL, ahead_of(MODEL, sensor), LATTICE, seeds, greys, threshold=1e-4)
+    fit = fit_lattice(Problem(MODEL, ahead_of(MODEL, sensor), LATTICE), seeds, greys)
     off = residual(MODEL, ahead_of(MODEL, sensor), fit.multipliers, LATTICE.points)
     assert np.abs(off).max() <= 1e-4
     assert Status.UNFITTED not in fit.status
@@ -44,23 +44,15 @@ def test_any_set_of_seeds_fits_the_lattice(sensor, rgb):
 def test_tiny_lattices_are_fitted_to_their_corners(model, dim, sensor):
     lattice = Lattice(observer.axis_nodes("srgb", dim))
     nobody = np.zeros((0, model.count))
-    fit = fit_lattice(model, ahead_of(model, sensor), lattice, seed(lattice, NOBODY), nobody, threshold=1e-4)
+    fit = fit_lattice(Problem(model, ahead_of(model, sensor), lattice), seed(lattice, NOBODY), nobody)
     off = residual(model, ahead_of(model, sensor), fit.multipliers, lattice.points)
     assert np.abs(off).max() <= 1e-4
 
 
 def test_without_an_atlas_growth_starts_in_the_middle_and_goes_outward(sensor):
     rounds = []
-    grown = grow(
-        MODEL,
-        ahead_of(MODEL, sensor),
-        LATTICE,
-        seed(LATTICE, NOBODY),
-        np.zeros((0, 9)),
-        threshold=1e-4,
-        tolerance=1e-6,
-        watch=rounds.append,
-    )
+    problem = Problem(MODEL, ahead_of(MODEL, sensor), LATTICE)
+    grown = grow(problem, seed(LATTICE, NOBODY), np.zeros((0, 9)), rounds.append)
     start = int(np.flatnonzero(grown.round == 0)[0])
     assert np.abs(LATTICE.points[start] - 0.5).max() < 0.2
     steps = np.abs(LATTICE.position(np.arange(LATTICE.size)) - LATTICE.position(np.array(start))).max(axis=1)
@@ -76,7 +68,7 @@ def test_an_unrealisable_colour_is_left_unfitted_and_said_to_be(sensor):
     wide = observer.sensor("ProPhoto RGB", "D65")
     lattice = Lattice(np.linspace(0, 1, 3))
     ahead = ahead_of(MODEL, wide)
-    fit = fit_lattice(MODEL, ahead, lattice, seed(lattice, NOBODY), np.zeros((0, 9)), threshold=1e-4)
+    fit = fit_lattice(Problem(MODEL, ahead, lattice), seed(lattice, NOBODY), np.zeros((0, 9)))
     green = int(lattice.index(np.array([0, 2, 0])))
     grey = int(lattice.index(np.array([1, 1, 1])))
     assert fit.status[green] == Status.UNFITTED
@@ -92,7 +84,7 @@ def test_improvement_mends_points_from_a_hopeless_start(sensor):
     stuck = np.zeros((LATTICE.size, 9))
     stuck[:, 0] = -1e9
     distance = np.abs(residual(MODEL, ahead, stuck, LATTICE.points)).max(axis=1)
-    _, mended, steps = improve(MODEL, ahead, LATTICE, stuck, distance, threshold=1e-4, tolerance=1e-6)
+    _, mended, steps = improve(Problem(MODEL, ahead, LATTICE), stuck, distance)
     assert (mended <= 1e-4).all()
     by_name = {step.step: step for step in steps}
     assert by_name["more iterations"].mended == 1  # black itself
@@ -101,10 +93,8 @@ def test_improvement_mends_points_from_a_hopeless_start(sensor):
 
 def test_improvement_leaves_what_is_well_alone(sensor):
     ahead = ahead_of(MODEL, sensor)
-    fit = fit_lattice(MODEL, ahead, LATTICE, seed(LATTICE, NOBODY), np.zeros((0, 9)), threshold=1e-4)
+    fit = fit_lattice(Problem(MODEL, ahead, LATTICE), seed(LATTICE, NOBODY), np.zeros((0, 9)))
     distance = np.abs(residual(MODEL, ahead, fit.multipliers, LATTICE.points)).max(axis=1)
-    again, _, steps = improve(
-        MODEL, ahead, LATTICE, fit.multipliers, distance, threshold=1e-4, tolerance=2e-6
-    )
+    again, _, steps = improve(Problem(MODEL, ahead, LATTICE), fit.multipliers, np.minimum(distance, 1e-6))
     np.testing.assert_array_equal(again, fit.multipliers)
     assert steps == ()

@@ -9,15 +9,15 @@ import numpy as np
 from uplift.fit.entries import fit_entries
 from uplift.fit.grow import NEVER, Round, Watch, grow
 from uplift.fit.improve import Improvement, improve
+from uplift.fit.problem import Problem
 from uplift.fit.seed import Seeds, seed, separating_dim
-from uplift.lattice import Indices, Lattice, Status
-from uplift.models import Model
-from uplift.models.least_change import Forward
+from uplift.lattice import Indices, Status
 from uplift.sensor import Array
 
 __all__ = [
     "Fit",
     "Improvement",
+    "Problem",
     "Round",
     "Seeds",
     "Watch",
@@ -41,31 +41,15 @@ class Fit:
     improvements: tuple[Improvement, ...]
 
 
-def fit_lattice(
-    model: Model,
-    forward: Forward,
-    lattice: Lattice,
-    seeds: Seeds,
-    entries: Array,
-    *,
-    threshold: float,
-    watch: Watch = lambda done: None,
-) -> Fit:
-    """Fit every point of the lattice to within ``threshold``, max |linear RGB|.
-
-    The solver goes on to a hundredth of it: the last steps converge quadratically and cost little.
-    ``entries`` (E, C) are the multipliers of the atlas entries that ``seeds`` speaks of.
-    """
-    tolerance = threshold / 100
-    limits = {"threshold": threshold, "tolerance": tolerance}
-    grown = grow(model, forward, lattice, seeds, entries, watch=watch, **limits)
-    multipliers, distance, improvements = improve(
-        model, forward, lattice, grown.multipliers, grown.distance, **limits
-    )
-    status = np.full(lattice.size, Status.REGULAR, dtype=np.int64)
-    entry = np.full(lattice.size, NO_ENTRY, dtype=np.int64)
+def fit_lattice(problem: Problem, seeds: Seeds, entries: Array, watch: Watch = lambda done: None) -> Fit:
+    """Fit every point of the lattice. ``entries`` (E, C) are the multipliers that ``seeds`` speaks of."""
+    grown = grow(problem, seeds, entries, watch)
+    multipliers, distance, improvements = improve(problem, grown.multipliers, grown.distance)
+    fitted = distance <= problem.threshold
+    status = np.full(len(fitted), Status.REGULAR, dtype=np.int64)
+    entry = np.full(len(fitted), NO_ENTRY, dtype=np.int64)
     status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
     entry[seeds.points] = seeds.entry
-    status[(grown.round == NEVER) & (distance <= threshold)] = Status.IMPROVED
-    status[distance > threshold] = Status.UNFITTED
+    status[(grown.round == NEVER) & fitted] = Status.IMPROVED
+    status[~fitted] = Status.UNFITTED
     return Fit(multipliers, status, grown.round, entry, improvements)

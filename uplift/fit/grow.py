@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uplift.fit.problem import Problem
 from uplift.fit.seed import Seeds
-from uplift.fit.solve import solve
 from uplift.lattice import Indices, Lattice, Mask
-from uplift.models import Model
-from uplift.models.least_change import Forward
 from uplift.sensor import Array
 
 PASSES = 6
@@ -41,32 +39,23 @@ class Growth:
     round: Indices
 
 
-def grow(
-    model: Model,
-    forward: Forward,
-    lattice: Lattice,
-    seeds: Seeds,
-    entries: Array,
-    *,
-    threshold: float,
-    tolerance: float,
-    watch: Watch,
-) -> Growth:
+def grow(problem: Problem, seeds: Seeds, entries: Array, watch: Watch) -> Growth:
     """Fit the whole lattice. ``entries`` (E, C) are the multipliers of the atlas entries.
 
     A point that fails is tried again whenever another of its neighbours has been fitted.
     """
-    multipliers = np.zeros((lattice.size, model.count))
+    lattice = problem.lattice
+    multipliers = np.zeros((lattice.size, problem.model.count))
     distance = np.full(lattice.size, np.inf)
     rounds = np.full(lattice.size, NEVER, dtype=np.int64)
-    points, start = _beginning(model, lattice, seeds, entries)
+    points, start = _beginning(problem, seeds, entries)
     number = 0
     while points.size:
-        found = solve(model, forward, start, lattice.points[points], tolerance=tolerance, passes=PASSES)
+        found = problem.solve(points, start, PASSES)
         better = found.distance < distance[points]
         multipliers[points[better]] = found.multipliers[better]
         distance[points[better]] = found.distance[better]
-        fresh = points[found.distance <= threshold]
+        fresh = points[found.distance <= problem.threshold]
         rounds[fresh] = number
         watch(Round(number, len(points), int((rounds != NEVER).sum()), lattice.size))
         points, start = _frontier(lattice, fresh, rounds != NEVER, multipliers)
@@ -74,12 +63,12 @@ def grow(
     return Growth(multipliers, distance, rounds)
 
 
-def _beginning(model: Model, lattice: Lattice, seeds: Seeds, entries: Array) -> tuple[Indices, Array]:
+def _beginning(problem: Problem, seeds: Seeds, entries: Array) -> tuple[Indices, Array]:
     """The seeds with their entries' spectra or, without an atlas, the middle of the lattice with a grey."""
     if len(seeds.points):
         return seeds.points, entries[seeds.entry]
-    middle = np.abs(lattice.points - 0.5).sum(axis=1).argmin()
-    return np.array([middle]), np.zeros((1, model.count))
+    middle = np.abs(problem.lattice.points - 0.5).sum(axis=1).argmin()
+    return np.array([middle]), np.zeros((1, problem.model.count))
 
 
 def _frontier(lattice: Lattice, fresh: Indices, fitted: Mask, multipliers: Array) -> tuple[Indices, Array]:

@@ -12,10 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.fit.solve import solve
-from uplift.lattice import Lattice
-from uplift.models import Model
-from uplift.models.least_change import Forward
+from uplift.fit.problem import Problem
+from uplift.lattice import Indices
 from uplift.sensor import Array
 
 PASSES = 96
@@ -68,37 +66,33 @@ STEPS: dict[str, Start] = {
 
 
 def improve(
-    model: Model,
-    forward: Forward,
-    lattice: Lattice,
-    multipliers: Array,
-    distance: Array,
-    *,
-    threshold: float,
-    tolerance: float,
+    problem: Problem, multipliers: Array, distance: Array
 ) -> tuple[Array, Array, tuple[Improvement, ...]]:
     """Multipliers (n, C) and distances (n,) after the pass, none worse than before, and what each step did.
 
-    The first step also takes the points between ``tolerance`` and ``threshold`` on; the others only what
-    is still over the threshold.
+    The first step also takes the points between tolerance and threshold on; the others only what is still
+    over the threshold.
     """
     multipliers, distance = multipliers.copy(), distance.copy()
     done = []
-    goal = tolerance
+    goal = problem.tolerance
     for name, start in STEPS.items():
         points = np.flatnonzero(distance > goal)
-        over = distance > threshold
-        goal = threshold
+        over = distance > problem.threshold
+        goal = problem.threshold
         if not points.size:
             continue
-        target = lattice.points[points]
-        toward = np.where(target.mean(axis=1) >= 0.5, 1.0, -1.0)
-        begin = start(multipliers[points], toward[:, None] * model.constant())
-        found = solve(model, forward, begin, target, tolerance=tolerance, passes=PASSES)
+        found = problem.solve(points, start(multipliers[points], _way(problem, points)), PASSES)
         better = found.distance < distance[points]
         multipliers[points[better]] = found.multipliers[better]
         distance[points[better]] = found.distance[better]
         if over.any():
-            mended = int((over & (distance <= threshold)).sum())
+            mended = int((over & (distance <= problem.threshold)).sum())
             done.append(Improvement(name, int(over.sum()), mended))
     return multipliers, distance, tuple(done)
+
+
+def _way(problem: Problem, points: Indices) -> Array:
+    """Multipliers (k, C) of a linear part of +1 for targets nearer to white, −1 for those nearer to black."""
+    toward = np.where(problem.lattice.points[points].mean(axis=1) >= 0.5, 1.0, -1.0)
+    return toward[:, None] * problem.model.constant()

@@ -1,0 +1,31 @@
+"""What is to be fitted, and how well: the constants of a whole fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from uplift.fit.solve import Solution, solve
+from uplift.lattice import Indices, Lattice
+from uplift.models import Model
+from uplift.models.least_change import Forward
+from uplift.sensor import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A model and its forward map, the lattice, and the largest |linear RGB| a point may miss its target by."""
+
+    model: Model
+    forward: Forward
+    lattice: Lattice
+    threshold: float = 1e-4
+
+    @property
+    def tolerance(self) -> float:
+        """What the solver goes on to: the last steps converge quadratically and cost little."""
+        return self.threshold / 100
+
+    def solve(self, points: Indices, start: Array, passes: int) -> Solution:
+        """Lattice points (k,) from multipliers ``start`` (k, C)."""
+        target = self.lattice.points[points]
+        return solve(self.model, self.forward, start, target, tolerance=self.tolerance, passes=passes)

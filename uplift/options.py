@@ -1,0 +1,71 @@
+"""What a build can be told, and what it refuses."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+from uplift import observer
+from uplift.errors import OptionError
+from uplift.models import Model, Moments, Phase, Sigmoid
+
+MODELS = (Moments.name, Sigmoid.name)
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a build can be told; recorded in the cube, so that it can be made again.
+
+    ``coefficients`` counts moments + 1 (3 to 17; the sigmoid has 3); ``lights`` are those that the atlas
+    entries' colours should hold under; ``threshold`` is the largest |linear RGB| a lattice point may miss
+    its target by.
+    """
+
+    dim: int = 32
+    model: str = "moments"
+    coefficients: int = 9
+    warp: str = "none"
+    axis: str = "srgb"
+    space: str = "sRGB"
+    illuminant: str = "D65"
+    observer: str = observer.DEFAULT_OBSERVER
+    lights: tuple[str, ...] = ("D65", "A", "FL2", "FL11")
+    threshold: float = 1e-4
+    debug: bool = False
+
+    def spectrum_model(self) -> Model:
+        """Raises `OptionError`."""
+        if self.model == Moments.name:
+            return Moments(self.coefficients, Phase(observer.START, observer.END, self.warp))
+        if self.model == Sigmoid.name:
+            return Sigmoid(observer.START, observer.END)
+        raise observer.suggest(self.model, MODELS, "model")
+
+
+def check_size(options: Options) -> None:
+    """Raises `OptionError` for a lattice too small to be one, or too large for this machine's memory."""
+    if options.dim < 2:
+        raise OptionError(f"a lattice of dim {options.dim} has no cells", remedy="use --dim 2 or more")
+    if not 0 < options.threshold <= 0.1:
+        raise OptionError(f"a threshold of {options.threshold:g} makes no sense", remedy="use 1e-6 to 0.1")
+    count = options.spectrum_model().count
+    need, have = _bytes_needed(options.dim, count), _memory()
+    if need > have:
+        largest = next(dim for dim in range(options.dim, 1, -1) if _bytes_needed(dim, count) <= have)
+        raise OptionError(
+            f"dim {options.dim} needs about {need / 1e9:.3g} GB of memory, this machine has {have / 1e9:.3g} GB",
+            remedy=f"use --dim {largest} or less",
+        )
+
+
+def _bytes_needed(dim: int, count: int) -> int:
+    """Peak memory: five arrays of multipliers or coefficients, and what else a point carries."""
+    return int(dim) ** 3 * (5 * 8 * count + 250)
+
+
+def _memory() -> int:
+    """Bytes of memory in this machine; where it does not tell, as if there were no end to it."""
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):
+        return 1 << 62
