@@ -15,6 +15,7 @@ def check_output(path: str | os.PathLike[str], *, force: bool = False) -> Path:
     """The path, if it can be written. Raises `OutputError`; asks before long work, not after."""
     path = Path(path)
     try:
+        path.resolve()
         exists, regular = path.exists(), path.is_file()
     except (OSError, ValueError) as error:  # a name too long, or with a NUL in it
         raise OutputError(f"cannot be written: {error}", path=path, remedy="choose another name") from error

@@ -179,6 +179,9 @@ def _check(data: CubeData) -> None:
         _require(getattr(data.sensor, name).shape == shape, f"the sensor's {name} has its shape")
     _require(data.atlas.rgb.shape == (entries, 3), "every entry has its RGB")
     _require(data.atlas.coefficients.shape == (entries, count), "every entry has its coefficients")
+    texts = (*data.atlas.names, data.sensor.space, data.sensor.illuminant, data.sensor.observer)
+    _require(all(isinstance(text, str) for text in texts), "every name is a text")
+    _require(isinstance(data.provenance, dict), "the provenance is a table")
     floats = (data.coefficients, data.rgb, data.distance, data.atlas.rgb, data.atlas.coefficients)
     sensor = [getattr(data.sensor, name) for name in SENSOR_ARRAYS]
     _require(all(np.isfinite(array).all() for array in (*floats, *sensor)), "every number is finite")
