@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import click
@@ -15,18 +16,14 @@ if TYPE_CHECKING:
 
 
 MOST_WAVELENGTHS = 100_000
+NEGATIVE = re.compile(r"-[0-9.]")
 
 
 class QueryCommand(click.Command):
-    """Takes '-0.1' for the number it is, so that the error speaks of the colour."""
+    """Takes '-0.1' for a number: a space before it, which the reading of colours strips, hides the dash."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        first = next(
-            (i for i, arg in enumerate(args) if arg[:1] == "-" and arg[1:2] in tuple("0123456789.")), None
-        )
-        if first is not None and "--" not in args:
-            args = [*args[:first], "--", *args[first:]]
-        return super().parse_args(ctx, args)
+        return super().parse_args(ctx, [f" {arg}" if NEGATIVE.match(arg) else arg for arg in args])
 
 
 @click.command("query", cls=QueryCommand)
