@@ -34,12 +34,13 @@ def command(file: str | None, style: str) -> None:
 
 def _table(name: str, facts: dict[str, Any]) -> None:
     from rich.table import Table
+    from rich.text import Text
 
-    table = Table(title=name, title_justify="left", show_header=False, box=None, pad_edge=False)
+    table = Table(title=Text(name), title_justify="left", show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold")
     table.add_column()
     for key, value in facts.items():
-        table.add_row(key.replace("_", " "), _text(value))
+        table.add_row(key.replace("_", " "), Text(_text(value)))
     console().print(table)
 
 
