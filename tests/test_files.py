@@ -19,6 +19,12 @@ def write(path, text, **options):
         temporary.write_text(text)
 
 
+def fail(path, error):
+    with replacing(path, force=True) as temporary:
+        temporary.write_text("half")
+        raise error
+
+
 def test_a_new_file_takes_its_place_and_nothing_else(tmp_path):
     write(tmp_path / "new", "text")
     assert os.listdir(tmp_path) == ["new"]
@@ -36,17 +42,15 @@ def test_nothing_bears_the_name_before_the_block_ends(tmp_path):
 def test_an_exception_leaves_the_old_file_and_no_litter(tmp_path, error):
     path = tmp_path / "old"
     path.write_text("old")
-    with pytest.raises(error), replacing(path, force=True) as temporary:
-        temporary.write_text("half")
-        raise error
+    with pytest.raises(error):
+        fail(path, error)
     assert os.listdir(tmp_path) == ["old"]
     assert path.read_text() == "old"
 
 
 def test_an_exception_leaves_no_new_file(tmp_path):
-    with pytest.raises(RuntimeError), replacing(tmp_path / "new") as temporary:
-        temporary.write_text("half")
-        raise RuntimeError
+    with pytest.raises(RuntimeError):
+        fail(tmp_path / "new", RuntimeError)
     assert os.listdir(tmp_path) == []
 
 
@@ -91,7 +95,7 @@ def test_a_missing_folder_is_named(tmp_path, name):
 @pytest.mark.skipif(AS_ROOT, reason="root writes everywhere")
 def test_a_folder_without_permission_is_named(tmp_path):
     tmp_path.chmod(0o500)
-    with pytest.raises(OutputError, match="no permission to write in .*; choose another place"):
+    with pytest.raises(OutputError, match=r"no permission to write in .*; choose another place"):
         check_output(tmp_path / "new")
     tmp_path.chmod(0o700)
 
