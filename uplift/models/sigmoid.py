@@ -18,7 +18,8 @@ from uplift.sensor import Array
 class Sigmoid:
     """g(x) = S(c₀x² + c₁x + c₂), S(t) = ½ + t / (2√(1 + t²)), x = λ taken from [start, end] nm to [−1, 1].
 
-    The scaled wavelength keeps the coefficients alike in size. They are stored as they are.
+    The scaled wavelength keeps the coefficients alike in size. They are stored as they are. Outside the
+    range the spectrum is held flat.
     """
 
     start: float = 380.0
@@ -28,7 +29,8 @@ class Sigmoid:
 
     def basis(self, wavelengths: ArrayLike) -> Array:
         middle, half = (self.start + self.end) / 2, (self.end - self.start) / 2
-        x = (np.asarray(wavelengths, dtype=float) - middle) / half
+        inside = np.clip(np.asarray(wavelengths, dtype=float), self.start, self.end)
+        x = (inside - middle) / half
         return np.stack([x * x, x, np.ones_like(x)], axis=-1)
 
     def squash(self, x: Any) -> Any:
