@@ -101,7 +101,7 @@ def _lines(cube: Cube, answers: Iterable[Answer]) -> None:
             _hex(cube, answer),
             " ".join(f"{value:.3f}" for value in answer.rgb),
             f"{answer.delta_e_2000:.2g}",
-            answer.entry or "",
+            Text(answer.entry or ""),
             _sparkline(answer, 20),
         )
     console().print(table)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -66,7 +67,7 @@ def command(
 
     from .progress import watching
 
-    path = check_output(output or _default_name(atlases, chosen), force=force)
+    path = check_output(_default_name(atlases, chosen) if output is None else output, force=force)
     given = {name: value for name, value in chosen.items() if value not in (None, ())}
     begin = time.perf_counter()
     with watching(quiet=quiet, verbose=verbose) as watch:
@@ -79,7 +80,7 @@ def command(
 
 
 def _default_name(atlases: tuple[str, ...], chosen: dict[str, Any]) -> str:
-    stem = "+".join(Path(atlas).stem for atlas in atlases) or chosen["space"].replace(" ", "-").lower()
+    stem = "+".join(Path(atlas).stem for atlas in atlases) or re.sub("[ /]", "-", chosen["space"]).lower()
     return f"{stem}-{chosen['dim']}.uplift"
 
 

@@ -95,6 +95,8 @@ def _table(comparisons: Sequence[Comparison]) -> None:
 
 
 def _row(comparison: Comparison) -> list[str]:
+    from rich.markup import escape
+
     from uplift.report.regression import LIMITS
 
     def cell(name: str, text: str) -> str:
@@ -103,4 +105,4 @@ def _row(comparison: Comparison) -> list[str]:
     measures = [cell(name, f"{comparison.measures[name]:.1e}") for name in LIMITS]
     status = cell("status", "same" if "status" not in comparison.failures else "differs")
     verdict = "[bold red]FAILED[/]" if comparison.failures else "[green]passed[/]"
-    return [str(comparison.path), *measures, status, verdict]
+    return [escape(str(comparison.path)), *measures, status, verdict]

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 HEX = re.compile(r"#?([0-9a-fA-F]{6})\Z")
 SHORT_HEX = re.compile(r"#([0-9a-fA-F]{3})\Z")
+SHOWN = 80
+"""Characters that a message quotes."""
 REMEDY = "write three numbers (R G B) or a hex colour such as '#cc3319'"
 
 
@@ -29,10 +31,26 @@ def from_table(file: IO[str], name: str, cube: Cube, *, codes: bool) -> Array:
 
     Further columns are left alone. Raises `ColourError` with the line.
     """
-    colours = [_parse(row, f"{name}:{line}: ") for line, row in _rows(file, name)]
+    colours = {line: _parse(row, f"{name}:{line}: ") for line, row in _rows(file, name)}
     if not colours:
         raise ColourError(f"{name}: no colours in it", remedy="give lines of r,g,b or of hex colours")
-    return _linear(colours, cube, codes=codes)
+    for line, (is_hex, numbers) in colours.items():
+        _check_range(numbers, name, line, codes=is_hex or codes)
+    return _linear(list(colours.values()), cube, codes=codes)
+
+
+def _check_range(numbers: tuple[float, ...], name: str, line: int, *, codes: bool) -> None:
+    """As the cube checks them, but with the line."""
+    from uplift.sensor import SLACK
+
+    low, high = (0.0, 255.0) if codes else (-SLACK, 1 + SLACK)
+    if not all(low <= number <= high for number in numbers):
+        values = ", ".join(f"{number:g}" for number in numbers)
+        problem = f"({values}) lies outside " + ("0 to 255" if codes else "[0, 1]")
+        remedy = (
+            "leave out --8bit for linear floats" if codes else "scale or clip it, or use --8bit for codes"
+        )
+        raise ColourError(problem, path=name, line=line, remedy=remedy)
 
 
 def _rows(file: IO[str], name: str) -> Iterable[tuple[int, list[str]]]:
@@ -44,6 +62,8 @@ def _rows(file: IO[str], name: str) -> Iterable[tuple[int, list[str]]]:
                 yield line, row
     except UnicodeDecodeError as error:
         raise ColourError(f"{name}: is not text", remedy="give a CSV file of colours") from error
+    except csv.Error as error:
+        raise ColourError(str(error), path=name, line=line, remedy="give a CSV file of colours") from error
 
 
 def _is_header(row: list[str]) -> bool:
@@ -53,11 +73,11 @@ def _is_header(row: list[str]) -> bool:
 def _parse(parts: Sequence[str], place: str) -> tuple[bool, tuple[float, ...]]:
     """Whether the colour is given in codes, and its three numbers."""
     digits = _hex(parts[0]) if parts else None
-    if digits is not None and (len(parts) == 1 or parts[0].startswith("#")):
+    if digits is not None and (len(parts) == 1 or (place and parts[0].startswith("#"))):
         return True, tuple(int(digits[i : i + 2], 16) for i in (0, 2, 4))
     numbers = [_number(part) for part in parts[:3]]
     if len(numbers) < 3 or None in numbers or (not place and len(parts) > 3):
-        raise ColourError(f"{place}'{' '.join(parts)}' is no colour", remedy=REMEDY)
+        raise ColourError(f"{place}'{' '.join(parts)[:SHOWN]}' is no colour", remedy=REMEDY)
     return False, tuple(number for number in numbers if number is not None)
 
 

@@ -34,6 +34,7 @@ def command(file: str | None, style: str) -> None:
 
 def _table(name: str, facts: dict[str, Any]) -> None:
     from rich.table import Table
+    from rich.text import Text
 
     click.echo(name)
     table = Table(show_header=False, box=None, pad_edge=False)
@@ -43,7 +44,7 @@ def _table(name: str, facts: dict[str, Any]) -> None:
     options = provenance.pop("options", {})
     for section in (facts, provenance, {f"option {key}": value for key, value in options.items()}):
         for key, value in section.items():
-            table.add_row(key.replace("_", " "), _text(value))
+            table.add_row(key.replace("_", " "), Text(_text(value)))
     console().print(table)
 
 

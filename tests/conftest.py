@@ -40,3 +40,9 @@ def small_cube() -> Cube:
 def small_sigmoid_cube() -> Cube:
     """Dim 8, sigmoid, no atlas, as stored; costs no build."""
     return uplift.load(ROOT / "cubes" / "sigmoid-8.uplift")
+
+
+@pytest.fixture(scope="session")
+def repository() -> Path:
+    """The root of the working tree."""
+    return ROOT

@@ -1,7 +1,8 @@
-"""Files are whole or not there."""
+"""Files that are whole or not there."""
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 
@@ -10,86 +11,144 @@ import pytest
 from uplift.errors import OutputError
 from uplift.files import check_output, replacing
 
-
-def test_a_block_that_ends_well_leaves_the_file_and_nothing_else(tmp_path):
-    with replacing(tmp_path / "a") as temporary:
-        temporary.write_text("new")
-    assert (tmp_path / "a").read_text() == "new"
-    assert os.listdir(tmp_path) == ["a"]
+AS_ROOT = os.name == "nt" or not hasattr(os, "geteuid") or os.geteuid() == 0
 
 
-def test_a_block_that_fails_leaves_the_old_file_and_no_litter(tmp_path):
-    (tmp_path / "a").write_text("old")
-    with pytest.raises(KeyboardInterrupt), replacing(tmp_path / "a", force=True) as temporary:
-        _write_half(temporary)
-    assert (tmp_path / "a").read_text() == "old"
-    assert os.listdir(tmp_path) == ["a"]
+def write(path, text, **options):
+    with replacing(path, **options) as temporary:
+        temporary.write_text(text)
 
 
-def _write_half(path):
-    path.write_text("half")
-    raise KeyboardInterrupt
+def fail(path, error):
+    with replacing(path, force=True) as temporary:
+        temporary.write_text("half")
+        raise error
 
 
-def test_the_old_file_is_there_until_the_new_one_is_whole(tmp_path):
-    (tmp_path / "a").write_text("old")
-    with replacing(tmp_path / "a", force=True) as temporary:
-        temporary.write_text("new")
-        assert (tmp_path / "a").read_text() == "old"
-    assert (tmp_path / "a").read_text() == "new"
+def test_a_new_file_takes_its_place_and_nothing_else(tmp_path):
+    write(tmp_path / "new", "text")
+    assert os.listdir(tmp_path) == ["new"]
+    assert (tmp_path / "new").read_text() == "text"
 
 
-def test_a_full_disk_is_an_output_error(tmp_path):
-    with (
-        pytest.raises(OutputError, match="No space left on device; the old file is intact"),
-        replacing(tmp_path / "a"),
-    ):
-        raise OSError(28, "No space left on device")
+def test_nothing_bears_the_name_before_the_block_ends(tmp_path):
+    with replacing(tmp_path / "new") as temporary:
+        temporary.write_text("half")
+        assert temporary.parent == tmp_path
+        assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt])
+def test_an_exception_leaves_the_old_file_and_no_litter(tmp_path, error):
+    path = tmp_path / "old"
+    path.write_text("old")
+    with pytest.raises(error):
+        fail(path, error)
+    assert os.listdir(tmp_path) == ["old"]
+    assert path.read_text() == "old"
+
+
+def test_an_exception_leaves_no_new_file(tmp_path):
+    with pytest.raises(RuntimeError):
+        fail(tmp_path / "new", RuntimeError)
     assert os.listdir(tmp_path) == []
 
 
-def test_an_existing_file_needs_force(tmp_path):
-    (tmp_path / "a").write_text("old")
-    with pytest.raises(OutputError, match="exists already; use --force"):
-        check_output(tmp_path / "a")
-    assert check_output(tmp_path / "a", force=True) == tmp_path / "a"
+def test_a_full_disk_is_told_with_path_and_comfort(tmp_path):
+    path = tmp_path / "old"
+    path.write_text("old")
+    with pytest.raises(OutputError) as caught, replacing(path, force=True):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert str(caught.value) == f"{path}: cannot be written: No space left on device; the old file is intact"
+    assert os.listdir(tmp_path) == ["old"]
+    assert path.read_text() == "old"
 
 
-@pytest.mark.parametrize(
-    ("name", "problem"),
-    [
-        (".", "no regular file"),
-        ("none/a", "no folder"),
-        ("x" * 300, "cannot be written"),
-        ("a\0b", "cannot be written"),
-    ],
-)
-def test_places_that_cannot_be_written_are_refused(tmp_path, name, problem):
-    with pytest.raises(OutputError, match=problem):
-        check_output(tmp_path / name, force=True)
+def test_an_existing_file_is_replaced_by_force_alone(tmp_path):
+    path = tmp_path / "old"
+    path.write_text("old")
+    with pytest.raises(OutputError, match=r"old: exists already; use --force to replace it"):
+        write(path, "new")
+    assert path.read_text() == "old"
+    write(path, "new", force=True)
+    assert path.read_text() == "new"
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root writes everywhere")
-def test_a_folder_without_permission_is_refused(tmp_path):
+def test_a_file_that_can_be_written_is_checked_without_a_trace(tmp_path):
+    assert check_output(str(tmp_path / "new")) == tmp_path / "new"
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("force", [False, True])
+def test_a_folder_is_no_place_for_a_file(tmp_path, force):
+    with pytest.raises(OutputError, match="is no regular file; name a file to write to"):
+        check_output(tmp_path, force=force)
+
+
+@pytest.mark.parametrize("name", ["none/new", "file/new"])
+def test_a_missing_folder_is_named(tmp_path, name):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match=r"there is no folder .*|cannot be written: Not a directory"):
+        check_output(tmp_path / name)
+
+
+@pytest.mark.skipif(AS_ROOT, reason="root writes everywhere")
+def test_a_folder_without_permission_is_named(tmp_path):
     tmp_path.chmod(0o500)
-    with pytest.raises(OutputError, match="no permission"):
-        check_output(tmp_path / "a")
+    with pytest.raises(OutputError, match=r"no permission to write in .*; choose another place"):
+        check_output(tmp_path / "new")
+    tmp_path.chmod(0o700)
 
 
-def test_permissions_follow_the_umask(tmp_path):
-    old = os.umask(0o027)
+@pytest.mark.parametrize("name", ["a\0b", "x" * 300])
+def test_impossible_names_are_output_errors(tmp_path, name):
+    for function in (check_output, lambda path: write(path, "")):
+        with pytest.raises(OutputError, match=r"cannot be written: .*; choose another name"):
+            function(tmp_path / name)
+
+
+@pytest.mark.parametrize("letter", ["x", "ü"])
+def test_the_longest_names_of_the_file_system_are_possible(tmp_path, letter):
+    path = tmp_path / (letter * (255 // len(letter.encode())))
+    write(path, "text")
+    assert path.read_text() == "text"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no umask there")
+@pytest.mark.parametrize(("umask", "mode"), [(0o022, 0o644), (0o077, 0o600), (0o002, 0o664)])
+def test_permissions_are_those_of_any_new_file(tmp_path, umask, mode):
+    before = os.umask(umask)
     try:
-        with replacing(tmp_path / "a") as temporary:
-            temporary.write_text("new")
+        write(tmp_path / "new", "")
+        assert os.umask(umask) == umask  # asking for it has not changed it
     finally:
-        os.umask(old)
-    assert stat.S_IMODE((tmp_path / "a").stat().st_mode) == 0o640
+        os.umask(before)
+    assert stat.S_IMODE((tmp_path / "new").stat().st_mode) == mode
 
 
-def test_a_link_stays_a_link_and_its_target_is_replaced(tmp_path):
-    (tmp_path / "target").write_text("old")
-    (tmp_path / "link").symlink_to("target")
-    with replacing(tmp_path / "link", force=True) as temporary:
-        temporary.write_text("new")
-    assert (tmp_path / "link").is_symlink()
+def test_a_link_is_kept_and_its_target_replaced(tmp_path):
+    target, link = tmp_path / "far" / "target", tmp_path / "link"
+    target.parent.mkdir()
+    target.write_text("old")
+    link.symlink_to(target)
+    write(link, "new", force=True)
+    assert link.is_symlink()
+    assert target.read_text() == "new"
+    assert not target.is_symlink()
+    assert os.listdir(target.parent) == ["target"]
+
+
+def test_a_link_to_nothing_is_filled(tmp_path):
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path / "target")
+    write(link, "new")
+    assert link.is_symlink()
     assert (tmp_path / "target").read_text() == "new"
+
+
+def test_links_in_a_circle_are_refused(tmp_path):
+    link = tmp_path / "link"
+    link.symlink_to(link)
+    with pytest.raises(OutputError, match="link: "):
+        write(link, "new")
+    assert os.listdir(tmp_path) == ["link"]

@@ -15,15 +15,13 @@ def check_output(path: str | os.PathLike[str], *, force: bool = False) -> Path:
     """The path, if it can be written. Raises `OutputError`; asks before long work, not after."""
     path = Path(path)
     try:
-        path.resolve()
-        exists, regular = path.exists(), path.is_file()
-    except (OSError, ValueError) as error:  # a name too long, or with a NUL in it
+        exists, regular, folder = path.exists(), path.is_file(), path.resolve().parent
+    except (OSError, ValueError, RuntimeError) as error:  # too long a name, a NUL in it, links in a circle
         raise OutputError(f"cannot be written: {error}", path=path, remedy="choose another name") from error
     if exists and not regular:
         raise OutputError("is no regular file", path=path, remedy="name a file to write to")
     if exists and not force:
         raise OutputError("exists already", path=path, remedy="use --force to replace it, or another name")
-    folder = path.resolve().parent
     if not folder.is_dir():
         raise OutputError(f"there is no folder {folder}", path=path, remedy="make it first")
     if not os.access(folder, os.W_OK):
@@ -41,7 +39,7 @@ def replacing(path: str | os.PathLike[str], *, force: bool = False) -> Iterator[
     path = check_output(path, force=force)
     target = path.resolve()
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
+        handle, name = tempfile.mkstemp(prefix=f".{target.name[:40]}.", suffix=".part", dir=target.parent)
         os.close(handle)
     except OSError as error:
         raise _cannot_write(path, error) from error

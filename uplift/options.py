@@ -51,7 +51,7 @@ def check_size(options: Options) -> None:
     count = options.spectrum_model().count
     need, have = _bytes_needed(options.dim, count), _memory()
     if need > have:
-        largest = next(dim for dim in range(options.dim, 1, -1) if _bytes_needed(dim, count) <= have)
+        largest = int((have / _bytes_needed(1, count)) ** (1 / 3))
         raise OptionError(
             f"dim {options.dim} needs about {need / 1e9:.3g} GB of memory, this machine has {have / 1e9:.3g} GB",
             remedy=f"use --dim {largest} or less",

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from uplift.atlas import Spectra, read_atlas
 from uplift.atlas.document import read_document
-from uplift.errors import CubeFileError, UpliftWarning
+from uplift.errors import CubeFileError, OptionError, UnknownNameError, UpliftWarning
 from uplift.fit import Watch
 from uplift.lookup import Cube
 from uplift.pipeline import build
@@ -34,17 +34,16 @@ def rebuild(
         options = dict(provenance["options"])
         options["lights"] = tuple(options["lights"])
         sources = [(str(source["name"]), str(source["digest"])) for source in provenance["atlases"]]
-    except (KeyError, TypeError) as error:
+    except (KeyError, TypeError, ValueError) as error:
         raise CubeFileError("does not say how it was made", path=path, remedy="build it anew") from error
     atlas = _read_all(path, sources, _places(path, folders))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)  # the first build has said it all
         try:
             return build(atlas, watch=watch, **options)
-        except TypeError as error:
-            raise CubeFileError(
-                "was made with options unknown here", path=path, remedy="build it anew"
-            ) from error
+        except (TypeError, OptionError, UnknownNameError) as error:
+            problem = f"was made with options unknown here ({error})"
+            raise CubeFileError(problem, path=path, remedy="build it anew") from error
 
 
 def _places(path: StrPath, folders: Iterable[StrPath]) -> list[Path]:

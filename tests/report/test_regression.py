@@ -1,64 +1,105 @@
-"""``uplift check`` can fail: one coefficient nudged is enough."""
+"""A stored cube against its rebuilding: what passes, and that everything else fails."""
 
 from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
 
+import colour
 import numpy as np
 import pytest
 
 from uplift.errors import CubeFileError
-from uplift.report.regression import LIMITS, Comparison, compare
+from uplift.lattice import Lattice, Status
+from uplift.observer import light
+from uplift.report.regression import LIGHTS, LIMITS, Comparison, compare
 
-HERE = Path("cube.uplift")
-GREY = 4 * (64 + 8 + 1)
-"""A point in the middle of the lattice, whose moments have room on all sides."""
-
-
-def changed(cube, **changes):
-    return dataclasses.replace(cube.data, **changes)
+PATH = Path("cube.uplift")
 
 
-def test_a_cube_passes_against_itself(small_cube):
-    comparison = compare(HERE, small_cube.data, small_cube.data)
-    assert comparison.failures == ()
-    assert set(comparison.measures) == set(LIMITS)
-    assert not any(comparison.measures.values())
+@pytest.fixture
+def data(small_cube):
+    return small_cube.data
 
 
-def test_one_coefficient_nudged_fails(small_cube):
-    coefficients = small_cube.data.coefficients.copy()
-    coefficients[GREY, 4] += 1e-3
-    comparison = compare(HERE, small_cube.data, changed(small_cube, coefficients=coefficients))
-    assert "spectra_max" in comparison.failures
-    assert any(name.startswith("delta_e") for name in comparison.failures)
+def with_point(data, name, point, value):
+    array = getattr(data, name).copy()
+    array[point] = value
+    return dataclasses.replace(data, **{name: array})
 
 
-def test_a_nudge_of_rounding_passes(small_cube):
-    coefficients = small_cube.data.coefficients.copy()
-    coefficients[GREY, 4] += 1e-12
-    assert compare(HERE, small_cube.data, changed(small_cube, coefficients=coefficients)).failures == ()
+def test_a_cube_equals_itself(data):
+    found = compare(PATH, data, data)
+    assert found.failures == ()
+    assert set(found.measures.values()) == {0.0}
+    assert found.stored_counts == found.rebuilt_counts == data.counts()
 
 
-def test_another_lattice_rgb_fails(small_cube):
-    rgb = small_cube.data.rgb.copy()
-    rgb[3, 1] += 1e-4
-    assert compare(HERE, small_cube.data, changed(small_cube, rgb=rgb)).failures == ("rgb",)
+def test_one_nudged_coefficient_fails_and_says_where(data):
+    nudged = with_point(data, "coefficients", (300, 4), data.coefficients[300, 4] + 1e-3)
+    found = compare(PATH, data, nudged)
+    assert "spectra_max" in found.failures
+    assert "spectra_rms" in found.failures
+    assert "rgb" not in found.failures  # what is stored of it has not changed
+    assert "status" not in found.failures
 
 
-def test_another_status_fails(small_cube):
-    status = small_cube.data.status.copy()
-    status[np.flatnonzero(status == 2)[0]] = 4
-    comparison = compare(HERE, small_cube.data, changed(small_cube, status=status))
-    assert comparison.failures == ("status",)
+def test_a_nudge_by_rounding_passes(data):
+    nudged = with_point(data, "coefficients", (300, 4), data.coefficients[300, 4] * (1 + 1e-14))
+    assert compare(PATH, data, nudged).failures == ()
 
 
-def test_nan_fails():
-    measures = dict.fromkeys(LIMITS, 0.0) | {"spectra_rms": float("nan")}
-    assert Comparison(HERE, measures, {}, {}).failures == ("spectra_rms",)
+def test_one_nudged_colour_fails(data):
+    nudged = with_point(data, "rgb", (300, 1), data.rgb[300, 1] + 2 * LIMITS["rgb"])
+    assert compare(PATH, data, nudged).failures == ("rgb",)
 
 
-def test_another_lattice_cannot_be_compared(small_cube, macbeth_cube):
-    with pytest.raises(CubeFileError, match="another lattice"):
-        compare(HERE, small_cube.data, macbeth_cube.data)
+def test_one_other_status_fails(data):
+    assert data.status[300] != Status.UNFITTED
+    found = compare(PATH, data, with_point(data, "status", 300, Status.UNFITTED))
+    assert found.failures == ("status",)
+    assert found.rebuilt_counts["unfitted"] == found.stored_counts["unfitted"] + 1
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_every_measure_fails_above_its_limit_and_as_nan(name):
+    measures = dict.fromkeys(LIMITS, 0.0)
+    for value, failures in [
+        (LIMITS[name], ()),
+        (LIMITS[name] * 1.001, (name,)),
+        (float("nan"), (name,)),
+        (float("inf"), (name,)),
+    ]:
+        assert Comparison(PATH, measures | {name: value}, {}, {}).failures == failures
+
+
+def test_a_nan_in_the_spectra_fails(data):
+    sensor = dataclasses.replace(data.sensor, wavelengths=np.full(81, np.nan))
+    failures = compare(PATH, data, dataclasses.replace(data, sensor=sensor)).failures
+    assert {"spectra_max", "spectra_rms", "delta_e_A"} <= set(failures)
+
+
+def test_measures_are_the_largest_and_the_rms(data):
+    other = dataclasses.replace(data, coefficients=data.coefficients[::-1].copy())
+    at = data.sensor.wavelengths
+    first, second = (
+        data.model.squash(data.model.from_storage(cube.coefficients) @ data.model.basis(at).T)
+        for cube in (data, other)
+    )
+    measures = compare(PATH, data, other).measures
+    assert measures["spectra_max"] == np.abs(first - second).max()
+    assert measures["spectra_rms"] == pytest.approx(np.sqrt(np.mean((first - second) ** 2)), rel=1e-12)
+    for name in LIGHTS:
+        lit = light(name)
+        labs = [
+            colour.XYZ_to_Lab(spectra @ lit.xyz.T, colour.XYZ_to_xy(lit.white)) for spectra in (first, second)
+        ]
+        expected = colour.delta_E(*labs, method="CIE 2000").max()
+        assert measures[f"delta_e_{name}"] == pytest.approx(expected, abs=1e-9)
+
+
+def test_another_lattice_cannot_be_compared(data):
+    for nodes in (np.linspace(0, 1, 8), np.linspace(0, 1, 5)):
+        other = dataclasses.replace(data, lattice=Lattice(nodes))
+        with pytest.raises(CubeFileError, match=r"cube\.uplift: has another lattice .*; build it anew"):
+            compare(PATH, data, other)

@@ -69,7 +69,7 @@ def read(path: str | os.PathLike[str]) -> CubeData:
     try:
         data = _data(tensors, metadata)
         _check(data)
-    except (KeyError, TypeError, ValueError, UpliftError) as error:
+    except (AttributeError, KeyError, TypeError, ValueError, UpliftError) as error:
         raise _broken(path, f"is not a complete cube ({type(error).__name__}: {error})") from error
     return data
 
@@ -82,7 +82,7 @@ def digest(data: CubeData) -> str:
 def _load(path: Path) -> tuple[Tensors, dict[str, Any]]:
     from safetensors import SafetensorError, safe_open
 
-    if not path.is_file():
+    if not os.path.isfile(path):  # False for impossible names too, where Path.is_file raises
         raise CubeFileError("no such file", path=path, remedy="'uplift build' makes cubes")
     try:
         with safe_open(path, framework="numpy") as file:
@@ -185,6 +185,11 @@ def _check(data: CubeData) -> None:
     floats = (data.coefficients, data.rgb, data.distance, data.atlas.rgb, data.atlas.coefficients)
     sensor = [getattr(data.sensor, name) for name in SENSOR_ARRAYS]
     _require(all(np.isfinite(array).all() for array in (*floats, *sensor)), "every number is finite")
+    with np.errstate(all="ignore"):
+        basis = data.model.basis(data.sensor.wavelengths)
+    _require(basis.shape == (samples, count) and bool(np.isfinite(basis).all()), "the model has a range")
+    _require(tuple(data.lattice.nodes[[0, -1]]) == (0, 1), "the lattice runs from 0 to 1")
+    _require(0 < data.threshold < np.inf, "the threshold is a positive number")
     _require(bool((data.status < len(Status)).all()), "every status is known")
     _require(bool(((data.entry >= -1) & (data.entry < entries)).all()), "every entry is in the atlas table")
 

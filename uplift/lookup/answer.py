@@ -40,11 +40,7 @@ def answers(
     cube: Cube, rgb: Array, wavelengths: ArrayLike | None = None, mode: str = "spectra"
 ) -> Iterator[Answer]:
     """Answers for linear RGB (n, 3), in order, as they are made. Raises as `Cube.reflectance`."""
-    at = (
-        cube.data.sensor.wavelengths
-        if wavelengths is None
-        else np.atleast_1d(np.asarray(wavelengths, dtype=float))
-    )
+    at = cube.wavelengths(wavelengths)
     for start in range(0, len(rgb), BLOCK):
         yield from _block(cube, rgb[start : start + BLOCK], at, mode)
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.cube import CubeData, read, write
-from uplift.errors import ColourError, OptionError
+from uplift.errors import ColourError, OptionError, UpliftError
 from uplift.lookup.interpolate import BLOCK, MODES, coefficients
 from uplift.sensor import Array, Sensor
 
@@ -49,15 +49,19 @@ class Cube:
         """
         if mode not in MODES:
             raise OptionError(f"unknown mode '{mode}'", remedy=f"use one of {', '.join(MODES)}")
-        at = self.data.sensor.wavelengths if wavelengths is None else _wavelengths(wavelengths)
+        at = self.wavelengths(wavelengths)
         return self._blockwise(lambda block: MODES[mode](self.data, block, at), rgb)
+
+    def wavelengths(self, wavelengths: ArrayLike | None = None) -> Array:
+        """The wavelengths (N,) nm that are asked for; by default those of the sensor. Raises `OptionError`."""
+        return self.data.sensor.wavelengths if wavelengths is None else _wavelengths(wavelengths)
 
     def decode(self, codes: ArrayLike) -> Array:
         """Linear RGB (…) of 8-bit codes (…) as the cube's space encodes them.
 
         Raises `ColourError` for codes outside 0–255; fractions are interpolated.
         """
-        array = np.asarray(codes, dtype=float)
+        array = _floats(codes, "8-bit codes are numbers")
         if not ((array >= 0) & (array <= 255)).all():
             raise ColourError("8-bit codes run from 0 to 255", remedy="leave out --8bit for linear floats")
         return np.interp(array, np.arange(256), self.data.sensor.decoding)
@@ -105,14 +109,15 @@ def _colours(rgb: ArrayLike, sensor: Sensor) -> Array:
 
 
 def _wavelengths(wavelengths: ArrayLike) -> Array:
-    array = np.atleast_1d(_floats(wavelengths, "wavelengths are numbers in nm"))
+    problem = "wavelengths must be a list of positive numbers in nm"
+    array = np.atleast_1d(_floats(wavelengths, problem, OptionError))
     if array.ndim != 1 or not array.size or not (np.isfinite(array) & (array > 0)).all():
-        raise OptionError("wavelengths must be a list of positive numbers in nm")
+        raise OptionError(problem)
     return array
 
 
-def _floats(values: Any, problem: str) -> Array:
+def _floats(values: Any, problem: str, kind: type[UpliftError] = ColourError) -> Array:
     try:
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:
-        raise ColourError(problem) from error
+        raise kind(problem) from error

@@ -40,9 +40,7 @@ class Comparison:
 def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
     """Raises `CubeFileError` where the two have no points in common."""
     if not np.array_equal(stored.lattice.nodes, rebuilt.lattice.nodes):
-        raise CubeFileError(
-            "has another lattice than its options say", path=path, remedy="rebuild it with --update"
-        )
+        raise CubeFileError("has another lattice than its options say", path=path, remedy="build it anew")
     first, second = _spectra(stored), _spectra(rebuilt)
     difference = np.abs(first - second)
     measures = {

@@ -1,0 +1,40 @@
+"""Cube files made on purpose: true ones, and forged ones whose digest is right all the same."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from safetensors.numpy import save_file
+
+from uplift.cube import CubeData, file
+
+
+def forge(data: CubeData, path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None]) -> Path:
+    """Write ``data`` after ``change(tensors, metadata)``, with the digest of what it was changed to."""
+    tensors, metadata = file._tensors(data), file._metadata(data)
+    metadata = json.loads(json.dumps(metadata))
+    change(tensors, metadata)
+    tensors = {name: np.ascontiguousarray(array) for name, array in tensors.items()}
+    metadata["digest"] = file._digest(tensors, metadata)
+    save_file(tensors, path, metadata={file.KEY: file._json(metadata)})
+    return path
+
+
+def header_length(content: bytes) -> int:
+    """Bytes of the JSON header of a safetensors file."""
+    return int(struct.unpack("<Q", content[:8])[0])
+
+
+def with_header_length(content: bytes, length: int) -> bytes:
+    """The same file, claiming another length of its header."""
+    return struct.pack("<Q", length) + content[8:]
+
+
+def with_header(content: bytes, header: bytes) -> bytes:
+    """The same arrays under another header."""
+    return struct.pack("<Q", len(header)) + header + content[8 + header_length(content) :]

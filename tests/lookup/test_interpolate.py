@@ -1,0 +1,128 @@
+"""The three modes between lattice points: exact on nodes, near the colour elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift.lookup import MODES
+from uplift.lookup.interpolate import REFINED, refined_multipliers
+
+
+def random_colours(count=1000, seed=3):
+    return np.random.default_rng(seed).random((count, 3))
+
+
+def stored_spectra(data, wavelengths):
+    """(n, N) spectra of all lattice points, each by itself."""
+    return data.model.squash(data.model.from_storage(data.coefficients) @ data.model.basis(wavelengths).T)
+
+
+def miss(cube, rgb, mode):
+    """(n,) max |linear RGB| between colours and what their spectra evaluate to."""
+    return np.abs(cube.data.sensor.rgb(cube.reflectance(rgb, mode=mode)) - rgb).max(axis=1)
+
+
+@pytest.fixture(params=["small_cube", "small_sigmoid_cube"])
+def cube(request):
+    return request.getfixturevalue(request.param)
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+def test_a_node_gets_its_own_spectrum(cube, mode):
+    at = [380.0, 500.0, 612.3, 780.0]
+    found = cube.reflectance(cube.data.lattice.points, at, mode)
+    np.testing.assert_allclose(found, stored_spectra(cube.data, np.array(at)), rtol=0, atol=1e-12)
+
+
+def test_refined_moves_a_node_s_spectrum_to_its_colour_and_no_further(cube):
+    # Lattice points miss their targets by up to 1e-6; a spectrum near 0 or 1 moves most for that.
+    points = cube.data.lattice.points
+    moved = np.abs(cube.reflectance(points, mode="refined") - cube.reflectance(points)).max(axis=1)
+    assert moved.max() < 5e-3
+    assert np.median(moved) < 1e-5
+    assert (miss(cube, points, "refined") <= miss(cube, points, "moments") + 1e-12).all()
+
+
+def test_a_node_s_coefficients_are_those_stored(cube):
+    found = cube.coefficients(cube.data.lattice.points)
+    np.testing.assert_allclose(found, cube.data.coefficients, rtol=1e-15, atol=1e-15)
+
+
+def test_coefficients_are_trilinear_in_a_cell(cube):
+    nodes, stored = cube.data.lattice.nodes, cube.data.coefficients
+    low, high = nodes[[3, 5, 2]], nodes[[4, 6, 3]]
+    fraction = np.array([0.25, 0.5, 0.9])
+    expected = np.zeros(cube.data.model.count)
+    for r in (0, 1):
+        for g in (0, 1):
+            for b in (0, 1):
+                share = np.prod(np.where([r, g, b], fraction, 1 - fraction))
+                expected += share * stored[((3 + r) * 8 + 5 + g) * 8 + 2 + b]
+    found = cube.coefficients(low + fraction * (high - low))
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
+
+
+def test_spectra_are_as_exact_as_the_lattice(cube):
+    assert cube.data.distance.max() <= cube.data.threshold / 100
+    assert miss(cube, random_colours(), "spectra").max() <= cube.data.distance.max() + 1e-9
+
+
+def test_spectra_stay_between_those_of_the_corners(small_cube):
+    rgb = random_colours(200)
+    points, _ = small_cube.data.lattice.corners(rgb)
+    corners = stored_spectra(small_cube.data, small_cube.data.sensor.wavelengths)[points]
+    found = small_cube.reflectance(rgb)
+    assert (found >= corners.min(axis=1) - 1e-12).all()
+    assert (found <= corners.max(axis=1) + 1e-12).all()
+
+
+def test_moments_come_near(small_cube):
+    # Measured at dim 8: median 4e-4, largest 1.2e-2.
+    apart = miss(small_cube, random_colours(), "moments")
+    assert np.median(apart) < 1e-3
+    assert apart.max() < 0.03
+
+
+def test_refined_comes_nearly_exact(small_cube):
+    assert miss(small_cube, random_colours(), "refined").max() <= 2 * REFINED
+
+
+def test_refined_comes_nearly_exact_for_most_with_the_sigmoid(small_sigmoid_cube):
+    # Measured at dim 8: 88 %; its coefficients interpolate badly where they are large.
+    apart = miss(small_sigmoid_cube, random_colours(), "refined")
+    assert (apart < 1e-6).mean() > 0.8
+
+
+def test_refined_is_nowhere_worse_than_moments(cube):
+    # In squares, which is what a step is judged by.
+    rgb = random_colours()
+    errors = [
+        ((cube.data.sensor.rgb(cube.reflectance(rgb, mode=mode)) - rgb) ** 2).sum(axis=1)
+        for mode in ("refined", "moments")
+    ]
+    assert (errors[0] <= errors[1] + 1e-20).all()
+
+
+def test_refined_multipliers_evaluate_to_the_colour(small_cube):
+    rgb = random_colours(50)
+    data = small_cube.data
+    spectra = data.model.squash(refined_multipliers(data, rgb) @ data.model.basis(data.sensor.wavelengths).T)
+    np.testing.assert_allclose(data.sensor.rgb(spectra), rgb, rtol=0, atol=2 * REFINED)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_answers_are_continuous_across_the_faces_of_cells(small_cube, mode):
+    nodes = small_cube.data.lattice.nodes
+    on = np.array([[nodes[3], 0.4, 0.2], [0.3, nodes[5], 0.7], [0.1, 0.6, nodes[1]]])
+    before, after = (
+        small_cube.reflectance(np.where(on == nodes[[3, 5, 1]], on + by, on), mode=mode)
+        for by in (-1e-9, 1e-9)
+    )
+    np.testing.assert_allclose(before, after, rtol=0, atol=1e-4)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_the_modes_know_neighbouring_colours_apart(small_cube, mode):
+    one, other = small_cube.reflectance([[0.5, 0.5, 0.5], [0.5, 0.51, 0.5]], mode=mode)
+    assert np.abs(one - other).max() > 1e-3
