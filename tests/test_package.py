@@ -52,3 +52,13 @@ def test_nothing_else_is_in_it(wheel):
 def test_the_console_script_is_named(wheel):
     (name,) = (name for name in wheel.namelist() if name.endswith("entry_points.txt"))
     assert "uplift = uplift_cli.main:main" in wheel.read(name).decode()
+
+
+def test_it_answers_from_the_wheel_alone(wheel):
+    code = (
+        f"import sys; sys.path.insert(0, {wheel.filename!r}); import uplift\n"
+        "assert '.whl' in uplift.__file__, uplift.__file__\n"
+        "print(uplift.load().reflectance([0.1, 0.2, 0.3]).shape)"
+    )
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert out.stdout == "(81,)\n"
