@@ -77,12 +77,12 @@ def command(
         check_output(plot_path, force=force)
     cube = load(cube_path)
     rgb = _colours(colour, input_path, cube, codes=codes)
-    found = list(answers(cube, rgb, _wavelengths(wavelengths), mode))
-    WRITERS[style](cube, found, bool(colour) and colour != ("-",))
+    at = _wavelengths(wavelengths)
+    WRITERS[style](cube, answers(cube, rgb, at, mode), bool(colour) and colour != ("-",))
     if plot_path is not None:
         from uplift.report.spectra import plot_answers
 
-        plot_answers(cube, found, plot_path, force=force)
+        plot_answers(cube, list(answers(cube, rgb, at, mode)), plot_path, force=force)
 
 
 def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: bool) -> Array:
