@@ -1,0 +1,69 @@
+"""The import contracts of pyproject.toml hold, and would not if somebody broke them."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+LINT = "from importlinter.cli import lint_imports_command; lint_imports_command()"
+
+
+def lint(folder):
+    """Run the linter on the packages of ``folder`` as they lie there."""
+    code = f"import sys; sys.path[:0] = [{str(folder)!r}]; {LINT}"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "--no-cache"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+@pytest.fixture
+def doctored(repository, tmp_path) -> Path:
+    """A copy of the code, to be broken; the command line under its installed name, as the linter needs it."""
+    shutil.copytree(repository / "uplift", tmp_path / "uplift", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(repository / "cli", tmp_path / "uplift_cli", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(repository / "pyproject.toml", tmp_path)
+    return tmp_path
+
+
+def test_the_contracts_hold(repository):
+    code, text = lint(repository)
+    assert code == 0, text
+    assert "0 broken" in text
+
+
+def test_the_contracts_hold_for_a_copy(doctored):
+    code, text = lint(doctored)
+    assert code == 0, text
+
+
+@pytest.mark.parametrize(
+    ("module", "line", "contract"),
+    [
+        ("uplift/lookup/cube.py", "import jax", "A lookup starts in the time that numpy takes"),
+        (
+            "uplift/cube/file.py",
+            "from uplift.fit import seed",
+            "A lookup starts in the time that numpy takes",
+        ),
+        ("uplift/models/sigmoid.py", "import colour", "One place reads colour-science's tables"),
+        ("uplift/pipeline.py", "import click", "Only the command line knows click and rich"),
+        ("uplift/lattice.py", "import uplift.pipeline", "Data flows one way"),
+        ("uplift/errors.py", "from uplift import sensor", "Data flows one way"),
+        ("uplift/report/summary.py", "import uplift_cli.output", "Data flows one way"),
+    ],
+)
+def test_a_broken_contract_is_found(doctored, module, line, contract):
+    with (doctored / module).open("a", encoding="utf-8") as file:
+        file.write(f"\n\ndef broken():\n    {line}\n")
+    code, text = lint(doctored)
+    assert code == 1
+    assert f"{contract} BROKEN" in text

@@ -1,0 +1,102 @@
+"""The wheel holds the library, the command line and the default cube, and nothing else."""
+
+from __future__ import annotations
+
+import configparser
+import email
+import shutil
+import subprocess
+import sys
+import zipfile
+
+import pytest
+
+import uplift
+
+FOLDERS = {"uplift": "uplift", "cli": "uplift_cli"}
+
+
+def source_files(repository):
+    """What git tracks, and what it would track if asked to; paths from the root."""
+    args = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listed = subprocess.run(args, cwd=repository, capture_output=True, check=True).stdout.decode()
+    return [name for name in listed.split("\0") if name and (repository / name).is_file()]
+
+
+@pytest.fixture(scope="module")
+def wheel(repository, tmp_path_factory):
+    """Built once a run, from a copy that holds no leftovers of earlier builds."""
+    if shutil.which("git") is None or not (repository / ".git").exists():
+        pytest.skip("needs the git checkout to know its files")
+    folder = tmp_path_factory.mktemp("package")
+    for name in source_files(repository):
+        (folder / "copy" / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(repository / name, folder / "copy" / name)
+    args = ["-m", "build", "--wheel", "--no-isolation", "--outdir", folder / "dist", folder / "copy"]
+    done = subprocess.run([sys.executable, *args], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    (path,) = (folder / "dist").iterdir()
+    with zipfile.ZipFile(path) as archive:
+        yield archive
+
+
+def info(wheel, name):
+    return wheel.read(f"uplift-{uplift.__version__}.dist-info/{name}").decode()
+
+
+def test_every_module_is_in_it(wheel, repository):
+    for here, there in FOLDERS.items():
+        modules = [
+            path.relative_to(repository / here).as_posix() for path in (repository / here).rglob("*.py")
+        ]
+        assert len(modules) > 10
+        assert {f"{there}/{module}" for module in modules} <= set(wheel.namelist())
+
+
+def test_the_default_cube_is_in_it_byte_for_byte(wheel, repository):
+    cube = "uplift/lookup/default.uplift"
+    assert wheel.read(cube) == (repository / cube).read_bytes()
+
+
+def test_type_checkers_are_told(wheel):
+    assert "uplift/py.typed" in wheel.namelist()
+
+
+def test_the_licence_is_in_it(wheel, repository):
+    assert info(wheel, "licenses/LICENSE") == (repository / "LICENSE").read_text(encoding="utf-8")
+
+
+def test_nothing_else_is_in_it(wheel):
+    assert {name.split("/")[0] for name in wheel.namelist()} == {
+        "uplift",
+        "uplift_cli",
+        f"uplift-{uplift.__version__}.dist-info",
+    }
+    data = {name for name in wheel.namelist() if ".dist-info/" not in name and not name.endswith(".py")}
+    assert data == {"uplift/lookup/default.uplift", "uplift/py.typed"}
+
+
+def test_the_command_is_installed_as_uplift(wheel):
+    points = configparser.ConfigParser()
+    points.read_string(info(wheel, "entry_points.txt"))
+    assert dict(points["console_scripts"]) == {"uplift": "uplift_cli.main:main"}
+
+
+def test_name_version_and_python_are_stated(wheel):
+    stated = email.message_from_string(info(wheel, "METADATA"))
+    assert (stated["Name"], stated["Version"]) == ("uplift", uplift.__version__)
+    assert stated["Requires-Python"] == ">=3.11"
+    assert stated["License-Expression"] == "BSD-3-Clause"
+
+
+def test_it_works_from_where_it_is_installed(wheel, tmp_path):
+    wheel.extractall(tmp_path)
+    code = (
+        f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import uplift, uplift_cli.main as cli\n"
+        f"assert uplift.__file__.startswith({str(tmp_path)!r}) and cli.__file__.startswith({str(tmp_path)!r})\n"
+        "cli.main(['query', '#ffffff', '--format', 'csv', '--wavelengths', '550'])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.startswith("r,g,b,delta_e_2000,entry,550\n1.0,1.0,1.0,")
