@@ -1,4 +1,4 @@
-"""Importing is light and changes nothing."""
+"""``import uplift`` is light, changes nothing, and shows the whole interface."""
 
 from __future__ import annotations
 
@@ -9,44 +9,72 @@ import pytest
 
 import uplift
 
-
-def python(code):
-    return subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    ).stdout.strip()
+HEAVY = "{'numpy', 'jax', 'colour', 'scipy', 'optimistix', 'equinox', 'safetensors', 'matplotlib', 'click', 'rich'}"
 
 
-def test_importing_uplift_loads_nothing_heavy():
-    code = "import sys; before = set(sys.modules); import uplift; print(*sorted(set(sys.modules) - before))"
-    loaded = {name.split(".")[0] for name in python(code).split()}
-    assert not loaded & {
-        "numpy",
-        "jax",
-        "scipy",
-        "colour",
-        "optimistix",
-        "click",
-        "rich",
-        "matplotlib",
-        "safetensors",
-    }
+def in_a_fresh_process(code):
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return done.stdout.strip()
 
 
-def test_the_whole_library_changes_no_setting_of_jax():
+def test_importing_costs_nothing_not_even_numpy():
+    assert in_a_fresh_process(f"import sys, uplift; print({HEAVY} & set(sys.modules))") == "set()"
+
+
+def test_the_check_sees_what_is_loaded():
+    code = f"import sys, uplift; uplift.Spectra; print({HEAVY} & set(sys.modules))"
+    assert in_a_fresh_process(code) == "{'numpy'}"
+
+
+def test_loading_a_cube_costs_numpy_and_the_file_s_library():
+    code = f"import sys, uplift; uplift.load(); print(sorted({HEAVY} & set(sys.modules)))"
+    assert in_a_fresh_process(code) == "['numpy', 'safetensors']"
+
+
+@pytest.mark.parametrize("use", ["pass", "uplift.load().reflectance([0.5, 0.5, 0.5])", "uplift.build(dim=2)"])
+def test_no_setting_of_jax_is_changed(use):
     code = (
-        "import jax, warnings; before = dict(jax.config.values)\n"
-        "import uplift.pipeline, uplift.rebuild, uplift.report.regression\n"
-        "uplift.build(dim=2, model='sigmoid'); print(before == dict(jax.config.values), jax.numpy.zeros(1).dtype)"
+        "import jax, jax.numpy as jnp\n"
+        "before = dict(jax.config.values)\n"
+        f"import uplift\n{use}\n"
+        "print({name for name, value in jax.config.values.items() if before.get(name) != value})\n"
+        "print(jnp.zeros(1).dtype)"
     )
-    assert python(code) == "True float32"
+    assert in_a_fresh_process(code) == "set()\nfloat32"
 
 
-def test_every_public_name_is_there():
-    assert set(uplift.__all__) <= set(dir(uplift))
-    for name in uplift.__all__:
-        assert getattr(uplift, name) is not None
+def test_no_setting_of_numpy_or_of_warnings_is_changed():
+    code = (
+        "import numpy, warnings\n"
+        "before = numpy.geterr(), numpy.get_printoptions(), list(warnings.filters), warnings.showwarning\n"
+        "import uplift\nuplift.build(dim=2)\n"
+        "after = numpy.geterr(), numpy.get_printoptions(), list(warnings.filters), warnings.showwarning\n"
+        "print([one for one, other in zip(before, after) if one != other])"
+    )
+    assert in_a_fresh_process(code) == "[]"
 
 
-def test_other_names_are_not():
-    with pytest.raises(AttributeError, match="no attribute 'bulid'"):
-        _ = uplift.bulid
+def test_dir_lists_the_interface():
+    assert set(dir(uplift)) == {*uplift.__all__, "__version__"}
+    assert uplift.__all__ == sorted(uplift.__all__)
+
+
+@pytest.mark.parametrize("name", uplift.__all__)
+def test_every_name_of_the_interface_is_documented_at_its_home(name):
+    found = getattr(uplift, name)
+    assert found.__name__ == name
+    assert found.__module__.startswith("uplift.")
+    assert found.__doc__
+
+
+def test_star_import_brings_the_interface():
+    names = in_a_fresh_process("from uplift import *; print(*sorted(n for n in dir() if n[0] != '_'))")
+    assert names.split() == uplift.__all__
+
+
+def test_unknown_names_raise_attribute_error():
+    with pytest.raises(AttributeError, match="module 'uplift' has no attribute 'paint'"):
+        _ = uplift.paint
+    assert not hasattr(uplift, "np")
+    with pytest.raises(ImportError):
+        exec("from uplift import paint")

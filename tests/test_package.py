@@ -1,7 +1,9 @@
-"""The wheel holds what is needed to run, and nothing else."""
+"""The wheel holds the library, the command line and the default cube, and nothing else."""
 
 from __future__ import annotations
 
+import configparser
+import email
 import shutil
 import subprocess
 import sys
@@ -9,56 +11,92 @@ import zipfile
 
 import pytest
 
-from .conftest import ROOT
+import uplift
+
+FOLDERS = {"uplift": "uplift", "cli": "uplift_cli"}
+
+
+def source_files(repository):
+    """What git tracks, and what it would track if asked to; paths from the root."""
+    args = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listed = subprocess.run(args, cwd=repository, capture_output=True, check=True).stdout.decode()
+    return [name for name in listed.split("\0") if name and (repository / name).is_file()]
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory):
-    """The names in a wheel built from a copy of what a checkout holds, and the archive."""
-    source = tmp_path_factory.mktemp("source")
-    for folder in ("uplift", "cli"):
-        shutil.copytree(ROOT / folder, source / folder, ignore=shutil.ignore_patterns("__pycache__"))
-    for file in ("pyproject.toml", "README.md", "LICENSE"):
-        shutil.copyfile(ROOT / file, source / file)
-    for folder in ("tests", "cubes", "atlases"):
-        (source / folder).mkdir()
-        (source / folder / "__init__.py").touch()
-    command = [sys.executable, "-m", "build", "--wheel", "--no-isolation", "--outdir", "dist"]
-    subprocess.run(command, cwd=source, capture_output=True, check=True)
-    (path,) = (source / "dist").glob("*.whl")
+def wheel(repository, tmp_path_factory):
+    """Built once a run, from a copy that holds no leftovers of earlier builds."""
+    if shutil.which("git") is None or not (repository / ".git").exists():
+        pytest.skip("needs the git checkout to know its files")
+    folder = tmp_path_factory.mktemp("package")
+    for name in source_files(repository):
+        (folder / "copy" / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(repository / name, folder / "copy" / name)
+    args = ["-m", "build", "--wheel", "--no-isolation", "--outdir", folder / "dist", folder / "copy"]
+    done = subprocess.run([sys.executable, *args], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    (path,) = (folder / "dist").iterdir()
     with zipfile.ZipFile(path) as archive:
         yield archive
 
 
-def test_every_module_is_in_it(wheel):
-    expected = {str(path.relative_to(ROOT)) for path in (ROOT / "uplift").rglob("*.py")}
-    expected |= {f"uplift_{path.relative_to(ROOT)}" for path in (ROOT / "cli").rglob("*.py")}
-    assert expected <= set(wheel.namelist())
+def info(wheel, name):
+    return wheel.read(f"uplift-{uplift.__version__}.dist-info/{name}").decode()
 
 
-def test_the_default_cube_the_types_and_the_licence_are_in_it(wheel):
-    names = wheel.namelist()
-    assert "uplift/lookup/default.uplift" in names
-    assert "uplift/py.typed" in names
-    assert any(name.endswith("licenses/LICENSE") for name in names)
+def test_every_module_is_in_it(wheel, repository):
+    for here, there in FOLDERS.items():
+        modules = [
+            path.relative_to(repository / here).as_posix() for path in (repository / here).rglob("*.py")
+        ]
+        assert len(modules) > 10
+        assert {f"{there}/{module}" for module in modules} <= set(wheel.namelist())
+
+
+def test_the_default_cube_is_in_it_byte_for_byte(wheel, repository):
+    cube = "uplift/lookup/default.uplift"
+    assert wheel.read(cube) == (repository / cube).read_bytes()
+
+
+def test_type_checkers_are_told(wheel):
+    assert "uplift/py.typed" in wheel.namelist()
+
+
+def test_the_licence_is_in_it(wheel, repository):
+    assert info(wheel, "licenses/LICENSE") == (repository / "LICENSE").read_text(encoding="utf-8")
 
 
 def test_nothing_else_is_in_it(wheel):
-    tops = {name.split("/")[0] for name in wheel.namelist() if ".dist-info/" not in name}
-    assert tops == {"uplift", "uplift_cli"}
-    assert sum(info.file_size for info in wheel.infolist()) < 2e6
+    assert {name.split("/")[0] for name in wheel.namelist()} == {
+        "uplift",
+        "uplift_cli",
+        f"uplift-{uplift.__version__}.dist-info",
+    }
+    data = {name for name in wheel.namelist() if ".dist-info/" not in name and not name.endswith(".py")}
+    assert data == {"uplift/lookup/default.uplift", "uplift/py.typed"}
 
 
-def test_the_console_script_is_named(wheel):
-    (name,) = (name for name in wheel.namelist() if name.endswith("entry_points.txt"))
-    assert "uplift = uplift_cli.main:main" in wheel.read(name).decode()
+def test_the_command_is_installed_as_uplift(wheel):
+    points = configparser.ConfigParser()
+    points.read_string(info(wheel, "entry_points.txt"))
+    assert dict(points["console_scripts"]) == {"uplift": "uplift_cli.main:main"}
 
 
-def test_it_answers_from_the_wheel_alone(wheel):
+def test_name_version_and_python_are_stated(wheel):
+    stated = email.message_from_string(info(wheel, "METADATA"))
+    assert (stated["Name"], stated["Version"]) == ("uplift", uplift.__version__)
+    assert stated["Requires-Python"] == ">=3.11"
+    assert stated["License-Expression"] == "BSD-3-Clause"
+
+
+def test_it_works_from_where_it_is_installed(wheel, tmp_path):
+    wheel.extractall(tmp_path)
     code = (
-        f"import sys; sys.path.insert(0, {wheel.filename!r}); import uplift\n"
-        "assert '.whl' in uplift.__file__, uplift.__file__\n"
-        "print(uplift.load().reflectance([0.1, 0.2, 0.3]).shape)"
+        f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import uplift, uplift_cli.main as cli\n"
+        f"assert uplift.__file__.startswith({str(tmp_path)!r}) and cli.__file__.startswith({str(tmp_path)!r})\n"
+        "cli.main(['query', '#ffffff', '--format', 'csv', '--wavelengths', '550'])"
     )
-    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert out.stdout == "(81,)\n"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.startswith("r,g,b,delta_e_2000,entry,550\n1.0,1.0,1.0,")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import stat
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,19 +15,27 @@ from uplift.errors import OutputError
 def check_output(path: str | os.PathLike[str], *, force: bool = False) -> Path:
     """The path, if it can be written. Raises `OutputError`; asks before long work, not after."""
     path = Path(path)
-    try:
-        exists, regular, folder = path.exists(), path.is_file(), path.resolve().parent
-    except (OSError, ValueError, RuntimeError) as error:  # too long a name, a NUL in it, links in a circle
-        raise OutputError(f"cannot be written: {error}", path=path, remedy="choose another name") from error
-    if exists and not regular:
+    mode = _mode(path)
+    if mode is not None and not stat.S_ISREG(mode):
         raise OutputError("is no regular file", path=path, remedy="name a file to write to")
-    if exists and not force:
+    if mode is not None and not force:
         raise OutputError("exists already", path=path, remedy="use --force to replace it, or another name")
+    folder = path.resolve().parent
     if not folder.is_dir():
         raise OutputError(f"there is no folder {folder}", path=path, remedy="make it first")
     if not os.access(folder, os.W_OK):
         raise OutputError(f"no permission to write in {folder}", path=path, remedy="choose another place")
     return path
+
+
+def _mode(path: Path) -> int | None:
+    """What stands at the path, None for nothing. Raises `OutputError` for names that no file can have."""
+    try:
+        return path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except (OSError, ValueError) as error:  # too long a name, a NUL in it, links in a circle
+        raise OutputError(f"cannot be written: {error}", path=path, remedy="choose another name") from error
 
 
 @contextlib.contextmanager

@@ -21,8 +21,11 @@ START, END, STEP = 380.0, 780.0, 5.0
 
 @functools.cache
 def _colour() -> ModuleType:
-    """colour-science, imported when first needed (a second) and silent about its optional parts."""
-    with warnings.catch_warnings():
+    """colour-science, imported when first needed (a second) and silent about its optional parts.
+
+    It sets how numpy prints; that is set back.
+    """
+    with warnings.catch_warnings(), np.printoptions():
         warnings.simplefilter("ignore")
         import colour
     return colour

@@ -1,8 +1,7 @@
-"""The command line as a user meets it, in this process."""
+"""Running the command line inside this process."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,46 +9,54 @@ import pytest
 from click.testing import CliRunner, Result
 from uplift_cli.main import main
 
-from ..conftest import ROOT
-
-MACBETH = str(ROOT / "atlases" / "macbeth.txt")
-SMALL = str(ROOT / "cubes" / "moments-8-macbeth.uplift")
-SIGMOID = str(ROOT / "cubes" / "sigmoid-8.uplift")
+Run = Callable[..., Result]
 
 
-@pytest.fixture(autouse=True)
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Commands run in an empty folder, and what they set for the process does not outlive them."""
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty working folder; what JAX compiles is kept there too, not in the user's cache."""
     monkeypatch.chdir(tmp_path)
-    for name in [name for name in os.environ if name.startswith("JAX_")]:
-        monkeypatch.delenv(name)
-    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path.parent / "compiled"))
+    for name in ("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES"):
+        monkeypatch.setenv(name, "0")
     return tmp_path
 
 
 @pytest.fixture
-def run() -> Callable[..., Result]:
-    """Run ``uplift`` with arguments; it must succeed."""
+def run(home: Path) -> Run:
+    """Run ``uplift`` with arguments; anything but an exit code is a failure."""
 
-    def run(*arguments: object, stdin: str | bytes | None = None) -> Result:
-        result = CliRunner().invoke(main, list(map(str, arguments)), input=stdin, catch_exceptions=False)
-        assert result.exit_code == 0, result.stderr
+    def run(*args: object, code: int = 0, **options: object) -> Result:
+        result = CliRunner().invoke(main, [str(arg) for arg in args], catch_exceptions=False, **options)  # type: ignore[arg-type]
+        assert result.exit_code == code, result.output
         return result
 
     return run
 
 
 @pytest.fixture
-def refused() -> Callable[..., str]:
-    """Run ``uplift`` with arguments; it must refuse in one line and exit with 2. The line is returned."""
+def refuse(run: Run) -> Callable[..., str]:
+    """Run ``uplift`` with bad input; the one line it says: what is wrong, and what to do."""
 
-    def refused(*arguments: object, stdin: str | bytes | None = None) -> str:
-        result = CliRunner().invoke(main, list(map(str, arguments)), input=stdin, catch_exceptions=False)
-        lines = [line for line in result.stderr.splitlines() if not line.startswith("warning:")]
-        assert result.exit_code == 2
+    def refuse(*args: object, **options: object) -> str:
+        result = run(*args, code=2, **options)
         assert result.stdout == ""
-        assert len(lines) == 1
-        assert lines[0].startswith("error: ")
-        return lines[0]
+        errors = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
+        assert len(errors) == 1
+        assert errors[0].startswith("error: ")
+        assert "; " in errors[0]
+        return errors[0].removeprefix("error: ")
 
-    return refused
+    return refuse
+
+
+@pytest.fixture
+def cubes(repository: Path) -> Path:
+    """The folder of stored cubes."""
+    return repository / "cubes"
+
+
+@pytest.fixture
+def macbeth(repository: Path) -> Path:
+    """The ColorChecker."""
+    return repository / "atlases" / "macbeth.txt"

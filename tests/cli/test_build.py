@@ -1,4 +1,4 @@
-"""``uplift build``: defaults that just work, a quiet pipe, refusals before the work."""
+"""``uplift build``."""
 
 from __future__ import annotations
 
@@ -8,140 +8,197 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 
 import uplift
 
-from .conftest import MACBETH
-
-TINY = ("--dim", 3)
+SMALL = ("--dim", "4", "--moments", "3")
 
 
-def test_the_cube_is_named_after_the_atlas_and_lies_here(run, elsewhere):
-    result = run("build", "--atlas", MACBETH, "--dim", 6)
-    assert result.stdout.startswith("macbeth-6.uplift: 216 points, 23 atlas entries, all within 0.0001")
-    assert uplift.load(elsewhere / "macbeth-6.uplift").data.lattice.dim == 6
-    assert "warning: entry 'cyan' is left out" in result.stderr
+def uplift_process(*args):
+    code = "from uplift_cli.main import main; main()"
+    return [sys.executable, "-c", code, *map(str, args)]
 
 
-def test_without_an_atlas_it_is_named_after_the_space(run, elsewhere):
-    run("build", *TINY, "--model", "sigmoid")
-    assert os.listdir(elsewhere) != []
-    assert uplift.load("srgb-3.uplift").data.model.name == "sigmoid"
-
-
-def test_options_arrive(run):
-    run("build", *TINY, "--moments", 4, "--warp", "vision", "--axis", "linear", "--space", "P3-D65")
-    data = uplift.load("p3-d65-3.uplift").data
-    assert (data.model.count, data.model.phase.warp) == (5, "vision")
-    assert data.lattice.nodes.tolist() == [0, 0.5, 1]
-    assert data.sensor.space == "P3-D65"
-    assert data.round is None
-
-
-def test_lights_arrive(run):
-    run("build", "--atlas", MACBETH, *TINY, "--light", "A", "--light", "HP1", "-o", "a.uplift")
-    assert uplift.load("a.uplift").data.provenance["options"]["lights"] == ["A", "HP1"]
-
-
-def test_several_atlases_make_one_cube(run):
-    pmc = MACBETH.replace("macbeth", "pmc")
-    run("build", "--atlas", MACBETH, "--atlas", pmc, *TINY)
-    data = uplift.load("macbeth+pmc-3.uplift").data
-    assert {"orange", "PMC Orange"} <= set(data.atlas.names)
-
-
-def test_quiet_is_quiet(run):
-    result = run("build", *TINY, "-q")
-    assert (result.stdout, result.stderr) == ("", "")
-
-
-def test_verbose_tells_every_round_and_every_improvement(run):
-    lines = run("build", "--dim", 8, "-v").stderr.splitlines()
-    assert lines[0] == "round 0: tried 1, fitted 1 of 512"
-    assert any(line.startswith("improvement, more iterations: tried ") for line in lines)
-
-
-def test_no_progress_bar_where_there_is_no_terminal(run):
-    assert run("build", *TINY).stderr == ""
-
-
-def test_an_existing_cube_is_kept_without_force(run, refused):
-    run("build", *TINY, "-q")
-    before = os.stat("srgb-3.uplift").st_mtime_ns
-    assert "srgb-3.uplift: exists already; use --force" in refused("build", *TINY)
-    assert os.stat("srgb-3.uplift").st_mtime_ns == before
-    run("build", *TINY, "-q", "--force")
-
-
-def test_the_same_input_gives_the_same_bytes(run, elsewhere):
-    for name in ("a", "b"):
-        run("build", "--atlas", MACBETH, *TINY, "-o", name, "-q")
-    assert (elsewhere / "a").read_bytes() == (elsewhere / "b").read_bytes()
+def test_a_cube_is_written_and_told_in_a_line(run, home):
+    result = run("build", *SMALL, "-o", "cube.uplift")
+    assert os.listdir(home) == ["cube.uplift"]
+    data = uplift.load(home / "cube.uplift").data
+    assert (data.lattice.dim, data.model.count, data.round) == (4, 4, None)
+    assert result.stdout.startswith("cube.uplift: 64 points, all within 0.0001 (worst ")
+    assert result.stdout.count("\n") == 1
+    assert result.stderr == ""
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("args", "name"),
     [
-        (("--dim", 1), "dim 1 has no cells; use --dim 2 or more"),
-        (("--dim", 0), "dim 0"),
-        (("--dim", -5), "dim -5"),
-        (("--dim", 5000), "GB of memory"),
-        (("--moments", 1), "3 to 17"),
-        (("--moments", 17), "3 to 17"),
-        (("--model", "sigmiod"), "did you mean 'sigmoid'"),
-        (("--illuminant", "D56"), "unknown illuminant 'D56'; did you mean"),
-        (("--space", "sRBG"), "did you mean 'sRGB'"),
-        (("--observer", "CIE 1913"), "unknown observer"),
-        (("--light", "FL111"), "did you mean 'FL11'"),
-        (("--warp", "eye"), "unknown warp 'eye'"),
-        (("--axis", "cubic"), "axis spacing"),
-        (("--threshold", "nan"), "threshold"),
-        (("--atlas", "none.txt"), "none.txt"),
-        (("-o", "nowhere/a.uplift"), "no folder"),
-        (("-o", "."), "no regular file"),
+        ((), "srgb-2.uplift"),
+        (("--space", "Display P3"), "display-p3-2.uplift"),
+        (("--space", "Pal/Secam"), "pal-secam-2.uplift"),
+        (("--atlas", "a.csv"), "a-2.uplift"),
+        (("--atlas", "a.csv", "--atlas", "far/b.csv"), "a+b-2.uplift"),
     ],
 )
-def test_bad_input_is_refused_in_one_line_and_nothing_is_written(refused, elsewhere, arguments, message):
-    dim = () if "--dim" in arguments else TINY
-    assert message in refused("build", *dim, *arguments)
-    assert os.listdir(elsewhere) == []
+def test_the_default_name_is_that_of_atlas_or_space_and_dim(run, home, args, name):
+    (home / "far").mkdir()
+    (home / "a.csv").write_text("name,380,780\ngrey,0.5,0.5\n")
+    (home / "far" / "b.csv").write_text("name,380,780\nblack,0.01,0.01\n")
+    run("build", "--dim", "2", "--moments", "3", *args)
+    assert {path.name for path in home.iterdir()} - {"a.csv", "far"} == {name}
+
+
+def test_every_option_reaches_the_cube(run, home):
+    run("build", "--dim", "3", "--moments", "4", "--warp", "vision", "--axis", "linear", "--space", "Display P3",
+        "--illuminant", "D50", "--observer", "CIE 1964 10 Degree Standard Observer", "--light", "A",
+        "--light", "FL2", "--threshold", "1e-3", "--debug", "-o", "cube")  # fmt: skip
+    data = uplift.load(home / "cube").data
+    assert data.model == uplift.models.Moments(5, uplift.models.Phase(warp="vision"))
+    np.testing.assert_array_equal(data.lattice.nodes, [0, 0.5, 1])
+    assert (data.sensor.space, data.sensor.illuminant) == ("Display P3", "D50")
+    assert data.sensor.observer == "CIE 1964 10 Degree Standard Observer"
+    assert data.threshold == 1e-3
+    assert data.round is not None
+    assert data.provenance["options"]["lights"] == ["A", "FL2"]
+
+
+def test_the_sigmoid_is_a_model_too(run, home):
+    run("build", "--dim", "3", "--model", "sigmoid", "-o", "cube")
+    assert uplift.load(home / "cube").data.model.name == "sigmoid"
+
+
+def test_the_same_input_gives_the_same_bytes(run, home, macbeth):
+    for name in ("a", "b"):
+        run("build", "--atlas", macbeth, *SMALL, "-o", name)
+    assert (home / "a").read_bytes() == (home / "b").read_bytes()
+
+
+def test_entries_out_of_gamut_are_warned_of_and_counted(run, macbeth):
+    result = run("build", "--atlas", macbeth, *SMALL, "-o", "cube")
+    lines = result.stderr.splitlines()
+    assert (
+        lines[0]
+        == "warning: entry 'cyan' is left out: its colour (-0.0334, 0.2488, 0.3855) lies outside sRGB"
+    )
+    assert all(line.startswith("warning: ") for line in lines)
+    assert "23 atlas entries" in result.stdout
+
+
+def test_quiet_says_nothing_but_warnings(run, macbeth):
+    result = run("build", "-q", *SMALL, "-o", "plain")
+    assert (result.stdout, result.stderr) == ("", "")
+    result = run("build", "-q", "--atlas", macbeth, *SMALL, "-o", "cube")
+    assert result.stdout == ""
+    assert result.stderr.startswith("warning: entry 'cyan'")
+    assert all(line.startswith("warning: ") for line in result.stderr.splitlines())
+
+
+def test_verbose_tells_every_round(run):
+    result = run("build", "-v", *SMALL, "-o", "cube")
+    rounds = [line for line in result.stderr.splitlines() if line.startswith("round ")]
+    assert rounds[0].startswith("round 0: tried ")
+    assert [line.split(":")[0] for line in rounds] == [f"round {number}" for number in range(len(rounds))]
+    assert len(rounds) > 1
+    assert "\x1b" not in result.stderr
+    assert "\r" not in result.stderr
+
+
+def test_existing_files_are_replaced_by_force_alone(run, refuse, home):
+    (home / "cube").write_text("mine")
+    assert refuse("build", *SMALL, "-o", "cube").startswith("cube: exists already; use --force")
+    assert (home / "cube").read_text() == "mine"
+    run("build", *SMALL, "-o", "cube", "--force")
+    assert uplift.load(home / "cube").data.lattice.dim == 4
 
 
 @pytest.mark.parametrize(
-    "content", ["", "   \n", "no atlas at all", "Entry ID: half\n---\nType : reflectance spectrum\n"]
+    ("args", "problem"),
+    [
+        (("-o", "none/cube"), "none/cube: there is no folder"),
+        (("-o", "."), ".: is no regular file; name a file"),
+        (("-o", ""), ".: is no regular file; name a file"),
+        (("-o", "x" * 300), "xxx"),
+        (("--dim", "1"), "a lattice of dim 1 has no cells; use --dim 2 or more"),
+        (("--dim", "0"), "a lattice of dim 0 has no cells"),
+        (("--dim", "-3"), "a lattice of dim -3 has no cells"),
+        (("--dim", "100000"), "dim 100000 needs about 6.1e+08 GB of memory, this machine has "),
+        (("--dim", "1000000000000"), "dim 1000000000000 needs about 6.1e+29 GB of memory"),
+        (("--illuminant", "D66"), "unknown illuminant 'D66'; did you mean 'D65'"),
+        (("--space", "sRGBB"), "unknown RGB space 'sRGBB'; did you mean 'sRGB'"),
+        (("--space", "no/where"), "unknown RGB space 'no/where'; did you mean"),
+        (("--observer", "CIE 1931"), "unknown observer 'CIE 1931'; did you mean"),
+        (("--light", "FL99"), "unknown illuminant 'FL99'; did you mean 'FL9'"),
+        (("--model", "moment"), "unknown model 'moment'; did you mean 'moments'?"),
+        (("--warp", "bent"), "unknown warp 'bent'; use one of none, vision"),
+        (("--axis", "log"), "unknown axis spacing 'log'; did you mean"),
+        (("--moments", "1"), "2 coefficients are out of range; the moments model takes 3 to 17"),
+        (("--moments", "17"), "18 coefficients are out of range; the moments model takes 3 to 17"),
+        (("--threshold", "0"), "a threshold of 0 makes no sense; use 1e-6 to 0.1"),
+        (("--threshold", "nan"), "a threshold of nan makes no sense"),
+        (("--threshold", "1"), "a threshold of 1 makes no sense"),
+        (("--atlas", "none.txt"), "none.txt: cannot be read: no such file"),
+        (("--atlas", "empty.txt"), "empty.txt: the file is empty; name a file that holds atlas entries"),
+        (("--atlas", "."), ".: cannot be read: is a directory"),
+    ],
 )
-def test_a_bad_atlas_is_refused_with_its_place(refused, elsewhere, content):
-    (elsewhere / "bad.txt").write_text(content)
-    assert "bad.txt" in refused("build", "--atlas", "bad.txt", *TINY)
-    assert os.listdir(elsewhere) == ["bad.txt"]
+def test_bad_input_is_refused_before_building(refuse, monkeypatch, home, args, problem):
+    monkeypatch.setattr("uplift.fit.fit_lattice", lambda *_, **__: pytest.fail("built"))
+    (home / "empty.txt").write_text("")
+    assert refuse("build", "--dim", "2", *args).startswith(problem)
+    assert os.listdir(home) == ["empty.txt"]
 
 
-def test_a_refusal_comes_before_the_work(refused, elsewhere):
-    """A dim that would take hours, refused at once for its output."""
-    begin = time.perf_counter()
-    refused("build", "--dim", 128, "-o", "nowhere/a.uplift")
-    assert time.perf_counter() - begin < 5
+def test_the_dim_proposed_is_one_that_fits(refuse):
+    from uplift.pipeline import Options, check_size
+
+    dim = int(refuse("build", "--dim", "100000").split("use --dim ")[1].split()[0])
+    check_size(Options(dim=dim))
+    with pytest.raises(uplift.UpliftError, match="needs about"):
+        check_size(Options(dim=dim + 1))
 
 
-def test_a_killed_build_leaves_the_old_cube_whole(run, elsewhere):
-    run("build", *TINY, "-o", "cube.uplift", "-q")
-    before = (elsewhere / "cube.uplift").read_bytes()
-    command = [
-        sys.executable,
-        "-m",
-        "uplift_cli",
-        "build",
-        "--dim",
-        "40",
-        "-o",
-        "cube.uplift",
-        "--force",
-        "-v",
-    ]
-    child = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    assert child.stderr.readline().startswith("round 0")
-    child.send_signal(signal.SIGKILL)
-    child.communicate()
-    assert child.returncode == -signal.SIGKILL
-    assert (elsewhere / "cube.uplift").read_bytes() == before
+def test_without_a_terminal_there_is_no_progress_bar(home):
+    args = uplift_process("build", *SMALL, "-o", "cube")
+    done = subprocess.run(args, cwd=home, capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+    assert done.stdout.startswith("cube: 64 points")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no SIGKILL there")
+def test_a_killed_build_leaves_the_old_cube(home, cubes):
+    path = home / "cube.uplift"
+    path.write_bytes((cubes / "moments-8.uplift").read_bytes())
+    before = path.read_bytes()
+    args = uplift_process("build", "-v", "--dim", "48", "-o", path, "--force")
+    process = subprocess.Popen(args, cwd=home, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    assert process.stderr.readline().startswith("round 0: ")
+    time.sleep(0.2)
+    assert process.poll() is None
+    process.send_signal(signal.SIGKILL)
+    assert process.wait() == -signal.SIGKILL
+    process.stderr.close()
+    assert path.read_bytes() == before
+    assert uplift.load(path).data.lattice.dim == 8
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no SIGKILL there")
+def test_a_build_killed_while_writing_leaves_the_old_cube(home, cubes):
+    path = home / "cube.uplift"
+    path.write_bytes((cubes / "moments-8.uplift").read_bytes())
+    before = path.read_bytes()
+    code = (
+        "import os, signal, safetensors.numpy as numpy, uplift\n"
+        "save = numpy.save_file\n"
+        "def save_and_die(tensors, path, metadata):\n"
+        "    save(tensors, path, metadata=metadata)\n"
+        "    os.truncate(path, 1000)\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+        "numpy.save_file = save_and_die\n"
+        "from uplift.lookup import load\n"
+        "load().save('cube.uplift', force=True)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=home, capture_output=True)
+    assert done.returncode == -signal.SIGKILL
+    assert path.read_bytes() == before
+    assert len(os.listdir(home)) == 2  # the half-written file bears another name

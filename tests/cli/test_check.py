@@ -1,4 +1,4 @@
-"""``uplift check``: 0 where all is as stored, 1 where it is not, 2 where it cannot be told."""
+"""``uplift check``."""
 
 from __future__ import annotations
 
@@ -7,74 +7,87 @@ import json
 import shutil
 
 import pytest
-from click.testing import CliRunner
-from uplift_cli.main import main
 
 import uplift
-from uplift.cube import read, write
-
-from .conftest import MACBETH, SIGMOID, SMALL
+from uplift.cube import write
+from uplift.report.regression import LIMITS
 
 
 @pytest.fixture
-def nudged(elsewhere):
-    """A stored cube with one coefficient changed, and a digest that fits it."""
-    data = read(SIGMOID)
+def stored(home):
+    """A cube of dim 3 without an atlas, built here."""
+    uplift.build(dim=3, coefficients=4).save(home / "cube.uplift")
+    return home / "cube.uplift"
+
+
+@pytest.fixture
+def spoilt(home, stored):
+    """The same cube, one coefficient nudged, its digest right."""
+    data = uplift.load(stored).data
     coefficients = data.coefficients.copy()
-    coefficients[100, 1] += 0.01
-    write(dataclasses.replace(data, coefficients=coefficients), elsewhere / "nudged.uplift")
-    return elsewhere / "nudged.uplift"
+    coefficients[13, 2] += 1e-3
+    write(dataclasses.replace(data, coefficients=coefficients), home / "spoilt[red].uplift")
+    return home / "spoilt[red].uplift"
 
 
-def test_the_stored_cubes_are_what_is_built_today(run):
-    out = run("check", SMALL, SIGMOID, "--format", "json").stdout
-    assert [(row["passed"], row["failures"]) for row in json.loads(out)] == [(True, [])] * 2
+def test_a_cube_as_it_was_built_passes(run, stored):
+    result = run("check", stored)
+    assert "passed" in result.stdout
+    assert "FAILED" not in result.stdout
+    assert result.stderr == ""
 
 
-def test_the_table_names_cube_measures_and_verdict(run):
-    out = run("check", SIGMOID).stdout
-    for text in ("cube", "RGB", "ΔE00 FL11", "sigmoid-8.uplift", "passed", "limit"):
-        assert text in out
+def test_a_spoilt_cube_fails_with_code_1_and_is_left_alone(run, spoilt):
+    before = spoilt.read_bytes()
+    result = run("check", spoilt, code=1)
+    assert "FAILED" in result.stdout
+    assert "spoilt[red].uplift" in result.stdout
+    assert result.stderr == ""
+    assert spoilt.read_bytes() == before
 
 
-def test_one_nudged_coefficient_is_exit_code_1(nudged):
-    result = CliRunner().invoke(main, ["check", SIGMOID, str(nudged), "--format", "json"])
-    assert result.exit_code == 1
-    passed, failed = json.loads(result.stdout)
-    assert passed["passed"]
-    assert not failed["passed"]
-    assert "spectra_max" in failed["failures"]
-    assert "FAILED" in CliRunner().invoke(main, ["check", str(nudged)]).stdout
+def test_json_names_every_measure_and_what_failed(run, stored, spoilt):
+    good, bad = json.loads(run("check", stored, spoilt, "--format", "json", code=1).stdout)
+    assert (good["cube"], good["passed"], good["failures"]) == (str(stored), True, [])
+    assert good["measures"].keys() == LIMITS.keys()
+    assert good["status"]["stored"] == good["status"]["rebuilt"]
+    assert (bad["cube"], bad["passed"]) == (str(spoilt), False)
+    assert "spectra_max" in bad["failures"]
 
 
-def test_update_replaces_what_differs_and_nothing_else(run, nudged, elsewhere):
-    shutil.copyfile(SIGMOID, elsewhere / "fine.uplift")
-    before = (elsewhere / "fine.uplift").stat().st_mtime_ns
-    result = run("check", nudged, "fine.uplift", "--update")
-    assert result.stderr == f"{nudged}: replaced\n"
-    assert (elsewhere / "fine.uplift").stat().st_mtime_ns == before
-    run("check", nudged)
+def test_quiet_says_it_by_the_code_alone(run, stored, spoilt):
+    for path, code in ((stored, 0), (spoilt, 1)):
+        result = run("check", "-q", path, code=code)
+        assert (result.stdout, result.stderr) == ("", "")
 
 
-def test_quiet_is_quiet(run):
-    result = run("check", SIGMOID, "-q")
-    assert (result.stdout, result.stderr) == ("", "")
+def test_verbose_tells_the_rounds(run, stored):
+    result = run("check", "-v", stored)
+    assert result.stderr.startswith("round 0: tried ")
 
 
-def test_an_atlas_that_is_not_there_cannot_be_checked(run, refused, elsewhere):
-    shutil.copyfile(SMALL, elsewhere / "cube.uplift")
-    assert "its atlas 'macbeth.txt' is not to be found" in refused("check", "cube.uplift")
-    run("check", "cube.uplift", "--atlas-dir", MACBETH.rsplit("/", 1)[0])
+def test_update_replaces_what_differs_and_nothing_else(run, stored, spoilt):
+    before = stored.read_bytes()
+    result = run("check", "--update", stored, spoilt)
+    assert result.stderr == f"{spoilt}: replaced\n"
+    assert stored.read_bytes() == before
+    assert spoilt.read_bytes() == before
+    run("check", spoilt)
 
 
-def test_what_is_no_cube_is_refused(refused, elsewhere):
-    (elsewhere / "a.uplift").write_text("no cube")
-    assert "a.uplift" in refused("check", SIGMOID, "a.uplift")
+def test_atlases_are_looked_for_in_the_folders_named(run, refuse, home, macbeth, recwarn):
+    with pytest.warns(uplift.UpliftWarning):
+        uplift.build(macbeth, dim=3, coefficients=4).save(home / "cube.uplift")
+    message = refuse("check", "cube.uplift")
+    assert message.startswith(
+        "cube.uplift: its atlas 'macbeth.txt' is not to be found; name the folder with --atlas"
+    )
+    (home / "there").mkdir()
+    shutil.copy(macbeth, home / "there")
+    assert "passed" in run("check", "cube.uplift", "--atlas-dir", "there").stdout
+    (home / "there" / "macbeth.txt").write_text("Entry ID: changed\n")
+    assert "has changed" in refuse("check", "cube.uplift", "--atlas-dir", "there")
 
 
-def test_a_cube_made_in_python_from_no_file_says_so(refused, elsewhere):
-    uplift.build(uplift.Spectra(), dim=2).save("fine.uplift")
-    data = read("fine.uplift")
-    sourced = {**data.provenance, "atlases": [{"name": "distributions", "digest": "0"}]}
-    write(dataclasses.replace(data, provenance=sourced), "python.uplift")
-    assert "its atlas 'distributions' is not to be found" in refused("check", "python.uplift")
+def test_one_file_that_is_no_cube_refuses_all_before_building(refuse, stored):
+    assert refuse("check", stored, "none.uplift") == "none.uplift: no such file; 'uplift build' makes cubes"

@@ -2,36 +2,74 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 
 import uplift
-from uplift.cube import digest
-
-from .conftest import SMALL
+from uplift.cube import digest, write
 
 
-def test_json_holds_the_facts(run):
-    facts = json.loads(run("info", SMALL, "--format", "json").stdout)
-    data = uplift.load(SMALL).data
+def test_json_holds_the_facts(run, cubes):
+    path = cubes / "moments-8-macbeth.uplift"
+    data = uplift.load(path).data
+    result = run("info", path, "--format", "json")
+    facts = json.loads(result.stdout)
+    assert result.stderr == ""
     assert (facts["dim"], facts["points"], facts["coefficients"]) == (8, 512, 9)
+    assert facts["model"] == data.model.describe()
+    assert (facts["space"], facts["illuminant"]) == ("sRGB", "D65")
     assert facts["status"] == data.counts()
     assert sum(facts["status"].values()) == 512
     assert facts["entries"] == list(data.atlas.names)
-    assert facts["digest"] == digest(data)
-    assert facts["provenance"]["atlases"][0]["name"] == "macbeth.txt"
+    assert facts["worst_distance"] == float(data.distance.max())
+    assert facts["rounds"] == data.round.max() + 1
     assert facts["provenance"]["left_out"] == ["cyan"]
+    assert facts["digest"] == digest(data)
 
 
-def test_the_table_tells_the_same(run):
-    out = run("info", SMALL).stdout
-    for text in (SMALL, "sRGB", "D65", "atlas primary", "macbeth.txt", "left out", "cyan", "option lights"):
-        assert text in out
+def test_without_a_file_it_is_the_package_s_own_cube(run):
+    assert json.loads(run("info", "--format", "json").stdout)["digest"] == digest(uplift.load().data)
+    assert "the package's own cube" in run("info").stdout
 
 
-def test_without_a_file_it_tells_of_the_package_s_own_cube(run):
-    assert json.loads(run("info", "--format", "json").stdout)["dim"] == 16
+def test_without_debug_information_there_are_no_rounds(run, small_cube, home):
+    write(dataclasses.replace(small_cube.data, round=None), home / "plain.uplift")
+    facts = json.loads(run("info", "plain.uplift", "--format", "json").stdout)
+    assert (facts["debug"], facts["rounds"]) == (False, None)
 
 
-def test_what_is_no_cube_is_refused(refused, elsewhere):
-    (elsewhere / "a.uplift").write_bytes(b"PK\3\4" * 100)
-    assert "a.uplift: is not a cube file" in refused("info", "a.uplift")
+def test_the_table_names_file_entries_and_options(run, cubes):
+    path = cubes / "moments-8-macbeth.uplift"
+    text = " ".join(run("info", path).stdout.split())
+    for part in (
+        "atlas primary 23",
+        "dark skin",
+        "macbeth.txt",
+        "dim 8",
+        "left out cyan",
+        "D65; A; FL2; FL11",
+    ):
+        assert part in text
+    assert "\x1b" not in text
+
+
+def test_brackets_in_names_are_shown_as_they_are(run, small_cube, home):
+    names = ("[/red]", "[bold]tile", *small_cube.data.atlas.names[2:])
+    atlas = dataclasses.replace(small_cube.data.atlas, names=names)
+    write(dataclasses.replace(small_cube.data, atlas=atlas), home / "a[red].uplift")
+    text = run("info", "a[red].uplift").stdout
+    assert "a[red].uplift" in text
+    assert "[/red]; [bold]tile" in text
+    first, second = small_cube.data.atlas.rgb[:2].tolist()
+    (home / "colours.csv").write_text(f"{first}\n{second}\n".replace("[", "").replace("]", ""))
+    text = run("query", "--cube", "a[red].uplift", "--input", "colours.csv").stdout
+    assert "[/red]" in text
+    assert "[bold]tile" in text
+
+
+def test_what_is_no_cube_is_refused(refuse, home, repository):
+    assert refuse("info", "none.uplift") == "none.uplift: no such file; 'uplift build' makes cubes"
+    assert refuse("info", home) == f"{home}: no such file; 'uplift build' makes cubes"
+    assert "is not a cube file" in refuse("info", repository / "README.md")
+    (home / "cut.uplift").write_bytes((repository / "cubes" / "sigmoid-8.uplift").read_bytes()[:-1])
+    assert "is not a cube file, or is cut short" in refuse("info", "cut.uplift")

@@ -1,84 +1,102 @@
-"""``uplift`` itself: help, version, and what a query costs."""
+"""What all commands share: help, exit codes, one line an error."""
 
 from __future__ import annotations
 
-import json
+import importlib
 import subprocess
 import sys
-from importlib.metadata import version
+import warnings
 
 import pytest
 from click.testing import CliRunner
 from uplift_cli.main import COMMANDS, main
 
-HEAVY = {"jax", "jaxlib", "optimistix", "equinox", "colour", "scipy", "matplotlib", "OpenEXR", "rich"}
+import uplift
+from uplift.errors import UpliftError, UpliftWarning
 
 
-def loaded_after(code):
-    """Top-level modules that a fresh interpreter has loaded after ``code``."""
-    program = f"import sys, io\n{code}\nprint(*sorted({{m.split('.')[0] for m in sys.modules}}), file=sys.__stdout__)"
-    out = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    return set(out.stdout.splitlines()[-1].split())
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_s_help_has_a_sentence_and_examples(run, name):
+    usage, sentence, *rest = run(name, "--help").stdout.split("\n\n")
+    assert usage.startswith(f"Usage: main {name} ")
+    assert sentence.strip().endswith(".")
+    (examples,) = [part for part in rest if part.startswith("  Examples:\n")]
+    assert all(f"uplift {name} " in line for line in examples.splitlines()[1:])
 
 
-def test_help_names_every_command(run):
-    text = run("--help").stdout
-    for name in COMMANDS:
-        assert f"\n  {name} " in text
-    assert run("-h").stdout == text
+def test_h_is_help(run):
+    assert run("query", "-h").stdout == run("query", "--help").stdout
 
 
-def test_version(run):
-    assert run("--version").stdout == f"uplift {version('uplift')}\n"
+def test_the_group_s_own_help_has_examples():
+    examples = main.help.split("\b\n")[1].split("\n\n")[0].splitlines()
+    assert examples[0].strip() == "Examples:"
+    assert all(line.strip().startswith("uplift ") for line in examples[1:])
 
 
-def test_an_unknown_command_is_refused_with_a_usage_line():
-    result = CliRunner().invoke(main, ["biuld"])
-    assert result.exit_code == 2
-    assert "No such command 'biuld'" in result.stderr
+def test_the_version_is_the_package_s(run):
+    assert run("--version").stdout == f"uplift {uplift.__version__}\n"
 
 
 @pytest.mark.parametrize(
-    "arguments",
+    "args",
     [
-        ["query", "#cc3319", "--format", "json"],
-        ["query", "0.1", "0.2", "0.3"],
-        ["info", "--format", "json"],
-        ["--help"],
+        ("paint",),
+        ("--nosuch",),
+        ("query", "--nosuch"),
+        ("query",),
+        ("check",),
+        ("build", "--dim", "many"),
+        ("query", "--format", "xml", "#fff"),
+        ("query", "--mode", "exact", "#fff"),
+        ("info", "a", "b"),
     ],
 )
-def test_questions_load_neither_the_fit_nor_colour_science(arguments):
-    code = f"from uplift_cli.main import main\ntry: main({arguments!r})\nexcept SystemExit as e: assert not e.code"
-    assert not loaded_after(code) & HEAVY
+def test_wrong_usage_is_click_s_error_with_code_2(run, args):
+    result = run(*args, code=2)
+    assert result.stdout == ""
+    assert "Error: " in result.stderr
+    assert "Traceback" not in result.stderr
 
 
-def test_the_check_above_can_fail():
-    assert "scipy" in loaded_after("import scipy")
+def test_errors_of_the_library_are_one_line_with_code_2(monkeypatch, run):
+    def fail(path):
+        raise UpliftError("is bad", path="x", line=3, remedy="make it good")
+
+    monkeypatch.setattr("uplift.lookup.load", fail)
+    result = run("info", "x", code=2)
+    assert (result.stdout, result.stderr) == ("", "error: x:3: is bad; make it good\n")
 
 
-def test_a_closed_pipe_is_no_error():
-    command = f"{sys.executable} -m uplift_cli query '#cc3319' --format json | head -c 5"
-    out = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=True)
-    assert out.stdout == '{"rgb'
-    assert out.stderr == ""
+def test_other_errors_are_not_hidden(monkeypatch, home):
+    def fail(path):
+        raise RuntimeError("a fault of ours")
+
+    monkeypatch.setattr("uplift.lookup.load", fail)
+    result = CliRunner().invoke(main, ["info", "x"])
+    assert isinstance(result.exception, RuntimeError)
 
 
-def test_it_runs_as_a_module():
-    out = subprocess.run(
-        [sys.executable, "-m", "uplift_cli", "query", "0", "0", "0", "--format", "json"],
-        capture_output=True,
-        check=True,
+def test_warnings_of_the_library_are_one_line_each_and_others_none(monkeypatch, run):
+    def load(path):
+        warnings.warn("entry 'a' is left out", UpliftWarning, stacklevel=2)
+        warnings.warn("entry 'a' is left out", UpliftWarning, stacklevel=2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("always")
+            warnings.warn("internal", RuntimeWarning, stacklevel=2)
+        return found
+
+    found = uplift.load()
+    monkeypatch.setattr("uplift.lookup.load", load)
+    before = warnings.showwarning
+    assert run("info").stderr == 2 * "warning: entry 'a' is left out\n"
+    assert warnings.showwarning is before
+
+
+def test_the_command_line_goes_by_its_installed_name_alone(repository):
+    importlib.import_module("uplift_cli")
+    done = subprocess.run(
+        [sys.executable, "-c", "import cli"], cwd=repository, capture_output=True, text=True
     )
-    assert json.loads(out.stdout)["rgb"] == [0, 0, 0]
-
-
-def test_the_source_folder_is_no_package_of_its_own():
-    code = "import sys; sys.path.insert(0, '.'); import cli"
-    out = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        cwd=__file__.rsplit("/tests/", 1)[0],
-        check=False,
-    )
-    assert "installed as 'uplift_cli'" in out.stderr
+    assert done.returncode == 1
+    assert "ImportError: the command line is installed as 'uplift_cli'" in done.stderr
