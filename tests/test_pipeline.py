@@ -165,6 +165,7 @@ def test_the_same_input_gives_the_same_bytes(tmp_path):
     ("options", "error", "message"),
     [
         ({"dim": 1}, OptionError, "dim 1 has no cells; use --dim 2 or more"),
+        ({"dim": 10**400}, OptionError, r"needs about 1e\+291 GB"),
         ({"dim": 100000}, OptionError, r"needs about \d.*GB.*; use --dim \d+ or less"),
         ({"threshold": 0}, OptionError, "threshold of 0"),
         ({"threshold": float("nan")}, OptionError, "threshold of nan"),

@@ -53,7 +53,7 @@ def check_size(options: Options) -> None:
     if need > have:
         largest = int((have / _bytes_needed(1, count)) ** (1 / 3))
         raise OptionError(
-            f"dim {options.dim} needs about {need / 1e9:.3g} GB of memory, this machine has {have / 1e9:.3g} GB",
+            f"dim {options.dim} needs about {_gigabytes(need)} of memory, this machine has {_gigabytes(have)}",
             remedy=f"use --dim {largest} or less",
         )
 
@@ -61,6 +61,10 @@ def check_size(options: Options) -> None:
 def _bytes_needed(dim: int, count: int) -> int:
     """Peak memory: five arrays of multipliers or coefficients, and what else a point carries."""
     return int(dim) ** 3 * (5 * 8 * count + 250)
+
+
+def _gigabytes(count: int) -> str:
+    return f"{min(count, 10**300) / 1e9:.3g} GB"  # no float holds every dim that can be typed
 
 
 def _memory() -> int:
