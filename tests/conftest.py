@@ -6,6 +6,7 @@ import warnings
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 import uplift
 from uplift import observer
@@ -13,6 +14,10 @@ from uplift.lookup import Cube
 from uplift.sensor import Sensor
 
 ROOT = Path(__file__).parents[1]
+# Machines are shared: how long an example takes says nothing.
+settings.register_profile("uplift", deadline=None, print_blob=True)
+settings.load_profile("uplift")
+
 MACBETH = ROOT / "atlases" / "macbeth.txt"
 
 

@@ -33,7 +33,7 @@ def test_ends_are_held_flat():
     np.testing.assert_allclose(found[0, GRID >= 700], 0.8, rtol=0, atol=1e-15)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(UNIT)
 def test_no_overshoot(row):
     wavelengths = np.linspace(380, 780, 9)

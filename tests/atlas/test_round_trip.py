@@ -52,7 +52,7 @@ def check_same(found, spectra):
         assert one.values.tobytes() == other.values.tobytes()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(atlases(one_sampling=False))
 def test_text(spectra):
     found = reread(spectra, "atlas.txt")
@@ -62,13 +62,13 @@ def test_text(spectra):
             assert getattr(one, key) == getattr(other, key)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(atlases(one_sampling=True))
 def test_csv(spectra):
     check_same(reread(spectra, "atlas.csv"), spectra)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(atlases(one_sampling=False), st.randoms())
 def test_order_changes_nothing_but_the_order(spectra, random):
     entries = list(spectra.entries)

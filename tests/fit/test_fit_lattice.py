@@ -25,7 +25,7 @@ def ahead_of(model, sensor):
     return forward(model, sensor.wavelengths, sensor.matrix)
 
 
-@settings(max_examples=8, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(max_examples=8, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(arrays(float, st.tuples(st.integers(0, 6), st.just(3)), elements=st.floats(0.02, 0.98), unique=True))
 def test_any_set_of_seeds_fits_the_lattice(sensor, rgb):
     seeds = seed(LATTICE, rgb)
