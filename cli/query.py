@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import click
@@ -11,7 +12,7 @@ from .answers import WRITERS
 from .options import cube_option, force_option, format_option
 
 if TYPE_CHECKING:
-    from uplift.lookup import Cube
+    from uplift.lookup import Answer, Cube
     from uplift.sensor import Array
 
 
@@ -77,12 +78,13 @@ def command(
         check_output(plot_path, force=force)
     cube = load(cube_path)
     rgb = _colours(colour, input_path, cube, codes=codes)
-    at = _wavelengths(wavelengths)
-    WRITERS[style](cube, answers(cube, rgb, at, mode), bool(colour) and colour != ("-",))
+    found: Iterable[Answer] = answers(cube, rgb, _wavelengths(wavelengths), mode)
     if plot_path is not None:
         from uplift.report.spectra import plot_answers
 
-        plot_answers(cube, list(answers(cube, rgb, at, mode)), plot_path, force=force)
+        found = list(found)
+        plot_answers(cube, found, plot_path, force=force)
+    WRITERS[style](cube, found, bool(colour) and colour != ("-",))
 
 
 def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: bool) -> Array:

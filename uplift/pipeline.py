@@ -17,6 +17,7 @@ from uplift.cube import AtlasTable, CubeData
 from uplift.errors import UpliftWarning
 from uplift.lattice import Lattice, Status
 from uplift.lookup import Cube
+from uplift.models import Model, reflectance
 from uplift.models.least_change import forward
 from uplift.options import Options, check_size
 from uplift.sensor import Array, Sensor
@@ -73,7 +74,7 @@ def _cube_data(
 ) -> CubeData:
     """What is stored, judged by what is stored: RGB, distance and status are those any reader will see."""
     coefficients = problem.model.to_storage(fitted.multipliers)
-    rgb = _evaluate(problem, coefficients)
+    rgb = _lattice_rgb(problem.model, sensor, coefficients)
     distance = np.abs(rgb - problem.lattice.points).max(axis=1)
     missed = distance > problem.threshold
     return CubeData(
@@ -92,12 +93,10 @@ def _cube_data(
     )
 
 
-def _evaluate(problem: fit.Problem, coefficients: Array) -> Array:
+def _lattice_rgb(model: Model, sensor: Sensor, coefficients: Array) -> Array:
     """Linear RGB (n, 3) of stored coefficients (n, C), block by block."""
-    model, ahead = problem.model, problem.forward
     blocks = np.array_split(coefficients, -(-len(coefficients) // BLOCK))
-    spectra = (model.squash(model.from_storage(block) @ ahead.basis.T) for block in blocks)
-    return np.concatenate([block @ ahead.sensor.T for block in spectra])
+    return np.concatenate([sensor.rgb(reflectance(model, block, sensor.wavelengths)) for block in blocks])
 
 
 def _read(atlas: Atlas) -> Spectra:

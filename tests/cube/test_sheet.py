@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import product
+from itertools import combinations, product
 
+import colour
 import numpy as np
 import OpenEXR
 import pytest
@@ -191,3 +192,12 @@ def test_srgb_curve_is_that_of_the_sensor():
     codes = np.arange(256) / 255
     np.testing.assert_allclose(decode(codes), hand_made().sensor.decoding, atol=1e-6)
     np.testing.assert_allclose(encode(decode(codes)), codes, atol=1e-6)
+
+
+@pytest.mark.parametrize("deficiency", ["Protanomaly", "Deuteranomaly", "Tritanomaly"])
+@pytest.mark.filterwarnings("ignore::colour.utilities.ColourUsageWarning")
+def test_statuses_stay_apart_for_colour_blind_eyes(deficiency):
+    seen = np.clip(STATUS @ colour.blindness.matrix_cvd_Machado2009(deficiency, 1.0).T, 0, 1)
+    labs = colour.XYZ_to_Lab(colour.RGB_to_XYZ(seen, "sRGB"))
+    for one, other in combinations(labs, 2):
+        assert colour.difference.delta_E_CIE2000(one, other) >= 16

@@ -40,7 +40,7 @@ class Cube:
         rgb : linear RGB in [0, 1] in the space of the cube.
         wavelengths : (N,) nm; by default those of the cube's sensor. Outside the model's range the
             spectrum is held flat.
-        mode : ``spectra`` (exact), ``moments`` (fast, ΔE00 of a few hundredths), ``refined`` (nearly exact).
+        mode : ``spectra`` (exact), ``moments`` (one reconstruction, nearly exact), ``refined`` (exact, ditto).
 
         Raises
         ------

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from uplift.cube import CubeData
-from uplift.models import Model
+from uplift.models import Model, evaluate, reflectance
 from uplift.models.least_change import Forward, forward, residual, step
 from uplift.sensor import Array
 
@@ -35,7 +35,7 @@ def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) as the weighted spectra of the cell's corners."""
     points, weights = data.lattice.corners(rgb)
     used, place = np.unique(points, return_inverse=True)
-    corners = _evaluate(data, data.model.from_storage(data.coefficients[used]), wavelengths)
+    corners = reflectance(data.model, data.coefficients[used], wavelengths)
     place = place.reshape(points.shape)
     total = np.zeros((len(rgb), len(wavelengths)))
     for corner in range(points.shape[1]):
@@ -45,12 +45,12 @@ def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 
 def moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the interpolated coefficients."""
-    return _evaluate(data, data.model.from_storage(coefficients(data, rgb)), wavelengths)
+    return reflectance(data.model, coefficients(data, rgb), wavelengths)
 
 
 def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the interpolated coefficients, moved to the colour asked for."""
-    return _evaluate(data, refined_multipliers(data, rgb), wavelengths)
+    return evaluate(data.model, refined_multipliers(data, rgb), wavelengths)
 
 
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
@@ -84,10 +84,6 @@ def _descend(model: Model, ahead: Forward, multipliers: Array, rgb: Array) -> tu
         off[rows[better]] = off_there[better]
         damping[rows] = np.where(better, damping[rows] / 16, 4 * damping[rows] + FIRST_DAMPING)
     return multipliers, np.abs(off).max(axis=1)
-
-
-def _evaluate(data: CubeData, multipliers: Array, wavelengths: Array) -> Array:
-    return np.asarray(data.model.squash(multipliers @ data.model.basis(wavelengths).T))
 
 
 Mode = Callable[[CubeData, Array, Array], Array]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from uplift.models.model import Model
+from uplift.models.model import Model, evaluate, reflectance
 from uplift.models.moments import Moments
 from uplift.models.phase import Phase
 from uplift.models.sigmoid import Sigmoid
 
-__all__ = ["Model", "Moments", "Phase", "Sigmoid", "from_description"]
+__all__ = ["Model", "Moments", "Phase", "Sigmoid", "evaluate", "from_description", "reflectance"]
 
 
 def from_description(description: Mapping[str, Any]) -> Model:

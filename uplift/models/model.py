@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.sensor import Array
@@ -55,3 +56,13 @@ class Model(Protocol):
     def describe(self) -> dict[str, Any]:
         """What `uplift.models.from_description` needs to make this model again."""
         ...
+
+
+def reflectance(model: Model, coefficients: ArrayLike, wavelengths: ArrayLike) -> Array:
+    """Reflectance (n, N) at wavelengths (N,) nm of stored coefficients (n, C), as any reader will see it."""
+    return evaluate(model, model.from_storage(coefficients), wavelengths)
+
+
+def evaluate(model: Model, multipliers: Array, wavelengths: ArrayLike) -> Array:
+    """Reflectance (n, N) at wavelengths (N,) nm of multipliers (n, C)."""
+    return np.asarray(model.squash(multipliers @ model.basis(wavelengths).T))

@@ -10,6 +10,7 @@ import numpy as np
 from uplift.cube import CubeData
 from uplift.difference import delta_e_2000, lab
 from uplift.errors import CubeFileError
+from uplift.models import reflectance
 from uplift.observer import light
 from uplift.sensor import Array
 
@@ -41,7 +42,9 @@ def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
     """Raises `CubeFileError` where the two have no points in common."""
     if not np.array_equal(stored.lattice.nodes, rebuilt.lattice.nodes):
         raise CubeFileError("has another lattice than its options say", path=path, remedy="build it anew")
-    first, second = _spectra(stored), _spectra(rebuilt)
+    first, second = (
+        reflectance(data.model, data.coefficients, data.sensor.wavelengths) for data in (stored, rebuilt)
+    )
     difference = np.abs(first - second)
     measures = {
         "rgb": float(np.abs(stored.rgb.astype(float) - rebuilt.rgb).max()),
@@ -51,12 +54,6 @@ def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
     for name in LIGHTS:
         measures[f"delta_e_{name}"] = _largest_delta_e(name, stored.sensor.observer, first, second)
     return Comparison(path, measures, stored.counts(), rebuilt.counts())
-
-
-def _spectra(data: CubeData) -> Array:
-    """(n, N) spectra of all lattice points on the sensor's wavelengths."""
-    multipliers = data.model.from_storage(data.coefficients)
-    return np.asarray(data.model.squash(multipliers @ data.model.basis(data.sensor.wavelengths).T))
 
 
 def _largest_delta_e(name: str, observer: str, first: Array, second: Array) -> float:

@@ -1,4 +1,4 @@
-"""The facts of a cube in JSON values: what 'uplift info' and the end of a build tell."""
+"""The facts of a cube in JSON values: what 'uplift info' tells."""
 
 from __future__ import annotations
 
