@@ -1,4 +1,4 @@
-"""A sensor turns reflectances into linear RGB: plain arrays, stored in every cube (DESIGN 3.1)."""
+"""A sensor turns reflectances into linear RGB: plain arrays, stored in every cube (docs/mathematics.md, 1)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Moments and multipliers: the dual of DESIGN 3.4 against definitions and dense solvers."""
+"""Moments and multipliers: the dual of docs/mathematics.md, 4, against definitions and dense solvers."""
 
 from __future__ import annotations
 

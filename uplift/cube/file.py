@@ -1,4 +1,4 @@
-"""The cube file: a safetensors container with one JSON text of metadata (DESIGN 4). Same cube, same bytes."""
+"""The cube file: a safetensors container with one JSON text of metadata (docs/cube-file.md). Same cube, same bytes."""
 
 from __future__ import annotations
 

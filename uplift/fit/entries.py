@@ -1,4 +1,4 @@
-"""Atlas entries as spectra of the model: close to the measurement, right under several lights (DESIGN 3.6)."""
+"""Atlas entries as spectra of the model: close to the measurement, right under several lights (docs/mathematics.md, 6)."""
 
 from __future__ import annotations
 

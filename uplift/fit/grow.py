@@ -1,4 +1,4 @@
-"""Growth: rounds outward from the seeds, each point from its fitted neighbours (thesis 3.1.3, algorithm 2)."""
+"""Growth: rounds outward from the seeds, each point from its fitted neighbours (Tódová 2020, 3.1.3)."""
 
 from __future__ import annotations
 

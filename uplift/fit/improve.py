@@ -1,4 +1,4 @@
-"""The improvement pass for points that growth left over the threshold (thesis 3.1.4, steps 1–5).
+"""The improvement pass for points that growth left over the threshold (Tódová 2020, 3.1.4).
 
 The thesis nudged Ceres out of local minima in moment space. In multipliers the first step, more iterations,
 mends nearly every realisable point; starting over from grey mends points whose neighbours were black or white,

@@ -1,4 +1,4 @@
-"""Seeding: every atlas entry takes the eight corners of its voxel, nearest first (thesis 3.1.2)."""
+"""Seeding: every atlas entry takes the eight corners of its voxel, nearest first (Tódová 2020, 3.1.2)."""
 
 from __future__ import annotations
 

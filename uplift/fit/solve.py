@@ -1,4 +1,4 @@
-"""Many small least-squares problems at once: multipliers that reach their colours (DESIGN 3.4, 3.5).
+"""Many small least-squares problems at once: multipliers that reach their colours (docs/mathematics.md, 5).
 
 Points travel in chunks of fixed shapes, four damped steps a pass; those that have arrived leave the batch.
 """
@@ -27,7 +27,7 @@ FIRST_DAMPING = 1e-2
 GAIN, PATIENCE = 1e-3, 8
 """A point leaves when this many passes on end have each brought less than this share of its distance.
 
-Unrealisable points would otherwise stay to the last pass: a third of the time in wide gamuts, same cubes.
+Unrealisable points, of which wide gamuts have many, would otherwise stay to the last pass.
 """
 
 State = tuple[jax.Array, jax.Array, jax.Array, jax.Array]

@@ -1,4 +1,4 @@
-"""Multipliers and spectra between lattice points, in three modes (DESIGN 3.8). numpy alone.
+"""Multipliers and spectra between lattice points, in three modes (docs/mathematics.md, 8). numpy alone.
 
 spectra   the eight corners' spectra, weighted: exact, as RGB is linear in the spectrum
 moments   the eight corners' coefficients, weighted: one reconstruction in place of eight

@@ -1,4 +1,4 @@
-"""Trigonometric moments ↔ multipliers of the bounded maximum-entropy spectrum (DESIGN 3.4).
+"""Trigonometric moments ↔ multipliers of the bounded maximum-entropy spectrum (docs/mathematics.md, 4).
 
 Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded signals for spectral
 rendering", ACM TOG 38(4); Markoff 1896 for the duality between bounded and unbounded moment problems.
@@ -105,7 +105,7 @@ def _projection(table: Array) -> Array:
 
 
 def _dual(moments: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Multipliers by DESIGN 3.4, and where they can be trusted."""
+    """Multipliers by docs/mathematics.md, 4, and where they can be trusted."""
     with np.errstate(all="ignore"):
         # The dual knows the zeroth moment only up to whole numbers.
         bounded = (moments[:, 0] >= 0) & (moments[:, 0] <= 1)

@@ -1,6 +1,6 @@
 """The step of least change: of all steps that reach a colour, the one that changes the spectrum least.
 
-DESIGN 3.5: Δp = M⁻¹Jᵀ (J M⁻¹Jᵀ + μ tr I)⁻¹ (t − r). Written to the array API: the fit runs it on JAX, the
+docs/mathematics.md, 5: Δp = M⁻¹Jᵀ (J M⁻¹Jᵀ + μ tr I)⁻¹ (t − r). Written to the array API: the fit runs it on JAX, the
 refined lookup on numpy.
 """
 

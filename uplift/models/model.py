@@ -1,4 +1,4 @@
-"""What a spectrum model is: a sigmoid of a linear function of its multipliers (DESIGN 3.2)."""
+"""What a spectrum model is: a sigmoid of a linear function of its multipliers (docs/mathematics.md, 2)."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Model(Protocol):
         ...
 
     def roughness(self) -> Array:
-        """(C,) diagonal of the smoothness metric M (DESIGN 3.5)."""
+        """(C,) diagonal of the smoothness metric M (docs/mathematics.md, 5)."""
         ...
 
     def to_storage(self, multipliers: ArrayLike) -> Array:

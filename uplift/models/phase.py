@@ -1,4 +1,4 @@
-"""The phase of a wavelength: where it lies on the mirrored half circle [−π, 0] (DESIGN 3.3)."""
+"""The phase of a wavelength: where it lies on the mirrored half circle [−π, 0] (docs/mathematics.md, 3)."""
 
 from __future__ import annotations
 
