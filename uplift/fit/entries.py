@@ -1,4 +1,4 @@
-"""Atlas entries as spectra of the model: close to the measurement, right under several lights (docs/mathematics.md, 6)."""
+"""Atlas entries as spectra of the model: measured shape, exact colour, other lights (docs/mathematics.md, 6)."""
 
 from __future__ import annotations
 
