@@ -22,14 +22,14 @@ Writer = Callable[["Cube", Iterable["Answer"], bool], None]
 def as_json(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
     """One object for one colour asked on the command line, an array otherwise."""
     if single:
-        click.echo(json.dumps(_object(next(iter(answers)))))
+        click.echo(json.dumps(_object(cube, next(iter(answers)))))
         return
     for number, answer in enumerate(answers):
-        click.echo(("[\n" if number == 0 else ",\n") + json.dumps(_object(answer)), nl=False)
+        click.echo(("[\n" if number == 0 else ",\n") + json.dumps(_object(cube, answer)), nl=False)
     click.echo("\n]")
 
 
-def _object(answer: Answer) -> dict[str, Any]:
+def _object(cube: Cube, answer: Answer) -> dict[str, Any]:
     return {
         "rgb": answer.rgb.tolist(),
         "wavelengths": answer.wavelengths.tolist(),
@@ -38,17 +38,20 @@ def _object(answer: Answer) -> dict[str, Any]:
         "cell": list(answer.cell),
         "status": [status.label for status in answer.statuses],
         "entry": answer.entry,
+        "standard_error": answer.standard_error,
+        "reference": cube.data.reference,
     }
 
 
 def as_csv(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
-    """A row a colour: r, g, b, ΔE00 of the round trip, entry, then the reflectance at each wavelength."""
+    """A row a colour: r, g, b, ΔE00 of the round trip, standard error, entry, reflectance at each wavelength."""
     writer = csv.writer(sys.stdout, lineterminator="\n")
     for number, answer in enumerate(answers):
         if number == 0:
             wavelengths = [f"{wavelength:g}" for wavelength in answer.wavelengths]
-            writer.writerow(["r", "g", "b", "delta_e_2000", "entry", *wavelengths])
-        numbers = [*answer.rgb.tolist(), answer.delta_e_2000]
+            writer.writerow(["r", "g", "b", "delta_e_2000", "standard_error", "entry", *wavelengths])
+        expected = "" if answer.standard_error is None else answer.standard_error
+        numbers = [*answer.rgb.tolist(), answer.delta_e_2000, expected]
         writer.writerow([*numbers, answer.entry or "", *answer.reflectance.tolist()])
 
 
@@ -68,12 +71,19 @@ def _sheet(cube: Cube, answer: Answer) -> None:
         "cell": f"{answer.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in answer.statuses)}",
         "round trip": f"{_triple(answer.round_trip)}  ΔE00 {answer.delta_e_2000:.2g} ({data.sensor.illuminant})",
         "atlas entry": answer.entry or "none here",
+        "measured": _expected(cube, answer),
         "spectrum": f"{_sparkline(answer)}  {answer.wavelengths[0]:g}–{answer.wavelengths[-1]:g} nm",
     }
     for name, text in facts.items():
         click.echo(f"{name:<12}{text}")
     click.echo()
     _columns(answer)
+
+
+def _expected(cube: Cube, answer: Answer) -> str:
+    if answer.standard_error is None:
+        return "no telling: too few atlas entries"
+    return f"may differ by ΔE00 {answer.standard_error:.2g} ({cube.data.reference}; standard error)"
 
 
 def _columns(answer: Answer) -> None:

@@ -15,6 +15,22 @@ if TYPE_CHECKING:
     from uplift.lookup import Cube
 
 
+class Dim(click.ParamType):  # type: ignore[type-arg]
+    """A number or 'auto'."""
+
+    name = "dim"
+
+    def convert(
+        self, value: str | int, param: click.Parameter | None, ctx: click.Context | None
+    ) -> int | str:
+        if value == "auto" or isinstance(value, int):
+            return value
+        try:
+            return int(value)
+        except ValueError:
+            self.fail(f"'{value}' is neither a number nor 'auto'", param, ctx)
+
+
 @click.command("build")
 @click.option(
     "--atlas", "atlases", multiple=True, metavar="FILE", help="Measured spectra; may be given several times."
@@ -22,7 +38,19 @@ if TYPE_CHECKING:
 @click.option(
     "-o", "--output", metavar="FILE", help="Cube to write. [default: named after atlas and dim, here]"
 )
-@click.option("--dim", default=32, show_default=True, help="Lattice points along each axis.")
+@click.option(
+    "--dim",
+    default="32",
+    type=Dim(),
+    show_default=True,
+    help="Lattice points along each axis, or 'auto': the smallest, and its axis, with room for every entry.",
+)
+@click.option(
+    "--within",
+    default=0.5,
+    show_default=True,
+    help="With --dim auto: ΔE00 that the lattice may miss entries by.",
+)
 @click.option("--model", default="moments", show_default=True, help="Spectrum model: moments or sigmoid.")
 @click.option(
     "--moments", default=8, show_default=True, help="Moments per spectrum, 2 to 16; one coefficient more."
@@ -54,10 +82,11 @@ def command(
     Examples:
       uplift build --atlas atlases/macbeth.txt --dim 32
       uplift build --atlas paints.csv --atlas macbeth.txt --moments 16 -o book.uplift
+      uplift build --atlas paints.csv --dim auto --within 1
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
 
-    Warnings name every entry that was left out or clipped, and every two entries that share a lattice
-    point. Without --atlas the cube grows from the middle and its spectra are as smooth as can be.
+    Warnings name entries that were left out, clipped or crowded. Without --atlas the spectra of the cube are
+    smooth, and dark where the colour is dark.
     """
     from .startup import keep_compiled
 

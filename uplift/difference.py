@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.sensor import Array
+from uplift.sensor import Array, Light, Sensor
 
 
 def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
@@ -16,6 +16,16 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
     t = np.asarray(xyz, dtype=float) / np.asarray(white, dtype=float)
     x, y, z = np.moveaxis(np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29), -1, 0)
     return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
+
+
+def rgb_lab(sensor: Sensor, rgb: ArrayLike) -> Array:
+    """CIE L*a*b* (…, 3) of linear RGB (…, 3) under the build illuminant."""
+    return lab(sensor.xyz(rgb), sensor.light.white)
+
+
+def lit_lab(light: Light, reflectance: ArrayLike) -> Array:
+    """CIE L*a*b* (…, 3) under a light of reflectances (…, N) on the sensor's wavelengths."""
+    return lab(np.asarray(reflectance, dtype=float) @ light.xyz.T, light.white)
 
 
 def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:

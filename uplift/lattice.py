@@ -67,6 +67,14 @@ class Lattice:
         """Positions (…, 3) along the axes of point numbers (…)."""
         return np.stack(np.unravel_index(index, (self.dim,) * 3), axis=-1)
 
+    def steps_along(self, rgb: Array) -> Array:
+        """Linear RGB (n, 3) as positions along the axes in steps, with fractions, 0 to dim − 1."""
+        return np.interp(rgb, self.nodes, np.arange(self.dim))
+
+    def at_steps(self, steps: Array) -> Array:
+        """Linear RGB (n, 3) of positions along the axes in steps; outside the lattice, its edge."""
+        return np.interp(steps, np.arange(self.dim), self.nodes)
+
     def cell(self, rgb: Array) -> tuple[Indices, Array]:
         """Lowest corner (n, 3) and fraction (n, 3) in [0, 1] of the cells that hold linear RGB (n, 3)."""
         low = np.clip(np.searchsorted(self.nodes, rgb, side="right") - 1, 0, self.dim - 2)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from typing import Literal
 
 from uplift import observer
 from uplift.errors import OptionError
 from uplift.models import Model, Moments, Phase, Sigmoid
 
+AUTO: Literal["auto"] = "auto"
+AXES = ("srgb", "linear")
 MODELS = (Moments.name, Sigmoid.name)
 
 
@@ -18,10 +21,11 @@ class Options:
 
     ``coefficients`` counts moments + 1 (3 to 17; the sigmoid has 3); ``lights`` are those that the atlas
     entries' colours should hold under; ``threshold`` is the largest |linear RGB| a lattice point may miss
-    its target by.
+    its target by. ``dim`` "auto" stands for the smallest dim, and its axis, whose lattice keeps every atlas entry
+    ``within`` so many ΔE00 under the lights.
     """
 
-    dim: int = 32
+    dim: int | Literal["auto"] = 32
     model: str = "moments"
     coefficients: int = 9
     warp: str = "none"
@@ -29,8 +33,9 @@ class Options:
     space: str = "sRGB"
     illuminant: str = "D65"
     observer: str = observer.DEFAULT_OBSERVER
-    lights: tuple[str, ...] = ("D65", "A", "FL2", "FL11")
+    lights: tuple[str, ...] = ("D65", "A", "FL2", "FL11", "LED-B3")
     threshold: float = 1e-4
+    within: float = 0.5
     debug: bool = False
 
     def spectrum_model(self) -> Model:
@@ -44,6 +49,8 @@ class Options:
 
 def check_size(options: Options) -> None:
     """Raises `OptionError` for a lattice too small to be one, or too large for this machine's memory."""
+    if not isinstance(options.dim, int):
+        raise OptionError(f"'{options.dim}' is no dim", remedy="use a number, or auto")
     if options.dim < 2:
         raise OptionError(f"a lattice of dim {options.dim} has no cells", remedy="use --dim 2 or more")
     if not 0 < options.threshold <= 0.1:

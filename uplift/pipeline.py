@@ -18,12 +18,17 @@ from uplift.errors import UpliftWarning
 from uplift.lattice import Lattice, Status
 from uplift.lookup import Cube
 from uplift.models import Model, reflectance
-from uplift.models.least_change import forward
-from uplift.options import Options, check_size
-from uplift.sensor import Array, Sensor
+from uplift.models.least_change import Forward, forward
+from uplift.options import AUTO, AXES, Options, check_size
+from uplift.sensor import Array, Light, Sensor
 
 BLOCK = 16384
 """Lattice points evaluated at a time."""
+NAMED = 6
+"""Entries that a warning names."""
+
+REFERENCE = "A"
+"""The light that standard errors are stated under."""
 
 Atlas = Spectra | str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
 
@@ -34,7 +39,7 @@ def build(atlas: Atlas = None, *, watch: fit.Watch = lambda done: None, **option
     Parameters
     ----------
     atlas : spectra, or the file or files that hold them; None for a cube without constraints.
-    watch : called after every round of growth with a `uplift.fit.Round`.
+    watch : called now and then with a `uplift.fit.Round`.
     options : the fields of `Options`, by name.
 
     Raises
@@ -43,40 +48,67 @@ def build(atlas: Atlas = None, *, watch: fit.Watch = lambda done: None, **option
 
     Warns
     -----
-    UpliftWarning : naming every entry that is left out, clipped, or shares its lattice point.
+    UpliftWarning : naming every entry that is left out, clipped, or crowded.
     """
     chosen = Options(**options)
-    check_size(chosen)
     model = chosen.spectrum_model()
     sensor = observer.sensor(chosen.space, chosen.illuminant, chosen.observer)
-    lattice = Lattice(observer.axis_nodes(chosen.axis, chosen.dim))
     spectra = _read(atlas)
     names, rgb, measured = _in_gamut(spectra, sensor)
-    seeds = fit.seed(lattice, rgb)
-    _warn_of_collisions(seeds, names, rgb, chosen)
+    lights = [observer.light(name, chosen.observer) for name in chosen.lights]
+    reference = observer.light(REFERENCE, chosen.observer)
 
     ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    entries = fit.fit_entries(model, ahead, measured, rgb, lights, reference, chosen.threshold / 100)
+    axis, dim = _room(chosen, model, ahead, sensor, lights, entries)
+    check_size(replace(chosen, dim=dim))
+    lattice = Lattice(observer.axis_nodes(axis, dim))
     problem = fit.Problem(model, ahead, lattice, chosen.threshold)
-    lights = [observer.light(name, chosen.observer) for name in chosen.lights]
-    entries = fit.fit_entries(model, ahead, measured, rgb, lights, problem.tolerance)
-    fitted = fit.fit_lattice(problem, seeds, entries, watch)
-    atlas_table = AtlasTable(names, rgb, model.to_storage(entries))
-    data = _cube_data(problem, sensor, fitted, atlas_table, _provenance(chosen, spectra, names, fitted))
-    return Cube(data if chosen.debug else replace(data, round=None))
+    seeds = fit.seed(lattice, rgb)
+    table = AtlasTable(
+        names, rgb, model.to_storage(entries.multipliers), fit.reach(lattice, rgb), entries.error
+    )
+    _warn_of_crowding(seeds, table)
+    prior = fit.learn(problem, sensor, entries, reference)
+    fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, watch)
+    provenance = _provenance(replace(chosen, axis=axis, dim=dim), spectra, names, fitted)
+    return Cube(_cube_data(problem, sensor, fitted, prior, table, provenance, debug=chosen.debug))
+
+
+def _room(
+    chosen: Options, model: Model, ahead: Forward, sensor: Sensor, lights: list[Light], entries: fit.Entries
+) -> tuple[str, int]:
+    """Axis and dim as asked for or, if so asked, the smallest that has room for the atlas."""
+    if chosen.dim != AUTO:
+        return chosen.axis, chosen.dim
+    problem = fit.Problem(model, ahead, Lattice(observer.axis_nodes(chosen.axis, 2)), chosen.threshold)
+    axis, dim, lost = fit.roomiest(
+        problem, sensor.wavelengths, lights, entries, observer.axis_nodes, AXES, chosen.within
+    )
+    if lost:
+        _warn(
+            f"no dim up to {fit.DIMS[-1]} keeps every entry within ΔE00 {chosen.within:g}: {lost} of "
+            f"{len(entries.rgb)} stand too close to others; dim {dim} keeps the most"
+        )
+    return axis, dim
 
 
 def _cube_data(
     problem: fit.Problem,
     sensor: Sensor,
     fitted: fit.Fit,
+    prior: fit.Prior,
     atlas: AtlasTable,
     provenance: dict[str, Any],
+    *,
+    debug: bool,
 ) -> CubeData:
     """What is stored, judged by what is stored: RGB, distance and status are those any reader will see."""
     coefficients = problem.model.to_storage(fitted.multipliers)
     rgb = _lattice_rgb(problem.model, sensor, coefficients)
     distance = np.abs(rgb - problem.lattice.points).max(axis=1)
     missed = distance > problem.threshold
+    errors = prior.standard_error(problem.lattice.points)
     return CubeData(
         model=problem.model,
         lattice=problem.lattice,
@@ -88,7 +120,9 @@ def _cube_data(
         distance=distance.astype(np.float32),
         status=np.where(missed, Status.UNFITTED, fitted.status).astype(np.uint8),
         entry=fitted.entry.astype(np.int32),
-        round=fitted.round.astype(np.int16),
+        round=fitted.round.astype(np.int16) if debug else None,
+        standard_error=None if errors is None else errors.astype(np.float32),
+        reference=REFERENCE,
         provenance=provenance,
     )
 
@@ -119,16 +153,25 @@ def _in_gamut(spectra: Spectra, sensor: Sensor) -> tuple[tuple[str, ...], Array,
     return names, np.clip(rgb[inside], 0, 1), measured[inside]
 
 
-def _warn_of_collisions(seeds: fit.Seeds, names: tuple[str, ...], rgb: Array, options: Options) -> None:
-    for kept, lost in seeds.collisions:
-        dim = fit.separating_dim(
-            rgb[kept], rgb[lost], lambda dim: observer.axis_nodes(options.axis, dim), options.dim
-        )
-        advice = f"--dim {dim} would separate them" if dim else "no dim up to 256 separates them"
+def _warn_of_crowding(seeds: fit.Seeds, atlas: AtlasTable) -> None:
+    same = [atlas.names[row] for row in np.flatnonzero(atlas.reach == 0)]
+    if same:
         _warn(
-            f"entries '{names[kept]}' and '{names[lost]}' share their nearest lattice point; "
-            f"it goes to '{names[kept]}'; {advice}"
+            f"{_some(same)} left out: an earlier entry has the same colour, and a cube answers a colour once"
         )
+    crowded = [atlas.names[collision.lost] for collision in seeds.collisions if atlas.reach[collision.lost]]
+    if crowded:
+        _warn(
+            f"{_some(crowded)} crowded: nearer entries have the nearest lattice point. Asked at their own colours "
+            "all entries are exact, beside them less so; --dim auto finds a dim with room, 'uplift report' tells more"
+        )
+
+
+def _some(names: list[str]) -> str:
+    """'entry 'a' is', 'entries 'a', 'b', 'c' and 12 more are'."""
+    shown = ", ".join(f"'{name}'" for name in names[:NAMED])
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return f"entry {shown} is" if len(names) == 1 else f"entries {shown}{more} are"
 
 
 def _warn(message: str) -> None:

@@ -23,13 +23,21 @@ def hand_made(dim: int = 4, **changes: object) -> CubeData:
         lattice=lattice,
         sensor=sensor(),
         threshold=1e-4,
-        atlas=AtlasTable(("grey", "über"), np.full((2, 3), 0.5), np.full((2, 3), 0.25)),
+        atlas=AtlasTable(
+            ("grey", "über"),
+            np.full((2, 3), 0.5),
+            np.full((2, 3), 0.25),
+            np.array([0.5, 0.0]),
+            np.full(2, 0.1),
+        ),
         coefficients=rng.normal(size=(lattice.size, 3)),
         rgb=rgb,
         distance=np.abs(rgb - lattice.points).max(axis=1).astype(np.float32),
         status=(points % len(Status)).astype(np.uint8),
         entry=(points % 3 - 1).astype(np.int32),
         round=(points % 5 - 1).astype(np.int16),
+        standard_error=rng.uniform(0.1, 2, lattice.size).astype(np.float32),
+        reference="A",
         provenance={},
     )
     return replace(data, **changes)

@@ -8,13 +8,13 @@ import pytest
 from uplift import observer
 from uplift.atlas import on_grid, read_atlas
 from uplift.difference import delta_e_2000, lab
-from uplift.fit.entries import fit_entries
+from uplift.fit.entries import BALANCED, Weights, fit_entries, shape_rows
 from uplift.models import Moments
 from uplift.models.least_change import forward
 
 from ..conftest import MACBETH
 
-LIGHTS = ("D65", "A", "FL2", "FL11")
+LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3")
 
 
 @pytest.fixture(scope="module")
@@ -23,12 +23,12 @@ def measured(sensor):
     return spectra[sensor.holds(sensor.rgb(spectra))]
 
 
-def fitted(sensor, measured, lights=LIGHTS):
+def fitted(sensor, measured, lights=LIGHTS, weights=BALANCED):
     model = Moments(9)
     ahead = forward(model, sensor.wavelengths, sensor.matrix)
     shine = [observer.light(name) for name in lights]
-    found = fit_entries(model, ahead, measured, sensor.rgb(measured), shine, 1e-6)
-    return model.squash(found @ ahead.basis.T)
+    found = fit_entries(model, ahead, measured, sensor.rgb(measured), shine, shine[0], 1e-6, weights)
+    return model.squash(found.multipliers @ ahead.basis.T)
 
 
 def mean_delta_e(name, first, second):
@@ -53,8 +53,42 @@ def test_the_lights_that_are_asked_for_are_those_that_hold(sensor, measured):
     )
 
 
+def test_the_ends_stay_near_the_measurement(sensor, measured):
+    """The eye sees nothing there: without a say of their own they would go anywhere."""
+    ends = np.r_[:8, 73:81]
+
+    def off(weights):
+        return np.sqrt(((fitted(sensor, measured, weights=weights) - measured)[:, ends] ** 2).mean())
+
+    assert off(BALANCED) <= 0.04
+    assert off(Weights(ends=0.001)) > 1.5 * off(BALANCED)
+
+
+def test_weighed_rows_sum_to_a_mean_square():
+    difference = np.random.default_rng(0).normal(size=81)
+    assert np.sum((shape_rows(81, BALANCED) @ difference) ** 2) == pytest.approx((difference**2).mean())
+    bent = shape_rows(81, Weights(curvature=2.0)) @ difference
+    extra = 4 * (np.diff(difference, 2) ** 2).sum() / 81
+    assert np.sum(bent**2) == pytest.approx((difference**2).mean() + extra)
+    heavy = shape_rows(81, Weights(ends=3.0)) @ np.ones(81)
+    assert np.sum(heavy**2) == pytest.approx(1)
+    assert heavy[0] ** 2 == pytest.approx(3 * heavy[40] ** 2)
+
+
+def test_the_error_is_what_the_model_loses(sensor, measured):
+    model = Moments(9)
+    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    light = observer.light("A")
+    found = fit_entries(model, ahead, measured, sensor.rgb(measured), [light], light, 1e-6)
+    spectra = model.squash(found.multipliers @ ahead.basis.T)
+    for row in range(len(measured)):
+        assert found.error[row] == pytest.approx(mean_delta_e("A", spectra[row], measured[row]))
+
+
 def test_no_atlas_no_entries(sensor):
     model = Moments(9)
     ahead = forward(model, sensor.wavelengths, sensor.matrix)
-    none = fit_entries(model, ahead, np.zeros((0, 81)), np.zeros((0, 3)), [observer.light("D65")], 1e-6)
-    assert none.shape == (0, 9)
+    light = observer.light("D65")
+    none = fit_entries(model, ahead, np.zeros((0, 81)), np.zeros((0, 3)), [light], light, 1e-6)
+    assert none.multipliers.shape == (0, 9)
+    assert none.error.shape == (0,)

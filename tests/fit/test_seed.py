@@ -7,8 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from uplift import observer
-from uplift.fit.seed import seed, separating_dim
+from uplift.fit.seed import seed
 from uplift.lattice import Lattice
 
 LATTICE = Lattice(np.linspace(0, 1, 6))
@@ -74,19 +73,6 @@ def test_of_two_with_one_primary_point_the_nearer_has_it():
     seeds = seed(LATTICE, rgb)
     assert seeds.collisions == ((1, 0),)
     assert seeds.entry[seeds.primary].tolist() == [1]
-
-
-def test_the_separating_dim_separates_and_one_less_does_not():
-    rgb = np.array([[0.45, 0.4, 0.4], [0.41, 0.4, 0.4]])
-    dim = separating_dim(*rgb, lambda dim: observer.axis_nodes("srgb", dim), 6)
-    assert dim is not None
-    for size, collides in ((dim, False), (dim - 1, True)):
-        assert bool(seed(Lattice(observer.axis_nodes("srgb", size)), rgb).collisions) == collides
-
-
-def test_twins_cannot_be_separated():
-    rgb = np.array([[0.4, 0.4, 0.4], [0.4, 0.4, 0.4]])
-    assert separating_dim(*rgb, lambda dim: np.linspace(0, 1, dim), 6) is None
 
 
 def test_no_atlas_no_seeds():

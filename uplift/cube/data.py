@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.cube.pins import Pins
 from uplift.lattice import Lattice, Status
 from uplift.models import Model
 from uplift.sensor import Array, Sensor
@@ -16,11 +18,23 @@ from uplift.sensor import Array, Sensor
 
 @dataclass(frozen=True, eq=False)
 class AtlasTable:
-    """The entries that the cube is constrained by: names (E), linear RGB (E, 3), coefficients (E, C)."""
+    """The entries that the cube is constrained by.
+
+    Parameters
+    ----------
+    names : (E) unique.
+    rgb : (E, 3) linear RGB.
+    coefficients : (E, C) of their spectra.
+    reach : (E,) lattice steps to the faces of the box around an entry within which answers lead over to its
+        spectrum; 0 for an entry whose colour an earlier one has.
+    error : (E,) ΔE00 between stored and measured spectrum under the cube's reference light.
+    """
 
     names: tuple[str, ...]
     rgb: Array
     coefficients: Array
+    reach: Array
+    error: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +49,8 @@ class CubeData:
     status : (n,) `Status`.
     entry : (n,) row of ``atlas`` that the point is based on, −1 for none.
     round : (n,) round that fitted the point, −1 for none; None without debug information.
+    standard_error : (n,) root mean square by which answers are expected to miss measurements, ΔE00 under the
+        light ``reference``; None where no atlas tells.
     threshold : the largest fitting distance that counts as fitted.
     provenance : how the cube was made: version, options, atlas names and digests; JSON values.
     """
@@ -50,7 +66,14 @@ class CubeData:
     status: NDArray[np.uint8]
     entry: NDArray[np.int32]
     round: NDArray[np.int16] | None
+    standard_error: NDArray[np.float32] | None
+    reference: str
     provenance: Mapping[str, Any]
+
+    @cached_property
+    def pins(self) -> Pins:
+        """The entries as extra nodes of the lattice."""
+        return Pins(self.lattice, self.atlas.rgb, self.atlas.reach)
 
     def counts(self) -> dict[str, int]:
         """Points of each status, in the order of `Status`."""

@@ -20,7 +20,7 @@ from uplift.models import from_description
 from uplift.sensor import Sensor
 
 FORMAT = "uplift cube"
-VERSION = 1
+VERSION = 2
 KEY = "uplift"
 """The one metadata entry: safetensors does not keep several in a fixed order."""
 
@@ -34,7 +34,11 @@ POINT_TYPES: dict[str, type] = {
     "status": np.uint8,
     "entry": np.int32,
     "round": np.int16,
+    "standard_error": np.float32,
 }
+FEATURES = {"debug": "round", "errors": "standard_error"}
+"""Arrays that a cube may have or not, by the feature that says so."""
+ATLAS_ARRAYS = ("rgb", "coefficients", "reach", "error")
 
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -115,7 +119,7 @@ def _digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
 def _tensors(data: CubeData) -> Tensors:
     tensors: Tensors = {"nodes": data.lattice.nodes}
     tensors |= {f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR_ARRAYS}
-    tensors |= {"atlas.rgb": data.atlas.rgb, "atlas.coefficients": data.atlas.coefficients}
+    tensors |= {f"atlas.{name}": getattr(data.atlas, name) for name in ATLAS_ARRAYS}
     for name, kind in POINT_TYPES.items():
         if getattr(data, name) is not None:
             tensors[name] = np.ascontiguousarray(getattr(data, name), dtype=kind)
@@ -126,21 +130,22 @@ def _metadata(data: CubeData) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "version": VERSION,
-        "features": [] if data.round is None else ["debug"],
+        "features": [name for name, array in FEATURES.items() if getattr(data, array) is not None],
         "model": data.model.describe(),
         "dim": data.lattice.dim,
         "space": data.sensor.space,
         "illuminant": data.sensor.illuminant,
         "observer": data.sensor.observer,
         "threshold": data.threshold,
+        "reference": data.reference,
         "entries": list(data.atlas.names),
         "provenance": dict(data.provenance),
     }
 
 
 def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
-    debug = "debug" in metadata["features"]
-    points: dict[str, Any] = {name: tensors[name] for name in POINT_TYPES if name != "round" or debug}
+    absent = {array for feature, array in FEATURES.items() if feature not in metadata["features"]}
+    points: dict[str, Any] = {name: None if name in absent else tensors[name] for name in POINT_TYPES}
     return CubeData(
         model=from_description(metadata["model"]),
         lattice=Lattice(tensors["nodes"]),
@@ -151,9 +156,12 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
             *(tensors[f"sensor.{name}"] for name in SENSOR_ARRAYS),
         ),
         threshold=float(metadata["threshold"]),
-        atlas=AtlasTable(tuple(metadata["entries"]), tensors["atlas.rgb"], tensors["atlas.coefficients"]),
+        reference=metadata["reference"],
+        atlas=AtlasTable(
+            tuple(metadata["entries"]), **{name: tensors[f"atlas.{name}"] for name in ATLAS_ARRAYS}
+        ),
         provenance=metadata["provenance"],
-        **{"round": None, **points},
+        **points,
     )
 
 
@@ -161,36 +169,34 @@ def _check(data: CubeData) -> None:
     """Shapes, types and ranges that a lookup relies on."""
     points, count, samples = data.lattice.size, data.model.count, len(data.sensor.wavelengths)
     entries = len(data.atlas.names)
-    shapes = {
-        "coefficients": (points, count),
-        "rgb": (points, 3),
-        "distance": (points,),
-        "status": (points,),
-        "entry": (points,),
-        "round": (points,),
-    }
+    shapes = {"coefficients": (points, count), "rgb": (points, 3)}
     for name, kind in POINT_TYPES.items():
         array = getattr(data, name)
-        _require(
-            array is None or (array.shape == shapes[name] and array.dtype == kind), f"{name} has its shape"
-        )
+        fits = array is None or (array.shape == shapes.get(name, (points,)) and array.dtype == kind)
+        _require(fits, f"{name} has its shape")
     sensor_shapes = ((samples,), (samples, 3), (samples,), (3, 3), (256,))
     for name, shape in zip(SENSOR_ARRAYS, sensor_shapes, strict=True):
         _require(getattr(data.sensor, name).shape == shape, f"the sensor's {name} has its shape")
-    _require(data.atlas.rgb.shape == (entries, 3), "every entry has its RGB")
-    _require(data.atlas.coefficients.shape == (entries, count), "every entry has its coefficients")
-    texts = (*data.atlas.names, data.sensor.space, data.sensor.illuminant, data.sensor.observer)
+    atlas_shapes = ((entries, 3), (entries, count), (entries,), (entries,))
+    for name, shape in zip(ATLAS_ARRAYS, atlas_shapes, strict=True):
+        _require(getattr(data.atlas, name).shape == shape, f"every entry has its {name}")
+    sensor_names = (data.sensor.space, data.sensor.illuminant, data.sensor.observer)
+    texts = (*data.atlas.names, *sensor_names, data.reference)
     _require(all(isinstance(text, str) for text in texts), "every name is a text")
     _require(isinstance(data.provenance, dict), "the provenance is a table")
-    floats = (data.coefficients, data.rgb, data.distance, data.atlas.rgb, data.atlas.coefficients)
-    sensor = [getattr(data.sensor, name) for name in SENSOR_ARRAYS]
-    _require(all(np.isfinite(array).all() for array in (*floats, *sensor)), "every number is finite")
+    floats: list[Any] = [data.coefficients, data.rgb, data.distance]
+    floats += [] if data.standard_error is None else [data.standard_error]
+    floats += [getattr(data.atlas, name) for name in ATLAS_ARRAYS]
+    floats += [getattr(data.sensor, name) for name in SENSOR_ARRAYS]
+    _require(all(np.isfinite(array).all() for array in floats), "every number is finite")
     with np.errstate(all="ignore"):
         basis = data.model.basis(data.sensor.wavelengths)
     _require(basis.shape == (samples, count) and bool(np.isfinite(basis).all()), "the model has a range")
     _require(tuple(data.lattice.nodes[[0, -1]]) == (0, 1), "the lattice runs from 0 to 1")
     _require(0 < data.threshold < np.inf, "the threshold is a positive number")
     _require(bool((data.status < len(Status)).all()), "every status is known")
+    reaches = bool(((data.atlas.reach >= 0) & (data.atlas.reach <= 1)).all())
+    _require(reaches, "no entry reaches further than a step")
     _require(bool(((data.entry >= -1) & (data.entry < entries)).all()), "every entry is in the atlas table")
 
 

@@ -7,13 +7,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from uplift.cube import exr
 from uplift.cube.data import CubeData
 from uplift.cube.planes import planes
-from uplift.difference import delta_e_2000, lab
+from uplift.difference import delta_e_2000, rgb_lab
 from uplift.errors import OutputError
 from uplift.files import check_output
 from uplift.sensor import Array
@@ -32,7 +31,8 @@ def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = 
     Pixel x is the red index; row y is green index dim − 1 − y, so that green rises upwards. Channels, all
     32-bit float: ``R``, ``G``, ``B`` and ``lattice.*`` (lattice RGB), ``target.*``, ``distance``,
     ``deltaE2000`` (target to lattice RGB under the build illuminant), ``status``, ``entry`` and ``round``
-    (−1 for none; ``round`` only with debug information) and ``coefficient.00`` onwards.
+    (−1 for none; ``round`` only with debug information), ``standardError`` (where an atlas tells) and
+    ``coefficient.00`` onwards.
 
     Raises
     ------
@@ -63,6 +63,8 @@ def channels(data: CubeData) -> dict[str, NDArray[Any]]:
     }
     if data.round is not None:
         found["round"] = data.round
+    if data.standard_error is not None:
+        found["standardError"] = data.standard_error
     return found | {f"coefficient.{i:02}": column for i, column in enumerate(data.coefficients.T)}
 
 
@@ -82,6 +84,4 @@ def _rgb(layer: str, rgb: NDArray[Any]) -> dict[str, NDArray[Any]]:
 
 def _colour_difference(data: CubeData, target: Array) -> Array:
     """ΔE00 (n,) between target and lattice RGB under the build illuminant."""
-    sensor = data.sensor
-    target_lab, lattice_lab = (lab(sensor.xyz(rgb), sensor.light.white) for rgb in (target, data.rgb))
-    return np.asarray(delta_e_2000(target_lab, lattice_lab))
+    return delta_e_2000(rgb_lab(data.sensor, target), rgb_lab(data.sensor, data.rgb))

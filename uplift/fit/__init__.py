@@ -6,25 +6,34 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.fit.entries import fit_entries
+from uplift.fit.crowding import DIMS, roomiest
+from uplift.fit.entries import Entries, Weights, fit_entries
 from uplift.fit.grow import NEVER, Round, Watch, grow
 from uplift.fit.improve import Improvement, improve
+from uplift.fit.prior import Prior, learn
 from uplift.fit.problem import Problem
-from uplift.fit.seed import Seeds, seed, separating_dim
+from uplift.fit.reach import reach
+from uplift.fit.seed import Seeds, seed
 from uplift.lattice import Indices, Status
 from uplift.sensor import Array
 
 __all__ = [
+    "DIMS",
+    "Entries",
     "Fit",
     "Improvement",
+    "Prior",
     "Problem",
     "Round",
     "Seeds",
     "Watch",
+    "Weights",
     "fit_entries",
     "fit_lattice",
+    "learn",
+    "reach",
+    "roomiest",
     "seed",
-    "separating_dim",
 ]
 
 NO_ENTRY = -1
@@ -41,9 +50,13 @@ class Fit:
     improvements: tuple[Improvement, ...]
 
 
-def fit_lattice(problem: Problem, seeds: Seeds, entries: Array, watch: Watch = lambda done: None) -> Fit:
-    """Fit every point of the lattice. ``entries`` (E, C) are the multipliers that ``seeds`` speaks of."""
-    grown = grow(problem, seeds, entries, watch)
+def fit_lattice(
+    problem: Problem, seeds: Seeds, entries: Array, prior: Prior, watch: Watch = lambda done: None
+) -> Fit:
+    """Fit every point of the lattice: seeds from the multipliers (E, C) of their entries, others from the prior."""
+    start = prior(problem.lattice.points)
+    start[seeds.points] = entries[seeds.entry]
+    grown = grow(problem, start, watch)
     multipliers, distance, improvements = improve(problem, grown.multipliers, grown.distance)
     fitted = distance <= problem.threshold
     status = np.full(len(fitted), Status.REGULAR, dtype=np.int64)

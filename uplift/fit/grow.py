@@ -1,4 +1,8 @@
-"""Growth: rounds outward from the seeds, each point from its fitted neighbours (Tódová 2020, 3.1.3)."""
+"""Growth: every point from its prior; those that fail, round after round, from fitted neighbours.
+
+Tódová 2020, 3.1.3, starts every point from neighbours, as a point has nothing else there. A prior
+(`uplift.fit.prior`) is nearer and the same for whichever way growth takes: docs/fidelity.md.
+"""
 
 from __future__ import annotations
 
@@ -8,18 +12,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.fit.problem import Problem
-from uplift.fit.seed import Seeds
 from uplift.lattice import Indices, Lattice, Mask
 from uplift.sensor import Array
 
 PASSES = 6
 NEVER = -1
 """The round of a point that no round has fitted."""
+BLOCK = 1 << 15
+"""Points tried between two words to whoever watches."""
 
 
 @dataclass(frozen=True)
 class Round:
-    """What a round did, for whoever watches: points tried in it, fitted so far, and in all."""
+    """What has been done, for whoever watches: points tried at a time, fitted so far, and in all."""
 
     number: int
     tried: int
@@ -39,46 +44,54 @@ class Growth:
     round: Indices
 
 
-def grow(problem: Problem, seeds: Seeds, entries: Array, watch: Watch) -> Growth:
-    """Fit the whole lattice. ``entries`` (E, C) are the multipliers of the atlas entries.
+def grow(problem: Problem, start: Array, watch: Watch) -> Growth:
+    """Fit the whole lattice, each point from its multipliers in ``start`` (n, C).
 
     A point that fails is tried again whenever another of its neighbours has been fitted.
     """
     lattice = problem.lattice
-    multipliers = np.zeros((lattice.size, problem.model.count))
-    distance = np.full(lattice.size, np.inf)
-    rounds = np.full(lattice.size, NEVER, dtype=np.int64)
-    points, start = _beginning(problem, seeds, entries)
-    number = 0
-    while points.size:
-        found = problem.solve(points, start, PASSES)
-        better = found.distance < distance[points]
-        multipliers[points[better]] = found.multipliers[better]
-        distance[points[better]] = found.distance[better]
-        fresh = points[found.distance <= problem.threshold]
-        rounds[fresh] = number
-        watch(Round(number, len(points), int((rounds != NEVER).sum()), lattice.size))
-        points, start = _frontier(lattice, fresh, rounds != NEVER, multipliers)
+    growth = Growth(start.copy(), np.full(lattice.size, np.inf), np.full(lattice.size, NEVER, dtype=np.int64))
+    for first in range(0, lattice.size, BLOCK):
+        points = np.arange(first, min(first + BLOCK, lattice.size))
+        _try(problem, growth, points, start[points], 0, watch)
+    number, fresh = 1, np.flatnonzero(growth.round == 0)
+    while fresh.size:
+        points, start = _frontier(lattice, fresh, growth.round != NEVER, growth.multipliers)
+        if not points.size:
+            break
+        fresh = _try(problem, growth, points, start, number, watch)
         number += 1
-    return Growth(multipliers, distance, rounds)
+    return growth
 
 
-def _beginning(problem: Problem, seeds: Seeds, entries: Array) -> tuple[Indices, Array]:
-    """The seeds with their entries' spectra or, without an atlas, the middle of the lattice with a grey."""
-    if len(seeds.points):
-        return seeds.points, entries[seeds.entry]
-    middle = np.abs(problem.lattice.points - 0.5).sum(axis=1).argmin()
-    return np.array([middle]), np.zeros((1, problem.model.count))
+def _try(
+    problem: Problem, growth: Growth, points: Indices, start: Array, number: int, watch: Watch
+) -> Indices:
+    """Solve points (k,) from ``start`` (k, C), keep what is better, and say which are fitted now."""
+    found = problem.solve(problem.lattice.points[points], start, PASSES)
+    better = found.distance < growth.distance[points]
+    growth.multipliers[points[better]] = found.multipliers[better]
+    growth.distance[points[better]] = found.distance[better]
+    fresh = points[found.distance <= problem.threshold]
+    growth.round[fresh] = number
+    watch(Round(number, len(points), int((growth.round != NEVER).sum()), problem.lattice.size))
+    return fresh
 
 
 def _frontier(lattice: Lattice, fresh: Indices, fitted: Mask, multipliers: Array) -> tuple[Indices, Array]:
     """The unfitted neighbours of freshly fitted points, and the mean of their own fitted neighbours."""
-    around, inside = lattice.neighbours(fresh)
-    points = np.unique(around[inside])
-    points = points[~fitted[points]]
+    waiting = np.flatnonzero(~fitted)
+    around, inside = lattice.neighbours(waiting)
+    points = waiting[(inside & _mask(lattice, fresh)[around]).any(axis=1)]
     around, inside = lattice.neighbours(points)
     known = inside & fitted[around]
     total = np.zeros((len(points), multipliers.shape[1]))
     for column in range(around.shape[1]):
         total += np.where(known[:, column, None], multipliers[around[:, column]], 0)
     return points, total / np.maximum(known.sum(axis=1), 1)[:, None]
+
+
+def _mask(lattice: Lattice, points: Indices) -> Mask:
+    mask = np.zeros(lattice.size, dtype=bool)
+    mask[points] = True
+    return mask

@@ -82,7 +82,8 @@ def improve(
         goal = problem.threshold
         if not points.size:
             continue
-        found = problem.solve(points, start(multipliers[points], _way(problem, points)), PASSES)
+        begin = start(multipliers[points], _way(problem, points))
+        found = problem.solve(problem.lattice.points[points], begin, PASSES)
         better = found.distance < distance[points]
         multipliers[points[better]] = found.multipliers[better]
         distance[points[better]] = found.distance[better]

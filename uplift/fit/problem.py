@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from uplift.fit.solve import Solution, solve
-from uplift.lattice import Indices, Lattice
+from uplift.lattice import Lattice
 from uplift.models import Model
 from uplift.models.least_change import Forward
 from uplift.sensor import Array
@@ -25,7 +25,6 @@ class Problem:
         """What the solver goes on to: the last steps converge quadratically and cost little."""
         return self.threshold / 100
 
-    def solve(self, points: Indices, start: Array, passes: int) -> Solution:
-        """Lattice points (k,) from multipliers ``start`` (k, C)."""
-        target = self.lattice.points[points]
+    def solve(self, target: Array, start: Array, passes: int) -> Solution:
+        """Multipliers ``start`` (k, C) moved to linear RGB ``target`` (k, 3)."""
         return solve(self.model, self.forward, start, target, tolerance=self.tolerance, passes=passes)

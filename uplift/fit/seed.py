@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -10,8 +9,6 @@ import numpy as np
 
 from uplift.lattice import Indices, Lattice, Mask
 from uplift.sensor import Array
-
-LARGEST_DIM = 256
 
 
 class Collision(NamedTuple):
@@ -66,13 +63,3 @@ def _share_primaries(queue: Indices, order: Indices) -> tuple[dict[int, int], tu
         if kept != entry:
             collisions.append(Collision(kept, int(entry)))
     return owner, tuple(collisions)
-
-
-def separating_dim(first: Array, second: Array, nodes: Callable[[int], Array], dim: int) -> int | None:
-    """The smallest dim above ``dim`` that gives two colours (3,) primary points of their own; None to 256."""
-    for larger in range(dim + 1, LARGEST_DIM + 1):
-        axis = nodes(larger)
-        nearest = [np.abs(axis[:, None] - colour).argmin(axis=0) for colour in (first, second)]
-        if (nearest[0] != nearest[1]).any():
-            return larger
-    return None

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.difference import delta_e_2000, lab
+from uplift.difference import delta_e_2000, rgb_lab
 from uplift.lattice import Status
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import BLOCK
@@ -23,7 +23,8 @@ class Answer:
     """One colour: linear RGB (3,), its reflectance (N,) at wavelengths (N,) nm, and its round trip.
 
     ``cell`` is the lowest corner's position along the axes (r, g, b); ``statuses`` are those of the cell's
-    corners; ``entry`` is the atlas entry that the colour sits on, if any.
+    corners; ``entry`` is the atlas entry that the colour sits on, if any; ``standard_error`` is by how much, in
+    ΔE00 under the cube's reference light, a measurement may be expected to differ, if the cube tells.
     """
 
     rgb: Array
@@ -34,6 +35,7 @@ class Answer:
     cell: tuple[int, int, int]
     statuses: tuple[Status, ...]
     entry: str | None
+    standard_error: float | None
 
 
 def answers(
@@ -50,7 +52,8 @@ def _block(cube: Cube, rgb: Array, at: Array, mode: str) -> Iterator[Answer]:
     count = len(sensor.wavelengths)
     both = cube.reflectance(rgb, np.concatenate([sensor.wavelengths, at]), mode)
     back = sensor.rgb(both[:, :count])
-    apart = delta_e_2000(*(lab(sensor.xyz(colour), sensor.light.white) for colour in (rgb, back)))
+    apart = delta_e_2000(rgb_lab(sensor, rgb), rgb_lab(sensor, back))
+    errors = cube.standard_error(rgb)
     cells, _ = lattice.cell(rgb)
     corners, _ = lattice.corners(rgb)
     for row, cell in enumerate(cells):
@@ -63,6 +66,7 @@ def _block(cube: Cube, rgb: Array, at: Array, mode: str) -> Iterator[Answer]:
             cell=(int(cell[0]), int(cell[1]), int(cell[2])),
             statuses=tuple(Status(code) for code in sorted(set(cube.data.status[corners[row]].tolist()))),
             entry=_entry(cube, rgb[row]),
+            standard_error=None if errors is None else float(errors[row]),
         )
 
 

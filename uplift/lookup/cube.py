@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from uplift.cube import CubeData, read, write
 from uplift.errors import ColourError, OptionError, UpliftError
-from uplift.lookup.interpolate import BLOCK, MODES, coefficients
+from uplift.lookup.interpolate import BLOCK, MODES, coefficients, standard_error
 from uplift.sensor import Array, Sensor
 
 
@@ -51,6 +51,18 @@ class Cube:
             raise OptionError(f"unknown mode '{mode}'", remedy=f"use one of {', '.join(MODES)}")
         at = self.wavelengths(wavelengths)
         return self._blockwise(lambda block: MODES[mode](self.data, block, at), rgb)
+
+    def standard_error(self, rgb: ArrayLike) -> Array | None:
+        """By how much (…,) answers at linear RGB (…, 3) are expected to miss measurements, a root mean square.
+
+        ΔE00 under the light ``cube.data.reference``, learnt from atlas entries left out; None where the cube has
+        too few of them. Raises `ColourError`.
+        """
+        if self.data.standard_error is None:
+            return None
+        return self._blockwise(lambda block: np.asarray(standard_error(self.data, block))[:, None], rgb)[
+            ..., 0
+        ]
 
     def wavelengths(self, wavelengths: ArrayLike | None = None) -> Array:
         """The wavelengths (N,) nm that are asked for; by default those of the sensor. Raises `OptionError`."""

@@ -1,8 +1,10 @@
 """Multipliers and spectra between lattice points, in three modes (docs/mathematics.md, 8). numpy alone.
 
-spectra   the eight corners' spectra, weighted: exact, as RGB is linear in the spectrum
-moments   the eight corners' coefficients, weighted: one reconstruction in place of eight
+spectra   the spectra of the nodes around, weighted: exact, as RGB is linear in the spectrum
+moments   their coefficients, weighted: one reconstruction in place of eight
 refined   ``moments``, then steps of least change to the very colour
+
+The nodes around are the eight corners of the cell and, near an atlas entry, the entry (`uplift.cube.pins`).
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from uplift.cube import CubeData
+from uplift.lattice import Indices
 from uplift.models import Model, evaluate, reflectance
 from uplift.models.least_change import Forward, forward, residual, step
 from uplift.sensor import Array
@@ -26,21 +29,45 @@ BLOCK = 8192
 
 
 def coefficients(data: CubeData, rgb: Array) -> Array:
-    """Coefficients (n, C) at linear RGB (n, 3) in [0, 1]: the eight corners' own, weighted."""
-    points, weights = data.lattice.corners(rgb)
-    return (weights[:, None, :] @ data.coefficients[points])[:, 0, :]
+    """Coefficients (n, C) at linear RGB (n, 3) in [0, 1]: those of the nodes around, weighted."""
+    asked, entry, share = data.pins(rgb)
+    points, weights = data.lattice.corners(asked)
+    found = share[:, None] * (weights[:, None, :] @ data.coefficients[points])[:, 0, :]
+    rows = np.flatnonzero(entry >= 0)
+    found[rows] += (1 - share[rows, None]) * data.atlas.coefficients[entry[rows]]
+    return found
 
 
 def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) as the weighted spectra of the cell's corners."""
-    points, weights = data.lattice.corners(rgb)
-    used, place = np.unique(points, return_inverse=True)
-    corners = reflectance(data.model, data.coefficients[used], wavelengths)
-    place = place.reshape(points.shape)
+    """Reflectance (n, N) as the weighted spectra of the nodes around."""
+    asked, entry, share = data.pins(rgb)
+    points, weights = data.lattice.corners(asked)
+    used, place = _evaluated(data.model, data.coefficients, points, wavelengths)
     total = np.zeros((len(rgb), len(wavelengths)))
     for corner in range(points.shape[1]):
-        total += weights[:, corner, None] * corners[place[:, corner]]
+        total += (share * weights[:, corner])[:, None] * used[place[:, corner]]
+    rows = np.flatnonzero(entry >= 0)
+    used, place = _evaluated(data.model, data.atlas.coefficients, entry[rows], wavelengths)
+    total[rows] += (1 - share[rows, None]) * used[place]
     return total
+
+
+def standard_error(data: CubeData, rgb: Array) -> Array | None:
+    """ΔE00 (n,) by which answers are expected to miss measurements; None where no atlas tells."""
+    if data.standard_error is None:
+        return None
+    asked, entry, share = data.pins(rgb)
+    points, weights = data.lattice.corners(asked)
+    found = share * (weights * data.standard_error[points]).sum(axis=1)
+    rows = np.flatnonzero(entry >= 0)
+    found[rows] += (1 - share[rows]) * data.atlas.error[entry[rows]]
+    return found
+
+
+def _evaluated(model: Model, stored: Array, rows: Indices, wavelengths: Array) -> tuple[Array, Indices]:
+    """Spectra (u, N) of those ``rows`` (…) of stored coefficients that occur, and where (…) each row's is."""
+    used, place = np.unique(rows, return_inverse=True)
+    return reflectance(model, stored[used], wavelengths), place.reshape(rows.shape)
 
 
 def moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:

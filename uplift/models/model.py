@@ -37,6 +37,10 @@ class Model(Protocol):
         """Derivative of ``squash``."""
         ...
 
+    def unsquash(self, reflectance: Array) -> Array:
+        """The linear part that ``squash`` takes to a reflectance in (0, 1). numpy alone."""
+        ...
+
     def constant(self) -> Array:
         """(C,) multipliers whose linear part is 1 everywhere."""
         ...

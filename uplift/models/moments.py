@@ -45,6 +45,9 @@ class Moments:
     def slope(self, x: Any) -> Any:
         return 1 / (np.pi * (1 + x * x))
 
+    def unsquash(self, reflectance: Array) -> Array:
+        return np.tan(np.pi * (reflectance - 0.5))
+
     def constant(self) -> Array:
         return np.eye(self.count)[0]
 

@@ -38,6 +38,10 @@ class Sigmoid:
     def slope(self, x: Any) -> Any:
         return 0.5 / (1 + x * x) ** 1.5
 
+    def unsquash(self, reflectance: Array) -> Array:
+        half = reflectance - 0.5
+        return np.asarray(2 * half / np.sqrt(1 - 4 * half * half))
+
     def constant(self) -> Array:
         return np.eye(self.count)[-1]
 

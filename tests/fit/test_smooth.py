@@ -1,0 +1,55 @@
+"""Where no measurement has a say: nearly the colour, and dark where the colour is dark."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift.fit.smooth import smooth
+from uplift.fit.solve import solve
+from uplift.models import Moments, Sigmoid
+from uplift.models.least_change import forward, residual
+
+DARK = np.array(
+    [
+        (0.05, 0.001, 0.001),
+        (0.02, 0.002, 0.002),
+        (0.1, 0, 0),
+        (0.02, 0, 0.02),
+        (0.05, 0.002, 0.05),
+        (0, 0.05, 0),
+    ]
+)
+
+
+@pytest.fixture(scope="module")
+def ahead(sensor):
+    return forward(Moments(9), sensor.wavelengths, sensor.matrix)
+
+
+def test_the_start_is_nearly_the_colour(ahead):
+    rgb = np.random.default_rng(3).random((500, 3)) ** 2
+    off = np.abs(residual(Moments(9), ahead, smooth(Moments(9), ahead)(rgb), rgb)).max(axis=1)
+    assert off.max() < 0.02
+    assert np.median(off) < 0.001
+
+
+def test_a_dark_saturated_colour_stays_dark_where_the_eye_is_blind(ahead):
+    model = Moments(9)
+
+    def at_760(start):
+        found = solve(model, ahead, start, DARK, tolerance=1e-6, passes=16)
+        assert found.distance.max() <= 1e-6
+        return model.squash(found.multipliers @ ahead.basis.T)[:, 76]
+
+    assert at_760(smooth(model, ahead)(DARK)).max() < 0.4
+    assert at_760(np.zeros((len(DARK), 9))).max() > 0.9  # from a grey, as was
+
+
+@pytest.mark.parametrize("model", [Moments(3), Sigmoid()], ids=lambda m: m.name)
+def test_three_coefficients_leave_no_choice_and_start_from_a_grey(model, sensor):
+    rgb = np.array([[0.2, 0.5, 0.1], [0, 0, 0], [1, 1, 1]])
+    start = smooth(model, forward(model, sensor.wavelengths, sensor.matrix))(rgb)
+    spectra = model.squash(start @ model.basis(sensor.wavelengths).T)
+    assert np.ptp(spectra, axis=1).max() < 1e-12
+    assert (np.diff(spectra[[1, 0, 2], 0]) > 0).all()

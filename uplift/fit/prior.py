@@ -1,0 +1,61 @@
+"""The prior: what is believed of a colour's spectrum before it is fitted, and how far that can be trusted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from uplift.difference import delta_e_2000, lit_lab, rgb_lab
+from uplift.fit.entries import Entries
+from uplift.fit.kriging import Kriging, Uncertainty, krige, uncertainty
+from uplift.fit.problem import Problem
+from uplift.fit.smooth import Smooth, smooth
+from uplift.models import evaluate
+from uplift.sensor import Array, Light, Sensor
+
+FEWEST = 8
+"""Entries that it takes to say anything of errors."""
+PASSES = 16
+BLOCK = 1 << 15
+"""Colours worked on at a time."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prior:
+    """Smooth spectra and, with an atlas, how its entries deviate from them."""
+
+    sensor: Sensor
+    smooth: Smooth
+    kriging: Kriging | None = None
+    uncertainty: Uncertainty | None = None
+
+    def __call__(self, rgb: Array) -> Array:
+        """Multipliers (n, C) to start from at linear RGB (n, 3); at an entry's colour, the entry's own."""
+        return np.concatenate([self._block(rgb[i : i + BLOCK]) for i in range(0, max(len(rgb), 1), BLOCK)])
+
+    def _block(self, rgb: Array) -> Array:
+        start = self.smooth(rgb)
+        return start if self.kriging is None else start + self.kriging(rgb_lab(self.sensor, rgb))
+
+    def standard_error(self, rgb: Array) -> Array | None:
+        """ΔE00 (n,) by which answers at linear RGB (n, 3) miss measurements, as a root mean square.
+
+        None where there are too few entries to learn it from.
+        """
+        return None if self.uncertainty is None else self.uncertainty(rgb_lab(self.sensor, rgb))
+
+
+def learn(problem: Problem, sensor: Sensor, entries: Entries, light: Light) -> Prior:
+    """Learn from the atlas; errors are ΔE00 under ``light``."""
+    plain = smooth(problem.model, problem.forward)
+    if not len(entries.rgb):
+        return Prior(sensor, plain)
+    places = rgb_lab(sensor, entries.rgb)
+    kriging, without = krige(places, entries.multipliers - plain(entries.rgb))
+    if len(entries.rgb) < FEWEST:
+        return Prior(sensor, plain, kriging)
+    left_out = problem.solve(entries.rgb, plain(entries.rgb) + without, PASSES).multipliers
+    spectra = evaluate(problem.model, left_out, sensor.wavelengths)
+    missed = delta_e_2000(lit_lab(light, spectra), lit_lab(light, entries.measured))
+    return Prior(sensor, plain, kriging, uncertainty(places, missed, entries.error))

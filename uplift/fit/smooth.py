@@ -1,0 +1,60 @@
+"""The spectrum a colour gets where no measurement has a say: smooth, and dark where the colour is dark.
+
+Multipliers know no end of slope: from them alone, a dark red rises to a reflectance of 1 as soon as the eye stops
+seeing it. So a colour x starts from a brighter one, x' = x / k with k = √max(x), solved from a grey by steps of
+least change, its spectrum dimmed by k (docs/mathematics.md, 7; docs/fidelity.md has the measurements).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from uplift.fit.solve import solve
+from uplift.lattice import Lattice
+from uplift.models import Model
+from uplift.models.least_change import Forward
+from uplift.sensor import Array
+
+BRIGHTENING = 0.5
+"""Power of max(x) that a colour is divided by: 0 leaves it as it is, 1 makes it as bright as can be."""
+GREY = 2 / 3
+"""Power of the mean of x' that is the reflectance of the grey to start from."""
+DIM = 17
+DARKEST = 1e-4
+LIGHTEST = 0.98
+NO_FREEDOM = 3
+"""Coefficients that the colour alone determines."""
+
+
+@dataclass(frozen=True, eq=False)
+class Smooth:
+    """Multipliers to start from. ``coefficients`` (DIM³, C) of brightened colours; None where no table is needed."""
+
+    model: Model
+    table: Lattice
+    coefficients: Array | None
+
+    def __call__(self, rgb: Array) -> Array:
+        """Multipliers (n, C) of linear RGB (n, 3) in [0, 1]: nearly that colour, for the solver to finish."""
+        if self.coefficients is None:
+            return _grey(self.model, rgb)
+        factor = np.maximum(rgb.max(axis=1), DARKEST)[:, None] ** BRIGHTENING
+        corners, weights = self.table.corners(np.minimum(rgb / factor, 1))
+        bright = (weights[:, None, :] @ self.coefficients[corners])[:, 0, :]
+        return self.model.from_storage(factor * bright)
+
+
+def smooth(model: Model, forward: Forward) -> Smooth:
+    """Solve the table: colours brightened, each from its grey."""
+    table = Lattice(np.linspace(0, 1, DIM) ** 2)
+    if model.count == NO_FREEDOM:
+        return Smooth(model, table, None)
+    found = solve(model, forward, _grey(model, table.points), table.points, tolerance=1e-5, passes=16)
+    return Smooth(model, table, model.to_storage(found.multipliers))
+
+
+def _grey(model: Model, rgb: Array) -> Array:
+    level = np.clip(rgb.mean(axis=1) ** GREY, DARKEST, LIGHTEST)
+    return model.unsquash(level)[:, None] * model.constant()
