@@ -18,7 +18,8 @@ ROOT = Path(__file__).parents[1]
 settings.register_profile("uplift", deadline=None, print_blob=True)
 settings.load_profile("uplift")
 
-MACBETH = ROOT / "atlases" / "macbeth.txt"
+ATLASES = ROOT / "atlases"
+MACBETH = ATLASES / "macbeth.txt"
 
 
 @pytest.fixture(scope="session")
@@ -39,6 +40,12 @@ def macbeth_cube() -> Cube:
 def small_cube() -> Cube:
     """The ColorChecker at dim 8 with 9 moments coefficients, as stored; costs no build."""
     return uplift.load(ROOT / "cubes" / "moments-8-macbeth.uplift")
+
+
+@pytest.fixture(scope="session")
+def plain_cube() -> Cube:
+    """Dim 8 with 9 moments coefficients, no atlas, as stored; costs no build."""
+    return uplift.load(ROOT / "cubes" / "moments-8.uplift")
 
 
 @pytest.fixture(scope="session")

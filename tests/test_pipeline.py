@@ -10,9 +10,10 @@ import pytest
 import uplift
 from uplift import observer
 from uplift.atlas import Entry, Spectra, on_grid, read_atlas
-from uplift.difference import delta_e_2000, lab
+from uplift.difference import delta_e_2000, lit_lab, rgb_lab
 from uplift.errors import OptionError, UnknownNameError, UpliftWarning
 from uplift.lattice import Status
+from uplift.models import reflectance
 
 from .conftest import MACBETH
 
@@ -35,7 +36,7 @@ def fresh_distance(cube):
 def delta_e(cube, rgb, mode):
     sensor = cube.data.sensor
     back = sensor.rgb(cube.reflectance(rgb, mode=mode))
-    return delta_e_2000(*(lab(sensor.xyz(colour), sensor.light.white) for colour in (rgb, back)))
+    return delta_e_2000(rgb_lab(sensor, rgb), rgb_lab(sensor, back))
 
 
 def test_every_point_of_the_macbeth_cube_is_fitted_corners_included(macbeth_cube):
@@ -95,9 +96,9 @@ def test_the_atlas_makes_the_difference_under_other_lights(macbeth_cube):
     spectra = read_atlas(MACBETH)
     measured = on_grid(spectra, GRID)[[spectra.names.index(name) for name in atlas.names]]
     light = observer.light("A")
-    truth = lab(measured @ light.xyz.T, light.white)
+    truth = lit_lab(light, measured)
     with_atlas, without = (
-        delta_e_2000(lab(cube.reflectance(atlas.rgb) @ light.xyz.T, light.white), truth).mean()
+        delta_e_2000(lit_lab(light, cube.reflectance(atlas.rgb)), truth).mean()
         for cube in (macbeth_cube, uplift.load())
     )
     assert with_atlas < 0.2 * without
@@ -118,27 +119,37 @@ def test_what_is_left_out_is_named_and_recorded():
     assert cube.data.provenance["atlases"][0]["name"] == "macbeth.txt"
 
 
-def test_colliding_entries_are_both_named_with_the_dim_that_parts_them():
-    twins = Spectra(
-        tuple(Entry(name, GRID, np.full(81, grey)) for name, grey in (("one", 0.2), ("other", 0.24)))
-    )
-    with pytest.warns(UpliftWarning, match=r"'o\w+' and 'o\w+' share .*; --dim \d+ would separate them"):
-        cube = uplift.build(twins, dim=4)
+def greys(**levels):
+    return Spectra(tuple(Entry(name, GRID, np.full(81, grey)) for name, grey in levels.items()))
+
+
+def test_crowded_entries_are_named_and_yet_exact():
+    with pytest.warns(UpliftWarning, match=r"entry '\w+' is crowded.*--dim auto"):
+        cube = uplift.build(greys(one=0.2, other=0.24), dim=4)
     assert cube.data.atlas.names == ("one", "other")
-    dim = 4 + next(
-        extra
-        for extra in range(200)
-        if not _warned(lambda extra=extra: uplift.build(twins, dim=4 + extra, model="sigmoid"))
+    for level in (0.2, 0.24):
+        np.testing.assert_allclose(cube.reflectance([level] * 3), level, atol=1e-4)
+
+
+def test_two_entries_of_one_colour_are_named_and_the_first_is_answered():
+    bumpy = np.full(81, 0.4) + 0.2 * np.sin(np.arange(81) / 3)
+    colour = observer.sensor().rgb(bumpy)
+    twins = Spectra((Entry("first", GRID, bumpy), Entry("second", GRID, bumpy)))
+    with pytest.warns(
+        UpliftWarning, match="entry 'second' is left out: an earlier entry has the same colour"
+    ):
+        cube = uplift.build(twins, dim=4)
+    own = reflectance(cube.data.model, cube.data.atlas.coefficients[:1], GRID)
+    np.testing.assert_allclose(cube.reflectance(colour), own[0], atol=1e-5)
+
+
+def test_dim_auto_is_recorded_as_what_it_chose():
+    cube = uplift.build(greys(one=0.2, other=0.24), dim="auto")
+    options = cube.data.provenance["options"]
+    assert options["dim"] == cube.data.lattice.dim
+    np.testing.assert_array_equal(
+        observer.axis_nodes(options["axis"], options["dim"]), cube.data.lattice.nodes
     )
-    with pytest.warns(UpliftWarning, match=f"--dim {dim} would"):
-        uplift.build(twins, dim=4, model="sigmoid")
-
-
-def _warned(call):
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        call()
-    return bool(caught)
 
 
 def test_the_perfect_reflector_is_a_welcome_entry():

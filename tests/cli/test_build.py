@@ -99,7 +99,6 @@ def test_verbose_tells_every_round(run):
     rounds = [line for line in result.stderr.splitlines() if line.startswith("round ")]
     assert rounds[0].startswith("round 0: tried ")
     assert [line.split(":")[0] for line in rounds] == [f"round {number}" for number in range(len(rounds))]
-    assert len(rounds) > 1
     assert "\x1b" not in result.stderr
     assert "\r" not in result.stderr
 

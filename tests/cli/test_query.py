@@ -173,7 +173,11 @@ def test_json_holds_the_whole_answer(ask, cubes):
     cube = uplift.load(path)
     row = cube.data.atlas.names.index("red")
     answer = ask("--cube", path, *cube.data.atlas.rgb[row].tolist())
-    assert answer.keys() == {"rgb", "wavelengths", "reflectance", "round_trip", "cell", "status", "entry"}
+    assert answer.keys() == {
+        *("rgb", "wavelengths", "reflectance", "round_trip", "cell", "status"),
+        *("entry", "standard_error", "reference"),
+    }
+    assert answer["standard_error"] == pytest.approx(cube.data.atlas.error[row])
     assert answer["rgb"] == cube.data.atlas.rgb[row].tolist()
     assert answer["wavelengths"] == list(range(380, 781, 5))
     np.testing.assert_allclose(answer["reflectance"], cube.reflectance(answer["rgb"]), rtol=0, atol=1e-12)
@@ -190,11 +194,11 @@ def test_csv_is_csv_alone(run, table, cubes):
     result = run("query", "--input", path, "--format", "csv", "--wavelengths", "450,550.5")
     assert result.stderr == ""
     rows = list(csv.reader(io.StringIO(result.stdout)))
-    assert rows[0] == ["r", "g", "b", "delta_e_2000", "entry", "450", "550.5"]
+    assert rows[0] == ["r", "g", "b", "delta_e_2000", "standard_error", "entry", "450", "550.5"]
     expected = uplift.load().reflectance([[0.8, 0.2, 0.1], [0.1] * 3], [450, 550.5])
-    np.testing.assert_allclose([[float(cell) for cell in row[5:]] for row in rows[1:]], expected, atol=1e-12)
+    np.testing.assert_allclose([[float(cell) for cell in row[6:]] for row in rows[1:]], expected, atol=1e-12)
     assert [float(cell) for cell in rows[1][:3]] == [0.8, 0.2, 0.1]
-    assert rows[1][4] == ""
+    assert rows[1][4:6] == ["", ""]
 
 
 def test_the_modes_differ_and_spectra_is_the_default(ask):

@@ -53,6 +53,7 @@ def test_every_channel_of_every_point(written):
             **{f"target.{letter}": data.lattice.points[point, i] for i, letter in enumerate("RGB")},
             **{f"coefficient.{i:02}": data.coefficients[point, i] for i in range(3)},
             **{name: getattr(data, name)[point] for name in ("distance", "status", "entry", "round")},
+            "standardError": data.standard_error[point],
         }
         channels = slices[blue].channels
         assert set(channels) == {*expected, "deltaE2000"}

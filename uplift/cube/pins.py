@@ -76,7 +76,7 @@ class Pins:
         number = self.lattice.index(self.lattice.cell(rgb)[0])
         first, last = (np.searchsorted(cells, number, side=side) for side in ("left", "right"))
         low, high = self.faces
-        for turn in range(int((last - first).max())):
+        for turn in range(int((last - first).max(initial=0))):
             rows = np.flatnonzero(first + turn < last)
             candidate = entries[first[rows] + turn]
             inside = ((rgb[rows] >= low[candidate]) & (rgb[rows] <= high[candidate])).all(axis=1)

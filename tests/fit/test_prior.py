@@ -1,0 +1,92 @@
+"""The prior: an entry's own spectrum at its colour, and errors that keep their word on entries left out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift import fit, observer
+from uplift.atlas import read_atlas, resample
+from uplift.difference import delta_e_2000, lit_lab
+from uplift.fit.prior import FEWEST
+from uplift.lattice import Lattice
+from uplift.models import Moments
+from uplift.models.least_change import forward
+
+from ..conftest import ATLASES
+
+LIGHT = observer.light("A")
+SPLITS = 6
+
+
+@pytest.fixture(scope="module")
+def problem(sensor):
+    model = Moments(9)
+    return fit.Problem(
+        model, forward(model, sensor.wavelengths, sensor.matrix), Lattice(np.array([0.0, 1.0]))
+    )
+
+
+def entries_of(problem, sensor, measured):
+    rgb = sensor.rgb(measured)
+    lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3")]
+    return fit.fit_entries(problem.model, problem.forward, measured, rgb, lights, LIGHT, 1e-6)
+
+
+def some(entries, rows):
+    return fit.Entries(
+        *(getattr(entries, name)[rows] for name in ("rgb", "measured", "multipliers", "error"))
+    )
+
+
+@pytest.fixture(scope="module")
+def materials(problem, sensor):
+    """The materials of rawtoaces that sRGB holds."""
+    measured = resample(read_atlas(ATLASES / "rawtoaces.txt"), sensor.wavelengths).values
+    return entries_of(problem, sensor, measured[sensor.holds(sensor.rgb(measured))])
+
+
+def test_at_an_entry_the_start_is_nearly_its_own_spectrum(problem, sensor, materials):
+    few = some(materials, np.arange(0, 160, 20))
+    prior = fit.learn(problem, sensor, few, LIGHT)
+    apart = np.abs(
+        problem.model.squash(prior(few.rgb) @ problem.forward.basis.T)
+        - problem.model.squash(few.multipliers @ problem.forward.basis.T)
+    )
+    assert apart.max() < 0.01
+
+
+def test_far_from_all_entries_the_start_is_the_smooth_one(problem, sensor, materials):
+    dark = materials.rgb.max(axis=1) < 0.2
+    prior = fit.learn(problem, sensor, some(materials, dark), LIGHT)
+    white = np.ones((1, 3))
+    np.testing.assert_allclose(prior(white), prior.smooth(white), atol=0.05)
+
+
+def test_too_few_entries_tell_nothing_of_errors(problem, sensor, materials):
+    for count, tells in ((0, False), (1, False), (FEWEST - 1, False), (FEWEST, True)):
+        prior = fit.learn(problem, sensor, some(materials, np.arange(count)), LIGHT)
+        errors = prior.standard_error(np.full((1, 3), 0.3))
+        assert (errors is not None) == tells
+
+
+def test_held_out_entries_miss_by_what_is_stated(problem, sensor, materials):
+    """Half the materials as atlas, the other half asked, several times over; stated and real ΔE00 agree.
+
+    Errors of materials have heavy tails: a split by itself is off by half as much again either way.
+    """
+    rng = np.random.default_rng(0)
+    missed, stated = [], []
+    for _ in range(SPLITS):
+        order = rng.permutation(len(materials.rgb))
+        half = len(order) // 2
+        prior = fit.learn(problem, sensor, some(materials, order[:half]), LIGHT)
+        asked = some(materials, order[half:])
+        found = problem.solve(asked.rgb, prior(asked.rgb), 16).multipliers
+        spectra = problem.model.squash(found @ problem.forward.basis.T)
+        missed.append(delta_e_2000(lit_lab(LIGHT, spectra), lit_lab(LIGHT, asked.measured)))
+        stated.append(prior.standard_error(asked.rgb))
+    missed, stated = np.concatenate(missed), np.concatenate(stated)
+    assert 0.8 < np.sqrt((missed**2).mean() / (stated**2).mean()) < 1.25
+    assert 0.65 < (missed < stated).mean() < 0.85
+    assert 0.9 < (missed < 2 * stated).mean() < 0.99
