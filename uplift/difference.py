@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.sensor import Array
+from uplift.sensor import Array, Light, Sensor
 
 
 def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
@@ -46,6 +46,17 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     delta_h = 2 * np.sqrt(c1 * c2) * np.sin(np.radians(turn / 2)) / (1 + 0.015 * chroma * tone)
     rotation = -2 * _weight_7(chroma) * np.sin(np.radians(60 * np.exp(-(((hue - 275) / 25) ** 2))))
     return np.sqrt(np.maximum(delta_l**2 + delta_c**2 + delta_h**2 + rotation * delta_c * delta_h, 0))
+
+
+def spectra_apart(light: Light, first: ArrayLike, second: ArrayLike) -> Array:
+    """ΔE00 (…) of reflectances (…, N) seen under a light."""
+    seen = (np.asarray(spectra, dtype=float) @ light.xyz.T for spectra in (first, second))
+    return delta_e_2000(*(lab(xyz, light.white) for xyz in seen))
+
+
+def colours_apart(sensor: Sensor, first: ArrayLike, second: ArrayLike) -> Array:
+    """ΔE00 (…) of linear RGB (…, 3) of the sensor's space, under its illuminant."""
+    return delta_e_2000(*(lab(sensor.xyz(rgb), sensor.light.white) for rgb in (first, second)))
 
 
 def _weight_7(chroma: Array) -> Array:

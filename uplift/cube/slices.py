@@ -7,16 +7,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from uplift.cube import exr
 from uplift.cube.data import CubeData
 from uplift.cube.planes import planes
-from uplift.difference import delta_e_2000, lab
+from uplift.difference import colours_apart
 from uplift.errors import OutputError
 from uplift.files import check_output
-from uplift.sensor import Array
 
 READING = (
     "A blue slice of a spectral uplifting cube. A pixel is a lattice point: red rises to the right, green "
@@ -57,7 +55,7 @@ def channels(data: CubeData) -> dict[str, NDArray[Any]]:
         **_rgb("lattice.", data.rgb),
         **_rgb("target.", target),
         "distance": data.distance,
-        "deltaE2000": _colour_difference(data, target),
+        "deltaE2000": colours_apart(data.sensor, target, data.rgb),
         "status": data.status,
         "entry": data.entry,
     }
@@ -78,10 +76,3 @@ def _parts(data: CubeData) -> Iterator[Any]:
 
 def _rgb(layer: str, rgb: NDArray[Any]) -> dict[str, NDArray[Any]]:
     return {f"{layer}{letter}": rgb[:, i] for i, letter in enumerate("RGB")}
-
-
-def _colour_difference(data: CubeData, target: Array) -> Array:
-    """ΔE00 (n,) between target and lattice RGB under the build illuminant."""
-    sensor = data.sensor
-    target_lab, lattice_lab = (lab(sensor.xyz(rgb), sensor.light.white) for rgb in (target, data.rgb))
-    return np.asarray(delta_e_2000(target_lab, lattice_lab))
