@@ -1,0 +1,177 @@
+"""The parts of a report's page that speak of the lattice: failures, distributions, crowding."""
+
+from __future__ import annotations
+
+from uplift.report.assessment import Assessment
+from uplift.report.charts import histogram_chart
+from uplift.report.crowding import Crowd
+from uplift.report.fidelity import COLOURS
+from uplift.report.histogram import Histogram
+from uplift.report.markup import Markup, counted, element, joined, number, power, triple
+from uplift.report.page_parts import error_cells, error_headings, name_cell, pair, pairs_of, right, table
+from uplift.report.viewing import screen_codes
+
+
+def failures_section(found: Assessment) -> Markup:
+    """Counts by status, the points over the threshold, the improvement steps, the entries that are missing."""
+    failed, data = found.failures, found.data
+    limit = power(data.threshold)
+    if failed.missed:
+        told = f"{counted(failed.missed, 'lattice point')} of {data.lattice.size:,} over the threshold of {limit}."
+        first = element("p", told, class_="bad")
+    else:
+        first = element(
+            "p", f"Nothing failed: all {data.lattice.size:,} points evaluate to their RGB within {limit}."
+        )
+    status = table(
+        ["status", right("points"), right("share")],
+        [
+            [label, number(f"{count:,}"), number(f"{count / data.lattice.size:.2%}")]
+            for label, count in failed.counts.items()
+        ],
+    )
+    columns = [
+        element("div", element("h3", "Points by status"), status),
+        _improvements(found),
+        _missing(found),
+    ]
+    return element(
+        "section",
+        element("h2", "Failures"),
+        first,
+        _missed(found),
+        element("div", *columns, class_="columns"),
+    )
+
+
+def _missed(found: Assessment) -> Markup | None:
+    points, data = found.failures.points, found.data
+    if not len(points):
+        return None
+    target = data.lattice.points[points]
+    pairs = zip(screen_codes(data, target), screen_codes(data, data.rgb[points].astype(float)), strict=True)
+    lines = [
+        [
+            pair(*codes),
+            triple(target[row]),
+            triple(data.rgb[point]),
+            number(power(float(data.distance[point]))),
+        ]
+        for row, (point, codes) in enumerate(zip(points, pairs, strict=True))
+    ]
+    title = f"The worst {len(points)}" if len(points) < found.failures.missed else "The points"
+    return joined(
+        [
+            element("h3", title),
+            table(["", "linear RGB of the point", "of its spectrum", right("distance")], lines),
+        ]
+    )
+
+
+def _improvements(found: Assessment) -> Markup:
+    steps = found.failures.improvements
+    title = element("h3", "Improvement steps")
+    if not steps:
+        return element(
+            "div", title, element("p", "None was needed: growth left no point over the threshold.")
+        )
+    lines = [
+        [str(step.get("step")), number(f"{step.get('tried', 0):,}"), number(f"{step.get('mended', 0):,}")]
+        for step in steps
+    ]
+    return element("div", title, table(["step", right("tried"), right("mended")], lines))
+
+
+def _missing(found: Assessment) -> Markup:
+    failed = found.failures
+    lists = [
+        (failed.left_out, f"Left out, as {found.data.sensor.space} does not hold them: "),
+        (failed.skipped, "Skipped, as the reader could not use them: "),
+    ]
+    told = [element("p", text, ", ".join(names), ".") for names, text in lists if names]
+    return element("div", element("h3", "Entries not in the cube"), *(told or [element("p", "None.")]))
+
+
+def distributions_section(found: Assessment) -> Markup:
+    """Histograms: of the lattice, of colours that come back, of the entries under each light."""
+    light, limit = found.data.sensor.illuminant, found.data.threshold
+    first, second = (triple(rgb) for rgb in found.steepest)
+    lattice = [
+        _chart("Fitting distance of the lattice points", found.distance, "max |linear RGB|", limit=limit),
+        _chart("Smoothness: neighbouring points", found.smoothness, "rms difference of reflectance"),
+    ]
+    trips = [
+        _chart(f"Round trip in mode {mode}", part, f"ΔE00 under {light}")
+        for mode, part in found.round_trips.items()
+    ]
+    told = [
+        f"The dashed line is the threshold, {power(limit)}. The two neighbours along an axis that differ most are "
+        f"({first}) and ({second}).",
+        f"{COLOURS:,} random linear RGB, the same for every cube: the colour asked against the colour that comes back.",
+    ]
+    parts = [element("h3", "Lattice"), _note(told[0]), _charts(lattice)]
+    parts += [element("h3", "Colours that come back"), _note(told[1]), _charts(trips)]
+    if found.delta_e:
+        top = max(int(part.counts.max()) for part in found.delta_e.values())
+        entries = [
+            _chart(f"Entries under {name}", part, "ΔE00", top=top) for name, part in found.delta_e.items()
+        ]
+        text = "Each entry asked at its own RGB: the answer against the measured spectrum, seen under each light."
+        parts += [element("h3", "Entries"), _note(text), _charts(entries)]
+    return element("section", element("h2", "Distributions"), *parts)
+
+
+def _chart(
+    title: str, part: Histogram, label: str, *, top: int | None = None, limit: float | None = None
+) -> Markup:
+    named = ("mean", part.mean), ("median", part.median), ("95 %", part.p95), ("max", part.largest)
+    stated = " · ".join(f"{name} {power(value)}" for name, value in named)
+    caption = element("figcaption", element("b", title), element("small", stated))
+    return element("figure", caption, histogram_chart(part, label, top=top, limit=limit))
+
+
+def _charts(figures: list[Markup]) -> Markup:
+    return element("div", *figures, class_="charts")
+
+
+def _note(text: str) -> Markup:
+    return element("p", text, class_="note")
+
+
+def crowding_section(found: Assessment) -> Markup | None:
+    """Voxels that several entries share, and what that costs each; None for a cube without entries."""
+    if not found.data.atlas.names:
+        return None
+    title = element("h2", "Crowding")
+    if not found.crowds:
+        return element("section", title, element("p", "Every entry has a voxel to itself."))
+    wanted = "measured" if found.own else "stored"
+    told = (
+        f"Entries in one voxel share its eight corners, so none of them gets back all of its spectrum; a larger dim "
+        f"parts them. ΔE00 and rms are between the answer and the {wanted} spectrum."
+    )
+    first = found.crowds[0].entries
+    headings = ["voxel, linear RGB", "entry", *error_headings(first, found.lights, wanted)]
+    lines = [line for crowd in found.crowds for line in _crowd(found, crowd, wanted)]
+    return element("section", title, _note(told), table(headings, lines, ""))
+
+
+def _crowd(found: Assessment, crowd: Crowd, wanted: str) -> list[list[Markup]]:
+    """A row an entry; the first has the voxel, which stands for all."""
+    entries, pairs = crowd.entries, pairs_of(crowd.entries, found.lights)
+    low, high = (triple(rgb) for rgb in crowd.bounds)
+    place = ", ".join(map(str, crowd.cell))
+    voxel = element(
+        "td",
+        place,
+        element("small", low),
+        element("small", f"to {high}"),
+        rowspan=len(entries.names),
+        class_="voxel",
+    )
+    lines = [
+        [name_cell(entries, row), *error_cells(entries, row, pairs, wanted)]
+        for row in range(len(entries.names))
+    ]
+    lines[0].insert(0, voxel)
+    return lines
