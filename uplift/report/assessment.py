@@ -30,6 +30,8 @@ from uplift.sensor import Array, Sensor
 
 EXACT = 1e-9
 """Distances and differences below this are rounding, and stand together in the lowest bin."""
+SAME = 1e-4
+"""rms difference of reflectance that nobody would call a step."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +94,7 @@ def assess(
         failures=failures(data),
         distance=histogram(data.distance, log_edges(data.distance, EXACT)),
         round_trips=_together(round_trips(cube), lambda values: log_edges(values, EXACT)),
-        smoothness=histogram(steps.differences, linear_edges(steps.differences)),
+        smoothness=histogram(steps.differences, log_edges(steps.differences, SAME)),
         steepest=steps.steepest,
         lights=seen,
         sources=() if spectra is None else tuple(source.name for source in spectra.sources),

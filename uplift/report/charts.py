@@ -20,6 +20,8 @@ INK, GREY, PALE, ACCENT = "#262626", "#6e6e6e", "#d6d6d6", "#20509a"
 BAND = "#c2c2c2"
 SIZE = (3.3, 1.75)
 """Inches at 72 dots; the page scales them to its columns."""
+LABELLED, BARE = (0.13, 0.24, 0.84, 0.72), (0.1, 0.12, 0.87, 0.84)
+"""Where the axes lie in a chart with and without a label below."""
 TOPS = (0.1, 0.25, 0.5, 1.0)
 """Reflectance axes end at one of these, so that dark colours show and charts still compare."""
 STYLE = {
@@ -52,7 +54,7 @@ def histogram_chart(
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        figure, axes = _axes()
+        figure, axes = _axes(LABELLED)
         axes.stairs(part.counts, part.edges, fill=True, color=ACCENT)
         high = max(int(part.counts.max()), top or 0, 1)
         axes.set(xlabel=label, ylim=(0, 1.06 * high))
@@ -73,7 +75,7 @@ def spectra_chart(wavelengths: Array, measured: Array, answered: Array, stored: 
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        figure, axes = _axes()
+        figure, axes = _axes(BARE)
         axes.plot(wavelengths, measured, color=BAND, linewidth=4, solid_capstyle="round")
         if stored is not None:
             axes.plot(wavelengths, stored, color=INK, linewidth=1.1, linestyle=(0, (1.2, 1.6)))
@@ -86,6 +88,7 @@ def spectra_chart(wavelengths: Array, measured: Array, answered: Array, stored: 
             ylim=(0, 1.02 * top),
             yticks=(0, top / 2, top),
         )
+        axes.yaxis.set_major_formatter("{x:g}")
         axes.grid(color=PALE, linewidth=0.5)
         return _svg(figure)
 
@@ -95,12 +98,12 @@ def _top(curves: Sequence[Array]) -> float:
     return next((top for top in TOPS if highest <= top), TOPS[-1])
 
 
-def _axes() -> tuple[Figure, Axes]:
+def _axes(place: tuple[float, float, float, float]) -> tuple[Figure, Axes]:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=SIZE, dpi=72)
     figure.patch.set_visible(False)
-    axes = figure.add_axes((0.13, 0.24, 0.84, 0.72))
+    axes = figure.add_axes(place)
     axes.patch.set_visible(False)
     axes.spines[["top", "right"]].set_visible(False)
     axes.set_axisbelow(True)

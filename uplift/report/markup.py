@@ -36,11 +36,11 @@ def joined(parts: Iterable[str | None]) -> Markup:
 
 
 def rows(cells: Iterable[Iterable[str | None]], tag: str = "td") -> Markup:
-    """Table rows; a cell that is no ``td`` or ``th`` already becomes one."""
-    return joined(element("tr", *(_cell(cell, tag) for cell in row)) for row in cells)
+    """Table rows; a cell that is no ``td`` or ``th`` already becomes one, None is left out."""
+    return joined(element("tr", *(_cell(cell, tag) for cell in row if cell is not None)) for row in cells)
 
 
-def _cell(cell: str | None, tag: str) -> Markup:
+def _cell(cell: str, tag: str) -> Markup:
     made = isinstance(cell, Markup) and cell.startswith(("<td", "<th"))
     return Markup(cell) if made else element(tag, cell)
 
@@ -51,11 +51,11 @@ def number(value: str, **attributes: str | int | None) -> Markup:
 
 
 def power(value: float) -> str:
-    """Two significant digits: 1.6 × 10⁻⁵, or plainly where that is shorter."""
+    """1.6 × 10⁻⁵; from a hundredth on plainly, 0.0271."""
     if not math.isfinite(value):
         return "not finite"
     if value == 0 or 1e-2 <= abs(value) < 1e3:
-        return f"{value:.2g}" if abs(value) < 10 else f"{value:.0f}"
+        return f"{value:#.3g}".rstrip(".") if value else "0"
     digits, exponent = f"{value:.1e}".split("e")
     return f"{digits} × {_ten(int(exponent))}"
 
@@ -70,7 +70,7 @@ def _ten(exponent: int) -> str:
 
 
 def triple(rgb: Iterable[float]) -> str:
-    """Linear RGB as it is written in running text."""
+    """Linear RGB as it is written in a line."""
     return ", ".join(f"{value:.4f}" for value in rgb)
 
 

@@ -102,7 +102,7 @@ def _build(found: Assessment) -> Markup:
         ("illuminant", facts["illuminant"]),
         ("observer", facts["observer"]),
         ("wavelengths", f"{data.sensor.wavelengths[0]:g}–{data.sensor.wavelengths[-1]:g} nm"),
-        ("threshold", f"{power(data.threshold)}, max |linear RGB|"),
+        ("threshold", f"{data.threshold:g}, max |linear RGB|"),
         ("entries", f"{len(data.atlas.names):,}"),
         ("made by", f"uplift {data.provenance.get('uplift', 'unknown')}"),
         ("file", f"{found.size / 1e6:.2f} MB"),
@@ -129,13 +129,17 @@ def _flat(model: dict[str, object]) -> list[object]:
         part
         for name, value in model.items()
         for part in (
-            _flat(value) if isinstance(value, dict) else [value if name == "name" else f"{name} {value}"]
+            _flat(value)
+            if isinstance(value, dict)
+            else [value if name == "name" else f"{name} {_value(value)}"]
         )
     ]
 
 
 def _value(value: object) -> str:
-    return " ".join(str(inner) for inner in value) if isinstance(value, list | tuple) else str(value)
+    if isinstance(value, list | tuple):
+        return " ".join(map(_value, value))
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _footer(found: Assessment) -> Markup:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from uplift.lattice import Status
 from uplift.report.assessment import Assessment
 from uplift.report.charts import ACCENT, BAND, INK, spectra_chart
 from uplift.report.fidelity import Entries
 from uplift.report.markup import Markup, counted, element, joined, number, triple
 from uplift.report.page_parts import (
     BAD,
+    OWN,
     SEEN,
     Pairs,
     error_cells,
     error_headings,
     name_cell,
+    own_cell,
     pair,
     pairs_of,
     right,
@@ -43,7 +46,7 @@ def entries_section(found: Assessment, worst: int) -> Markup:
         element(
             "p",
             f"Swatches: measured on the left, answered on the right. ΔE00 above {SEEN:g} is bold, above {BAD:g} "
-            "orange. Own is how much of the answer comes from corners that are based on the entry itself.",
+            f"orange. Own: {OWN}.",
             class_="note",
         ),
         _table(found, entries, pairs),
@@ -162,8 +165,24 @@ def _key(entries: Entries) -> Markup:
 
 def _table(found: Assessment, entries: Entries, pairs: Pairs) -> Markup:
     headings = [element("th", "entry"), *error_headings(entries, found.lights, "measured")]
+    headings += [
+        *([] if entries.own is None else [right("own", OWN)]),
+        element("th", "voxel", title="its corners, by status"),
+    ]
     lines = (
-        [name_cell(entries, row), *error_cells(entries, row, pairs, "measured")]
+        [
+            name_cell(entries, row),
+            *error_cells(entries, row, pairs, "measured"),
+            own_cell(entries, row),
+            _corners(entries, row),
+        ]
         for row in range(len(entries.names))
     )
     return table(headings, lines, "sortable")
+
+
+def _corners(entries: Entries, row: int) -> Markup:
+    """The eight corners of the entry's voxel, by status."""
+    kinds = zip(Status, entries.corners[row].tolist(), strict=True)
+    stated = (f"{count} {status.label.removeprefix('atlas ')}" for status, count in kinds if count)
+    return element("td", element("small", ", ".join(stated)), class_="corners")

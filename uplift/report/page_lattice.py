@@ -8,14 +8,24 @@ from uplift.report.crowding import Crowd
 from uplift.report.fidelity import COLOURS
 from uplift.report.histogram import Histogram
 from uplift.report.markup import Markup, counted, element, joined, number, power, triple
-from uplift.report.page_parts import error_cells, error_headings, name_cell, pair, pairs_of, right, table
+from uplift.report.page_parts import (
+    OWN,
+    error_cells,
+    error_headings,
+    name_cell,
+    own_cell,
+    pair,
+    pairs_of,
+    right,
+    table,
+)
 from uplift.report.viewing import screen_codes
 
 
 def failures_section(found: Assessment) -> Markup:
     """Counts by status, the points over the threshold, the improvement steps, the entries that are missing."""
     failed, data = found.failures, found.data
-    limit = power(data.threshold)
+    limit = f"{data.threshold:g}"
     if failed.missed:
         told = f"{counted(failed.missed, 'lattice point')} of {data.lattice.size:,} over the threshold of {limit}."
         first = element("p", told, class_="bad")
@@ -95,22 +105,20 @@ def _missing(found: Assessment) -> Markup:
 def distributions_section(found: Assessment) -> Markup:
     """Histograms: of the lattice, of colours that come back, of the entries under each light."""
     light, limit = found.data.sensor.illuminant, found.data.threshold
-    first, second = (triple(rgb) for rgb in found.steepest)
     lattice = [
         _chart("Fitting distance of the lattice points", found.distance, "max |linear RGB|", limit=limit),
         _chart("Smoothness: neighbouring points", found.smoothness, "rms difference of reflectance"),
+        _aside(found),
     ]
     trips = [
         _chart(f"Round trip in mode {mode}", part, f"ΔE00 under {light}")
         for mode, part in found.round_trips.items()
     ]
-    told = [
-        f"The dashed line is the threshold, {power(limit)}. The two neighbours along an axis that differ most are "
-        f"({first}) and ({second}).",
-        f"{COLOURS:,} random linear RGB, the same for every cube: the colour asked against the colour that comes back.",
-    ]
-    parts = [element("h3", "Lattice"), _note(told[0]), _charts(lattice)]
-    parts += [element("h3", "Colours that come back"), _note(told[1]), _charts(trips)]
+    told = (
+        f"{COLOURS:,} random linear RGB, the same for every cube: the colour asked against what comes back."
+    )
+    parts = [element("h3", "Lattice"), _charts(lattice)]
+    parts += [element("h3", "Colours that come back"), _note(told), _charts(trips)]
     if found.delta_e:
         top = max(int(part.counts.max()) for part in found.delta_e.values())
         entries = [
@@ -125,9 +133,22 @@ def _chart(
     title: str, part: Histogram, label: str, *, top: int | None = None, limit: float | None = None
 ) -> Markup:
     named = ("mean", part.mean), ("median", part.median), ("95 %", part.p95), ("max", part.largest)
-    stated = " · ".join(f"{name} {power(value)}" for name, value in named)
-    caption = element("figcaption", element("b", title), element("small", stated))
+    stated = (element("span", element("small", name), power(value)) for name, value in named)
+    caption = element("figcaption", element("b", title), element("div", *stated, class_="stats"))
     return element("figure", caption, histogram_chart(part, label, top=top, limit=limit))
+
+
+def _aside(found: Assessment) -> Markup:
+    """What the charts of the lattice need to be read."""
+    first, second = (triple(rgb) for rgb in found.steepest)
+    return element(
+        "div",
+        f"The dashed line is the threshold, {found.data.threshold:g}. Neighbours are points next to each other along "
+        "an axis; between these two the spectrum changes most:",
+        pair(*screen_codes(found.data, found.steepest)),
+        f"({first}) and ({second}).",
+        class_="aside",
+    )
 
 
 def _charts(figures: list[Markup]) -> Markup:
@@ -147,30 +168,35 @@ def crowding_section(found: Assessment) -> Markup | None:
         return element("section", title, element("p", "Every entry has a voxel to itself."))
     wanted = "measured" if found.own else "stored"
     told = (
-        f"Entries in one voxel share its eight corners, so none of them gets back all of its spectrum; a larger dim "
+        f"Entries in one voxel share its eight corners; a larger dim "
         f"parts them. ΔE00 and rms are between the answer and the {wanted} spectrum."
     )
     first = found.crowds[0].entries
-    headings = ["voxel, linear RGB", "entry", *error_headings(first, found.lights, wanted)]
+    headings = ["voxel, linear RGB", "entry", *error_headings(first, found.lights, wanted), right("own", OWN)]
     lines = [line for crowd in found.crowds for line in _crowd(found, crowd, wanted)]
     return element("section", title, _note(told), table(headings, lines, ""))
 
 
-def _crowd(found: Assessment, crowd: Crowd, wanted: str) -> list[list[Markup]]:
+def _crowd(found: Assessment, crowd: Crowd, wanted: str) -> list[list[Markup | None]]:
     """A row an entry; the first has the voxel, which stands for all."""
     entries, pairs = crowd.entries, pairs_of(crowd.entries, found.lights)
-    low, high = (triple(rgb) for rgb in crowd.bounds)
+    ranges = (
+        f"{letter} {low:.4f}–{high:.4f}" for letter, low, high in zip("RGB", *crowd.bounds, strict=True)
+    )
     place = ", ".join(map(str, crowd.cell))
     voxel = element(
         "td",
         place,
-        element("small", low),
-        element("small", f"to {high}"),
+        *(element("small", part) for part in ranges),
         rowspan=len(entries.names),
         class_="voxel",
     )
-    lines = [
-        [name_cell(entries, row), *error_cells(entries, row, pairs, wanted)]
+    lines: list[list[Markup | None]] = [
+        [
+            name_cell(entries, row, "name inner"),
+            *error_cells(entries, row, pairs, wanted),
+            own_cell(entries, row),
+        ]
         for row in range(len(entries.names))
     ]
     lines[0].insert(0, voxel)

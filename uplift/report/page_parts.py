@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from uplift.lattice import Status
 from uplift.report.fidelity import Entries
 from uplift.report.markup import Markup, element, joined, number, rows, triple
 from uplift.report.numbers import swatches
@@ -12,14 +11,10 @@ from uplift.sensor import Sensor
 
 SEEN, BAD = 1.0, 3.0
 """ΔE00 that one sees side by side, and that nobody overlooks."""
+OWN = "trilinear weight of the voxel's corners that are based on the entry itself"
 
 Pairs = Sequence[Sequence[tuple[str, str]]]
 """``#rrggbb`` as measured and as answered, for each light and entry."""
-
-
-def chip(code: str) -> Markup:
-    """A swatch of one colour, ``#rrggbb``."""
-    return element("i", class_="chip", style=f"background:{code}", title=code)
 
 
 def pair(first: str, second: str, title: str | None = None) -> Markup:
@@ -56,26 +51,29 @@ def error_headings(found: Entries, lights: Sequence[Sensor], wanted: str) -> Ite
     yield right("worst", "largest ΔE00 under any of the lights", "descending")
     for seen in lights:
         yield right(seen.illuminant, f"{wanted} | answered under {seen.illuminant}, and their ΔE00")
-    yield right(f"rms to {wanted}")
+    yield right("rms", f"rms over wavelength to the {wanted} spectrum")
     if found.rms_stored is not None and wanted != "stored":
-        yield right("to stored", "rms to the spectrum that the cube stores for the entry")
-    yield element("th", "voxel", title="what the eight corners of its voxel are")
+        yield right("stored", "rms over wavelength to the spectrum that the cube stores for the entry")
 
 
 def error_cells(found: Entries, row: int, pairs: Pairs, wanted: str) -> Iterator[Markup]:
-    """The errors of one entry: the worst, under each light with its swatches, rms, and its voxel."""
+    """The errors of one entry: the worst, under each light with its swatches, and rms."""
     yield _difference(float(found.worst[row]))
     for column, colours in enumerate(pairs):
         yield _difference(float(found.delta_e[row, column]), pair(*colours[row]))
     yield _rms(float(found.rms[row]))
     if found.rms_stored is not None and wanted != "stored":
         yield _rms(float(found.rms_stored[row]))
-    yield element("td", *_voxel(found, row))
 
 
-def name_cell(found: Entries, row: int) -> Markup:
+def name_cell(found: Entries, row: int, class_: str = "name") -> Markup:
     """An entry by name and linear RGB."""
-    return element("td", found.names[row], element("small", triple(found.rgb[row])), class_="name")
+    return element("td", found.names[row], element("small", triple(found.rgb[row])), class_=class_)
+
+
+def own_cell(found: Entries, row: int) -> Markup | None:
+    """How much of its voxel an entry has; None where no entry has any."""
+    return None if found.own is None else number(f"{found.own[row]:.0%}", data_value=f"{found.own[row]:.9g}")
 
 
 def _difference(value: float, swatch: Markup | None = None) -> Markup:
@@ -85,11 +83,3 @@ def _difference(value: float, swatch: Markup | None = None) -> Markup:
 
 def _rms(value: float) -> Markup:
     return number(f"{value:.4f}", data_value=f"{value:.9g}")
-
-
-def _voxel(found: Entries, row: int) -> Iterator[str]:
-    if found.own is not None:
-        yield f"{found.own[row]:.0%} own"
-    kinds = zip(Status, found.corners[row].tolist(), strict=True)
-    stated = ", ".join(f"{count} {status.label.removeprefix('atlas ')}" for status, count in kinds if count)
-    yield element("small", stated)
