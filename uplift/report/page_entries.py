@@ -70,8 +70,8 @@ def _about(found: Assessment) -> str:
 
 
 def _outside(found: Assessment) -> Markup | None:
-    if not found.outside:
-        return None
+    if found.own or not found.outside:
+        return None  # of its own entries the failures have told
     return element("p", f"Not asked, being outside {found.data.sensor.space}: {', '.join(found.outside)}.")
 
 
