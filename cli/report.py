@@ -134,13 +134,15 @@ def _write(text: str, path: Path, *, force: bool) -> None:
 
 def _told(found: Assessment) -> str:
     """The report in a line."""
-    parts = [f"{found.failures.missed or 'no'} points over the threshold"]
+    from uplift.report.markup import counted
+
+    parts = [f"{counted(found.failures.missed, 'point')} over the threshold"]
     if found.entries is not None:
         entries = found.entries
-        parts.append(f"{len(entries.names)} entries")
+        parts.append(counted(len(entries.names), "entry", "entries"))
         parts.append(
             f"ΔE00 mean {entries.delta_e.mean():.2f}, worst {entries.worst[0]:.2f} ('{entries.names[0]}')"
         )
     if found.data.atlas.names:
-        parts.append(f"{len(found.crowds) or 'no'} crowded voxels")
+        parts.append(counted(len(found.crowds), "crowded voxel"))
     return ", ".join(parts)

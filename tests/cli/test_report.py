@@ -22,7 +22,7 @@ def cube(home, cubes, macbeth):
 
 def test_a_page_beside_the_caller(run, home, cube):
     result = run("report", cube, *SMALL)
-    assert result.stdout.startswith("macbeth-8.html: no points over the threshold, 23 entries, ΔE00 mean ")
+    assert result.stdout.startswith("macbeth-8.html: 0 points over the threshold, 23 entries, ΔE00 mean ")
     assert result.stdout.count("\n") == 1
     assert result.stderr == ""
     text = (home / "macbeth-8.html").read_text(encoding="utf-8")
@@ -71,7 +71,7 @@ def test_the_cube_s_own_atlas_may_be_named(run, macbeth, cubes, home):
 
 def test_a_cube_without_an_atlas(run, cubes, home):
     result = run("report", cubes / "sigmoid-8.uplift", *SMALL)
-    assert result.stdout == "sigmoid-8.html: no points over the threshold\n"
+    assert result.stdout == "sigmoid-8.html: 0 points over the threshold\n"
 
 
 def test_atlases_are_looked_for_as_check_does(run, refuse, home, cube):

@@ -113,7 +113,7 @@ def test_no_plots_if_none_are_wanted(judged):
 def test_names_are_text_whatever_they_hold(small_cube, hostile):
     found = assess(small_cube, HOSTILE, 1, hostile, ("D65",))
     assert found.entries.names == (HOSTILE,)
-    html = page(found)
+    html = page(found, worst=24)
     assert HOSTILE not in html
     read = Reader(html)
     assert read.tags.count("script") == 1  # the page's own
@@ -133,7 +133,7 @@ def test_points_over_the_threshold_are_named(spoilt, macbeth):
 
 
 def test_without_an_atlas_the_page_says_so(small_sigmoid_cube):
-    read = Reader(page(assess(small_sigmoid_cube, "sigmoid.uplift", 1, None, ("D65",))))
+    read = Reader(page(assess(small_sigmoid_cube, "sigmoid.uplift", 1, None, ("D65",)), worst=24))
     assert "built without an atlas, and none was given" in read.text
     assert "Crowding" not in read.text
 
@@ -184,7 +184,7 @@ def test_markup_escapes_all_but_markup():
     ("value", "text"),
     [
         (0, "0"),
-        (1.6e-5, "1.6 × 10⁻⁵"),
+        (1.6e-5, "1.6\u00a0×\u00a010⁻⁵"),
         (0.0271, "0.0271"),
         (2.7, "2.70"),
         (506.2, "506"),

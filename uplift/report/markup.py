@@ -51,13 +51,13 @@ def number(value: str, **attributes: str | int | None) -> Markup:
 
 
 def power(value: float) -> str:
-    """1.6 × 10⁻⁵; from a hundredth on plainly, 0.0271."""
+    """1.6 × 10⁻⁵, unbroken; from a hundredth on plainly, 0.0271."""
     if not math.isfinite(value):
         return "not finite"
     if value == 0 or 1e-2 <= abs(value) < 1e3:
         return f"{value:#.3g}".rstrip(".") if value else "0"
     digits, exponent = f"{value:.1e}".split("e")
-    return f"{digits} × {_ten(int(exponent))}"
+    return f"{digits}\u00a0×\u00a0{_ten(int(exponent))}"
 
 
 def decade(value: float) -> str:

@@ -6,14 +6,12 @@ from importlib.resources import files
 
 from uplift.report.assessment import Assessment
 from uplift.report.markup import Markup, counted, element, joined, power
+from uplift.report.page_crowding import crowding_section
 from uplift.report.page_entries import entries_section
-from uplift.report.page_lattice import crowding_section, distributions_section, failures_section
-
-WORST = 24
-"""Entries whose spectra are drawn."""
+from uplift.report.page_lattice import distributions_section, failures_section
 
 
-def page(found: Assessment, worst: int = WORST) -> str:
+def page(found: Assessment, worst: int) -> str:
     """The whole HTML text; the spectra of the ``worst`` entries are drawn. The same cube gives the same text."""
     head = element(
         "head",
@@ -72,9 +70,9 @@ def _verdicts(found: Assessment) -> Markup:
         light = found.lights[int(errors.delta_e[0].argmax())].illuminant
         cards.append(
             _verdict(
-                f"ΔE00 {errors.delta_e.mean():.2f} mean, {errors.worst[0]:.2f} worst",
-                f"of {counted(len(errors.names), 'entry', 'entries')} under {counted(len(found.lights), 'light')}; "
-                f"worst is {errors.names[0]} under {light}",
+                f"Worst ΔE00 {errors.worst[0]:.2f}",
+                f"{errors.names[0]} under {light}; mean {errors.delta_e.mean():.2f} over "
+                f"{counted(len(errors.names), 'entry', 'entries')} and {counted(len(found.lights), 'light')}",
             )
         )
     if found.data.atlas.names:

@@ -15,6 +15,7 @@ from uplift.report.page_parts import (
     error_cells,
     error_headings,
     name_cell,
+    note,
     own_cell,
     pair,
     pairs_of,
@@ -43,14 +44,21 @@ def entries_section(found: Assessment, worst: int) -> Markup:
         else None,
         _small_multiples(found, entries, pairs, worst) if worst else None,
         element("h3", "Entry by entry"),
-        element(
-            "p",
-            f"Swatches: measured on the left, answered on the right. ΔE00 above {SEEN:g} is bold, above {BAD:g} "
-            f"orange. Own: {OWN}.",
-            class_="note",
-        ),
+        _note_on_entries(entries),
         _table(found, entries, pairs),
     )
+
+
+def _note_on_entries(entries: Entries) -> Markup:
+    text = (
+        f"Swatches: measured on the left, answered on the right. ΔE00 above {SEEN:g} is bold, above {BAD:g} orange. "
+        "rms is between the answer and the measured spectrum"
+    )
+    if entries.stored is not None:
+        text += (
+            f"; stored: between the answer and the spectrum that the cube stores for the entry. Own: {OWN}"
+        )
+    return note(f"{text}.")
 
 
 def _why_none(found: Assessment) -> str:
@@ -104,7 +112,7 @@ def _note_on_light(entries: Entries) -> Markup | None:
         "ΔE00 between answered and measured; on the right, between the spectrum stored for the entry and the measured "
         "one: what the model's coefficients cannot say, whatever the lattice."
     )
-    return element("p", text, class_="note")
+    return note(text)
 
 
 def _small_multiples(found: Assessment, entries: Entries, pairs: Pairs, worst: int) -> Markup:

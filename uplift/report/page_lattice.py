@@ -1,24 +1,13 @@
-"""The parts of a report's page that speak of the lattice: failures, distributions, crowding."""
+"""The parts of a report's page that speak of failures and of distributions."""
 
 from __future__ import annotations
 
 from uplift.report.assessment import Assessment
 from uplift.report.charts import histogram_chart
-from uplift.report.crowding import Crowd
 from uplift.report.fidelity import COLOURS
 from uplift.report.histogram import Histogram
 from uplift.report.markup import Markup, counted, element, joined, number, power, triple
-from uplift.report.page_parts import (
-    OWN,
-    error_cells,
-    error_headings,
-    name_cell,
-    own_cell,
-    pair,
-    pairs_of,
-    right,
-    table,
-)
+from uplift.report.page_parts import note, pair, right, table
 from uplift.report.viewing import screen_codes
 
 
@@ -118,14 +107,14 @@ def distributions_section(found: Assessment) -> Markup:
         f"{COLOURS:,} random linear RGB, the same for every cube: the colour asked against what comes back."
     )
     parts = [element("h3", "Lattice"), _charts(lattice)]
-    parts += [element("h3", "Colours that come back"), _note(told), _charts(trips)]
+    parts += [element("h3", "Colours that come back"), note(told), _charts(trips)]
     if found.delta_e:
         top = max(int(part.counts.max()) for part in found.delta_e.values())
         entries = [
             _chart(f"Entries under {name}", part, "ΔE00", top=top) for name, part in found.delta_e.items()
         ]
         text = "Each entry asked at its own RGB: the answer against the measured spectrum, seen under each light."
-        parts += [element("h3", "Entries"), _note(text), _charts(entries)]
+        parts += [element("h3", "Entries"), note(text), _charts(entries)]
     return element("section", element("h2", "Distributions"), *parts)
 
 
@@ -153,51 +142,3 @@ def _aside(found: Assessment) -> Markup:
 
 def _charts(figures: list[Markup]) -> Markup:
     return element("div", *figures, class_="charts")
-
-
-def _note(text: str) -> Markup:
-    return element("p", text, class_="note")
-
-
-def crowding_section(found: Assessment) -> Markup | None:
-    """Voxels that several entries share, and what that costs each; None for a cube without entries."""
-    if not found.data.atlas.names:
-        return None
-    title = element("h2", "Crowding")
-    if not found.crowds:
-        return element("section", title, element("p", "Every entry has a voxel to itself."))
-    wanted = "measured" if found.own else "stored"
-    told = (
-        f"Entries in one voxel share its eight corners; a larger dim "
-        f"parts them. ΔE00 and rms are between the answer and the {wanted} spectrum."
-    )
-    first = found.crowds[0].entries
-    headings = ["voxel, linear RGB", "entry", *error_headings(first, found.lights, wanted), right("own", OWN)]
-    lines = [line for crowd in found.crowds for line in _crowd(found, crowd, wanted)]
-    return element("section", title, _note(told), table(headings, lines, ""))
-
-
-def _crowd(found: Assessment, crowd: Crowd, wanted: str) -> list[list[Markup | None]]:
-    """A row an entry; the first has the voxel, which stands for all."""
-    entries, pairs = crowd.entries, pairs_of(crowd.entries, found.lights)
-    ranges = (
-        f"{letter} {low:.4f}–{high:.4f}" for letter, low, high in zip("RGB", *crowd.bounds, strict=True)
-    )
-    place = ", ".join(map(str, crowd.cell))
-    voxel = element(
-        "td",
-        place,
-        *(element("small", part) for part in ranges),
-        rowspan=len(entries.names),
-        class_="voxel",
-    )
-    lines: list[list[Markup | None]] = [
-        [
-            name_cell(entries, row, "name inner"),
-            *error_cells(entries, row, pairs, wanted),
-            own_cell(entries, row),
-        ]
-        for row in range(len(entries.names))
-    ]
-    lines[0].insert(0, voxel)
-    return lines

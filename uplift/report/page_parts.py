@@ -23,6 +23,11 @@ def pair(first: str, second: str, title: str | None = None) -> Markup:
     return element("span", *halves, class_="pair", title=title or f"{first} | {second}")
 
 
+def note(text: str) -> Markup:
+    """What a table or a chart needs to be read."""
+    return element("p", text, class_="note")
+
+
 def table(headings: Iterable[str], lines: Iterable[Iterable[str | None]], class_: str = "slim") -> Markup:
     """Headings and rows, each within reach of a narrow screen."""
     head = element("thead", rows([headings], "th"))
