@@ -12,7 +12,7 @@ import uplift
 from benchmarks.page import table, write
 from uplift import fit, observer
 from uplift.atlas import on_grid, read_atlas
-from uplift.difference import delta_e_2000, lab
+from uplift.difference import colours_apart, spectra_apart
 from uplift.fit.solve import solve
 from uplift.lookup import MODES, Cube
 from uplift.models import Model, Moments, Phase, Sigmoid
@@ -75,7 +75,7 @@ def _round_trips(cubes: dict[str, Cube]) -> str:
         cells = [name]
         for mode in MODES:
             back = sensor.rgb(cube.reflectance(RANDOM, mode=mode))
-            apart = delta_e_2000(*(lab(sensor.xyz(rgb), sensor.light.white) for rgb in (RANDOM, back)))
+            apart = colours_apart(sensor, RANDOM, back)
             cells.append(f"{apart.mean():.1e} / {apart.max():.1e}")
         rows.append(cells)
     return table(
@@ -161,9 +161,7 @@ def _against(found: Array, measured: Array) -> Sequence[str]:
 
 
 def _apart(light: Light, found: Array, measured: Array) -> float:
-    return float(
-        delta_e_2000(*(lab(spectra @ light.xyz.T, light.white) for spectra in (found, measured))).mean()
-    )
+    return float(spectra_apart(light, found, measured).mean())
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .options import format_option, verbosity_options
+from .options import atlas_folders_option, format_option, verbosity_options
 from .output import console
 
 if TYPE_CHECKING:
@@ -18,9 +18,7 @@ if TYPE_CHECKING:
 
 @click.command("check")
 @click.argument("files", nargs=-1, required=True)
-@click.option(
-    "--atlas-dir", "folders", multiple=True, metavar="DIR", help="Where the atlases lie; may be repeated."
-)
+@atlas_folders_option()
 @click.option("--update", is_flag=True, help="Replace the cubes that differ by what is built now.")
 @format_option("table", "json")
 @verbosity_options

@@ -16,6 +16,12 @@ def cube_option() -> Decorator:
     )
 
 
+def atlas_folders_option() -> Decorator:
+    return click.option(
+        "--atlas-dir", "folders", multiple=True, metavar="DIR", help="Where the atlases lie; may be repeated."
+    )
+
+
 def format_option(*choices: str) -> Decorator:
     return click.option(
         "--format",

@@ -1,4 +1,4 @@
-"""A progress bar over the rounds of a build: on a terminal, and nowhere else."""
+"""A progress bar over the rounds of a build, a spinner over other waits: on a terminal, and nowhere else."""
 
 from __future__ import annotations
 
@@ -25,6 +25,18 @@ def watching(*, quiet: bool, verbose: bool) -> Iterator[Watch]:
     else:
         with _bar() as watch:
             yield watch
+
+
+@contextlib.contextmanager
+def waiting(text: str) -> Iterator[None]:
+    """A line that says what takes so long."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status(f"{text} …"):
+        yield
 
 
 def _say(done: Round) -> None:

@@ -73,7 +73,12 @@ def test_nothing_else_is_in_it(wheel):
         f"uplift-{uplift.__version__}.dist-info",
     }
     data = {name for name in wheel.namelist() if ".dist-info/" not in name and not name.endswith(".py")}
-    assert data == {"uplift/lookup/default.uplift", "uplift/py.typed"}
+    assert data == {
+        "uplift/lookup/default.uplift",
+        "uplift/py.typed",
+        "uplift/report/page.css",
+        "uplift/report/page.js",
+    }
 
 
 def test_the_command_is_installed_as_uplift(wheel):

@@ -23,11 +23,6 @@ def rgb_lab(sensor: Sensor, rgb: ArrayLike) -> Array:
     return lab(sensor.xyz(rgb), sensor.light.white)
 
 
-def lit_lab(light: Light, reflectance: ArrayLike) -> Array:
-    """CIE L*a*b* (…, 3) under a light of reflectances (…, N) on the sensor's wavelengths."""
-    return lab(np.asarray(reflectance, dtype=float) @ light.xyz.T, light.white)
-
-
 def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     """CIEDE2000 colour difference (…) of L*a*b* (…, 3), k_L = k_C = k_H = 1.
 
@@ -56,6 +51,17 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     delta_h = 2 * np.sqrt(c1 * c2) * np.sin(np.radians(turn / 2)) / (1 + 0.015 * chroma * tone)
     rotation = -2 * _weight_7(chroma) * np.sin(np.radians(60 * np.exp(-(((hue - 275) / 25) ** 2))))
     return np.sqrt(np.maximum(delta_l**2 + delta_c**2 + delta_h**2 + rotation * delta_c * delta_h, 0))
+
+
+def spectra_apart(light: Light, first: ArrayLike, second: ArrayLike) -> Array:
+    """ΔE00 (…) of reflectances (…, N) seen under a light."""
+    seen = (np.asarray(spectra, dtype=float) @ light.xyz.T for spectra in (first, second))
+    return delta_e_2000(*(lab(xyz, light.white) for xyz in seen))
+
+
+def colours_apart(sensor: Sensor, first: ArrayLike, second: ArrayLike) -> Array:
+    """ΔE00 (…) of linear RGB (…, 3) of the sensor's space, under its illuminant."""
+    return delta_e_2000(rgb_lab(sensor, first), rgb_lab(sensor, second))
 
 
 def _weight_7(chroma: Array) -> Array:

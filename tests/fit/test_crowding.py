@@ -7,7 +7,7 @@ import pytest
 
 import uplift
 from uplift import fit, observer
-from uplift.difference import delta_e_2000, lit_lab
+from uplift.difference import spectra_apart
 from uplift.fit.crowding import DIMS, lattice_error, roomiest
 from uplift.lattice import Lattice
 from uplift.models import Moments, reflectance
@@ -37,7 +37,7 @@ def test_what_the_trial_says_is_what_the_cube_does(stage, sensor, macbeth_cube):
     spectra = reflectance(data.model, data.coefficients[corners.ravel()], sensor.wavelengths)
     answered = (weights[..., None] * spectra.reshape(*corners.shape, -1)).sum(axis=1)
     own = reflectance(data.model, data.atlas.coefficients, sensor.wavelengths)
-    plain = np.max([delta_e_2000(lit_lab(lit, answered), lit_lab(lit, own)) for lit in lights], axis=0)
+    plain = np.max([spectra_apart(lit, answered, own) for lit in lights], axis=0)
     np.testing.assert_allclose(trial, plain, atol=1e-3)
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from uplift import fit, observer
 from uplift.atlas import read_atlas, resample
-from uplift.difference import delta_e_2000, lit_lab
+from uplift.difference import spectra_apart
 from uplift.fit.prior import FEWEST
 from uplift.lattice import Lattice
 from uplift.models import Moments
@@ -84,7 +84,7 @@ def test_held_out_entries_miss_by_what_is_stated(problem, sensor, materials):
         asked = some(materials, order[half:])
         found = problem.solve(asked.rgb, prior(asked.rgb), 16).multipliers
         spectra = problem.model.squash(found @ problem.forward.basis.T)
-        missed.append(delta_e_2000(lit_lab(LIGHT, spectra), lit_lab(LIGHT, asked.measured)))
+        missed.append(spectra_apart(LIGHT, spectra, asked.measured))
         stated.append(prior.standard_error(asked.rgb))
     missed, stated = np.concatenate(missed), np.concatenate(stated)
     assert 0.8 < np.sqrt((missed**2).mean() / (stated**2).mean()) < 1.25

@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 from uplift.cube import exr
 from uplift.cube.data import CubeData
 from uplift.cube.planes import planes
-from uplift.difference import delta_e_2000, rgb_lab
+from uplift.difference import colours_apart
 from uplift.errors import OutputError
 from uplift.files import check_output
-from uplift.sensor import Array
 
 READING = (
     "A blue slice of a spectral uplifting cube. A pixel is a lattice point: red rises to the right, green "
@@ -57,7 +56,7 @@ def channels(data: CubeData) -> dict[str, NDArray[Any]]:
         **_rgb("lattice.", data.rgb),
         **_rgb("target.", target),
         "distance": data.distance,
-        "deltaE2000": _colour_difference(data, target),
+        "deltaE2000": colours_apart(data.sensor, target, data.rgb),
         "status": data.status,
         "entry": data.entry,
     }
@@ -80,8 +79,3 @@ def _parts(data: CubeData) -> Iterator[Any]:
 
 def _rgb(layer: str, rgb: NDArray[Any]) -> dict[str, NDArray[Any]]:
     return {f"{layer}{letter}": rgb[:, i] for i, letter in enumerate("RGB")}
-
-
-def _colour_difference(data: CubeData, target: Array) -> Array:
-    """ΔE00 (n,) between target and lattice RGB under the build illuminant."""
-    return delta_e_2000(rgb_lab(data.sensor, target), rgb_lab(data.sensor, data.rgb))

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from uplift.difference import delta_e_2000, lit_lab
+from uplift.difference import spectra_apart
 from uplift.fit.entries import Entries
 from uplift.fit.problem import Problem
 from uplift.fit.seed import seed
@@ -34,7 +34,7 @@ def lattice_error(problem: Problem, wavelengths: Array, lights: Sequence[Light],
     place = order[np.searchsorted(seeds.points, corners, sorter=order)]
     answered = sum(weights[:, corner, None] * spectra[place[:, corner]] for corner in range(8))
     own = evaluate(problem.model, entries.multipliers, wavelengths)
-    return np.max([delta_e_2000(lit_lab(light, answered), lit_lab(light, own)) for light in lights], axis=0)
+    return np.max([spectra_apart(light, answered, own) for light in lights], axis=0)
 
 
 def roomiest(

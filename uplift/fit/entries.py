@@ -11,7 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 import optimistix
 
-from uplift.difference import delta_e_2000, lit_lab
+from uplift.difference import spectra_apart
 from uplift.fit.solve import solve
 from uplift.models import Model
 from uplift.models.least_change import Forward
@@ -83,7 +83,7 @@ def fit_entries(
     start = np.concatenate(found)
     multipliers = solve(model, forward, start, rgb, tolerance=tolerance, passes=16).multipliers
     spectra = np.asarray(model.squash(multipliers @ forward.basis.T))
-    error = delta_e_2000(lit_lab(reference, spectra), lit_lab(reference, measured))
+    error = spectra_apart(reference, spectra, measured)
     return Entries(rgb, measured, multipliers, error)
 
 

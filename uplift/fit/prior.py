@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.difference import delta_e_2000, lit_lab, rgb_lab
+from uplift.difference import rgb_lab, spectra_apart
 from uplift.fit.entries import Entries
 from uplift.fit.kriging import Kriging, Uncertainty, krige, uncertainty
 from uplift.fit.problem import Problem
@@ -57,5 +57,5 @@ def learn(problem: Problem, sensor: Sensor, entries: Entries, light: Light) -> P
         return Prior(sensor, plain, kriging)
     left_out = problem.solve(entries.rgb, plain(entries.rgb) + without, PASSES).multipliers
     spectra = evaluate(problem.model, left_out, sensor.wavelengths)
-    missed = delta_e_2000(lit_lab(light, spectra), lit_lab(light, entries.measured))
+    missed = spectra_apart(light, spectra, entries.measured)
     return Prior(sensor, plain, kriging, uncertainty(places, missed, entries.error))

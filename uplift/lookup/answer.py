@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.difference import delta_e_2000, rgb_lab
+from uplift.difference import colours_apart
 from uplift.lattice import Status
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import BLOCK
@@ -52,7 +52,7 @@ def _block(cube: Cube, rgb: Array, at: Array, mode: str) -> Iterator[Answer]:
     count = len(sensor.wavelengths)
     both = cube.reflectance(rgb, np.concatenate([sensor.wavelengths, at]), mode)
     back = sensor.rgb(both[:, :count])
-    apart = delta_e_2000(rgb_lab(sensor, rgb), rgb_lab(sensor, back))
+    apart = colours_apart(sensor, rgb, back)
     errors = cube.standard_error(rgb)
     cells, _ = lattice.cell(rgb)
     corners, _ = lattice.corners(rgb)

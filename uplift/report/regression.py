@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from uplift.cube import CubeData
-from uplift.difference import delta_e_2000, lab
+from uplift.difference import spectra_apart
 from uplift.errors import CubeFileError
 from uplift.models import reflectance
 from uplift.observer import light
@@ -57,6 +57,4 @@ def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
 
 
 def _largest_delta_e(name: str, observer: str, first: Array, second: Array) -> float:
-    lit = light(name, observer)
-    labs = [lab(spectra @ lit.xyz.T, lit.white) for spectra in (first, second)]
-    return float(delta_e_2000(*labs).max())
+    return float(spectra_apart(light(name, observer), first, second).max())

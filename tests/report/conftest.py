@@ -1,0 +1,52 @@
+"""Cubes judged, each once a run."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import uplift
+from uplift.atlas import Entry, Spectra, read_atlas
+from uplift.lattice import Status
+from uplift.lookup import Cube
+from uplift.report.assessment import assess
+
+HOSTILE = "<script>alert('&')</script>"
+
+
+@pytest.fixture(scope="session")
+def macbeth(repository):
+    """The ColorChecker's measured spectra."""
+    return read_atlas(repository / "atlases" / "macbeth.txt")
+
+
+@pytest.fixture(scope="session")
+def judged(small_cube, macbeth):
+    """The stored ColorChecker cube of dim 8, by its own entries."""
+    return assess(small_cube, "small.uplift", 58624, macbeth, ("D65", "A", "FL11"))
+
+
+@pytest.fixture(scope="session")
+def crowded_cube(macbeth):
+    """The ColorChecker in a lattice too small for it."""
+    with pytest.warns(uplift.UpliftWarning):
+        return uplift.build(macbeth, dim=4, coefficients=5)
+
+
+@pytest.fixture(scope="session")
+def spoilt(small_cube):
+    """The same cube with two points over the threshold."""
+    distance, status = small_cube.data.distance.copy(), small_cube.data.status.copy()
+    distance[[100, 300]] = 0.01, 0.02
+    status[[100, 300]] = Status.UNFITTED
+    return Cube(dataclasses.replace(small_cube.data, distance=distance, status=status))
+
+
+@pytest.fixture(scope="session")
+def hostile():
+    """An atlas whose names are HTML, two entries, one of them outside sRGB."""
+    at = np.arange(380.0, 781.0, 5.0)
+    laser = np.where(abs(at - 520) < 12, 1.0, 0.0)
+    return Spectra((Entry(HOSTILE, at, np.full(81, 0.4)), Entry("laser" + HOSTILE, at, laser)))

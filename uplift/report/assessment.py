@@ -1,0 +1,136 @@
+"""How good a cube is, in numbers: everything that `uplift report` shows, before anybody shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from uplift.atlas import Spectra
+from uplift.cube import CubeData
+from uplift.lookup import Cube
+from uplift.report.crowding import Crowd, crowds
+from uplift.report.failures import Failures, failures
+from uplift.report.fidelity import (
+    Entries,
+    Question,
+    about_other,
+    about_own,
+    about_stored,
+    entries,
+    round_trips,
+)
+from uplift.report.histogram import Histogram, histogram, linear_edges, log_edges
+from uplift.report.smoothness import smoothness
+from uplift.report.summary import summary
+from uplift.report.viewing import LIGHTS, viewings
+from uplift.sensor import Array, Sensor
+
+EXACT = 1e-9
+"""Distances and differences below this are rounding, and stand together in the lowest bin."""
+SAME = 1e-4
+"""rms difference of reflectance that nobody would call a step."""
+
+
+@dataclass(frozen=True, eq=False)
+class Assessment:
+    """A cube judged.
+
+    Parameters
+    ----------
+    name, size : the cube's file, base name and bytes.
+    data, facts : the cube, and what ``uplift info`` tells of it.
+    distance : of the lattice points, max |linear RGB|.
+    round_trips : ΔE00 of random colours under the cube's illuminant, for each mode of lookup.
+    smoothness, steepest : rms between neighbouring points, and linear RGB (2, 3) of the two farthest apart.
+    lights : what the entries are seen under.
+    sources : the files that ``entries`` come from; ``own`` if the cube was built from these.
+    entries : None where there is no measured spectrum to judge by.
+    delta_e : their ΔE00 under each light, by name.
+    outside : entries of ``sources`` that the cube's space does not hold.
+    crowds : voxels that several of the cube's own entries share; their errors are against the measured
+        spectra if ``own``, against the stored ones if not.
+    """
+
+    name: str
+    size: int
+    data: CubeData
+    facts: dict[str, Any]
+    failures: Failures
+    distance: Histogram
+    round_trips: dict[str, Histogram]
+    smoothness: Histogram
+    steepest: Array
+    lights: tuple[Sensor, ...]
+    sources: tuple[str, ...]
+    own: bool
+    entries: Entries | None
+    delta_e: dict[str, Histogram]
+    outside: tuple[str, ...]
+    crowds: tuple[Crowd, ...]
+
+
+def assess(
+    cube: Cube, name: str, size: int, spectra: Spectra | None, lights: Sequence[str] = LIGHTS
+) -> Assessment:
+    """Judge a cube by its own lattice, and by measured spectra if there are any.
+
+    ``spectra`` that the cube was built from (by digest) are its own entries; all others are colours that it
+    has not seen. Raises `UnknownNameError` for a light that the tables do not hold.
+    """
+    data = cube.data
+    seen = viewings(lights, data.sensor.observer)
+    own = spectra is not None and _built_from(data, spectra)
+    question = _question(data, spectra, own)
+    found = None if question is None or not question.names else entries(cube, question, seen)
+    steps = smoothness(data)
+    return Assessment(
+        name=name,
+        size=size,
+        data=data,
+        facts=summary(data),
+        failures=failures(data),
+        distance=histogram(data.distance, log_edges(data.distance, EXACT)),
+        round_trips=_together(round_trips(cube), lambda values: log_edges(values, EXACT)),
+        smoothness=histogram(steps.differences, log_edges(steps.differences, SAME)),
+        steepest=steps.steepest,
+        lights=seen,
+        sources=() if spectra is None else tuple(source.name for source in spectra.sources),
+        own=own,
+        entries=found,
+        delta_e={} if found is None else _together(_by_light(found, seen), linear_edges),
+        outside=() if question is None else question.outside,
+        crowds=_crowds(cube, found if own else None, seen),
+    )
+
+
+def _built_from(data: CubeData, spectra: Spectra) -> bool:
+    """Whether the cube says that it was built from these very files."""
+    recorded = {str(source.get("digest")) for source in data.provenance.get("atlases", ())}
+    given = {source.digest for source in spectra.sources}
+    return bool(given) and given <= recorded
+
+
+def _question(data: CubeData, spectra: Spectra | None, own: bool) -> Question | None:
+    if spectra is None or not spectra.entries:
+        return None
+    return about_own(data, spectra) if own else about_other(data, spectra)
+
+
+def _crowds(cube: Cube, measured: Entries | None, lights: tuple[Sensor, ...]) -> tuple[Crowd, ...]:
+    if measured is None and not cube.data.atlas.names:
+        return ()
+    asked = entries(cube, about_stored(cube.data), lights) if measured is None else measured
+    return crowds(cube.data.lattice, asked)
+
+
+def _by_light(found: Entries, lights: tuple[Sensor, ...]) -> dict[str, Array]:
+    return {seen.illuminant: found.delta_e[:, column] for column, seen in enumerate(lights)}
+
+
+def _together(values: dict[str, Array], edges: Callable[[Array], Array]) -> dict[str, Histogram]:
+    """Distributions over the same edges, so that the eye can compare them."""
+    shared = edges(np.concatenate(list(values.values())))
+    return {name: histogram(array, shared) for name, array in values.items()}

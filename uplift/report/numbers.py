@@ -1,0 +1,122 @@
+"""An assessment as JSON values: the numbers of the page, for machines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from uplift.report.assessment import Assessment
+from uplift.report.fidelity import COLOURS, SEED, Entries
+from uplift.report.histogram import Histogram
+from uplift.report.viewing import hex_codes
+from uplift.sensor import Sensor
+
+
+def numbers(found: Assessment) -> dict[str, Any]:
+    """Plain values; what is not finite is None, so that every JSON reader takes it."""
+    return _plain(
+        {
+            "cube": found.name,
+            "bytes": found.size,
+            "build": found.facts,
+            "failures": _failures(found),
+            "fitting_distance": _histogram(found.distance),
+            "round_trip": {
+                "colours": COLOURS,
+                "seed": SEED,
+                "illuminant": found.data.sensor.illuminant,
+                "delta_e_2000": {mode: _histogram(part) for mode, part in found.round_trips.items()},
+            },
+            "smoothness": {**_histogram(found.smoothness), "steepest": found.steepest},
+            "lights": [seen.illuminant for seen in found.lights],
+            "atlas": {"files": found.sources, "own": found.own, "outside": found.outside},
+            "delta_e_2000": {light: _histogram(part) for light, part in found.delta_e.items()},
+            "entries": [] if found.entries is None else _entries(found.entries, found.lights),
+            "crowding": [
+                {
+                    "cell": crowd.cell,
+                    "bounds": crowd.bounds,
+                    "against": "measured" if found.own else "stored",
+                    "entries": _entries(crowd.entries, found.lights),
+                }
+                for crowd in found.crowds
+            ],
+        }
+    )
+
+
+def _failures(found: Assessment) -> dict[str, Any]:
+    failed, data = found.failures, found.data
+    return {
+        "status": failed.counts,
+        "over_threshold": failed.missed,
+        "worst": [
+            {
+                "rgb": data.lattice.points[point],
+                "lattice_rgb": data.rgb[point],
+                "distance": data.distance[point],
+            }
+            for point in failed.points
+        ],
+        "improvements": failed.improvements,
+        "left_out": failed.left_out,
+        "skipped": failed.skipped,
+    }
+
+
+def _histogram(part: Histogram) -> dict[str, Any]:
+    return {
+        "mean": part.mean,
+        "median": part.median,
+        "p95": part.p95,
+        "max": part.largest,
+        "edges": part.edges,
+        "counts": part.counts,
+    }
+
+
+def _entries(found: Entries, lights: tuple[Sensor, ...]) -> list[dict[str, Any]]:
+    names = [seen.illuminant for seen in lights]
+
+    def by_light(values: Any) -> dict[str, Any] | None:
+        return None if values is None else dict(zip(names, values, strict=True))
+
+    def at(values: Any, row: int) -> Any:
+        return None if values is None else values[row]
+
+    shown = {seen.illuminant: swatches(found, seen) for seen in lights}
+    return [
+        {
+            "name": name,
+            "rgb": found.rgb[row],
+            "cell": found.cells[row],
+            "delta_e_2000": by_light(found.delta_e[row]),
+            "delta_e_2000_stored": by_light(at(found.delta_e_stored, row)),
+            "rms": found.rms[row],
+            "rms_stored": at(found.rms_stored, row),
+            "own_weight": at(found.own, row),
+            "srgb": {
+                light: dict(zip(("wanted", "answered"), pair[row], strict=True))
+                for light, pair in shown.items()
+            },
+        }
+        for row, name in enumerate(found.names)
+    ]
+
+
+def swatches(found: Entries, seen: Sensor) -> list[tuple[str, str]]:
+    """``#rrggbb`` of every entry under a light: as wanted, and as answered."""
+    return list(zip(*(hex_codes(seen.rgb(part)) for part in (found.wanted, found.answered)), strict=True))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    if isinstance(value, np.ndarray | np.generic):
+        return _plain(value.tolist())
+    return None if isinstance(value, float) and not math.isfinite(value) else value

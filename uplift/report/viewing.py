@@ -1,0 +1,35 @@
+"""The lights that a report looks under, and how a screen shows what is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from uplift.cube import CubeData
+from uplift.cube.display import encode
+from uplift.observer import sensor
+from uplift.sensor import Array, Sensor
+
+LIGHTS = ("D65", "A", "FL2", "FL7", "FL11", "LED-B3")
+"""Daylight and tungsten; a cheap, a broadband and a three-band fluorescent lamp; a white LED."""
+
+
+def viewings(names: Sequence[str], observer: str) -> tuple[Sensor, ...]:
+    """An sRGB sensor under each light, each light once: its white is taken to the screen's by Bradford.
+
+    Raises `UnknownNameError`.
+    """
+    found = (sensor("sRGB", name, observer) for name in names)
+    return tuple({viewing.illuminant: viewing for viewing in found}.values())
+
+
+def hex_codes(linear: Array) -> list[str]:
+    """``#rrggbb`` of linear sRGB (n, 3); what the screen cannot show is clipped."""
+    return ["#" + bytes(code).hex() for code in np.rint(255 * encode(linear)).astype(np.uint8)]
+
+
+def screen_codes(data: CubeData, rgb: Array) -> list[str]:
+    """``#rrggbb`` of linear RGB (n, 3) of the cube's space, as its own illuminant shows them."""
+    screen = sensor("sRGB", data.sensor.illuminant, data.sensor.observer)
+    return hex_codes(data.sensor.xyz(rgb) @ screen.xyz_to_rgb.T)
