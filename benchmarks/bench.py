@@ -51,8 +51,8 @@ def main(runs: int) -> None:
 def _fits(rows: Sequence[FitTiming]) -> str:
     return table(
         "The fit, in one process: Macbeth, 9 coefficients",
-        "*compile* is what a first run takes longer than the next; *lattice* is growth and improvement; CPU time "
-        "is that of all threads.",
+        "*compile* is what a first run takes longer than the next; *lattice* is prior, growth and improvement; "
+        "CPU time is that of all threads.",
         [
             "dim",
             "points",

@@ -15,6 +15,7 @@ from uplift.atlas import on_grid, read_atlas
 from uplift.lattice import Lattice
 from uplift.models import Moments
 from uplift.models.least_change import forward
+from uplift.options import Options
 
 THRESHOLD = 1e-4
 
@@ -41,19 +42,20 @@ def time_fit(dim: int, runs: int) -> FitTiming:
     measured = spectra[sensor.holds(sensor.rgb(spectra))]
     ahead = forward(model, sensor.wavelengths, sensor.matrix)
     problem = fit.Problem(model, ahead, lattice, THRESHOLD)
-    lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11")]
+    lights = [observer.light(name) for name in Options.lights]
     rgb = sensor.rgb(measured)
     seeds = fit.seed(lattice, rgb)
 
-    def entries() -> np.ndarray:
-        return fit.fit_entries(model, ahead, measured, rgb, lights, problem.tolerance)
+    def entries() -> fit.Entries:
+        return fit.fit_entries(model, ahead, measured, rgb, lights, lights[1], problem.tolerance)
 
     jax.clear_caches()
     begin = time.perf_counter()
     found = entries()
 
     def points() -> fit.Fit:
-        return fit.fit_lattice(problem, seeds, found)
+        prior = fit.learn(problem, sensor, found, lights[1])
+        return fit.fit_lattice(problem, seeds, found.multipliers, prior)
 
     fitted = points()
     first = time.perf_counter() - begin

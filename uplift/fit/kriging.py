@@ -28,25 +28,29 @@ NEAREST = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Kriging:
-    """``places`` (E, 3) L*a*b* of the entries, ``weights`` (E, C) of the kernel around each."""
+    """``places`` (E, 3) L*a*b* of the entries, ``weights`` (E, C) of the kernel of ``length`` around each."""
 
     places: Array
     weights: Array
+    length: float = LENGTH
 
     def __call__(self, lab: Array) -> Array:
         """Deviation of the multipliers (n, C) at L*a*b* (n, 3)."""
-        return _blockwise(lambda block: _kernel(block, self.places) @ self.weights, lab, len(self.places))
+        return _blockwise(self._block, lab, len(self.places))
+
+    def _block(self, lab: Array) -> Array:
+        return _kernel(lab, self.places, self.length) @ self.weights
 
 
-def krige(places: Array, deviations: Array) -> tuple[Kriging, Array]:
+def krige(places: Array, deviations: Array, length: float = LENGTH) -> tuple[Kriging, Array]:
     """The kriging of deviations (E, C) at L*a*b* (E, 3), and what it says of each entry without it (E, C)."""
     from scipy.linalg import cho_factor, cho_solve
 
     count = len(places)
-    factor = cho_factor(_kernel(places, places) + NUGGET * np.eye(count))
+    factor = cho_factor(_kernel(places, places, length) + NUGGET * np.eye(count))
     weights = cho_solve(factor, deviations)
     inverse = cho_solve(factor, np.eye(count))
-    return Kriging(places, weights), deviations - weights / np.diag(inverse)[:, None]
+    return Kriging(places, weights, length), deviations - weights / np.diag(inverse)[:, None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,10 +84,10 @@ def uncertainty(places: Array, left_out: Array, kept: Array) -> Uncertainty:
     return Uncertainty(places, left_out**2 / variance, float((kept**2).mean()))
 
 
-def _kernel(first: Array, second: Array) -> Array:
+def _kernel(first: Array, second: Array, length: float = LENGTH) -> Array:
     from scipy.spatial.distance import cdist
 
-    return np.exp(cdist(first, second) / -LENGTH)
+    return np.exp(cdist(first, second) / -length)
 
 
 def _blockwise(function: Callable[[Array], Array], lab: Array, count: int) -> Array:

@@ -35,26 +35,29 @@ class Smooth:
     model: Model
     table: Lattice
     coefficients: Array | None
+    brightening: float = BRIGHTENING
+    grey: float = GREY
 
     def __call__(self, rgb: Array) -> Array:
         """Multipliers (n, C) of linear RGB (n, 3) in [0, 1]: nearly that colour, for the solver to finish."""
         if self.coefficients is None:
-            return _grey(self.model, rgb)
-        factor = np.maximum(rgb.max(axis=1), DARKEST)[:, None] ** BRIGHTENING
+            return _grey(self.model, rgb, self.grey)
+        factor = np.maximum(rgb.max(axis=1), DARKEST)[:, None] ** self.brightening
         corners, weights = self.table.corners(np.minimum(rgb / factor, 1))
         bright = (weights[:, None, :] @ self.coefficients[corners])[:, 0, :]
         return self.model.from_storage(factor * bright)
 
 
-def smooth(model: Model, forward: Forward) -> Smooth:
-    """Solve the table: colours brightened, each from its grey."""
+def smooth(model: Model, forward: Forward, brightening: float = BRIGHTENING, grey: float = GREY) -> Smooth:
+    """Solve the table: brightened colours, each from its grey."""
     table = Lattice(np.linspace(0, 1, DIM) ** 2)
     if model.count == NO_FREEDOM:
-        return Smooth(model, table, None)
-    found = solve(model, forward, _grey(model, table.points), table.points, tolerance=1e-5, passes=16)
-    return Smooth(model, table, model.to_storage(found.multipliers))
+        return Smooth(model, table, None, brightening, grey)
+    start = _grey(model, table.points, grey)
+    found = solve(model, forward, start, table.points, tolerance=1e-5, passes=16)
+    return Smooth(model, table, model.to_storage(found.multipliers), brightening, grey)
 
 
-def _grey(model: Model, rgb: Array) -> Array:
-    level = np.clip(rgb.mean(axis=1) ** GREY, DARKEST, LIGHTEST)
+def _grey(model: Model, rgb: Array, power: float) -> Array:
+    level = np.clip(rgb.mean(axis=1) ** power, DARKEST, LIGHTEST)
     return model.unsquash(level)[:, None] * model.constant()

@@ -1,0 +1,57 @@
+"""Crowding: how many lattice points an atlas needs."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+import uplift
+from benchmarks.fidelity.materials import SENSOR, ahead, entries, large, materials, spectra
+from benchmarks.page import table
+from uplift import fit, observer
+from uplift.fit.crowding import DIMS, lattice_error
+from uplift.lattice import Lattice
+from uplift.models import Moments
+from uplift.options import AXES, Options
+
+WITHIN = (0.5, 1.0)
+
+
+def sections() -> list[str]:
+    model, rows = Moments(9), []
+    lights = [observer.light(name) for name in Options.lights]
+    for name in ("macbeth", *large()):
+        found = entries(model, materials(name))
+        for axis in AXES:
+            cells = []
+            for dim in DIMS[1::2]:
+                problem = fit.Problem(model, ahead(model), Lattice(observer.axis_nodes(axis, dim)))
+                errors = lattice_error(problem, SENSOR.wavelengths, lights, found)
+                cells.append(f"{np.median(errors):.2f} / {int((errors > WITHIN[0]).sum())}")
+            rows.append([f"{name} ({len(found.rgb)})", axis, *cells])
+        rows.append(
+            [
+                name,
+                "--dim auto",
+                *(["", *[_auto(name, within) for within in WITHIN]] + [""] * 9)[: len(cells)],
+            ]
+        )
+    return [
+        table(
+            "Crowding",
+            "What the lattice alone, before entries become nodes of it, makes of the entries at their own colours: "
+            f"ΔE00 against their stored spectra, the largest under {', '.join(Options.lights)}: median / entries over "
+            f"{WITHIN[0]:g}. *--dim auto* shows what it chooses with --within "
+            f"{' and '.join(f'{within:g}' for within in WITHIN)}.",
+            ["atlas (entries)", "axis", *(f"{dim}³" for dim in DIMS[1::2])],
+            rows,
+        )
+    ]
+
+
+def _auto(name: str, within: float) -> str:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        options = uplift.build(spectra(name), dim="auto", within=within).data.provenance["options"]
+    return f"{within:g}: {options['dim']}³ {options['axis']}"

@@ -1,0 +1,159 @@
+"""Whole cubes, 32³: entries at their own colours, half an atlas for the other half, errors stated, smoothness."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+import uplift
+from benchmarks.fidelity.between import whole_spectra
+from benchmarks.fidelity.materials import HEAD, JUDGED_ON, large, materials, row, spectra
+from benchmarks.page import table
+from uplift.lookup import Cube
+from uplift.models import Moments
+from uplift.report.smoothness import smoothness
+from uplift.sensor import Array
+from uplift.study.held_out import Split, halves, judge
+
+DIM = 32
+COUNTS = (9, 13, 17)
+SPLITS = 3
+
+
+def sections() -> list[str]:
+    found = {
+        (name, count): halves(spectra(name), SPLITS, dim=DIM, coefficients=count)
+        for name in large()
+        for count in COUNTS
+    }
+    return [_own(), _halves(found), _targets(found), _stated(found), _smoothness()]
+
+
+def build(name: str | None, **options: object) -> Cube:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        return uplift.build(spectra(name) if name else None, **{"dim": DIM, **options})
+
+
+def _own() -> str:
+    rows = []
+    for name in (*JUDGED_ON, "rawtoaces"):
+        some = materials(name)
+        for label, cube in {
+            "9 coefficients": build(name),
+            "17 coefficients": build(name, coefficients=17),
+            "9, without the atlas": build(None),
+            "sigmoid": build(name, model="sigmoid"),
+        }.items():
+            rows.append([name, *row(label, cube.reflectance(some.rgb), some)])
+    return table(
+        "Atlas entries asked at their own colours",
+        f"Cubes of {DIM}³. Entries are nodes of the lattice: what is left is what the coefficients lose.",
+        ["atlas", "cube", *HEAD],
+        rows,
+    )
+
+
+def _halves(found: dict[tuple[str, int], tuple[Split, ...]]) -> str:
+    rows = []
+    for (name, count), splits in found.items():
+        for method in splits[0].errors:
+            means = np.array([split.errors[method].means() for split in splits])
+            cells = [
+                f"{mean:.3f} ± {spread:.3f}" for mean, spread in zip(means.mean(0), means.std(0), strict=True)
+            ]
+            rows.append([name, str(count), method, *cells])
+        if count in (9, 17):
+            limit = np.mean([_limit(name, count, seed) for seed in range(SPLITS)], axis=0)
+            rows.append(
+                [name, str(count), "*limit:* whole spectra kriged", *(f"{value:.3f}" for value in limit)]
+            )
+    return table(
+        "Half of an atlas for the other half",
+        f"Cubes of {DIM}³ from one half, asked at the colours of the other; {SPLITS} splits, ± their spread. "
+        "*Whole spectra kriged* has 81 samples for every colour, and neither stays within [0, 1] nor has the colour.",
+        ["atlas", "coefficients", "cube", *HEAD],
+        rows,
+    )
+
+
+def _limit(name: str, count: int, seed: int) -> Array:
+    some = materials(name)
+    kept, asked = np.array_split(np.random.default_rng(seed).permutation(len(some.rgb)), 2)
+    answered = whole_spectra(some.take(kept), some.take(asked), Moments(count))
+    return judge(answered, some.measured[asked]).means()
+
+
+def _targets(found: dict[tuple[str, int], tuple[Split, ...]]) -> str:
+    rows = []
+    for (name, count), splits in found.items():
+        ours, sigmoid, plain = (
+            np.array([split.errors[method].means() for split in splits]).mean(axis=0)
+            for method in ("half the atlas", "sigmoid", "without an atlas")
+        )
+        share, against = ours / sigmoid, ours / plain
+        worst = HEAD[1 + int(against[1:].argmax())]
+        rows.append(
+            [
+                name,
+                str(count),
+                f"{share[0]:.2f}",
+                f"{share[1]:.2f}",
+                f"{share[4]:.2f}",
+                f"{against[1:].max():.2f} ({worst})",
+            ]
+        )
+    return table(
+        "The same in shares",
+        "Of the sigmoid's rms and ΔE00; and the light that the atlas helps least under, in shares of ΔE00 without one.",
+        ["atlas", "coefficients", "rms", "A", "FL11", "least helped"],
+        rows,
+    )
+
+
+def _stated(found: dict[tuple[str, int], tuple[Split, ...]]) -> str:
+    rows = []
+    for (name, count), splits in found.items():
+        real = np.concatenate([split.real for split in splits])
+        stated = np.concatenate([np.asarray(split.stated) for split in splits])
+        quarters = [
+            f"{_root(real[part]):.2f} / {_root(stated[part]):.2f}"
+            for part in np.array_split(stated.argsort(kind="stable"), 4)
+        ]
+        shares = (f"{(real < width * stated).mean():.0%}" for width in (1, 2))
+        rows.append([name, str(count), f"{_root(real):.2f} / {_root(stated):.2f}", *shares, *quarters])
+    return table(
+        "Standard errors that cubes state, and real ones",
+        "ΔE00 under A of the half that the cube has not seen, as roots of mean squares: real / stated; how many of the "
+        "real errors lie within one and within two stated ones; and the same for the four quarters of the colours, "
+        "from those that the cube is most sure of to those that it is least sure of.",
+        ["atlas", "coefficients", "all", "within 1", "within 2", "surest", "second", "third", "least sure"],
+        rows,
+    )
+
+
+def _root(errors: Array) -> float:
+    return float(np.sqrt((errors**2).mean()))
+
+
+def _smoothness() -> str:
+    rows = []
+    for name in (None, "macbeth", "rawtoaces", *large()[2:]):
+        for count in (9, 17):
+            steps = smoothness(build(name, coefficients=count).data).differences
+            rows.append(
+                [
+                    name or "none",
+                    str(count),
+                    f"{steps.mean():.4f}",
+                    f"{np.quantile(steps, 0.99):.3f}",
+                    f"{steps.max():.3f}",
+                ]
+            )
+    return table(
+        "Smoothness of the lattice",
+        f"rms difference between the spectra of neighbouring points along the axes, {DIM}³: mean, 99 % and largest.",
+        ["atlas", "coefficients", "mean", "99 %", "largest"],
+        rows,
+    )

@@ -1,0 +1,119 @@
+"""``uplift study held-out``: what a cube makes of materials that it has not seen."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .options import format_option
+from .output import console
+from .progress import counting
+from .study_atlases import SHIPPED, read_each
+
+if TYPE_CHECKING:
+    from uplift.study.held_out import Split
+
+Found = dict[str, "tuple[Split, ...]"]
+
+
+@click.command("held-out")
+@click.option(
+    "--atlas", "files", metavar="FILE", multiple=True, help=f"Atlas; may be repeated. [default: {SHIPPED}]"
+)
+@click.option("--splits", default=3, show_default=True, help="Ways to halve each atlas.")
+@click.option("--dim", default=32, show_default=True, help="Lattice points along each axis.")
+@click.option("--moments", default=8, show_default=True, help="Moments per spectrum, 2 to 16.")
+@format_option("table", "json", "csv")
+def held_out(files: tuple[str, ...], splits: int, dim: int, moments: int, style: str) -> None:
+    """Build cubes from half of an atlas, ask them for the other half, and compare with the measurements.
+
+    Beside them stand cubes without an atlas, of moments and of sigmoids: rms over the spectrum, and mean ΔE00 under
+    A, FL2, FL7, FL11, LED-B3, LED-RGB1 and HP1. Then the standard errors that the cubes state, and the real ones.
+
+    \b
+    Examples:
+      uplift study held-out --atlas paints.csv
+      uplift study held-out --atlas atlases/rawtoaces.txt --moments 16 --splits 10
+      uplift study held-out --format json
+    """
+    from .startup import keep_compiled
+
+    keep_compiled()
+    from uplift.study.held_out import halves
+
+    atlases = read_each(files)
+    found: Found = {}
+    for name, spectra in atlases.items():
+        with counting(name) as watch:
+            total = splits + 2
+            found[name] = halves(
+                spectra, splits, lambda done: watch(done, total), dim=dim, coefficients=moments + 1
+            )
+    PRINTERS[style](found)
+
+
+def _records(found: Found) -> list[dict[str, Any]]:
+    from uplift.study.held_out import LIGHTS, calibration
+
+    records = []
+    for name, splits in found.items():
+        for method in splits[0].errors:
+            rms, *delta_e = sum(split.errors[method].means() for split in splits) / len(splits)
+            record = {"atlas": name, "cube": method, "colours": len(splits[0].real), "rms": float(rms)}
+            records.append(record | dict(zip(LIGHTS, map(float, delta_e), strict=True)))
+        records[-len(splits[0].errors)]["standard_error"] = calibration(splits)
+    return records
+
+
+def _print_json(found: Found) -> None:
+    click.echo(json.dumps(_records(found), indent=2, ensure_ascii=False))
+
+
+def _print_csv(found: Found) -> None:
+    from uplift.study.held_out import LIGHTS
+
+    text = io.StringIO()
+    writer = csv.DictWriter(
+        text, ["atlas", "cube", "colours", "rms", *LIGHTS], extrasaction="ignore", lineterminator="\n"
+    )
+    writer.writeheader()
+    writer.writerows(_records(found))
+    click.echo(text.getvalue(), nl=False)
+
+
+def _print_table(found: Found) -> None:
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    from uplift.study.held_out import LIGHTS
+
+    table = Table(box=box.SIMPLE_HEAD)
+    for heading in ("atlas", "cube"):
+        table.add_column(heading, no_wrap=True)
+    for heading in ("rms", *LIGHTS):
+        table.add_column(heading, justify="right", no_wrap=True)
+    sayings = []
+    for record in _records(found):
+        cells = [f"{record['rms']:.4f}", *(f"{record[light]:.3f}" for light in LIGHTS)]
+        table.add_row(Text(record["atlas"]), record["cube"], *cells)
+        if record.get("standard_error"):
+            sayings.append((record["atlas"], record["standard_error"]))
+    console().print(table)
+    for name, said in sayings:
+        click.echo(
+            f"{name}: stated standard error ΔE00 {said['stated']:.2f}, real {said['real']:.2f}; "
+            f"{said['within_1']:.0%} within one, {said['within_2']:.0%} within two"
+        )
+
+
+PRINTERS: dict[str, Callable[[Found], None]] = {
+    "table": _print_table,
+    "json": _print_json,
+    "csv": _print_csv,
+}
