@@ -58,14 +58,16 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, moments: int, style:
 
 
 def _records(found: Found) -> list[dict[str, Any]]:
+    import numpy as np
+
     from uplift.study.held_out import LIGHTS, calibration
 
-    records = []
+    records: list[dict[str, Any]] = []
     for name, splits in found.items():
         for method in splits[0].errors:
-            rms, *delta_e = sum(split.errors[method].means() for split in splits) / len(splits)
-            record = {"atlas": name, "cube": method, "colours": len(splits[0].real), "rms": float(rms)}
-            records.append(record | dict(zip(LIGHTS, map(float, delta_e), strict=True)))
+            rms, *delta_e = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
+            record = {"atlas": name, "cube": method, "colours": len(splits[0].real), "rms": rms}
+            records.append(record | dict(zip(LIGHTS, delta_e, strict=True)))
         records[-len(splits[0].errors)]["standard_error"] = calibration(splits)
     return records
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 
-import uplift
-from benchmarks.fidelity.materials import SENSOR, ahead, entries, large, materials, spectra
+from benchmarks.fidelity.materials import SENSOR, ahead, entries, large, materials
 from benchmarks.page import table
 from uplift import fit, observer
 from uplift.fit.crowding import DIMS, lattice_error
 from uplift.lattice import Lattice
 from uplift.models import Moments
 from uplift.options import AXES, Options
+from uplift.sensor import Light
 
 WITHIN = (0.5, 1.0)
 
@@ -30,13 +28,8 @@ def sections() -> list[str]:
                 errors = lattice_error(problem, SENSOR.wavelengths, lights, found)
                 cells.append(f"{np.median(errors):.2f} / {int((errors > WITHIN[0]).sum())}")
             rows.append([f"{name} ({len(found.rgb)})", axis, *cells])
-        rows.append(
-            [
-                name,
-                "--dim auto",
-                *(["", *[_auto(name, within) for within in WITHIN]] + [""] * 9)[: len(cells)],
-            ]
-        )
+        chosen = [_auto(model, found, lights, within) for within in WITHIN]
+        rows.append([name, "--dim auto", *chosen, *[""] * (len(cells) - len(chosen))])
     return [
         table(
             "Crowding",
@@ -50,8 +43,9 @@ def sections() -> list[str]:
     ]
 
 
-def _auto(name: str, within: float) -> str:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
-        options = uplift.build(spectra(name), dim="auto", within=within).data.provenance["options"]
-    return f"{within:g}: {options['dim']}³ {options['axis']}"
+def _auto(model: Moments, found: fit.Entries, lights: list[Light], within: float) -> str:
+    problem = fit.Problem(model, ahead(model), Lattice(observer.axis_nodes("srgb", 2)))
+    axis, dim, lost = fit.roomiest(
+        problem, SENSOR.wavelengths, lights, found, observer.axis_nodes, AXES, within
+    )
+    return f"{within:g}: {dim}³ {axis}" + (f", {lost} over" if lost else "")

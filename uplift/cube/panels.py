@@ -49,9 +49,13 @@ class Panel:
 
 
 def panels(data: CubeData) -> tuple[Panel, ...]:
-    """Lattice RGB, fitting distance, status and, with debug information, the round."""
-    shown = (_colour(data), _distance(data), _status(data))
-    return shown if data.round is None else (*shown, _round(data.round))
+    """Lattice RGB, fitting distance, status; where the cube has them, standard error and round."""
+    shown = [_colour(data), _distance(data), _status(data)]
+    if data.standard_error is not None:
+        shown.append(_error(data.standard_error, data.reference))
+    if data.round is not None:
+        shown.append(_round(data.round))
+    return tuple(shown)
 
 
 def _colour(data: CubeData) -> Panel:
@@ -79,6 +83,11 @@ def _status(data: CubeData) -> Panel:
         for colour, (label, count) in zip(STATUS, counts, strict=True)
     )
     return Panel("Status", STATUS[data.status], tuple(keys))
+
+
+def _error(errors: NDArray[np.float32], light: str) -> Panel:
+    key = Key(_ramp(np.linspace(0, 1, 64)), f"0 to {errors.max():.2g} ΔE00 under {light}")
+    return Panel("Standard error", _ramp(errors / errors.max()), (key,))
 
 
 def _round(rounds: NDArray[np.int16]) -> Panel:

@@ -20,7 +20,7 @@ BACKGROUND = 0.03
 PANEL = 640
 """Pixels that a panel is about wide, so that a sheet is one to two thousand."""
 GAP = 3
-ACROSS = {3: 3, 4: 2}
+ACROSS = {3: 3, 4: 2, 5: 3}
 """Panels side by side, by how many there are."""
 LINES = 3
 """Of keys, under every panel."""

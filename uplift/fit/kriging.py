@@ -7,9 +7,10 @@ Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25, 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 
 from uplift.sensor import Array
@@ -18,7 +19,7 @@ LENGTH = 6.0
 """Distance in CIE L*a*b*, by cross-validation: docs/fidelity.md."""
 NUGGET = 1e-3
 """Share of a deviation that is noise: entries of the same colour and another spectrum average."""
-BLOCK = 1 << 22
+BLOCK = 1 << 20
 """Numbers of the kernel held at a time."""
 PRIOR_COUNT = 2.0
 """How many entries' worth the mean error of all counts where a colour has its own neighbours."""
@@ -36,10 +37,7 @@ class Kriging:
 
     def __call__(self, lab: Array) -> Array:
         """Deviation of the multipliers (n, C) at L*a*b* (n, 3)."""
-        return _blockwise(self._block, lab, len(self.places))
-
-    def _block(self, lab: Array) -> Array:
-        return _kernel(lab, self.places, self.length) @ self.weights
+        return _heard(lab, self.places, self.weights, self.length)[0]
 
 
 def krige(places: Array, deviations: Array, length: float = LENGTH) -> tuple[Kriging, Array]:
@@ -67,13 +65,10 @@ class Uncertainty:
 
     def __call__(self, lab: Array) -> Array:
         """Standard error (n,), ΔE00, at L*a*b* (n, 3)."""
-        return _blockwise(self._block, lab, len(self.places))
-
-    def _block(self, lab: Array) -> Array:
-        kernel = _kernel(lab, self.places)
-        local = kernel @ self.squares + PRIOR_COUNT * self.squares.mean()
-        spread = local / (kernel.sum(axis=1) + PRIOR_COUNT)
-        return np.sqrt((1 - kernel.max(axis=1) ** 2) * spread + self.floor)
+        columns = np.stack([self.squares, np.ones(len(self.squares))], axis=1)
+        sums, nearest = _heard(lab, self.places, columns)
+        spread = (sums[:, 0] + PRIOR_COUNT * self.squares.mean()) / (sums[:, 1] + PRIOR_COUNT)
+        return np.asarray(np.sqrt((1 - nearest**2) * spread + self.floor))
 
 
 def uncertainty(places: Array, left_out: Array, kept: Array) -> Uncertainty:
@@ -90,6 +85,24 @@ def _kernel(first: Array, second: Array, length: float = LENGTH) -> Array:
     return np.exp(cdist(first, second) / -length)
 
 
-def _blockwise(function: Callable[[Array], Array], lab: Array, count: int) -> Array:
-    size = max(BLOCK // max(count, 1), 1)
-    return np.concatenate([function(lab[i : i + size]) for i in range(0, len(lab), size)])
+def _heard(lab: Array, places: Array, columns: Array, length: float = LENGTH) -> tuple[Array, Array]:
+    """At L*a*b* (n, 3): entries' columns (E, K) summed by their correlation, (n, K), and the largest of it (n,)."""
+    rows = max(min(BLOCK // max(len(places), 1), len(lab)), 1)
+    sums, nearest = np.empty((len(lab), columns.shape[1])), np.empty(len(lab))
+    with jax.enable_x64(True):
+        for first in range(0, len(lab), rows):
+            part = slice(first, first + rows)
+            block = np.resize(lab[part], (rows, 3))  # the last one filled up, so that one shape is compiled
+            found = _heard_block(block, places, columns, length)
+            count = len(lab[part])
+            sums[part], nearest[part] = (np.asarray(array)[:count] for array in found)
+    return sums, nearest
+
+
+@jax.jit
+def _heard_block(
+    lab: jax.Array, places: jax.Array, columns: jax.Array, length: float
+) -> tuple[jax.Array, jax.Array]:
+    apart = ((lab[:, None] - places[None]) ** 2).sum(axis=-1)
+    kernel = jnp.exp(jnp.sqrt(apart) / -length)
+    return kernel @ columns, kernel.max(axis=1)
