@@ -1,4 +1,4 @@
-"""CIE L*a*b* and ΔE00 in numpy alone, for all who may not import colour-science: lookup, slices, checks.
+"""CIE L*a*b*, ΔE76 and ΔE00 in numpy alone, for all who may not import colour-science: lookup, slices, checks.
 
 One implementation for the whole project; the tests hold it against colour-science and the published pairs.
 """
@@ -16,6 +16,11 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
     t = np.asarray(xyz, dtype=float) / np.asarray(white, dtype=float)
     x, y, z = np.moveaxis(np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29), -1, 0)
     return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
+
+
+def delta_e_1976(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
+    """CIE 1976 colour difference (…) of L*a*b* (…, 3): their distance (CIE 15:2004, 8.2.1.3)."""
+    return np.asarray(np.linalg.norm(np.subtract(lab_1, lab_2), axis=-1))
 
 
 def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:

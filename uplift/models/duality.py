@@ -15,7 +15,7 @@ from uplift.errors import UpliftError
 from uplift.sensor import Array
 
 Complex = NDArray[np.complex128]
-RealOrComplex = TypeVar("RealOrComplex", Array, Complex)
+RealOrComplex = TypeVar("RealOrComplex", bound=Array | Complex)
 """Real where the signal is mirrored, and so even in the phase; complex over the whole circle."""
 
 _FIRST_NODES = 256

@@ -1,0 +1,1 @@
+"""Studies: what the choices behind the models are worth, measured on atlases."""
