@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench accuracy atlases cubes lock clean
+.PHONY: build test bench accuracy study atlases cubes lock clean
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -27,6 +27,9 @@ bench: $(INSTALLED)
 
 accuracy: $(INSTALLED)
 	$(BIN)/python -m benchmarks.accuracy
+
+study: $(INSTALLED)
+	$(BIN)/python -m benchmarks.study
 
 # Data made by the project's own tools; commit what they write.
 atlases: $(INSTALLED)

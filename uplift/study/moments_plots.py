@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -64,13 +65,13 @@ def plot_errors(rows: Mapping[str, Mapping[Technique, Curve]], path: Path, *, fo
 def plot_patches(study: Study, path: Path, *, force: bool = False) -> None:
     """Draw the thesis's patches, or the first entries where it is another atlas. Raises `OutputError`."""
     held = [study.names.index(name) for name in PATCHES if name in study.names]
-    _plot_spectra(study, held or range(min(2, len(study.names))), path, force=force)
+    _plot_spectra(study, [held or range(min(2, len(study.names)))], path, force=force)
 
 
 def plot_worst(study: Study, path: Path, *, force: bool = False) -> None:
-    """Draw the worst entries of mirroring with the warp and without it. Raises `OutputError`."""
-    worst = [study.of(technique, _compared(study)).worst for technique in COLOURS]
-    _plot_spectra(study, worst, path, force=force)
+    """Draw the worst two entries of mirroring with the warp (top) and without it. Raises `OutputError`."""
+    errors = study.errors[: len(COLOURS), _compared(study), :, 0]
+    _plot_spectra(study, [np.argsort(row)[::-1][:2] for row in errors], path, force=force)
 
 
 def _draw_curves(axes: Any, found: Mapping[Technique, Curve], key: str) -> None:
@@ -87,30 +88,37 @@ def _draw_curves(axes: Any, found: Mapping[Technique, Curve], key: str) -> None:
             label=technique.label,
         )
     axes.set_yscale("log")
+    axes.yaxis.set_major_formatter("{x:g}")
     plain(axes)
 
 
-def _plot_spectra(study: Study, rows: Sequence[int], path: Path, *, force: bool) -> None:
-    figure = new_figure(9.0, 3.8)
-    panels = figure.subplots(1, len(rows), sharey=True, squeeze=False)[0]
-    for axes, row in zip(panels, rows, strict=True):
-        _draw_entry(axes, study, row)
-    for axes in panels[1:]:
+def _plot_spectra(study: Study, rows: Sequence[Iterable[int]], path: Path, *, force: bool) -> None:
+    """A panel for every entry of every row; all rows are as long."""
+    entries = [list(row) for row in rows]
+    figure = new_figure(9.0, 3.6 * len(entries))
+    panels = figure.subplots(len(entries), len(entries[0]), squeeze=False)
+    for axes, entry in zip(panels.flat, itertools.chain(*entries), strict=True):
+        _draw_entry(axes, study, entry)
+    for axes in panels[:, 1:].flat:
         axes.set_ylabel("")
+    for axes in panels[:-1].flat:
+        axes.set_xlabel("")
     write_png(figure, path, force=force)
 
 
-def _draw_entry(axes: Any, study: Study, row: int) -> None:
-    measured, moments = study.measured[row : row + 1], _compared(study)
+def _draw_entry(axes: Any, study: Study, entry: int) -> None:
+    measured, moments = study.measured[entry : entry + 1], _compared(study)
     axes.plot(fine_grid(), measured[0], color="0.15", linewidth=3.0, alpha=0.35, label="measured")
     for technique, colour in COLOURS.items():
         kept = technique.moments(measured, fine_grid(), moments)
-        apart = study.errors[TECHNIQUES.index(technique), moments, row, 0]
+        apart = study.errors[TECHNIQUES.index(technique), moments, entry, 0]
         label = f"{'warped' if technique.warped else 'unwarped'}, ΔE76 {apart:.2f}"
         found = technique.reconstruct(kept, fine_grid())[0]
         axes.plot(fine_grid(), found, color=colour, linewidth=1.5, label=label)
     spectral(axes)
-    title = f"{study.names[row]} ({study.atlases[row]}), mirrored, {moments + 1} floats"
+    # Dark entries fill their panel; the headroom is the legend's.
+    axes.set_ylim(0, min(1.02, 1.5 * measured.max() + 0.02))
+    title = f"{study.names[entry]} ({study.atlases[entry]}), mirrored, {moments + 1} floats"
     axes.set_title(title, loc="left", fontsize=10)
     axes.legend(frameon=False, fontsize=9)
 
