@@ -30,23 +30,23 @@ their seeds are (section 6).
 
 ## What is seen
 
-- **Mirroring wins**, as in the thesis: at 3, 5, 9, 13 and 16 floats the best technique is a mirrored one, in the mean
-  and at worst. A moment of the whole circle tells more than one of the half, but takes two floats; and where the
-  ends of a spectrum differ, the circle has a jump that no few waves follow, so that from 9 floats
-  on the best rms difference of unmirrored spectra is over three times that of mirrored ones.
+- **Mirroring wins**: at 3, 5, 9, 13 and 16 floats the best technique is a mirrored one, in the mean, as in the thesis,
+  and at worst, where the thesis has all but one level from 13 on. A moment of the whole circle tells more than one of
+  the half, but takes two floats; and where the ends of a spectrum differ, the circle has a jump that no few waves
+  follow, so that from 9 floats on the best rms difference unmirrored is over three times that of mirroring.
 - **Warping wins with few floats**, as in the thesis: in the mean up to 6. Then the two take turns: unwarped at 7,
   warped from 8 to 12, unwarped from 13 on. At worst our warp is ahead up to 14 floats; the thesis's falls behind at 8.
 - **Nine floats, the default**: 0.27 in the mean warped and 0.43 unwarped, 1.6 and 1.7 at worst; the thesis has 0.26
   and 0.62, 1.95 and 1.43. The warp is ahead in the mean ΔE00 under each of the six lights too, but not in shape: by
-  rms the unwarped spectra are nearer at every one of the five sizes. That is what the thesis decided by, and why cubes
-  are not warped by default.
+  rms the unwarped spectra are nearer at every one of the five sizes. Shape is what the thesis decided by, for
+  mirroring without the warp; it is the default of cubes here too.
 
 ## Where ours differ from the thesis's, and why
 
-- *Few floats with the warp* (10.2 at 3 floats against 1.65): another warp. The thesis takes that of Peters et al.
-  2019; ours is the density by which hero-wavelength renderers sample (`models/phase.py`). A warp whose density
-  follows the colour-matching functions more than halves the error at 3 floats, one fitted to it leaves about a tenth
-  (below: how much the warp decides), so a warp made for colour explains the thesis's figures.
+- *Few floats with the warp* (10.2 at 3 floats against 1.65): another warp. The thesis follows Peters et al. 2019 and
+  does not print its function; ours is the density by which hero-wavelength renderers sample (`models/phase.py`). A
+  warp whose density follows the colour-matching functions more than halves the error at 3 floats, one fitted to it
+  leaves about a tenth (below: how much the warp decides), so a warp made for colour explains the thesis's figures.
 - *Many floats*: the thesis's errors stop at about 0.2 in the mean and 1 at worst, ours go on falling to hundredths.
   Moments of reflectances have no such floor. It may come from how they were computed, or from spectra that leave
   [0, 1], as papers with optical brightener do, and that nothing bounded can follow; the thesis does not say.

@@ -121,16 +121,17 @@ def _print_table(found: Study) -> None:
 
     from uplift.study.technique import TECHNIQUES
 
-    caption = f"mean / largest ΔE76 under D65 of {len(found.names)} entries, and floats stored"
+    caption = (
+        f"mean / largest ΔE76 under D65 of {len(found.names)} entries\n"
+        "n moments take n + 1 floats mirrored, 2n + 1 unmirrored"
+    )
     table = Table(box=box.SIMPLE_HEAD, caption=caption)
     table.add_column("moments", justify="right")
     for technique in TECHNIQUES:
-        table.add_column(technique.label, justify="right", no_wrap=True)
-        table.add_column("floats", justify="right", style="dim")
+        table.add_column(technique.label.replace(" ", "\n"), justify="right", no_wrap=True)
     for count in range(found.most + 1):
         results = [found.of(technique, count) for technique in TECHNIQUES]
-        cells = [(f"{one.mean[0]:.2f} / {one.most[0]:6.2f}", str(one.floats)) for one in results]
-        table.add_row(str(count), *(cell for pair in cells for cell in pair))
+        table.add_row(str(count), *(f"{one.mean[0]:.2f} / {one.most[0]:6.2f}" for one in results))
     console().print(table)
 
 
