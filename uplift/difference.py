@@ -1,4 +1,4 @@
-"""CIE L*a*b* and ΔE00 in numpy alone, for all who may not import colour-science: lookup, slices, checks.
+"""CIE L*a*b*, ΔE76 and ΔE00 in numpy alone, for all who may not import colour-science: lookup, slices, checks.
 
 One implementation for the whole project; the tests hold it against colour-science and the published pairs.
 """
@@ -21,6 +21,11 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
 def rgb_lab(sensor: Sensor, rgb: ArrayLike) -> Array:
     """CIE L*a*b* (…, 3) of linear RGB (…, 3) under the build illuminant."""
     return lab(sensor.xyz(rgb), sensor.light.white)
+
+
+def delta_e_1976(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
+    """CIE 1976 colour difference (…) of L*a*b* (…, 3): their distance (CIE 15:2004, 8.2.1.3)."""
+    return np.asarray(np.linalg.norm(np.subtract(lab_1, lab_2), axis=-1))
 
 
 def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:

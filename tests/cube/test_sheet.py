@@ -20,7 +20,7 @@ from uplift.lattice import Status
 
 from .hand_made import hand_made
 
-COLOUR, DISTANCE, STATE, ROUND = range(4)
+COLOUR, DISTANCE, STATE, ERROR, ROUND = range(5)
 
 
 def pixel(data, image, panel, position):
@@ -78,6 +78,7 @@ def test_keys_count_the_points():
     over = int((data.distance > data.threshold).sum())
     assert keys[DISTANCE][1] == f"over the threshold: {over} point{'s' * (over != 1)}; largest distance 0.25"
     assert keys[STATE] == [f"{label}: {count}" for label, count in data.counts().items()]
+    assert keys[ERROR] == [f"0 to {data.standard_error.max():.2g} ΔE00 under A"]
     assert keys[ROUND] == ["0 to 3", "fitted in no round: 13 points"]
 
 
@@ -90,15 +91,15 @@ def test_a_cube_that_no_round_fitted():
     assert (panel.colours == LOUD).all()
 
 
-def test_no_round_without_debug_information():
-    data = hand_made(round=None)
+def test_no_round_without_debug_information_and_no_error_without_an_atlas():
+    data = hand_made(round=None, standard_error=None)
     sheet = compose(data)
     assert sheet.image.shape[1::-1] == Layout(4, 3).size
-    assert "Round" not in {label.text for label in sheet.labels}
+    assert not {"Round", "Standard error"} & {label.text for label in sheet.labels}
 
 
 @pytest.mark.parametrize("dim", [2, 3, 5, 16, 23, 37, 46, 64])
-@pytest.mark.parametrize("count", [3, 4])
+@pytest.mark.parametrize("count", [3, 4, 5])
 def test_layout(dim, count):
     layout = Layout(dim, count)
     width, height = layout.size
@@ -151,7 +152,7 @@ def test_png_is_the_same_in_srgb(tmp_path):
     data = hand_made()
     write_sheet(data, tmp_path / "sheet.png")
     image = imread(tmp_path / "sheet.png")
-    assert image.shape[1::-1] == Layout(4, 4).size
+    assert image.shape[1::-1] == Layout(4, 5).size
     for position in ((0, 0, 0), (3, 1, 2), (1, 3, 0)):
         expected = encode(data.rgb[data.lattice.index(np.array(position))])
         np.testing.assert_allclose(pixel(data, image[..., :3], COLOUR, position), expected, atol=0.51 / 255)

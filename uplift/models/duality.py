@@ -6,6 +6,8 @@ rendering", ACM TOG 38(4); Markoff 1896 for the duality between bounded and unbo
 
 from __future__ import annotations
 
+from typing import TypeVar, cast
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,8 @@ from uplift.errors import UpliftError
 from uplift.sensor import Array
 
 Complex = NDArray[np.complex128]
+RealOrComplex = TypeVar("RealOrComplex", bound=Array | Complex)
+"""Real where the signal is mirrored, and so even in the phase; complex over the whole circle."""
 
 _FIRST_NODES = 256
 _MOST_NODES = 1 << 16
@@ -25,6 +29,13 @@ _INWARD = (0.0, 1e-10, 1e-8, 1e-6, 1e-4)
 def cosines(phase: Array, count: int) -> Array:
     """(N, C) table of 1, 2 cos φ, …, 2 cos mφ: the linear part of the spectrum."""
     table = 2 * np.cos(phase[:, None] * np.arange(count))
+    table[:, 0] = 1
+    return table
+
+
+def waves(phase: Array, count: int) -> Complex:
+    """(N, C) table of 1, 2 exp(iφ), …, 2 exp(imφ): its real part with complex multipliers is the linear part."""
+    table = 2 * np.exp(1j * phase[:, None] * np.arange(count))
     table[:, 0] = 1
     return table
 
@@ -47,8 +58,11 @@ def moments_from_multipliers(multipliers: Array) -> Array:
     return moments
 
 
-def multipliers_from_moments(moments: Array) -> Array:
-    """Multipliers (n, C) of the bounded maximum-entropy spectra with moments (n, C).
+def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
+    """Multipliers (n, C) of the bounded maximum-entropy spectra with moments (n, C), real or complex alike.
+
+    Complex moments are (1/2π) ∫ g(φ) exp(−ijφ) dφ, the zeroth real; g = ½ + arctan(Re Σ p_l w_l) / π with
+    w the `waves`. Real ones are those of an even g.
 
     Moments so near the boundary of the moment space that the recursion breaks down are blended with
     those of a grey, by 1e−10 at first and 1e−4 at the most.
@@ -57,8 +71,8 @@ def multipliers_from_moments(moments: Array) -> Array:
     ------
     UpliftError : no reflectance has these moments.
     """
-    grey = np.zeros(moments.shape[1])
-    grey[0] = 0.5
+    grey = np.zeros_like(moments[:1])
+    grey[:, 0] = 0.5
     multipliers = np.empty_like(moments)
     left = np.arange(len(moments))
     for share in _INWARD:
@@ -104,30 +118,33 @@ def _projection(table: Array) -> Array:
     return projection
 
 
-def _dual(moments: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _dual(moments: RealOrComplex) -> tuple[RealOrComplex, NDArray[np.bool_]]:
     """Multipliers by docs/mathematics.md, 4, and where they can be trusted."""
     with np.errstate(all="ignore"):
         # The dual knows the zeroth moment only up to whole numbers.
-        bounded = (moments[:, 0] >= 0) & (moments[:, 0] <= 1)
+        bounded = (moments[:, 0].real >= 0) & (moments[:, 0].real <= 1)
         exponential = _exponential_moments(moments)
         column = exponential / 2
         column[:, 0] = exponential[:, 0].real
         q, positive = levinson(column)
-        multipliers = _bounded(exponential, q)
+        found = _bounded(exponential, q)
+        multipliers = cast(RealOrComplex, found.real if np.isrealobj(moments) else found)
     return multipliers, bounded & positive & np.isfinite(multipliers).all(axis=1)
 
 
-def _exponential_moments(moments: Array) -> Complex:
+def _exponential_moments(moments: RealOrComplex) -> Complex:
     h = np.empty(moments.shape, dtype=complex)
-    h[:, 0] = np.exp(1j * np.pi * (moments[:, 0] - 0.5))
+    h[:, 0] = np.exp(1j * np.pi * (moments[:, 0].real - 0.5))
     for order in range(1, moments.shape[1]):
         steps = np.arange(order, 0, -1)
         h[:, order] = 2j * np.pi / order * (steps * moments[:, order:0:-1] * h[:, :order]).sum(axis=1)
     return h
 
 
-def _bounded(h: Complex, q: Complex) -> Array:
+def _bounded(h: Complex, q: Complex) -> Complex:
     count = h.shape[1]
     n = np.stack([(h[:, : k + 1] * q[:, k::-1]).sum(axis=1) for k in range(count)], axis=1)
     lags = [(n[:, lag:] * q[:, : count - lag].conj()).sum(axis=1) for lag in range(count)]
-    return (np.stack(lags, axis=1) / (1j * q[:, :1])).real
+    multipliers = np.stack(lags, axis=1) / (1j * q[:, :1])
+    multipliers[:, 0] = multipliers[:, 0].real
+    return multipliers

@@ -1,1 +1,1 @@
-"""Studies: what the choices of the design cost and gain, on atlases of one's own."""
+"""Studies: what the choices behind the models are worth, measured on atlases."""

@@ -1,0 +1,71 @@
+"""Warps to compare ours with: densities over wavelength, of colour-matching functions and fitted."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator
+from unittest import mock
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import minimize
+
+from uplift import observer
+from uplift.difference import delta_e_1976, lab
+from uplift.models import phase
+from uplift.sensor import Array
+from uplift.study.moments import fine_grid
+from uplift.study.technique import TECHNIQUES
+
+Warp = Callable[[Array], Array]
+FITTED_MOMENTS = 2
+KNOTS = np.linspace(observer.START, observer.END, 14)
+BOUNDS = (-7.0, 1.0)
+"""Logarithms of the density at the knots."""
+TRIES = 1000
+
+
+@contextlib.contextmanager
+def in_place_of_ours(warp: Warp) -> Iterator[None]:
+    """Within the block, the warped techniques use another warp."""
+    with mock.patch.dict(phase.WARPS, vision=warp):
+        yield
+
+
+def made(measured: Array) -> dict[str, Warp]:
+    """Our warp, two after the colour-matching functions, one fitted to reflectances (E, 401) at 1 nm."""
+    sensor = observer.sensor()
+    seen = sensor.cmfs.sum(axis=1)
+    return {
+        "vision, ours": phase.WARPS["vision"],
+        "x̄ + ȳ + z̄": from_density(seen),
+        "(x̄ + ȳ + z̄) · D65": from_density(seen * sensor.power),
+        "fitted": fitted(measured, seen * sensor.power),
+    }
+
+
+def from_density(density: Array) -> Warp:
+    """The warp whose slope is ``density`` (81,) on the observer's grid, and never quite nothing."""
+    grid = observer.grid()
+    density = density / density.max() + 1e-6
+    total = np.concatenate([[0], np.cumsum((density[1:] + density[:-1]) / 2)])
+    return lambda wavelengths: np.interp(wavelengths, grid, total)
+
+
+def fitted(measured: Array, density: Array) -> Warp:
+    """The warp with the least mean ΔE76 under D65 at `FITTED_MOMENTS` + 1 floats, sought from ``density`` (81,)."""
+    light, technique = observer.light("D65"), TECHNIQUES[0]
+    original = lab(measured[:, :: len(measured[0]) // 80] @ light.xyz.T, light.white)
+
+    def warp(knots: Array) -> Warp:
+        return from_density(np.exp(PchipInterpolator(KNOTS, knots)(observer.grid())))
+
+    def error(knots: Array) -> float:
+        with in_place_of_ours(warp(knots)):
+            moments = technique.moments(measured, fine_grid(), FITTED_MOMENTS)
+            found = technique.reconstruct(moments, observer.grid())
+        return float(delta_e_1976(lab(found @ light.xyz.T, light.white), original).mean())
+
+    start = np.log(np.interp(KNOTS, observer.grid(), density / density.max() + 3e-3))
+    best = minimize(error, start, method="Powell", bounds=[BOUNDS] * len(KNOTS), options={"maxfev": TRIES})
+    return warp(best.x)

@@ -1,0 +1,98 @@
+"""``uplift study``."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import shutil
+
+import matplotlib.image
+import pytest
+
+FILES = ["moments-patches.png", "moments-worst.png", "moments.csv", "moments.png"]
+
+
+@pytest.fixture
+def tcs(repository):
+    """The smallest atlas."""
+    return repository / "atlases" / "tcs.txt"
+
+
+def test_everything_at_once(run, home, macbeth, tcs):
+    result = run(
+        "study", "moments", "--atlas", macbeth, "--atlas", tcs, "-o", "out", "--format", "csv", "--most", 9
+    )
+    assert sorted(path.name for path in (home / "out").iterdir()) == FILES
+    assert (home / "out" / "moments.csv").read_text(encoding="utf-8") == result.stdout
+    assert result.stderr == f"out: {', '.join(['moments.csv', 'moments.png', *FILES[:2]])}\n"
+    rows = list(csv.DictReader(io.StringIO(result.stdout)))
+    assert len(rows) == 3 * 4 * 10
+    (nine,) = [
+        row
+        for row in rows
+        if (row["atlas"], row["mirrored"], row["warped"], row["moments"]) == ("macbeth", "True", "False", "8")
+    ]
+    assert (nine["entries"], nine["floats"], nine["worst"]) == ("24", "9", "blue flower")
+    assert float(nine["delta_e_76_D65_mean"]) == pytest.approx(0.54, abs=0.01)
+    assert float(nine["delta_e_76_D65_max"]) == pytest.approx(1.22, abs=0.01)
+    for name in FILES:
+        if name.endswith(".png"):
+            assert matplotlib.image.imread(home / "out" / name).std() > 0.05
+
+
+def test_json_holds_the_same(run, tcs):
+    args = ("study", "moments", "--atlas", tcs, "--most", 2, "--format")
+    objects = json.loads(run(*args, "json").stdout)
+    rows = list(csv.DictReader(io.StringIO(run(*args, "csv").stdout)))
+    assert [{key: str(value) for key, value in one.items()} for one in objects] == rows
+    assert {one["atlas"] for one in objects} == {"all", "tcs"}
+    assert objects[2]["floats"] == 3
+    assert objects[0].keys() >= {"delta_e_00_FL11_mean", "delta_e_00_LED-B3_max", "rms_mean", "worst"}
+
+
+def test_the_table_has_a_line_a_count(run, tcs):
+    result = run("study", "moments", "--atlas", tcs, "--most", 4)
+    lines = [line.split() for line in result.stdout.splitlines()]
+    assert [line[0] for line in lines if line and line[0].isdigit()] == list("01234")
+    assert "14 entries" in result.stdout
+    assert result.stderr == ""
+
+
+def test_by_default_the_atlases_of_the_working_folder(run, home, tcs):
+    (home / "atlases").mkdir()
+    shutil.copy(tcs, home / "atlases")
+    rows = csv.DictReader(io.StringIO(run("study", "moments", "--most", 0, "--format", "csv").stdout))
+    assert {row["atlas"] for row in rows} == {"all", "tcs"}
+
+
+def test_few_entries_and_few_moments_are_drawn_too(run, home):
+    (home / "greys.csv").write_text("name,400,500,600,700\ngrey,0.5,0.5,0.5,0.5\n")
+    run("study", "moments", "--atlas", "greys.csv", "--most", 0, "-o", ".")
+    assert matplotlib.image.imread(home / "moments-worst.png").size
+
+
+def test_files_are_replaced_by_force_alone(run, refuse, home, tcs):
+    args = ("study", "moments", "--atlas", tcs, "--most", 1, "-o", home)
+    (home / "moments-worst.png").write_text("mine")
+    assert "moments-worst.png: exists already; use --force" in refuse(*args)
+    assert (home / "moments-worst.png").read_text() == "mine"
+    assert not (home / "moments.csv").exists()
+    run(*args, "--force")
+    assert matplotlib.image.imread(home / "moments-worst.png").size
+
+
+def test_bad_input_is_refused(refuse, home, tcs):
+    assert refuse("study", "moments").startswith("there are no atlases/*.txt here; name atlases with")
+    assert refuse("study", "moments", "--atlas", "none.txt").startswith("none.txt: ")
+    assert refuse("study", "moments", "--atlas", tcs, "--most", 33).startswith("33 moments are out of range")
+    assert refuse("study", "moments", "--atlas", tcs, "--most", -1).startswith("-1 moments are out of range")
+    assert "a second atlas is called 'tcs'" in refuse("study", "moments", "--atlas", tcs, "--atlas", tcs)
+    (home / "file").write_text("mine")
+    assert refuse("study", "moments", "--atlas", tcs, "-o", "file").startswith("file: cannot be made: ")
+    assert "cannot be made" in refuse("study", "moments", "--atlas", tcs, "-o", "none/out")
+
+
+def test_a_study_is_named(run):
+    assert "Commands:\n  moments " in run("study", "--help").stdout
+    assert "No such command 'colours'" in run("study", "colours", code=2).stderr
