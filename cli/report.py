@@ -62,7 +62,8 @@ def command(
 
     The measured spectra are the cube's own atlases, looked for by name and content in --atlas-dir, beside
     the cube, here, and in 'atlases'. Entries of other atlases, given with --atlas, are asked at their own
-    colours: that shows what the cube makes of colours it was not built from.
+    colours: that shows what the cube makes of colours it was not built from, and whether its standard errors
+    hold.
     """
     from uplift.files import check_output
     from uplift.lookup import load

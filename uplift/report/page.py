@@ -104,8 +104,7 @@ def _build(found: Assessment) -> Markup:
         ("threshold", f"{data.threshold:g}, max |linear RGB|"),
         ("entries", f"{len(data.atlas.names):,}"),
         ("standard error", mean_told(found)),
-        ("made by", f"uplift {data.provenance.get('uplift', 'unknown')}"),
-        ("file", f"{found.size / 1e6:.2f} MB"),
+        ("file", f"{found.size / 1e6:.2f} MB, made by uplift {data.provenance.get('uplift', 'unknown')}"),
     ]
     wide = [(str(source["name"]), element("code", str(source["digest"]))) for source in _sources(found)]
     stated = ", ".join(f"{name} {_value(value)}" for name, value in options.items())

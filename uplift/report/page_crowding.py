@@ -61,12 +61,12 @@ def _advice(found: Assessment, crowding: Crowding) -> Markup:
                 "p",
                 "These entries have another within a lattice step. ",
                 element("code", "uplift build --dim auto"),
-                " finds the smallest dim with room for all.",
+                " looks for the smallest dim with room for all.",
             ),
             note(
                 f"Asked at its own colour an entry is answered {answered}; within its reach that leads over to "
                 "what the lattice by itself, which close entries share, makes of the colours around. In each cell, "
-                f"above: the answer at the entry’s colour; below: the lattice by itself, there. ΔE00 and rms are "
+                f"above: the answer at the entry's colour; below: the lattice by itself, there. ΔE00 and rms are "
                 f"against the {wanted} spectrum; swatches: {wanted}, answered, lattice."
             ),
         ]

@@ -14,6 +14,7 @@ from uplift.report.page_parts import (
     error_headings,
     name_cell,
     note,
+    plain_cell,
     reach_cell,
     reach_heading,
     right,
@@ -114,10 +115,11 @@ def _shown(delta_e: float) -> Markup:
 def _note_on_light(found: Assessment, entries: Entries) -> Markup | None:
     if entries.delta_e_lattice is None:
         return None
+    lost = ", unless it is lost" if found.crowding is not None and found.crowding.lost else ""
     text = (
-        "ΔE00 between answered and measured. At its own colour an entry is answered with the spectrum stored for it: "
-        f"what is left is what {found.data.model.count} coefficients cannot say. On the right, what the lattice by "
-        "itself makes of the same colours: that is how their surroundings are answered."
+        "ΔE00 between answered and measured. At its own colour an entry is answered with the spectrum stored for "
+        f"it{lost}: what is left is what {found.data.model.count} coefficients cannot say. On the right, what the "
+        "lattice by itself makes of the same colours: that is how their surroundings are answered."
     )
     return note(text)
 
@@ -159,5 +161,5 @@ def _further_cells(entries: Entries, row: int) -> list[Markup]:
     if entries.worst_lattice is not None:
         return [difference(float(entries.worst_lattice[row])), reach_cell(entries, row)]
     if entries.stated is not None:
-        return [difference(float(part[row])) for part in (entries.stated, entries.real)]
+        return [plain_cell(float(entries.stated[row])), difference(float(entries.real[row]))]
     return []

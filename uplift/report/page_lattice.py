@@ -69,7 +69,7 @@ def _improvements(found: Assessment) -> Markup:
     steps = found.failures.improvements
     title = element("h3", "Improvement steps")
     if not steps:
-        return element("div", title, element("p", "None was needed: no point was over the threshold."))
+        return element("div", title, element("p", "No step was needed: no point was over the threshold."))
     lines = [
         [str(step.get("step")), number(f"{step.get('tried', 0):,}"), number(f"{step.get('mended', 0):,}")]
         for step in steps

@@ -115,6 +115,11 @@ def reach_cell(found: Entries, row: int) -> Markup:
     return number(shown, data_value=f"{reach:.9g}")
 
 
+def plain_cell(value: float) -> Markup:
+    """A cell of ΔE00 that is nobody's fault."""
+    return _cell("{:.2f}", value, None)
+
+
 def difference(value: float, below: float | None = None, seen: Markup | None = None) -> Markup:
     """A cell of ΔE00, after its swatch; another ``below`` it, by which the cell then sorts."""
     return _cell("{:.2f}", value, below, seen, graded=True)

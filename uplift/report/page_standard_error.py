@@ -21,7 +21,7 @@ def standard_error_section(found: Assessment) -> Markup:
     if found.standard_error is None:
         return element("section", title, element("p", _why_none(found)))
     light = found.data.reference
-    told = (
+    about = (
         f"By how much an answer is expected to miss a measurement of the same colour: a root mean square, in ΔE00 "
         f"under {light}, that the cube has learnt by leaving out its own entries, one at a time. It is least at the "
         "entries, most far from them all."
@@ -30,14 +30,9 @@ def standard_error_section(found: Assessment) -> Markup:
     if found.calibration is not None:
         beside = _calibration(found, found.calibration)
     else:
-        beside = element(
-            "p", "Whether it holds, only spectra can tell that the cube has not seen: ", _command(found), "."
-        )
-    return element("section", title, note(told), charts([part, element("div", beside, class_="beside")]))
-
-
-def _command(found: Assessment) -> Markup:
-    return element("code", f"uplift report {found.name} --atlas OTHER")
+        told = "Whether that holds, only measurements can tell that the cube has not seen:"
+        beside = element("p", told, element("code", f"uplift report {found.name} --atlas OTHER"))
+    return element("section", title, note(about), charts([part, element("div", beside, class_="beside")]))
 
 
 def _why_none(found: Assessment) -> str:
