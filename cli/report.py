@@ -62,7 +62,8 @@ def command(
 
     The measured spectra are the cube's own atlases, looked for by name and content in --atlas-dir, beside
     the cube, here, and in 'atlases'. Entries of other atlases, given with --atlas, are asked at their own
-    colours: that shows what the cube makes of colours it was not built from.
+    colours: that shows what the cube makes of colours it was not built from, and whether its standard errors
+    hold.
     """
     from uplift.files import check_output
     from uplift.lookup import load
@@ -143,6 +144,11 @@ def _told(found: Assessment) -> str:
         parts.append(
             f"ΔE00 mean {entries.delta_e.mean():.2f}, worst {entries.worst[0]:.2f} ('{entries.names[0]}')"
         )
-    if found.data.atlas.names:
-        parts.append(counted(len(found.crowds), "crowded voxel"))
+    if found.calibration is not None:
+        judged = found.calibration
+        parts.append(
+            f"under {found.data.reference} {judged.real:.2f}, {judged.stated:.2f} stated (root mean squares)"
+        )
+    if found.crowding is not None:
+        parts.append(counted(len(found.crowding.entries.names), "crowded entry", "crowded entries"))
     return ", ".join(parts)

@@ -22,6 +22,10 @@ def test_json_holds_the_facts(run, cubes):
     assert sum(facts["status"].values()) == 512
     assert facts["entries"] == list(data.atlas.names)
     assert facts["worst_distance"] == float(data.distance.max())
+    assert (facts["reference"], facts["mean_standard_error"]) == (
+        "A",
+        float(data.standard_error.mean(dtype=float)),
+    )
     assert facts["rounds"] == data.round.max() + 1
     assert facts["provenance"]["left_out"] == ["cyan"]
     assert facts["digest"] == digest(data)

@@ -59,8 +59,12 @@ def test_another_atlas_judges_colours_that_the_cube_has_not_seen(run, repository
     other = repository / "atlases" / "babelcolor.txt"
     found = json.loads(run("report", cube, *SMALL, "--atlas", other, "--format", "json").stdout)
     assert (found["atlas"]["own"], found["atlas"]["files"]) == (False, ["babelcolor.txt"])
-    assert found["entries"][0]["rms_stored"] is None
-    assert found["crowding"] == []
+    assert found["entries"][0]["rms_lattice"] is None
+    assert found["crowding"]["against"] == "stored"
+    assert found["standard_error"]["calibration"]["count"] == len(found["entries"])
+    told = run("report", cube, *SMALL, "--atlas", other).stdout
+    assert ", under A " in told
+    assert " stated (root mean squares), " in told
 
 
 def test_the_cube_s_own_atlas_may_be_named(run, macbeth, cubes, home):

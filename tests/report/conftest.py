@@ -9,6 +9,7 @@ import pytest
 
 import uplift
 from uplift.atlas import Entry, Spectra, read_atlas
+from uplift.cube import AtlasTable
 from uplift.lattice import Status
 from uplift.lookup import Cube
 from uplift.report.assessment import assess
@@ -33,6 +34,20 @@ def crowded_cube(macbeth):
     """The ColorChecker in a lattice too small for it."""
     with pytest.warns(uplift.UpliftWarning):
         return uplift.build(macbeth, dim=4, coefficients=5)
+
+
+@pytest.fixture(scope="session")
+def lossy_cube(small_cube):
+    """A cube of two entries, of one colour: the second is never answered."""
+    atlas = small_cube.data.atlas
+    table = AtlasTable(
+        ("grey", "über"),
+        atlas.rgb[[0, 0]],
+        atlas.coefficients[:2],
+        np.array([0.5, 0.0]),
+        atlas.error[:2],
+    )
+    return Cube(dataclasses.replace(small_cube.data, atlas=table))
 
 
 @pytest.fixture(scope="session")

@@ -11,13 +11,14 @@ import pytest
 
 import uplift
 from uplift.atlas import on_grid
+from uplift.cube import AtlasTable
 from uplift.errors import UnknownNameError
-from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
 from uplift.observer import light
 from uplift.report.assessment import assess
-from uplift.report.crowding import crowds
+from uplift.report.calibration import Calibration, calibration
+from uplift.report.crowding import crowding
 from uplift.report.failures import NAMED, failures
 from uplift.report.fidelity import COLOURS, about_other, about_own, about_stored, entries, round_trips
 from uplift.report.histogram import histogram, linear_edges, log_edges
@@ -37,7 +38,6 @@ def delta_e(first, second, name):
 def test_every_entry_s_errors(judged, small_cube, macbeth):
     measured = dict(zip(macbeth.names, on_grid(macbeth, small_cube.data.sensor.wavelengths), strict=True))
     atlas = small_cube.data.atlas
-    stored = reflectance(small_cube.data.model, atlas.coefficients, small_cube.data.sensor.wavelengths)
     found = judged.entries
     assert sorted(found.names) == sorted(atlas.names)
     for row, name in enumerate(found.names):
@@ -45,14 +45,12 @@ def test_every_entry_s_errors(judged, small_cube, macbeth):
         answered = small_cube.reflectance(atlas.rgb[own])
         assert found.answered[row] == pytest.approx(answered, abs=1e-12)
         assert found.rms[row] == pytest.approx(np.sqrt(np.mean((answered - measured[name]) ** 2)), rel=1e-9)
-        assert found.rms_stored[row] == pytest.approx(
-            np.sqrt(np.mean((answered - stored[own]) ** 2)), rel=1e-9
-        )
+        assert found.real[row] == pytest.approx(delta_e(answered, measured[name], "A"), abs=1e-6)
+        assert found.stated[row] == pytest.approx(atlas.error[own], abs=1e-12)
+        assert found.reach[row] == atlas.reach[own]
         for column, seen in enumerate(judged.lights):
             expected = delta_e(answered, measured[name], seen.illuminant)
             assert found.delta_e[row, column] == pytest.approx(expected, abs=1e-6)
-            expected = delta_e(stored[own], measured[name], seen.illuminant)
-            assert found.delta_e_stored[row, column] == pytest.approx(expected, abs=1e-6)
 
 
 def test_the_worst_comes_first(judged):
@@ -62,14 +60,47 @@ def test_the_worst_comes_first(judged):
     assert judged.entries.worst[0] > 0
 
 
-def test_own_weights_and_corners(judged, small_cube):
-    data = small_cube.data
-    for row, name in enumerate(judged.entries.names):
-        (points,), (weights,) = data.lattice.corners(judged.entries.rgb[row : row + 1])
-        own = [data.atlas.names[data.entry[point]] == name for point in points]
-        assert judged.entries.own[row] == pytest.approx(sum(weights[own]), abs=1e-12)
-        counts = [sum(data.status[point] == status for point in points) for status in Status]
-        assert judged.entries.corners[row].tolist() == counts
+def mixture(data, rgb):
+    """What the eight corners around ``rgb`` (3,) make of it, corner by corner."""
+    low = [max(i for i, node in enumerate(data.lattice.nodes[:-1]) if node <= value) for value in rgb]
+    total = np.zeros(len(data.sensor.wavelengths))
+    for step in itertools.product((0, 1), repeat=3):
+        weight, point = 1.0, 0
+        for place, up, value in zip(low, step, rgb, strict=True):
+            first, second = data.lattice.nodes[place : place + 2]
+            share = (value - first) / (second - first)
+            weight *= share if up else 1 - share
+            point = point * data.lattice.dim + place + up
+        total += weight * reflectance(data.model, data.coefficients[[point]], data.sensor.wavelengths)[0]
+    return total
+
+
+def test_what_the_lattice_by_itself_makes_of_entries(judged, small_cube, macbeth):
+    data, found = small_cube.data, judged.entries
+    measured = dict(zip(macbeth.names, on_grid(macbeth, data.sensor.wavelengths), strict=True))
+    for row, name in enumerate(found.names):
+        expected = mixture(data, found.rgb[row])
+        assert found.lattice[row] == pytest.approx(expected, abs=1e-12)
+        missed = [delta_e(expected, measured[name], seen.illuminant) for seen in judged.lights]
+        assert found.delta_e_lattice[row] == pytest.approx(missed, abs=1e-6)
+        assert found.worst_lattice[row] == pytest.approx(max(missed), abs=1e-6)
+        assert found.rms_lattice[row] == pytest.approx(np.sqrt(np.mean((expected - measured[name]) ** 2)))
+    assert (found.worst_lattice > found.worst + 0.1).any()
+
+
+def test_at_the_faces_of_its_box_an_entry_is_no_longer_felt(judged, small_cube):
+    """Codes are a way: that many from the entry's colour the answer is the lattice's, half as many it is not."""
+    data, found = small_cube.data, judged.entries
+    row = int((found.worst_lattice - found.worst).argmax())
+    codes = small_cube.encode(found.rgb[row])
+    assert (codes > found.codes[row]).all()
+    apart = []
+    for share in (0.5, 1.0):
+        rgb = small_cube.decode(codes - [share * found.codes[row], 0, 0])
+        apart.append(np.abs(small_cube.reflectance(rgb) - mixture(data, rgb)).max())
+    assert apart[1] < 0.02 * apart[0]
+    # With the lattice spaced like the codes, a step is about the same number of them everywhere.
+    assert found.codes == pytest.approx(found.reach * 255 / 7, rel=0.15)
 
 
 def test_entries_of_another_atlas_have_nothing_stored(small_cube, repository):
@@ -77,7 +108,8 @@ def test_entries_of_another_atlas_have_nothing_stored(small_cube, repository):
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "A"))
     assert not found.own
     assert found.sources == ("babelcolor.txt",)
-    assert (found.entries.stored, found.entries.rms_stored, found.entries.own) == (None, None, None)
+    own = ("lattice", "delta_e_lattice", "rms_lattice", "worst_lattice", "reach", "codes")
+    assert {getattr(found.entries, name) for name in own} == {None}
     assert sorted((*found.entries.names, *found.outside)) == sorted(other.names)
     name = found.entries.names[0]
     (measured,) = on_grid(uplift.Spectra((other.entries[other.names.index(name)],)), small_cube.wavelengths())
@@ -95,7 +127,8 @@ def test_the_cube_s_own_atlas_is_known_by_its_content(judged, small_cube, macbet
 
 def test_no_atlas_no_entries(small_sigmoid_cube):
     found = assess(small_sigmoid_cube, "sigmoid.uplift", 1, None, ("A",))
-    assert (found.entries, found.delta_e, found.crowds, found.sources) == (None, {}, (), ())
+    assert (found.entries, found.delta_e, found.crowding, found.sources) == (None, {}, None, ())
+    assert (found.standard_error, found.calibration) == (None, None)
 
 
 def test_an_atlas_that_the_space_does_not_hold_gives_no_entries(small_cube, hostile):
@@ -133,34 +166,103 @@ def test_smoothness_by_loops(model):
     }
 
 
-def test_crowds_by_brute_force(crowded_cube):
+def test_crowding_by_brute_force(crowded_cube):
     data, lights = crowded_cube.data, viewings(("A",), crowded_cube.data.sensor.observer)
-    asked = entries(crowded_cube, about_stored(data), lights)
-    nodes = data.lattice.nodes
+    found = crowding(data, entries(crowded_cube, about_stored(data), lights))
+    nodes, names = data.lattice.nodes, data.atlas.names
+    steps = np.interp(data.atlas.rgb, nodes, np.arange(len(nodes)))
+    expected = {}
+    for row, name in enumerate(names):
+        apart = {other: np.abs(steps[row] - steps[i]).max() for i, other in enumerate(names) if i != row}
+        if min(apart.values()) <= 1:
+            expected[name] = min(apart.values())
+    listed = dict(zip(found.entries.names, found.apart, strict=True))
+    assert listed == pytest.approx(expected)
+    for name, other in zip(found.entries.names, found.nearest, strict=True):
+        apart = np.abs(steps[names.index(name)] - steps[names.index(other)]).max()
+        assert (name != other, apart) == (True, pytest.approx(expected[name]))
+    assert len(expected) > 0
+    assert found.entries.worst_lattice.tolist() == sorted(found.entries.worst_lattice, reverse=True)
+    assert found.lost == ()
 
-    def voxel(rgb):
-        return tuple(min(max(i for i, node in enumerate(nodes) if node <= value), 2) for value in rgb)
 
-    by_voxel = {}
-    for name, rgb in zip(data.atlas.names, data.atlas.rgb, strict=True):
-        by_voxel.setdefault(voxel(rgb), set()).add(name)
-    found = crowds(data.lattice, asked)
-    assert {crowd.cell: set(crowd.entries.names) for crowd in found} == {
-        cell: names for cell, names in by_voxel.items() if len(names) > 1
-    }
-    assert found
-    for crowd in found:
-        assert (crowd.entries.rgb >= crowd.bounds[0]).all()
-        assert (crowd.entries.rgb <= crowd.bounds[1]).all()
-    worst = [crowd.entries.worst[0] for crowd in found]
-    assert worst == sorted(worst, reverse=True)
+def test_two_in_a_voxel_crowd(crowded_cube):
+    data = crowded_cube.data
+    cells = [tuple(cell) for cell in data.lattice.cell(data.atlas.rgb)[0].tolist()]
+    sharing = {name for name, cell in zip(data.atlas.names, cells, strict=True) if cells.count(cell) > 1}
+    found = assess(crowded_cube, "crowded.uplift", 1, None, ("A",)).crowding
+    assert sharing
+    assert sharing <= set(found.entries.names)
+
+
+def test_an_entry_whose_colour_an_earlier_one_has_is_lost(lossy_cube):
+    found = assess(lossy_cube, "lossy.uplift", 1, None, ("A",)).crowding
+    assert found.lost == (("über", "grey"),)
+    assert set(found.entries.names) == {"grey", "über"}
+    assert (found.apart.tolist(), set(found.nearest)) == ([0, 0], {"grey", "über"})
+    reach = dict(
+        zip(found.entries.names, zip(found.entries.reach, found.entries.codes, strict=True), strict=True)
+    )
+    assert reach["über"] == (0, 0)
+    assert reach["grey"][0] == 0.5
+    assert reach["grey"][1] > 10
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_one_entry_crowds_nobody(lossy_cube, count):
+    atlas = lossy_cube.data.atlas
+    few = {field.name: getattr(atlas, field.name)[:count] for field in dataclasses.fields(atlas)}
+    cube = Cube(dataclasses.replace(lossy_cube.data, atlas=AtlasTable(**few)))
+    found = assess(cube, "few.uplift", 1, None, ("A",)).crowding
+    assert found is None if count == 0 else (found.entries.names, found.lost) == ((), ())
+
+
+def test_standard_errors_against_colours_unseen(small_cube, repository):
+    other = uplift.read_atlas(repository / "atlases" / "cie2017.txt")
+    found = assess(small_cube, "small.uplift", 1, other, ("D65",))
+    squares, stated, one, two = [], [], 0, 0
+    for entry in other.entries:
+        (measured,) = on_grid(uplift.Spectra((entry,)), small_cube.wavelengths())
+        rgb = small_cube.data.sensor.rgb(measured)
+        if rgb.min() < 0 or rgb.max() > 1:
+            continue
+        real = delta_e(small_cube.reflectance(rgb), measured, "A")
+        error = float(small_cube.standard_error(rgb))
+        squares.append(real**2)
+        stated.append(error**2)
+        one += real <= error
+        two += real <= 2 * error
+    count = len(squares)
+    expected = ((sum(squares) / count) ** 0.5, (sum(stated) / count) ** 0.5, one / count, two / count)
+    told = found.calibration
+    assert (told.real, told.stated, told.within_one, told.within_two) == pytest.approx(expected, abs=1e-6)
+    assert told.count == count == len(found.entries.names)
+    assert told.real > told.stated  # a ColorChecker knows little of these
+
+
+def test_a_cube_is_not_judged_by_what_it_has_learnt_from(judged, plain_cube, macbeth):
+    assert judged.calibration is None
+    assert judged.standard_error.counts.sum() == 512
+    assert judged.standard_error.mean == pytest.approx(judged.facts["mean_standard_error"])
+    unknowing = assess(plain_cube, "plain.uplift", 1, macbeth, ("A",))
+    assert (unknowing.standard_error, unknowing.facts["mean_standard_error"]) == (None, None)
+    assert (calibration(unknowing.entries), unknowing.calibration) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("real", "stated", "verdict"), [(1, 1, 0), (1.2, 1, 0), (1.3, 1, 1), (1, 1.3, -1), (0, 0, 0)]
+)
+def test_a_verdict_needs_a_difference(real, stated, verdict):
+    assert Calibration(10, real, stated, 0.5, 0.9).verdict == verdict
 
 
 def test_entries_that_nobody_measured_are_held_against_what_is_stored(crowded_cube, hostile):
-    found = assess(crowded_cube, "small.uplift", 1, hostile, ("D65",))
+    found = assess(crowded_cube, "small.uplift", 1, hostile, ("D65", "A"))
     assert not found.own
-    assert found.crowds
-    assert found.crowds[0].entries.rms.tolist() == found.crowds[0].entries.rms_stored.tolist()
+    assert found.crowding.entries.worst == pytest.approx(
+        np.zeros(len(found.crowding.entries.names)), abs=1e-4
+    )
+    assert found.crowding.entries.worst_lattice[0] > 1
 
 
 def test_failures_name_the_worst(spoilt, small_cube):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 from html.parser import HTMLParser
@@ -10,6 +11,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from uplift.atlas import read_atlas
+from uplift.lookup import Cube
 from uplift.report.assessment import assess
 from uplift.report.charts import histogram_chart, spectra_chart
 from uplift.report.histogram import histogram, log_edges
@@ -59,7 +62,7 @@ def html(judged):
 
 def test_the_page_is_well_formed_and_says_all(html, judged):
     read = Reader(html)
-    for heading in ("Build", "Failures", "Distributions", "Crowding", "Entries"):
+    for heading in ("Build", "Failures", "Distributions", "Standard error", "Crowding", "Entries"):
         assert heading in read.text
     for name in judged.entries.names:
         assert name in read.text
@@ -89,8 +92,8 @@ def test_charts_are_xml_and_as_many_as_asked_for(html, judged):
     charts = re.findall(r"<svg.*?</svg>", html, re.DOTALL)
     for chart in charts:
         ElementTree.fromstring(chart)
-    keys, lattice, trips, lights = 3, 2, 3, len(judged.lights)
-    assert len(charts) == keys + lattice + trips + lights + 3
+    keys, lattice, errors, trips, lights = 3, 2, 1, 3, len(judged.lights)
+    assert len(charts) == keys + lattice + errors + trips + lights + 3
 
 
 def test_the_same_cube_gives_the_same_page(html, judged):
@@ -98,7 +101,8 @@ def test_the_same_cube_gives_the_same_page(html, judged):
 
 
 def test_worst_first_in_table_and_plots(html, judged):
-    rows = re.findall(r'<td class="name">([^<]*)<', html)
+    table = html[html.index("Entry by entry") :]
+    rows = re.findall(r'<td class="name">([^<]*)<', table)
     assert rows == list(judged.entries.names)
     drawn = re.findall(r'<figcaption><b title="[^"]*">([^<]*)</b>', html)
     assert drawn == list(judged.entries.names[:3])
@@ -120,7 +124,7 @@ def test_names_are_text_whatever_they_hold(small_cube, hostile):
     assert HOSTILE in read.text
     assert "laser" + HOSTILE in read.text
     assert "which the cube was not built from" in read.text
-    assert "stored for the entry" not in read.text
+    assert "lattice by itself" not in read.text[read.text.index("Entries") :].split("Entry by entry")[1]
 
 
 def test_points_over_the_threshold_are_named(spoilt, macbeth):
@@ -138,22 +142,73 @@ def test_without_an_atlas_the_page_says_so(small_sigmoid_cube):
     assert "Crowding" not in read.text
 
 
-def test_crowds_are_listed(crowded_cube, macbeth, hostile):
+def test_the_crowded_are_listed(crowded_cube, macbeth, hostile):
     for spectra, wanted in ((macbeth, "measured"), (hostile, "stored")):
         found = assess(crowded_cube, "crowded.uplift", 1, spectra, ("D65", "A"))
         html = page(found, worst=0)
-        assert f"between the answer and the {wanted} spectrum" in Reader(html).text
-        spans = [int(count) for count in re.findall(r'rowspan="(\d+)"', html)]
-        assert spans == [len(crowd.entries.names) for crowd in found.crowds]
-        assert min(spans) > 1
-        against = {crowd["against"] for crowd in numbers(found)["crowding"]}
-        assert against == {wanted}
+        section = html[html.index("<h2>Crowding") : html.index("<h2>Entries")]
+        assert f"against the {wanted} spectrum" in section
+        assert "uplift build --dim auto" in section
+        assert "Lost" not in section
+        rows = re.findall(r'<tr><td class="name">([^<]*)<', section)
+        assert rows == list(found.crowding.entries.names)
+        worst = re.findall(
+            r'data-value="[^"]*"><span class="stack"><span[^>]*>([\d.]+)</span><span[^>]*>([\d.]+)', section
+        )
+        shown = found.crowding.entries
+        pairs = [f"{value:.2f}" for value in (shown.worst[0], shown.worst_lattice[0])]
+        assert list(worst[0]) == pairs
+        assert numbers(found)["crowding"]["against"] == wanted
+
+
+def test_the_lost_are_named(lossy_cube):
+    found = assess(lossy_cube, "lossy.uplift", 1, None, ("D65",))
+    read = Reader(page(found, worst=0))
+    assert "Lost, as an earlier entry has the same colour: über (that of grey)." in read.text
+    assert "2 entries crowd" in read.text
+    assert "; 1 lost" in read.text
+    told = json.loads(json.dumps(numbers(found), allow_nan=False))["crowding"]
+    assert told["lost"] == [{"name": "über", "same_colour": "grey"}]
+    assert {entry["name"]: entry["reach"] for entry in told["entries"]} == {"grey": 0.5, "über": 0}
+
+
+def test_stated_errors_stand_beside_real_ones(small_cube, repository):
+    other = read_atlas(repository / "atlases" / "cie2017.txt")
+    found = assess(small_cube, "small.uplift", 1, other, ("D65",))
+    html, judged = page(found, worst=0), found.calibration
+    text = Reader(html).text
+    assert f"expected to miss by ΔE00 {judged.stated:.2f} under A, and missed by {judged.real:.2f}" in text
+    assert "It is too sure of itself" in text
+    assert f"{judged.within_one:.0%} of the entries lie within one standard error" in text
+    assert f"mean {found.standard_error.mean:.2f}, ΔE00 under A" in text
+    assert re.search(r">stated</th><th[^>]*>real</th></tr>", html)
+    told = numbers(found)
+    assert told["standard_error"]["calibration"]["within_two"] == judged.within_two
+    ends = re.findall(
+        r'data-value="([^"]*)"><span>[\d.]+</span></td><td class="number" data-value="([^"]*)">[^/]*/span></td></tr>',
+        html,
+    )
+    assert [[float(value) for value in end] for end in ends] == pytest.approx(
+        np.array([(entry["standard_error"], entry["delta_e_2000_reference"]) for entry in told["entries"]])
+    )
+
+
+def test_a_cube_that_states_no_errors_says_why(plain_cube, lossy_cube, macbeth):
+    few = Cube(dataclasses.replace(lossy_cube.data, standard_error=None))
+    for cube, why in ((plain_cube, "built without an atlas, so nothing"), (few, "its 2 entries are too few")):
+        found = assess(cube, "none.uplift", 1, macbeth, ("D65",))
+        text = Reader(page(found, worst=0)).text
+        assert "The cube states none: " in text
+        assert why in text
+        assert numbers(found)["standard_error"]["delta_e_2000"] is None
+        assert {entry["standard_error"] for entry in numbers(found)["entries"]} <= {None}
+        assert "stated" not in text
 
 
 def test_nobody_crowds(macbeth_cube, macbeth):
     read = Reader(page(assess(macbeth_cube, "macbeth-32.uplift", 1, macbeth, ("D65",)), worst=0))
-    assert "Every entry has a voxel to itself." in read.text
-    assert "No voxel is shared" in read.text
+    assert "No entry has another within a lattice step." in read.text
+    assert "No entry crowds" in read.text
 
 
 def test_numbers_are_those_of_the_assessment_and_json(judged):
@@ -165,7 +220,14 @@ def test_numbers_are_those_of_the_assessment_and_json(judged):
     assert found["entries"][0]["srgb"]["A"]["answered"].startswith("#")
     assert found["fitting_distance"]["max"] == judged.distance.largest
     assert sum(found["round_trip"]["delta_e_2000"]["moments"]["counts"]) == found["round_trip"]["colours"]
-    assert len(found["crowding"]) == len(judged.crowds)
+    crowded = [entry["name"] for entry in found["crowding"]["entries"]]
+    assert crowded == list(judged.crowding.entries.names)
+    first = found["entries"][0]
+    assert list(first["delta_e_2000_lattice"].values()) == judged.entries.delta_e_lattice[0].tolist()
+    assert (first["reach"], first["standard_error"]) == (judged.entries.reach[0], judged.entries.stated[0])
+    assert found["standard_error"]["light"] == "A"
+    assert found["standard_error"]["delta_e_2000"]["mean"] == judged.standard_error.mean
+    assert found["standard_error"]["calibration"] is None
     assert found["failures"]["over_threshold"] == 0
 
 

@@ -41,14 +41,20 @@ def coefficients(data: CubeData, rgb: Array) -> Array:
 def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) as the weighted spectra of the nodes around."""
     asked, entry, share = data.pins(rgb)
-    points, weights = data.lattice.corners(asked)
-    used, place = _evaluated(data.model, data.coefficients, points, wavelengths)
-    total = np.zeros((len(rgb), len(wavelengths)))
-    for corner in range(points.shape[1]):
-        total += (share * weights[:, corner])[:, None] * used[place[:, corner]]
+    total = share[:, None] * lattice_spectra(data, asked, wavelengths)
     rows = np.flatnonzero(entry >= 0)
     used, place = _evaluated(data.model, data.atlas.coefficients, entry[rows], wavelengths)
     total[rows] += (1 - share[rows, None]) * used[place]
+    return total
+
+
+def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
+    """Reflectance (n, N) at linear RGB (n, 3) as the weighted spectra of the corners alone, entries aside."""
+    points, weights = data.lattice.corners(rgb)
+    used, place = _evaluated(data.model, data.coefficients, points, wavelengths)
+    total = np.zeros((len(rgb), len(wavelengths)))
+    for corner in range(points.shape[1]):
+        total += weights[:, corner, None] * used[place[:, corner]]
     return total
 
 

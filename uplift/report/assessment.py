@@ -11,7 +11,8 @@ import numpy as np
 from uplift.atlas import Spectra
 from uplift.cube import CubeData
 from uplift.lookup import Cube
-from uplift.report.crowding import Crowd, crowds
+from uplift.report.calibration import Calibration, calibration
+from uplift.report.crowding import Crowding, crowding
 from uplift.report.failures import Failures, failures
 from uplift.report.fidelity import (
     Entries,
@@ -44,14 +45,16 @@ class Assessment:
     data, facts : the cube, and what ``uplift info`` tells of it.
     distance : of the lattice points, max |linear RGB|.
     round_trips : ΔE00 of random colours under the cube's illuminant, for each mode of lookup.
+    standard_error : of the lattice points, ΔE00 under ``data.reference``; None where the cube has none.
     smoothness, steepest : rms between neighbouring points, and linear RGB (2, 3) of the two farthest apart.
     lights : what the entries are seen under.
     sources : the files that ``entries`` come from; ``own`` if the cube was built from these.
     entries : None where there is no measured spectrum to judge by.
     delta_e : their ΔE00 under each light, by name.
     outside : entries of ``sources`` that the cube's space does not hold.
-    crowds : voxels that several of the cube's own entries share; their errors are against the measured
-        spectra if ``own``, against the stored ones if not.
+    calibration : how far the cube's standard errors hold for ``entries``; None if these are ``own``.
+    crowding : of the cube's own entries, None if it has none; errors are against the measured spectra if
+        ``own``, against the stored ones if not.
     """
 
     name: str
@@ -61,6 +64,7 @@ class Assessment:
     failures: Failures
     distance: Histogram
     round_trips: dict[str, Histogram]
+    standard_error: Histogram | None
     smoothness: Histogram
     steepest: Array
     lights: tuple[Sensor, ...]
@@ -69,7 +73,8 @@ class Assessment:
     entries: Entries | None
     delta_e: dict[str, Histogram]
     outside: tuple[str, ...]
-    crowds: tuple[Crowd, ...]
+    calibration: Calibration | None
+    crowding: Crowding | None
 
 
 def assess(
@@ -85,7 +90,7 @@ def assess(
     own = spectra is not None and _built_from(data, spectra)
     question = _question(data, spectra, own)
     found = None if question is None or not question.names else entries(cube, question, seen)
-    steps = smoothness(data)
+    steps, errors = smoothness(data), data.standard_error
     return Assessment(
         name=name,
         size=size,
@@ -94,6 +99,7 @@ def assess(
         failures=failures(data),
         distance=histogram(data.distance, log_edges(data.distance, EXACT)),
         round_trips=_together(round_trips(cube), lambda values: log_edges(values, EXACT)),
+        standard_error=None if errors is None else histogram(errors, linear_edges(errors)),
         smoothness=histogram(steps.differences, log_edges(steps.differences, SAME)),
         steepest=steps.steepest,
         lights=seen,
@@ -102,7 +108,8 @@ def assess(
         entries=found,
         delta_e={} if found is None else _together(_by_light(found, seen), linear_edges),
         outside=() if question is None else question.outside,
-        crowds=_crowds(cube, found if own else None, seen),
+        calibration=None if own or found is None else calibration(found),
+        crowding=_crowding(cube, found if own else None, seen),
     )
 
 
@@ -119,11 +126,11 @@ def _question(data: CubeData, spectra: Spectra | None, own: bool) -> Question | 
     return about_own(data, spectra) if own else about_other(data, spectra)
 
 
-def _crowds(cube: Cube, measured: Entries | None, lights: tuple[Sensor, ...]) -> tuple[Crowd, ...]:
-    if measured is None and not cube.data.atlas.names:
-        return ()
+def _crowding(cube: Cube, measured: Entries | None, lights: tuple[Sensor, ...]) -> Crowding | None:
+    if not cube.data.atlas.names:
+        return None
     asked = entries(cube, about_stored(cube.data), lights) if measured is None else measured
-    return crowds(cube.data.lattice, asked)
+    return crowding(cube.data, asked)
 
 
 def _by_light(found: Entries, lights: tuple[Sensor, ...]) -> dict[str, Array]:

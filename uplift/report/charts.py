@@ -70,17 +70,17 @@ def histogram_chart(
         return _svg(figure)
 
 
-def spectra_chart(wavelengths: Array, measured: Array, answered: Array, stored: Array | None) -> Markup:
+def spectra_chart(wavelengths: Array, measured: Array, answered: Array, lattice: Array | None) -> Markup:
     """Reflectances (N,) over wavelengths (N,) nm: measured as a broad band, the others as lines upon it."""
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
         figure, axes = _axes(BARE)
         axes.plot(wavelengths, measured, color=BAND, linewidth=4, solid_capstyle="round")
-        if stored is not None:
-            axes.plot(wavelengths, stored, color=INK, linewidth=1.1, linestyle=(0, (1.2, 1.6)))
+        if lattice is not None:
+            axes.plot(wavelengths, lattice, color=INK, linewidth=1.1, linestyle=(0, (1.2, 1.6)))
         axes.plot(wavelengths, answered, color=ACCENT, linewidth=1.1)
-        drawn = [measured, answered] if stored is None else [measured, answered, stored]
+        drawn = [measured, answered] if lattice is None else [measured, answered, lattice]
         top = _top(drawn)
         axes.set(
             xlim=(wavelengths[0], wavelengths[-1]),

@@ -1,30 +1,66 @@
-"""Entries that share a voxel: they share its eight corners too, and none of them gets all it needs."""
+"""Entries that stand close to others: the nearer, the smaller the box in which answers lead over to their spectra."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from uplift.lattice import Lattice
+import numpy as np
+
+from uplift.cube import CubeData
+from uplift.lattice import Indices
 from uplift.report.fidelity import Entries
 from uplift.sensor import Array
 
+CLOSE = 1 + 1e-9
+"""Lattice steps within which another entry crowds; two in a voxel are never farther apart."""
+
 
 @dataclass(frozen=True, eq=False)
-class Crowd:
-    """A voxel, by its lowest corner's position and its bounds (2, 3) in linear RGB, and the entries within."""
+class Crowding:
+    """The crowded of a cube's own entries, those first that the lattice by itself makes the worst of.
 
-    cell: tuple[int, int, int]
-    bounds: Array
+    Parameters
+    ----------
+    entries : k of them.
+    nearest, apart : (k) name of the nearest other entry, and (k,) lattice steps to it along the axis that has most.
+    lost : entries that no colour is answered with, and for each the entry of the same colour that is.
+    """
+
     entries: Entries
+    nearest: tuple[str, ...]
+    apart: Array
+    lost: tuple[tuple[str, str], ...]
 
 
-def crowds(lattice: Lattice, entries: Entries) -> tuple[Crowd, ...]:
-    """The voxels of two entries or more, in the order of the worst entry of each."""
-    rows: dict[tuple[int, int, int], list[int]] = {}
-    for row, (red, green, blue) in enumerate(entries.cells.tolist()):
-        rows.setdefault((red, green, blue), []).append(row)
-    return tuple(
-        Crowd(cell, lattice.nodes[entries.cells[shared[0]] + [[0], [1]]], entries.take(shared))
-        for cell, shared in rows.items()
-        if len(shared) > 1
+def crowding(data: CubeData, entries: Entries) -> Crowding:
+    """Who stands within a lattice step of whom; ``entries`` are some or all of the cube's own."""
+    assert entries.worst_lattice is not None
+    names = data.atlas.names
+    nearest, apart = _nearest(data.lattice.steps_along(data.atlas.rgb))
+    place = {name: row for row, name in enumerate(names)}
+    rows = np.array([place[name] for name in entries.names])
+    order = np.argsort(-entries.worst_lattice, kind="stable")
+    kept = order[apart[rows[order]] <= CLOSE]
+    return Crowding(
+        entries.take(kept),
+        tuple(names[other] for other in nearest[rows[kept]]),
+        apart[rows[kept]],
+        _lost(data),
     )
+
+
+def _nearest(steps: Array) -> tuple[Indices, Array]:
+    """The nearest other row (n,) of steps (n, 3), and how far (n,) it is; infinitely where there is no other."""
+    from scipy.spatial import KDTree
+
+    if len(steps) < 2:
+        return np.zeros(len(steps), dtype=np.int64), np.full(len(steps), np.inf)
+    apart, found = KDTree(steps).query(steps, k=2, p=np.inf)
+    # A row finds itself first, or after another of the same colour.
+    return np.where(found[:, 0] == np.arange(len(steps)), found[:, 1], found[:, 0]), apart[:, 1]
+
+
+def _lost(data: CubeData) -> tuple[tuple[str, str], ...]:
+    names, rows = data.atlas.names, np.flatnonzero(data.atlas.reach == 0)
+    _, answered, _ = data.pins(data.atlas.rgb[rows])
+    return tuple((names[row], names[other]) for row, other in zip(rows, answered, strict=True))

@@ -11,9 +11,11 @@ from numpy.typing import ArrayLike
 from uplift.atlas import Spectra, resample
 from uplift.cube import CubeData
 from uplift.difference import colours_apart, spectra_apart
-from uplift.lattice import Indices, Status
+from uplift.lattice import Indices
 from uplift.lookup import MODES, Cube
+from uplift.lookup.interpolate import lattice_spectra
 from uplift.models import reflectance
+from uplift.observer import light
 from uplift.sensor import Array, Sensor
 
 COLOURS = 4096
@@ -47,33 +49,46 @@ class Entries:
 
     Parameters
     ----------
-    wanted, answered, stored : (E, N) reflectances: as measured, as the cube answers, and as its atlas table
-        has the entry; None where it has none.
+    wanted, answered : (E, N) reflectances: as measured, and as the cube answers.
     delta_e : (E, L) ΔE00 of ``answered`` against ``wanted``.
-    delta_e_stored : (E, L) ΔE00 of ``stored`` against ``wanted``: what no lookup could better.
-    rms, rms_stored : (E,) rms over wavelength of ``answered`` against ``wanted``, and against ``stored``.
-    own : (E,) trilinear weight, 0 to 1, of the voxel's corners that are based on the entry itself.
+    rms : (E,) rms over wavelength of ``answered`` against ``wanted``.
+    real, stated : (E,) ΔE00 of ``answered`` against ``wanted`` under the cube's reference light, and the cube's
+        standard error at ``rgb``; None where it has none.
     cells : (E, 3) lowest corner of the voxel, as a position along the axes.
-    corners : (E, S) how many of the voxel's corners have each `Status`.
+
+    Of the cube's own entries alone, None for all others:
+
+    lattice : (E, N) what the lattice by itself, entries aside, makes of ``rgb``: answers beside the entry lead
+        over to it.
+    delta_e_lattice, rms_lattice : (E, L) and (E,) of ``lattice`` against ``wanted``.
+    reach : (E,) lattice steps to the faces of the box around the entry; 0 where it is never answered.
+    codes : (E,) 8-bit codes to the nearest pair of these faces, those at the lattice's edge aside.
     """
 
     names: tuple[str, ...]
     rgb: Array
     wanted: Array
     answered: Array
-    stored: Array | None
     delta_e: Array
-    delta_e_stored: Array | None
     rms: Array
-    rms_stored: Array | None
-    own: Array | None
+    real: Array
+    stated: Array | None
     cells: Indices
-    corners: Indices
+    lattice: Array | None = None
+    delta_e_lattice: Array | None = None
+    rms_lattice: Array | None = None
+    reach: Array | None = None
+    codes: Array | None = None
 
     @property
     def worst(self) -> Array:
         """(E,) largest ΔE00 under any light."""
         return self.delta_e.max(axis=1)
+
+    @property
+    def worst_lattice(self) -> Array | None:
+        """(E,) the same of the lattice by itself."""
+        return None if self.delta_e_lattice is None else self.delta_e_lattice.max(axis=1)
 
     def take(self, rows: ArrayLike) -> Entries:
         """The entries of rows (k,), in that order."""
@@ -119,29 +134,39 @@ def about_stored(data: CubeData) -> Question:
 
 def entries(cube: Cube, question: Question, lights: tuple[Sensor, ...]) -> Entries:
     """The errors of a cube, asked in its default mode. ``question`` has one entry at least."""
-    data, wanted, rows = cube.data, question.wanted, question.rows
-    points, weights = data.lattice.corners(question.rgb)
-    cells, _ = data.lattice.cell(question.rgb)
+    data, wanted = cube.data, question.wanted
     answered = cube.reflectance(question.rgb)
-    stored = own = None
-    if rows is not None:
-        stored = reflectance(data.model, data.atlas.coefficients[rows], data.sensor.wavelengths)
-        own = (weights * (data.entry[points] == rows[:, None])).sum(axis=1)
     found = Entries(
         names=question.names,
         rgb=question.rgb,
         wanted=wanted,
         answered=answered,
-        stored=stored,
         delta_e=_under(lights, answered, wanted),
-        delta_e_stored=None if stored is None else _under(lights, stored, wanted),
         rms=_rms(answered, wanted),
-        rms_stored=None if stored is None else _rms(answered, stored),
-        own=own,
-        cells=cells,
-        corners=np.stack([(data.status[points] == status).sum(axis=1) for status in Status], axis=1),
+        real=spectra_apart(light(data.reference, data.sensor.observer), answered, wanted),
+        stated=cube.standard_error(question.rgb),
+        cells=data.lattice.cell(question.rgb)[0],
     )
+    if question.rows is not None:
+        found = _own(cube, found, question.rows, lights)
     return found.take(np.lexsort((-found.rms, -found.worst)))
+
+
+def _own(cube: Cube, found: Entries, rows: Indices, lights: tuple[Sensor, ...]) -> Entries:
+    """What can be said of those entries alone that lie in rows (E,) of the cube's atlas table."""
+    data = cube.data
+    lattice = lattice_spectra(data, found.rgb, data.sensor.wavelengths)
+    low, middle, high = (
+        cube.encode(rgb[rows]) for rgb in (data.pins.faces[0], data.atlas.rgb, data.pins.faces[1])
+    )
+    return replace(
+        found,
+        lattice=lattice,
+        delta_e_lattice=_under(lights, lattice, found.wanted),
+        rms_lattice=_rms(lattice, found.wanted),
+        reach=data.atlas.reach[rows],
+        codes=np.maximum(high - middle, middle - low).min(axis=1),
+    )
 
 
 def round_trips(cube: Cube) -> dict[str, Array]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -30,20 +31,13 @@ def numbers(found: Assessment) -> dict[str, Any]:
                 "illuminant": found.data.sensor.illuminant,
                 "delta_e_2000": {mode: _histogram(part) for mode, part in found.round_trips.items()},
             },
+            "standard_error": _standard_error(found),
             "smoothness": {**_histogram(found.smoothness), "steepest": found.steepest},
             "lights": [seen.illuminant for seen in found.lights],
             "atlas": {"files": found.sources, "own": found.own, "outside": found.outside},
             "delta_e_2000": {light: _histogram(part) for light, part in found.delta_e.items()},
             "entries": [] if found.entries is None else _entries(found.entries, found.lights),
-            "crowding": [
-                {
-                    "cell": crowd.cell,
-                    "bounds": crowd.bounds,
-                    "against": "measured" if found.own else "stored",
-                    "entries": _entries(crowd.entries, found.lights),
-                }
-                for crowd in found.crowds
-            ],
+            "crowding": _crowding(found),
         }
     )
 
@@ -64,6 +58,25 @@ def _failures(found: Assessment) -> dict[str, Any]:
         "improvements": failed.improvements,
         "left_out": failed.left_out,
         "skipped": failed.skipped,
+    }
+
+
+def _standard_error(found: Assessment) -> dict[str, Any]:
+    return {
+        "light": found.data.reference,
+        "delta_e_2000": None if found.standard_error is None else _histogram(found.standard_error),
+        "calibration": None if found.calibration is None else asdict(found.calibration),
+    }
+
+
+def _crowding(found: Assessment) -> dict[str, Any] | None:
+    if (crowding := found.crowding) is None:
+        return None
+    listed = zip(_entries(crowding.entries, found.lights), crowding.nearest, crowding.apart, strict=True)
+    return {
+        "against": "measured" if found.own else "stored",
+        "lost": [{"name": name, "same_colour": other} for name, other in crowding.lost],
+        "entries": [entry | {"nearest": other, "apart": apart} for entry, other, apart in listed],
     }
 
 
@@ -94,22 +107,26 @@ def _entries(found: Entries, lights: tuple[Sensor, ...]) -> list[dict[str, Any]]
             "rgb": found.rgb[row],
             "cell": found.cells[row],
             "delta_e_2000": by_light(found.delta_e[row]),
-            "delta_e_2000_stored": by_light(at(found.delta_e_stored, row)),
+            "delta_e_2000_lattice": by_light(at(found.delta_e_lattice, row)),
             "rms": found.rms[row],
-            "rms_stored": at(found.rms_stored, row),
-            "own_weight": at(found.own, row),
+            "rms_lattice": at(found.rms_lattice, row),
+            "delta_e_2000_reference": found.real[row],
+            "standard_error": at(found.stated, row),
+            "reach": at(found.reach, row),
+            "reach_codes": at(found.codes, row),
             "srgb": {
-                light: dict(zip(("wanted", "answered"), pair[row], strict=True))
-                for light, pair in shown.items()
+                light: dict(zip(("wanted", "answered", "lattice"), codes[row], strict=False))
+                for light, codes in shown.items()
             },
         }
         for row, name in enumerate(found.names)
     ]
 
 
-def swatches(found: Entries, seen: Sensor) -> list[tuple[str, str]]:
-    """``#rrggbb`` of every entry under a light: as wanted, and as answered."""
-    return list(zip(*(hex_codes(seen.rgb(part)) for part in (found.wanted, found.answered)), strict=True))
+def swatches(found: Entries, seen: Sensor) -> list[tuple[str, ...]]:
+    """``#rrggbb`` of every entry under a light: as wanted, as answered, and by the lattice alone if it is own."""
+    parts = [part for part in (found.wanted, found.answered, found.lattice) if part is not None]
+    return list(zip(*(hex_codes(seen.rgb(part)) for part in parts), strict=True))
 
 
 def _plain(value: Any) -> Any:

@@ -6,9 +6,10 @@ from importlib.resources import files
 
 from uplift.report.assessment import Assessment
 from uplift.report.markup import Markup, counted, element, joined, power
-from uplift.report.page_crowding import crowding_section
+from uplift.report.page_crowding import crowding_section, crowding_told
 from uplift.report.page_entries import entries_section
 from uplift.report.page_lattice import distributions_section, failures_section
+from uplift.report.page_standard_error import mean_told, standard_error_section, standard_error_told
 
 
 def page(found: Assessment, worst: int) -> str:
@@ -28,6 +29,7 @@ def page(found: Assessment, worst: int) -> str:
         _build(found),
         failures_section(found),
         distributions_section(found),
+        standard_error_section(found),
         crowding_section(found),
         entries_section(found, worst),
         _footer(found),
@@ -75,11 +77,10 @@ def _verdicts(found: Assessment) -> Markup:
                 f"{counted(len(errors.names), 'entry', 'entries')} and {counted(len(found.lights), 'light')}",
             )
         )
-    if found.data.atlas.names:
-        crowded = sum(len(crowd.entries.names) for crowd in found.crowds)
-        title = f"{counted(len(found.crowds), 'voxel')} shared" if crowded else "No voxel is shared"
-        whose = f"{crowded:,} of {len(found.data.atlas.names):,} entries crowd" if crowded else "no crowding"
-        cards.append(_verdict(title, f"{whose} at dim {found.data.lattice.dim}"))
+    if found.crowding is not None:
+        cards.append(_verdict(*crowding_told(found, found.crowding), bad=bool(found.crowding.lost)))
+    if found.standard_error is not None:
+        cards.append(_verdict(*standard_error_told(found, found.standard_error)))
     return element("div", *cards, class_="verdicts")
 
 
@@ -102,8 +103,8 @@ def _build(found: Assessment) -> Markup:
         ("wavelengths", f"{data.sensor.wavelengths[0]:g}–{data.sensor.wavelengths[-1]:g} nm"),
         ("threshold", f"{data.threshold:g}, max |linear RGB|"),
         ("entries", f"{len(data.atlas.names):,}"),
-        ("made by", f"uplift {data.provenance.get('uplift', 'unknown')}"),
-        ("file", f"{found.size / 1e6:.2f} MB"),
+        ("standard error", mean_told(found)),
+        ("file", f"{found.size / 1e6:.2f} MB, made by uplift {data.provenance.get('uplift', 'unknown')}"),
     ]
     wide = [(str(source["name"]), element("code", str(source["digest"]))) for source in _sources(found)]
     stated = ", ".join(f"{name} {_value(value)}" for name, value in options.items())

@@ -1,62 +1,96 @@
-"""The part of a report's page that speaks of entries which share a voxel."""
+"""The part of a report's page that speaks of entries which stand close to others."""
 
 from __future__ import annotations
 
 from uplift.report.assessment import Assessment
-from uplift.report.crowding import Crowd
-from uplift.report.markup import Markup, element
+from uplift.report.crowding import Crowding
+from uplift.report.markup import Markup, counted, element, joined
 from uplift.report.page_parts import (
-    OWN,
     error_cells,
     error_headings,
     name_cell,
     note,
-    own_cell,
-    pairs_of,
-    right,
+    reach_cell,
+    reach_heading,
+    swatches_of,
     table,
 )
 
 
 def crowding_section(found: Assessment) -> Markup | None:
-    """Voxels that several entries share, and what that costs each; None for a cube without entries."""
-    if not found.data.atlas.names:
+    """Who crowds whom, and what that costs; None for a cube without entries."""
+    if found.crowding is None:
         return None
     title = element("h2", "Crowding")
-    if not found.crowds:
-        return element("section", title, element("p", "Every entry has a voxel to itself."))
+    if not found.crowding.entries.names:
+        return element("section", title, element("p", "No entry has another within a lattice step."))
+    return element(
+        "section", title, _lost(found.crowding), _advice(found, found.crowding), _table(found, found.crowding)
+    )
+
+
+def crowding_told(found: Assessment, crowding: Crowding) -> tuple[str, str]:
+    """A title, and what it means, for those in a hurry."""
+    dim, count = found.data.lattice.dim, len(crowding.entries.names)
+    if not count:
+        return "No entry crowds", f"none has another within a lattice step at dim {dim}"
+    title = f"{counted(count, 'entry', 'entries')} crowd" + ("s" if count == 1 else "")
+    lost = f"; {len(crowding.lost):,} lost" if crowding.lost else ""
+    return title, f"of {len(found.data.atlas.names):,}, within a lattice step of another at dim {dim}{lost}"
+
+
+def _lost(crowding: Crowding) -> Markup | None:
+    if not crowding.lost:
+        return None
+    told = "; ".join(f"{name} (that of {other})" for name, other in crowding.lost)
+    return element(
+        "p",
+        element("span", "Lost, as an earlier entry has the same colour: ", class_="bad"),
+        f"{told}. A cube answers a colour once; no dim parts these.",
+    )
+
+
+def _advice(found: Assessment, crowding: Crowding) -> Markup:
     wanted = "measured" if found.own else "stored"
-    told = (
-        f"Entries in one voxel share its eight corners; a larger dim "
-        f"parts them. ΔE00 and rms are between the answer and the {wanted} spectrum."
+    answered = (
+        "with the spectrum stored for it" if not crowding.lost else "with its own spectrum, unless it is lost"
     )
-    first = found.crowds[0].entries
-    headings = ["voxel, linear RGB", "entry", *error_headings(first, found.lights, wanted), right("own", OWN)]
-    lines = [line for crowd in found.crowds for line in _crowd(found, crowd, wanted)]
-    return element("section", title, note(told), table(headings, lines, ""))
-
-
-def _crowd(found: Assessment, crowd: Crowd, wanted: str) -> list[list[Markup | None]]:
-    """A row an entry; the first has the voxel, which stands for all."""
-    entries, pairs = crowd.entries, pairs_of(crowd.entries, found.lights)
-    ranges = (
-        f"{letter} {low:.4f}–{high:.4f}" for letter, low, high in zip("RGB", *crowd.bounds, strict=True)
-    )
-    place = ", ".join(map(str, crowd.cell))
-    voxel = element(
-        "td",
-        place,
-        *(element("small", part) for part in ranges),
-        rowspan=len(entries.names),
-        class_="voxel",
-    )
-    lines: list[list[Markup | None]] = [
+    return joined(
         [
-            name_cell(entries, row, "name inner"),
-            *error_cells(entries, row, pairs, wanted),
-            own_cell(entries, row),
+            element(
+                "p",
+                "These entries have another within a lattice step. ",
+                element("code", "uplift build --dim auto"),
+                " looks for the smallest dim with room for all.",
+            ),
+            note(
+                f"Asked at its own colour an entry is answered {answered}; within its reach that leads over to "
+                "what the lattice by itself, which close entries share, makes of the colours around. In each cell, "
+                f"above: the answer at the entry's colour; below: the lattice by itself, there. ΔE00 and rms are "
+                f"against the {wanted} spectrum; swatches: {wanted}, answered, lattice."
+            ),
+        ]
+    )
+
+
+def _table(found: Assessment, crowding: Crowding) -> Markup:
+    entries = crowding.entries
+    shown = swatches_of(entries, found.lights)
+    wanted = "measured" if found.own else "stored"
+    headings = [element("th", "entry"), reach_heading(), element("th", "nearest other")]
+    headings += error_headings(found.lights, wanted)
+    lines = (
+        [
+            name_cell(entries, row),
+            reach_cell(entries, row),
+            element(
+                "td",
+                crowding.nearest[row],
+                element("small", f"{crowding.apart[row]:.2f} steps away"),
+                class_="name",
+            ),
+            *error_cells(entries, row, shown, lattice=True),
         ]
         for row in range(len(entries.names))
-    ]
-    lines[0].insert(0, voxel)
-    return lines
+    )
+    return table(headings, lines, "sortable stacked")

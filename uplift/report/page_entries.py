@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-from uplift.lattice import Status
 from uplift.report.assessment import Assessment
-from uplift.report.charts import ACCENT, BAND, INK, spectra_chart
 from uplift.report.fidelity import Entries
-from uplift.report.markup import Markup, counted, element, joined, number, triple
+from uplift.report.markup import Markup, counted, element, joined, number
 from uplift.report.page_parts import (
     BAD,
-    OWN,
     SEEN,
-    Pairs,
+    Swatches,
+    difference,
     error_cells,
     error_headings,
     name_cell,
     note,
-    own_cell,
-    pair,
-    pairs_of,
+    plain_cell,
+    reach_cell,
+    reach_heading,
     right,
     severity,
+    swatches_of,
     table,
 )
+from uplift.report.page_spectra import small_multiples
 
 
 def entries_section(found: Assessment, worst: int) -> Markup:
@@ -31,7 +31,7 @@ def entries_section(found: Assessment, worst: int) -> Markup:
     if found.entries is None:
         return element("section", title, element("p", _why_none(found)))
     entries = found.entries
-    pairs = pairs_of(entries, found.lights)
+    shown = swatches_of(entries, found.lights)
     return element(
         "section",
         title,
@@ -42,21 +42,27 @@ def entries_section(found: Assessment, worst: int) -> Markup:
         element("h3", "All of them" if worst >= len(entries.names) else f"The worst {worst}")
         if worst
         else None,
-        _small_multiples(found, entries, pairs, worst) if worst else None,
+        small_multiples(found, entries, shown, worst) if worst else None,
         element("h3", "Entry by entry"),
-        _note_on_entries(entries),
-        _table(found, entries, pairs),
+        _note_on_entries(found, entries),
+        _table(found, entries, shown),
     )
 
 
-def _note_on_entries(entries: Entries) -> Markup:
+def _note_on_entries(found: Assessment, entries: Entries) -> Markup:
     text = (
         f"Swatches: measured on the left, answered on the right. ΔE00 above {SEEN:g} is bold, above {BAD:g} orange. "
         "rms is between the answer and the measured spectrum"
     )
-    if entries.stored is not None:
+    if entries.lattice is not None:
         text += (
-            f"; stored: between the answer and the spectrum that the cube stores for the entry. Own: {OWN}"
+            ". Lattice: the worst ΔE00 of what the lattice by itself, the entry aside, makes of its colour. Reach: how "
+            "far around, in lattice steps and in 8-bit codes, answers lead over from the one to the other"
+        )
+    elif entries.stated is not None:
+        text += (
+            ". Stated: the cube's standard error there; real: the ΔE00 that it turned out to be, both under "
+            f"{found.data.reference}"
         )
     return note(f"{text}.")
 
@@ -89,108 +95,71 @@ def _by_light(found: Assessment, entries: Entries) -> Markup:
         worst = int(entries.delta_e[:, column].argmax())
         numbers = [part.mean, part.median, part.p95, part.largest]
         line = [light, *(number(_shown(value)) for value in numbers), entries.names[worst]]
-        if entries.delta_e_stored is not None:
-            stored = entries.delta_e_stored[:, column]
-            line += [number(_shown(float(value))) for value in (stored.mean(), stored.max())]
+        if entries.delta_e_lattice is not None:
+            lattice = entries.delta_e_lattice[:, column]
+            line += [number(_shown(float(value))) for value in (lattice.mean(), lattice.max())]
         lines.append(line)
     headings = ["light", *map(right, ("mean", "median", "95 %", "max")), "worst entry"]
-    if entries.delta_e_stored is not None:
+    if entries.delta_e_lattice is not None:
         headings += [
-            right(f"stored, {what}", "the stored spectrum against the measured") for what in ("mean", "max")
+            right(f"lattice, {what}", "the lattice by itself against the measured")
+            for what in ("mean", "max")
         ]
-    return joined([_note_on_light(entries), table(headings, lines)])
+    return joined([_note_on_light(found, entries), table(headings, lines)])
 
 
 def _shown(delta_e: float) -> Markup:
     return element("span", f"{delta_e:.3f}", class_=severity(delta_e))
 
 
-def _note_on_light(entries: Entries) -> Markup | None:
-    if entries.delta_e_stored is None:
+def _note_on_light(found: Assessment, entries: Entries) -> Markup | None:
+    if entries.delta_e_lattice is None:
         return None
+    lost = ", unless it is lost" if found.crowding is not None and found.crowding.lost else ""
     text = (
-        "ΔE00 between answered and measured; on the right, between the spectrum stored for the entry and the measured "
-        "one: what the model's coefficients cannot say, whatever the lattice."
+        "ΔE00 between answered and measured. At its own colour an entry is answered with the spectrum stored for "
+        f"it{lost}: what is left is what {found.data.model.count} coefficients cannot say. On the right, what the "
+        "lattice by itself makes of the same colours: that is how their surroundings are answered."
     )
     return note(text)
 
 
-def _small_multiples(found: Assessment, entries: Entries, pairs: Pairs, worst: int) -> Markup:
-    figures = (_figure(found, entries, row, pairs) for row in range(min(worst, len(entries.names))))
-    return joined([_key(entries), element("div", *figures, class_="grid")])
-
-
-def _figure(found: Assessment, entries: Entries, row: int, pairs: Pairs) -> Markup:
-    stored = None if entries.stored is None else entries.stored[row]
-    strips = [
-        element(
-            "span",
-            pair(*pairs[column][row]),
-            element("span", seen.illuminant),
-            element("b", f"{value:.2f}", class_=severity(value) or "plain"),
-        )
-        for column, (seen, value) in enumerate(zip(found.lights, entries.delta_e[row].tolist(), strict=True))
-    ]
-    name = element("b", entries.names[row], title=triple(entries.rgb[row]))
-    return element(
-        "figure",
-        element("figcaption", name, element("small", f"rms {entries.rms[row]:.4f}")),
-        element("div", *strips, class_="strip"),
-        spectra_chart(found.data.sensor.wavelengths, entries.wanted[row], entries.answered[row], stored),
-    )
-
-
-def _key(entries: Entries) -> Markup:
-    lines: list[tuple[str, str, float, str | None]] = [
-        ("measured", BAND, 5, None),
-        ("answered", ACCENT, 1.8, None),
-    ]
-    if entries.stored is not None:
-        lines.append(("stored for the entry", INK, 1.8, "2 2.6"))
-    parts = [
-        element(
-            "span",
-            element(
-                "svg",
-                element(
-                    "path",
-                    d="M0 4H34",
-                    stroke=colour,
-                    stroke_width=str(width),
-                    stroke_dasharray=dash,
-                    fill="none",
-                ),
-                viewBox="0 0 34 8",
-            ),
-            name,
-            class_="key",
-        )
-        for name, colour, width, dash in lines
-    ]
-    end = "Reflectance over wavelength in nm; below each light, ΔE00. Swatches: measured on the left, answered right."
-    return element("p", *parts, element("br"), end, class_="note")
-
-
-def _table(found: Assessment, entries: Entries, pairs: Pairs) -> Markup:
-    headings = [element("th", "entry"), *error_headings(entries, found.lights, "measured")]
-    headings += [
-        *([] if entries.own is None else [right("own", OWN)]),
-        element("th", "voxel", title="its corners, by status"),
+def _table(found: Assessment, entries: Entries, shown: Swatches) -> Markup:
+    headings = [
+        element("th", "entry"),
+        *error_headings(found.lights, "measured"),
+        *_further_headings(found, entries),
     ]
     lines = (
         [
             name_cell(entries, row),
-            *error_cells(entries, row, pairs, "measured"),
-            own_cell(entries, row),
-            _corners(entries, row),
+            *error_cells(entries, row, shown),
+            *_further_cells(entries, row),
         ]
         for row in range(len(entries.names))
     )
     return table(headings, lines, "sortable")
 
 
-def _corners(entries: Entries, row: int) -> Markup:
-    """The eight corners of the entry's voxel, by status."""
-    kinds = zip(Status, entries.corners[row].tolist(), strict=True)
-    stated = (f"{count} {status.label.removeprefix('atlas ')}" for status, count in kinds if count)
-    return element("td", element("small", ", ".join(stated)), class_="corners")
+def _further_headings(found: Assessment, entries: Entries) -> list[Markup]:
+    """Of own entries, what their surroundings are like; of others, how far the error was foreseen."""
+    if entries.lattice is not None:
+        return [
+            right("lattice", "largest ΔE00 of the lattice by itself under any of the lights"),
+            reach_heading(),
+        ]
+    if entries.stated is not None:
+        light = found.data.reference
+        return [
+            right("stated", f"standard error, ΔE00 under {light}"),
+            right("real", f"ΔE00 under {light}"),
+        ]
+    return []
+
+
+def _further_cells(entries: Entries, row: int) -> list[Markup]:
+    if entries.worst_lattice is not None:
+        return [difference(float(entries.worst_lattice[row])), reach_cell(entries, row)]
+    if entries.stated is not None:
+        return [plain_cell(float(entries.stated[row])), difference(float(entries.real[row]))]
+    return []

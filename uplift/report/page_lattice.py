@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from uplift.report.assessment import Assessment
-from uplift.report.charts import histogram_chart
 from uplift.report.fidelity import COLOURS
-from uplift.report.histogram import Histogram
 from uplift.report.markup import Markup, counted, element, joined, number, power, triple
-from uplift.report.page_parts import note, pair, right, table
+from uplift.report.page_parts import charts, figure, note, right, swatch, table
 from uplift.report.viewing import screen_codes
 
 
@@ -51,7 +49,7 @@ def _missed(found: Assessment) -> Markup | None:
     pairs = zip(screen_codes(data, target), screen_codes(data, data.rgb[points].astype(float)), strict=True)
     lines = [
         [
-            pair(*codes),
+            swatch(*codes),
             triple(target[row]),
             triple(data.rgb[point]),
             number(power(float(data.distance[point]))),
@@ -71,9 +69,7 @@ def _improvements(found: Assessment) -> Markup:
     steps = found.failures.improvements
     title = element("h3", "Improvement steps")
     if not steps:
-        return element(
-            "div", title, element("p", "None was needed: growth left no point over the threshold.")
-        )
+        return element("div", title, element("p", "No step was needed: no point was over the threshold."))
     lines = [
         [str(step.get("step")), number(f"{step.get('tried', 0):,}"), number(f"{step.get('mended', 0):,}")]
         for step in steps
@@ -95,36 +91,27 @@ def distributions_section(found: Assessment) -> Markup:
     """Histograms: of the lattice, of colours that come back, of the entries under each light."""
     light, limit = found.data.sensor.illuminant, found.data.threshold
     lattice = [
-        _chart("Fitting distance of the lattice points", found.distance, "max |linear RGB|", limit=limit),
-        _chart("Smoothness: neighbouring points", found.smoothness, "rms difference of reflectance"),
+        figure("Fitting distance of the lattice points", found.distance, "max |linear RGB|", limit=limit),
+        figure("Smoothness: neighbouring points", found.smoothness, "rms difference of reflectance"),
         _aside(found),
     ]
     trips = [
-        _chart(f"Round trip in mode {mode}", part, f"ΔE00 under {light}")
+        figure(f"Round trip in mode {mode}", part, f"ΔE00 under {light}")
         for mode, part in found.round_trips.items()
     ]
     told = (
         f"{COLOURS:,} random linear RGB, the same for every cube: the colour asked against what comes back."
     )
-    parts = [element("h3", "Lattice"), _charts(lattice)]
-    parts += [element("h3", "Colours that come back"), note(told), _charts(trips)]
+    parts = [element("h3", "Lattice"), charts(lattice)]
+    parts += [element("h3", "Colours that come back"), note(told), charts(trips)]
     if found.delta_e:
         top = max(int(part.counts.max()) for part in found.delta_e.values())
         entries = [
-            _chart(f"Entries under {name}", part, "ΔE00", top=top) for name, part in found.delta_e.items()
+            figure(f"Entries under {name}", part, "ΔE00", top=top) for name, part in found.delta_e.items()
         ]
         text = "Each entry asked at its own RGB: the answer against the measured spectrum, seen under each light."
-        parts += [element("h3", "Entries"), note(text), _charts(entries)]
+        parts += [element("h3", "Entries"), note(text), charts(entries)]
     return element("section", element("h2", "Distributions"), *parts)
-
-
-def _chart(
-    title: str, part: Histogram, label: str, *, top: int | None = None, limit: float | None = None
-) -> Markup:
-    named = ("mean", part.mean), ("median", part.median), ("95 %", part.p95), ("max", part.largest)
-    stated = (element("span", element("small", name), power(value)) for name, value in named)
-    caption = element("figcaption", element("b", title), element("div", *stated, class_="stats"))
-    return element("figure", caption, histogram_chart(part, label, top=top, limit=limit))
 
 
 def _aside(found: Assessment) -> Markup:
@@ -134,11 +121,7 @@ def _aside(found: Assessment) -> Markup:
         "div",
         f"The dashed line is the threshold, {found.data.threshold:g}. Neighbours are points next to each other along "
         "an axis; between these two the spectrum changes most:",
-        pair(*screen_codes(found.data, found.steepest)),
+        swatch(*screen_codes(found.data, found.steepest)),
         f"({first}) and ({second}).",
         class_="aside",
     )
-
-
-def _charts(figures: list[Markup]) -> Markup:
-    return element("div", *figures, class_="charts")

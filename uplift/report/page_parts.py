@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from uplift.report.charts import histogram_chart
 from uplift.report.fidelity import Entries
-from uplift.report.markup import Markup, element, joined, number, rows, triple
+from uplift.report.histogram import Histogram
+from uplift.report.markup import Markup, element, joined, number, power, rows, triple
 from uplift.report.numbers import swatches
 from uplift.sensor import Sensor
 
 SEEN, BAD = 1.0, 3.0
 """ΔE00 that one sees side by side, and that nobody overlooks."""
-OWN = "trilinear weight of the voxel's corners that are based on the entry itself"
 
-Pairs = Sequence[Sequence[tuple[str, str]]]
-"""``#rrggbb`` as measured and as answered, for each light and entry."""
+Swatches = Sequence[Sequence[tuple[str, ...]]]
+"""`swatches` of each light, for each entry."""
 
 
-def pair(first: str, second: str, title: str | None = None) -> Markup:
-    """A swatch of two colours that touch."""
-    halves = (element("i", style=f"background:{code}") for code in (first, second))
-    return element("span", *halves, class_="pair", title=title or f"{first} | {second}")
+def swatch(*codes: str) -> Markup:
+    """Colours that touch, each ``#rrggbb``."""
+    parts = (element("i", style=f"background:{code}") for code in codes)
+    return element("span", *parts, class_="swatch", title=" | ".join(codes))
 
 
 def note(text: str) -> Markup:
@@ -46,45 +47,91 @@ def severity(delta_e: float) -> str | None:
     return "bad" if delta_e > BAD else "seen" if delta_e > SEEN else None
 
 
-def pairs_of(found: Entries, lights: Sequence[Sensor]) -> Pairs:
+def figure(
+    title: str, part: Histogram, label: str, *, top: int | None = None, limit: float | None = None
+) -> Markup:
+    """A histogram under its title and the few numbers that say most."""
+    named = ("mean", part.mean), ("median", part.median), ("95 %", part.p95), ("max", part.largest)
+    stated = (element("span", element("small", name), power(value)) for name, value in named)
+    caption = element("figcaption", element("b", title), element("div", *stated, class_="stats"))
+    return element("figure", caption, histogram_chart(part, label, top=top, limit=limit))
+
+
+def charts(figures: list[Markup]) -> Markup:
+    """Figures, and what else may stand with them, in columns."""
+    return element("div", *figures, class_="charts")
+
+
+def swatches_of(found: Entries, lights: Sequence[Sensor]) -> Swatches:
     """Swatches under each light."""
     return [swatches(found, seen) for seen in lights]
 
 
-def error_headings(found: Entries, lights: Sequence[Sensor], wanted: str) -> Iterator[Markup]:
+def error_headings(lights: Sequence[Sensor], wanted: str) -> Iterator[Markup]:
     """Over `error_cells`; ``wanted`` is what the answers are held against, measured or stored."""
     yield right("worst", "largest ΔE00 under any of the lights", "descending")
     for seen in lights:
         yield right(seen.illuminant, f"{wanted} | answered under {seen.illuminant}, and their ΔE00")
     yield right("rms", f"rms over wavelength to the {wanted} spectrum")
-    if found.rms_stored is not None and wanted != "stored":
-        yield right("stored", "rms over wavelength to the spectrum that the cube stores for the entry")
 
 
-def error_cells(found: Entries, row: int, pairs: Pairs, wanted: str) -> Iterator[Markup]:
-    """The errors of one entry: the worst, under each light with its swatches, and rms."""
-    yield _difference(float(found.worst[row]))
-    for column, colours in enumerate(pairs):
-        yield _difference(float(found.delta_e[row, column]), pair(*colours[row]))
-    yield _rms(float(found.rms[row]))
-    if found.rms_stored is not None and wanted != "stored":
-        yield _rms(float(found.rms_stored[row]))
+def error_cells(found: Entries, row: int, shown: Swatches, *, lattice: bool = False) -> Iterator[Markup]:
+    """The errors of one entry: the worst, under each light with its swatches, and rms.
+
+    With ``lattice``, which own entries have, those of the lattice by itself stand below, and the cells sort by them.
+    """
+    below, rms = None, None
+    if lattice:
+        assert found.delta_e_lattice is not None
+        assert found.rms_lattice is not None
+        below, rms = found.delta_e_lattice[row].tolist(), float(found.rms_lattice[row])
+    yield difference(float(found.worst[row]), below and max(below))
+    for column, codes in enumerate(shown):
+        seen = swatch(*codes[row][: 3 if lattice else 2])
+        yield difference(float(found.delta_e[row, column]), below and below[column], seen)
+    yield _cell("{:.4f}", float(found.rms[row]), rms)
 
 
-def name_cell(found: Entries, row: int, class_: str = "name") -> Markup:
+def name_cell(found: Entries, row: int) -> Markup:
     """An entry by name and linear RGB."""
-    return element("td", found.names[row], element("small", triple(found.rgb[row])), class_=class_)
+    return element("td", found.names[row], element("small", triple(found.rgb[row])), class_="name")
 
 
-def own_cell(found: Entries, row: int) -> Markup | None:
-    """How much of its voxel an entry has; None where no entry has any."""
-    return None if found.own is None else number(f"{found.own[row]:.0%}", data_value=f"{found.own[row]:.9g}")
+def reach_heading() -> Markup:
+    """Over `reach_cell`."""
+    return right(
+        "reach", "lattice steps around the entry's colour within which answers lead over to its spectrum"
+    )
 
 
-def _difference(value: float, swatch: Markup | None = None) -> Markup:
-    shown = element("span", f"{value:.2f}", class_=severity(value))
-    return number(joined([swatch, shown]), data_value=f"{value:.9g}")
+def reach_cell(found: Entries, row: int) -> Markup:
+    """How far an own entry is felt, in lattice steps and in 8-bit codes."""
+    assert found.reach is not None
+    assert found.codes is not None
+    reach = float(found.reach[row])
+    shown = joined([f"{reach:.2f}", element("small", f"± {found.codes[row]:.1f} codes")])
+    if not reach:
+        shown = element("span", "lost", class_="bad")
+    return number(shown, data_value=f"{reach:.9g}")
 
 
-def _rms(value: float) -> Markup:
-    return number(f"{value:.4f}", data_value=f"{value:.9g}")
+def plain_cell(value: float) -> Markup:
+    """A cell of ΔE00 that is nobody's fault."""
+    return _cell("{:.2f}", value, None)
+
+
+def difference(value: float, below: float | None = None, seen: Markup | None = None) -> Markup:
+    """A cell of ΔE00, after its swatch; another ``below`` it, by which the cell then sorts."""
+    return _cell("{:.2f}", value, below, seen, graded=True)
+
+
+def _cell(
+    form: str, value: float, below: float | None, seen: Markup | None = None, *, graded: bool = False
+) -> Markup:
+    shown = [
+        element("span", form.format(part), class_=severity(part) if graded else None)
+        for part in (value, below)
+        if part is not None
+    ]
+    figures = element("span", *shown, class_="stack") if below is not None else shown[0]
+    return number(joined([seen, figures]), data_value=f"{value if below is None else below:.9g}")

@@ -19,7 +19,7 @@ LIGHTS = ("D65", "A", "FL11")
 LIMITS = {"rgb": 1e-5, "spectra_max": 1e-3, "spectra_rms": 1e-5} | {
     f"delta_e_{name}": 0.01 for name in LIGHTS
 }
-"""What may differ between machines: rounding travels through the rounds of growth, but not far."""
+"""What may differ between machines: rounding travels through the fit, but not far."""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from uplift.cube import CubeData, digest
 
 
 def summary(data: CubeData) -> dict[str, Any]:
-    """Plain facts, most general first; distances are max |linear RGB|."""
+    """Plain facts, most general first; distances are max |linear RGB|, standard errors ΔE00 under ``reference``."""
     return {
         "model": data.model.describe(),
         "coefficients": data.model.count,
@@ -22,6 +22,10 @@ def summary(data: CubeData) -> dict[str, Any]:
         "threshold": data.threshold,
         "worst_distance": float(data.distance.max()),
         "mean_distance": float(data.distance.mean(dtype=np.float64)),
+        "reference": data.reference,
+        "mean_standard_error": None
+        if data.standard_error is None
+        else float(data.standard_error.mean(dtype=np.float64)),
         "status": data.counts(),
         "entries": list(data.atlas.names),
         "debug": data.round is not None,
