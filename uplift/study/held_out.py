@@ -13,6 +13,7 @@ from uplift import observer
 from uplift.atlas import Spectra, resample
 from uplift.difference import spectra_apart
 from uplift.errors import AtlasError, UpliftWarning
+from uplift.lattice import Indices
 from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.sensor import Array
@@ -98,7 +99,7 @@ def _ask(cubes: dict[str, Cube], asked: Spectra) -> Split:
     )
 
 
-def _inside(spectra: Spectra, cube: Cube) -> Array:
+def _inside(spectra: Spectra, cube: Cube) -> Indices:
     """Rows of the entries that the cube's space holds."""
     sensor = cube.data.sensor
     rows = np.flatnonzero(sensor.holds(sensor.rgb(resample(spectra, sensor.wavelengths).values)))
@@ -110,7 +111,7 @@ def _inside(spectra: Spectra, cube: Cube) -> Array:
     return rows
 
 
-def _some(spectra: Spectra, rows: Array) -> Spectra:
+def _some(spectra: Spectra, rows: Indices) -> Spectra:
     return Spectra(tuple(spectra.entries[row] for row in rows))
 
 
