@@ -50,10 +50,7 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, moments: int, style:
     found: Found = {}
     for name, spectra in atlases.items():
         with counting(name) as watch:
-            total = splits + 2
-            found[name] = halves(
-                spectra, splits, lambda done: watch(done, total), dim=dim, coefficients=moments + 1
-            )
+            found[name] = halves(spectra, splits, watch, dim=dim, coefficients=moments + 1)
     PRINTERS[style](found)
 
 

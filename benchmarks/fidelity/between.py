@@ -116,7 +116,12 @@ def _nothing(known: Array, values: Array, asked: Array, roughness: Array) -> tup
 
 
 def _trend(known: Array, values: Array, asked: Array, roughness: Array) -> tuple[Array, Array]:
-    """Universal kriging: quadratic trend, Gaussian kernel of length 0.1 and nugget 0.1 over cube-root RGB."""
+    found, residuals = _universal(known, values, asked)
+    return found, _covariance(residuals, roughness)
+
+
+def _universal(known: Array, values: Array, asked: Array) -> tuple[Array, Array]:
+    """Quadratic trend, Gaussian kernel of length 0.1 and nugget 0.1 over cube-root RGB; leave-one-out residuals."""
     x, y = np.cbrt(known), np.cbrt(asked)
     count = len(x)
     trend = _quadratic(x)
@@ -124,7 +129,7 @@ def _trend(known: Array, values: Array, asked: Array, roughness: Array) -> tuple
     inverse = np.linalg.pinv(system)
     weights = inverse[:, :count] @ values
     residuals = weights[:count] / np.diag(inverse)[:count, None]
-    return np.hstack([_gauss(y, x), _quadratic(y)]) @ weights, _covariance(residuals, roughness)
+    return np.hstack([_gauss(y, x), _quadratic(y)]) @ weights, residuals
 
 
 def _gauss(first: Array, second: Array) -> Array:
@@ -153,9 +158,20 @@ OF_WHOLE = (_nearest, _trend)
 """Those that predict multipliers, not their deviation from smooth spectra."""
 
 
-def whole_spectra(kept: Materials, asked: Materials, model: Moments) -> Array:
-    """The limit: kriging of whole spectra (81 samples), neither bounded nor compact, from the same smooth start."""
+def _whole_deviations(kept: Materials, asked: Materials) -> Array:
+    model = Moments(9)
     plain = smooth(model, ahead(model))
     before, after = (solved(model, plain(part.rgb), part.rgb) for part in (kept, asked))
     found, _ = krige(rgb_lab(SENSOR, kept.rgb), kept.measured - before)
     return np.asarray(after + found(rgb_lab(SENSOR, asked.rgb)))
+
+
+def _whole_trend(kept: Materials, asked: Materials) -> Array:
+    return _universal(kept.rgb, kept.measured, asked.rgb)[0]
+
+
+LIMITS: dict[str, Callable[[Materials, Materials], Array]] = {
+    "81 samples, deviations kriged as here": _whole_deviations,
+    "81 samples, quadratic trend": _whole_trend,
+}
+"""Kriging of whole spectra, neither bounded nor compact, nor of the very colour."""

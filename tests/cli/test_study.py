@@ -94,5 +94,26 @@ def test_bad_input_is_refused(refuse, home, tcs):
 
 
 def test_a_study_is_named(run):
-    assert "Commands:\n  moments " in run("study", "--help").stdout
+    for name in ("moments", "held-out"):
+        assert f"\n  {name} " in run("study", "--help").stdout
     assert "No such command 'colours'" in run("study", "colours", code=2).stderr
+
+
+def test_held_out_in_every_format(run, tcs):
+    args = ("study", "held-out", "--atlas", tcs, "--dim", 4, "--splits", 1, "--format")
+    objects = json.loads(run(*args, "json").stdout)
+    assert [one["cube"] for one in objects] == ["half the atlas", "without an atlas", "sigmoid"]
+    assert all(one["atlas"] == "tcs" and 0 < one["rms"] < 0.5 for one in objects)
+    rows = list(csv.DictReader(io.StringIO(run(*args, "csv").stdout)))
+    assert [float(row["FL11"]) for row in rows] == pytest.approx([one["FL11"] for one in objects])
+    table = run(*args, "table")
+    assert table.stderr == ""
+    assert f"{objects[0]['A']:.3f}" in table.stdout
+
+
+def test_an_atlas_too_small_to_halve_is_refused(refuse, home):
+    lines = [f"{name}," + ",".join(["0.5"] * 31) for name in ("one", "other")]
+    header = "name," + ",".join(map(str, range(400, 701, 10)))
+    (home / "two.csv").write_text("\n".join([header, *lines]) + "\n")
+    message = refuse("study", "held-out", "--atlas", "two.csv", "--dim", 4)
+    assert "2 entries lie within sRGB, too few to halve; give an atlas of 8 or more" in message

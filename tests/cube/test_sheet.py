@@ -25,7 +25,7 @@ COLOUR, DISTANCE, STATE, ERROR, ROUND = range(5)
 
 def pixel(data, image, panel, position):
     """The middle of the square of the lattice point at ``position`` (red, green, blue)."""
-    layout = Layout(data.lattice.dim, 3 if data.round is None else 4)
+    layout = Layout(data.lattice.dim, 5)
     red, green, blue = position
     x, y = layout.tile(panel, blue)
     half = layout.scale // 2

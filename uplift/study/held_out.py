@@ -56,12 +56,15 @@ def judge(answered: Array, measured: Array, lights: Sequence[str] = LIGHTS) -> E
 
 
 def halves(
-    spectra: Spectra, splits: int = 3, watch: Callable[[int], None] = lambda done: None, **options: Any
+    spectra: Spectra,
+    splits: int = 3,
+    watch: Callable[[int, int], None] = lambda done, total: None,
+    **options: Any,
 ) -> tuple[Split, ...]:
     """Halve an atlas ``splits`` times, build a cube from one half with ``options``, ask it for the other.
 
     Beside the cube answer one of the same options without an atlas, and the sigmoid's. ``watch`` hears how many
-    cubes are built.
+    cubes are built, and of how many.
 
     Raises
     ------
@@ -73,7 +76,7 @@ def halves(
             "without an atlas": build(**options),
             "sigmoid": build(**{**options, "model": "sigmoid"}),
         }
-        watch(2)
+        watch(2, 2 + splits)
         inside = _inside(spectra, others["sigmoid"])
         found = []
         for number in range(splits):
@@ -81,7 +84,7 @@ def halves(
             kept, asked = np.array_split(order, 2)
             cube = build(_some(spectra, inside[kept]), **options)
             found.append(_ask({"half the atlas": cube, **others}, _some(spectra, inside[asked])))
-            watch(3 + number)
+            watch(3 + number, 2 + splits)
     return tuple(found)
 
 
