@@ -55,9 +55,11 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, moments: int, style:
 
 
 def _records(found: Found) -> list[dict[str, Any]]:
+    from dataclasses import asdict
+
     import numpy as np
 
-    from uplift.study.held_out import LIGHTS, calibration
+    from uplift.study.held_out import LIGHTS, stated_errors
 
     records: list[dict[str, Any]] = []
     for name, splits in found.items():
@@ -65,7 +67,8 @@ def _records(found: Found) -> list[dict[str, Any]]:
             rms, *delta_e = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
             record = {"atlas": name, "cube": method, "colours": len(splits[0].real), "rms": rms}
             records.append(record | dict(zip(LIGHTS, delta_e, strict=True)))
-        records[-len(splits[0].errors)]["standard_error"] = calibration(splits)
+        said = stated_errors(splits)
+        records[-len(splits[0].errors)]["standard_error"] = said and asdict(said)
     return records
 
 
@@ -107,7 +110,7 @@ def _print_table(found: Found) -> None:
     for name, said in sayings:
         click.echo(
             f"{name}: stated standard error ΔE00 {said['stated']:.2f}, real {said['real']:.2f}; "
-            f"{said['within_1']:.0%} within one, {said['within_2']:.0%} within two"
+            f"{said['within_one']:.0%} within one, {said['within_two']:.0%} within two"
         )
 
 

@@ -27,6 +27,7 @@ from uplift import fit, observer
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.models import Moments
+from uplift.report.calibration import calibration
 from uplift.report.smoothness import smoothness
 from uplift.sensor import Array
 from uplift.study.held_out import Split, halves, judge
@@ -129,14 +130,16 @@ def _targets(found: dict[tuple[str, int], tuple[Split, ...]]) -> str:
 def _stated(found: dict[tuple[str, int], tuple[Split, ...]]) -> str:
     rows = []
     for (name, count), splits in found.items():
-        real = np.concatenate([split.real for split in splits])
-        stated = np.concatenate([np.asarray(split.stated) for split in splits])
+        real, stated = (
+            np.concatenate([getattr(split, part) for split in splits]) for part in ("real", "stated")
+        )
+        said = calibration(real, stated)
         quarters = [
             f"{_root(real[part]):.2f} / {_root(stated[part]):.2f}"
             for part in np.array_split(stated.argsort(kind="stable"), 4)
         ]
-        shares = (f"{(real < width * stated).mean():.0%}" for width in (1, 2))
-        rows.append([name, str(count), f"{_root(real):.2f} / {_root(stated):.2f}", *shares, *quarters])
+        shares = (f"{said.within_one:.0%}", f"{said.within_two:.0%}")
+        rows.append([name, str(count), f"{said.real:.2f} / {said.stated:.2f}", *shares, *quarters])
     return table(
         "Standard errors that cubes state, and real ones",
         "ΔE00 under A of the half that the cube has not seen, as roots of mean squares: real / stated; how many of the "

@@ -246,7 +246,10 @@ def test_a_cube_is_not_judged_by_what_it_has_learnt_from(judged, plain_cube, mac
     assert judged.standard_error.mean == pytest.approx(judged.facts["mean_standard_error"])
     unknowing = assess(plain_cube, "plain.uplift", 1, macbeth, ("A",))
     assert (unknowing.standard_error, unknowing.facts["mean_standard_error"]) == (None, None)
-    assert (calibration(unknowing.entries), unknowing.calibration) == (None, None)
+    assert (calibration(unknowing.entries.real, unknowing.entries.stated), unknowing.calibration) == (
+        None,
+        None,
+    )
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from uplift import observer
 from uplift.atlas import Entry, Spectra
 from uplift.difference import spectra_apart
-from uplift.study.held_out import LIGHTS, Errors, Split, calibration, halves, judge
+from uplift.study.held_out import LIGHTS, Errors, Split, halves, judge, stated_errors
 
 GRID = observer.grid()
 
@@ -54,13 +54,14 @@ def test_errors_are_what_they_are_called():
     assert errors.means() == pytest.approx([errors.rms.mean(), *errors.delta_e.mean(axis=0)])
 
 
-def test_calibration_by_hand():
+def test_stated_errors_by_hand():
     nothing = Errors(np.zeros(2), np.zeros((2, 1)))
-    found = calibration(
+    found = stated_errors(
         [
             Split({"": nothing}, np.array([1.0, 3.0]), np.array([2.0, 2.0])),
             Split({"": nothing}, np.array([5.0, 9.0]), None),
         ]
     )
-    assert found == {"real": pytest.approx(5**0.5), "stated": 2, "within_1": 0.5, "within_2": 1}
-    assert calibration([Split({"": nothing}, np.zeros(2), None)]) is None
+    assert (found.count, found.stated, found.within_one, found.within_two) == (2, 2, 0.5, 1)
+    assert found.real == pytest.approx(5**0.5)
+    assert stated_errors([Split({"": nothing}, np.zeros(2), None)]) is None

@@ -108,7 +108,7 @@ def assess(
         entries=found,
         delta_e={} if found is None else _together(_by_light(found, seen), linear_edges),
         outside=() if question is None else question.outside,
-        calibration=None if own or found is None else calibration(found),
+        calibration=None if own or found is None else calibration(found.real, found.stated),
         crowding=_crowding(cube, found if own else None, seen),
     )
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.report.fidelity import Entries
 from uplift.sensor import Array
 
 ABOUT_RIGHT = 1.25
@@ -35,16 +34,16 @@ class Calibration:
         return -1 if self.stated > ABOUT_RIGHT * self.real else 0
 
 
-def calibration(found: Entries) -> Calibration | None:
-    """None where the cube states no errors."""
-    if found.stated is None:
+def calibration(real: Array, stated: Array | None) -> Calibration | None:
+    """Of real and stated errors (n,), ΔE00. None where the cube states none."""
+    if stated is None:
         return None
     return Calibration(
-        count=len(found.names),
-        real=_root_mean_square(found.real),
-        stated=_root_mean_square(found.stated),
-        within_one=float((found.real <= found.stated).mean()),
-        within_two=float((found.real <= 2 * found.stated).mean()),
+        count=len(real),
+        real=_root_mean_square(real),
+        stated=_root_mean_square(stated),
+        within_one=float((real <= stated).mean()),
+        within_two=float((real <= 2 * stated).mean()),
     )
 
 

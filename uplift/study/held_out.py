@@ -16,6 +16,7 @@ from uplift.errors import AtlasError, UpliftWarning
 from uplift.lattice import Indices
 from uplift.lookup import Cube
 from uplift.pipeline import build
+from uplift.report.calibration import Calibration, calibration
 from uplift.sensor import Array
 
 LIGHTS = ("A", "FL2", "FL7", "FL11", "LED-B3", "LED-RGB1", "HP1")
@@ -118,18 +119,10 @@ def _some(spectra: Spectra, rows: Indices) -> Spectra:
     return Spectra(tuple(spectra.entries[row] for row in rows))
 
 
-def calibration(splits: Sequence[Split]) -> dict[str, float] | None:
-    """Stated against real errors, ΔE00 under the reference light: roots of mean squares, and how many lie within.
-
-    None where the cubes state none.
-    """
+def stated_errors(splits: Sequence[Split]) -> Calibration | None:
+    """Of all splits together. None where the cubes state no errors."""
     parts = [(split.real, split.stated) for split in splits if split.stated is not None]
     if not parts:
         return None
     real, stated = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return {
-        "real": float(np.sqrt((real**2).mean())),
-        "stated": float(np.sqrt((stated**2).mean())),
-        "within_1": float((real < stated).mean()),
-        "within_2": float((real < 2 * stated).mean()),
-    }
+    return calibration(real, stated)
