@@ -59,6 +59,10 @@ class Lattice:
         grid = np.meshgrid(self.nodes, self.nodes, self.nodes, indexing="ij")
         return np.stack(grid, axis=-1).reshape(-1, 3)
 
+    def target(self, index: Indices) -> Array:
+        """(…, 3) target RGB of point numbers (…)."""
+        return self.nodes[self.position(index)]
+
     def index(self, position: Indices) -> Indices:
         """Point numbers (…) of positions (…, 3) along the axes."""
         return (position[..., 0] * self.dim + position[..., 1]) * self.dim + position[..., 2]

@@ -60,7 +60,9 @@ def test_points_that_fail_from_their_start_are_taken_from_their_neighbours(senso
     middle = LATTICE.size // 2
     start = np.full((LATTICE.size, 9), -1e9) * MODEL.constant()
     start[middle] = 0
-    grown = grow(Problem(MODEL, ahead_of(MODEL, sensor), LATTICE), start, rounds.append)
+    grown = grow(
+        Problem(MODEL, ahead_of(MODEL, sensor), LATTICE), lambda points: start[points], rounds.append
+    )
     steps = np.abs(LATTICE.position(np.arange(LATTICE.size)) - LATTICE.position(np.array(middle))).max(axis=1)
     fitted = grown.round != NEVER
     assert fitted.sum() > 300

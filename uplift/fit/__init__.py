@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uplift.fit.crowding import DIMS, roomiest
 from uplift.fit.entries import Entries, Weights, fit_entries
@@ -44,9 +45,9 @@ class Fit:
     """Every lattice point's multipliers (n, C), `Status` (n,), round (n,) and entry (n,), −1 for none."""
 
     multipliers: Array
-    status: Indices
-    round: Indices
-    entry: Indices
+    status: NDArray[np.uint8]
+    round: NDArray[np.int16]
+    entry: NDArray[np.int32]
     improvements: tuple[Improvement, ...]
 
 
@@ -54,15 +55,20 @@ def fit_lattice(
     problem: Problem, seeds: Seeds, entries: Array, prior: Prior, watch: Watch = lambda done: None
 ) -> Fit:
     """Fit every point of the lattice: seeds from the multipliers (E, C) of their entries, others from the prior."""
-    start = prior(problem.lattice.points)
-    start[seeds.points] = entries[seeds.entry]
+    entry = np.full(problem.lattice.size, NO_ENTRY, dtype=np.int32)
+    entry[seeds.points] = seeds.entry
+
+    def start(points: Indices) -> Array:
+        found = prior(problem.lattice.target(points))
+        seeded = entry[points] != NO_ENTRY
+        found[seeded] = entries[entry[points[seeded]]]
+        return found
+
     grown = grow(problem, start, watch)
     multipliers, distance, improvements = improve(problem, grown.multipliers, grown.distance)
     fitted = distance <= problem.threshold
-    status = np.full(len(fitted), Status.REGULAR, dtype=np.int64)
-    entry = np.full(len(fitted), NO_ENTRY, dtype=np.int64)
+    status = np.full(len(fitted), Status.REGULAR, dtype=np.uint8)
     status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
-    entry[seeds.points] = seeds.entry
     status[(grown.round == NEVER) & fitted] = Status.IMPROVED
     status[~fitted] = Status.UNFITTED
     return Fit(multipliers, status, grown.round, entry, improvements)

@@ -17,7 +17,7 @@ from uplift.sensor import Array, Light
 
 DIMS = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128)
 """Sizes to choose from."""
-PASSES = 16
+PASSES = 32
 
 
 def lattice_error(problem: Problem, wavelengths: Array, lights: Sequence[Light], entries: Entries) -> Array:

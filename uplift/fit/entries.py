@@ -81,7 +81,7 @@ def fit_entries(
             fitted = _fit_batch(model, forward.basis, rows, colours, weights.lights, padded)
             found.append(np.asarray(fitted)[: len(batch)])
     start = np.concatenate(found)
-    multipliers = solve(model, forward, start, rgb, tolerance=tolerance, passes=16).multipliers
+    multipliers = solve(model, forward, start, rgb, tolerance=tolerance, passes=32).multipliers
     spectra = np.asarray(model.squash(multipliers @ forward.basis.T))
     error = spectra_apart(reference, spectra, measured)
     return Entries(rgb, measured, multipliers, error)

@@ -10,12 +10,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uplift.fit.problem import Problem
 from uplift.lattice import Indices, Lattice, Mask
 from uplift.sensor import Array
 
-PASSES = 6
+PASSES = 12
 NEVER = -1
 """The round of a point that no round has fitted."""
 BLOCK = 1 << 15
@@ -41,25 +42,33 @@ class Growth:
 
     multipliers: Array
     distance: Array
-    round: Indices
+    round: NDArray[np.int16]
 
 
-def grow(problem: Problem, start: Array, watch: Watch) -> Growth:
-    """Fit the whole lattice, each point from its multipliers in ``start`` (n, C).
+Start = Callable[[Indices], Array]
+"""Multipliers (k, C) that points (k,) start from."""
+
+
+def grow(problem: Problem, start: Start, watch: Watch) -> Growth:
+    """Fit the whole lattice, each point from its start.
 
     A point that fails is tried again whenever another of its neighbours has been fitted.
     """
     lattice = problem.lattice
-    growth = Growth(start.copy(), np.full(lattice.size, np.inf), np.full(lattice.size, NEVER, dtype=np.int64))
+    growth = Growth(
+        np.zeros((lattice.size, problem.model.count)),
+        np.full(lattice.size, np.inf),
+        np.full(lattice.size, NEVER, dtype=np.int16),
+    )
     for first in range(0, lattice.size, BLOCK):
         points = np.arange(first, min(first + BLOCK, lattice.size))
-        _try(problem, growth, points, start[points], 0, watch)
+        _try(problem, growth, points, start(points), 0, watch)
     number, fresh = 1, np.flatnonzero(growth.round == 0)
     while fresh.size:
-        points, start = _frontier(lattice, fresh, growth.round != NEVER, growth.multipliers)
+        points, means = _frontier(lattice, fresh, growth.round != NEVER, growth.multipliers)
         if not points.size:
             break
-        fresh = _try(problem, growth, points, start, number, watch)
+        fresh = _try(problem, growth, points, means, number, watch)
         number += 1
     return growth
 
@@ -68,7 +77,7 @@ def _try(
     problem: Problem, growth: Growth, points: Indices, start: Array, number: int, watch: Watch
 ) -> Indices:
     """Solve points (k,) from ``start`` (k, C), keep what is better, and say which are fitted now."""
-    found = problem.solve(problem.lattice.points[points], start, PASSES)
+    found = problem.solve(problem.lattice.target(points), start, PASSES)
     better = found.distance < growth.distance[points]
     growth.multipliers[points[better]] = found.multipliers[better]
     growth.distance[points[better]] = found.distance[better]

@@ -16,7 +16,7 @@ from uplift.fit.problem import Problem
 from uplift.lattice import Indices
 from uplift.sensor import Array
 
-PASSES = 96
+PASSES = 192
 NUDGE = 0.5
 EXTREME = 100.0
 """Linear part of a nearly white (+) or nearly black (−) spectrum."""
@@ -73,8 +73,10 @@ def improve(
     The first step also takes the points between tolerance and threshold on; the others only what is still
     over the threshold.
     """
+    done: list[Improvement] = []
+    if distance.max(initial=0) <= problem.tolerance:
+        return multipliers, distance, ()
     multipliers, distance = multipliers.copy(), distance.copy()
-    done = []
     goal = problem.tolerance
     for name, start in STEPS.items():
         points = np.flatnonzero(distance > goal)
@@ -83,7 +85,7 @@ def improve(
         if not points.size:
             continue
         begin = start(multipliers[points], _way(problem, points))
-        found = problem.solve(problem.lattice.points[points], begin, PASSES)
+        found = problem.solve(problem.lattice.target(points), begin, PASSES)
         better = found.distance < distance[points]
         multipliers[points[better]] = found.multipliers[better]
         distance[points[better]] = found.distance[better]
@@ -95,5 +97,5 @@ def improve(
 
 def _way(problem: Problem, points: Indices) -> Array:
     """Multipliers (k, C) of a linear part of +1 for targets nearer to white, −1 for those nearer to black."""
-    toward = np.where(problem.lattice.points[points].mean(axis=1) >= 0.5, 1.0, -1.0)
+    toward = np.where(problem.lattice.target(points).mean(axis=1) >= 0.5, 1.0, -1.0)
     return toward[:, None] * problem.model.constant()

@@ -16,7 +16,7 @@ from uplift.sensor import Array, Light, Sensor
 
 FEWEST = 8
 """Entries that it takes to say anything of errors."""
-PASSES = 16
+PASSES = 32
 BLOCK = 1 << 15
 """Colours worked on at a time."""
 

@@ -54,7 +54,7 @@ def smooth(model: Model, forward: Forward, brightening: float = BRIGHTENING, gre
     if model.count == NO_FREEDOM:
         return Smooth(model, table, None, brightening, grey)
     start = _grey(model, table.points, grey)
-    found = solve(model, forward, start, table.points, tolerance=1e-5, passes=16)
+    found = solve(model, forward, start, table.points, tolerance=1e-5, passes=32)
     return Smooth(model, table, model.to_storage(found.multipliers), brightening, grey)
 
 

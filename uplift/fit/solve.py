@@ -1,6 +1,6 @@
 """Many small least-squares problems at once: multipliers that reach their colours (docs/mathematics.md, 5).
 
-Points travel in chunks of fixed shapes, four damped steps a pass; those that have arrived leave the batch.
+Points travel in chunks of fixed shapes, two damped steps a pass; those that have arrived leave the batch.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from uplift.sensor import Array
 
 CHUNKS = (4096, 256)
 """Rows of a batch: few shapes, so that little is compiled, and small ones for small rounds."""
-STEPS = 4
-FIRST_DAMPING = 1e-2
+STEPS = 2
+FIRST_DAMPING = 1e-6
 """μ at the start; a quarter of it after a step that helped, four times after one that did not."""
 
 
@@ -95,7 +95,7 @@ def _advance(
     target: jax.Array,
     tolerance: float,
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Up to four damped steps; a step counts only where it lowers the squared distance."""
+    """Up to `STEPS` damped steps; a step counts only where it lowers the squared distance."""
 
     def damped_step(state: State) -> State:
         count, here, damping, off = state
