@@ -18,11 +18,13 @@ Complex = NDArray[np.complex128]
 RealOrComplex = TypeVar("RealOrComplex", bound=Array | Complex)
 """Real where the signal is mirrored, and so even in the phase; complex over the whole circle."""
 
-_FIRST_NODES = 256
+_FIRST_NODES = 32
 _MOST_NODES = 1 << 16
 _HALF_AGREES = 1e-8
-_BLOCK = 1 << 21
+_SAMPLES = 1 << 18
 """Samples held at a time."""
+_ROWS = 1 << 12
+"""Spectra worked on at a time: what one needs stays in the cache."""
 _INWARD = (0.0, 1e-10, 1e-8, 1e-6, 1e-4)
 
 
@@ -43,16 +45,21 @@ def waves(phase: Array, count: int) -> Complex:
 def moments_from_multipliers(multipliers: Array) -> Array:
     """Moments (n, C) of the spectra with multipliers (n, C), by the trapezoid rule over the phase.
 
-    The rule converges geometrically, so its error is about the square of what half its nodes miss; it is
-    doubled for the spectra (those near a box) where that is not yet nothing.
+    The rule converges geometrically, so its error is about the square of what half its nodes miss; nodes
+    are put between those there for the spectra (those near a box) where that is not yet nothing.
     """
     moments = np.empty_like(multipliers)
-    left = np.arange(len(multipliers))
-    nodes = _FIRST_NODES
-    while left.size and nodes <= _MOST_NODES:
+    for block in _blocks(len(multipliers), _FIRST_NODES):
+        moments[block] = _mean(multipliers[block], _trapezoid(_FIRST_NODES, multipliers.shape[1]))
+    left, nodes = np.arange(len(multipliers)), _FIRST_NODES
+    while left.size and nodes < _MOST_NODES:
         missed = np.empty(left.size)
-        for block in np.array_split(np.arange(left.size), -(-left.size * nodes // _BLOCK)):
-            moments[left[block]], missed[block] = _trapezoid(multipliers[left[block]], nodes)
+        between = _midpoints(nodes, multipliers.shape[1])
+        for block in _blocks(left.size, nodes):
+            rows = left[block]
+            change = (_mean(multipliers[rows], between) - moments[rows]) / 2
+            moments[rows] += change
+            missed[block] = np.abs(change).max(axis=1)
         left = left[missed > _HALF_AGREES]
         nodes *= 2
     return moments
@@ -76,8 +83,11 @@ def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
     multipliers = np.empty_like(moments)
     left = np.arange(len(moments))
     for share in _INWARD:
-        found, valid = _dual((1 - share) * moments[left] + share * grey)
-        multipliers[left[valid]] = found[valid]
+        valid = np.empty(left.size, dtype=bool)
+        for first in range(0, left.size, _ROWS):
+            rows = left[first : first + _ROWS]
+            found, valid[first : first + _ROWS] = _dual((1 - share) * moments[rows] + share * grey)
+            multipliers[rows] = found
         left = left[~valid]
         if not left.size:
             return multipliers
@@ -85,66 +95,86 @@ def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
 
 
 def levinson(column: Complex) -> tuple[Complex, NDArray[np.bool_]]:
-    """Solve T q = e₀ for Hermitian Toeplitz T with first ``column`` (n, C); also say where T is positive.
+    """Solve T q = e₀ (C, n) for Hermitian Toeplitz T with first ``column`` (C, n); also say where T is positive.
 
     Levinson's recursion: a solution of order k, padded, plus its own mirror image, solves order k + 1.
     """
-    solution = 1 / column[:, :1]
-    positive = column[:, 0].real > 0
-    zero = np.zeros_like(solution)
-    for order in range(1, column.shape[1]):
-        spill = (column[:, order:0:-1] * solution).sum(axis=1, keepdims=True)
-        mirror = np.concatenate([zero, solution[:, ::-1].conj()], axis=1)
-        margin = 1 - np.abs(spill) ** 2
-        positive &= margin[:, 0] > 0
-        solution = (np.concatenate([solution, zero], axis=1) - spill * mirror) / margin
+    solution = np.zeros_like(column)
+    solution[0] = 1 / column[0]
+    positive = column[0].real > 0
+    for order in range(1, len(column)):
+        spill = (column[order:0:-1] * solution[:order]).sum(axis=0)
+        margin = 1 - (spill.real**2 + spill.imag**2)
+        positive &= margin > 0
+        mirror = solution[order - 1 :: -1].conj()
+        solution[1 : order + 1] -= spill * mirror
+        solution[: order + 1] /= margin
     return solution, positive
 
 
-def _trapezoid(multipliers: Array, nodes: int) -> tuple[Array, Array]:
-    """Moments (n, C) by ``nodes`` intervals, and by how much (n,) half as many differ."""
-    table = cosines(np.linspace(-np.pi, 0, nodes + 1), multipliers.shape[1])
-    samples = 0.5 + np.arctan(multipliers @ table.T) / np.pi
-    moments, coarse = (samples[:, ::step] @ _projection(table[::step]) for step in (1, 2))
-    return moments, np.abs(moments - coarse).max(axis=1)
-
-
-def _projection(table: Array) -> Array:
-    """(K + 1, C) weights that take samples at evenly spaced phases to moments."""
-    weights = np.full(len(table), 1 / (len(table) - 1))
+def _trapezoid(nodes: int, count: int) -> tuple[Array, Array]:
+    """Samples of the linear part (C, K + 1) and weights (K + 1, C) that take spectra there to moments."""
+    table = cosines(np.linspace(-np.pi, 0, nodes + 1), count)
+    weights = np.full(nodes + 1, 1 / nodes)
     weights[[0, -1]] /= 2
+    return table.T, _analysis(table, weights)
+
+
+def _midpoints(nodes: int, count: int) -> tuple[Array, Array]:
+    """The same, (C, K) and (K, C), for the middles between the nodes."""
+    table = cosines(-np.pi * (np.arange(nodes) + 0.5) / nodes, count)
+    return table.T, _analysis(table, np.full(nodes, 1 / nodes))
+
+
+def _analysis(table: Array, weights: Array) -> Array:
     projection = weights[:, None] * table
     projection[:, 1:] /= 2
     return projection
 
 
+def _mean(multipliers: Array, rule: tuple[Array, Array]) -> Array:
+    """Moments (n, C) by a rule of `_trapezoid` or `_midpoints`."""
+    synthesis, analysis = rule
+    return np.asarray((0.5 + np.arctan(multipliers @ synthesis) / np.pi) @ analysis)
+
+
+def _blocks(count: int, nodes: int) -> list[slice]:
+    rows = max(_SAMPLES // nodes, 1)
+    return [slice(first, first + rows) for first in range(0, count, rows)]
+
+
 def _dual(moments: RealOrComplex) -> tuple[RealOrComplex, NDArray[np.bool_]]:
-    """Multipliers by docs/mathematics.md, 4, and where they can be trusted."""
+    """Multipliers (n, C) by docs/mathematics.md, 4, and where (n,) they can be trusted.
+
+    Inside, the order comes first, so that all arithmetic runs along contiguous spectra.
+    """
+    orders = np.ascontiguousarray(moments.T)
     with np.errstate(all="ignore"):
         # The dual knows the zeroth moment only up to whole numbers.
-        bounded = (moments[:, 0].real >= 0) & (moments[:, 0].real <= 1)
-        exponential = _exponential_moments(moments)
+        bounded = (orders[0].real >= 0) & (orders[0].real <= 1)
+        exponential = _exponential_moments(orders)
         column = exponential / 2
-        column[:, 0] = exponential[:, 0].real
+        column[0] = exponential[0].real
         q, positive = levinson(column)
         found = _bounded(exponential, q)
         multipliers = cast(RealOrComplex, found.real if np.isrealobj(moments) else found)
-    return multipliers, bounded & positive & np.isfinite(multipliers).all(axis=1)
+    return multipliers.T, bounded & positive & np.isfinite(multipliers).all(axis=0)
 
 
 def _exponential_moments(moments: RealOrComplex) -> Complex:
     h = np.empty(moments.shape, dtype=complex)
-    h[:, 0] = np.exp(1j * np.pi * (moments[:, 0].real - 0.5))
-    for order in range(1, moments.shape[1]):
-        steps = np.arange(order, 0, -1)
-        h[:, order] = 2j * np.pi / order * (steps * moments[:, order:0:-1] * h[:, :order]).sum(axis=1)
+    h[0] = np.exp(1j * np.pi * (moments[0].real - 0.5))
+    scaled = 2j * np.pi * np.arange(len(moments))[:, None] * moments
+    for order in range(1, len(moments)):
+        h[order] = (scaled[order:0:-1] * h[:order]).sum(axis=0) / order
     return h
 
 
 def _bounded(h: Complex, q: Complex) -> Complex:
-    count = h.shape[1]
-    n = np.stack([(h[:, : k + 1] * q[:, k::-1]).sum(axis=1) for k in range(count)], axis=1)
-    lags = [(n[:, lag:] * q[:, : count - lag].conj()).sum(axis=1) for lag in range(count)]
-    multipliers = np.stack(lags, axis=1) / (1j * q[:, :1])
-    multipliers[:, 0] = multipliers[:, 0].real
+    count = len(h)
+    n = [(h[: k + 1] * q[k::-1]).sum(axis=0) for k in range(count)]
+    conjugate = q.conj()
+    lags = [sum(n[lag + k] * conjugate[k] for k in range(count - lag)) for lag in range(count)]
+    multipliers = np.stack(lags) / (1j * q[0])
+    multipliers[0] = multipliers[0].real
     return multipliers
