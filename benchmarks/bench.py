@@ -28,17 +28,19 @@ rows of one table rather than tables of two machines.
 @click.command()
 @click.option("--runs", default=5, show_default=True, help="Runs of everything.")
 def main(runs: int) -> None:
-    """Time the fit, whole processes and lookups."""
+    """Time the fit, whole processes, lookups and other tools."""
     # First: what starts from a large process counts that one's memory as its own.
     processes = time_processes(runs)
     from benchmarks.fitting import time_fit
     from benchmarks.lookups import time_lookups
+    from benchmarks.peers import section, time_peers
 
     fits = [time_fit(dim, runs) for dim in (16, 32, 64)]
     lookups = time_lookups(runs)
-    sections = [_fits(fits), _processes(processes), _lookups(lookups)]
+    peers = time_peers(runs)
+    sections = [_fits(fits), _processes(processes), _lookups(lookups), section(peers)]
     page = write("performance", INTRODUCTION.format(runs=runs), sections)
-    numbers = {"fits": fits, "processes": processes, "lookups": lookups}
+    numbers = {"fits": fits, "processes": processes, "lookups": lookups, "peers": peers}
     (ROOT / "docs" / "performance.json").write_text(
         json.dumps(
             circumstances() | {key: [asdict(row) for row in rows] for key, rows in numbers.items()}, indent=1
