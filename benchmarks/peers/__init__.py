@@ -34,8 +34,8 @@ def section(rows: Sequence[Peer]) -> str:
         f"CPU time of all threads per point, {runs} runs; *within* is the share of points whose spectrum has its "
         "linear sRGB to 1e-4. Moments are solved for *in p*, by their multipliers, as ours are, or *in c*, themselves. "
         "Slow tools are given fewer points; all are judged by our task, which some were not made for. numpy's linear "
-        "algebra keeps to one thread here: more only made some tools slower. `make peers` installs Mitsuba; Ceres is "
-        "the system's.",
+        "algebra keeps to one thread here: more only made some tools slower. `make peers` installs Mitsuba and "
+        "optimistix; Ceres is the system's.",
         ["tool", "model", "coefficients", "points", "CPU µs/point", "within", "worst RGB", "notes"],
         [_cells(row) for row in rows],
     )

@@ -8,10 +8,9 @@ from importlib.metadata import version
 import jax
 import jax.numpy as jnp
 import numpy as np
-import optimistix
 
 from benchmarks.peers import task
-from benchmarks.peers.row import Peer, judge_multipliers
+from benchmarks.peers.row import Peer, judge_multipliers, missing
 from uplift.models import Moments
 from uplift.sensor import Array
 
@@ -24,6 +23,10 @@ TOLERANCE = 1e-6
 
 def optimistix_dogleg(runs: int) -> list[Peer]:
     """Moments by their multipliers, every point from grey; compiled before it is timed."""
+    try:
+        import optimistix
+    except ImportError:
+        return [missing("optimistix Dogleg, `vmap`", "optimistix", "moments", COUNT)]
     model, sensor, target = Moments(COUNT), task.sensor(), task.some(POINTS)
     basis, weights = model.basis(sensor.wavelengths), sensor.matrix
     solver = optimistix.Dogleg(rtol=TOLERANCE, atol=TOLERANCE)

@@ -29,7 +29,7 @@ def _lattice(name: str, count: int, dim: int, runs: int) -> Peer:
 
     def whole() -> Array:
         prior = fit.learn(problem, sensor, none, reference)
-        return model.to_storage(fit.fit_lattice(problem, seeds, none.multipliers, prior).multipliers)
+        return fit.fit_lattice(problem, seeds, none.multipliers, prior).coefficients
 
     whole()  # compiles
     stored, cpu = task.measured(whole, lattice.size, runs)

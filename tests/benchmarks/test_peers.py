@@ -13,6 +13,7 @@ from benchmarks.peers import section
 from benchmarks.peers.alone import ONE_THREAD, alone
 from benchmarks.peers.ceres import ceres
 from benchmarks.peers.mitsuba_table import mitsuba_table
+from benchmarks.peers.optimistix_dogleg import optimistix_dogleg
 from benchmarks.peers.row import Answer, Peer, judge, judge_multipliers, missing, published_sigmoid
 from benchmarks.peers.task import lattice, measured, some
 from uplift.models import Sigmoid
@@ -50,11 +51,15 @@ def test_published_sigmoid_is_ours_with_wavelengths_as_they_are(sensor):
     np.testing.assert_allclose(found, expected[None], atol=1e-12)
 
 
-def test_absent_mitsuba_has_a_row_that_says_so(monkeypatch):
-    monkeypatch.setitem(sys.modules, "mitsuba", None)
-    (row,) = mitsuba_table(1)
+@pytest.mark.parametrize(
+    ("module", "tool", "name"),
+    [("mitsuba", mitsuba_table, "Mitsuba"), ("optimistix", optimistix_dogleg, "optimistix")],
+)
+def test_an_absent_package_has_a_row_that_says_so(monkeypatch, module, tool, name):
+    monkeypatch.setitem(sys.modules, module, None)
+    (row,) = tool(1)
     assert row.cpu is None
-    assert row.notes == "Mitsuba is not installed"
+    assert row.notes == f"{name} is not installed"
 
 
 def test_absent_ceres_has_rows_that_say_so(monkeypatch):
