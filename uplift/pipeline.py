@@ -15,15 +15,13 @@ from uplift import fit, observer
 from uplift.atlas import Spectra, on_grid, read_atlas
 from uplift.cube import AtlasTable, CubeData
 from uplift.errors import UpliftWarning
-from uplift.lattice import Lattice, Status
+from uplift.lattice import Lattice
 from uplift.lookup import Cube
-from uplift.models import Model, reflectance
+from uplift.models import Model
 from uplift.models.least_change import Forward, forward
 from uplift.options import AUTO, AXES, Options, check_size
 from uplift.sensor import Array, Light, Sensor
 
-BLOCK = 16384
-"""Lattice points evaluated at a time."""
 NAMED = 6
 """Entries that a warning names."""
 
@@ -103,34 +101,22 @@ def _cube_data(
     *,
     debug: bool,
 ) -> CubeData:
-    """What is stored, judged by what is stored: RGB, distance and status are those any reader will see."""
-    coefficients = problem.model.to_storage(fitted.multipliers)
-    rgb = _lattice_rgb(problem.model, sensor, coefficients)
-    distance = np.abs(rgb - problem.lattice.points).max(axis=1)
-    missed = distance > problem.threshold
-    errors = prior.standard_error(problem.lattice.points)
     return CubeData(
         model=problem.model,
         lattice=problem.lattice,
         sensor=sensor,
         threshold=problem.threshold,
         atlas=atlas,
-        coefficients=coefficients,
-        rgb=rgb.astype(np.float32),
-        distance=distance.astype(np.float32),
-        status=np.where(missed, Status.UNFITTED, fitted.status).astype(np.uint8),
-        entry=fitted.entry.astype(np.int32),
-        round=fitted.round.astype(np.int16) if debug else None,
-        standard_error=None if errors is None else errors.astype(np.float32),
+        coefficients=fitted.coefficients,
+        rgb=fitted.rgb,
+        distance=fitted.distance,
+        status=fitted.status,
+        entry=fitted.entry,
+        round=fitted.round if debug else None,
+        standard_error=prior.standard_errors(problem.lattice),
         reference=REFERENCE,
         provenance=provenance,
     )
-
-
-def _lattice_rgb(model: Model, sensor: Sensor, coefficients: Array) -> Array:
-    """Linear RGB (n, 3) of stored coefficients (n, C), block by block."""
-    blocks = np.array_split(coefficients, -(-len(coefficients) // BLOCK))
-    return np.concatenate([sensor.rgb(reflectance(model, block, sensor.wavelengths)) for block in blocks])
 
 
 def _read(atlas: Atlas) -> Spectra:

@@ -177,7 +177,8 @@ def _seeds() -> str:
         seeds = fit.seed(lattice, found.rgb)
         nobody = fit.Seeds(seeds.points[:0], seeds.entry[:0], seeds.primary[:0], ())
         for label, chosen in {"their entries, the default": seeds, "the prior": nobody}.items():
-            points = fit.fit_lattice(problem, chosen, found.multipliers, prior).multipliers
+            fitted = fit.fit_lattice(problem, chosen, found.multipliers, prior)
+            points = model.from_storage(fitted.coefficients)
             for asks, part in {"the other half": asked, "the half it knows": kept}.items():
                 corners, weights = lattice.corners(some.rgb[part])
                 around = spectra_of(model, points[corners.ravel()]).reshape(*corners.shape, -1)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from uplift.fit.solve import CHUNKS, solve
+from uplift.fit.batch import HOST
+from uplift.fit.solve import solve
 from uplift.models import Moments, Sigmoid
 from uplift.models.least_change import forward, residual
 
@@ -64,10 +65,10 @@ def test_no_point_ends_further_than_it_began(sensor):
 
 
 def test_the_batch_does_not_matter(sensor):
-    """Alone, among others, or in another chunk size: the same answer."""
+    """Alone, among others, or in another size of batch: the same answer."""
     model = Moments(9)
     ahead = forward(model, sensor.wavelengths, sensor.matrix)
-    many = np.resize(TARGETS, (CHUNKS[0] + 5, 3))
+    many = np.resize(TARGETS, (HOST[0] + 5, 3))
     crowd = solve(model, ahead, np.zeros((len(many), 9)), many, tolerance=1e-8, passes=8)
     alone = solve(model, ahead, np.zeros((1, 9)), TARGETS[3:4], tolerance=1e-8, passes=8)
     np.testing.assert_allclose(crowd.multipliers[3], alone.multipliers[0], rtol=1e-9)

@@ -1,4 +1,4 @@
-"""From seeds to a lattice whose every point has a spectrum: solve, grow, improve."""
+"""From seeds to a lattice whose every point has a spectrum: solve, grow, improve, store."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from uplift.fit.prior import Prior, learn
 from uplift.fit.problem import Problem
 from uplift.fit.reach import reach
 from uplift.fit.seed import Seeds, seed
+from uplift.fit.store import store
 from uplift.lattice import Indices, Status
 from uplift.sensor import Array
 
@@ -42,9 +43,11 @@ NO_ENTRY = -1
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Every lattice point's multipliers (n, C), `Status` (n,), round (n,) and entry (n,), −1 for none."""
+    """What is stored of every lattice point (n,), and how it came by it; the fields are those of `CubeData`."""
 
-    multipliers: Array
+    coefficients: Array
+    rgb: NDArray[np.float32]
+    distance: NDArray[np.float32]
     status: NDArray[np.uint8]
     round: NDArray[np.int16]
     entry: NDArray[np.int32]
@@ -54,7 +57,10 @@ class Fit:
 def fit_lattice(
     problem: Problem, seeds: Seeds, entries: Array, prior: Prior, watch: Watch = lambda done: None
 ) -> Fit:
-    """Fit every point of the lattice: seeds from the multipliers (E, C) of their entries, others from the prior."""
+    """Fit every point of the lattice: seeds from the multipliers (E, C) of their entries, others from the prior.
+
+    RGB, distance and status are judged by the coefficients, as any reader of them will.
+    """
     entry = np.full(problem.lattice.size, NO_ENTRY, dtype=np.int32)
     entry[seeds.points] = seeds.entry
 
@@ -65,10 +71,10 @@ def fit_lattice(
         return found
 
     grown = grow(problem, start, watch)
-    multipliers, distance, improvements = improve(problem, grown.multipliers, grown.distance)
-    fitted = distance <= problem.threshold
-    status = np.full(len(fitted), Status.REGULAR, dtype=np.uint8)
+    improvements = improve(problem, grown.multipliers, grown.distance)
+    stored = store(problem, grown.multipliers)
+    status = np.full(problem.lattice.size, Status.REGULAR, dtype=np.uint8)
     status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
-    status[(grown.round == NEVER) & fitted] = Status.IMPROVED
-    status[~fitted] = Status.UNFITTED
-    return Fit(multipliers, status, grown.round, entry, improvements)
+    status[grown.round == NEVER] = Status.IMPROVED
+    status[stored.distance > problem.threshold] = Status.UNFITTED
+    return Fit(stored.coefficients, stored.rgb, stored.distance, status, grown.round, entry, improvements)

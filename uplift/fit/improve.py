@@ -65,22 +65,17 @@ STEPS: dict[str, Start] = {
 }
 
 
-def improve(
-    problem: Problem, multipliers: Array, distance: Array
-) -> tuple[Array, Array, tuple[Improvement, ...]]:
-    """Multipliers (n, C) and distances (n,) after the pass, none worse than before, and what each step did.
+def improve(problem: Problem, multipliers: Array, distance: Array) -> tuple[Improvement, ...]:
+    """Better the multipliers (n, C) and distances (n,) of all points, in place, and say what each step did.
 
-    The first step also takes the points between tolerance and threshold on; the others only what is still
-    over the threshold.
+    No point gets worse. The first step also takes the points between tolerance and threshold on; the others only
+    what is still over the threshold.
     """
-    done: list[Improvement] = []
-    if distance.max(initial=0) <= problem.tolerance:
-        return multipliers, distance, ()
-    multipliers, distance = multipliers.copy(), distance.copy()
+    done = []
     goal = problem.tolerance
     for name, start in STEPS.items():
         points = np.flatnonzero(distance > goal)
-        over = distance > problem.threshold
+        over = int((distance > problem.threshold).sum())
         goal = problem.threshold
         if not points.size:
             continue
@@ -89,10 +84,9 @@ def improve(
         better = found.distance < distance[points]
         multipliers[points[better]] = found.multipliers[better]
         distance[points[better]] = found.distance[better]
-        if over.any():
-            mended = int((over & (distance <= problem.threshold)).sum())
-            done.append(Improvement(name, int(over.sum()), mended))
-    return multipliers, distance, tuple(done)
+        if over:
+            done.append(Improvement(name, over, over - int((distance > problem.threshold).sum())))
+    return tuple(done)
 
 
 def _way(problem: Problem, points: Indices) -> Array:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uplift.difference import rgb_lab, spectra_apart
 from uplift.fit.entries import Entries
 from uplift.fit.kriging import Kriging, Uncertainty, krige, uncertainty
 from uplift.fit.problem import Problem
 from uplift.fit.smooth import Smooth, smooth
+from uplift.lattice import Lattice
 from uplift.models import evaluate
 from uplift.sensor import Array, Light, Sensor
 
@@ -18,7 +20,7 @@ FEWEST = 8
 """Entries that it takes to say anything of errors."""
 PASSES = 32
 BLOCK = 1 << 15
-"""Colours worked on at a time."""
+"""Points worked on at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,9 +34,6 @@ class Prior:
 
     def __call__(self, rgb: Array) -> Array:
         """Multipliers (n, C) to start from at linear RGB (n, 3); at an entry's colour, the entry's own."""
-        return np.concatenate([self._block(rgb[i : i + BLOCK]) for i in range(0, max(len(rgb), 1), BLOCK)])
-
-    def _block(self, rgb: Array) -> Array:
         start = self.smooth(rgb)
         return start if self.kriging is None else start + self.kriging(rgb_lab(self.sensor, rgb))
 
@@ -44,6 +43,16 @@ class Prior:
         None where there are too few entries to learn it from.
         """
         return None if self.uncertainty is None else self.uncertainty(rgb_lab(self.sensor, rgb))
+
+    def standard_errors(self, lattice: Lattice) -> NDArray[np.float32] | None:
+        """`standard_error` (n,) of all points of a lattice, block by block."""
+        if self.uncertainty is None:
+            return None
+        errors = np.empty(lattice.size, dtype=np.float32)
+        for first in range(0, lattice.size, BLOCK):
+            points = np.arange(first, min(first + BLOCK, lattice.size))
+            errors[points] = self.standard_error(lattice.target(points))
+        return errors
 
 
 def learn(problem: Problem, sensor: Sensor, entries: Entries, light: Light) -> Prior:

@@ -1,6 +1,6 @@
 """Many small least-squares problems at once: multipliers that reach their colours (docs/mathematics.md, 5).
 
-Points travel in chunks of fixed shapes, two damped steps a pass; those that have arrived leave the batch.
+Points travel in batches of fixed shapes, two damped steps a pass; those that have arrived leave.
 """
 
 from __future__ import annotations
@@ -12,13 +12,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from uplift.lattice import Indices
+from uplift.fit.batch import batches, put, put_all
 from uplift.models import Model
 from uplift.models.least_change import Forward, residual, step
 from uplift.sensor import Array
 
-CHUNKS = (4096, 256)
-"""Rows of a batch: few shapes, so that little is compiled, and small ones for small rounds."""
 STEPS = 2
 FIRST_DAMPING = 1e-6
 """μ at the start; a quarter of it after a step that helped, four times after one that did not."""
@@ -54,14 +52,12 @@ def solve(
     stale = np.zeros(len(start), dtype=np.int64)
     left = np.arange(len(start))
     with jax.enable_x64(True):
-        arrays = jax.device_put(forward)
+        constants = put_all(forward)
         for _ in range(passes):
             before = distance[left]
-            for rows in _chunks(left):
-                padded = _pad(rows)
-                found = _advance(
-                    model, arrays, multipliers[padded], damping[padded], target[padded], tolerance
-                )
+            for rows, padded in batches(left):
+                batch = (put(array[padded]) for array in (multipliers, damping, target))
+                found = _advance(model, constants, *batch, tolerance)
                 for whole, part in zip((multipliers, damping, distance), found, strict=True):
                     whole[rows] = np.asarray(part)[: len(rows)]
             stale[left] = np.where(distance[left] > (1 - GAIN) * before, stale[left] + 1, 0)
@@ -69,21 +65,6 @@ def solve(
             if not left.size:
                 break
     return Solution(multipliers, distance)
-
-
-def _chunks(rows: Indices) -> list[Indices]:
-    """Split rows into the largest chunk as long as it fills, the rest into the smallest that holds it."""
-    whole = len(rows) // CHUNKS[0] * CHUNKS[0]
-    parts = [rows[i : i + CHUNKS[0]] for i in range(0, whole, CHUNKS[0])]
-    rest = rows[whole:]
-    size = CHUNKS[0] if len(rest) > 4 * CHUNKS[1] else CHUNKS[1]
-    return parts + [rest[i : i + size] for i in range(0, len(rest), size)]
-
-
-def _pad(rows: Indices) -> Indices:
-    """Rows, the last repeated up to the nearest chunk size."""
-    size = min(chunk for chunk in CHUNKS if chunk >= len(rows))
-    return np.concatenate([rows, np.full(size - len(rows), rows[-1])])
 
 
 @partial(jax.jit, static_argnums=0)

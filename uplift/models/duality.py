@@ -6,12 +6,14 @@ rendering", ACM TOG 38(4); Markoff 1896 for the duality between bounded and unbo
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uplift.errors import UpliftError
+from uplift.models.arctan import arctan
 from uplift.sensor import Array
 
 Complex = NDArray[np.complex128]
@@ -42,25 +44,33 @@ def waves(phase: Array, count: int) -> Complex:
     return table
 
 
-def moments_from_multipliers(multipliers: Array) -> Array:
+def quadrature(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
+    """Moments (n, C): samples of the spectra by ``synthesis`` (C, K), weighted by ``analysis`` (K, C)."""
+    moments = np.empty((len(multipliers), analysis.shape[1]))
+    rows = max(_SAMPLES // len(analysis), 1)
+    for first in range(0, len(multipliers), rows):
+        block = slice(first, first + rows)
+        moments[block] = (0.5 + arctan(multipliers[block] @ synthesis) / np.pi) @ analysis
+    return moments
+
+
+Quadrature = Callable[[Array, Array, Array], Array]
+"""`quadrature`, or a quicker one."""
+
+
+def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = quadrature) -> Array:
     """Moments (n, C) of the spectra with multipliers (n, C), by the trapezoid rule over the phase.
 
     The rule converges geometrically, so its error is about the square of what half its nodes miss; nodes
     are put between those there for the spectra (those near a box) where that is not yet nothing.
     """
-    moments = np.empty_like(multipliers)
-    for block in _blocks(len(multipliers), _FIRST_NODES):
-        moments[block] = _mean(multipliers[block], _trapezoid(_FIRST_NODES, multipliers.shape[1]))
-    left, nodes = np.arange(len(multipliers)), _FIRST_NODES
+    count, nodes = multipliers.shape[1], _FIRST_NODES
+    moments = quadrature(multipliers, *_trapezoid(nodes, count))
+    left = np.arange(len(multipliers))
     while left.size and nodes < _MOST_NODES:
-        missed = np.empty(left.size)
-        between = _midpoints(nodes, multipliers.shape[1])
-        for block in _blocks(left.size, nodes):
-            rows = left[block]
-            change = (_mean(multipliers[rows], between) - moments[rows]) / 2
-            moments[rows] += change
-            missed[block] = np.abs(change).max(axis=1)
-        left = left[missed > _HALF_AGREES]
+        change = (quadrature(multipliers[left], *_midpoints(nodes, count)) - moments[left]) / 2
+        moments[left] += change
+        left = left[np.abs(change).max(axis=1) > _HALF_AGREES]
         nodes *= 2
     return moments
 
@@ -132,23 +142,12 @@ def _analysis(table: Array, weights: Array) -> Array:
     return projection
 
 
-def _mean(multipliers: Array, rule: tuple[Array, Array]) -> Array:
-    """Moments (n, C) by a rule of `_trapezoid` or `_midpoints`."""
-    synthesis, analysis = rule
-    return np.asarray((0.5 + np.arctan(multipliers @ synthesis) / np.pi) @ analysis)
-
-
-def _blocks(count: int, nodes: int) -> list[slice]:
-    rows = max(_SAMPLES // nodes, 1)
-    return [slice(first, first + rows) for first in range(0, count, rows)]
-
-
 def _dual(moments: RealOrComplex) -> tuple[RealOrComplex, NDArray[np.bool_]]:
     """Multipliers (n, C) by docs/mathematics.md, 4, and where (n,) they can be trusted.
 
     Inside, the order comes first, so that all arithmetic runs along contiguous spectra.
     """
-    orders = np.ascontiguousarray(moments.T)
+    orders = cast(RealOrComplex, np.ascontiguousarray(moments.T))
     with np.errstate(all="ignore"):
         # The dual knows the zeroth moment only up to whole numbers.
         bounded = (orders[0].real >= 0) & (orders[0].real <= 1)
@@ -157,8 +156,8 @@ def _dual(moments: RealOrComplex) -> tuple[RealOrComplex, NDArray[np.bool_]]:
         column[0] = exponential[0].real
         q, positive = levinson(column)
         found = _bounded(exponential, q)
-        multipliers = cast(RealOrComplex, found.real if np.isrealobj(moments) else found)
-    return multipliers.T, bounded & positive & np.isfinite(multipliers).all(axis=0)
+        multipliers = found.real if np.isrealobj(moments) else found
+    return cast(RealOrComplex, multipliers.T), bounded & positive & np.isfinite(multipliers).all(axis=0)
 
 
 def _exponential_moments(moments: RealOrComplex) -> Complex:

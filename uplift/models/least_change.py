@@ -38,9 +38,14 @@ def forward(
     return Forward(basis, sensor, products, metric)
 
 
+def reached(model: Model, forward: Forward, multipliers: Any) -> Any:
+    """Linear RGB (n, 3) of multipliers (n, C)."""
+    return model.squash(multipliers @ forward.basis.T) @ forward.sensor.T
+
+
 def residual(model: Model, forward: Forward, multipliers: Any, target: Any) -> Any:
     """Target minus RGB, (n, 3), of multipliers (n, C)."""
-    return target - model.squash(multipliers @ forward.basis.T) @ forward.sensor.T
+    return target - reached(model, forward, multipliers)
 
 
 def step(model: Model, forward: Forward, multipliers: Any, residual: Any, damping: Any) -> Any:

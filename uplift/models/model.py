@@ -7,6 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.models.duality import Quadrature, quadrature
 from uplift.sensor import Array
 
 
@@ -49,8 +50,8 @@ class Model(Protocol):
         """(C,) diagonal of the smoothness metric M (docs/mathematics.md, 5)."""
         ...
 
-    def to_storage(self, multipliers: ArrayLike) -> Array:
-        """Coefficients (…, C) of multipliers (…, C)."""
+    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = quadrature) -> Array:
+        """Coefficients (…, C) of multipliers (…, C); where they are integrals, by ``quadrature``."""
         ...
 
     def from_storage(self, coefficients: ArrayLike) -> Array:

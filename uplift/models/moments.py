@@ -7,6 +7,7 @@ valid spectrum, so the fit works on p; c is linear in the spectrum, so that is w
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from numpy.typing import ArrayLike
 
 from uplift.errors import OptionError
 from uplift.models import duality
+from uplift.models.arctan import arctan
+from uplift.models.duality import Quadrature
 from uplift.models.phase import Phase
 from uplift.sensor import Array
 
@@ -40,7 +43,7 @@ class Moments:
         return duality.cosines(self.phase(wavelengths), self.count)
 
     def squash(self, x: Any) -> Any:
-        return 0.5 + x.__array_namespace__().atan(x) / np.pi
+        return 0.5 + arctan(x) / np.pi
 
     def slope(self, x: Any) -> Any:
         return 1 / (np.pi * (1 + x * x))
@@ -55,8 +58,8 @@ class Moments:
         """1 + j²: what a unit of p_j adds to the squares of the value and the slope over φ."""
         return 1 + np.arange(self.count, dtype=float) ** 2
 
-    def to_storage(self, multipliers: ArrayLike) -> Array:
-        return _by_rows(duality.moments_from_multipliers, multipliers)
+    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = duality.quadrature) -> Array:
+        return _by_rows(partial(duality.moments_from_multipliers, quadrature=quadrature), multipliers)
 
     def from_storage(self, coefficients: ArrayLike) -> Array:
         return _by_rows(duality.multipliers_from_moments, coefficients)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.models.duality import Quadrature, quadrature
 from uplift.sensor import Array
 
 
@@ -48,7 +49,7 @@ class Sigmoid:
     def roughness(self) -> Array:
         return np.ones(self.count)
 
-    def to_storage(self, multipliers: ArrayLike) -> Array:
+    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = quadrature) -> Array:
         return np.array(multipliers, dtype=float)
 
     def from_storage(self, coefficients: ArrayLike) -> Array:

@@ -1,0 +1,58 @@
+"""Batches hold every row once, in two sizes; over several devices a build is the same."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from uplift import build, load
+from uplift.fit.batch import HOST, batches
+
+LARGE, SMALL = HOST
+
+
+@pytest.mark.parametrize(
+    ("count", "sizes"),
+    [
+        (0, []),
+        (1, [SMALL]),
+        (SMALL + 1, [SMALL, SMALL]),
+        (4 * SMALL, [SMALL] * 4),
+        (4 * SMALL + 1, [LARGE]),
+        (LARGE, [LARGE]),
+        (2 * LARGE + 3, [LARGE, LARGE, SMALL]),
+    ],
+)
+def test_every_row_is_in_one_batch(count, sizes):
+    rows = np.arange(count) + 7
+    parts = list(batches(rows))
+    np.testing.assert_array_equal(np.concatenate([rows[:0], *(part for part, _ in parts)]), rows)
+    assert [len(padded) for _, padded in parts] == sizes
+    for part, padded in parts:
+        np.testing.assert_array_equal(padded[: len(part)], part)
+        assert set(padded[len(part) :]) <= {part[-1]}
+
+
+SEVERAL = """
+import sys, jax, uplift
+assert len(jax.devices()) == 3
+uplift.build(sys.argv[1], dim=9).save(sys.argv[2])
+"""
+
+
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+def test_several_devices_build_the_same_cube(repository, tmp_path):
+    """Simulated devices; three, so that rows are shared out unevenly."""
+    macbeth, path = repository / "atlases" / "macbeth.txt", tmp_path / "several.uplift"
+    flags = {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"}
+    subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", SEVERAL, macbeth, path], env=os.environ | flags, check=True
+    )
+    one, several = build(macbeth, dim=9).data, load(path).data
+    np.testing.assert_allclose(several.coefficients, one.coefficients, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(several.standard_error, one.standard_error, rtol=1e-6)
+    np.testing.assert_array_equal(several.status, one.status)

@@ -1,0 +1,48 @@
+"""Batches of few shapes, so that little is compiled, over all devices that JAX has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import jax
+import numpy as np
+from jax.sharding import Mesh, NamedSharding, PartitionSpec
+
+from uplift.lattice import Indices
+
+if TYPE_CHECKING:
+    from uplift.sensor import Array
+
+HOST, ACCELERATOR = (4096, 256), (1 << 17, 4096)
+"""Rows of a batch on each device: what the cache of a core holds or keeps a GPU busy, and a size for small rounds."""
+
+
+def batches(rows: Indices) -> Iterator[tuple[Indices, Indices]]:
+    """Split ``rows``; with each part, the part with its last row repeated up to the size of a batch.
+
+    Parts are of the larger size as long as they fill it; the rest is too, or of the smaller one where it is small.
+    """
+    devices = len(jax.devices())
+    large, small = (devices * size for size in (HOST if jax.default_backend() == "cpu" else ACCELERATOR))
+    whole = len(rows) // large * large
+    size = large if len(rows) - whole > 4 * small else small
+    for first, last, width in ((0, whole, large), (whole, len(rows), size)):
+        for begin in range(first, last, width):
+            part = rows[begin : min(begin + width, last)]
+            yield part, np.concatenate([part, np.full(width - len(part), part[-1])])
+
+
+def put(array: Array) -> Any:
+    """An array whose rows are a batch, shared out over the devices."""
+    return _place(array, "rows") if len(jax.devices()) > 1 else array
+
+
+def put_all(constants: Any) -> Any:
+    """Constants of a computation, on every device."""
+    return _place(constants)
+
+
+def _place(arrays: Any, *axes: str) -> Any:
+    mesh = Mesh(np.array(jax.devices()), ("rows",))
+    return jax.device_put(arrays, NamedSharding(mesh, PartitionSpec(*axes)))  # type: ignore[no-untyped-call]
