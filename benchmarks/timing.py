@@ -14,7 +14,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("numpy", "scipy", "jax", "optimistix", "colour-science", "safetensors", "uplift")
+PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors", "uplift")
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import pytest
 
 import uplift
 
-HEAVY = "{'numpy', 'jax', 'colour', 'scipy', 'optimistix', 'equinox', 'safetensors', 'matplotlib', 'click', 'rich'}"
+HEAVY = "{'numpy', 'jax', 'colour', 'scipy', 'safetensors', 'matplotlib', 'click', 'rich'}"
 
 
 def in_a_fresh_process(code):

@@ -10,12 +10,25 @@ from numpy.typing import ArrayLike
 
 from uplift.sensor import Array, Light, Sensor
 
+OPPONENTS = np.array([[0.0, 116, 0], [500, -500, 0], [0, 200, -200]])
+"""L*a*b* of the compressed X, Y, Z, but for the −16 of L*."""
+
 
 def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
     """CIE 1976 L*a*b* (…, 3) of XYZ (…, 3) against the white's XYZ (3,) (CIE 15:2004, 8.2.1)."""
     t = np.asarray(xyz, dtype=float) / np.asarray(white, dtype=float)
-    x, y, z = np.moveaxis(np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29), -1, 0)
-    return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
+    compressed = np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29)
+    return np.asarray(compressed @ OPPONENTS.T - [16, 0, 0])
+
+
+def lab_slope(xyz: ArrayLike, white: ArrayLike) -> Array:
+    """Derivative (…, 3, 3) of L*a*b* by XYZ (…, 3); the last axis is XYZ."""
+    white = np.asarray(white, dtype=float)
+    t = np.asarray(xyz, dtype=float) / white
+    root = np.cbrt(
+        np.maximum(t, (6 / 29) ** 3)
+    )  # below, the straight line goes on with the slope it has here
+    return OPPONENTS * (1 / (3 * root**2 * white))[..., None, :]
 
 
 def rgb_lab(sensor: Sensor, rgb: ArrayLike) -> Array:

@@ -68,7 +68,7 @@ def entries(
     model: Model,
     some: Materials,
     lights: Sequence[str] = uplift.options.Options.lights,
-    weights: fit.Weights = fit.entries.BALANCED,
+    weights: fit.Weights = fit.objective.BALANCED,
 ) -> fit.Entries:
     shine = [observer.light(name) for name in lights]
     return fit.fit_entries(model, ahead(model), some.measured, some.rgb, shine, shine[1], 1e-6, weights)

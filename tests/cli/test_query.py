@@ -304,7 +304,7 @@ def test_a_query_imports_nothing_that_is_slow(style):
     code = (
         "import sys, atexit\n"
         "from uplift_cli.main import main\n"
-        "slow = {'jax', 'optimistix', 'equinox', 'colour', 'scipy', 'matplotlib'}\n"
+        "slow = {'jax', 'colour', 'scipy', 'matplotlib'}\n"
         f"slow |= {{'rich'}} if {style!r} != 'table' else set()\n"
         "atexit.register(lambda: print(sorted(slow & set(sys.modules)), file=sys.stderr))\n"
         f"main(['query', '#cc3319', '--format', {style!r}])"

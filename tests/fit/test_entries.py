@@ -8,8 +8,9 @@ import pytest
 from uplift import observer
 from uplift.atlas import on_grid, read_atlas
 from uplift.difference import delta_e_2000, lab
-from uplift.fit.entries import BALANCED, Weights, fit_entries, shape_rows
-from uplift.models import Moments
+from uplift.fit.entries import fit_entries
+from uplift.fit.objective import BALANCED, Weights, objective, shape_rows
+from uplift.models import Moments, Sigmoid
 from uplift.models.least_change import forward
 
 from ..conftest import MACBETH
@@ -62,6 +63,23 @@ def test_the_ends_stay_near_the_measurement(sensor, measured):
 
     assert off(BALANCED) <= 0.04
     assert off(Weights(ends=0.001)) > 1.5 * off(BALANCED)
+
+
+@pytest.mark.parametrize("model", [Moments(5), Sigmoid()], ids=lambda m: m.name)
+def test_the_derivative_is_that_of_the_residuals(sensor, measured, model):
+    """Against central differences, of a dark spectrum too, where L*a*b* has its straight part."""
+    goal = objective(
+        model, model.basis(sensor.wavelengths), [observer.light(name) for name in LIGHTS], BALANCED
+    )
+    rng = np.random.default_rng(6)
+    for level in (-80, -1, 0.5):
+        at = rng.normal(size=model.count) + level * model.constant()
+        steps = 1e-5 * np.eye(model.count)
+        numeric = [
+            (goal.residuals(at + step, measured[0]) - goal.residuals(at - step, measured[0])) / 2e-5
+            for step in steps
+        ]
+        np.testing.assert_allclose(goal.jacobian(at), np.transpose(numeric), rtol=1e-5, atol=1e-8)
 
 
 def test_weighed_rows_sum_to_a_mean_square():

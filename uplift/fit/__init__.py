@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.fit.crowding import DIMS, roomiest
-from uplift.fit.entries import Entries, Weights, fit_entries
+from uplift.fit.entries import Entries, fit_entries
 from uplift.fit.grow import NEVER, Round, Watch, grow
 from uplift.fit.improve import Improvement, improve
+from uplift.fit.objective import Weights
 from uplift.fit.prior import Prior, learn
 from uplift.fit.problem import Problem
 from uplift.fit.reach import reach

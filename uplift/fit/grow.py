@@ -16,7 +16,7 @@ from uplift.fit.problem import Problem
 from uplift.lattice import Indices, Lattice, Mask
 from uplift.sensor import Array
 
-PASSES = 12
+PASSES = 6
 NEVER = -1
 """The round of a point that no round has fitted."""
 BLOCK = 1 << 15

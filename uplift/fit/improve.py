@@ -68,24 +68,20 @@ STEPS: dict[str, Start] = {
 def improve(problem: Problem, multipliers: Array, distance: Array) -> tuple[Improvement, ...]:
     """Better the multipliers (n, C) and distances (n,) of all points, in place, and say what each step did.
 
-    No point gets worse. The first step also takes the points between tolerance and threshold on; the others only
-    what is still over the threshold.
+    Each step takes the points on that are over the threshold still; none gets worse.
     """
     done = []
-    goal = problem.tolerance
     for name, start in STEPS.items():
-        points = np.flatnonzero(distance > goal)
-        over = int((distance > problem.threshold).sum())
-        goal = problem.threshold
+        points = np.flatnonzero(distance > problem.threshold)
         if not points.size:
-            continue
+            break
         begin = start(multipliers[points], _way(problem, points))
         found = problem.solve(problem.lattice.target(points), begin, PASSES)
         better = found.distance < distance[points]
         multipliers[points[better]] = found.multipliers[better]
         distance[points[better]] = found.distance[better]
-        if over:
-            done.append(Improvement(name, over, over - int((distance > problem.threshold).sum())))
+        mended = int((distance[points] <= problem.threshold).sum())
+        done.append(Improvement(name, len(points), mended))
     return tuple(done)
 
 

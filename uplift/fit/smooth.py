@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uplift.fit.quadrature import compiled
 from uplift.fit.solve import solve
 from uplift.lattice import Lattice
 from uplift.models import Model
@@ -54,8 +55,8 @@ def smooth(model: Model, forward: Forward, brightening: float = BRIGHTENING, gre
     if model.count == NO_FREEDOM:
         return Smooth(model, table, None, brightening, grey)
     start = _grey(model, table.points, grey)
-    found = solve(model, forward, start, table.points, tolerance=1e-5, passes=32)
-    return Smooth(model, table, model.to_storage(found.multipliers), brightening, grey)
+    found = solve(model, forward, start, table.points, tolerance=1e-5, passes=8)
+    return Smooth(model, table, model.to_storage(found.multipliers, compiled), brightening, grey)
 
 
 def _grey(model: Model, rgb: Array, power: float) -> Array:

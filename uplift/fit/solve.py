@@ -1,6 +1,6 @@
 """Many small least-squares problems at once: multipliers that reach their colours (docs/mathematics.md, 5).
 
-Points travel in batches of fixed shapes, two damped steps a pass; those that have arrived leave.
+Points travel in batches of fixed shapes, a few damped steps a pass; those that have arrived leave.
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ from uplift.models import Model
 from uplift.models.least_change import Forward, residual, step
 from uplift.sensor import Array
 
-STEPS = 2
+STEPS, MORE_STEPS = 2, 8
+"""Damped steps a pass: of many points most have arrived after two; of few it costs more to ask than to go on."""
+FEW = 1024
 FIRST_DAMPING = 1e-6
 """μ at the start; a quarter of it after a step that helped, four times after one that did not."""
 
@@ -55,9 +57,10 @@ def solve(
         constants = put_all(forward)
         for _ in range(passes):
             before = distance[left]
+            steps = MORE_STEPS if len(left) <= FEW else STEPS
             for rows, padded in batches(left):
                 batch = (put(array[padded]) for array in (multipliers, damping, target))
-                found = _advance(model, constants, *batch, tolerance)
+                found = _advance(model, constants, *batch, tolerance, steps)
                 for whole, part in zip((multipliers, damping, distance), found, strict=True):
                     whole[rows] = np.asarray(part)[: len(rows)]
             stale[left] = np.where(distance[left] > (1 - GAIN) * before, stale[left] + 1, 0)
@@ -75,8 +78,9 @@ def _advance(
     damping: jax.Array,
     target: jax.Array,
     tolerance: float,
+    steps: int,
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Up to `STEPS` damped steps; a step counts only where it lowers the squared distance."""
+    """Up to ``steps`` damped steps; a step counts only where it lowers the squared distance."""
 
     def damped_step(state: State) -> State:
         count, here, damping, off = state
@@ -90,7 +94,7 @@ def _advance(
 
     def unfinished(state: State) -> jax.Array:
         count, *_, off = state
-        return (count < STEPS) & (abs(off).max() > tolerance)
+        return (count < steps) & (abs(off).max() > tolerance)
 
     begin = (jnp.asarray(0), multipliers, damping, residual(model, forward, multipliers, target))
     _, multipliers, damping, off = jax.lax.while_loop(unfinished, damped_step, begin)

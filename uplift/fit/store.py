@@ -6,22 +6,18 @@ from functools import partial
 from typing import NamedTuple
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
 from uplift.fit.batch import batches, put, put_all
 from uplift.fit.problem import Problem
+from uplift.fit.quadrature import compiled
 from uplift.models import Model
-from uplift.models.arctan import arctan
-from uplift.models.duality import quadrature
 from uplift.models.least_change import Forward, reached
 from uplift.sensor import Array
 
 BLOCK = 1 << 15
 """Points worked on at a time."""
-MOST_NODES = 256
-"""Quadratures of more nodes, which few spectra need, are not worth compiling."""
 
 
 class Stored(NamedTuple):
@@ -38,7 +34,7 @@ def store(problem: Problem, multipliers: Array) -> Stored:
     stored = Stored(multipliers, np.empty((size, 3), dtype=np.float32), np.empty(size, dtype=np.float32))
     for first in range(0, size, BLOCK):
         block = slice(first, first + BLOCK)
-        stored.coefficients[block] = model.to_storage(multipliers[block], _quadrature)
+        stored.coefficients[block] = model.to_storage(multipliers[block], compiled)
         rgb = rgb_of(problem, model.from_storage(stored.coefficients[block]))
         target = problem.lattice.target(np.arange(first, first + len(rgb)))
         stored.rgb[block], stored.distance[block] = rgb, np.abs(target - rgb).max(axis=1)
@@ -59,20 +55,3 @@ def rgb_of(problem: Problem, multipliers: Array) -> Array:
 @partial(jax.jit, static_argnums=0)
 def _reached(model: Model, forward: Forward, multipliers: jax.Array) -> jax.Array:
     return reached(model, forward, multipliers)
-
-
-def _quadrature(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
-    """`duality.quadrature`, compiled."""
-    if len(analysis) > MOST_NODES + 1:
-        return quadrature(multipliers, synthesis, analysis)
-    moments = np.empty((len(multipliers), analysis.shape[1]))
-    with jax.enable_x64(True):
-        rules = put_all((synthesis, analysis))
-        for rows, padded in batches(np.arange(len(multipliers))):
-            moments[rows] = np.asarray(_weighted(put(multipliers[padded]), *rules))[: len(rows)]
-    return moments
-
-
-@jax.jit
-def _weighted(multipliers: jax.Array, synthesis: jax.Array, analysis: jax.Array) -> jax.Array:
-    return (0.5 + arctan(multipliers @ synthesis) / jnp.pi) @ analysis
