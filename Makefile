@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench accuracy study munsell atlases cubes lock clean
+.PHONY: build test bench peers accuracy study munsell atlases cubes lock clean
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -24,6 +24,10 @@ test: $(INSTALLED)
 
 bench: $(INSTALLED)
 	$(BIN)/python -m benchmarks.bench
+
+# What `make bench` compares with where it finds it. Ceres is the system's: libceres-dev, cmake, g++.
+peers: $(INSTALLED)
+	$(BIN)/pip install --quiet -c constraints.txt --no-build-isolation -e '.[peers]'
 
 accuracy: $(INSTALLED)
 	$(BIN)/python -m benchmarks.accuracy

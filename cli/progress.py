@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from uplift.fit import Round
-
-Watch = Callable[["Round"], None]
+    from uplift.fit import Round, Storing, Watch
 
 
 @contextlib.contextmanager
@@ -39,29 +37,38 @@ def waiting(text: str) -> Iterator[None]:
         yield
 
 
-def _say(done: Round) -> None:
-    click.echo(f"round {done.number}: tried {done.tried}, fitted {done.fitted} of {done.total}", err=True)
+def _say(done: Round | Storing) -> None:
+    click.echo(_told(done), err=True)
+
+
+def _told(done: Round | Storing) -> str:
+    from uplift.fit import Storing
+
+    if isinstance(done, Storing):
+        return f"stored {done.stored} of {done.total}"
+    return f"round {done.number}: tried {done.tried}, fitted {done.fitted} of {done.total}"
 
 
 @contextlib.contextmanager
 def _bar() -> Iterator[Watch]:
+    """A bar over a build: fitting fills the first half, storing, which takes as long, the second."""
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
     columns = (
-        TextColumn("round {task.fields[round]:>3}"),
+        TextColumn("{task.fields[told]}"),
         BarColumn(bar_width=None),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]}"),
+        TextColumn("{task.percentage:>3.0f} %"),
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("fit", total=None, round=0, rate="")
+        task = progress.add_task("build", total=None, told="atlas")
 
-        def watch(done: Round) -> None:
-            elapsed = progress.tasks[task].elapsed or 0.0
-            rate = f"{done.fitted / elapsed:,.0f} points/s" if elapsed > 0 else ""
-            progress.update(task, total=done.total, completed=done.fitted, round=done.number, rate=rate)
+        def watch(done: Round | Storing) -> None:
+            from uplift.fit import Storing
+
+            reached = done.total + done.stored if isinstance(done, Storing) else done.fitted
+            progress.update(task, total=2 * done.total, completed=reached, told=_told(done))
 
         yield watch
 

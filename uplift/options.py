@@ -47,6 +47,10 @@ class Options:
         raise observer.suggest(self.model, MODELS, "model")
 
 
+PROCESS = 500_000_000
+"""Bytes that a build takes beside its lattice."""
+
+
 def check_size(options: Options) -> None:
     """Raises `OptionError` for a lattice too small to be one, or too large for this machine's memory."""
     if not isinstance(options.dim, int):
@@ -56,18 +60,18 @@ def check_size(options: Options) -> None:
     if not 0 < options.threshold <= 0.1:
         raise OptionError(f"a threshold of {options.threshold:g} makes no sense", remedy="use 1e-6 to 0.1")
     count = options.spectrum_model().count
-    need, have = _bytes_needed(options.dim, count), _memory()
+    need, have = PROCESS + options.dim**3 * _point(count), _memory()
     if need > have:
-        largest = int((have / _bytes_needed(1, count)) ** (1 / 3))
+        largest = int(max((have - PROCESS) / _point(count), 8) ** (1 / 3))
         raise OptionError(
             f"dim {options.dim} needs about {_gigabytes(need)} of memory, this machine has {_gigabytes(have)}",
             remedy=f"use --dim {largest} or less",
         )
 
 
-def _bytes_needed(dim: int, count: int) -> int:
-    """Peak memory: five arrays of multipliers or coefficients, and what else a point carries."""
-    return int(dim) ** 3 * (5 * 8 * count + 250)
+def _point(count: int) -> int:
+    """Bytes of a lattice point: multipliers, which turn into coefficients in place, and what else is known of it."""
+    return 8 * count + 60
 
 
 def _gigabytes(count: int) -> str:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from uplift.fit.crowding import DIMS, roomiest
 from uplift.fit.entries import Entries, fit_entries
-from uplift.fit.grow import NEVER, Round, Watch, grow
+from uplift.fit.grow import NEVER, grow
 from uplift.fit.improve import Improvement, improve
 from uplift.fit.objective import Weights
 from uplift.fit.prior import Prior, learn
@@ -17,6 +17,7 @@ from uplift.fit.problem import Problem
 from uplift.fit.reach import reach
 from uplift.fit.seed import Seeds, seed
 from uplift.fit.store import store
+from uplift.fit.watch import Round, Storing, Watch
 from uplift.lattice import Indices, Status
 from uplift.sensor import Array
 
@@ -29,6 +30,7 @@ __all__ = [
     "Problem",
     "Round",
     "Seeds",
+    "Storing",
     "Watch",
     "Weights",
     "fit_entries",
@@ -73,7 +75,7 @@ def fit_lattice(
 
     grown = grow(problem, start, watch)
     improvements = improve(problem, grown.multipliers, grown.distance)
-    stored = store(problem, grown.multipliers)
+    stored = store(problem, grown.multipliers, watch)
     status = np.full(problem.lattice.size, Status.REGULAR, dtype=np.uint8)
     status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
     status[grown.round == NEVER] = Status.IMPROVED

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.fit.problem import Problem
+from uplift.fit.watch import Round, Watch
 from uplift.lattice import Indices, Lattice, Mask
 from uplift.sensor import Array
 
@@ -20,20 +21,7 @@ PASSES = 6
 NEVER = -1
 """The round of a point that no round has fitted."""
 BLOCK = 1 << 15
-"""Points tried between two words to whoever watches."""
-
-
-@dataclass(frozen=True)
-class Round:
-    """What has been done, for whoever watches: points tried at a time, fitted so far, and in all."""
-
-    number: int
-    tried: int
-    fitted: int
-    total: int
-
-
-Watch = Callable[[Round], None]
+"""Points worked on at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,15 +77,20 @@ def _try(
 
 def _frontier(lattice: Lattice, fresh: Indices, fitted: Mask, multipliers: Array) -> tuple[Indices, Array]:
     """The unfitted neighbours of freshly fitted points, and the mean of their own fitted neighbours."""
-    waiting = np.flatnonzero(~fitted)
-    around, inside = lattice.neighbours(waiting)
-    points = waiting[(inside & _mask(lattice, fresh)[around]).any(axis=1)]
-    around, inside = lattice.neighbours(points)
-    known = inside & fitted[around]
-    total = np.zeros((len(points), multipliers.shape[1]))
-    for column in range(around.shape[1]):
-        total += np.where(known[:, column, None], multipliers[around[:, column]], 0)
-    return points, total / np.maximum(known.sum(axis=1), 1)[:, None]
+    waiting, new = np.flatnonzero(~fitted), _mask(lattice, fresh)
+    points = [waiting[:0]]
+    means = [np.zeros((0, multipliers.shape[1]))]
+    for first in range(0, len(waiting), BLOCK):
+        around, inside = lattice.neighbours(waiting[first : first + BLOCK])
+        beside = (inside & new[around]).any(axis=1)
+        points.append(waiting[first : first + BLOCK][beside])
+        around = around[beside]
+        known = inside[beside] & fitted[around]
+        total = np.zeros((len(around), multipliers.shape[1]))
+        for column in range(around.shape[1]):
+            total += np.where(known[:, column, None], multipliers[around[:, column]], 0)
+        means.append(total / np.maximum(known.sum(axis=1), 1)[:, None])
+    return np.concatenate(points), np.concatenate(means)
 
 
 def _mask(lattice: Lattice, points: Indices) -> Mask:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from uplift.fit.batch import batches, put, put_all
 from uplift.fit.problem import Problem
 from uplift.fit.quadrature import compiled
+from uplift.fit.watch import Storing, Watch
 from uplift.models import Model
 from uplift.models.least_change import Forward, reached
 from uplift.sensor import Array
@@ -28,7 +29,7 @@ class Stored(NamedTuple):
     distance: NDArray[np.float32]
 
 
-def store(problem: Problem, multipliers: Array) -> Stored:
+def store(problem: Problem, multipliers: Array, watch: Watch) -> Stored:
     """The multipliers (n, C) of all points as coefficients, in their place: large lattices have no room for both."""
     model, size = problem.model, len(multipliers)
     stored = Stored(multipliers, np.empty((size, 3), dtype=np.float32), np.empty(size, dtype=np.float32))
@@ -38,6 +39,7 @@ def store(problem: Problem, multipliers: Array) -> Stored:
         rgb = rgb_of(problem, model.from_storage(stored.coefficients[block]))
         target = problem.lattice.target(np.arange(first, first + len(rgb)))
         stored.rgb[block], stored.distance[block] = rgb, np.abs(target - rgb).max(axis=1)
+        watch(Storing(first + len(rgb), size))
     return stored
 
 

@@ -1,0 +1,25 @@
+"""Each tool in a process of its own: none finds another's threads, compiled code or settings."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+
+from benchmarks.peers.row import Peer
+
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+"""Read when numpy is imported. With matrices as small as these, more threads made colour-science twice as slow."""
+
+
+def alone(tool: Callable[[int], list[Peer]], runs: int) -> list[Peer]:
+    """The rows of ``tool``, timed ``runs`` times in a fresh process."""
+    before = dict(os.environ)
+    os.environ.update(ONE_THREAD)
+    try:
+        with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+            return pool.submit(tool, runs).result()
+    finally:
+        os.environ.clear()
+        os.environ.update(before)

@@ -1,0 +1,82 @@
+"""The thesis's solver: Ceres with numeric differences (`benchmarks/ceres/fit.cpp`), built where it is installed."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.peers import task
+from benchmarks.peers.row import Peer, judge_multipliers, missing, model_of
+from benchmarks.timing import ROOT, spread
+from uplift.sensor import Array
+
+SOURCE, BUILT = ROOT / "benchmarks" / "ceres", ROOT / "out" / "ceres"
+NEEDS = "Ceres with cmake and a C++ compiler (libceres-dev, cmake, g++)"
+STEPS = 12
+"""From each start. With Ceres's default, 50, the moments take twice the time and no more of them are fitted."""
+
+JOBS = (("sigmoid", 3, "sigmoid", 0.99), ("moments", 9, "moments", 0.5), ("moments", 9, "multipliers", 0.99))
+"""Model, coefficients, what the unknowns are, and the least share of points that must be fitted."""
+IN = {"sigmoid": "", "moments": "in c, ", "multipliers": "in p, "}
+QUIET = {"GLOG_minloglevel": "3"}
+"""Ceres tells at length of every step that leaves the moments of reflectances: telling would be timed too."""
+
+
+def ceres(runs: int) -> list[Peer]:
+    """Growing from the middle of the lattice, every point from its fitted neighbours."""
+    program = _build()
+    if program is None:
+        return [missing("Ceres", NEEDS, model, count) for model, count, *_ in JOBS]
+    return [_row(program, *job, runs) for job in JOBS]
+
+
+def _build() -> Path | None:
+    """The program; None where cmake, a compiler or Ceres is missing."""
+    program = BUILT / "fit"
+    if shutil.which("cmake") is None or _cmake("-S", str(SOURCE), "-B", str(BUILT)).returncode:
+        return None
+    program.unlink(missing_ok=True)  # built when Ceres was still there
+    _cmake("--build", str(BUILT)).check_returncode()
+    return program if program.exists() else None
+
+
+def _cmake(*words: str) -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run(["cmake", *words], capture_output=True, check=False)
+
+
+def _row(program: Path, name: str, count: int, unknowns: str, least: float, runs: int) -> Peer:
+    model, points = model_of(name, count), task.lattice().points
+    done = [_run(program, unknowns, count) for _ in range(runs)]
+    found, facts = done[-1]
+    multipliers = model.from_storage(found) if unknowns == "moments" else found
+    answer = judge_multipliers(model, multipliers, task.sensor(), points, least=least)
+    cpu = spread([each["cpu"] for _, each in done]).scaled(1e6 / len(points))
+    starts = facts["solves"] / len(points)
+    notes = f"{task.DIM}³, {IN[unknowns]}numeric differences, C++; grown from the middle, {starts:.1f} starts a point"
+    return Peer(f"Ceres {facts['ceres']}", name, count, len(points), cpu, answer, notes)
+
+
+def _run(program: Path, unknowns: str, count: int) -> tuple[Array, dict[str, Any]]:
+    """Unknowns found (n, count), and what the program says of its work."""
+    with tempfile.TemporaryDirectory() as folder:
+        scene, found = Path(folder, "scene.txt"), Path(folder, "found")
+        scene.write_text(_scene())
+        command = [str(program), str(scene), str(found), unknowns, str(count), str(STEPS)]
+        said = subprocess.run(
+            command, env=os.environ | QUIET, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True
+        ).stdout
+        return np.fromfile(found).reshape(-1, count), json.loads(said)
+
+
+def _scene() -> str:
+    """Input of the program: sizes, wavelengths, sensor matrix, axis nodes."""
+    sensor, nodes = task.sensor(), task.lattice().nodes
+    numbers = np.concatenate([sensor.wavelengths, sensor.matrix.ravel(), nodes])
+    return f"{len(sensor.wavelengths)} {len(nodes)}\n" + "\n".join(map(repr, numbers.tolist())) + "\n"

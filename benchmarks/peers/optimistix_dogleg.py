@@ -1,0 +1,53 @@
+"""``vmap`` of optimistix's Dogleg over many points: the ready-made solver on the same JAX."""
+
+from __future__ import annotations
+
+import time
+from importlib.metadata import version
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from benchmarks.peers import task
+from benchmarks.peers.row import Peer, judge_multipliers, missing
+from uplift.models import Moments
+from uplift.sensor import Array
+
+COUNT = 9
+POINTS = 1024
+STEPS = 256
+TOLERANCE = 1e-6
+"""Of the step and the change of the residuals, relative and absolute; our solver goes on to a miss of as much."""
+
+
+def optimistix_dogleg(runs: int) -> list[Peer]:
+    """Moments by their multipliers, every point from grey; compiled before it is timed."""
+    try:
+        import optimistix
+    except ImportError:
+        return [missing("optimistix Dogleg, `vmap`", "optimistix", "moments", COUNT)]
+    model, sensor, target = Moments(COUNT), task.sensor(), task.some(POINTS)
+    basis, weights = model.basis(sensor.wavelengths), sensor.matrix
+    solver = optimistix.Dogleg(rtol=TOLERANCE, atol=TOLERANCE)
+
+    def miss(multipliers: jax.Array, rgb: jax.Array) -> jax.Array:
+        return weights @ model.squash(basis @ multipliers) - rgb
+
+    def one(rgb: jax.Array) -> jax.Array:
+        start = jnp.zeros(COUNT)
+        return optimistix.least_squares(miss, solver, start, args=rgb, max_steps=STEPS, throw=False).value
+
+    with jax.enable_x64(True):
+        begin = time.process_time()
+        compiled = jax.jit(jax.vmap(one)).lower(jnp.asarray(target)).compile()
+        seconds = time.process_time() - begin
+
+        def solve() -> Array:
+            return np.asarray(compiled(jnp.asarray(target)))
+
+        found, cpu = task.measured(solve, POINTS, runs)
+    answer = judge_multipliers(model, found, sensor, target, least=0.99)
+    notes = f"in p; all points go on until the last has arrived; compilation, {seconds:.1f} s, is apart"
+    tool = f"optimistix {version('optimistix')} Dogleg, `vmap`"
+    return [Peer(tool, "moments", COUNT, POINTS, cpu, answer, notes)]

@@ -1,0 +1,37 @@
+"""Ours: whole lattices without an atlas, from nothing to the coefficients that a cube stores."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmarks.peers import task
+from benchmarks.peers.row import Peer, judge_multipliers, model_of
+from uplift import fit, observer
+from uplift.models.least_change import forward
+from uplift.sensor import Array
+
+DIMS = (16, 32)
+MODELS = (("sigmoid", 3), ("moments", 3), ("moments", 5), ("moments", 9), ("moments", 17))
+
+
+def ours(runs: int) -> list[Peer]:
+    """Every model at every dim."""
+    return [_lattice(name, count, dim, runs) for dim in DIMS for name, count in MODELS]
+
+
+def _lattice(name: str, count: int, dim: int, runs: int) -> Peer:
+    model, sensor, lattice = model_of(name, count), task.sensor(), task.lattice(dim)
+    problem = fit.Problem(model, forward(model, sensor.wavelengths, sensor.matrix), lattice)
+    reference = observer.light("A")
+    rgb, measured = np.empty((0, 3)), np.empty((0, len(sensor.wavelengths)))
+    none = fit.fit_entries(model, problem.forward, measured, rgb, [reference], reference, problem.tolerance)
+    seeds = fit.seed(lattice, rgb)
+
+    def whole() -> Array:
+        prior = fit.learn(problem, sensor, none, reference)
+        return fit.fit_lattice(problem, seeds, none.multipliers, prior).coefficients
+
+    whole()  # compiles
+    stored, cpu = task.measured(whole, lattice.size, runs)
+    answer = judge_multipliers(model, model.from_storage(stored), sensor, lattice.points, least=1.0)
+    return Peer("uplift", name, count, lattice.size, cpu, answer, f"{dim}³, compiled before")

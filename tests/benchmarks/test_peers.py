@@ -1,0 +1,102 @@
+"""The comparison with other tools: wrong answers are not timed, absent tools say so. How fast is not asked here."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+
+import numpy as np
+import pytest
+
+from benchmarks.peers import section
+from benchmarks.peers.alone import ONE_THREAD, alone
+from benchmarks.peers.ceres import ceres
+from benchmarks.peers.mitsuba_table import mitsuba_table
+from benchmarks.peers.optimistix_dogleg import optimistix_dogleg
+from benchmarks.peers.row import Answer, Peer, judge, judge_multipliers, missing, published_sigmoid
+from benchmarks.peers.task import lattice, measured, some
+from uplift.models import Sigmoid
+
+TARGET = np.full((10, 3), 0.5)
+
+
+def test_judge_states_the_share_and_the_worst():
+    found = TARGET.copy()
+    found[0, 1] += 2e-4
+    answer = judge(found, TARGET, least=0.9)
+    assert answer.share == 0.9
+    assert answer.worst == pytest.approx(2e-4)
+
+
+@pytest.mark.parametrize("wrong", [0.6, np.nan])
+def test_judge_raises_on_a_wrong_answer(wrong):
+    found = TARGET.copy()
+    found[:2, 0] = wrong
+    with pytest.raises(RuntimeError, match=r"80\.0% of the points"):
+        judge(found, TARGET, least=0.9)
+
+
+def test_spectra_of_another_colour_are_a_wrong_answer(sensor):
+    grey = np.zeros((10, 3))
+    assert judge_multipliers(Sigmoid(), grey, sensor, TARGET, least=1).share == 1
+    with pytest.raises(RuntimeError, match="wrong answer"):
+        judge_multipliers(Sigmoid(), grey, sensor, TARGET / 2, least=1)
+
+
+def test_published_sigmoid_is_ours_with_wavelengths_as_they_are(sensor):
+    ours = Sigmoid()
+    expected = ours.squash(sensor.wavelengths**2 * 1e-5 - sensor.wavelengths * 1e-2 + 2)
+    found = published_sigmoid(np.array([[1e-5, -1e-2, 2]]), sensor.wavelengths)
+    np.testing.assert_allclose(found, expected[None], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("module", "tool", "name"),
+    [("mitsuba", mitsuba_table, "Mitsuba"), ("optimistix", optimistix_dogleg, "optimistix")],
+)
+def test_an_absent_package_has_a_row_that_says_so(monkeypatch, module, tool, name):
+    monkeypatch.setitem(sys.modules, module, None)
+    (row,) = tool(1)
+    assert row.cpu is None
+    assert row.notes == f"{name} is not installed"
+
+
+def test_absent_ceres_has_rows_that_say_so(monkeypatch):
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    rows = ceres(1)
+    assert [row.cpu for row in rows] == [None] * 3
+    assert all("not installed" in row.notes for row in rows)
+
+
+def test_measured_gives_what_was_found_and_the_time_of_a_point():
+    found, cpu = measured(lambda: TARGET, 10, runs=2)
+    assert found is TARGET
+    assert cpu.runs == 2
+
+
+def test_some_points_are_the_lattice_s_own_and_always_the_same():
+    points = some(5)
+    assert (points == some(5)).all()
+    assert all((lattice().points == point).all(axis=1).any() for point in points)
+
+
+def told(runs: int) -> list[Peer]:
+    """A tool that tells the threads it was allowed."""
+    return [missing(os.environ["OPENBLAS_NUM_THREADS"], "nothing", "sigmoid", runs)]
+
+
+def test_a_tool_runs_alone_in_one_thread_and_leaves_our_environment(monkeypatch):
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
+    (row,) = alone(told, 3)
+    assert (row.tool, row.count) == (ONE_THREAD["OPENBLAS_NUM_THREADS"], 3)
+    assert os.environ["OPENBLAS_NUM_THREADS"] == "7"
+
+
+def test_the_table_has_measured_and_missing_rows():
+    _, cpu = measured(lambda: TARGET, 10, runs=1)
+    rows = [Peer("one", "sigmoid", 3, 10, cpu, Answer(0.9, 2e-4)), missing("other", "it", "moments", 9)]
+    *_, first, second = section(rows).splitlines()
+    assert "90.00%" in first
+    assert "2.0e-04" in first
+    assert second == "| other | moments | 9 |  |  |  |  | it is not installed |"
