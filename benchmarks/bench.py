@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from benchmarks.lookup_tables import bulk_table, lookup_table
 from benchmarks.page import table, write
 from benchmarks.processes import ProcessTiming, time_processes
 from benchmarks.timing import ROOT, circumstances
 
 if TYPE_CHECKING:
     from benchmarks.fitting import FitTiming
-    from benchmarks.lookups import LookupTiming
     from benchmarks.nodes import NodesError
     from benchmarks.timing import Spread
 
@@ -34,19 +34,21 @@ def main(runs: int) -> None:
     # First: what starts from a large process counts that one's memory as its own.
     processes = time_processes(runs)
     from benchmarks.fitting import time_dims, time_models
-    from benchmarks.lookups import time_lookups
+    from benchmarks.lookups import macbeth, time_bulk, time_lookups
     from benchmarks.nodes import nodes_errors
     from benchmarks.peers import section, time_peers
 
     dims, models = time_dims(runs), time_models(runs)
-    nodes, lookups = nodes_errors(), time_lookups(runs)
+    nodes, cube = nodes_errors(), macbeth()
+    lookups, bulk = time_lookups(cube, runs), time_bulk(cube, runs)
     peers = time_peers(runs)
     sections = [
         _dims(dims),
         _models(models),
         _nodes(nodes),
         _processes(processes),
-        _lookups(lookups),
+        lookup_table(lookups),
+        bulk_table(bulk),
         section(peers),
     ]
     page = write("performance", INTRODUCTION.format(runs=runs), sections)
@@ -56,6 +58,7 @@ def main(runs: int) -> None:
         "nodes": nodes,
         "processes": processes,
         "lookups": lookups,
+        "bulk": bulk,
         "peers": peers,
     }
     (ROOT / "docs" / "performance.json").write_text(
@@ -145,23 +148,6 @@ def _processes(rows: Sequence[ProcessTiming]) -> str:
         "Imports, compilation, fit and writing; Macbeth, 9 coefficients.",
         ["command", "wall s", "peak memory MB"],
         [[f"`{row.what}`", f"{row.wall:.2f}", f"{row.megabytes:.0f}"] for row in rows],
-    )
-
-
-def _lookups(rows: Sequence[LookupTiming]) -> str:
-    return table(
-        "Lookups in numpy",
-        f"{rows[0].colours:,} random colours of a 16³ Macbeth cube, 9 coefficients.",
-        ["what", "seconds", "million colours/s", "worst RGB"],
-        [
-            [
-                row.what,
-                f"{row.wall:.3f}",
-                f"{row.colours / row.wall.median / 1e6:.2f}",
-                "" if row.worst is None else f"{row.worst:.1e}",
-            ]
-            for row in rows
-        ],
     )
 
 

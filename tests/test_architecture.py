@@ -48,6 +48,7 @@ def test_the_contracts_hold_for_a_copy(doctored):
 @pytest.mark.parametrize(
     ("module", "line", "contract"),
     [
+        ("uplift/lookup/cube.py", "from uplift import bulk", "Data flows one way"),
         ("uplift/lookup/cube.py", "import jax", "A lookup starts in the time that numpy takes"),
         (
             "uplift/cube/file.py",

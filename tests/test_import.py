@@ -31,7 +31,15 @@ def test_loading_a_cube_costs_numpy_and_the_file_s_library():
     assert in_a_fresh_process(code) == "['numpy', 'safetensors']"
 
 
-@pytest.mark.parametrize("use", ["pass", "uplift.load().reflectance([0.5, 0.5, 0.5])", "uplift.build(dim=2)"])
+@pytest.mark.parametrize(
+    "use",
+    [
+        "pass",
+        "uplift.load().reflectance([0.5, 0.5, 0.5])",
+        "uplift.build(dim=2)",
+        "from uplift import bulk; bulk.spectra(uplift.load(), [500])([0.5, 0.5, 0.5])",
+    ],
+)
 def test_no_setting_of_jax_is_changed(use):
     code = (
         "import jax, jax.numpy as jnp\n"

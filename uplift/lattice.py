@@ -87,9 +87,14 @@ class Lattice:
 
     def corners(self, rgb: Array) -> tuple[Indices, Array]:
         """Point numbers (n, 8) and trilinear weights (n, 8), summing to 1, around linear RGB (n, 3)."""
-        low, fraction = self.cell(rgb)
-        weights = np.where(CORNERS, fraction[:, None, :], 1 - fraction[:, None, :]).prod(axis=-1)
-        return self.index(low[:, None, :] + CORNERS), weights
+        return self.around(*self.cell(rgb))
+
+    def around(self, low: Indices, fraction: Array) -> tuple[Indices, Array]:
+        """The same, for the lowest corner (n, 3) and fraction (n, 3) of cells."""
+        along = np.ascontiguousarray(fraction.T)
+        r, g, b = np.stack([1 - along, along], axis=1)
+        weights = (r[:, None, None] * g[None, :, None] * b[None, None, :]).reshape(8, -1)
+        return self.index(low)[:, None] + self.index(CORNERS), np.ascontiguousarray(weights.T)
 
     @cached_property
     def steps(self) -> Indices:

@@ -9,7 +9,7 @@ import pytest
 from uplift.errors import ColourError, OptionError
 from uplift.lattice import Status
 from uplift.lookup import MODES, answers
-from uplift.lookup.interpolate import BLOCK
+from uplift.lookup.blocks import BLOCK
 
 D65_WAVELENGTHS = colour.SpectralShape(380, 780, 5)
 

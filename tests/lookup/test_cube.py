@@ -10,7 +10,7 @@ import uplift
 from uplift.errors import ColourError, OptionError
 from uplift.lattice import Status
 from uplift.lookup import MODES
-from uplift.lookup.interpolate import BLOCK
+from uplift.lookup.blocks import BLOCK
 
 RED = (0.6, 0.03, 0.01)
 

@@ -11,15 +11,29 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
-from uplift.lattice import Indices, Lattice
+from uplift.lattice import Indices, Lattice, Mask
 from uplift.sensor import Array
 
 AROUND = np.array(list(product((-1, 0, 1), repeat=3)))
 """(27, 3) steps to the cells that a box may touch: it reaches a step at the most."""
 NO_ENTRY = -1
+
+
+class Pinned(NamedTuple):
+    """Colours in boxes, k of those asked."""
+
+    rows: Indices
+    """(k,) which they are."""
+    entry: Indices
+    """(k,) the entry in whose box they lie."""
+    share: Array
+    """(k,) the lattice's share in the answer; the rest is the entry's."""
+    away: Array
+    """(k, 3) linear RGB to ask the lattice for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,36 +63,43 @@ class Pins:
         order = np.argsort(number, kind="stable")
         return number[order], entry[order]
 
-    def __call__(self, rgb: Array) -> tuple[Array, Indices, Array]:
-        """The lattice's part in the answers to linear RGB (n, 3).
+    @cached_property
+    def touched(self) -> Mask:
+        """(dim³,) whether a box touches a cell, by its number.
 
-        Colours y (n, 3) to ask the lattice for, the entry (n,) that each mixes with, −1 for none, and the
-        lattice's share t (n,).
+        Memory that is never written to is never taken, so this is cheap for the largest lattice.
         """
-        entry = self._entry(rgb)
-        asked, share = rgb.copy(), np.ones(len(rgb))
-        rows = np.flatnonzero(entry != NO_ENTRY)
-        middle = self.rgb[entry[rows]]
-        ray = rgb[rows] - middle
-        low, high = (face[entry[rows]] for face in self.faces)
-        room = np.where(ray > 0, high - middle, middle - low)
-        share[rows] = np.divide(np.abs(ray), room, out=np.zeros_like(ray), where=ray != 0).max(axis=1)
-        away = share[rows] > 0
-        asked[rows[away]] = np.clip(middle[away] + ray[away] / share[rows[away], None], 0, 1)
-        return asked, entry, share
+        touched = np.zeros(self.lattice.size, dtype=bool)
+        touched[self.cells[0]] = True
+        return touched
 
-    def _entry(self, rgb: Array) -> Indices:
-        """The entry (n,) whose box holds linear RGB (n, 3), −1 for none."""
-        found = np.full(len(rgb), NO_ENTRY)
+    def __call__(self, rgb: Array) -> Pinned:
+        """Those of linear RGB (n, 3) that lie in a box."""
+        return self.within(rgb, self.lattice.index(self.lattice.cell(rgb)[0]))
+
+    def within(self, rgb: Array, cell: Indices) -> Pinned:
+        """The same, for who knows the numbers (n,) of their cells."""
+        rows, entry = self._boxes(rgb, cell)
+        middle = self.rgb[entry]
+        ray = rgb[rows] - middle
+        low, high = (face[entry] for face in self.faces)
+        room = np.where(ray > 0, high - middle, middle - low)
+        share = np.divide(np.abs(ray), room, out=np.zeros_like(ray), where=ray != 0).max(axis=1)
+        away, moved = rgb[rows], share > 0
+        away[moved] = np.clip(middle[moved] + ray[moved] / share[moved, None], 0, 1)
+        return Pinned(rows, entry, share, away)
+
+    def _boxes(self, rgb: Array, cell: Indices) -> tuple[Indices, Indices]:
+        """Which (k,) of linear RGB (n, 3) lie in a box, and the entries (k,) of those."""
+        near = np.flatnonzero(self.touched[cell])
+        found = np.full(len(near), NO_ENTRY)
         cells, entries = self.cells
-        if not len(cells):
-            return found
-        number = self.lattice.index(self.lattice.cell(rgb)[0])
-        first, last = (np.searchsorted(cells, number, side=side) for side in ("left", "right"))
+        first, last = (np.searchsorted(cells, cell[near], side=side) for side in ("left", "right"))
         low, high = self.faces
         for turn in range(int((last - first).max(initial=0))):
             rows = np.flatnonzero(first + turn < last)
-            candidate = entries[first[rows] + turn]
-            inside = ((rgb[rows] >= low[candidate]) & (rgb[rows] <= high[candidate])).all(axis=1)
+            candidate, asked = entries[first[rows] + turn], rgb[near[rows]]
+            inside = ((asked >= low[candidate]) & (asked <= high[candidate])).all(axis=1)
             found[rows[inside]] = candidate[inside]
-        return found
+        held = found != NO_ENTRY
+        return near[held], found[held]

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from uplift.difference import colours_apart
 from uplift.lattice import Status
+from uplift.lookup.blocks import BLOCK
 from uplift.lookup.cube import Cube
-from uplift.lookup.interpolate import BLOCK
 from uplift.sensor import Array
 
 HALF_A_CODE = 0.5

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from importlib.resources import as_file, files
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.cube import CubeData, read, write
-from uplift.errors import ColourError, OptionError, UpliftError
-from uplift.lookup.interpolate import BLOCK, MODES, coefficients, standard_error
-from uplift.sensor import Array, Sensor
+from uplift.errors import ColourError, OptionError
+from uplift.lookup.blocks import Function, blockwise
+from uplift.lookup.interpolate import MODES, coefficients, standard_error
+from uplift.lookup.question import colours, float_type, floats, thread_count, wavelengths_asked
+from uplift.lookup.table import tabulate
+from uplift.sensor import Array
+
+MOST_BYTES = 1 << 28
+"""Largest table of the lattice's spectra that a question is answered from."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,16 +29,30 @@ class Cube:
 
     data: CubeData
 
-    def coefficients(self, rgb: ArrayLike) -> Array:
+    def coefficients(
+        self, rgb: ArrayLike, *, dtype: DTypeLike = np.float64, threads: int = 1
+    ) -> NDArray[Any]:
         """Coefficients (…, C) of the model at linear RGB (…, 3), interpolated between the lattice points.
 
-        Raises `ColourError` for a colour outside [0, 1].
+        ``dtype``, ``threads`` and what is raised: as for `reflectance`.
         """
-        return self._blockwise(lambda block: coefficients(self.data, block), rgb)
+        return blockwise(
+            partial(coefficients, self.data),
+            colours(rgb, self.data.sensor),
+            self.data.model.count,
+            float_type(dtype),
+            thread_count(threads),
+        )
 
     def reflectance(
-        self, rgb: ArrayLike, wavelengths: ArrayLike | None = None, mode: str = "spectra"
-    ) -> Array:
+        self,
+        rgb: ArrayLike,
+        wavelengths: ArrayLike | None = None,
+        mode: str = "spectra",
+        *,
+        dtype: DTypeLike = np.float64,
+        threads: int = 1,
+    ) -> NDArray[Any]:
         """Reflectance (…, N) in [0, 1] of linear RGB (…, 3), as the cube's space and illuminant have it.
 
         Parameters
@@ -41,16 +61,29 @@ class Cube:
         wavelengths : (N,) nm; by default those of the cube's sensor. Outside the model's range the
             spectrum is held flat.
         mode : ``spectra`` (exact), ``moments`` (one reconstruction, nearly exact), ``refined`` (exact, ditto).
+        dtype : of the answer: float64 or float32, which takes half the room and differs by less than 1e-6.
+        threads : how many share a question of thousands of colours; the answer is the same.
 
         Raises
         ------
         ColourError : a colour outside [0, 1] or not finite.
-        OptionError : an unknown mode, wavelengths that are not positive numbers.
+        OptionError : an unknown mode, wavelengths that are not positive numbers, another dtype, no threads.
         """
         if mode not in MODES:
             raise OptionError(f"unknown mode '{mode}'", remedy=f"use one of {', '.join(MODES)}")
-        at = self.wavelengths(wavelengths)
-        return self._blockwise(lambda block: MODES[mode](self.data, block, at), rgb)
+        at, kind, count = self.wavelengths(wavelengths), float_type(dtype), thread_count(threads)
+        asked = colours(rgb, self.data.sensor)
+        function: Function
+        if mode == "spectra" and self._tabulates(asked.size // 3, len(at) * kind.itemsize):
+            function = tabulate(self.data, at, kind, count).spectra
+        else:
+            function = partial(_reflectance, self.data, mode, at)
+        return blockwise(function, asked, len(at), kind, count)
+
+    def _tabulates(self, colours: int, bytes_each: int) -> bool:
+        """Whether to work out the spectra of all lattice points first, so that no block does so again."""
+        points = self.data.lattice.size
+        return colours >= points and points * bytes_each <= MOST_BYTES
 
     def standard_error(self, rgb: ArrayLike) -> Array | None:
         """By how much (…,) answers at linear RGB (…, 3) are expected to miss measurements, a root mean square.
@@ -60,20 +93,18 @@ class Cube:
         """
         if self.data.standard_error is None:
             return None
-        return self._blockwise(lambda block: np.asarray(standard_error(self.data, block))[:, None], rgb)[
-            ..., 0
-        ]
+        return blockwise(partial(standard_error, self.data), colours(rgb, self.data.sensor), 1)[..., 0]
 
     def wavelengths(self, wavelengths: ArrayLike | None = None) -> Array:
         """The wavelengths (N,) nm that are asked for; by default those of the sensor. Raises `OptionError`."""
-        return self.data.sensor.wavelengths if wavelengths is None else _wavelengths(wavelengths)
+        return self.data.sensor.wavelengths if wavelengths is None else wavelengths_asked(wavelengths)
 
     def decode(self, codes: ArrayLike) -> Array:
         """Linear RGB (…) of 8-bit codes (…) as the cube's space encodes them.
 
         Raises `ColourError` for codes outside 0–255; fractions are interpolated.
         """
-        array = _floats(codes, "8-bit codes are numbers")
+        array = floats(codes, "8-bit codes are numbers")
         if not ((array >= 0) & (array <= 255)).all():
             raise ColourError("8-bit codes run from 0 to 255", remedy="leave out --8bit for linear floats")
         return np.interp(array, np.arange(256), self.data.sensor.decoding)
@@ -85,13 +116,6 @@ class Cube:
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Write the cube file, atomically. Raises `OutputError`."""
         write(self.data, path, force=force)
-
-    def _blockwise(self, function: Callable[[Array], Array], rgb: ArrayLike) -> Array:
-        """Apply to (n, 3) blocks of (…, 3), so that memory for the work does not grow with the question."""
-        array = _colours(rgb, self.data.sensor)
-        flat = array.reshape(-1, 3)
-        blocks = [function(flat[i : i + BLOCK]) for i in range(0, max(len(flat), 1), BLOCK)]
-        return np.concatenate(blocks).reshape(*array.shape[:-1], blocks[0].shape[-1])
 
 
 def load(path: str | os.PathLike[str] | None = None) -> Cube:
@@ -105,31 +129,5 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
         return Cube(read(default))
 
 
-def _colours(rgb: ArrayLike, sensor: Sensor) -> Array:
-    array = _floats(rgb, "a colour is three numbers")
-    if array.ndim == 0 or array.shape[-1] != 3:
-        raise ColourError(f"a colour is three numbers, not an array of shape {array.shape}")
-    outside = ~sensor.holds(array)
-    if outside.any():
-        first = np.argwhere(outside)[0]
-        values = ", ".join(f"{value:g}" for value in array[tuple(first)])
-        raise ColourError(
-            f"linear RGB ({values}) lies outside [0, 1]",
-            remedy="reflectances reach no further; scale or clip it, or use --8bit for codes",
-        )
-    return np.clip(array, 0, 1)
-
-
-def _wavelengths(wavelengths: ArrayLike) -> Array:
-    problem = "wavelengths must be a list of positive numbers in nm"
-    array = np.atleast_1d(_floats(wavelengths, problem, OptionError))
-    if array.ndim != 1 or not array.size or not (np.isfinite(array) & (array > 0)).all():
-        raise OptionError(problem)
-    return array
-
-
-def _floats(values: Any, problem: str, kind: type[UpliftError] = ColourError) -> Array:
-    try:
-        return np.asarray(values, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise kind(problem) from error
+def _reflectance(data: CubeData, mode: str, wavelengths: Array, rgb: Array) -> Array:
+    return MODES[mode](data, rgb, wavelengths)

@@ -4,17 +4,18 @@ spectra   the spectra of the nodes around, weighted: exact, as RGB is linear in 
 moments   their coefficients, weighted: one reconstruction in place of eight
 refined   ``moments``, then steps of least change to the very colour
 
-The nodes around are the eight corners of the cell and, near an atlas entry, the entry (`uplift.cube.pins`).
+All of it in float64: on the way from moments to multipliers rounding grows.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from uplift.cube import CubeData
-from uplift.lattice import Indices
+from uplift.lookup.nodes import around, mix
 from uplift.models import Model, evaluate, reflectance
 from uplift.models.least_change import Forward, forward, residual, step
 from uplift.sensor import Array
@@ -24,56 +25,37 @@ REFINED = 1e-8
 MOST_STEPS = 24
 FIRST_DAMPING = 1e-2
 """μ after a full step that did not help; nearly all colours need two full steps and no damping."""
-BLOCK = 8192
-"""Colours worked on at a time, so that memory does not grow with the number asked."""
 
 
 def coefficients(data: CubeData, rgb: Array) -> Array:
     """Coefficients (n, C) at linear RGB (n, 3) in [0, 1]: those of the nodes around, weighted."""
-    asked, entry, share = data.pins(rgb)
-    points, weights = data.lattice.corners(asked)
-    found = share[:, None] * (weights[:, None, :] @ data.coefficients[points])[:, 0, :]
-    rows = np.flatnonzero(entry >= 0)
-    found[rows] += (1 - share[rows, None]) * data.atlas.coefficients[entry[rows]]
-    return found
+    return around(data, rgb).mix(data.coefficients, data.atlas.coefficients)
+
+
+def standard_error(data: CubeData, rgb: Array) -> Array:
+    """ΔE00 (n, 1) by which answers are expected to miss measurements, of a cube that can tell."""
+    lattice = np.asarray(data.standard_error, dtype=float)
+    return around(data, rgb).mix(lattice[:, None], data.atlas.error[:, None])
 
 
 def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) as the weighted spectra of the nodes around."""
-    asked, entry, share = data.pins(rgb)
-    total = share[:, None] * lattice_spectra(data, asked, wavelengths)
-    rows = np.flatnonzero(entry >= 0)
-    used, place = _evaluated(data.model, data.atlas.coefficients, entry[rows], wavelengths)
-    total[rows] += (1 - share[rows, None]) * used[place]
-    return total
+    nodes = around(data, rgb)
+    points, point = np.unique(nodes.points, return_inverse=True)
+    entries, entry = np.unique(nodes.entry, return_inverse=True)
+    return replace(nodes, points=point.reshape(nodes.points.shape), entry=entry).mix(
+        reflectance(data.model, data.coefficients[points], wavelengths),
+        reflectance(data.model, data.atlas.coefficients[entries], wavelengths),
+    )
 
 
 def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) at linear RGB (n, 3) as the weighted spectra of the corners alone, entries aside."""
     points, weights = data.lattice.corners(rgb)
-    used, place = _evaluated(data.model, data.coefficients, points, wavelengths)
-    total = np.zeros((len(rgb), len(wavelengths)))
-    for corner in range(points.shape[1]):
-        total += weights[:, corner, None] * used[place[:, corner]]
-    return total
-
-
-def standard_error(data: CubeData, rgb: Array) -> Array | None:
-    """ΔE00 (n,) by which answers are expected to miss measurements; None where no atlas tells."""
-    if data.standard_error is None:
-        return None
-    asked, entry, share = data.pins(rgb)
-    points, weights = data.lattice.corners(asked)
-    found = share * (weights * data.standard_error[points]).sum(axis=1)
-    rows = np.flatnonzero(entry >= 0)
-    found[rows] += (1 - share[rows]) * data.atlas.error[entry[rows]]
-    return found
-
-
-def _evaluated(model: Model, stored: Array, rows: Indices, wavelengths: Array) -> tuple[Array, Indices]:
-    """Spectra (u, N) of those ``rows`` (…) of stored coefficients that occur, and where (…) each row's is."""
-    used, place = np.unique(rows, return_inverse=True)
-    return reflectance(model, stored[used], wavelengths), place.reshape(rows.shape)
+    used, place = np.unique(points, return_inverse=True)
+    return mix(
+        reflectance(data.model, data.coefficients[used], wavelengths), place.reshape(points.shape), weights
+    )
 
 
 def moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.models.model import Model
+from uplift.models.product import product
 from uplift.sensor import Array
 
 
@@ -40,7 +41,7 @@ def forward(
 
 def reached(model: Model, forward: Forward, multipliers: Any) -> Any:
     """Linear RGB (n, 3) of multipliers (n, C)."""
-    return model.squash(multipliers @ forward.basis.T) @ forward.sensor.T
+    return product(model.squash(product(multipliers, forward.basis.T)), forward.sensor.T)
 
 
 def residual(model: Model, forward: Forward, multipliers: Any, target: Any) -> Any:
@@ -50,8 +51,8 @@ def residual(model: Model, forward: Forward, multipliers: Any, target: Any) -> A
 
 def step(model: Model, forward: Forward, multipliers: Any, residual: Any, damping: Any) -> Any:
     """Change of multipliers (n, C) that takes residual (n, 3) away to first order; damping (n,) is μ."""
-    slope = model.slope(multipliers @ forward.basis.T)
-    jacobian = (slope @ forward.products).reshape(-1, 3, forward.basis.shape[1])
+    slope = model.slope(product(multipliers, forward.basis.T))
+    jacobian = product(slope, forward.products).reshape(-1, 3, forward.basis.shape[1])
     weighted = jacobian @ forward.inverse_metric
     gram = weighted @ jacobian.mT
     trace = gram[:, 0, 0] + gram[:, 1, 1] + gram[:, 2, 2]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.models.duality import Quadrature, quadrature
+from uplift.models.product import product
 from uplift.sensor import Array
 
 
@@ -70,4 +71,4 @@ def reflectance(model: Model, coefficients: ArrayLike, wavelengths: ArrayLike) -
 
 def evaluate(model: Model, multipliers: Array, wavelengths: ArrayLike) -> Array:
     """Reflectance (n, N) at wavelengths (N,) nm of multipliers (n, C)."""
-    return np.asarray(model.squash(multipliers @ model.basis(wavelengths).T))
+    return np.asarray(model.squash(product(multipliers, model.basis(wavelengths).T)))

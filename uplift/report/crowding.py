@@ -62,5 +62,7 @@ def _nearest(steps: Array) -> tuple[Indices, Array]:
 
 def _lost(data: CubeData) -> tuple[tuple[str, str], ...]:
     names, rows = data.atlas.names, np.flatnonzero(data.atlas.reach == 0)
-    _, answered, _ = data.pins(data.atlas.rgb[rows])
-    return tuple((names[row], names[other]) for row, other in zip(rows, answered, strict=True))
+    pinned = data.pins(data.atlas.rgb[rows])
+    return tuple(
+        (names[rows[row]], names[other]) for row, other in zip(pinned.rows, pinned.entry, strict=True)
+    )

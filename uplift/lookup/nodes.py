@@ -1,0 +1,62 @@
+"""The nodes around colours, and mixtures of what lies on them (docs/mathematics.md, 8). numpy alone.
+
+Around a colour are the eight corners of its cell and, near an atlas entry, the entry (`uplift.cube.pins`).
+Whatever nodes carry, be it coefficients, spectra or errors, is mixed alike.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+from uplift.cube import CubeData
+from uplift.lattice import Indices
+from uplift.sensor import Array
+
+Values = NDArray[Any]
+"""float64 or float32."""
+
+
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """The nodes around n colours.
+
+    Parameters
+    ----------
+    points, weights : (n, 8) lattice points and their weights, summing to 1.
+    rows : (k,) colours that an entry has a part in.
+    entry : (k,) that entry.
+    share : (k,) the lattice's share; the rest is the entry's.
+    """
+
+    points: Indices
+    weights: Array
+    rows: Indices
+    entry: Indices
+    share: Array
+
+    def mix(self, lattice: Values, atlas: Values) -> Values:
+        """(n, K) of what lattice points (dim³, K) and entries (E, K) carry, in the type that they have."""
+        found = mix(lattice, self.points, self.weights)
+        share = self.share.astype(found.dtype)[:, None]
+        found[self.rows] = share * found[self.rows] + (1 - share) * atlas[self.entry]
+        return found
+
+
+def mix(values: Values, points: Indices, weights: Array) -> Values:
+    """Rows (n, K) of values (m, K), weighted: points and weights (n, 8)."""
+    # Indices are known to be good: "clip" spares the check, and the copy that it would need.
+    corners = values.take(points, axis=0, mode="clip")
+    return (weights.astype(values.dtype, copy=False)[:, None, :] @ corners)[:, 0, :]
+
+
+def around(data: CubeData, rgb: Array) -> Nodes:
+    """The nodes around linear RGB (n, 3) in [0, 1]."""
+    lattice = data.lattice
+    low, fraction = lattice.cell(rgb)
+    pinned = data.pins.within(rgb, lattice.index(low))
+    low[pinned.rows], fraction[pinned.rows] = lattice.cell(pinned.away)
+    points, weights = lattice.around(low, fraction)
+    return Nodes(points, weights, pinned.rows, pinned.entry, pinned.share)

@@ -1,0 +1,42 @@
+"""What all nodes carry, worked out beforehand: for questions longer than the lattice has points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import DTypeLike
+
+from uplift.cube import CubeData
+from uplift.lookup.blocks import blockwise
+from uplift.lookup.nodes import Values, around
+from uplift.models import reflectance
+from uplift.sensor import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Numbers (dim³, K) of the lattice points and (E, K) of the atlas entries, float64 or float32."""
+
+    data: CubeData
+    lattice: Values
+    atlas: Values
+
+    def spectra(self, rgb: Array) -> Values:
+        """Reflectance (n, N) in [0, 1] at linear RGB (n, 3)."""
+        return np.clip(around(self.data, rgb).mix(self.lattice, self.atlas), 0, 1)
+
+
+def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1) -> Table:
+    """Reflectances of all nodes at wavelengths (N,) nm; takes dim³ × N numbers."""
+
+    def spectra(coefficients: Array) -> Values:
+        return blockwise(
+            lambda rows: reflectance(data.model, rows, wavelengths),
+            coefficients,
+            len(wavelengths),
+            dtype,
+            threads,
+        )
+
+    return Table(data, spectra(data.coefficients), spectra(data.atlas.coefficients))
