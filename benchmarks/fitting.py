@@ -22,6 +22,7 @@ from uplift.sensor import Array
 MODELS = (Sigmoid(), *(Moments(count) for count in (3, 5, 9, 13, 17)))
 DIMS = (16, 32, 64, 128)
 DIM = 64
+ACCELERATED = (64, 128, 256)
 FEW_RUNS = 3
 """Of the largest lattices, which take long and vary little."""
 
@@ -56,6 +57,13 @@ def time_dims(runs: int) -> list[FitTiming]:
 def time_models(runs: int) -> list[FitTiming]:
     """Every model at one dim."""
     return [time_fit(model, DIM, min(runs, FEW_RUNS)) for model in MODELS]
+
+
+def time_accelerator(runs: int) -> list[FitTiming]:
+    """On a GPU, if JAX has one; nothing otherwise."""
+    if jax.default_backend() == "cpu":
+        return []
+    return [time_fit(Moments(9), dim, runs) for dim in ACCELERATED]
 
 
 def time_fit(model: Model, dim: int, runs: int) -> FitTiming:
