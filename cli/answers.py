@@ -37,6 +37,7 @@ def _object(cube: Cube, answer: Answer) -> dict[str, Any]:
         "round_trip": {"rgb": answer.round_trip.tolist(), "delta_e_2000": answer.delta_e_2000},
         "cell": list(answer.cell),
         "status": [status.label for status in answer.statuses],
+        "realisable": answer.realisable,
         "entry": answer.entry,
         "standard_error": answer.standard_error,
         "reference": cube.data.reference,
@@ -70,6 +71,11 @@ def _sheet(cube: Cube, answer: Answer) -> None:
         "linear RGB": f"{_triple(answer.rgb)}  {_hex(cube, answer)}  {patch}",
         "cell": f"{answer.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in answer.statuses)}",
         "round trip": f"{_triple(answer.round_trip)}  ΔE00 {answer.delta_e_2000:.2g} ({data.sensor.illuminant})",
+        **(
+            {}
+            if answer.realisable
+            else {"unreal": "no reflectance has this colour; the answer has less chroma"}
+        ),
         "atlas entry": answer.entry or "none here",
         "measured": _expected(cube, answer),
         "spectrum": f"{_sparkline(answer)}  {answer.wavelengths[0]:g}–{answer.wavelengths[-1]:g} nm",

@@ -119,13 +119,17 @@ def _tell_improvements(cube: Cube) -> None:
 
 
 def _tell(cube: Cube, path: Path, seconds: float) -> None:
+    from uplift.lattice import Status
+
     data, counts = cube.data, cube.data.counts()
-    missed = counts["unfitted"] + counts["unrealisable"]
-    fitted = (
-        f"all within {data.threshold:g}" if not missed else f"{missed} MISS the threshold {data.threshold:g}"
-    )
+    missed, beyond = counts["unfitted"], counts["unrealisable"]
+    within = f"all within {data.threshold:g}"
+    fitted = within if not missed else f"{missed} MISS the threshold {data.threshold:g}"
+    if beyond:
+        fitted += f" but {beyond} that no reflectance has the colour of: these have less chroma"
+    worst = data.distance[data.status != Status.UNREALISABLE].max(initial=0)
     entries = f"{len(data.atlas.names)} atlas entries, " if data.provenance["atlases"] else ""
     click.echo(
-        f"{path}: {data.lattice.size} points, {entries}{fitted} (worst {data.distance.max():.1e}), "
+        f"{path}: {data.lattice.size} points, {entries}{fitted} (worst {worst:.1e}), "
         f"{counts['improved']} improved, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
     )

@@ -193,8 +193,9 @@ def test_bad_options_are_refused(options, error, message):
         uplift.build(**options)
 
 
-def test_a_build_outside_srgb_says_what_it_could_not_fit():
+def test_a_build_outside_srgb_names_the_colours_that_no_reflectance_has():
     cube = uplift.build(dim=3, space="ProPhoto RGB", illuminant="D50")
     counts = cube.data.counts()
-    assert counts["unfitted"] > 0
-    assert (fresh_distance(cube) > 1e-4).sum() == counts["unfitted"]
+    assert counts["unrealisable"] > 0
+    assert counts["unfitted"] == 0
+    assert (fresh_distance(cube) > 1e-4).sum() == counts["unrealisable"]

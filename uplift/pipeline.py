@@ -61,7 +61,8 @@ def build(atlas: Atlas = None, *, watch: fit.Watch = lambda done: None, **option
     axis, dim = _room(chosen, model, ahead, sensor, lights, entries)
     check_size(replace(chosen, dim=dim))
     lattice = Lattice(observer.axis_nodes(axis, dim))
-    problem = fit.Problem(model, ahead, lattice, chosen.threshold)
+    beyond = fit.unrealisable(lattice, sensor, chosen.threshold / 2)
+    problem = fit.Problem(model, ahead, lattice, chosen.threshold, beyond)
     seeds = fit.seed(lattice, rgb)
     table = AtlasTable(
         names, rgb, model.to_storage(entries.multipliers), fit.reach(lattice, rgb), entries.error

@@ -84,7 +84,7 @@ def test_from_the_prior_everything_is_fitted_at_once(sensor):
 
 
 def test_an_unrealisable_colour_is_left_unfitted_and_said_to_be(sensor):
-    """ProPhoto's green corner: no reflectance has it. The rest of the lattice does not suffer."""
+    """ProPhoto's green corner, nobody having said that no reflectance has it. The rest does not suffer."""
     wide = observer.sensor("ProPhoto RGB", "D65")
     lattice = Lattice(np.linspace(0, 1, 3))
     fit = fitted(MODEL, wide, lattice)

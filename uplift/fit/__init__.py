@@ -15,6 +15,7 @@ from uplift.fit.objective import Weights
 from uplift.fit.prior import Prior, learn
 from uplift.fit.problem import Problem
 from uplift.fit.reach import reach
+from uplift.fit.realisable import Unrealisable, unrealisable
 from uplift.fit.seed import Seeds, seed
 from uplift.fit.store import store
 from uplift.fit.watch import Round, Storing, Watch
@@ -31,6 +32,7 @@ __all__ = [
     "Round",
     "Seeds",
     "Storing",
+    "Unrealisable",
     "Watch",
     "Weights",
     "fit_entries",
@@ -39,6 +41,7 @@ __all__ = [
     "reach",
     "roomiest",
     "seed",
+    "unrealisable",
 ]
 
 NO_ENTRY = -1
@@ -62,13 +65,14 @@ def fit_lattice(
 ) -> Fit:
     """Fit every point of the lattice: seeds from the multipliers (E, C) of their entries, others from the prior.
 
-    RGB, distance and status are judged by the coefficients, as any reader of them will.
+    RGB, distance and status are judged by the coefficients, as any reader of them will. Points that no reflectance
+    has the colour of are fitted to the nearest that is, and keep their distance from what they should have been.
     """
     entry = np.full(problem.lattice.size, NO_ENTRY, dtype=np.int32)
     entry[seeds.points] = seeds.entry
 
     def start(points: Indices) -> Array:
-        found = prior(problem.lattice.target(points))
+        found = prior(problem.goal(points))
         seeded = entry[points] != NO_ENTRY
         found[seeded] = entries[entry[points[seeded]]]
         return found
@@ -79,5 +83,9 @@ def fit_lattice(
     status = np.full(problem.lattice.size, Status.REGULAR, dtype=np.uint8)
     status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
     status[grown.round == NEVER] = Status.IMPROVED
+    beyond = problem.beyond.points
+    status[beyond] = Status.UNREALISABLE
     status[stored.distance > problem.threshold] = Status.UNFITTED
+    stored.distance[beyond] = np.abs(problem.lattice.target(beyond) - stored.rgb[beyond]).max(axis=1)
+    status[beyond[stored.distance[beyond] <= problem.threshold]] = Status.REGULAR
     return Fit(stored.coefficients, stored.rgb, stored.distance, status, grown.round, entry, improvements)

@@ -65,7 +65,7 @@ def _try(
     problem: Problem, growth: Growth, points: Indices, start: Array, number: int, watch: Watch
 ) -> Indices:
     """Solve points (k,) from ``start`` (k, C), keep what is better, and say which are fitted now."""
-    found = problem.solve(problem.lattice.target(points), start, PASSES)
+    found = problem.solve(problem.goal(points), start, PASSES)
     better = found.distance < growth.distance[points]
     growth.multipliers[points[better]] = found.multipliers[better]
     growth.distance[points[better]] = found.distance[better]

@@ -76,7 +76,7 @@ def improve(problem: Problem, multipliers: Array, distance: Array) -> tuple[Impr
         if not points.size:
             break
         begin = start(multipliers[points], _way(problem, points))
-        found = problem.solve(problem.lattice.target(points), begin, PASSES)
+        found = problem.solve(problem.goal(points), begin, PASSES)
         better = found.distance < distance[points]
         multipliers[points[better]] = found.multipliers[better]
         distance[points[better]] = found.distance[better]
@@ -87,5 +87,5 @@ def improve(problem: Problem, multipliers: Array, distance: Array) -> tuple[Impr
 
 def _way(problem: Problem, points: Indices) -> Array:
     """Multipliers (k, C) of a linear part of +1 for targets nearer to white, −1 for those nearer to black."""
-    toward = np.where(problem.lattice.target(points).mean(axis=1) >= 0.5, 1.0, -1.0)
+    toward = np.where(problem.goal(points).mean(axis=1) >= 0.5, 1.0, -1.0)
     return toward[:, None] * problem.model.constant()

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from uplift.fit.realisable import NONE, Unrealisable
 from uplift.fit.solve import Solution, solve
-from uplift.lattice import Lattice
+from uplift.lattice import Indices, Lattice
 from uplift.models import Model
 from uplift.models.least_change import Forward
 from uplift.sensor import Array
@@ -13,17 +16,26 @@ from uplift.sensor import Array
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A model and its forward map, the lattice, and the largest |linear RGB| a point may miss its target by."""
+    """A model and its forward map, the lattice, and the largest |linear RGB| a point may miss its goal by."""
 
     model: Model
     forward: Forward
     lattice: Lattice
     threshold: float = 1e-4
+    beyond: Unrealisable = NONE
 
     @property
     def tolerance(self) -> float:
         """What the solver goes on to: the last steps converge quadratically and cost little."""
         return self.threshold / 100
+
+    def goal(self, points: Indices) -> Array:
+        """Linear RGB (k, 3) to fit points (k,) to: their targets or, where no reflectance has those, the nearest."""
+        goal = self.lattice.target(points)
+        place = np.searchsorted(self.beyond.points, points)
+        found = np.append(self.beyond.points, -1)[place] == points
+        goal[found] = self.beyond.nearest[place[found]]
+        return goal
 
     def solve(self, target: Array, start: Array, passes: int) -> Solution:
         """Multipliers ``start`` (k, C) moved to linear RGB ``target`` (k, 3)."""

@@ -22,7 +22,7 @@ BLOCK = 1 << 15
 
 
 class Stored(NamedTuple):
-    """Coefficients (n, C), the linear RGB (n, 3) that they have, and max |target − RGB| (n,)."""
+    """Coefficients (n, C), the linear RGB (n, 3) that they have, and max |goal − RGB| (n,)."""
 
     coefficients: Array
     rgb: NDArray[np.float32]
@@ -37,8 +37,8 @@ def store(problem: Problem, multipliers: Array, watch: Watch) -> Stored:
         block = slice(first, first + BLOCK)
         stored.coefficients[block] = model.to_storage(multipliers[block], compiled)
         rgb = rgb_of(problem, model.from_storage(stored.coefficients[block]))
-        target = problem.lattice.target(np.arange(first, first + len(rgb)))
-        stored.rgb[block], stored.distance[block] = rgb, np.abs(target - rgb).max(axis=1)
+        goal = problem.goal(np.arange(first, first + len(rgb)))
+        stored.rgb[block], stored.distance[block] = rgb, np.abs(goal - rgb).max(axis=1)
         watch(Storing(first + len(rgb), size))
     return stored
 

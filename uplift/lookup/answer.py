@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.cube import CubeData
 from uplift.difference import colours_apart
-from uplift.lattice import Status
+from uplift.lattice import Indices, Mask, Status
 from uplift.lookup.blocks import BLOCK
 from uplift.lookup.cube import Cube
 from uplift.sensor import Array
+from uplift.solid import solid
 
 HALF_A_CODE = 0.5
 """A colour sits on an entry if both round to the same 8-bit codes, give or take half of one."""
@@ -24,7 +26,8 @@ class Answer:
 
     ``cell`` is the lowest corner's position along the axes (r, g, b); ``statuses`` are those of the cell's
     corners; ``entry`` is the atlas entry that the colour sits on, if any; ``standard_error`` is by how much, in
-    ΔE00 under the cube's reference light, a measurement may be expected to differ, if the cube tells.
+    ΔE00 under the cube's reference light, a measurement may be expected to differ, if the cube tells;
+    ``realisable`` is whether any reflectance has the colour: if not, the answer has less chroma.
     """
 
     rgb: Array
@@ -36,6 +39,7 @@ class Answer:
     statuses: tuple[Status, ...]
     entry: str | None
     standard_error: float | None
+    realisable: bool
 
 
 def answers(
@@ -56,6 +60,7 @@ def _block(cube: Cube, rgb: Array, at: Array, mode: str) -> Iterator[Answer]:
     errors = cube.standard_error(rgb)
     cells, _ = lattice.cell(rgb)
     corners, _ = lattice.corners(rgb)
+    possible = _realisable(cube.data, rgb, corners)
     for row, cell in enumerate(cells):
         yield Answer(
             rgb=rgb[row],
@@ -67,7 +72,19 @@ def _block(cube: Cube, rgb: Array, at: Array, mode: str) -> Iterator[Answer]:
             statuses=tuple(Status(code) for code in sorted(set(cube.data.status[corners[row]].tolist()))),
             entry=_entry(cube, rgb[row]),
             standard_error=None if errors is None else float(errors[row]),
+            realisable=bool(possible[row]),
         )
+
+
+def _realisable(data: CubeData, rgb: Array, corners: Indices) -> Mask:
+    """Whether some reflectance has linear RGB (n, 3), of cells with ``corners`` (n, 8).
+
+    What such colours have, their mixtures have too, so that only cells with a corner that is not need a look.
+    """
+    possible = ~(data.status[corners] == Status.UNREALISABLE).any(axis=1)
+    if not possible.all():
+        possible[~possible] = solid(data.sensor.matrix).holds(rgb[~possible])
+    return np.asarray(possible)
 
 
 def _entry(cube: Cube, rgb: Array) -> str | None:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from uplift.errors import UpliftError
 from uplift.models.arctan import arctan
+from uplift.models.roots import moments_by_roots
 from uplift.sensor import Array
 
 Complex = NDArray[np.complex128]
@@ -21,7 +22,7 @@ RealOrComplex = TypeVar("RealOrComplex", bound=Array | Complex)
 """Real where the signal is mirrored, and so even in the phase; complex over the whole circle."""
 
 _FIRST_NODES = 32
-_MOST_NODES = 1 << 16
+_MOST_NODES = 1 << 12
 _HALF_AGREES = 1e-8
 _SAMPLES = 1 << 18
 """Samples held at a time."""
@@ -62,7 +63,8 @@ def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = quadra
     """Moments (n, C) of the spectra with multipliers (n, C), by the trapezoid rule over the phase.
 
     The rule converges geometrically, so its error is about the square of what half its nodes miss; nodes
-    are put between those there for the spectra (those near a box) where that is not yet nothing.
+    are put between those there for the spectra where that is not yet nothing. What is as steep as a box takes too
+    many: that is done by `roots`.
     """
     count, nodes = multipliers.shape[1], _FIRST_NODES
     moments = quadrature(multipliers, *_trapezoid(nodes, count))
@@ -72,6 +74,8 @@ def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = quadra
         moments[left] += change
         left = left[np.abs(change).max(axis=1) > _HALF_AGREES]
         nodes *= 2
+    if left.size:
+        moments[left] = moments_by_roots(multipliers[left])
     return moments
 
 
