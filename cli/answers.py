@@ -74,7 +74,7 @@ def _sheet(cube: Cube, answer: Answer) -> None:
         **(
             {}
             if answer.realisable
-            else {"unreal": "no reflectance has this colour; the answer has less chroma"}
+            else {"realisable": "no: no reflectance has this colour, the answer has less chroma"}
         ),
         "atlas entry": answer.entry or "none here",
         "measured": _expected(cube, answer),

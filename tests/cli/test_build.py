@@ -31,6 +31,16 @@ def test_a_cube_is_written_and_told_in_a_line(run, home):
     assert result.stderr == ""
 
 
+def test_colours_that_no_reflectance_has_are_told_of(run, home):
+    result = run("build", "--dim", "3", "--space", "ITU-R BT.2020", "-o", "wide.uplift")
+    beyond = uplift.load(home / "wide.uplift").data.counts()["unrealisable"]
+    assert beyond > 0
+    assert f"all within 0.0001 but {beyond} that no reflectance has the colour of" in result.stdout
+    asked = run("query", "--cube", "wide.uplift", "0", "1", "0").stdout
+    assert "realisable  no: no reflectance has this colour, the answer has less chroma\n" in asked
+    assert "realisable" not in run("query", "--cube", "wide.uplift", "0.5", "0.5", "0.5").stdout
+
+
 @pytest.mark.parametrize(
     ("args", "name"),
     [
