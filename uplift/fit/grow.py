@@ -17,7 +17,7 @@ from uplift.fit.watch import Round, Watch
 from uplift.lattice import Indices, Lattice, Mask
 from uplift.sensor import Array
 
-PASSES = 6
+PASSES = 24
 NEVER = -1
 """The round of a point that no round has fitted."""
 BLOCK = 1 << 15
