@@ -19,6 +19,8 @@ rows of one table rather than tables of two machines.
 
 ## What made it quick, and what did not
 
+Figures in this list were taken once, when each choice was made; all others are from this run.
+
 - *Two steps.* Points start from a prior near their colour, with hardly any damping: nearly all arrive in two steps of
   least change. Batches keep their shape, and what has arrived leaves them.
 - *The arc tangent* was most of a step: XLA calls the C library's, some 10 ns a number, in either precision. A

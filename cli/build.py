@@ -59,7 +59,10 @@ class Dim(click.ParamType):  # type: ignore[type-arg]
 @click.option("--axis", default="srgb", show_default=True, help="Spacing of the lattice: srgb or linear.")
 @sensor_options
 @click.option(
-    "--light", "lights", multiple=True, help="Lights entries must hold under. [default: D65 A FL2 FL11]"
+    "--light",
+    "lights",
+    multiple=True,
+    help="Lights entries must hold under. [default: D65 A FL2 FL11 LED-B3]",
 )
 @click.option(
     "--threshold", default=1e-4, show_default=True, help="Largest miss of a lattice point, |linear RGB|."

@@ -37,7 +37,7 @@ def build(atlas: Atlas = None, *, watch: fit.Watch = lambda done: None, **option
     Parameters
     ----------
     atlas : spectra, or the file or files that hold them; None for a cube without constraints.
-    watch : called now and then with a `uplift.fit.Round`.
+    watch : called now and then with a `uplift.fit.Round` or `uplift.fit.Storing`.
     options : the fields of `Options`, by name.
 
     Raises

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import uplift
+from uplift.options import Options
 
 SMALL = ("--dim", "4", "--moments", "3")
 
@@ -29,6 +30,10 @@ def test_a_cube_is_written_and_told_in_a_line(run, home):
     assert result.stdout.startswith("cube.uplift: 64 points, all within 0.0001 (worst ")
     assert result.stdout.count("\n") == 1
     assert result.stderr == ""
+
+
+def test_help_names_the_lights_that_are_the_default(run):
+    assert f"[default: {' '.join(Options.lights)}]" in " ".join(run("build", "--help").stdout.split())
 
 
 def test_colours_that_no_reflectance_has_are_told_of(run, home):

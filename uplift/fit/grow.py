@@ -48,22 +48,24 @@ def grow(problem: Problem, start: Start, watch: Watch) -> Growth:
         np.full(lattice.size, np.inf),
         np.full(lattice.size, NEVER, dtype=np.int16),
     )
+    fitted = 0
     for first in range(0, lattice.size, BLOCK):
         points = np.arange(first, min(first + BLOCK, lattice.size))
-        _try(problem, growth, points, start(points), 0, watch)
+        fitted += len(_try(problem, growth, points, start(points), 0))
+        watch(Round(0, len(points), fitted, lattice.size))
     number, fresh = 1, np.flatnonzero(growth.round == 0)
     while fresh.size:
         points, means = _frontier(lattice, fresh, growth.round != NEVER, growth.multipliers)
         if not points.size:
             break
-        fresh = _try(problem, growth, points, means, number, watch)
+        fresh = _try(problem, growth, points, means, number)
+        fitted += len(fresh)
+        watch(Round(number, len(points), fitted, lattice.size))
         number += 1
     return growth
 
 
-def _try(
-    problem: Problem, growth: Growth, points: Indices, start: Array, number: int, watch: Watch
-) -> Indices:
+def _try(problem: Problem, growth: Growth, points: Indices, start: Array, number: int) -> Indices:
     """Solve points (k,) from ``start`` (k, C), keep what is better, and say which are fitted now."""
     found = problem.solve(problem.goal(points), start, PASSES)
     better = found.distance < growth.distance[points]
@@ -71,7 +73,6 @@ def _try(
     growth.distance[points[better]] = found.distance[better]
     fresh = points[found.distance <= problem.threshold]
     growth.round[fresh] = number
-    watch(Round(number, len(points), int((growth.round != NEVER).sum()), problem.lattice.size))
     return fresh
 
 

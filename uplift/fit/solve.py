@@ -20,6 +20,7 @@ from uplift.sensor import Array
 STEPS, MORE_STEPS = 2, 8
 """Damped steps a pass: of many points most have arrived after two; of few it costs more to ask than to go on."""
 FEW = 1024
+"""As many points are few."""
 FIRST_DAMPING = 1e-6
 """μ at the start; a quarter of it after a step that helped, four times after one that did not."""
 
