@@ -108,22 +108,23 @@ def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
     raise UpliftError(f"{len(left)} sets of coefficients are not the moments of any reflectance")
 
 
-def levinson(column: Complex) -> tuple[Complex, NDArray[np.bool_]]:
-    """Solve T q = e₀ (C, n) for Hermitian Toeplitz T with first ``column`` (C, n); also say where T is positive.
+def levinson(column: Complex) -> tuple[Complex, Array, NDArray[np.bool_]]:
+    """Solve T q = e₀ for Hermitian Toeplitz T with first ``column`` (C, n); also say where T is positive.
 
-    Levinson's recursion: a solution of order k, padded, plus its own mirror image, solves order k + 1.
+    Durbin's form of Levinson's recursion: a solution of order k, padded, and its own mirror image make up one
+    of order k + 1. It comes as (C, n) with q_0 taken out, and 1 / q_0 (n,), which saves a division a number.
     """
     solution = np.zeros_like(column)
-    solution[0] = 1 / column[0]
-    positive = column[0].real > 0
+    solution[0] = 1
+    scale = column[0].real.copy()
+    positive = scale > 0
     for order in range(1, len(column)):
-        spill = (column[order:0:-1] * solution[:order]).sum(axis=0)
-        margin = 1 - (spill.real**2 + spill.imag**2)
-        positive &= margin > 0
+        reflection = (column[order:0:-1] * solution[:order]).sum(axis=0) / scale
         mirror = solution[order - 1 :: -1].conj()
-        solution[1 : order + 1] -= spill * mirror
-        solution[: order + 1] /= margin
-    return solution, positive
+        solution[1 : order + 1] -= reflection * mirror
+        scale *= 1 - (reflection.real**2 + reflection.imag**2)
+        positive &= scale > 0
+    return solution, scale, positive
 
 
 def _trapezoid(nodes: int, count: int) -> tuple[Array, Array]:
@@ -158,9 +159,8 @@ def _dual(moments: RealOrComplex) -> tuple[RealOrComplex, NDArray[np.bool_]]:
         exponential = _exponential_moments(orders)
         column = exponential / 2
         column[0] = exponential[0].real
-        q, positive = levinson(column)
-        found = _bounded(exponential, q)
-        multipliers = found.real if np.isrealobj(moments) else found
+        solution, scale, positive = levinson(column)
+        multipliers = _bounded(exponential, solution, mirrored=np.isrealobj(moments)) / scale
     return cast(RealOrComplex, multipliers.T), bounded & positive & np.isfinite(multipliers).all(axis=0)
 
 
@@ -173,11 +173,20 @@ def _exponential_moments(moments: RealOrComplex) -> Complex:
     return h
 
 
-def _bounded(h: Complex, q: Complex) -> Complex:
-    count = len(h)
-    n = [(h[: k + 1] * q[k::-1]).sum(axis=0) for k in range(count)]
-    conjugate = q.conj()
-    lags = [sum(n[lag + k] * conjugate[k] for k in range(count - lag)) for lag in range(count)]
-    multipliers = np.stack(lags) / (1j * q[0])
-    multipliers[0] = multipliers[0].real
-    return multipliers
+def _bounded(h: Complex, q: Complex, *, mirrored: bool) -> Array | Complex:
+    """Σ_k n_{k+l} q̄_k / i (C, n); of a mirrored signal the real part, as the rest is nothing."""
+    n = np.stack([(h[: k + 1] * q[k::-1]).sum(axis=0) for k in range(len(h))]) / 1j
+    parts = [np.ascontiguousarray(part) for part in (n.real, n.imag, q.real, q.imag)]
+    n_real, n_imaginary, q_real, q_imaginary = parts
+    real = _correlation(n_real, q_real) + _correlation(n_imaginary, q_imaginary)
+    if mirrored:
+        return real
+    imaginary = _correlation(n_imaginary, q_real) - _correlation(n_real, q_imaginary)
+    imaginary[0] = 0
+    return real + 1j * imaginary
+
+
+def _correlation(first: Array, second: Array) -> Array:
+    """Σ_k first_{k+l} second_k of all lags l (C, n)."""
+    count = len(first)
+    return np.stack([(first[lag:] * second[: count - lag]).sum(axis=0) for lag in range(count)])
