@@ -14,7 +14,7 @@ from uplift.lattice import Indices
 if TYPE_CHECKING:
     from uplift.sensor import Array
 
-HOST, ACCELERATOR = (4096, 128), (1 << 17, 4096)
+HOST, ACCELERATOR = (2048, 64), (1 << 17, 4096)
 """Rows of a batch on each device: what the cache of a core holds or keeps a GPU busy, and a size for small rounds."""
 
 
