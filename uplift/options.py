@@ -70,8 +70,8 @@ def check_size(options: Options) -> None:
 
 
 def _point(count: int) -> int:
-    """Bytes of a lattice point: multipliers, which turn into coefficients in place, and what else is known of it."""
-    return 8 * count + 60
+    """Bytes of a lattice point: multipliers, coefficients in their place and in single precision, the rest."""
+    return 12 * count + 60
 
 
 def _gigabytes(count: int) -> str:

@@ -43,7 +43,7 @@ class CubeData:
 
     Parameters
     ----------
-    coefficients : (n, C) what ``model.from_storage`` takes.
+    coefficients : (n, C) what ``model.from_storage`` takes, float32 or, where that loses something, float64.
     rgb : (n, 3) lattice RGB: what the stored spectrum evaluates to, linear.
     distance : (n,) fitting distance, max |target − lattice RGB|.
     status : (n,) `Status`.
@@ -60,7 +60,7 @@ class CubeData:
     sensor: Sensor
     threshold: float
     atlas: AtlasTable
-    coefficients: Array
+    coefficients: NDArray[Any]
     rgb: NDArray[np.float32]
     distance: NDArray[np.float32]
     status: NDArray[np.uint8]

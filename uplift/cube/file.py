@@ -20,21 +20,21 @@ from uplift.models import from_description
 from uplift.sensor import Sensor
 
 FORMAT = "uplift cube"
-VERSION = 2
+VERSION = 3
 KEY = "uplift"
 """The one metadata entry: safetensors does not keep several in a fixed order."""
 
 Tensors = dict[str, NDArray[Any]]
 
 SENSOR_ARRAYS = ("wavelengths", "cmfs", "power", "xyz_to_rgb", "decoding")
-POINT_TYPES: dict[str, type] = {
-    "coefficients": np.float64,
-    "rgb": np.float32,
-    "distance": np.float32,
-    "status": np.uint8,
-    "entry": np.int32,
-    "round": np.int16,
-    "standard_error": np.float32,
+POINT_TYPES: dict[str, tuple[str, ...]] = {
+    "coefficients": ("float32", "float64"),
+    "rgb": ("float32",),
+    "distance": ("float32",),
+    "status": ("uint8",),
+    "entry": ("int32",),
+    "round": ("int16",),
+    "standard_error": ("float32",),
 }
 FEATURES = {"debug": "round", "errors": "standard_error"}
 """Arrays that a cube may have or not, by the feature that says so."""
@@ -120,9 +120,11 @@ def _tensors(data: CubeData) -> Tensors:
     tensors: Tensors = {"nodes": data.lattice.nodes}
     tensors |= {f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR_ARRAYS}
     tensors |= {f"atlas.{name}": getattr(data.atlas, name) for name in ATLAS_ARRAYS}
-    for name, kind in POINT_TYPES.items():
-        if getattr(data, name) is not None:
-            tensors[name] = np.ascontiguousarray(getattr(data, name), dtype=kind)
+    for name, kinds in POINT_TYPES.items():
+        array = getattr(data, name)
+        if array is not None:
+            kind = array.dtype if array.dtype.name in kinds else kinds[-1]
+            tensors[name] = np.ascontiguousarray(array, dtype=kind)
     return tensors
 
 
@@ -170,9 +172,9 @@ def _check(data: CubeData) -> None:
     points, count, samples = data.lattice.size, data.model.count, len(data.sensor.wavelengths)
     entries = len(data.atlas.names)
     shapes = {"coefficients": (points, count), "rgb": (points, 3)}
-    for name, kind in POINT_TYPES.items():
+    for name, kinds in POINT_TYPES.items():
         array = getattr(data, name)
-        fits = array is None or (array.shape == shapes.get(name, (points,)) and array.dtype == kind)
+        fits = array is None or (array.shape == shapes.get(name, (points,)) and array.dtype.name in kinds)
         _require(fits, f"{name} has its shape")
     sensor_shapes = ((samples,), (samples, 3), (samples,), (3, 3), (256,))
     for name, shape in zip(SENSOR_ARRAYS, sensor_shapes, strict=True):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,7 +52,7 @@ NO_ENTRY = -1
 class Fit:
     """What is stored of every lattice point (n,), and how it came by it; the fields are those of `CubeData`."""
 
-    coefficients: Array
+    coefficients: NDArray[Any]
     rgb: NDArray[np.float32]
     distance: NDArray[np.float32]
     status: NDArray[np.uint8]
@@ -79,7 +80,7 @@ def fit_lattice(
 
     grown = grow(problem, start, watch)
     improvements = improve(problem, grown.multipliers, grown.distance)
-    stored = store(problem, grown.multipliers, watch)
+    stored = store(problem, grown.multipliers, grown.distance, watch)
     status = np.full(problem.lattice.size, Status.REGULAR, dtype=np.uint8)
     status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
     status[grown.round == NEVER] = Status.IMPROVED

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import numpy as np
@@ -19,28 +20,49 @@ from uplift.sensor import Array
 
 BLOCK = 1 << 15
 """Points worked on at a time."""
+SINGLE: np.dtype[Any] = np.dtype(np.float32)
+DOUBLE: np.dtype[Any] = np.dtype(np.float64)
+LOSS = 0.1
+"""Share of the threshold that single precision may add to a point's distance; docs/stability.md."""
 
 
 class Stored(NamedTuple):
     """Coefficients (n, C), the linear RGB (n, 3) that they have, and max |goal − RGB| (n,)."""
 
-    coefficients: Array
+    coefficients: NDArray[Any]
     rgb: NDArray[np.float32]
     distance: NDArray[np.float32]
 
 
-def store(problem: Problem, multipliers: Array, watch: Watch) -> Stored:
-    """The multipliers (n, C) of all points as coefficients, in their place: large lattices have no room for both."""
-    model, size = problem.model, len(multipliers)
+def store(problem: Problem, multipliers: Array, distance: Array, watch: Watch) -> Stored:
+    """The multipliers (n, C) of all points as coefficients, which are as far (n,) from their goals.
+
+    float32, if that is as good for every point, or float64 for all. The multipliers give their place: large
+    lattices have no room for both.
+    """
+    model, size, kind = problem.model, len(multipliers), SINGLE
     stored = Stored(multipliers, np.empty((size, 3), dtype=np.float32), np.empty(size, dtype=np.float32))
-    for first in range(0, size, BLOCK):
-        block = slice(first, first + BLOCK)
+    for block in _blocks(size):
         stored.coefficients[block] = model.to_storage(multipliers[block], compiled)
-        rgb = rgb_of(problem, model.from_storage(stored.coefficients[block]))
-        goal = problem.goal(np.arange(first, first + len(rgb)))
-        stored.rgb[block], stored.distance[block] = rgb, np.abs(goal - rgb).max(axis=1)
-        watch(Storing(first + len(rgb), size))
-    return stored
+        _judge(problem, stored, block, kind)
+        if kind == SINGLE and (stored.distance[block] > distance[block] + LOSS * problem.threshold).any():
+            kind = DOUBLE
+            for again in _blocks(block.stop):
+                _judge(problem, stored, again, kind)
+        watch(Storing(block.stop, size))
+    return stored._replace(coefficients=stored.coefficients.astype(kind, copy=False))
+
+
+def _judge(problem: Problem, stored: Stored, block: slice, kind: np.dtype[Any]) -> None:
+    """RGB and distance of a block, as whoever reads its coefficients in that type will find them."""
+    rgb = rgb_of(problem, problem.model.from_storage(stored.coefficients[block].astype(kind)))
+    goal = problem.goal(np.arange(block.start, block.stop))
+    stored.rgb[block], stored.distance[block] = rgb, np.abs(goal - rgb).max(axis=1)
+
+
+def _blocks(size: int) -> Iterator[slice]:
+    for first in range(0, size, BLOCK):
+        yield slice(first, min(first + BLOCK, size))
 
 
 def rgb_of(problem: Problem, multipliers: Array) -> Array:
