@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import subprocess
 import sys
 
@@ -314,3 +315,9 @@ def test_a_query_imports_nothing_that_is_slow(style):
     )
     assert done.stdout
     assert done.stderr == "[]\n"
+
+
+@pytest.mark.parametrize("colour", ["#000000", "#ffffff", "#ff0000", "#00ffff"])
+def test_json_has_numbers_alone(run, colour):
+    answer = json.loads(run("query", colour, "--format", "json").stdout, parse_constant=pytest.fail)
+    assert all(math.isfinite(value) for value in answer["reflectance"])
