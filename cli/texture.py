@@ -128,7 +128,9 @@ def _alone(job: Job) -> Conversion:
     from uplift import texture
 
     with counting("rows") as watch:
-        return texture.ready(job.recipe).convert(job.source, job.target, force=job.force, watch=watch)
+        return texture.convert(
+            texture.ready(job.recipe), job.source, job.target, force=job.force, watch=watch
+        )
 
 
 def _several(results: Iterable[Conversion | Failure], total: int) -> list[Conversion | Failure]:

@@ -9,9 +9,10 @@ uplifter.convert("wood.png", "wood.exr")
 from __future__ import annotations
 
 from uplift.texture.colours import ENCODINGS, Counts
-from uplift.texture.convert import Conversion, Uplifter, prepare
+from uplift.texture.conversion import Conversion, convert
 from uplift.texture.forms import FORMS, Form, Moments, Multipliers, Spectrum
 from uplift.texture.sequence import Failure, Job, Recipe, cluster, convert_all, left, processes, ready
+from uplift.texture.uplifter import Uplifter, prepare
 
 __all__ = [
     "ENCODINGS",
@@ -27,6 +28,7 @@ __all__ = [
     "Spectrum",
     "Uplifter",
     "cluster",
+    "convert",
     "convert_all",
     "left",
     "prepare",

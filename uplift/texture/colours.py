@@ -8,57 +8,65 @@ from dataclasses import astuple, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.errors import OptionError, TextureError
+from uplift.errors import TextureError
 from uplift.lookup import Cube
 from uplift.texture.source import Part, Values
 
 Floats = NDArray[np.float32]
 ENCODINGS = ("auto", "linear", "encoded")
-GREY = ("Y",)
+COLOUR_KINDS = {"uint8", "uint16", "half", "float", "double"}
 
 
 @dataclass(frozen=True)
 class Counts:
-    """Pixels, and those that were no colours: clamped, not finite, or such that no reflectance has them."""
+    """Pixels; those outside [0, 1]; those not finite; those that their spectra may miss."""
 
     pixels: int = 0
     outside: int = 0
     not_finite: int = 0
-    unrealisable: int = 0
+    missed: int = 0
 
     def __add__(self, other: Counts) -> Counts:
         return Counts(*(mine + its for mine, its in zip(astuple(self), astuple(other), strict=True)))
 
     def remarks(self) -> tuple[str, ...]:
         """What should be said of them."""
-        all_of_them = f"of {self.pixels:,} pixels"
         said = {
-            f"{self.outside:,} {all_of_them} lie outside [0, 1]: clamped": self.outside,
-            f"{self.not_finite:,} {all_of_them} are not finite: NaN is taken for 0": self.not_finite,
-            f"{self.unrealisable:,} {all_of_them} have colours that no reflectance has: "
-            "their spectra have less chroma": self.unrealisable,
+            "lie outside [0, 1]: clamped": self.outside,
+            "are not finite: NaN is taken for 0, infinity clamped": self.not_finite,
+            "are or border on colours that no reflectance has: their spectra have less chroma": self.missed,
         }
-        return tuple(text for text, count in said.items() if count)
+        return tuple(f"{count:,} of {self.pixels:,} pixels {text}" for text, count in said.items() if count)
 
 
 def colour_channels(part: Part) -> tuple[int, int, int] | None:
     """Places of red, green and blue among a part's channels; a grey one is all three; None for no colour.
 
-    That is R, G, B, else those of the only layer that has them, else Y. Raises `TextureError` for several layers.
+    That is R, G, B, else those of the only layer that has them, else Y. Raises `TextureError` for several layers,
+    and for whole numbers of which nobody knows what they count.
     """
-    layers = {name[:-1] for name in part.channels if name.endswith("R")}
-    layers = {layer for layer in layers if all(layer + letter in part.channels for letter in "GB")}
-    if "" in layers or len(layers) == 1:
-        layer = "" if "" in layers else layers.pop()
-        red, green, blue = (part.channels.index(layer + letter) for letter in "RGB")
-        return red, green, blue
-    if layers:
-        names = ", ".join(sorted(layer[:-1] for layer in layers))
+    names = _names(part)
+    if names is None:
+        return None
+    red, green, blue = (part.channels.index(name) for name in names)
+    if kinds := {part.kinds[place] for place in (red, green, blue)} - COLOUR_KINDS:
+        problem = f"has colours of type {min(kinds)}"
+        raise TextureError(problem, remedy="make them 8-bit, 16-bit, half or float")
+    return red, green, blue
+
+
+def _names(part: Part) -> tuple[str, str, str] | None:
+    layers = [name[:-1] for name in part.channels if name == "R" or name.endswith(".R")]
+    layers = [layer for layer in layers if {layer + "G", layer + "B"} <= set(part.channels)]
+    if "" in layers:
+        return "R", "G", "B"
+    if len(layers) > 1:
+        names = ", ".join(layer[:-1] for layer in layers)
         raise TextureError(f"has several layers of colour: {names}", remedy="make each a part, or a file")
-    if "Y" in part.channels and not {"RY", "BY"} & set(part.channels):
-        grey = part.channels.index("Y")
-        return grey, grey, grey
-    return None
+    if layers:
+        return layers[0] + "R", layers[0] + "G", layers[0] + "B"
+    luma = "Y" in part.channels and not {"RY", "BY"} & set(part.channels)
+    return ("Y", "Y", "Y") if luma else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,12 +90,7 @@ class Decoder:
 
 
 def decoder(cube: Cube, part: Part, encoding: str) -> Decoder:
-    """8-bit and 16-bit codes are encoded as the cube's space has it, all else is linear, unless told otherwise.
-
-    Raises `OptionError`.
-    """
-    if encoding not in ENCODINGS:
-        raise OptionError(f"unknown encoding '{encoding}'", remedy=f"use one of {', '.join(ENCODINGS)}")
+    """8-bit and 16-bit codes are encoded as the cube's space has it, all else is linear, unless told otherwise."""
     if part.codes:
         share = np.linspace(0, 1, part.codes + 1)
         values = share if encoding == "linear" else cube.decode(255 * share)

@@ -14,10 +14,11 @@ from pathlib import Path
 from uplift.errors import OptionError, TextureError, UpliftError
 from uplift.files import check_output
 from uplift.lookup import load
-from uplift.texture.convert import Conversion, Uplifter, prepare
+from uplift.texture.conversion import Conversion, convert
 from uplift.texture.forms import Form
 from uplift.texture.source import opened
 from uplift.texture.target import is_whole
+from uplift.texture.uplifter import Uplifter, prepare
 
 
 @dataclass(frozen=True)
@@ -56,17 +57,17 @@ def ready(recipe: Recipe) -> Uplifter:
     return prepare(cube, recipe.form, depth=recipe.depth, encoding=recipe.encoding, threads=recipe.threads)
 
 
-def convert(job: Job) -> Conversion | Failure:
+def run(job: Job) -> Conversion | Failure:
     """What became of a job: one bad image stops no others."""
     try:
-        return ready(job.recipe).convert(job.source, job.target, force=job.force)
+        return convert(ready(job.recipe), job.source, job.target, force=job.force)
     except UpliftError as error:
         return Failure(job.source, error)
 
 
 def convert_all(jobs: Iterable[Job], executor: Executor) -> Iterator[Conversion | Failure]:
     """What became of the jobs, as they are finished; what has not begun is given up with the iterator."""
-    futures = [executor.submit(convert, job) for job in jobs]
+    futures = [executor.submit(run, job) for job in jobs]
     try:
         for future in as_completed(futures):
             yield future.result()

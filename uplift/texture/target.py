@@ -78,6 +78,11 @@ class Writer:
     def close(self) -> None:
         self._check(self._handle.close())
 
+    def give_up(self) -> None:
+        """Close what is not whole, whatever becomes of it."""
+        self._handle.close()
+        self._handle.geterror()  # or it is said when the process ends
+
     def _check(self, well: bool) -> None:
         if not well:
             raise OSError(" ".join(self._handle.geterror().split()))
@@ -92,8 +97,10 @@ def writing(
         writer = Writer(temporary, layouts)
         try:
             yield writer
-        finally:
-            writer.close()
+        except BaseException:
+            writer.give_up()
+            raise
+        writer.close()
         # Where the last bytes meet a full disk, nothing else tells.
         if not is_whole(temporary):
             raise OutputError("was not written whole", path=path, remedy="make room on the disk")
