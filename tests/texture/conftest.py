@@ -12,6 +12,8 @@ import pytest
 from uplift import texture
 
 PHOTO = Path(matplotlib.get_data_path()) / "sample_data" / "grace_hopper.jpg"
+AT = (400.0, 430.0, 460.0, 500.0, 540.0, 580.0, 620.0, 660.0, 700.0)
+"""nm"""
 
 
 def channels(path, part=0):
@@ -47,9 +49,8 @@ def small_tiles():
 
 @pytest.fixture(scope="session")
 def spectral(small_cube):
-    """Ten wavelengths of the ColorChecker cube, as float: little to compile, exact to compare."""
-    at = tuple(np.linspace(400.0, 700.0, 10).tolist())
-    return texture.prepare(small_cube, texture.Spectrum(at), depth="float", threads=1)
+    """Nine wavelengths of the ColorChecker cube, as many as coefficients: compiled once for both."""
+    return texture.prepare(small_cube, texture.Spectrum(AT), depth="float", threads=1)
 
 
 @pytest.fixture(scope="session")

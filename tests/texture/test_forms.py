@@ -14,7 +14,7 @@ from uplift import models, texture
 from uplift.difference import colours_apart
 from uplift.errors import OptionError
 
-from .conftest import PHOTO, channels, held, planes, write_exr
+from .conftest import AT, PHOTO, channels, held, planes, write_exr
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
@@ -27,7 +27,7 @@ def photo(tmp_path_factory, small_cube):
     from PIL import Image
 
     path = tmp_path_factory.mktemp("photo") / "photo.png"
-    corner = Image.open(PHOTO).convert("RGB").crop((150, 0, 250, 80))
+    corner = Image.open(PHOTO).convert("RGB").crop((200, 60, 264, 124))
     corner.save(path)
     return path, small_cube.decode(np.asarray(corner, dtype=float))
 
@@ -55,12 +55,13 @@ def test_a_spectral_image_is_the_photograph_to_the_reader_of_colour_science(
 
 
 def test_a_spectral_image_has_the_layout_of_the_paper(photo, small_cube, tmp_path):
-    uplifter = texture.prepare(small_cube, texture.Spectrum((450.5, 500, 1000 / 1.5)))
+    uplifter = texture.prepare(small_cube, texture.Spectrum((*AT[:-2], 1000 / 1.5, 750.5)))
     texture.convert(uplifter, photo[0], tmp_path / "out.exr")
     (part,) = OpenEXR.File(str(tmp_path / "out.exr"), separate_channels=True).parts
     assert part.header["spectralLayoutVersion"] == "1.0"
     assert part.type() == OpenEXR.scanlineimage
-    assert set(part.channels) == {*"RGB", "T.450,500000nm", "T.500,000000nm", "T.666,666667nm"}
+    names = [f"T.{wavelength:.0f},000000nm" for wavelength in AT[:-2]]
+    assert set(part.channels) == {*"RGB", *names, "T.666,666667nm", "T.750,500000nm"}
     assert {channel.pixels.dtype for channel in part.channels.values()} == {np.dtype(np.float16)}
     rgb = np.stack([part.channels[letter].pixels for letter in "RGB"], axis=-1)
     np.testing.assert_allclose(rgb, photo[1], rtol=1e-3, atol=1e-7)
@@ -82,7 +83,7 @@ def test_multipliers_evaluate_to_the_very_colour(cube, photo, tmp_path, request)
     sensor = cube.data.sensor
     back = sensor.rgb(evaluated(tmp_path / "out.exr", "multiplier")(sensor.wavelengths))
     assert np.median(np.abs(back - photo[1])) < 1e-6
-    assert colours_apart(sensor, back, photo[1]).mean() < 1e-3
+    assert colours_apart(sensor, back, photo[1]).mean() < 5e-3
 
 
 def test_moments_are_those_of_the_cube(small_cube, colours, tmp_path):
@@ -105,7 +106,7 @@ def test_the_header_tells_which_cube_and_how(spectral, small_cube, colours, tmp_
     assert len(header["uplift.cube"]) == 64
     assert json.loads(header["uplift.model"]) == small_cube.data.model.describe()
     made = json.loads(header["uplift.texture"])
-    assert made.pop("wavelengths") == pytest.approx(np.linspace(400, 700, 10).tolist())
+    assert made.pop("wavelengths") == list(AT)
     assert made == {"as": "spectrum", "depth": "float", "encoding": "auto"}
     srgb = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]
     np.testing.assert_allclose(header["chromaticities"], srgb, atol=2e-4)

@@ -12,7 +12,7 @@ from PIL import Image
 from uplift import texture
 from uplift.errors import TextureError
 
-from .conftest import channels, held, planes, small_tiles, write_exr
+from .conftest import AT, channels, held, planes, small_tiles, write_exr
 
 SIZE = (12, 17)
 
@@ -125,7 +125,7 @@ def test_what_is_no_colour_is_clamped_counted_and_nothing_else_is_touched(colour
     assert good[2, 2].tolist() == [1, 0.5, 0]
     np.testing.assert_array_equal(rgb_of(found), good)
     spectra = np.stack([found[name] for name in spectral.channels], axis=-1)
-    np.testing.assert_allclose(spectra, spectral.cube.reflectance(good, np.linspace(400, 700, 10)), atol=1e-6)
+    np.testing.assert_allclose(spectra, spectral.cube.reflectance(good, AT), atol=1e-6)
     result, _ = made(write_exr(tmp_path / "good.exr", planes(good)))
     assert result.remarks == ()
 
@@ -179,10 +179,9 @@ def test_several_parts_tiles_windows_and_other_channels(kind, band, spectral, tm
         np.testing.assert_array_equal(pixels, plane)
     np.testing.assert_array_equal(written[1].channels["deep.Z"].pixels, others["Z"])
     assert set(written[1].channels) == {"deep.Z"}
-    at = np.linspace(400, 700, 10)
     for place, asked in ((0, rgb), (2, rgb[::-1])):
         found = held(tmp_path / "out.exr", spectral.channels, place)
-        np.testing.assert_allclose(found, spectral.cube.reflectance(asked, at), rtol=0, atol=1e-6)
+        np.testing.assert_allclose(found, spectral.cube.reflectance(asked, AT), rtol=0, atol=1e-6)
 
 
 def test_numbers_that_would_not_pass_through_are_refused(colours, spectral, tmp_path):

@@ -15,7 +15,7 @@ from uplift.texture.sequence import run
 
 from .conftest import held, planes, write_exr
 
-CUBE = "moments-8.uplift"
+CUBE = "moments-8-macbeth.uplift"
 
 
 @pytest.fixture
@@ -36,7 +36,7 @@ def jobs(recipe, colours, tmp_path):
     ]
 
 
-def check(jobs, results, plain_cube, colours):
+def check(jobs, results, small_cube, colours):
     by_name = {result.source.name: result for result in results}
     assert set(by_name) == {job.source.name for job in jobs}
     bad = by_name["shot.1.exr"]
@@ -45,21 +45,22 @@ def check(jobs, results, plain_cube, colours):
     assert not jobs[1].target.exists()
     names = [f"moment.{index:02}" for index in range(9)]
     for frame in (0, 2):
-        expected = plain_cube.coefficients(np.roll(colours, frame, axis=0))
+        expected = small_cube.coefficients(np.roll(colours, frame, axis=0))
         np.testing.assert_allclose(held(jobs[frame].target, names), expected, rtol=0, atol=1e-6)
 
 
-def test_processes(jobs, plain_cube, colours):
-    with texture.processes(1) as executor:
-        check(jobs, texture.convert_all(jobs, executor), plain_cube, colours)
+@pytest.mark.parametrize("count", [1, 2])
+def test_processes(count, jobs, small_cube, colours):
+    with texture.processes(count) as executor:
+        check(jobs, texture.convert_all(jobs, executor), small_cube, colours)
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_a_dask_cluster(jobs, plain_cube, colours):
+def test_a_dask_cluster(jobs, small_cube, colours):
     distributed = pytest.importorskip("distributed")
     options = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
     with distributed.LocalCluster(**options) as local, texture.cluster(local.scheduler_address) as executor:
-        check(jobs, texture.convert_all(jobs, executor), plain_cube, colours)
+        check(jobs, texture.convert_all(jobs, executor), small_cube, colours)
 
 
 @pytest.mark.filterwarnings("ignore")

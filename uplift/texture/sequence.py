@@ -6,7 +6,7 @@ import contextlib
 import multiprocessing
 import os
 from collections.abc import Iterable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -113,14 +113,12 @@ def _is_made(job: Job) -> bool:
 
 @contextlib.contextmanager
 def processes(count: int) -> Iterator[Executor]:
-    """So many processes of this machine. Started afresh, for JAX does not bear being forked. Raises `OptionError`."""
+    """So many processes of this machine; one is this one. Raises `OptionError`."""
     if count < 1:
         raise OptionError(f"{count} processes cannot work", remedy="use 1 or more")
-    with ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn")) as pool:
-        try:
-            yield pool
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+    afresh = multiprocessing.get_context("spawn")  # JAX does not bear being forked
+    with ThreadPoolExecutor(1) if count == 1 else ProcessPoolExecutor(count, mp_context=afresh) as pool:
+        yield pool
 
 
 @contextlib.contextmanager
