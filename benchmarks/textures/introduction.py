@@ -40,11 +40,12 @@ A scanline OpenEXR file, ZIP compressed, with the linear R, G and B that were up
 
 | `--as` | channels | what for | depth |
 | --- | --- | --- | --- |
-| `spectrum` | `T.380,000000nm` … | reflectance in [0, 1] at `--wavelengths`: the spectral layout of Fichet, Pacanowski & Wilkie 2021 (JCGT 10(3)), version 1.0 | half, or float |
+| `spectrum` | `T.380,000000nm` … | reflectance in [0, 1] at `--wavelengths` | half, or float |
 | `moments` | `moment.00` … | linear in the spectrum: can be filtered, mip-mapped, blended | float, or half |
 | `multipliers` | `multiplier.00` … | evaluated at once, exact in colour; not to be filtered | float |
 
-The header tells the rest: `uplift.cube` (digest), `uplift.model`, `uplift.space`, `uplift.illuminant`,
+Spectra are in the layout of Fichet, Pacanowski & Wilkie 2021, *An OpenEXR Layout for Spectral Images*, JCGT 10(3),
+version 1.0. The header tells the rest: `uplift.cube` (digest), `uplift.model`, `uplift.space`, `uplift.illuminant`,
 `uplift.observer`, `chromaticities`, and `uplift.texture`, how it was made. `uplift.model` is JSON. For `moments` it
 has the count and the phase, φ = π (λ − start) / (end − start) − π without a warp, and the reflectance is
 
