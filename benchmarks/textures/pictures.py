@@ -46,7 +46,7 @@ def pictures() -> Iterator[Picture]:
     """Raises `FileNotFoundError` where `make textures` did not bring them."""
     if not BROUGHT.is_dir():
         raise FileNotFoundError(f"{BROUGHT}: run 'make textures'")
-    for name in ("astronaut.png", "coffee.png", "chelsea.png", "ihc.png", "retina.jpg"):
+    for name in ("astronaut.png", "coffee.png", "chelsea.png", "ihc.png", "rocket.jpg"):
         yield Picture(BROUGHT / "skimage" / "data" / name, "scikit-image")
     for name in ("china.jpg", "flower.jpg"):
         yield Picture(BROUGHT / "sklearn" / "datasets" / "images" / name, "scikit-learn")
