@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import OpenEXR
 import pytest
+from PIL import Image
 
 from uplift import texture
 from uplift.errors import OutputError, TextureError
@@ -47,12 +48,17 @@ def test_a_full_disk_leaves_nothing(spectral, source, tmp_path, monkeypatch):
     assert [path.name for path in tmp_path.iterdir()] == ["in.exr"]
 
 
-def test_a_damaged_image_leaves_nothing_and_is_named(spectral, source, tmp_path):
+@pytest.mark.parametrize("name", ["in.exr", "in.png", "in.jpg", "in.tif"])
+def test_a_damaged_image_leaves_nothing_and_is_named(name, spectral, source, colours, tmp_path):
+    if name != "in.exr":
+        source.unlink()
+        source = tmp_path / name
+        Image.fromarray((255 * np.tile(colours, (4, 4, 1))).astype(np.uint8)).save(source)
     data = source.read_bytes()
     source.write_bytes(data[: len(data) // 2])
-    with pytest.raises(TextureError, match=r"in\.exr: rows .* cannot be read"):
+    with pytest.raises(TextureError, match=r"in\.\w+: .*[Rr]ead"):
         texture.convert(spectral, source, tmp_path / "out.exr")
-    assert [path.name for path in tmp_path.iterdir()] == ["in.exr"]
+    assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
 def test_an_interruption_leaves_nothing(spectral, source, tmp_path):

@@ -117,9 +117,10 @@ class Image:
             found = self.handle.read_tiles(*across, first, end, 0, 1, *channels, OpenImageIO.TypeDesc(kind))
         else:
             found = self.handle.read_scanlines(first, end, 0, *channels, OpenImageIO.TypeDesc(kind))
-        if found is None:
+        problem = self.handle.geterror()  # of a JPEG that ends early this is the only sign
+        if found is None or problem:
             raise TextureError(
-                f"rows {first} to {end - 1} cannot be read: {_tidy(self.handle.geterror())}",
+                f"rows {first} to {end - 1} cannot be read: {_tidy(problem)}",
                 path=self.path,
                 remedy="the file is damaged: make it anew",
             )
