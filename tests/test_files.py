@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import os
 import stat
+import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -152,3 +154,22 @@ def test_links_in_a_circle_are_refused(tmp_path):
     with pytest.raises(OutputError, match="link: "):
         write(link, "new")
     assert os.listdir(tmp_path) == ["link"]
+
+
+def test_threads_leave_the_umask_alone(tmp_path, monkeypatch):
+    umask = os.umask
+
+    def slow(mask):
+        before = umask(mask)
+        time.sleep(0.01)
+        return before
+
+    monkeypatch.setattr(os, "umask", slow)
+    own = umask(0o027)
+    try:
+        with ThreadPoolExecutor(4) as pool:
+            list(pool.map(lambda number: write(tmp_path / str(number), "text"), range(8)))
+    finally:
+        left = umask(own)
+    assert left == 0o027
+    assert {stat.S_IMODE(path.stat().st_mode) for path in tmp_path.iterdir()} == {0o640}

@@ -6,10 +6,13 @@ import contextlib
 import os
 import stat
 import tempfile
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
 from uplift.errors import OutputError
+
+_UMASK = threading.Lock()
 
 
 def check_output(path: str | os.PathLike[str], *, force: bool = False) -> Path:
@@ -65,8 +68,9 @@ def replacing(path: str | os.PathLike[str], *, force: bool = False) -> Iterator[
 
 def _settle(temporary: Path) -> None:
     """On the disk, with the permissions of any new file, before it takes the name."""
-    umask = os.umask(0)
-    os.umask(umask)
+    with _UMASK:  # a process has one, and asking for it changes it
+        umask = os.umask(0)
+        os.umask(umask)
     temporary.chmod(0o666 & ~umask)
     with temporary.open("rb+") as file:
         os.fsync(file.fileno())
