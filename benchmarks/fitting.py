@@ -111,7 +111,7 @@ def _once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float], fl
     mark("prior")
     fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, watch)
     mark("storing")
-    prior.standard_errors(lattice)
+    prior.standard_errors(problem)
     mark("errors")
     wall = time.perf_counter() - wall
     phases = ("begin", "entries", "prior", "lattice", "storing", "errors")

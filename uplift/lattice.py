@@ -29,6 +29,7 @@ class Status(IntEnum):
     IMPROVED = 3
     UNFITTED = 4
     UNREALISABLE = 5
+    ABSENT = 6
 
     @property
     def label(self) -> str:
@@ -81,9 +82,13 @@ class Lattice:
 
     def cell(self, rgb: Array) -> tuple[Indices, Array]:
         """Lowest corner (n, 3) and fraction (n, 3) in [0, 1] of the cells that hold linear RGB (n, 3)."""
-        low = np.clip(np.searchsorted(self.nodes, rgb, side="right") - 1, 0, self.dim - 2)
+        low = self.lowest(rgb)
         start = self.nodes[low]
         return low, (rgb - start) / (self.nodes[low + 1] - start)
+
+    def lowest(self, rgb: Array) -> Indices:
+        """Positions (n, 3) of the lowest corners of the cells that linear RGB (n, 3) lie in; nearest, of outsiders."""
+        return np.clip(np.searchsorted(self.nodes, rgb, side="right") - 1, 0, self.dim - 2)
 
     def corners(self, rgb: Array) -> tuple[Indices, Array]:
         """Point numbers (n, 8) and trilinear weights (n, 8), summing to 1, around linear RGB (n, 3)."""
@@ -95,6 +100,25 @@ class Lattice:
         r, g, b = np.stack([1 - along, along], axis=1)
         weights = (r[:, None, None] * g[None, :, None] * b[None, None, :]).reshape(8, -1)
         return self.index(low)[:, None] + self.index(CORNERS), np.ascontiguousarray(weights.T)
+
+    def corners_of(self, cells: Mask) -> Mask:
+        """Which points (dim³,) are corners of ``cells`` (dim³,); a cell has the number of its lowest corner."""
+        points = np.zeros((self.dim,) * 3, dtype=bool)
+        for r, g, b in CORNERS:
+            inside = self._grid(cells)[: self.dim - r, : self.dim - g, : self.dim - b]
+            points[r:, g:, b:] |= inside
+        return points.ravel()
+
+    def cells_of(self, points: Mask) -> Mask:
+        """Which cells (dim³,) have all their corners among ``points`` (dim³,)."""
+        cells = np.zeros((self.dim,) * 3, dtype=bool)
+        cells[:-1, :-1, :-1] = True
+        for r, g, b in CORNERS:
+            cells[: self.dim - r, : self.dim - g, : self.dim - b] &= self._grid(points)[r:, g:, b:]
+        return cells.ravel()
+
+    def _grid(self, values: Mask) -> Mask:
+        return values.reshape((self.dim,) * 3)
 
     @cached_property
     def steps(self) -> Indices:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
@@ -14,12 +14,14 @@ import numpy as np
 from uplift import fit, observer
 from uplift.atlas import Spectra, on_grid, read_atlas
 from uplift.cube import AtlasTable, CubeData
+from uplift.cube.pins import Pins
 from uplift.errors import UpliftWarning
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.models import Model
 from uplift.models.least_change import Forward, forward
 from uplift.options import AUTO, AXES, Options, check_size
+from uplift.scene import Given, Reading, Scene, scene_of
 from uplift.sensor import Array, Light, Sensor
 
 NAMED = 6
@@ -28,16 +30,20 @@ NAMED = 6
 REFERENCE = "A"
 """The light that standard errors are stated under."""
 
+Watch = Callable[[fit.Round | fit.Storing | Reading], None]
 Atlas = Spectra | str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
 
 
-def build(atlas: Atlas = None, *, watch: fit.Watch = lambda done: None, **options: Any) -> Cube:
+def build(
+    atlas: Atlas = None, *, scene: Given | None = None, watch: Watch = lambda done: None, **options: Any
+) -> Cube:
     """Build a cube, constrained by measured spectra if any are given.
 
     Parameters
     ----------
     atlas : spectra, or the file or files that hold them; None for a cube without constraints.
-    watch : called now and then with a `uplift.fit.Round` or `uplift.fit.Storing`.
+    scene : images, or a `uplift.scene.Scene`, for whose colours alone there shall be points; None for all colours.
+    watch : called now and then with a `uplift.fit.Round`, `uplift.fit.Storing` or `uplift.scene.Reading`.
     options : the fields of `Options`, by name.
 
     Raises
@@ -61,16 +67,17 @@ def build(atlas: Atlas = None, *, watch: fit.Watch = lambda done: None, **option
     axis, dim = _room(chosen, model, ahead, sensor, lights, entries)
     check_size(replace(chosen, dim=dim))
     lattice = Lattice(observer.axis_nodes(axis, dim))
-    beyond = fit.unrealisable(lattice, sensor, chosen.threshold / 2)
-    problem = fit.Problem(model, ahead, lattice, chosen.threshold, beyond)
+    reach = fit.reach(lattice, rgb)
+    seen = None if scene is None else scene_of(scene)
+    wanted = None if seen is None else np.flatnonzero(seen.points(Pins(lattice, rgb, reach), sensor, watch))
+    beyond = fit.unrealisable(lattice, sensor, chosen.threshold / 2, wanted)
+    problem = fit.Problem(model, ahead, lattice, chosen.threshold, beyond, wanted)
     seeds = fit.seed(lattice, rgb)
-    table = AtlasTable(
-        names, rgb, model.to_storage(entries.multipliers), fit.reach(lattice, rgb), entries.error
-    )
+    table = AtlasTable(names, rgb, model.to_storage(entries.multipliers), reach, entries.error)
     _warn_of_crowding(seeds, table)
     prior = fit.learn(problem, sensor, entries, reference)
     fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, watch)
-    provenance = _provenance(replace(chosen, axis=axis, dim=dim), spectra, names, fitted)
+    provenance = _provenance(replace(chosen, axis=axis, dim=dim), spectra, names, seen, fitted)
     return Cube(_cube_data(problem, sensor, fitted, prior, table, provenance, debug=chosen.debug))
 
 
@@ -114,7 +121,7 @@ def _cube_data(
         status=fitted.status,
         entry=fitted.entry,
         round=fitted.round if debug else None,
-        standard_error=prior.standard_errors(problem.lattice),
+        standard_error=prior.standard_errors(problem),
         reference=REFERENCE,
         provenance=provenance,
     )
@@ -166,7 +173,7 @@ def _warn(message: str) -> None:
 
 
 def _provenance(
-    options: Options, spectra: Spectra, names: tuple[str, ...], fitted: fit.Fit
+    options: Options, spectra: Spectra, names: tuple[str, ...], scene: Scene | None, fitted: fit.Fit
 ) -> dict[str, Any]:
     """How the cube was made, in JSON values."""
     return {
@@ -176,4 +183,5 @@ def _provenance(
         "left_out": [name for name in spectra.names if name not in names],
         "skipped": [entry.name for entry in spectra.skipped],
         "improvements": [asdict(step) for step in fitted.improvements],
+        **({} if scene is None else {"scene": scene.describe()}),
     }

@@ -6,10 +6,10 @@ import warnings
 from collections.abc import Iterable
 
 from uplift.errors import CubeFileError, OptionError, UnknownNameError, UpliftWarning
-from uplift.fit import Watch
 from uplift.lookup import Cube
-from uplift.pipeline import build
+from uplift.pipeline import Watch, build
 from uplift.provenance import StrPath, recorded_atlas, untold
+from uplift.scene import Stored
 
 
 def rebuild(
@@ -17,7 +17,7 @@ def rebuild(
 ) -> Cube:
     """The cube that this version makes from the options recorded in ``stored``, read from ``path``.
 
-    Its atlases are looked for as `recorded_atlas` does.
+    Its atlases are looked for as `recorded_atlas` does; of a scene the stored points tell all.
 
     Raises
     ------
@@ -28,11 +28,14 @@ def rebuild(
         options["lights"] = tuple(options["lights"])
     except (KeyError, TypeError, ValueError) as error:
         raise untold(path) from error
+    if "filled" in stored.data.provenance:
+        raise CubeFileError("is filled from another cube", path=path, remedy="check it as it was before")
     atlas = recorded_atlas(stored.data, path, folders)
+    scene = Stored(stored.data) if "scene" in stored.data.provenance else None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)  # the first build has said it all
         try:
-            return build(atlas, watch=watch, **options)
+            return build(atlas, scene=scene, watch=watch, **options)
         except (TypeError, OptionError, UnknownNameError) as error:
             problem = f"was made with options unknown here ({error})"
             raise CubeFileError(problem, path=path, remedy="build it anew") from error

@@ -71,6 +71,10 @@ class Sensor:
         """Linear RGB (…, 3) of reflectances (…, N) sampled at ``wavelengths``."""
         return np.asarray(reflectance, dtype=float) @ self.matrix.T
 
+    def decode(self, codes: ArrayLike) -> Array:
+        """Linear values (…) of 8-bit codes (…), 0 to 255; fractions are interpolated."""
+        return np.interp(np.asarray(codes, dtype=float), np.arange(256), self.decoding)
+
     def holds(self, rgb: ArrayLike) -> NDArray[np.bool_]:
         """Whether linear RGB (…, 3) lies within the space; rounding takes nothing out of it."""
         array = np.asarray(rgb, dtype=float)

@@ -33,7 +33,7 @@ def hand_made(dim: int = 4, **changes: object) -> CubeData:
         coefficients=rng.normal(size=(lattice.size, 3)),
         rgb=rgb,
         distance=np.abs(rgb - lattice.points).max(axis=1).astype(np.float32),
-        status=(points % len(Status)).astype(np.uint8),
+        status=(points % Status.ABSENT).astype(np.uint8),
         entry=(points % 3 - 1).astype(np.int32),
         round=(points % 5 - 1).astype(np.int16),
         standard_error=rng.uniform(0.1, 2, lattice.size).astype(np.float32),

@@ -10,8 +10,10 @@ import pytest
 from safetensors.numpy import load_file, save_file
 
 from uplift.cube import digest, read, write
-from uplift.cube.file import KEY, POINT_TYPES, SENSOR_ARRAYS
+from uplift.cube.checks import POINT_TYPES, SENSOR_ARRAYS
+from uplift.cube.file import KEY
 from uplift.errors import CubeFileError, OutputError
+from uplift.lattice import Status
 
 from .cube_files import forge, header_length, with_header, with_header_length
 
@@ -401,7 +403,7 @@ def test_sigmoids_without_a_range_are_refused(small_sigmoid_cube, tmp_path, ends
 def test_an_unknown_status_is_refused(data, tmp_path):
     def change(tensors, metadata):
         tensors["status"] = tensors["status"].copy()
-        tensors["status"][7] = 6
+        tensors["status"][7] = len(Status)
 
     assert "it does not hold that every status is known" in refused(forge(data, tmp_path / "cube", change))
 

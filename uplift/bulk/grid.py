@@ -32,7 +32,7 @@ class Grid(NamedTuple):
     boxes: Any
     """(E + 1, 3, 3) middle, and one over the room below and above it, linear RGB."""
     lattice: Any
-    """(dim³, N) what lattice points carry, float32."""
+    """(dim³, N) what lattice points carry, float32; NaN where they are absent."""
     atlas: Any
     """(E + 1, N) what entries carry, float32."""
     limits: Any
@@ -52,7 +52,7 @@ def grid(table: Table) -> Grid:
         _boxes(pins),
         table.lattice,
         np.concatenate([table.atlas, np.zeros_like(table.lattice[:1])]),
-        np.array([carried.min(), carried.max()]),
+        np.array([np.nanmin(carried), np.nanmax(carried)]),
     )
 
 

@@ -13,6 +13,7 @@ from uplift.bulk.grid import Grid, grid
 from uplift.bulk.kernel import answer
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
+from uplift.lookup.nodes import require
 from uplift.lookup.question import thread_count, triples, within
 from uplift.lookup.table import Table, tabulate
 from uplift.sensor import Sensor
@@ -46,7 +47,9 @@ class Sampler:
         size = min(size for size in CHUNKS if size >= len(asked))
         padded = np.pad(asked, ((0, size - len(asked)), (0, 0))) if len(asked) < size else asked
         with jax.enable_x64(True):
-            return np.asarray(answer(self.grid, padded))[: len(asked)]
+            found = np.asarray(answer(self.grid, padded))[: len(asked)]
+        require(~np.isnan(found[:, 0]), asked)  # what an absent point has a part in is NaN
+        return found
 
 
 def spectra(cube: Cube, wavelengths: ArrayLike | None = None, *, threads: int = 2) -> Sampler:
@@ -63,17 +66,15 @@ def spectra(cube: Cube, wavelengths: ArrayLike | None = None, *, threads: int = 
 def coefficients(cube: Cube, *, threads: int = 2) -> Sampler:
     """Coefficients (C,) of the cube's model, as `Cube.coefficients` has them, to float32. Raises `OptionError`."""
     data = cube.data
-    table = Table(data, data.coefficients.astype(np.float32), data.atlas.coefficients.astype(np.float32))
-    return _sampler(table, thread_count(threads))
+    points, atlas = (c.astype(np.float32) for c in (data.coefficients[data.present], data.atlas.coefficients))
+    return _sampler(Table.of_points(data, points, atlas), thread_count(threads))
 
 
 def misses(cube: Cube, *, threads: int = 2) -> Sampler:
     """By how much (1,) answers miss their colours, |linear RGB|, at the most: the fitting distances around."""
     data = cube.data
-    return _sampler(
-        Table(data, data.distance[:, None], np.zeros((len(data.atlas.names), 1), np.float32)),
-        thread_count(threads),
-    )
+    entries = np.zeros((len(data.atlas.names), 1), np.float32)
+    return _sampler(Table.of_points(data, data.distance[data.present, None], entries), thread_count(threads))
 
 
 def _sampler(table: Table, threads: int) -> Sampler:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.cube.pins import Pins
-from uplift.lattice import Lattice, Status
+from uplift.lattice import Lattice, Mask, Status
 from uplift.models import Model
 from uplift.sensor import Array, Sensor
 
@@ -39,7 +39,7 @@ class AtlasTable:
 
 @dataclass(frozen=True, eq=False)
 class CubeData:
-    """A lattice of spectra. Per point (n = dim³, blue fastest):
+    """A lattice of spectra. Per point (n = dim³, blue fastest), all 0 and no entry where it is absent:
 
     Parameters
     ----------
@@ -74,6 +74,16 @@ class CubeData:
     def pins(self) -> Pins:
         """The entries as extra nodes of the lattice."""
         return Pins(self.lattice, self.atlas.rgb, self.atlas.reach)
+
+    @cached_property
+    def present(self) -> Mask:
+        """(n,) which points have a spectrum: all, or those that the colours of a scene need."""
+        return self.status != Status.ABSENT
+
+    @cached_property
+    def complete(self) -> Mask | None:
+        """(n,) which cells have all their corners, by the number of the lowest; None if no point is absent."""
+        return None if self.present.all() else self.lattice.cells_of(self.present)
 
     def counts(self) -> dict[str, int]:
         """Points of each status, in the order of `Status`."""

@@ -12,10 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.cube import sparse
+from uplift.cube.checks import ATLAS_ARRAYS, FEATURES, POINT_TYPES, SENSOR_ARRAYS, check
 from uplift.cube.data import AtlasTable, CubeData
 from uplift.errors import CubeFileError, UpliftError
 from uplift.files import replacing
-from uplift.lattice import Lattice, Status
+from uplift.lattice import Lattice
 from uplift.models import from_description
 from uplift.sensor import Sensor
 
@@ -25,20 +27,6 @@ KEY = "uplift"
 """The one metadata entry: safetensors does not keep several in a fixed order."""
 
 Tensors = dict[str, NDArray[Any]]
-
-SENSOR_ARRAYS = ("wavelengths", "cmfs", "power", "xyz_to_rgb", "decoding")
-POINT_TYPES: dict[str, tuple[str, ...]] = {
-    "coefficients": ("float32", "float64"),
-    "rgb": ("float32",),
-    "distance": ("float32",),
-    "status": ("uint8",),
-    "entry": ("int32",),
-    "round": ("int16",),
-    "standard_error": ("float32",),
-}
-FEATURES = {"debug": "round", "errors": "standard_error"}
-"""Arrays that a cube may have or not, by the feature that says so."""
-ATLAS_ARRAYS = ("rgb", "coefficients", "reach", "error")
 
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -72,8 +60,8 @@ def read(path: str | os.PathLike[str]) -> CubeData:
         raise _broken(path, "is damaged: the content does not match its digest")
     try:
         data = _data(tensors, metadata)
-        _check(data)
-    except (AttributeError, KeyError, TypeError, ValueError, UpliftError) as error:
+        check(data, stored=len(tensors["status"]))
+    except (AttributeError, KeyError, MemoryError, TypeError, ValueError, UpliftError) as error:
         raise _broken(path, f"is not a complete cube ({type(error).__name__}: {error})") from error
     return data
 
@@ -125,14 +113,14 @@ def _tensors(data: CubeData) -> Tensors:
         if array is not None:
             kind = array.dtype if array.dtype.name in kinds else kinds[-1]
             tensors[name] = np.ascontiguousarray(array, dtype=kind)
-    return tensors
+    return tensors if data.complete is None else sparse.gather(tensors, POINT_TYPES, data.present)
 
 
 def _metadata(data: CubeData) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "version": VERSION,
-        "features": [name for name, array in FEATURES.items() if getattr(data, array) is not None],
+        "features": _features(data),
         "model": data.model.describe(),
         "dim": data.lattice.dim,
         "space": data.sensor.space,
@@ -145,12 +133,20 @@ def _metadata(data: CubeData) -> dict[str, Any]:
     }
 
 
+def _features(data: CubeData) -> list[str]:
+    optional = [name for name, array in FEATURES.items() if getattr(data, array) is not None]
+    return optional if data.complete is None else [*optional, sparse.FEATURE]
+
+
 def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
+    lattice = Lattice(tensors["nodes"])
+    if sparse.FEATURE in metadata["features"]:
+        tensors = sparse.scatter(tensors, POINT_TYPES, lattice.size)
     absent = {array for feature, array in FEATURES.items() if feature not in metadata["features"]}
     points: dict[str, Any] = {name: None if name in absent else tensors[name] for name in POINT_TYPES}
     return CubeData(
         model=from_description(metadata["model"]),
-        lattice=Lattice(tensors["nodes"]),
+        lattice=lattice,
         sensor=Sensor(
             metadata["space"],
             metadata["illuminant"],
@@ -165,43 +161,3 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
         provenance=metadata["provenance"],
         **points,
     )
-
-
-def _check(data: CubeData) -> None:
-    """Shapes, types and ranges that a lookup relies on."""
-    points, count, samples = data.lattice.size, data.model.count, len(data.sensor.wavelengths)
-    entries = len(data.atlas.names)
-    shapes = {"coefficients": (points, count), "rgb": (points, 3)}
-    for name, kinds in POINT_TYPES.items():
-        array = getattr(data, name)
-        fits = array is None or (array.shape == shapes.get(name, (points,)) and array.dtype.name in kinds)
-        _require(fits, f"{name} has its shape")
-    sensor_shapes = ((samples,), (samples, 3), (samples,), (3, 3), (256,))
-    for name, shape in zip(SENSOR_ARRAYS, sensor_shapes, strict=True):
-        _require(getattr(data.sensor, name).shape == shape, f"the sensor's {name} has its shape")
-    atlas_shapes = ((entries, 3), (entries, count), (entries,), (entries,))
-    for name, shape in zip(ATLAS_ARRAYS, atlas_shapes, strict=True):
-        _require(getattr(data.atlas, name).shape == shape, f"every entry has its {name}")
-    sensor_names = (data.sensor.space, data.sensor.illuminant, data.sensor.observer)
-    texts = (*data.atlas.names, *sensor_names, data.reference)
-    _require(all(isinstance(text, str) for text in texts), "every name is a text")
-    _require(isinstance(data.provenance, dict), "the provenance is a table")
-    floats: list[Any] = [data.coefficients, data.rgb, data.distance]
-    floats += [] if data.standard_error is None else [data.standard_error]
-    floats += [getattr(data.atlas, name) for name in ATLAS_ARRAYS]
-    floats += [getattr(data.sensor, name) for name in SENSOR_ARRAYS]
-    _require(all(np.isfinite(array).all() for array in floats), "every number is finite")
-    with np.errstate(all="ignore"):
-        basis = data.model.basis(data.sensor.wavelengths)
-    _require(basis.shape == (samples, count) and bool(np.isfinite(basis).all()), "the model has a range")
-    _require(tuple(data.lattice.nodes[[0, -1]]) == (0, 1), "the lattice runs from 0 to 1")
-    _require(0 < data.threshold < np.inf, "the threshold is a positive number")
-    _require(bool((data.status < len(Status)).all()), "every status is known")
-    reaches = bool(((data.atlas.reach >= 0) & (data.atlas.reach <= 1)).all())
-    _require(reaches, "no entry reaches further than a step")
-    _require(bool(((data.entry >= -1) & (data.entry < entries)).all()), "every entry is in the atlas table")
-
-
-def _require(holds: bool, law: str) -> None:
-    if not holds:
-        raise ValueError(f"it does not hold that {law}")

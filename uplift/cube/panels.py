@@ -7,15 +7,18 @@ with the many regular points receding.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uplift.cube.data import CubeData
 from uplift.cube.display import decode
+from uplift.lattice import Mask
 from uplift.sensor import Array
 
+BACKGROUND = 0.03
+"""Linear grey, dark enough for the colours to glow and light enough for black to show; absent points have it too."""
 DECADES = 3
 """Of the fitting distance, below the threshold, that the ramp spans."""
 
@@ -28,7 +31,7 @@ def _linear(*codes: str) -> Array:
 RAMP = _linear("0b1d51", "20509a", "3f8fc5", "8fc7e0", "e6f4f7")
 LOUD = _linear("ff5a00")
 STATUS = _linear("f0e442", "9bd4f5", "53708a", "00a878", "ff5a00", "6a1b4d")
-"""Of every `uplift.lattice.Status`, in its order; what is unfitted is as loud as a distance over the threshold."""
+"""Of every `Status` but absent, in its order; what is unfitted is as loud as a distance over the threshold."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,8 +57,12 @@ def panels(data: CubeData) -> tuple[Panel, ...]:
     if data.standard_error is not None:
         shown.append(_error(data.standard_error, data.reference))
     if data.round is not None:
-        shown.append(_round(data.round))
-    return tuple(shown)
+        shown.append(_round(data.round, data.round[data.present] < 0))
+    return tuple(replace(panel, colours=_present(data, panel.colours)) for panel in shown)
+
+
+def _present(data: CubeData, colours: NDArray[np.floating]) -> NDArray[np.floating]:
+    return np.where(data.present[:, None], colours, colours.dtype.type(BACKGROUND))
 
 
 def _colour(data: CubeData) -> Panel:
@@ -80,9 +87,9 @@ def _status(data: CubeData) -> Panel:
     counts = data.counts().items()
     keys = (
         Key(colour[None], f"{label}: {count:,}")
-        for colour, (label, count) in zip(STATUS, counts, strict=True)
+        for colour, (label, count) in zip(STATUS, counts, strict=False)
     )
-    return Panel("Status", STATUS[data.status], tuple(keys))
+    return Panel("Status", np.append(STATUS, STATUS[:1], axis=0)[data.status], tuple(keys))
 
 
 def _error(errors: NDArray[np.float32], light: str) -> Panel:
@@ -90,21 +97,21 @@ def _error(errors: NDArray[np.float32], light: str) -> Panel:
     return Panel("Standard error", _ramp(errors / errors.max()), (key,))
 
 
-def _round(rounds: NDArray[np.int16]) -> Panel:
+def _round(rounds: NDArray[np.int16], never: Mask) -> Panel:
     none, last = rounds < 0, max(int(rounds.max()), 0)
     keys = (
         Key(_ramp(np.linspace(0, 1, 64)), f"0 to {last}"),
-        Key(LOUD, f"fitted in no round: {_points(none)}"),
+        Key(LOUD, f"fitted in no round: {_points(never)}"),
     )
     return Panel("Round", _loud_where(none, rounds / max(last, 1)), keys)
 
 
-def _points(mask: NDArray[np.bool_]) -> str:
+def _points(mask: Mask) -> str:
     count = int(mask.sum())
     return f"{count:,} point{'' if count == 1 else 's'}"
 
 
-def _loud_where(mask: NDArray[np.bool_], share: Array) -> Array:
+def _loud_where(mask: Mask, share: Array) -> Array:
     return np.where(mask[:, None], LOUD, _ramp(share))
 
 

@@ -21,6 +21,8 @@ from uplift.sensor import Array
 AROUND = np.array(list(product((-1, 0, 1), repeat=3)))
 """(27, 3) steps to the cells that a box may touch: it reaches a step at the most."""
 NO_ENTRY = -1
+MARGIN = 1e-6
+"""Linear RGB by which rounding, to float32 too, may take a colour across the face of a cell."""
 
 
 class Pinned(NamedTuple):
@@ -72,6 +74,22 @@ class Pins:
         touched = np.zeros(self.lattice.size, dtype=bool)
         touched[self.cells[0]] = True
         return touched
+
+    def needs(self, cells: Mask) -> Mask:
+        """Which lattice points (dim³,) answers take for colours in ``cells`` (dim³,), wherever these are in them.
+
+        The corners of the cells and, where a box touches one, of all that the box touches: a colour in the box is
+        answered from any point of its faces. Rounding may take that point across a face.
+        """
+        dim = self.lattice.dim
+        asked = cells.reshape(dim, dim, dim)
+        found = asked.copy()
+        low, high = self.lattice.lowest(self.faces[0] - MARGIN), self.lattice.lowest(self.faces[1] + MARGIN)
+        for entry in np.flatnonzero(self.reach > 0):
+            box = tuple(slice(low[entry, axis], high[entry, axis] + 1) for axis in range(3))
+            if asked[box].any():
+                found[box] = True
+        return self.lattice.corners_of(found.ravel())
 
     def __call__(self, rgb: Array) -> Pinned:
         """Those of linear RGB (n, 3) that lie in a box."""

@@ -11,12 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.cube.data import CubeData
-from uplift.cube.panels import Key, Panel, panels
+from uplift.cube.panels import BACKGROUND, Key, Panel, panels
 from uplift.cube.planes import planes
 from uplift.sensor import Array
 
-BACKGROUND = 0.03
-"""Linear grey, dark enough for the colours to glow and light enough for black tiles to show."""
 PANEL = 640
 """Pixels that a panel is about wide, so that a sheet is one to two thousand."""
 GAP = 3
@@ -163,10 +161,15 @@ def _captions(layout: Layout, number: int, panel: Panel) -> Iterator[Label]:
 def _heading(data: CubeData, layout: Layout) -> Label:
     model, sensor = data.model, data.sensor
     facts = (
-        f"{data.lattice.dim}³ points",
+        f"{_of(data)}{data.lattice.dim}³ points",
         f"{model.name}, {model.count} coefficients",
         f"{sensor.space} under {sensor.illuminant}",
         f"{len(data.atlas.names)} atlas entries",
         f"threshold {data.threshold:g}",
     )
     return Label(2 * layout.em, 2.75 * layout.em, "  ·  ".join(facts), 1.4 * layout.em)
+
+
+def _of(data: CubeData) -> str:
+    """How many points there are, where some are absent."""
+    return "" if data.complete is None else f"{np.count_nonzero(data.present):,} of "

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from uplift.cube import exr
@@ -19,7 +20,8 @@ from uplift.files import check_output
 READING = (
     "A blue slice of a spectral uplifting cube. A pixel is a lattice point: red rises to the right, green "
     "upwards (the top row has the highest). R, G, B and lattice: what the stored spectrum evaluates to; target: "
-    "the lattice point itself, both linear. distance: largest difference of the two. entry and round: -1 for none."
+    "the lattice point itself, both linear. distance: largest difference of the two. entry and round: -1 for none. "
+    "Absent points, of a cube built for a scene, hold nothing but their status."
 )
 """The ``comments`` attribute of every part."""
 
@@ -56,7 +58,7 @@ def channels(data: CubeData) -> dict[str, NDArray[Any]]:
         **_rgb("lattice.", data.rgb),
         **_rgb("target.", target),
         "distance": data.distance,
-        "deltaE2000": colours_apart(data.sensor, target, data.rgb),
+        "deltaE2000": np.where(data.present, colours_apart(data.sensor, target, data.rgb), 0),
         "status": data.status,
         "entry": data.entry,
     }

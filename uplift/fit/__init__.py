@@ -64,7 +64,7 @@ class Fit:
 def fit_lattice(
     problem: Problem, seeds: Seeds, entries: Array, prior: Prior, watch: Watch = lambda done: None
 ) -> Fit:
-    """Fit every point of the lattice: seeds from the multipliers (E, C) of their entries, others from the prior.
+    """Fit every point of the problem: seeds from the multipliers (E, C) of their entries, others from the prior.
 
     RGB, distance and status are judged by the coefficients, as any reader of them will. Points that no reflectance
     has the colour of are fitted to the nearest that is, and keep their distance from what they should have been.
@@ -89,4 +89,6 @@ def fit_lattice(
     status[stored.distance > problem.threshold] = Status.UNFITTED
     stored.distance[beyond] = np.abs(problem.lattice.target(beyond) - stored.rgb[beyond]).max(axis=1)
     status[beyond[stored.distance[beyond] <= problem.threshold]] = Status.REGULAR
+    absent = problem.absent
+    status[absent], entry[absent] = Status.ABSENT, NO_ENTRY
     return Fit(stored.coefficients, stored.rgb, stored.distance, status, grown.round, entry, improvements)

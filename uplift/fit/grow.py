@@ -26,7 +26,10 @@ BLOCK = 1 << 15
 
 @dataclass(frozen=True, eq=False)
 class Growth:
-    """Multipliers (n, C), distance (n,) and round (n,) of every lattice point, −1 where none fitted it."""
+    """Multipliers (n, C), distance (n,) and round (n,) of every lattice point, −1 where none fitted it.
+
+    Of points that are not wanted: 0, infinity, −1.
+    """
 
     multipliers: Array
     distance: Array
@@ -38,29 +41,30 @@ Start = Callable[[Indices], Array]
 
 
 def grow(problem: Problem, start: Start, watch: Watch) -> Growth:
-    """Fit the whole lattice, each point from its start.
+    """Fit all points of the problem, each from its start.
 
     A point that fails is tried again whenever another of its neighbours has been fitted.
     """
-    lattice = problem.lattice
+    lattice, wanted = problem.lattice, problem.points
     growth = Growth(
         np.zeros((lattice.size, problem.model.count)),
         np.full(lattice.size, np.inf),
         np.full(lattice.size, NEVER, dtype=np.int16),
     )
     fitted = 0
-    for first in range(0, lattice.size, BLOCK):
-        points = np.arange(first, min(first + BLOCK, lattice.size))
+    for first in range(0, len(wanted), BLOCK):
+        points = wanted[first : first + BLOCK]
         fitted += len(_try(problem, growth, points, start(points), 0))
-        watch(Round(0, len(points), fitted, lattice.size))
+        watch(Round(0, len(points), fitted, len(wanted)))
     number, fresh = 1, np.flatnonzero(growth.round == 0)
     while fresh.size:
-        points, means = _frontier(lattice, fresh, growth.round != NEVER, growth.multipliers)
+        waiting = wanted[growth.round[wanted] == NEVER]
+        points, means = _frontier(lattice, waiting, fresh, growth)
         if not points.size:
             break
         fresh = _try(problem, growth, points, means, number)
         fitted += len(fresh)
-        watch(Round(number, len(points), fitted, lattice.size))
+        watch(Round(number, len(points), fitted, len(wanted)))
         number += 1
     return growth
 
@@ -76,9 +80,9 @@ def _try(problem: Problem, growth: Growth, points: Indices, start: Array, number
     return fresh
 
 
-def _frontier(lattice: Lattice, fresh: Indices, fitted: Mask, multipliers: Array) -> tuple[Indices, Array]:
-    """The unfitted neighbours of freshly fitted points, and the mean of their own fitted neighbours."""
-    waiting, new = np.flatnonzero(~fitted), _mask(lattice, fresh)
+def _frontier(lattice: Lattice, waiting: Indices, fresh: Indices, growth: Growth) -> tuple[Indices, Array]:
+    """The waiting neighbours of freshly fitted points, and the mean of their own fitted neighbours."""
+    multipliers, fitted, new = growth.multipliers, growth.round != NEVER, _mask(lattice, fresh)
     points = [waiting[:0]]
     means = [np.zeros((0, multipliers.shape[1]))]
     for first in range(0, len(waiting), BLOCK):

@@ -66,13 +66,13 @@ STEPS: dict[str, Start] = {
 
 
 def improve(problem: Problem, multipliers: Array, distance: Array) -> tuple[Improvement, ...]:
-    """Better the multipliers (n, C) and distances (n,) of all points, in place, and say what each step did.
+    """Better the multipliers (n, C) and distances (n,) of the points, in place, and say what each step did.
 
     Each step takes the points on that are over the threshold still; none gets worse.
     """
     done = []
     for name, start in STEPS.items():
-        points = np.flatnonzero(distance > problem.threshold)
+        points = problem.points[distance[problem.points] > problem.threshold]
         if not points.size:
             break
         begin = start(multipliers[points], _way(problem, points))

@@ -12,7 +12,6 @@ from uplift.fit.entries import Entries
 from uplift.fit.kriging import Kriging, Uncertainty, krige, uncertainty
 from uplift.fit.problem import Problem
 from uplift.fit.smooth import Smooth, smooth
-from uplift.lattice import Lattice
 from uplift.models import evaluate
 from uplift.sensor import Array, Light, Sensor
 
@@ -44,13 +43,14 @@ class Prior:
         """
         return None if self.uncertainty is None else self.uncertainty(rgb_lab(self.sensor, rgb))
 
-    def standard_errors(self, lattice: Lattice) -> NDArray[np.float32] | None:
-        """`standard_error` (n,) of all points of a lattice, block by block."""
+    def standard_errors(self, problem: Problem) -> NDArray[np.float32] | None:
+        """`standard_error` (n,) of the points of a problem, block by block; 0 of points not wanted."""
         if self.uncertainty is None:
             return None
-        errors = np.empty(lattice.size, dtype=np.float32)
-        for first in range(0, lattice.size, BLOCK):
-            points = np.arange(first, min(first + BLOCK, lattice.size))
+        lattice, wanted = problem.lattice, problem.points
+        errors = np.zeros(lattice.size, dtype=np.float32)
+        for first in range(0, len(wanted), BLOCK):
+            points = wanted[first : first + BLOCK]
             errors[points] = self.standard_error(lattice.target(points))
         return errors
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from uplift.fit.realisable import NONE, Unrealisable
 from uplift.fit.solve import Solution, solve
-from uplift.lattice import Indices, Lattice
+from uplift.lattice import Indices, Lattice, Mask
 from uplift.models import Model
 from uplift.models.least_change import Forward
 from uplift.sensor import Array
@@ -16,13 +17,29 @@ from uplift.sensor import Array
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A model and its forward map, the lattice, and the largest |linear RGB| a point may miss its goal by."""
+    """A model and its forward map, the lattice, and the largest |linear RGB| a point may miss its goal by.
+
+    ``wanted`` (k,), ascending, are the points to be fitted; None for all.
+    """
 
     model: Model
     forward: Forward
     lattice: Lattice
     threshold: float = 1e-4
     beyond: Unrealisable = NONE
+    wanted: Indices | None = None
+
+    @cached_property
+    def points(self) -> Indices:
+        """Numbers of the points to be fitted, ascending."""
+        return np.arange(self.lattice.size) if self.wanted is None else self.wanted
+
+    @property
+    def absent(self) -> Mask:
+        """(dim³,) which points are not to be fitted."""
+        absent = np.ones(self.lattice.size, dtype=bool)
+        absent[self.points] = False
+        return absent
 
     @property
     def tolerance(self) -> float:

@@ -28,17 +28,21 @@ class Unrealisable:
 NONE = Unrealisable(np.zeros(0, dtype=np.int64), np.zeros((0, 3)))
 
 
-def unrealisable(lattice: Lattice, sensor: Sensor, margin: float) -> Unrealisable:
-    """The unrealisable points of a lattice; their nearest colours keep ``margin`` (linear RGB) from the boundary.
+def unrealisable(
+    lattice: Lattice, sensor: Sensor, margin: float, wanted: Indices | None = None
+) -> Unrealisable:
+    """The unrealisable points of a lattice, or of those ``wanted`` (k,), ascending.
 
-    On the boundary itself are spectra of steps between 0 and 1 (MacAdam 1935), which no smooth model reaches.
+    Their nearest colours keep ``margin`` (linear RGB) from the boundary. On the boundary itself are spectra of
+    steps between 0 and 1 (MacAdam 1935), which no smooth model reaches.
     """
     limits = solid(sensor.matrix)
     if limits.holds(CORNERS.astype(float)).all():
         return NONE  # the solid is convex, so it holds what lies between as well
     points, nearest = [NONE.points], [NONE.nearest]
-    for first in range(0, lattice.size, BLOCK):
-        block = np.arange(first, min(first + BLOCK, lattice.size))
+    asked = np.arange(lattice.size) if wanted is None else wanted
+    for first in range(0, len(asked), BLOCK):
+        block = asked[first : first + BLOCK]
         outside = block[~limits.holds(lattice.target(block))]
         target = lattice.target(outside)
         grey = np.clip(sensor.xyz(target)[:, 1:2], 0, 1).repeat(3, axis=1)

@@ -14,6 +14,7 @@ from uplift.fit.batch import batches, put, put_all
 from uplift.fit.problem import Problem
 from uplift.fit.quadrature import compiled
 from uplift.fit.watch import Storing, Watch
+from uplift.lattice import Indices
 from uplift.models import Model
 from uplift.models.least_change import Forward, reached
 from uplift.sensor import Array
@@ -27,7 +28,7 @@ LOSS = 0.1
 
 
 class Stored(NamedTuple):
-    """Coefficients (n, C), the linear RGB (n, 3) that they have, and max |goal − RGB| (n,)."""
+    """Coefficients (n, C), the linear RGB (n, 3) that they have, and max |goal − RGB| (n,); 0 if not wanted."""
 
     coefficients: NDArray[Any]
     rgb: NDArray[np.float32]
@@ -35,34 +36,35 @@ class Stored(NamedTuple):
 
 
 def store(problem: Problem, multipliers: Array, distance: Array, watch: Watch) -> Stored:
-    """The multipliers (n, C) of all points as coefficients, which are as far (n,) from their goals.
+    """The multipliers (n, C) of the points as coefficients, which are as far (n,) from their goals.
 
     float32, if that is as good for every point, or float64 for all. The multipliers give their place: large
     lattices have no room for both.
     """
-    model, size, kind = problem.model, len(multipliers), SINGLE
-    stored = Stored(multipliers, np.empty((size, 3), dtype=np.float32), np.empty(size, dtype=np.float32))
-    for block in _blocks(size):
+    model, size, kind, points = problem.model, len(multipliers), SINGLE, problem.points
+    stored = Stored(multipliers, np.zeros((size, 3), dtype=np.float32), np.zeros(size, dtype=np.float32))
+    for done, block in _blocks(points):
         stored.coefficients[block] = model.to_storage(multipliers[block], compiled)
         _judge(problem, stored, block, kind)
         if kind == SINGLE and (stored.distance[block] > distance[block] + LOSS * problem.threshold).any():
             kind = DOUBLE
-            for again in _blocks(block.stop):
+            for _, again in _blocks(points[:done]):
                 _judge(problem, stored, again, kind)
-        watch(Storing(block.stop, size))
+        watch(Storing(done, len(points)))
     return stored._replace(coefficients=stored.coefficients.astype(kind, copy=False))
 
 
-def _judge(problem: Problem, stored: Stored, block: slice, kind: np.dtype[Any]) -> None:
-    """RGB and distance of a block, as whoever reads its coefficients in that type will find them."""
+def _judge(problem: Problem, stored: Stored, block: Indices, kind: np.dtype[Any]) -> None:
+    """RGB and distance of points (k,), as whoever reads its coefficients in that type will find them."""
     rgb = rgb_of(problem, problem.model.from_storage(stored.coefficients[block].astype(kind)))
-    goal = problem.goal(np.arange(block.start, block.stop))
-    stored.rgb[block], stored.distance[block] = rgb, np.abs(goal - rgb).max(axis=1)
+    stored.rgb[block], stored.distance[block] = rgb, np.abs(problem.goal(block) - rgb).max(axis=1)
 
 
-def _blocks(size: int) -> Iterator[slice]:
-    for first in range(0, size, BLOCK):
-        yield slice(first, min(first + BLOCK, size))
+def _blocks(points: Indices) -> Iterator[tuple[int, Indices]]:
+    """Points done after it, and a block of them."""
+    for first in range(0, len(points), BLOCK):
+        block = points[first : first + BLOCK]
+        yield first + len(block), block
 
 
 def rgb_of(problem: Problem, multipliers: Array) -> Array:

@@ -13,8 +13,10 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.cube import CubeData, read, write
 from uplift.errors import ColourError, OptionError
+from uplift.lattice import Mask
 from uplift.lookup.blocks import Function, blockwise
 from uplift.lookup.interpolate import MODES, coefficients, standard_error
+from uplift.lookup.nodes import holds
 from uplift.lookup.question import colours, float_type, floats, thread_count, wavelengths_asked
 from uplift.lookup.table import tabulate
 from uplift.sensor import Array
@@ -82,8 +84,13 @@ class Cube:
 
     def _tabulates(self, colours: int, bytes_each: int) -> bool:
         """Whether to work out the spectra of all lattice points first, so that no block does so again."""
-        points = self.data.lattice.size
-        return colours >= points and points * bytes_each <= MOST_BYTES
+        table = self.data.lattice.size * bytes_each
+        return colours >= int(self.data.present.sum()) and table <= MOST_BYTES
+
+    def holds(self, rgb: ArrayLike) -> Mask:
+        """Whether (…,) linear RGB (…, 3) can be asked: always, but for cubes of a scene. Raises `ColourError`."""
+        asked = colours(rgb, self.data.sensor)
+        return holds(self.data, asked.reshape(-1, 3)).reshape(asked.shape[:-1])
 
     def standard_error(self, rgb: ArrayLike) -> Array | None:
         """By how much (…,) answers at linear RGB (…, 3) are expected to miss measurements, a root mean square.
@@ -107,7 +114,7 @@ class Cube:
         array = floats(codes, "8-bit codes are numbers")
         if not ((array >= 0) & (array <= 255)).all():
             raise ColourError("8-bit codes run from 0 to 255", remedy="leave out --8bit for linear floats")
-        return np.interp(array, np.arange(256), self.data.sensor.decoding)
+        return self.data.sensor.decode(array)
 
     def encode(self, rgb: ArrayLike) -> Array:
         """8-bit codes (…), with fractions, of linear RGB (…) in [0, 1]."""

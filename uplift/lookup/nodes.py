@@ -9,10 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from uplift.cube import CubeData
-from uplift.lattice import Indices
+from uplift.cube.pins import Pinned
+from uplift.errors import ColourError
+from uplift.lattice import Indices, Mask
 from uplift.sensor import Array
 
 Values = NDArray[Any]
@@ -53,10 +56,35 @@ def mix(values: Values, points: Indices, weights: Array) -> Values:
 
 
 def around(data: CubeData, rgb: Array) -> Nodes:
-    """The nodes around linear RGB (n, 3) in [0, 1]."""
+    """The nodes around linear RGB (n, 3) in [0, 1]. Raises `ColourError` for what a sparse cube has no nodes for."""
+    low, fraction, pinned = _asked(data, rgb)
+    if data.complete is not None:
+        require(data.complete[data.lattice.index(low)], rgb)
+    points, weights = data.lattice.around(low, fraction)
+    return Nodes(points, weights, pinned.rows, pinned.entry, pinned.share)
+
+
+def holds(data: CubeData, rgb: Array) -> Mask:
+    """Whether (n,) there are nodes for linear RGB (n, 3) in [0, 1]."""
+    if data.complete is None:
+        return np.ones(len(rgb), dtype=bool)
+    return data.complete[data.lattice.index(_asked(data, rgb)[0])]
+
+
+def require(held: Mask, rgb: Array) -> None:
+    """Raises `ColourError`, quoting the first of linear RGB (n, 3) that is not ``held`` (n,)."""
+    if not held.all():
+        values = ", ".join(f"{value:.6g}" for value in rgb[int(held.argmin())])
+        raise ColourError(
+            f"the cube was built for the colours of a scene, and linear RGB ({values}) is none of them",
+            remedy="build it with the image in --scene, or use --fill (in Python: cube.filled())",
+        )
+
+
+def _asked(data: CubeData, rgb: Array) -> tuple[Indices, Array, Pinned]:
+    """Lowest corner (n, 3) and fraction (n, 3) of the cells that the lattice is asked in, and what lies in boxes."""
     lattice = data.lattice
     low, fraction = lattice.cell(rgb)
     pinned = data.pins.within(rgb, lattice.index(low))
     low[pinned.rows], fraction[pinned.rows] = lattice.cell(pinned.away)
-    points, weights = lattice.around(low, fraction)
-    return Nodes(points, weights, pinned.rows, pinned.entry, pinned.share)
+    return low, fraction, pinned

@@ -16,11 +16,20 @@ from uplift.sensor import Array
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Numbers (dim³, K) of the lattice points and (E, K) of the atlas entries, float64 or float32."""
+    """Numbers (dim³, K) of the lattice points, NaN where absent, and (E, K) of the atlas entries; float64 or 32."""
 
     data: CubeData
     lattice: Values
     atlas: Values
+
+    @classmethod
+    def of_points(cls, data: CubeData, points: Values, atlas: Values) -> Table:
+        """From numbers (m, K) of the points that are present."""
+        if data.complete is None:
+            return cls(data, points, atlas)
+        lattice = np.full((data.lattice.size, points.shape[1]), np.nan, points.dtype)
+        lattice[data.present] = points
+        return cls(data, lattice, atlas)
 
     def spectra(self, rgb: Array) -> Values:
         """Reflectance (n, N) in [0, 1] at linear RGB (n, 3)."""
@@ -39,4 +48,4 @@ def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, 
             threads,
         )
 
-    return Table(data, spectra(data.coefficients), spectra(data.atlas.coefficients))
+    return Table.of_points(data, spectra(data.coefficients[data.present]), spectra(data.atlas.coefficients))

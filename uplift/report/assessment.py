@@ -51,7 +51,7 @@ class Assessment:
     sources : the files that ``entries`` come from; ``own`` if the cube was built from these.
     entries : None where there is no measured spectrum to judge by.
     delta_e : their ΔE00 under each light, by name.
-    outside : entries of ``sources`` that the cube's space does not hold.
+    outside, absent : entries of ``sources`` that the cube's space does not hold, or a sparse cube has no points for.
     calibration : how far the cube's standard errors hold for ``entries``; None if these are ``own``.
     crowding : of the cube's own entries, None if it has none; errors are against the measured spectra if
         ``own``, against the stored ones if not.
@@ -73,6 +73,7 @@ class Assessment:
     entries: Entries | None
     delta_e: dict[str, Histogram]
     outside: tuple[str, ...]
+    absent: tuple[str, ...]
     calibration: Calibration | None
     crowding: Crowding | None
 
@@ -88,16 +89,17 @@ def assess(
     data = cube.data
     seen = viewings(lights, data.sensor.observer)
     own = spectra is not None and _built_from(data, spectra)
-    question = _question(data, spectra, own)
+    question = _question(cube, spectra, own)
     found = None if question is None or not question.names else entries(cube, question, seen)
-    steps, errors = smoothness(data), data.standard_error
+    steps, distances = smoothness(data), data.distance[data.present]
+    errors = None if data.standard_error is None else data.standard_error[data.present]
     return Assessment(
         name=name,
         size=size,
         data=data,
         facts=summary(data),
         failures=failures(data),
-        distance=histogram(data.distance, log_edges(data.distance, EXACT)),
+        distance=histogram(distances, log_edges(distances, EXACT)),
         round_trips=_together(round_trips(cube), lambda values: log_edges(values, EXACT)),
         standard_error=None if errors is None else histogram(errors, linear_edges(errors)),
         smoothness=histogram(steps.differences, log_edges(steps.differences, SAME)),
@@ -108,6 +110,7 @@ def assess(
         entries=found,
         delta_e={} if found is None else _together(_by_light(found, seen), linear_edges),
         outside=() if question is None else question.outside,
+        absent=() if question is None else question.absent,
         calibration=None if own or found is None else calibration(found.real, found.stated),
         crowding=_crowding(cube, found if own else None, seen),
     )
@@ -120,17 +123,17 @@ def _built_from(data: CubeData, spectra: Spectra) -> bool:
     return bool(given) and given <= recorded
 
 
-def _question(data: CubeData, spectra: Spectra | None, own: bool) -> Question | None:
+def _question(cube: Cube, spectra: Spectra | None, own: bool) -> Question | None:
     if spectra is None or not spectra.entries:
         return None
-    return about_own(data, spectra) if own else about_other(data, spectra)
+    return (about_own(cube.data, spectra) if own else about_other(cube.data, spectra)).to(cube)
 
 
 def _crowding(cube: Cube, measured: Entries | None, lights: tuple[Sensor, ...]) -> Crowding | None:
-    if not cube.data.atlas.names:
+    stored = about_stored(cube.data).to(cube)
+    if not stored.names:
         return None
-    asked = entries(cube, about_stored(cube.data), lights) if measured is None else measured
-    return crowding(cube.data, asked)
+    return crowding(cube.data, entries(cube, stored, lights) if measured is None else measured)
 
 
 def _by_light(found: Entries, lights: tuple[Sensor, ...]) -> dict[str, Array]:

@@ -34,6 +34,7 @@ class Question:
     wanted : (E, N) reflectances on the sensor's wavelengths.
     rows : (E,) of the cube's own atlas table; None for entries that it was not built from.
     outside : names of the entries that the cube's space does not hold.
+    absent : names of those that a sparse cube has no points for.
     """
 
     names: tuple[str, ...]
@@ -41,6 +42,16 @@ class Question:
     wanted: Array
     rows: Indices | None
     outside: tuple[str, ...] = ()
+    absent: tuple[str, ...] = ()
+
+    def to(self, cube: Cube) -> Question:
+        """The part of it that a cube can answer: all, but for sparse cubes."""
+        held = cube.holds(self.rgb)
+        names = [
+            tuple(name for name, kept in zip(self.names, held, strict=True) if kept == w) for w in (1, 0)
+        ]
+        rows = None if self.rows is None else self.rows[held]
+        return Question(names[0], self.rgb[held], self.wanted[held], rows, self.outside, names[1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,11 +182,21 @@ def _own(cube: Cube, found: Entries, rows: Indices, lights: tuple[Sensor, ...]) 
 
 def round_trips(cube: Cube) -> dict[str, Array]:
     """ΔE00 (n,) under the cube's illuminant between random linear RGB and what comes back, for each mode."""
-    asked = np.random.default_rng(SEED).random((COLOURS, 3))
-    sensor = cube.data.sensor
+    asked, sensor = _random(cube.data), cube.data.sensor
+    asked = asked[cube.holds(asked)]
     return {
         mode: colours_apart(sensor, asked, sensor.rgb(cube.reflectance(asked, mode=mode))) for mode in MODES
     }
+
+
+def _random(data: CubeData) -> Array:
+    """Linear RGB (n, 3), even in the cube or, where it is sparse, in its complete cells."""
+    random = np.random.default_rng(SEED)
+    asked = random.random((COLOURS, 3))
+    if data.complete is None:
+        return asked
+    low = data.lattice.position(random.choice(np.flatnonzero(data.complete), COLOURS))
+    return data.lattice.nodes[low] + asked * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])
 
 
 def _under(lights: tuple[Sensor, ...], first: Array, second: Array) -> Array:

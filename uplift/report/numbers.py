@@ -34,7 +34,12 @@ def numbers(found: Assessment) -> dict[str, Any]:
             "standard_error": _standard_error(found),
             "smoothness": {**_histogram(found.smoothness), "steepest": found.steepest},
             "lights": [seen.illuminant for seen in found.lights],
-            "atlas": {"files": found.sources, "own": found.own, "outside": found.outside},
+            "atlas": {
+                "files": found.sources,
+                "own": found.own,
+                "outside": found.outside,
+                "absent": found.absent,
+            },
             "delta_e_2000": {light: _histogram(part) for light, part in found.delta_e.items()},
             "entries": [] if found.entries is None else _entries(found.entries, found.lights),
             "crowding": _crowding(found),

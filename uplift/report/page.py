@@ -58,7 +58,7 @@ def _verdicts(found: Assessment) -> Markup:
     cards = [
         _verdict(
             f"{missed:,} over the threshold" if missed else "Every point fitted",
-            f"{counted(found.data.lattice.size, 'lattice point')}, worst distance {power(found.distance.largest)}",
+            f"{counted(found.facts['points'], 'lattice point')}, worst distance {power(found.distance.largest)}",
             bad=missed > 0,
         ),
         _verdict(
@@ -95,7 +95,7 @@ def _build(found: Assessment) -> Markup:
     shown: list[tuple[str, str | Markup]] = [
         ("model", ", ".join(f"{_value(value)}" for value in _flat(facts["model"]))),
         ("coefficients", f"{facts['coefficients']} a point"),
-        ("lattice", f"{facts['dim']}³ = {facts['points']:,} points"),
+        ("lattice", f"{facts['points']:,} points {'=' if data.complete is None else 'of'} {facts['dim']}³"),
         ("axes", f"linear RGB {nodes[0]:g} to {nodes[-1]:g}, spaced {options.get('axis', 'as stored')}"),
         ("space", facts["space"]),
         ("illuminant", facts["illuminant"]),

@@ -37,6 +37,7 @@ def entries_section(found: Assessment, worst: int) -> Markup:
         title,
         element("p", _about(found)),
         _outside(found),
+        _absent(found),
         element("h3", "Under each light"),
         _by_light(found, entries),
         element("h3", "All of them" if worst >= len(entries.names) else f"The worst {worst}")
@@ -68,6 +69,8 @@ def _note_on_entries(found: Assessment, entries: Entries) -> Markup:
 
 
 def _why_none(found: Assessment) -> str:
+    if found.absent:
+        return f"The cube has no points for any entry of {', '.join(found.sources)}: nothing to compare."
     if found.sources:
         return f"{found.data.sensor.space} holds no entry of {', '.join(found.sources)}: nothing to compare."
     return (
@@ -87,6 +90,12 @@ def _outside(found: Assessment) -> Markup | None:
     if found.own or not found.outside:
         return None  # of its own entries the failures have told
     return element("p", f"Not asked, being outside {found.data.sensor.space}: {', '.join(found.outside)}.")
+
+
+def _absent(found: Assessment) -> Markup | None:
+    if not found.absent:
+        return None
+    return element("p", f"Not asked, as the cube has no points for them: {', '.join(found.absent)}.")
 
 
 def _by_light(found: Assessment, entries: Entries) -> Markup:

@@ -12,14 +12,12 @@ from uplift.report.viewing import screen_codes
 def failures_section(found: Assessment) -> Markup:
     """Counts by status, the points over the threshold, the improvement steps, the entries that are missing."""
     failed, data = found.failures, found.data
-    limit = f"{data.threshold:g}"
+    limit, points = f"{data.threshold:g}", found.facts["points"]
     if failed.missed:
-        told = f"{counted(failed.missed, 'lattice point')} of {data.lattice.size:,} over the threshold of {limit}."
+        told = f"{counted(failed.missed, 'lattice point')} of {points:,} over the threshold of {limit}."
         first = element("p", told, class_="bad")
     else:
-        first = element(
-            "p", f"Nothing failed: all {data.lattice.size:,} points evaluate to their RGB within {limit}."
-        )
+        first = element("p", f"Nothing failed: all {points:,} points evaluate to their RGB within {limit}.")
     status = table(
         ["status", right("points"), right("share")],
         [
@@ -99,9 +97,7 @@ def distributions_section(found: Assessment) -> Markup:
         figure(f"Round trip in mode {mode}", part, f"ΔE00 under {light}")
         for mode, part in found.round_trips.items()
     ]
-    told = (
-        f"{COLOURS:,} random linear RGB, the same for every cube: the colour asked against what comes back."
-    )
+    told = f"{COLOURS:,} random linear RGB, {_whence(found)}: the colour asked against what comes back."
     parts = [element("h3", "Lattice"), charts(lattice)]
     parts += [element("h3", "Colours that come back"), note(told), charts(trips)]
     if found.delta_e:
@@ -112,6 +108,10 @@ def distributions_section(found: Assessment) -> Markup:
         text = "Each entry asked at its own RGB: the answer against the measured spectrum, seen under each light."
         parts += [element("h3", "Entries"), note(text), charts(entries)]
     return element("section", element("h2", "Distributions"), *parts)
+
+
+def _whence(found: Assessment) -> str:
+    return "the same for every cube" if found.data.complete is None else "from the cells that the cube has"
 
 
 def _aside(found: Assessment) -> Markup:

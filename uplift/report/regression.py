@@ -42,8 +42,10 @@ def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
     """Raises `CubeFileError` where the two have no points in common."""
     if not np.array_equal(stored.lattice.nodes, rebuilt.lattice.nodes):
         raise CubeFileError("has another lattice than its options say", path=path, remedy="build it anew")
+    there = stored.present | rebuilt.present
     first, second = (
-        reflectance(data.model, data.coefficients, data.sensor.wavelengths) for data in (stored, rebuilt)
+        reflectance(data.model, data.coefficients[there], data.sensor.wavelengths)
+        for data in (stored, rebuilt)
     )
     difference = np.abs(first - second)
     measures = {

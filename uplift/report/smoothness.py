@@ -11,6 +11,9 @@ from uplift.cube import CubeData
 from uplift.models import reflectance
 from uplift.sensor import Array
 
+NO_PAIR = -1.0
+"""In place of a difference, where a neighbour is absent."""
+
 
 @dataclass(frozen=True, eq=False)
 class Smoothness:
@@ -18,7 +21,7 @@ class Smoothness:
 
     Parameters
     ----------
-    differences : (3 (dim − 1) dim²,) of every pair of neighbours, in units of reflectance.
+    differences : (k,) of every pair of neighbours, in units of reflectance.
     steepest : (2, 3) linear RGB of the two lattice points that differ most.
     """
 
@@ -29,14 +32,14 @@ class Smoothness:
 def smoothness(data: CubeData) -> Smoothness:
     """Every pair once. Works plane by plane of equal red: two planes of spectra are in memory at a time."""
     parts: list[NDArray[np.float32]] = []
-    largest = -1.0
+    largest = NO_PAIR
     pair: tuple[tuple[int, ...], ...] = ()
     before: Array | None = None
     for red in range(data.lattice.dim):
         plane = _plane(data, red)
         for axis, (first, second) in enumerate(_neighbours(before, plane)):
-            apart = np.sqrt(((second - first) ** 2).mean(axis=-1))
-            parts.append(apart.ravel().astype(np.float32))
+            apart = np.nan_to_num(np.sqrt(((second - first) ** 2).mean(axis=-1)), nan=NO_PAIR)
+            parts.append(apart[apart != NO_PAIR].astype(np.float32))
             if apart.max() > largest:
                 largest = float(apart.max())
                 pair = _pair(axis, red, np.unravel_index(int(apart.argmax()), apart.shape))
@@ -45,10 +48,13 @@ def smoothness(data: CubeData) -> Smoothness:
 
 
 def _plane(data: CubeData, red: int) -> Array:
-    """(dim, dim, N) spectra of the lattice points of one red, green first."""
-    dim = data.lattice.dim
-    rows = data.coefficients[red * dim**2 : (red + 1) * dim**2]
-    return reflectance(data.model, rows, data.sensor.wavelengths).reshape(dim, dim, -1)
+    """(dim, dim, N) spectra of the lattice points of one red, green first; NaN where absent."""
+    dim, at = data.lattice.dim, data.sensor.wavelengths
+    rows = slice(red * dim**2, (red + 1) * dim**2)
+    there = data.present[rows]
+    plane = np.full((dim**2, len(at)), np.nan)
+    plane[there] = reflectance(data.model, data.coefficients[rows][there], at)
+    return plane.reshape(dim, dim, -1)
 
 
 def _neighbours(before: Array | None, plane: Array) -> list[tuple[Array, Array]]:

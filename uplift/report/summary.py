@@ -10,22 +10,26 @@ from uplift.cube import CubeData, digest
 
 
 def summary(data: CubeData) -> dict[str, Any]:
-    """Plain facts, most general first; distances are max |linear RGB|, standard errors ΔE00 under ``reference``."""
+    """Plain facts, most general first; distances are max |linear RGB|, standard errors ΔE00 under ``reference``.
+
+    ``points`` are those that are present, of dim³.
+    """
+    there = data.present
     return {
         "model": data.model.describe(),
         "coefficients": data.model.count,
         "dim": data.lattice.dim,
-        "points": data.lattice.size,
+        "points": int(np.count_nonzero(there)),
         "space": data.sensor.space,
         "illuminant": data.sensor.illuminant,
         "observer": data.sensor.observer,
         "threshold": data.threshold,
         "worst_distance": float(data.distance.max()),
-        "mean_distance": float(data.distance.mean(dtype=np.float64)),
+        "mean_distance": float(data.distance[there].mean(dtype=np.float64)),
         "reference": data.reference,
         "mean_standard_error": None
         if data.standard_error is None
-        else float(data.standard_error.mean(dtype=np.float64)),
+        else float(data.standard_error[there].mean(dtype=np.float64)),
         "status": data.counts(),
         "entries": list(data.atlas.names),
         "debug": data.round is not None,

@@ -8,8 +8,8 @@ from dataclasses import astuple, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.errors import TextureError
-from uplift.lookup import Cube
+from uplift.errors import OptionError, TextureError
+from uplift.sensor import Sensor
 from uplift.texture.source import Part, Values
 
 Floats = NDArray[np.float32]
@@ -89,13 +89,19 @@ class Decoder:
         return self.function(clamped), Counts(pixels, int(outside.sum()), int((~finite).sum()))
 
 
-def decoder(cube: Cube, part: Part, encoding: str) -> Decoder:
-    """8-bit and 16-bit codes are encoded as the cube's space has it, all else is linear, unless told otherwise."""
+def check_encoding(encoding: str) -> None:
+    """Raises `OptionError` for an unknown one."""
+    if encoding not in ENCODINGS:
+        raise OptionError(f"unknown encoding '{encoding}'", remedy=f"use one of {', '.join(ENCODINGS)}")
+
+
+def decoder(sensor: Sensor, part: Part, encoding: str) -> Decoder:
+    """8-bit and 16-bit codes are encoded as the sensor's space has it, all else is linear, unless told otherwise."""
     if part.codes:
         share = np.linspace(0, 1, part.codes + 1)
-        values = share if encoding == "linear" else cube.decode(255 * share)
+        values = share if encoding == "linear" else sensor.decode(255 * share)
         table = values.astype(np.float32)
         return Decoder(lambda codes: table[codes], codes=True)
     if encoding == "encoded":
-        return Decoder(lambda floats: cube.decode(255 * floats).astype(np.float32), codes=False)
+        return Decoder(lambda floats: sensor.decode(255 * floats).astype(np.float32), codes=False)
     return Decoder(lambda floats: floats.astype(np.float32, copy=False), codes=False)

@@ -13,6 +13,8 @@ from uplift.texture.uplifter import Uplifter
 
 OWN = ("half", "float", "uint")
 """Types of OpenEXR."""
+Places = tuple[int, int, int]
+"""Of red, green and blue among a part's channels."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +22,7 @@ class Plan:
     """A part, the places of its red, green and blue, if it has them, and of the channels that pass through."""
 
     part: Part
-    colours: tuple[int, int, int] | None
+    colours: Places | None
     rest: tuple[int, ...]
     decoder: Decoder
     layout: Layout
@@ -29,18 +31,25 @@ class Plan:
 def plans(uplifter: Uplifter, image: Image) -> list[Plan]:
     """A plan for every part. Raises `TextureError` where there is nothing to uplift, or no way to."""
     try:
-        found = [_plan(uplifter, image, part) for part in image.parts]
+        return [_plan(uplifter, image, *each) for each in coloured(image)]
     except TextureError as error:
         raise TextureError(error.problem, path=image.path, remedy=error.remedy) from error
-    if not any(plan.colours for plan in found):
+
+
+def coloured(image: Image) -> list[tuple[Part, Places | None]]:
+    """Every part and the places of its colour. Raises `TextureError` where there is none, or no telling which."""
+    try:
+        found = [(part, colour_channels(part)) for part in image.parts]
+    except TextureError as error:
+        raise TextureError(error.problem, path=image.path, remedy=error.remedy) from error
+    if not any(places for _, places in found):
         names = ", ".join(dict.fromkeys(name for part in image.parts for name in part.channels))
         remedy = "colour is in R, G and B, or in Y"
         raise TextureError(f"holds no colour but {names}", path=image.path, remedy=remedy)
     return found
 
 
-def _plan(uplifter: Uplifter, image: Image, part: Part) -> Plan:
-    colours = colour_channels(part)
+def _plan(uplifter: Uplifter, image: Image, part: Part, colours: Places | None) -> Plan:
     rest = tuple(index for index in range(len(part.channels)) if colours is None or index not in colours)
     names = tuple(part.channels[index] for index in rest)
     kinds = tuple(_exact(part.kinds[index]) for index in rest)
@@ -51,7 +60,7 @@ def _plan(uplifter: Uplifter, image: Image, part: Part) -> Plan:
             raise TextureError(f"has a channel '{min(taken)}' beside its colour", remedy=remedy)
         names, kinds = (*made, *names), (*(uplifter.depth,) * len(made), *kinds)
     layout = Layout(part.name, part.window, names, kinds, uplifter.header, part.date or _date(image))
-    return Plan(part, colours, rest, decoder(uplifter.cube, part, uplifter.encoding), layout)
+    return Plan(part, colours, rest, decoder(uplifter.cube.data.sensor, part, uplifter.encoding), layout)
 
 
 def _exact(kind: str) -> str:

@@ -12,7 +12,7 @@ from uplift.cube import exr
 from uplift.errors import OptionError
 from uplift.lattice import Status
 from uplift.lookup import Cube
-from uplift.texture.colours import ENCODINGS
+from uplift.texture.colours import check_encoding
 from uplift.texture.forms import Form, Sample, Spectrum
 
 
@@ -65,8 +65,7 @@ def prepare(
     if depth not in form.depths:
         problem = f"{form.name} are not exact enough as {depth}"
         raise OptionError(problem, remedy=f"use {' or '.join(form.depths)}")
-    if encoding not in ENCODINGS:
-        raise OptionError(f"unknown encoding '{encoding}'", remedy=f"use one of {', '.join(ENCODINGS)}")
+    check_encoding(encoding)
     channels = form.channels(cube)
     made = json.dumps({**form.describe(cube), "depth": depth, "encoding": encoding})
     header = {**exr.attributes(cube.data), "uplift.texture": made, **form.header()}

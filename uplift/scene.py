@@ -1,0 +1,122 @@
+"""A scene: the colours that are to be answered, and the lattice points that they need. No more need be built."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from uplift.cube import CubeData
+from uplift.cube.pins import MARGIN, Pins
+from uplift.errors import OptionError
+from uplift.lattice import CORNERS, Lattice, Mask
+from uplift.sensor import Array, Sensor
+from uplift.texture.colours import check_encoding, decoder
+from uplift.texture.plan import coloured
+from uplift.texture.source import opened
+
+BLOCK = 1 << 16
+"""Pixels looked at at a time."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Images of a scene read so far, and in all."""
+
+    read: int
+    total: int
+
+
+Watch = Callable[[Reading], None]
+
+
+class Scene(Protocol):
+    """What `uplift.build` asks of a scene."""
+
+    def points(self, pins: Pins, sensor: Sensor, watch: Watch) -> Mask:
+        """Which points (dim³,) of the lattice, with entries as pins, its colours need."""
+        ...
+
+    def describe(self) -> list[dict[str, Any]]:
+        """Where its colours come from, in JSON values."""
+        ...
+
+
+@dataclass(frozen=True)
+class Images:
+    """The colours of images, decoded as `uplift.texture.prepare` has it; only the cells that they lie in are held."""
+
+    paths: tuple[Path, ...]
+    encoding: str = "auto"
+
+    def points(self, pins: Pins, sensor: Sensor, watch: Watch) -> Mask:
+        """Raises `OptionError`, `TextureError`."""
+        check_encoding(self.encoding)
+        cells = np.zeros(pins.lattice.size, dtype=bool)
+        for done, path in enumerate(self.paths):
+            watch(Reading(done, len(self.paths)))
+            for rgb in _colours(path, sensor, self.encoding):
+                cells[touched(pins.lattice, rgb)] = True
+        return pins.needs(cells)
+
+    def describe(self) -> list[dict[str, Any]]:
+        return [
+            {"name": path.name, "digest": _digest(path), "encoding": self.encoding} for path in self.paths
+        ]
+
+
+@dataclass(frozen=True, eq=False)
+class Stored:
+    """The very points of a cube that was built for a scene: no image is needed to make it again."""
+
+    data: CubeData
+
+    def points(self, pins: Pins, sensor: Sensor, watch: Watch) -> Mask:
+        """Raises `OptionError`."""
+        if self.data.lattice.dim != pins.lattice.dim:
+            raise OptionError(f"the scene's points are those of dim {self.data.lattice.dim}")
+        return self.data.present
+
+    def describe(self) -> list[dict[str, Any]]:
+        return list(self.data.provenance["scene"])
+
+
+Given = Scene | str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
+
+
+def scene_of(given: Given) -> Scene:
+    """Images by their paths, or a scene as it is."""
+    if isinstance(given, str | os.PathLike):
+        return Images((Path(given),))
+    return Images(tuple(map(Path, given))) if isinstance(given, Sequence) else given
+
+
+def touched(lattice: Lattice, rgb: Array) -> Array:
+    """Numbers of the cells that linear RGB (n, 3) lie in, or on the face of: rounding decides which."""
+    low, high = lattice.lowest(rgb - MARGIN), lattice.lowest(rgb + MARGIN)
+    between = (low != high).any(axis=1)
+    beside = np.where(CORNERS[:, None, :] == 1, high[between], low[between]).reshape(-1, 3)
+    return np.concatenate([lattice.index(low), lattice.index(beside)])
+
+
+def _colours(path: Path, sensor: Sensor, encoding: str) -> Iterator[Array]:
+    """Linear RGB (n, 3) in [0, 1] of an image, block by block."""
+    with opened(path) as image:
+        for part, places in coloured(image):
+            if places is None:
+                continue
+            decode = decoder(sensor, part, encoding)
+            for _, band in image.bands(part):
+                pixels = band.reshape(-1, band.shape[-1])
+                for first in range(0, len(pixels), BLOCK):
+                    yield decode(pixels[first : first + BLOCK, places])[0].astype(float)
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
