@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from .options import force_option, sensor_options, verbosity_options
-
-if TYPE_CHECKING:
-    from uplift.lookup import Cube
+from .built import tell, tell_improvements
+from .frames import expanded
+from .options import encoding_option, force_option, sensor_options, verbosity_options
 
 
 class Dim(click.ParamType):  # type: ignore[type-arg]
@@ -67,12 +66,22 @@ class Dim(click.ParamType):  # type: ignore[type-arg]
 @click.option(
     "--threshold", default=1e-4, show_default=True, help="Largest miss of a lattice point, |linear RGB|."
 )
+@click.option(
+    "--scene",
+    "images",
+    multiple=True,
+    metavar="IMAGE",
+    help="Build only what the colours of this image, or quoted pattern, need; may be given several times.",
+)
+@encoding_option("--scene images are")
 @click.option("--debug", is_flag=True, help="Keep the round of every point, for the slices.")
 @force_option()
 @verbosity_options
 def command(
     atlases: tuple[str, ...],
     output: str | None,
+    images: tuple[str, ...],
+    encoding: str,
     force: bool,
     quiet: bool,
     verbose: bool,
@@ -86,53 +95,37 @@ def command(
       uplift build --atlas atlases/macbeth.txt --dim 32
       uplift build --atlas paints.csv --atlas macbeth.txt --moments 16 -o book.uplift
       uplift build --atlas paints.csv --dim auto --within 1
+      uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
 
     Warnings name entries that were left out, clipped or crowded. Without --atlas the spectra of the cube are
-    smooth, and dark where the colour is dark.
+    smooth, and dark where the colour is dark. With --scene the cube is sparse, smaller and sooner built: it answers
+    the colours of the images as the whole cube would, and refuses others ('query' and 'texture' have --fill).
     """
     from .startup import keep_compiled
 
     keep_compiled()
     from uplift.files import check_output
     from uplift.pipeline import build
+    from uplift.scene import Images
 
     from .progress import watching
 
-    path = check_output(_default_name(atlases, chosen) if output is None else output, force=force)
+    if encoding != "auto" and not images:
+        raise click.UsageError("--encoding is of --scene images, and there are none.")
+    path = check_output(_default_name(atlases, images, chosen) if output is None else output, force=force)
+    scene = Images(tuple(map(Path, expanded(images))), encoding) if images else None
     given = {name: value for name, value in chosen.items() if value not in (None, ())}
     begin = time.perf_counter()
     with watching(quiet=quiet, verbose=verbose) as watch:
-        cube = build(atlases or None, watch=watch, coefficients=moments + 1, **given)
+        cube = build(atlases or None, scene=scene, watch=watch, coefficients=moments + 1, **given)
     cube.save(path, force=force)
     if verbose:
-        _tell_improvements(cube)
+        tell_improvements(cube)
     if not quiet:
-        _tell(cube, path, time.perf_counter() - begin)
+        tell(cube, path, time.perf_counter() - begin)
 
 
-def _default_name(atlases: tuple[str, ...], chosen: dict[str, Any]) -> str:
+def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], chosen: dict[str, Any]) -> str:
     stem = "+".join(Path(atlas).stem for atlas in atlases) or re.sub("[ /]", "-", chosen["space"]).lower()
-    return f"{stem}-{chosen['dim']}.uplift"
-
-
-def _tell_improvements(cube: Cube) -> None:
-    for step in cube.data.provenance["improvements"]:
-        click.echo(f"improvement, {step['step']}: tried {step['tried']}, mended {step['mended']}", err=True)
-
-
-def _tell(cube: Cube, path: Path, seconds: float) -> None:
-    from uplift.lattice import Status
-
-    data, counts = cube.data, cube.data.counts()
-    missed, beyond = counts["unfitted"], counts["unrealisable"]
-    within = f"all within {data.threshold:g}"
-    fitted = within if not missed else f"{missed} MISS the threshold {data.threshold:g}"
-    if beyond:
-        fitted += f" but {beyond} that no reflectance has the colour of: these have less chroma"
-    worst = data.distance[data.status != Status.UNREALISABLE].max(initial=0)
-    entries = f"{len(data.atlas.names)} atlas entries, " if data.provenance["atlases"] else ""
-    click.echo(
-        f"{path}: {data.lattice.size} points, {entries}{fitted} (worst {worst:.1e}), "
-        f"{counts['improved']} improved, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
-    )
+    return f"{stem}-{chosen['dim']}{'-scene' if images else ''}.uplift"

@@ -15,7 +15,7 @@ def frames(sources: Sequence[str], target: str) -> list[tuple[Path, Path]]:
     """
     from uplift.errors import OutputError
 
-    found = [path for source in sources for path in _expanded(source)]
+    found = expanded(sources)
     folder = Path(target)
     alone = len(sources) == 1 and found == [sources[0]]
     if alone and not folder.is_dir() and not target.endswith(os.sep):
@@ -30,6 +30,11 @@ def frames(sources: Sequence[str], target: str) -> list[tuple[Path, Path]]:
         problem = f"is no folder, and {len(found)} images need one"
         raise OutputError(problem, path=target, remedy="name a folder") from error
     return [(Path(path), folder / f"{Path(path).stem}.exr") for path in found]
+
+
+def expanded(sources: Sequence[str]) -> list[str]:
+    """Paths, in order, of images and patterns. Raises `TextureError` for a pattern that nothing has the name of."""
+    return [path for source in sources for path in _expanded(source)]
 
 
 def _expanded(source: str) -> list[str]:

@@ -16,6 +16,22 @@ def cube_option() -> Decorator:
     )
 
 
+def fill_option() -> Decorator:
+    return click.option(
+        "--fill", is_flag=True, help="Answer colours that a --scene cube lacks from the package's own cube."
+    )
+
+
+def encoding_option(what: str = "colours are") -> Decorator:
+    return click.option(
+        "--encoding",
+        type=click.Choice(("auto", "linear", "encoded")),
+        default="auto",
+        show_default=True,
+        help=f"What {what} in. auto: whole numbers are encoded as the cube's space has it, floats are linear.",
+    )
+
+
 def atlas_folders_option() -> Decorator:
     return click.option(
         "--atlas-dir", "folders", multiple=True, metavar="DIR", help="Where the atlases lie; may be repeated."

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from uplift.fit import Round, Storing, Watch
+    from uplift.fit import Round, Storing
+    from uplift.pipeline import Watch
+    from uplift.scene import Reading
 
 
 @contextlib.contextmanager
@@ -37,13 +39,16 @@ def waiting(text: str) -> Iterator[None]:
         yield
 
 
-def _say(done: Round | Storing) -> None:
+def _say(done: Round | Storing | Reading) -> None:
     click.echo(_told(done), err=True)
 
 
-def _told(done: Round | Storing) -> str:
+def _told(done: Round | Storing | Reading) -> str:
     from uplift.fit import Storing
+    from uplift.scene import Reading
 
+    if isinstance(done, Reading):
+        return f"scene: read {done.read} of {done.total} images"
     if isinstance(done, Storing):
         return f"stored {done.stored} of {done.total}"
     return f"round {done.number}: tried {done.tried}, fitted {done.fitted} of {done.total}"
@@ -64,9 +69,13 @@ def _bar() -> Iterator[Watch]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("build", total=None, told="atlas")
 
-        def watch(done: Round | Storing) -> None:
+        def watch(done: Round | Storing | Reading) -> None:
             from uplift.fit import Storing
+            from uplift.scene import Reading
 
+            if isinstance(done, Reading):
+                progress.update(task, total=done.total, completed=done.read, told=_told(done))
+                return
             reached = done.total + done.stored if isinstance(done, Storing) else done.fitted
             progress.update(task, total=2 * done.total, completed=reached, told=_told(done))
 

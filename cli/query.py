@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import click
 
+from uplift.errors import UpliftWarning
+
 from .answers import WRITERS
-from .options import cube_option, force_option, format_option, wavelengths_option
+from .options import cube_option, fill_option, force_option, format_option, wavelengths_option
 from .wavelengths import parse_wavelengths
 
 if TYPE_CHECKING:
@@ -41,6 +44,7 @@ class QueryCommand(click.Command):
     show_default=True,
     help="Interpolate spectra (exact), coefficients (fast), or coefficients and refine them.",
 )
+@fill_option()
 @format_option("table", "json", "csv")
 @click.option("--plot", "plot_path", metavar="PNG", help="Draw the spectra into a picture.")
 @force_option()
@@ -51,6 +55,7 @@ def command(
     codes: bool,
     wavelengths: str | None,
     mode: str,
+    fill: bool,
     style: str,
     plot_path: str | None,
     force: bool,
@@ -75,6 +80,8 @@ def command(
         check_output(plot_path, force=force)
     cube = load(cube_path)
     rgb = _colours(colour, input_path, cube, codes=codes)
+    if fill:
+        cube = _filled(cube, rgb)
     found: Iterable[Answer] = answers(cube, rgb, parse_wavelengths(wavelengths), mode)
     if plot_path is not None:
         from uplift.report.spectra import plot_answers
@@ -82,6 +89,15 @@ def command(
         found = list(found)
         plot_answers(cube, found, plot_path, force=force)
     WRITERS[style](cube, found, bool(colour) and colour != ("-",))
+
+
+def _filled(cube: Cube, rgb: Array) -> Cube:
+    """The cube with what the colours lack; how many they are is said."""
+    outside = int((~cube.holds(rgb)).sum())
+    if outside:
+        told = f"{outside} of {len(rgb)} colours are none of the cube's scene: filled from the package's own cube"
+        warnings.warn(told, UpliftWarning, stacklevel=1)
+    return cube.filled(rgb)
 
 
 def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: bool) -> Array:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .frames import frames
-from .options import cube_option, force_option, wavelengths_option
+from .options import cube_option, encoding_option, fill_option, force_option, wavelengths_option
 from .progress import counting
 from .wavelengths import parse_wavelengths
 
@@ -38,13 +38,8 @@ if TYPE_CHECKING:
     type=click.Choice(("half", "float")),
     help="16 or 32 bits a number. [default: half for spectra, else float]",
 )
-@click.option(
-    "--encoding",
-    type=click.Choice(("auto", "linear", "encoded")),
-    default="auto",
-    show_default=True,
-    help="What colours are in. auto: whole numbers are encoded as the cube's space has it, floats are linear.",
-)
+@encoding_option()
+@fill_option()
 @click.option("--processes", type=click.IntRange(min=1), help="For several images. [default: one a core]")
 @click.option("--scheduler", metavar="ADDRESS", help="Dask cluster to work on; it needs uplift[cluster].")
 @click.option("--resume", is_flag=True, help="Leave out images whose textures are there, newer and whole.")
@@ -58,6 +53,7 @@ def command(
     wavelengths: str | None,
     depth: str | None,
     encoding: str,
+    fill: bool,
     processes: int | None,
     scheduler: str | None,
     resume: bool,
@@ -89,7 +85,7 @@ def command(
     count = processes or min(cores, len(pairs))
     form = _form(kind, parse_wavelengths(wavelengths))
     cube = None if cube_path is None else os.path.abspath(cube_path)
-    recipe = texture.Recipe(cube, form, depth, encoding, max(cores // count, 1))
+    recipe = texture.Recipe(cube, form, depth, encoding, max(cores // count, 1), fill)
     jobs = [texture.Job(recipe, source.absolute(), made.absolute(), force) for source, made in pairs]
     todo = texture.left(jobs, resume=resume)
     texture.ready(recipe)  # what is wrong with the options is said once

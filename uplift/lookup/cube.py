@@ -15,6 +15,7 @@ from uplift.cube import CubeData, read, write
 from uplift.errors import ColourError, OptionError
 from uplift.lattice import Mask
 from uplift.lookup.blocks import Function, blockwise
+from uplift.lookup.fill import filled, lacking
 from uplift.lookup.interpolate import MODES, coefficients, standard_error
 from uplift.lookup.nodes import holds
 from uplift.lookup.question import colours, float_type, floats, thread_count, wavelengths_asked
@@ -91,6 +92,20 @@ class Cube:
         """Whether (…,) linear RGB (…, 3) can be asked: always, but for cubes of a scene. Raises `ColourError`."""
         asked = colours(rgb, self.data.sensor)
         return holds(self.data, asked.reshape(-1, 3)).reshape(asked.shape[:-1])
+
+    def filled(self, rgb: ArrayLike | None = None, other: Cube | None = None, *, threads: int = 1) -> Cube:
+        """A cube of a scene with what linear RGB (…, 3), by default all colours, lack, from another cube.
+
+        ``other``, by default the package's own, gives its spectra at the absent lattice points, in this cube's
+        model and exact in colour. Raises `ColourError`, also where the cubes are not of the same RGB.
+        """
+        asked = None if rgb is None else colours(rgb, self.data.sensor).reshape(-1, 3)
+        points = lacking(self.data, asked)
+        if not points.size:
+            return self
+        return Cube(
+            filled(self.data, points, (load() if other is None else other).data, thread_count(threads))
+        )
 
     def standard_error(self, rgb: ArrayLike) -> Array | None:
         """By how much (…,) answers at linear RGB (…, 3) are expected to miss measurements, a root mean square.

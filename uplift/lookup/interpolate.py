@@ -69,12 +69,17 @@ def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 
 
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
-    """Multipliers (n, C) that start at the interpolated coefficients and evaluate to ``rgb`` (n, 3).
+    """Multipliers (n, C) that start at the interpolated coefficients and evaluate to ``rgb`` (n, 3)."""
+    return towards(data, data.model.from_storage(coefficients(data, rgb)), rgb)
 
-    Where the cell is so coarse that this start is hopeless (the sigmoid near white), they start from grey.
+
+def towards(data: CubeData, start: Array, rgb: Array) -> Array:
+    """Multipliers ``start`` (n, C) moved to ``rgb`` (n, 3) by steps of least change, in place.
+
+    Where a start is hopeless, as the sigmoid's near white in coarse cells, they start from grey.
     """
     ahead = forward(data.model, data.sensor.wavelengths, data.sensor.matrix)
-    multipliers, distance = _descend(data.model, ahead, data.model.from_storage(coefficients(data, rgb)), rgb)
+    multipliers, distance = _descend(data.model, ahead, start, rgb)
     rows = np.flatnonzero(distance > data.threshold)
     if rows.size:
         again, distance_again = _descend(data.model, ahead, np.zeros_like(multipliers[rows]), rgb[rows])

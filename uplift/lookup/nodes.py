@@ -68,7 +68,12 @@ def holds(data: CubeData, rgb: Array) -> Mask:
     """Whether (n,) there are nodes for linear RGB (n, 3) in [0, 1]."""
     if data.complete is None:
         return np.ones(len(rgb), dtype=bool)
-    return data.complete[data.lattice.index(_asked(data, rgb)[0])]
+    return data.complete[cells(data, rgb)]
+
+
+def cells(data: CubeData, rgb: Array) -> Indices:
+    """Numbers (n,) of the cells that the lattice is asked in for linear RGB (n, 3) in [0, 1]."""
+    return data.lattice.index(_asked(data, rgb)[0])
 
 
 def require(held: Mask, rgb: Array) -> None:

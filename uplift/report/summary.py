@@ -20,6 +20,7 @@ def summary(data: CubeData) -> dict[str, Any]:
         "coefficients": data.model.count,
         "dim": data.lattice.dim,
         "points": int(np.count_nonzero(there)),
+        "lattice_points": data.lattice.size,
         "space": data.sensor.space,
         "illuminant": data.sensor.illuminant,
         "observer": data.sensor.observer,

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from uplift.cube import exr
+from uplift.errors import ColourError
 from uplift.lookup import Cube
 from uplift.texture.colours import Counts, Floats
 from uplift.texture.plan import Plan, plans
@@ -48,12 +49,18 @@ def convert(
     force: bool = False,
     watch: Watch = lambda done, total: None,
 ) -> Conversion:
-    """Write the texture of an image, atomically. Raises `TextureError`, `OutputError`."""
+    """Write the texture of an image, atomically.
+
+    Raises `TextureError`, `OutputError`, and `ColourError` for colours that a cube of a scene has no points for.
+    """
     begin = time.perf_counter()
     with opened(source) as image:
         planned = plans(uplifter, image)
-        with writing(target, [plan.layout for plan in planned], force=force) as writer:
-            counts = _write(uplifter, image, planned, writer, watch)
+        try:
+            with writing(target, [plan.layout for plan in planned], force=force) as writer:
+                counts = _write(uplifter, image, planned, writer, watch)
+        except ColourError as error:
+            raise ColourError(error.problem, path=source, remedy=error.remedy) from error
     remarks = (*counts.remarks(), *_strange(uplifter.cube, image))
     return Conversion(Path(source), Path(target), counts, remarks, time.perf_counter() - begin)
 

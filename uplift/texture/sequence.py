@@ -23,13 +23,17 @@ from uplift.texture.uplifter import Uplifter, prepare
 
 @dataclass(frozen=True)
 class Recipe:
-    """What all images of a sequence are made with: parameters of `load` and of `prepare`, small to send."""
+    """What all images of a sequence are made with: parameters of `load` and of `prepare`, small to send.
+
+    ``fill`` is whether colours outside the scene that the cube was built for are filled in (`Cube.filled`).
+    """
 
     cube: str | None
     form: Form
     depth: str | None
     encoding: str
     threads: int
+    fill: bool = False
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,8 @@ class Failure:
 def ready(recipe: Recipe) -> Uplifter:
     """The uplifter of a recipe, once a process."""
     cube = load(recipe.cube)
+    if recipe.fill:
+        cube = cube.filled(threads=recipe.threads)
     return prepare(cube, recipe.form, depth=recipe.depth, encoding=recipe.encoding, threads=recipe.threads)
 
 

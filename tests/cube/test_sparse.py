@@ -1,0 +1,135 @@
+"""Files of sparse cubes: only what is present is stored, and what cannot be put in place is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.sparse_cubes import dark, robbed
+from uplift.cube import digest, read, write, write_sheet, write_slices
+from uplift.cube.checks import POINT_TYPES
+from uplift.cube.panels import BACKGROUND, panels
+from uplift.cube.slices import channels
+from uplift.errors import CubeFileError
+from uplift.lattice import Lattice, Status
+
+from .cube_files import forge
+from .hand_made import hand_made
+
+
+@pytest.fixture
+def data():
+    whole = hand_made(6)
+    return robbed(whole, dark(whole))
+
+
+def test_it_comes_back_bit_by_bit_and_takes_no_more_than_it_must(data, tmp_path):
+    write(data, tmp_path / "part.uplift")
+    write(hand_made(6), tmp_path / "whole.uplift")
+    back = read(tmp_path / "part.uplift")
+    for name in POINT_TYPES:
+        np.testing.assert_array_equal(getattr(back, name), getattr(data, name), err_msg=name)
+    assert digest(back) == digest(data)
+    row = sum(np.asarray(getattr(data, name)[0]).nbytes for name in POINT_TYPES)
+    saved = [(tmp_path / f"{name}.uplift").stat().st_size for name in ("whole", "part")]
+    assert saved[0] - saved[1] == pytest.approx((6**3 - 8) * row, abs=200)
+
+
+def test_points_of_cells_and_cells_of_points():
+    lattice, cells = Lattice(np.linspace(0, 1, 4)), np.zeros(64, dtype=bool)
+    cells[lattice.index(np.array([[0, 1, 2], [2, 2, 2]]))] = True
+    points = lattice.corners_of(cells)
+    assert points.sum() == 16
+    np.testing.assert_array_equal(lattice.cells_of(points), cells)
+    assert lattice.cells_of(np.ones(64, dtype=bool)).sum() == 27
+
+
+def unsorted(tensors, metadata):
+    tensors["points"] = tensors["points"][::-1].copy()
+
+
+def twice(tensors, metadata):
+    tensors["points"] = tensors["points"].copy()
+    tensors["points"][1] = tensors["points"][0]
+
+
+def beyond(tensors, metadata):
+    tensors["points"] = tensors["points"].copy()
+    tensors["points"][-1] = 6**3
+
+
+def signed(tensors, metadata):
+    tensors["points"] = tensors["points"].astype(np.int32)
+
+
+def shorter(tensors, metadata):
+    tensors["rgb"] = tensors["rgb"][:-1]
+
+
+def without_points(tensors, metadata):
+    del tensors["points"]
+
+
+def stored_as_absent(tensors, metadata):
+    tensors["status"] = np.full_like(tensors["status"], Status.ABSENT)
+
+
+def not_told(tensors, metadata):
+    metadata["features"].remove("sparse")
+
+
+def without_a_cell(tensors, metadata):
+    for name in (*POINT_TYPES, "points"):
+        tensors[name] = tensors[name][:-1]
+
+
+def huge(tensors, metadata):
+    tensors["nodes"] = np.linspace(0, 1, 600)
+    metadata["dim"] = 600
+
+
+@pytest.mark.parametrize(
+    ("change", "law"),
+    [
+        (unsorted, "points ascend"),
+        (twice, "points ascend"),
+        (beyond, "points ascend"),
+        (signed, "points ascend"),
+        (huge, "points ascend"),
+        (shorter, "every point has its rgb"),
+        (without_points, "points"),
+        (stored_as_absent, "absent points are those that are not stored"),
+        (not_told, "coefficients has its shape"),
+        (without_a_cell, "a cell has all its corners"),
+    ],
+)
+def test_forged_files_are_refused(data, tmp_path, change, law):
+    with pytest.raises(CubeFileError, match=f"is not a complete cube.*{law}"):
+        read(forge(data, tmp_path / "forged.uplift", change))
+
+
+def test_a_whole_file_cannot_call_points_absent(tmp_path):
+    def change(tensors, metadata):
+        tensors["status"] = tensors["status"].copy()
+        tensors["status"][5] = Status.ABSENT
+
+    with pytest.raises(CubeFileError, match="absent points are those that are not stored"):
+        read(forge(hand_made(), tmp_path / "forged.uplift", change))
+
+
+def test_an_unforged_one_is_not(data, tmp_path):
+    assert not read(forge(data, tmp_path / "true.uplift", lambda *_: None)).present.all()
+
+
+def test_absent_points_are_background_on_sheets_and_nothing_in_slices(data, tmp_path):
+    for panel in panels(data):
+        assert (panel.colours[~data.present] == np.float32(BACKGROUND)).all() or np.allclose(
+            panel.colours[~data.present], BACKGROUND
+        )
+        assert not np.allclose(panel.colours[data.present], BACKGROUND)
+    for name, values in channels(data).items():
+        if not name.startswith("target"):
+            expected = {"status": Status.ABSENT, "entry": -1, "round": -1}.get(name, 0)
+            assert (np.asarray(values)[~data.present] == expected).all(), name
+    write_slices(data, tmp_path / "slices.exr")
+    write_sheet(data, tmp_path / "sheet.png")

@@ -1,0 +1,76 @@
+"""What a cube of a scene lacks, from another cube: exact in colour, whatever the model."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.sparse_cubes import dark, robbed
+from uplift.errors import ColourError
+from uplift.lookup import MODES, Cube
+
+RGB = np.random.default_rng(8).random((400, 3))
+
+
+@pytest.fixture(params=["small_cube", "plain_cube", "small_sigmoid_cube"])
+def whole(request):
+    return request.getfixturevalue(request.param)
+
+
+@pytest.fixture
+def sparse(whole):
+    return Cube(robbed(whole.data, dark(whole.data)))
+
+
+def test_colours_come_back_and_what_was_there_stays(whole, sparse):
+    full = sparse.filled()
+    data, there = full.data, sparse.data.present
+    assert data.present.all()
+    assert data.distance.max() <= data.threshold
+    np.testing.assert_allclose(full.data.sensor.rgb(full.reflectance(RGB)), RGB, rtol=0, atol=1e-4)
+    np.testing.assert_array_equal(data.coefficients[there], whole.data.coefficients[there])
+    np.testing.assert_array_equal(data.status[there], whole.data.status[there])
+
+
+def test_the_spectra_are_those_of_the_package_s_own_cube(plain_cube):
+    """At lattice points, of the same model; single precision takes its share."""
+    own, full = uplift.load(), Cube(robbed(plain_cube.data, dark(plain_cube.data))).filled()
+    points = full.data.lattice.points[~dark(plain_cube.data)]
+    np.testing.assert_allclose(full.reflectance(points), own.reflectance(points, mode="refined"), atol=1e-5)
+
+
+def test_only_what_the_colours_lack_is_filled(sparse):
+    asked = RGB[~sparse.holds(RGB)][:1]
+    some = sparse.filled(asked)
+    assert some.holds(asked).all()
+    assert 0 < some.data.present.sum() - sparse.data.present.sum() <= 8
+    for mode in MODES:
+        np.testing.assert_allclose(
+            some.reflectance(asked, mode=mode), sparse.filled().reflectance(asked, mode=mode), atol=1e-6
+        )
+
+
+def test_errors_at_filled_points_are_the_largest_of_the_cube(small_cube):
+    sparse = Cube(robbed(small_cube.data, dark(small_cube.data)))
+    assert sparse.filled().standard_error([1, 1, 1]) == pytest.approx(sparse.data.standard_error.max())
+
+
+def test_a_whole_cube_has_nothing_to_fill(small_cube):
+    assert small_cube.filled() is small_cube
+    assert small_cube.filled(RGB) is small_cube
+
+
+def test_other_colours_are_refused(plain_cube):
+    wide = replace(plain_cube.data, sensor=replace(plain_cube.data.sensor, space="ITU-R BT.2020"))
+    with pytest.raises(ColourError, match=r"BT.2020 under D65.* cannot be filled from one in sRGB under D65"):
+        Cube(robbed(wide, dark(wide))).filled()
+
+
+def test_another_cube_may_be_named_and_may_lack_the_colour_too(plain_cube, small_cube):
+    sparse = Cube(robbed(plain_cube.data, dark(plain_cube.data)))
+    assert sparse.filled([1, 1, 1], small_cube).holds([1, 1, 1])
+    with pytest.raises(ColourError, match="none of them"):
+        sparse.filled([1, 1, 1], sparse)
