@@ -44,11 +44,10 @@ def attack(target: Target, seed: int, inputs: range, folder: Path, kept: Path) -
     """Try inputs ``inputs`` of a target in ``folder``; of each kind of failure the first is ``kept``."""
     tally, path = Tally(target.name), folder / "input"
     _limit_memory()
-    with _alarm(), warnings.catch_warnings():
-        warnings.simplefilter("error")  # a NumPy warning is the trace of a number that should not have passed
-        warnings.simplefilter("ignore", UpliftWarning)
+    with _alarm():
         for number in inputs:
-            target.write(np.random.default_rng([seed, number]), path)
+            with warnings.catch_warnings(action="ignore"):
+                target.write(np.random.default_rng([seed, number]), path)
             tally.inputs += 1
             failure = _try(target, path, tally)
             if failure:
@@ -64,7 +63,10 @@ def _try(target: Target, path: Path, tally: Tally) -> str:
     """What went wrong, empty if nothing did."""
     signal.setitimer(signal.ITIMER_REAL, SECONDS)
     try:
-        target.use(path)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # numpy warns of numbers that should not have passed
+            warnings.simplefilter("ignore", UpliftWarning)
+            target.use(path)
         tally.taken += 1
     except UpliftError as error:
         tally.refused += 1

@@ -144,7 +144,8 @@ def no_permission(count: int, random: np.random.Generator, folder: Path) -> Tall
 
 def _save(path: Path, cube: Path, before: str = "") -> subprocess.CompletedProcess[str]:
     """Save a cube in a process of its own, which runs ``before`` first."""
-    code = f"import os, resource, sys, uplift\ncube = uplift.load(sys.argv[2])\n{before}\ncube.save(sys.argv[1], force=True)"
+    code = f"import os, resource, sys, uplift\ncube = uplift.load(sys.argv[2])\n{before}\n"
+    code += "cube.save(sys.argv[1], force=True)"
     return subprocess.run(
         [sys.executable, "-c", code, path, cube], capture_output=True, text=True, cwd=ROOT, check=False
     )

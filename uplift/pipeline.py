@@ -34,7 +34,7 @@ Atlas = Spectra | str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | No
 
 @contextmanager
 def _one_blas_thread() -> Iterator[None]:
-    """Sums that threads share are rounded by how many there are; XLA's are not (docs/mathematics.md, 7)."""
+    """The same bytes whatever the threads: sums that BLAS shares out are rounded by how many there are, XLA's not."""
     import scipy.linalg  # noqa: F401  it brings a BLAS of its own, and only what is there can be told
     from threadpoolctl import threadpool_limits
 

@@ -430,3 +430,38 @@ def test_the_cubes_of_the_project_are_read(repository):
     for path in cubes:
         write_again = digest(read(path))
         assert f'\\"digest\\":\\"{write_again}\\"'.encode() in path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "law"),
+    [
+        ("sensor.power", lambda array: 0 * array, "the perfect reflector is white"),
+        ("sensor.cmfs", lambda array: 2 * array[::-1], "the perfect reflector is white"),
+        ("sensor.xyz_to_rgb", lambda array: array[[0, 0, 0]], "the RGB space has three primaries"),
+        ("sensor.decoding", lambda array: array[::-1], "larger codes are lighter"),
+        ("sensor.cmfs", lambda array: array.astype(np.float16), "the sensor's cmfs has its shape"),
+        (
+            "atlas.coefficients",
+            lambda array: array.astype(np.complex64),
+            "every entry's coefficients has its shape",
+        ),
+        ("atlas.rgb", lambda array: array + 1, "every entry lies within the space"),
+        ("coefficients", lambda array: 1e300 * array, "every number is finite"),
+    ],
+)
+def test_forged_arrays_that_no_lookup_can_use_are_refused(data, tmp_path, name, change, law):
+    def forged(tensors, metadata):
+        tensors[name] = change(tensors[name])
+
+    assert f"it does not hold that {law}" in refused(forge(data, tmp_path / "cube", forged))
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), [float("-inf")]])
+def test_what_is_no_number_in_the_provenance_is_refused(data, tmp_path, value):
+    path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata["provenance"].update(a=value))
+    assert "is no number" in refused(path)
+
+
+def test_whole_numbers_without_end_are_refused(data, tmp_path):
+    path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(threshold=10**400))
+    assert "is not a complete cube (OverflowError" in refused(path)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,10 +59,12 @@ class Prior:
 
 
 def learn(problem: Problem, sensor: Sensor, entries: Entries, light: Light) -> Prior:
-    """Learn from the atlas; errors are ΔE00 under ``light``."""
+    """Learn from the atlas; errors are ΔE00 under ``light``. Sums round alike in whatever order the entries come."""
     plain = smooth(problem.model, problem.forward, beyond=unrealisable(TABLE, sensor, MARGIN))
     if not len(entries.rgb):
         return Prior(sensor, plain)
+    order = np.lexsort(entries.rgb.T)
+    entries = Entries(*(getattr(entries, key.name)[order] for key in fields(Entries)))
     places = rgb_lab(sensor, entries.rgb)
     kriging, without = krige(places, entries.multipliers - plain(entries.rgb))
     if len(entries.rgb) < FEWEST:
