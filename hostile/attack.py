@@ -20,7 +20,7 @@ from hostile.target import Target
 from uplift.errors import UpliftError, UpliftWarning
 
 SECONDS = 5.0
-"""An input that takes longer hangs: the honest ones take milliseconds."""
+"""Of the processor: an input that takes longer hangs, honest ones take milliseconds. Other processes do not count."""
 MEGABYTES = 1024
 """Address space that inputs may take beside what the process has."""
 
@@ -61,7 +61,7 @@ def attack(target: Target, seed: int, inputs: range, folder: Path, kept: Path) -
 
 def _try(target: Target, path: Path, tally: Tally) -> str:
     """What went wrong, empty if nothing did."""
-    signal.setitimer(signal.ITIMER_REAL, SECONDS)
+    signal.setitimer(signal.ITIMER_PROF, SECONDS)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")  # numpy warns of numbers that should not have passed
@@ -78,7 +78,7 @@ def _try(target: Target, path: Path, tally: Tally) -> str:
         frame = traceback.extract_tb(error.__traceback__)[-1]
         return f"{type(error).__name__} in {Path(frame.filename).name}, {frame.name}: {str(error)[:80]}"
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.setitimer(signal.ITIMER_PROF, 0)
     return ""
 
 
@@ -87,11 +87,11 @@ def _alarm() -> Iterator[None]:
     def ring(number: int, frame: FrameType | None) -> None:
         raise HangError(f"more than {SECONDS:g} s")
 
-    before = signal.signal(signal.SIGALRM, ring)
+    before = signal.signal(signal.SIGPROF, ring)
     try:
         yield
     finally:
-        signal.signal(signal.SIGALRM, before)
+        signal.signal(signal.SIGPROF, before)
 
 
 def _limit_memory() -> None:

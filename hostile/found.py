@@ -40,6 +40,18 @@ FOUND = (
         "now": "refused",
     },
     {
+        "target": "cube, right digest",
+        "input": "multipliers of a sigmoid of 1e12, asked in mode refined",
+        "was": "overflow in a step that was taken",
+        "now": "steps beyond multipliers of 1e9 are turned down, as in the fit",
+    },
+    {
+        "target": "atlas text",
+        "input": "an increment of inf",
+        "was": "a warning of numpy before the error",
+        "now": "refused, and nothing else said",
+    },
+    {
         "target": "SIGKILL while saving",
         "input": "a writer killed while it writes",
         "was": "its half-written hidden file stayed for ever",
