@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study munsell atlases cubes lock clean
+.PHONY: build test bench peers accuracy study nightly determinism munsell atlases cubes lock clean
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -36,6 +36,14 @@ accuracy: $(INSTALLED)
 study: $(INSTALLED)
 	$(BIN)/python -m benchmarks.study
 	$(BIN)/python -m benchmarks.fidelity
+
+# Hostile input, a hundred thousand of each kind, and writers killed at random: docs/stability-hostile.json.
+nightly: $(INSTALLED)
+	$(BIN)/python -m hostile
+
+# The same bytes whatever the threads, and how far instruction sets take them apart: docs/stability-determinism.json.
+determinism: $(INSTALLED)
+	$(BIN)/python -m benchmarks.determinism
 
 # 1,269 chips of the Munsell book, for `make study`: measurements that are not ours to pass on.
 munsell: $(INSTALLED)

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.cube.checks import ATLAS_ARRAYS, POINT_TYPES, SENSOR_ARRAYS, check
 from uplift.cube.data import AtlasTable, CubeData
 from uplift.errors import CubeFileError, UpliftError
 from uplift.files import replacing
-from uplift.lattice import Lattice, Status
+from uplift.lattice import Lattice
 from uplift.models import from_description
 from uplift.sensor import Sensor
 
@@ -25,20 +26,8 @@ KEY = "uplift"
 """The one metadata entry: safetensors does not keep several in a fixed order."""
 
 Tensors = dict[str, NDArray[Any]]
-
-SENSOR_ARRAYS = ("wavelengths", "cmfs", "power", "xyz_to_rgb", "decoding")
-POINT_TYPES: dict[str, tuple[str, ...]] = {
-    "coefficients": ("float32", "float64"),
-    "rgb": ("float32",),
-    "distance": ("float32",),
-    "status": ("uint8",),
-    "entry": ("int32",),
-    "round": ("int16",),
-    "standard_error": ("float32",),
-}
 FEATURES = {"debug": "round", "errors": "standard_error"}
 """Arrays that a cube may have or not, by the feature that says so."""
-ATLAS_ARRAYS = ("rgb", "coefficients", "reach", "error")
 
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -72,8 +61,8 @@ def read(path: str | os.PathLike[str]) -> CubeData:
         raise _broken(path, "is damaged: the content does not match its digest")
     try:
         data = _data(tensors, metadata)
-        _check(data)
-    except (AttributeError, KeyError, TypeError, ValueError, UpliftError) as error:
+        check(data)
+    except (AttributeError, KeyError, OverflowError, TypeError, ValueError, UpliftError) as error:
         raise _broken(path, f"is not a complete cube ({type(error).__name__}: {error})") from error
     return data
 
@@ -90,13 +79,17 @@ def _load(path: Path) -> tuple[Tensors, dict[str, Any]]:
         raise CubeFileError("no such file", path=path, remedy="'uplift build' makes cubes")
     try:
         with safe_open(path, framework="numpy") as file:
-            metadata = json.loads((file.metadata() or {}).get(KEY, "{}"))
+            metadata = json.loads((file.metadata() or {}).get(KEY, "{}"), parse_constant=_no_number)
             tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
     except (SafetensorError, ValueError, TypeError, OSError, RecursionError) as error:
         raise _broken(path, f"is not a cube file, or is cut short ({error})") from error
     if not isinstance(metadata, dict):
         raise _broken(path, "is a safetensors file, but no uplift cube")
     return tensors, metadata
+
+
+def _no_number(text: str) -> None:
+    raise ValueError(f"{text} is no number")
 
 
 def _broken(path: Path, problem: str) -> CubeFileError:
@@ -165,43 +158,3 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
         provenance=metadata["provenance"],
         **points,
     )
-
-
-def _check(data: CubeData) -> None:
-    """Shapes, types and ranges that a lookup relies on."""
-    points, count, samples = data.lattice.size, data.model.count, len(data.sensor.wavelengths)
-    entries = len(data.atlas.names)
-    shapes = {"coefficients": (points, count), "rgb": (points, 3)}
-    for name, kinds in POINT_TYPES.items():
-        array = getattr(data, name)
-        fits = array is None or (array.shape == shapes.get(name, (points,)) and array.dtype.name in kinds)
-        _require(fits, f"{name} has its shape")
-    sensor_shapes = ((samples,), (samples, 3), (samples,), (3, 3), (256,))
-    for name, shape in zip(SENSOR_ARRAYS, sensor_shapes, strict=True):
-        _require(getattr(data.sensor, name).shape == shape, f"the sensor's {name} has its shape")
-    atlas_shapes = ((entries, 3), (entries, count), (entries,), (entries,))
-    for name, shape in zip(ATLAS_ARRAYS, atlas_shapes, strict=True):
-        _require(getattr(data.atlas, name).shape == shape, f"every entry has its {name}")
-    sensor_names = (data.sensor.space, data.sensor.illuminant, data.sensor.observer)
-    texts = (*data.atlas.names, *sensor_names, data.reference)
-    _require(all(isinstance(text, str) for text in texts), "every name is a text")
-    _require(isinstance(data.provenance, dict), "the provenance is a table")
-    floats: list[Any] = [data.coefficients, data.rgb, data.distance]
-    floats += [] if data.standard_error is None else [data.standard_error]
-    floats += [getattr(data.atlas, name) for name in ATLAS_ARRAYS]
-    floats += [getattr(data.sensor, name) for name in SENSOR_ARRAYS]
-    _require(all(np.isfinite(array).all() for array in floats), "every number is finite")
-    with np.errstate(all="ignore"):
-        basis = data.model.basis(data.sensor.wavelengths)
-    _require(basis.shape == (samples, count) and bool(np.isfinite(basis).all()), "the model has a range")
-    _require(tuple(data.lattice.nodes[[0, -1]]) == (0, 1), "the lattice runs from 0 to 1")
-    _require(0 < data.threshold < np.inf, "the threshold is a positive number")
-    _require(bool((data.status < len(Status)).all()), "every status is known")
-    reaches = bool(((data.atlas.reach >= 0) & (data.atlas.reach <= 1)).all())
-    _require(reaches, "no entry reaches further than a step")
-    _require(bool(((data.entry >= -1) & (data.entry < entries)).all()), "every entry is in the atlas table")
-
-
-def _require(holds: bool, law: str) -> None:
-    if not holds:
-        raise ValueError(f"it does not hold that {law}")
