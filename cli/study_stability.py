@@ -49,6 +49,7 @@ def _numbers(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
     multiple=True,
     help=f"Atlas beside the made ones; may be repeated. [default: {MACBETH}, if it is here]",
 )
+@click.option("--atlases", callback=_numbers(str), metavar="NAME,…", help="Of all these: none, or by name.")
 @click.option("--drawn", type=int, help="Settings drawn from all combinations, beside the grids.")
 @click.option("--peer-dims", callback=_numbers(int), metavar="N,…", help="Lattices of scipy's solver.")
 @click.option("-o", "--output", metavar="DIR", help="Folder to write the tables and the heat map to.")

@@ -93,8 +93,15 @@ def study(
     """Run every setting; ``watch`` hears how many of how many are done.
 
     In the order of models, so that what JAX compiles for one is all used before the next.
+
+    Raises
+    ------
+    UpliftError : an atlas that is not there, before any work; a setting that cannot be built.
     """
     ordered = sorted(set(settings))
+    for setting in ordered:
+        if setting.atlas not in (NO_ATLAS, *atlases):
+            raise observer.suggest(setting.atlas, (NO_ATLAS, *atlases), "atlas")
     outcomes = []
     for number, setting in enumerate(ordered, 1):
         outcomes.append(run(setting, atlases))

@@ -37,8 +37,8 @@ class Axes:
     models: tuple[str, ...] = MODELS
     thresholds: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
     atlases: tuple[str, ...] = (NO_ATLAS, *MADE)
-    drawn: int = 24
-    peer_dims: tuple[int, ...] = (5, 9)
+    drawn: int = 16
+    peer_dims: tuple[int, ...] = (4,)
 
     def __post_init__(self) -> None:
         for name in ("dims", "coefficients", "spaces", "models", "thresholds", "atlases"):
