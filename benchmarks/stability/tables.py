@@ -24,7 +24,9 @@ def summary(rows: Sequence[Row], cubes: Mapping[str, Any], constrained: str) -> 
     loose = [row for row in ours if row["threshold"] >= THRESHOLD]
     strict = [row for row in ours if row["threshold"] < THRESHOLD]
     peers = [row for row in rows if row["solver"] == IN_MOMENTS]
-    unfitted = "keep the nearest spectrum found, are called *unfitted* in the cube, and `uplift build` counts them"
+    unfitted = (
+        "keep the nearest spectrum found, are called *unfitted* in the cube, and `uplift build` counts them"
+    )
     lines = [
         ["five RGB spaces, 17³, both models, threshold 1e-4", *_tried(five), "every one is fitted"],
         ["failure map, thresholds 1e-2 to 1e-4", *_tried(loose), unfitted],
@@ -50,7 +52,9 @@ def _tried(rows: Sequence[Row]) -> list[str]:
 
 def _sensitive(cubes: Mapping[str, Any], constrained: str) -> list[list[str]]:
     count = len(cubes) * 3
-    most = max(move["light_most"] for cube in cubes.values() for move in cube["moves"] if move["step"] == "1e-7")
+    most = max(
+        move["light_most"] for cube in cubes.values() for move in cube["moves"] if move["step"] == "1e-7"
+    )
     changes = cubes[constrained]["changes"]
     alone = [one for one in changes if one["rgb_radius"] is not None]
     far = max(one["lab_radius"] for one in alone)
@@ -166,7 +170,9 @@ def moves(cubes: Mapping[str, Any], shown: Sequence[str]) -> str:
     lines = []
     for name in shown:
         for move in cubes[name]["moves"]:
-            rest = [f"{move[f'{what}_mean']:.1e} / {move[f'{what}_most']:.1e}" for what in ("rms", "light", "own")]
+            rest = [
+                f"{move[f'{what}_mean']:.1e} / {move[f'{what}_most']:.1e}" for what in ("rms", "light", "own")
+            ]
             lines.append([name, move["mode"], move["step"], *rest])
     return table(
         "Queries moved",
@@ -245,7 +251,16 @@ def changes(record: Mapping[str, Any], name: str) -> str:
         f"{name} built anew, lattice points before and after: the share that moves by more than ΔE00 {MOVED:g} under "
         f"{LIGHT}, mean and most over the builds; how far from the entry the farthest of them lies; the largest move; "
         "the largest mean rms change.",
-        ["change", "builds", "moved", "most moved", "RGB radius", "ΔE\\*ab radius", "largest ΔE00", "mean rms"],
+        [
+            "change",
+            "builds",
+            "moved",
+            "most moved",
+            "RGB radius",
+            "ΔE\\*ab radius",
+            "largest ΔE00",
+            "mean rms",
+        ],
         lines,
     )
 

@@ -99,7 +99,9 @@ def test_a_face_is_the_same_from_both_of_its_cells(small_cube, axis):
 
     below, above = fraction.copy(), fraction.copy()
     below[:, axis], above[:, axis] = 1, 0
-    np.testing.assert_allclose(answer(low, below), answer(low + np.eye(3, dtype=int)[axis], above), atol=1e-15)
+    np.testing.assert_allclose(
+        answer(low, below), answer(low + np.eye(3, dtype=int)[axis], above), atol=1e-15
+    )
 
 
 def test_the_face_of_a_box_is_the_same_from_both_sides(small_cube, steep):
