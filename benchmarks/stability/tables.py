@@ -10,7 +10,7 @@ from uplift.study.locality import MOVED, NOISE
 from uplift.study.pointwise import EVALUATIONS, IN_MOMENTS, IN_MULTIPLIERS
 from uplift.study.sensitivity import LIGHT
 from uplift.study.stability import NO_ATLAS, OURS
-from uplift.study.stability_design import SPACES
+from uplift.study.stability_design import COMPARED, SPACES
 
 Row = Mapping[str, Any]
 DIM, THRESHOLD = 17, 1e-4
@@ -103,11 +103,11 @@ def five_spaces(rows: Sequence[Row]) -> str:
 
 def peers(rows: Sequence[Row]) -> str:
     dims = {row["dim"] for row in rows if row["solver"] != OURS}
-    chosen = [row for row in rows if row["dim"] in dims and row["coefficients"] in (3, 5, 9)]
+    chosen = [row for row in rows if row["dim"] in dims and row["coefficients"] in COMPARED]
     lines = []
     for dim in sorted(dims):
         for solver in SAID:
-            for count in (3, 5, 9):
+            for count in COMPARED:
                 for row in chosen:
                     key = (row["dim"], row["solver"], row["coefficients"], row["model"], row["space"])
                     plain = (row["threshold"], row["atlas"]) == (THRESHOLD, NO_ATLAS)
@@ -204,9 +204,9 @@ def lipschitz(cubes: Mapping[str, Any]) -> str:
         )
     return table(
         "How steep a cube is",
-        "The Lipschitz constant of mode `spectra`: rms change of reflectance per unit of linear RGB (Euclidean), of the "
-        "whole cube, of the middle cell, of the steepest box of an entry; the lowest corner of the steepest cell, the "
-        "wavelength that changes fastest anywhere; and per 8-bit code, most and middle of the cells.",
+        "The Lipschitz constant of mode `spectra`: rms change of reflectance per unit of linear RGB (Euclidean), of "
+        "the whole cube, of the middle cell, of the steepest box of an entry; the lowest corner of the steepest "
+        "cell, the wavelength that changes fastest anywhere; and per 8-bit code, most and middle of the cells.",
         [
             "cube",
             "Lipschitz",

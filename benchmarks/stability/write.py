@@ -45,6 +45,29 @@ The steepest cell along each channel, and the steepest wavelengths, of `{plain}`
 Each entry of the ColorChecker left out of `{constrained}`, one at a time.
 """
 
+SEEN = """- *The defaults fail nowhere*: at the threshold of 1e-4 every realisable point of five spaces is fitted, with
+  every model and count of coefficients, dim and atlas that was tried.
+- *Ten and a hundred times stricter, wide spaces fail*: colours that only spectra between 0 and 1 by steps have,
+  near the boundary of the object-colour solid, are reached slowly, in multipliers as in anything else. sRGB has
+  none of them.
+- *Multipliers are what makes it easy*: least squares on the moments themselves, as in the thesis, leave more
+  points the more coefficients there are, white and black first: near the boundary of the moments of reflectances
+  there is no room to take a difference in. The same solver in multipliers leaves one or two, for want of steps
+  alone.
+- *Answers move as the questions do*: by a code of 8 bits or by rounding, ΔE00 under FL11 is within a tenth of that
+  under the build light, in the mean and at most. No mode is worse than another.
+- *A cube is steepest where it is dark and saturated*, where a small step of RGB takes the spectrum from one
+  colour to another, and at the ends of the spectrum, where the eye hardly sees what changes: with moments some
+  ten times the middle cell, with the sigmoid, whose darkest reds and magentas rise to nearly 1 at the ends, a
+  hundred times, and the more the nearer the first node is to black. A code is a small step there: per code it is
+  some hundredths at most.
+- *A changed entry is felt nearby alone*: what leaving one out does falls by a decade every 12 to 14 ΔE\\*ab, as
+  the correlation of the prior does, exp(−ΔE\\*ab / 6).
+- *Two changes are not smooth.* A lattice point that two entries are about as near to goes to one or the other,
+  and noise decides. And the fit of a dark entry has minima of about the same depth but other multipliers, large
+  ones, which the prior hands on to the whole lattice: the third draw of noise finds one. It changes the ends of
+  spectra, and colours little."""
+
 
 def main() -> None:
     rows, figures = read_map(), json.loads(FIGURES.read_text(encoding="utf-8"))
@@ -88,8 +111,6 @@ def _section(part: Mapping[str, Any]) -> str:
 def _cells(rows: Iterable[Iterable[Any]]) -> list[list[str]]:
     return [[f"{cell:.3g}" if isinstance(cell, float) else str(cell) for cell in row] for row in rows]
 
-
-SEEN = "TO BE SEEN"
 
 if __name__ == "__main__":
     main()

@@ -94,7 +94,7 @@ def test_multipliers_reach_where_moments_stop():
 @pytest.mark.parametrize("unknowns", [IN_MOMENTS, IN_MULTIPLIERS])
 def test_differences_are_the_derivative(unknowns):
     task = Pointwise(Moments(5), observer.sensor(), unknowns)
-    x, rgb = task.grey + [0.01, -0.02, 0.03, 0.01, 0], np.full(3, 0.4)
+    x, rgb = task.grey + np.array([0.01, -0.02, 0.03, 0.01, 0]), np.full(3, 0.4)
     found = task.differences(x, rgb)
     for row, way in enumerate(np.eye(5)):
         ahead, behind = task.miss(x + 1e-4 * way, rgb), task.miss(x - 1e-4 * way, rgb)

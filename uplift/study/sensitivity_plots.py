@@ -16,7 +16,7 @@ from uplift.study.steepness import Steepness
 Path = str | os.PathLike[str]
 CHANNELS = ("red", "green", "blue")
 RAMP = ("#eef5f8", "#a9cfe3", "#5a9fcb", "#20609a", "#0b1d51")
-LINE, LOUD = "#1f6fb4", "#ff5a00"
+LINE, LOUD, INK = "#1f6fb4", "#ff5a00", "#111111"
 SHOWN = 1e-4
 """Least ΔE00 that is drawn."""
 
@@ -73,6 +73,7 @@ def _scatter(axes: Any, apart: Sequence[Any], changes: Sequence[Change]) -> None
     distance = np.concatenate(apart)
     moved = np.maximum(np.concatenate([change.delta_e for change in changes]), SHOWN)
     shown = moved > SHOWN
+    far, high = float(distance[shown].max(initial=0.1)), max(float(moved.max()), 2 * MOVED)
     axes.hexbin(
         distance[shown],
         moved[shown],
@@ -82,20 +83,20 @@ def _scatter(axes: Any, apart: Sequence[Any], changes: Sequence[Change]) -> None
         cmap="Blues",
         linewidths=0,
         mincnt=1,
-        extent=(0, float(distance.max()), np.log10(SHOWN), np.log10(max(float(moved.max()), 2 * MOVED))),
+        extent=(0, far, np.log10(SHOWN), np.log10(high)),
     )
-    edges = np.linspace(0, distance.max(), 41)
+    edges = np.linspace(0, far, 41)
     place = np.digitize(distance, edges[1:-1])
     held = [bin for bin in range(40) if (place == bin).any()]
     middle = (edges[1:] + edges[:-1])[held] / 2
     axes.plot(middle, [moved[place == bin].max() for bin in held], color=LOUD, linewidth=1.6, label="most")
     axes.plot(
-        middle, [np.median(moved[place == bin]) for bin in held], color=LINE, linewidth=1.6, label="median"
+        middle, [np.median(moved[place == bin]) for bin in held], color=INK, linewidth=1.6, label="median"
     )
     axes.axhline(MOVED, color="0.4", linewidth=0.8, linestyle=(0, (4, 3)))
     axes.annotate(
         f"ΔE00 {MOVED:g}", (1, MOVED), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8
     )
     axes.yaxis.set_major_formatter("{x:g}")
-    axes.set_xlim(0, 1.05 * distance[shown].max(initial=0.1))
+    axes.set_xlim(0, 1.05 * far)
     plain(axes)
