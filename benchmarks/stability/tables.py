@@ -31,6 +31,7 @@ def summary(rows: Sequence[Row], cubes: Mapping[str, Any], constrained: str) -> 
         ["five RGB spaces, 17³, both models, threshold 1e-4", *_tried(five), "every one is fitted"],
         ["failure map, thresholds 1e-2 to 1e-4", *_tried(loose), unfitted],
         ["failure map, thresholds 1e-5 and 1e-6", *_tried(strict), unfitted],
+        ["stand-ins of unrealisable points, the same", *_stand_ins(strict), "the same: called *unfitted*"],
         ["the thesis's solver, sRGB", *_tried(peers), "not used: for comparison alone"],
         *_sensitive(cubes, constrained),
     ]
@@ -48,6 +49,13 @@ def _tried(rows: Sequence[Row]) -> list[str]:
     points = f"{len(rows)} builds, {sum(row['realisable'] for row in rows):,} points"
     found = sum(row["unfitted"] for row in rows)
     return [points, f"{found} points in {failed} builds" if found else "none"]
+
+
+def _stand_ins(rows: Sequence[Row]) -> list[str]:
+    failed = [row for row in rows if row["stand_ins"]]
+    points = sum(row["points"] - row["realisable"] for row in rows)
+    found = f"{sum(row['stand_ins'] for row in failed)} points in {len(failed)} builds" if failed else "none"
+    return [f"{len(rows)} builds, {points:,} points", found]
 
 
 def _sensitive(cubes: Mapping[str, Any], constrained: str) -> list[list[str]]:
@@ -140,7 +148,7 @@ def _peer(row: Row) -> list[str]:
 def failures(rows: Sequence[Row]) -> str:
     """Every build of ours that left a point."""
     failed = sorted(
-        (row for row in rows if row["unfitted"] and row["solver"] == OURS),
+        (row for row in rows if (row["unfitted"] or row["stand_ins"]) and row["solver"] == OURS),
         key=lambda row: (-row["threshold"], row["space"], row["dim"], row["coefficients"]),
     )
     lines = [
@@ -158,7 +166,7 @@ def failures(rows: Sequence[Row]) -> str:
         for row in failed
     ]
     return table(
-        "Builds that left points unfitted",
+        "Builds that left points or stand-ins unfitted",
         f"All {len(failed)} of {sum(row['solver'] == OURS for row in rows)}. *stand-ins* are unrealisable points whose "
         "nearest realisable colour, half the threshold within the boundary, was missed as well.",
         ["space", "threshold", "model", "dim", "atlas", "unfitted", "worst", "at (RGB)", "stand-ins"],

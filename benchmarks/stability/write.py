@@ -26,7 +26,8 @@ the same for other settings and cubes. Times are of a machine that did other wor
 
 ![Heat maps of failures, worst distance, rounds and improvement calls, and time](stability/map.png)
 
-Orange is a build that left realisable points unfitted; the scale of a column is that of all its panels. The whole
+Orange is a build that left realisable points unfitted, faint orange one that missed only what stands in for points
+that no reflectance has; the scale of a column is that of all its panels. The whole
 product of dims, coefficients, spaces, models, thresholds and atlases would be some ten thousand builds: these are the
 grids of one axis against the models, and a sample of the rest ([all figures](stability/map.csv)).
 
@@ -45,13 +46,13 @@ The steepest cell along each channel, and the steepest wavelengths, of `{plain}`
 Each entry of the ColorChecker left out of `{constrained}`, one at a time.
 """
 
-SEEN = """- *The defaults fail nowhere*: at the threshold of 1e-4 every realisable point of five spaces is fitted, with
-  every model and count of coefficients, dim and atlas that was tried.
-- *Ten and a hundred times stricter, wide spaces fail*: colours that only spectra between 0 and 1 by steps have,
-  near the boundary of the object-colour solid, are reached slowly, in multipliers as in anything else. sRGB has
-  none of them.
+SEEN = """- *No realisable point is left*: in five spaces, with every model and count of coefficients, dim, threshold and
+  atlas that was tried, down to a hundredth of the default threshold.
+- *Their stand-ins are, at 1e-6*: what is fitted for a colour that no reflectance has lies half a threshold within the
+  boundary of the object-colour solid, where spectra are steps between 0 and 1. In wide spaces many points are
+  such; at 1e-6 half of them and more are missed, at the price of most of the time. sRGB has none.
 - *Multipliers are what makes it easy*: least squares on the moments themselves, as in the thesis, leave more
-  points the more coefficients there are, white and black first: near the boundary of the moments of reflectances
+  points the more coefficients there are, worst at white: near the boundary of the moments of reflectances
   there is no room to take a difference in. The same solver in multipliers leaves one or two, for want of steps
   alone.
 - *Answers move as the questions do*: by a code of 8 bits or by rounding, ΔE00 under FL11 is within a tenth of that

@@ -14,7 +14,7 @@ from uplift.sensor import Array
 from uplift.study.stability import Outcome, Setting
 from uplift.study.stability_design import Grid
 
-PALE, LOUD, INK = "#eef2f5", "#ff5a00", "#1b2733"
+LOUD, FAINT, INK = "#ff5a00", "#ffcfae", "#1b2733"
 RAMP = ("#eef5f8", "#a9cfe3", "#5a9fcb", "#20609a", "#0b1d51")
 """Pale for little, dark for much: one hue, so that orange means failure and nothing else."""
 CELL, HEIGHT = 0.56, 0.34
@@ -35,7 +35,8 @@ def _decades(value: float, low: float, high: float) -> float:
 
 
 def _failed(outcome: Outcome) -> str:
-    return f"{outcome.unfitted}" if outcome.unfitted else "·"
+    stand_ins = f" ({outcome.stand_ins})" if outcome.stand_ins else ""
+    return (f"{outcome.unfitted}" if outcome.unfitted or stand_ins else "·") + stand_ins
 
 
 def _calls(outcome: Outcome) -> str:
@@ -43,7 +44,7 @@ def _calls(outcome: Outcome) -> str:
 
 
 QUANTITIES = (
-    Quantity("realisable points unfitted", lambda one: 0.0, _failed),
+    Quantity("unfitted points (stand-ins)", lambda one: 0.0, _failed),
     Quantity(
         "worst distance / threshold",
         lambda one: _decades(one.worst / one.setting.threshold, 1e-2, 1),
@@ -62,7 +63,10 @@ def plot_map(
     *,
     force: bool = False,
 ) -> None:
-    """Draw a row of panels a grid and a column a quantity; orange where points fail. Raises `OutputError`."""
+    """Draw a row of panels a grid and a column a quantity; orange where points fail, faint where stand-ins do.
+
+    Raises `OutputError`.
+    """
     tall = [len(grid.techniques) * HEIGHT + 0.75 for grid in grids]
     wide = max(len(grid.values) for grid in grids) * CELL + 0.3
     figure = new_figure(1.2 + len(QUANTITIES) * wide, sum(tall))
@@ -81,7 +85,8 @@ def plot_map(
 def _panel(axes: Any, grid: Grid, found: list[list[Outcome]], quantity: Quantity) -> None:
     values = np.array([[quantity.value(one) for one in row] for row in found])
     failed = np.array([[one.unfitted > 0 for one in row] for row in found])
-    axes.imshow(_colours(values, failed), aspect="auto", interpolation="nearest")
+    missed = np.array([[one.stand_ins > 0 and quantity is QUANTITIES[0] for one in row] for row in found])
+    axes.imshow(_colours(values, failed, missed), aspect="auto", interpolation="nearest")
     for (row, column), share in np.ndenumerate(values):
         colour = "white" if share > 0.55 and not failed[row, column] else INK
         axes.text(
@@ -103,10 +108,11 @@ def _panel(axes: Any, grid: Grid, found: list[list[Outcome]], quantity: Quantity
     axes.tick_params(which="minor", length=0)
 
 
-def _colours(values: Array, failed: Any) -> Any:
+def _colours(values: Array, failed: Any, missed: Any) -> Any:
     from matplotlib.colors import LinearSegmentedColormap, to_rgb
 
     ramp = LinearSegmentedColormap.from_list("ramp", RAMP)(values)[..., :3]
+    ramp = np.where(missed[..., None], to_rgb(FAINT), ramp)
     return np.where(failed[..., None], to_rgb(LOUD), ramp)
 
 
