@@ -27,9 +27,9 @@ the same for other settings and cubes. Times are of a machine that did other wor
 ![Heat maps of failures, worst distance, rounds and improvement calls, and time](stability/map.png)
 
 Orange is a build that left realisable points unfitted, faint orange one that missed only what stands in for points
-that no reflectance has; the scale of a column is that of all its panels. The whole
-product of dims, coefficients, spaces, models, thresholds and atlases would be some ten thousand builds: these are the
-grids of one axis against the models, and a sample of the rest ([all figures](stability/map.csv)).
+that no reflectance has. The scale of a column is that of all its panels. The whole product of dims, coefficients,
+spaces, models, thresholds and atlases would be thousands of builds: these are the grids of one axis against the
+models, and a sample of the rest ([all figures](stability/map.csv)).
 
 ## What is seen
 
@@ -50,7 +50,7 @@ SEEN = """- *No realisable point is left*: in five spaces, with every model and 
   atlas that was tried, down to a hundredth of the default threshold.
 - *Their stand-ins are, at 1e-6*: what is fitted for a colour that no reflectance has lies half a threshold within the
   boundary of the object-colour solid, where spectra are steps between 0 and 1. In wide spaces many points are
-  such; at 1e-6 half of them and more are missed, at the price of most of the time. sRGB has none.
+  such; at 1e-6 the moments miss about half of them, after most of the time has gone into trying. sRGB has none.
 - *Multipliers are what makes it easy*: least squares on the moments themselves, as in the thesis, leave more
   points the more coefficients there are, worst at white: near the boundary of the moments of reflectances
   there is no room to take a difference in. The same solver in multipliers leaves one or two, for want of steps
