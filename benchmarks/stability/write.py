@@ -46,17 +46,17 @@ The steepest cell along each channel, and the steepest wavelengths, of `{plain}`
 Each entry of the ColorChecker left out of `{constrained}`, one at a time.
 """
 
-SEEN = """- *No realisable point is left*: in five spaces, with every model and count of coefficients, dim, threshold and
+SEEN = """\
+- *No realisable point is left*: in five spaces, with every model and count of coefficients, dim, threshold and
   atlas that was tried, down to a hundredth of the default threshold.
-- *Their stand-ins are, at 1e-6*: what is fitted for a colour that no reflectance has lies half a threshold within the
-  boundary of the object-colour solid, where spectra are steps between 0 and 1. In wide spaces many points are
+- *Their stand-ins are, at 1e-6*: what is fitted for a colour that no reflectance has lies half a threshold within
+  the boundary of the object-colour solid, where spectra are steps between 0 and 1. In wide spaces many points are
   such; at 1e-6 the moments miss about half of them, after most of the time has gone into trying. sRGB has none.
 - *Multipliers are what makes it easy*: least squares on the moments themselves, as in the thesis, leave more
-  points the more coefficients there are, worst at white: near the boundary of the moments of reflectances
-  there is no room to take a difference in. The same solver in multipliers leaves one or two, for want of steps
-  alone.
-- *Answers move as the questions do*: by a code of 8 bits or by rounding, ΔE00 under FL11 is within a tenth of that
-  under the build light, in the mean and at most. No mode is worse than another.
+  points the more coefficients there are, worst at white: near the boundary of the moments of reflectances there
+  is no room to take a difference in. The same solver in multipliers leaves one or two, for want of steps alone.
+- *Answers move as the questions do*: by a code of 8 bits or by rounding, ΔE00 under FL11 is within a tenth of
+  that under the build light, in the mean and at most. No mode is worse than another.
 - *A cube is steepest where it is dark and saturated*, where a small step of RGB takes the spectrum from one
   colour to another, and at the ends of the spectrum, where the eye hardly sees what changes: with moments some
   ten times the middle cell, with the sigmoid, whose darkest reds and magentas rise to nearly 1 at the ends, a
