@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study nightly determinism munsell atlases cubes lock clean
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -36,6 +36,11 @@ accuracy: $(INSTALLED)
 study: $(INSTALLED)
 	$(BIN)/python -m benchmarks.study
 	$(BIN)/python -m benchmarks.fidelity
+
+# Where it fails, and how: docs/stability.md.
+stability: $(INSTALLED)
+	$(BIN)/python -m benchmarks.storage
+	$(BIN)/python -m benchmarks.stability
 
 # Hostile input, a hundred thousand of each kind, and writers killed at random: docs/stability-hostile.json.
 nightly: $(INSTALLED)
