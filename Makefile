@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study munsell atlases cubes lock clean
+.PHONY: build test bench peers accuracy study demo-render munsell atlases cubes lock clean
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -36,6 +36,10 @@ accuracy: $(INSTALLED)
 study: $(INSTALLED)
 	$(BIN)/python -m benchmarks.study
 	$(BIN)/python -m benchmarks.fidelity
+
+# The ColorChecker as a renderer sees it: docs/render.md.
+demo-render: $(INSTALLED)
+	$(BIN)/python -m benchmarks.render
 
 # 1,269 chips of the Munsell book, for `make study`: measurements that are not ours to pass on.
 munsell: $(INSTALLED)
