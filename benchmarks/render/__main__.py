@@ -33,7 +33,7 @@ TRUTH, BUILT_IN, PLAIN, ATLAS, ATLAS_17 = (
 AGAIN = "measured spectra, another seed"
 SHOWN = (TRUTH, BUILT_IN, ATLAS)
 DIM = 32
-LAYOUT, SPP = Layout(patch=32, gap=4), 512
+LAYOUT, SPP = Layout(patch=32, gap=4), 256
 
 INTRODUCTION = """# Rendered: the ColorChecker under three lights
 
@@ -52,7 +52,7 @@ screen's.*
 
 - Under D65 every way has the colour it was given. `cyan` lies outside sRGB and was painted clipped. No way can know
   that: ours is {cyan} from it.
-- An atlas tells of its own materials. Without one, our cube is as good a guess as Mitsuba's.
+- An atlas tells of its own materials. Without one our cube guesses, as Mitsuba does.
 - Noise: the truth rendered with another seed differs from itself by {noise}. All ways share a seed, so that much of
   it falls out of their differences. Light comes evenly from everywhere; a patch has {samples:,} samples of 4
   wavelengths.

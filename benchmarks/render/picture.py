@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from benchmarks.render.chart import Layout
 from uplift.cube.display import encode
 from uplift.observer import sensor
@@ -37,7 +39,7 @@ def draw(
             axes, image = grid[row, column], images[light, way].copy()
             for place in layout.patches(round(INSET * layout.patch)):
                 image[place] = images[light, truth][place]
-            axes.imshow(encode(image @ to_screen), interpolation="nearest")
+            axes.imshow(encode(_binned(image) @ to_screen), interpolation="nearest")
             axes.set_xticks([])
             axes.set_yticks([])
             axes.spines[:].set_visible(False)
@@ -47,3 +49,9 @@ def draw(
             if column == 0:
                 axes.set_ylabel(light, fontsize=11, labelpad=8)
     write_png(figure, path, force=True)
+
+
+def _binned(image: Array) -> Array:
+    """Four pixels as one, for half the noise."""
+    height, width, count = image.shape
+    return np.asarray(image.reshape(height // 2, 2, width // 2, 2, count).mean(axis=(1, 3)))

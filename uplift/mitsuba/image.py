@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from uplift.errors import OptionError
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
+from uplift.lookup.interpolate import refined_multipliers
+from uplift.lookup.question import colours
 from uplift.mitsuba.spectra import mixed
 from uplift.models import Model, evaluate
 from uplift.sensor import Array
@@ -31,12 +33,11 @@ class Image:
 
     @staticmethod
     def of(cube: Cube, rgb: Array) -> Image:
-        """Uplift linear RGB (h, w, 3), interpolating moments. Raises `ColourError` for what lies outside [0, 1]."""
-        model = cube.data.model
-        coefficients = cube.coefficients(rgb, threads=THREADS)
-        multipliers = blockwise(
-            model.from_storage, coefficients, model.count, dtype=np.float32, threads=THREADS
-        )
+        """Uplift linear RGB (h, w, 3) to their very colours. Raises `ColourError` for what lies outside [0, 1]."""
+        data, model = cube.data, cube.data.model
+        refined = partial(refined_multipliers, data)
+        asked = colours(rgb, data.sensor)
+        multipliers = blockwise(refined, asked, model.count, dtype=np.float32, threads=THREADS)
         means = blockwise(
             lambda rows: evaluate(model, rows, MEAN_OVER).mean(axis=1, keepdims=True), multipliers, 1
         )
