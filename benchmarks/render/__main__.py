@@ -67,7 +67,7 @@ class Renders:
     apart: dict[tuple[str, str], Array]
 
 
-def render(chart: Chart, ways: dict[str, list[dict[str, Any]]], layout: Layout, spp: int) -> Renders:
+def render(ways: dict[str, list[dict[str, Any]]], layout: Layout, spp: int) -> Renders:
     """All ways under all lights with one seed, the truth with another one too."""
     images, apart = {}, {}
     for name in LIGHTS:
@@ -155,7 +155,7 @@ def main() -> None:
     scene.start()
     found = chart()
     with tempfile.TemporaryDirectory() as folder:
-        renders = render(found, ways(found, Path(folder), DIM), LAYOUT, SPP)
+        renders = render(ways(found, Path(folder), DIM), LAYOUT, SPP)
     captions = {
         key: "" if key[1] == TRUTH else f"mean ΔE00 {apart.mean():.2f}, worst {apart.max():.1f}"
         for key, apart in renders.apart.items()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -103,6 +104,14 @@ def test_what_lies_outside_is_clipped_and_nan_is_nothing(small_cube, answers):
     plain = np.array([[1, 0, 0.5], [0, 0.2, 1]])
     expected = small_cube.reflectance(plain, WAVELENGTHS, mode="moments")
     np.testing.assert_allclose(answers(small_cube.data, odd), expected, rtol=0, atol=WITHIN)
+
+
+def test_names_in_a_cube_stay_comments(small_cube, answers):
+    sensor = replace(small_cube.data.sensor, space="*/ #error äöü\n /*", illuminant="*//*")
+    found = answers(replace(small_cube.data, sensor=sensor), np.full((1, 3), 0.5))
+    np.testing.assert_allclose(
+        found, small_cube.reflectance([[0.5] * 3], WAVELENGTHS, "moments"), atol=WITHIN
+    )
 
 
 @pytest.mark.parametrize(

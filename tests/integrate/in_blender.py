@@ -9,19 +9,19 @@ from pathlib import Path
 import bpy
 
 # What compiles shaders asks a module of Blender's own Python about them.
-OWN = Path(bpy.__file__).parent.glob("*/python/lib/python*/site-packages")
+OWN = Path(bpy.__file__).parents[3].glob("python/lib/python*/site-packages")
 sys.path += map(str, OWN)
 
 
 def main(shader: str, texture: str, image: str) -> None:
     shader, texture, image = map(os.path.abspath, (shader, texture, image))
     scene = bpy.context.scene
+    scene.render.engine, scene.render.filepath = "CYCLES", image  # first, as it compiles the shader
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     bpy.ops.mesh.primitive_plane_add(size=2)
     bpy.context.object.data.materials.append(_material(shader, texture))
     scene.camera = _camera(scene)
-    scene.render.engine, scene.render.filepath = "CYCLES", image
     scene.cycles.shading_system, scene.cycles.samples, scene.cycles.use_denoising = True, 1, False
     scene.cycles.pixel_filter_type = "BOX"
     scene.render.resolution_x = scene.render.resolution_y = 8

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -76,3 +78,9 @@ def test_a_variant_without_spectra_is_refused(mi):
             register()
     finally:
         mi.set_variant("scalar_spectral")
+
+
+def test_without_mitsuba_it_says_where_to_get_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mitsuba", None)
+    with pytest.raises(OptionError, match=r"not installed; pip install 'uplift\[mitsuba\]'"):
+        register()

@@ -77,9 +77,9 @@ def _words(data: CubeData, name: str) -> dict[str, Any]:
     facts = {
         "version": version("uplift"),
         "digest": digest(data),
-        "space": sensor.space,
-        "illuminant": sensor.illuminant,
-        "observer": sensor.observer,
+        "space": _comment(sensor.space),
+        "illuminant": _comment(sensor.illuminant),
+        "observer": _comment(sensor.observer),
         "name": name,
         "NAME": name.upper(),
         "dim": data.lattice.dim,
@@ -88,6 +88,11 @@ def _words(data: CubeData, name: str) -> dict[str, Any]:
         "boxes": len(data.pins.cells[0]),
     }
     return facts | _range(data.model)
+
+
+def _comment(text: str) -> str:
+    """Text that a comment can hold: whoever made the cube chose it."""
+    return text.encode("ascii", "replace").decode().replace("*/", "* /")
 
 
 def _range(model: Model) -> dict[str, Any]:

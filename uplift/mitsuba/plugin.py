@@ -21,10 +21,14 @@ SOURCES = ("rgb", "filename", "bitmap")
 def register() -> None:
     """Make ``uplift`` known to Mitsuba's current variant; after each `mitsuba.set_variant`.
 
-    Raises `OptionError` where no variant is set, or one that knows no spectra.
+    Raises `OptionError` where Mitsuba is not installed, no variant is set, or one that knows no spectra.
     """
-    import mitsuba
-
+    try:
+        import mitsuba
+    except ImportError as error:
+        raise OptionError(
+            "Mitsuba 3 is not installed", remedy="pip install 'uplift[mitsuba]' brings it"
+        ) from error
     variant = mitsuba.variant()
     if variant is None or "spectral" not in variant or "polarized" in variant:
         raise OptionError(
