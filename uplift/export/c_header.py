@@ -92,7 +92,7 @@ def _words(data: CubeData, name: str) -> dict[str, Any]:
 
 def _comment(text: str) -> str:
     """Text that a comment can hold: whoever made the cube chose it."""
-    return text.encode("ascii", "replace").decode().replace("*/", "* /")
+    return text.encode("ascii", "replace").decode().replace("*", "")
 
 
 def _range(model: Model) -> dict[str, Any]:
