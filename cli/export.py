@@ -27,7 +27,7 @@ SUFFIXES = {"coeff": ".coeff", "c": ".h", "npz": ".npz", "csv": ".csv"}
 def command(cube: str, out: str | None, to: str | None, res: int | None, force: bool) -> None:
     """Write a cube in a format that other tools read.
 
-    coeff, the table of rgb2spec that Mitsuba, PBRT and colour-science read: sigmoid spectra of the cube's colours.
+    coeff, the table of rgb2spec that Mitsuba and colour-science read: sigmoid spectra of the cube's colours.
     Three numbers a spectrum have no room for what an atlas tells.
 
     c, one C99 header, which C++ takes too: the table, and functions that look up and evaluate its spectra as

@@ -25,12 +25,13 @@ LARGE = 16_000_000
 """Bytes of text that compilers take long over."""
 IN_C = {"none": "wavelength", "vision": "tanh(0.0072 * (wavelength - 538.0))"}
 """`WARPS` in C."""
+TYPES = {"float32": ("float", "%.9g"), "float64": ("double", "%.17g"), "int64": ("int", "%d")}
 
 
 def write_c(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
     """Write the header, and say how many bytes it has. Its names begin with the file's, made an identifier.
 
-    Spectra are interpolated as mode ``moments`` has it: coefficients, in float32, of lattice and entries alike.
+    Spectra are interpolated as mode ``moments`` has it: coefficients, of lattice and entries alike.
     Raises `OutputError`; warns where the header is large.
     """
     name = _identifier(Path(path).stem)
@@ -53,20 +54,18 @@ def _identifier(stem: str) -> str:
 
 
 def _parts(data: CubeData, name: str) -> Iterator[str]:
-    coefficients = [array.astype(np.float32) for array in (data.coefficients, data.atlas.coefficients)]
-    for stored in coefficients:
-        data.model.from_storage(stored)  # raises where rounding left no spectrum
     words = _words(data, name)
     yield _template("head").substitute(words)
-    yield from _array(f"double {name}_nodes[]", data.lattice.nodes[:, None], "%.17g")
-    yield from _array(f"float {name}_table[][{data.model.count}]", coefficients[0], "%.9g")
+    yield from _array(f"{name}_nodes[]", data.lattice.nodes[:, None])
+    yield from _array(f"{name}_table[][{data.model.count}]", data.coefficients)
     boxes = "boxes" if len(data.pins.cells[0]) else "no_boxes"
     if boxes == "boxes":
-        yield from _array(f"int {name}_box_cell[]", data.pins.cells[0][:, None], "%d")
-        yield from _array(f"int {name}_box_entry[]", data.pins.cells[1][:, None], "%d")
-        places = np.concatenate([data.atlas.rgb, *data.pins.faces], axis=1)
-        yield from _array(f"double {name}_entry_box[][9]", places, "%.17g")
-        yield from _array(f"float {name}_entry[][{data.model.count}]", coefficients[1], "%.9g")
+        yield from _array(f"{name}_box_cell[]", data.pins.cells[0][:, None])
+        yield from _array(f"{name}_box_entry[]", data.pins.cells[1][:, None])
+        yield from _array(
+            f"{name}_entry_box[][9]", np.concatenate([data.atlas.rgb, *data.pins.faces], axis=1)
+        )
+        yield from _array(f"{name}_entry[][{data.model.count}]", data.atlas.coefficients)
     for part in ("lattice", boxes, data.model.name, "tail"):
         yield _template(part).substitute(words)
 
@@ -84,6 +83,7 @@ def _words(data: CubeData, name: str) -> dict[str, Any]:
         "NAME": name.upper(),
         "dim": data.lattice.dim,
         "count": data.model.count,
+        "type": TYPES[data.coefficients.dtype.name][0],
         "entries": len(data.atlas.names),
         "boxes": len(data.pins.cells[0]),
     }
@@ -114,11 +114,12 @@ def _template(part: str) -> Template:
     return Template((files("uplift.export") / "templates" / f"{part}.h").read_text(encoding="ascii"))
 
 
-def _array(declaration: str, rows: NDArray[Any], style: str) -> Iterator[str]:
-    """A constant array of rows (n, K), one a line; of plain numbers where K is 1."""
+def _array(declaration: str, rows: NDArray[Any]) -> Iterator[str]:
+    """A constant array of rows (n, K), one a line, with all their digits; of plain numbers where K is 1."""
+    kind, style = TYPES[rows.dtype.name]
     width = rows.shape[1]
     line = f"{style},\n" if width == 1 else "{" + ", ".join([style] * width) + "},\n"
-    yield f"static const {declaration} = {{\n"
+    yield f"static const {kind} {declaration} = {{\n"
     for row in rows.tolist():
         yield line % tuple(row)
     yield "};\n\n"

@@ -1,4 +1,4 @@
-"""The table of rgb2spec: sigmoid spectra, as Mitsuba, PBRT and colour-science read them.
+"""The table of rgb2spec: sigmoid spectra, as Mitsuba and colour-science read them.
 
 Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", CGF 38(2), and its
 `rgb2spec`. "SPEC", u32 res, f32 scale[res], f32 data[3][res][res][res][3], little-endian. The first axis tells the

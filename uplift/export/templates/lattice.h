@@ -20,7 +20,7 @@ static inline void ${name}_lattice(const double rgb[3], double coefficients[${co
     for (k = 0; k < ${count}; ++k) coefficients[k] = 0;
     for (corner = 0; corner < 8; ++corner) {
         int r = corner >> 2, g = corner >> 1 & 1, b = corner & 1;
-        const float *point = ${name}_table[((low[0] + r) * ${dim} + low[1] + g) * ${dim} + low[2] + b];
+        const ${type} *point = ${name}_table[((low[0] + r) * ${dim} + low[1] + g) * ${dim} + low[2] + b];
         double weight = (r ? along[0] : 1 - along[0]) * (g ? along[1] : 1 - along[1]) * (b ? along[2] : 1 - along[2]);
         for (k = 0; k < ${count}; ++k) coefficients[k] += weight * point[k];
     }
