@@ -1,4 +1,4 @@
-"""Render a shader on a square with Cycles: python in_blender.py SHADER.osl TEXTURE.exr IMAGE.exr"""
+"""Render a shader on a square with Cycles: python in_blender.py SHADER.osl TEXTURE.exr IMAGE.exr, the texture having alpha."""
 
 from __future__ import annotations
 
@@ -41,6 +41,7 @@ def _material(shader: str, texture: str) -> bpy.types.Material:
     place, script, emission, output = (tree.nodes.new(kind) for kind in kinds)
     script.mode, script.filepath = "EXTERNAL", shader
     script.inputs["texture_file"].default_value = texture
+    script.inputs["first_channel"].default_value = 1
     tree.links.new(place.outputs["UV"], script.inputs["UV"])
     tree.links.new(script.outputs["reflectance"], emission.inputs["Color"])
     tree.links.new(emission.outputs[0], output.inputs[0])

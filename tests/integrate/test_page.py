@@ -91,6 +91,7 @@ def test_cycles_renders_it(shader, folder, small_cube):
         f"multiplier.{k:02}": np.ascontiguousarray(multipliers[..., k], dtype=np.float32)
         for k in range(multipliers.shape[-1])
     }
+    channels["A"] = np.ones((2, 2), dtype=np.float32)
     OpenEXR.File({"type": OpenEXR.scanlineimage}, channels).write("texture.exr")
     script = Path(__file__).with_name("in_blender.py")
     subprocess.run([python, script, shader, "texture.exr", "image.exr"], check=True, capture_output=True)
