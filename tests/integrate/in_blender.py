@@ -1,4 +1,7 @@
-"""Render a shader on a square with Cycles: python in_blender.py SHADER.osl TEXTURE.exr IMAGE.exr, the texture having alpha."""
+"""Render a shader on a square with Cycles: python in_blender.py SHADER.osl TEXTURE.exr IMAGE.exr
+
+The texture has alpha before its multipliers.
+"""
 
 from __future__ import annotations
 

@@ -26,9 +26,7 @@ def register() -> None:
     try:
         import mitsuba
     except ImportError as error:
-        raise OptionError(
-            "Mitsuba 3 is not installed", remedy="pip install 'uplift[mitsuba]' brings it"
-        ) from error
+        raise OptionError("Mitsuba 3 is not installed", remedy="'pip install mitsuba' brings it") from error
     variant = mitsuba.variant()
     if variant is None or "spectral" not in variant or "polarized" in variant:
         raise OptionError(
