@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -49,6 +49,10 @@ nightly: $(INSTALLED)
 # The same bytes whatever the threads, and how far instruction sets take them apart: docs/stability-determinism.json.
 determinism: $(INSTALLED)
 	$(BIN)/python -m benchmarks.determinism
+
+# The ColorChecker as a renderer sees it: docs/render.md.
+demo-render: $(INSTALLED)
+	$(BIN)/python -m benchmarks.render
 
 # 1,269 chips of the Munsell book, for `make study`: measurements that are not ours to pass on.
 munsell: $(INSTALLED)

@@ -35,7 +35,7 @@ def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) 
     from safetensors import SafetensorError
     from safetensors.numpy import save_file
 
-    tensors, metadata = _tensors(data), _metadata(data)
+    tensors, metadata = contents(data)
     metadata["digest"] = _digest(tensors, metadata)
     with replacing(path, force=force) as temporary:
         try:
@@ -69,7 +69,12 @@ def read(path: str | os.PathLike[str]) -> CubeData:
 
 def digest(data: CubeData) -> str:
     """Hex SHA-256 of the content; the same for cubes that answer alike in every bit."""
-    return _digest(_tensors(data), _metadata(data))
+    return _digest(*contents(data))
+
+
+def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
+    """The arrays that a file holds, by name, and its metadata but for the digest: JSON values."""
+    return _tensors(data), _metadata(data)
 
 
 def _load(path: Path) -> tuple[Tensors, dict[str, Any]]:
