@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -53,6 +53,11 @@ determinism: $(INSTALLED)
 # The ColorChecker as a renderer sees it: docs/render.md.
 demo-render: $(INSTALLED)
 	$(BIN)/python -m benchmarks.render
+
+# What textures keep of real images, and take: docs/textures.md. The pictures come with packages that nothing else needs.
+textures: $(INSTALLED)
+	$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/pictures scikit-image==0.26.0 scikit-learn==1.9.1
+	$(BIN)/python -m benchmarks.textures
 
 # 1,269 chips of the Munsell book, for `make study`: measurements that are not ours to pass on.
 munsell: $(INSTALLED)

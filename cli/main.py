@@ -12,7 +12,7 @@ import click
 
 from uplift.errors import UpliftError, UpliftWarning
 
-COMMANDS = ("build", "query", "check", "report", "info", "slices", "export", "atlas", "study")
+COMMANDS = ("build", "query", "texture", "check", "report", "info", "slices", "export", "atlas", "study")
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """What a write says where there is no room."""
 

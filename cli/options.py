@@ -33,6 +33,12 @@ def format_option(*choices: str) -> Decorator:
     )
 
 
+def wavelengths_option() -> Decorator:
+    return click.option(
+        "--wavelengths", metavar="NM", help="'START:END:STEP' or a list '450,550,650'. [default: the cube's]"
+    )
+
+
 def sensor_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """--space, --illuminant, --observer; the observer stays None for the library's own default."""
     space = click.option(

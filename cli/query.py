@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 import click
 
 from .answers import WRITERS
-from .options import cube_option, force_option, format_option
+from .options import cube_option, force_option, format_option, wavelengths_option
+from .wavelengths import parse_wavelengths
 
 if TYPE_CHECKING:
     from uplift.lookup import Answer, Cube
     from uplift.sensor import Array
 
-
-MOST_WAVELENGTHS = 100_000
 NEGATIVE = re.compile(r"-\.?\d")
 
 
@@ -34,9 +33,7 @@ class QueryCommand(click.Command):
     "--input", "input_path", metavar="FILE", help="CSV of colours, a line each; '-' is standard input."
 )
 @click.option("--8bit", "codes", is_flag=True, help="Numbers are encoded 8-bit codes, 0 to 255.")
-@click.option(
-    "--wavelengths", metavar="NM", help="'START:END:STEP' or a list '450,550,650'. [default: the cube's]"
-)
+@wavelengths_option()
 @click.option(
     "--mode",
     type=click.Choice(("spectra", "moments", "refined")),
@@ -78,7 +75,7 @@ def command(
         check_output(plot_path, force=force)
     cube = load(cube_path)
     rgb = _colours(colour, input_path, cube, codes=codes)
-    found: Iterable[Answer] = answers(cube, rgb, _wavelengths(wavelengths), mode)
+    found: Iterable[Answer] = answers(cube, rgb, parse_wavelengths(wavelengths), mode)
     if plot_path is not None:
         from uplift.report.spectra import plot_answers
 
@@ -103,29 +100,3 @@ def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: boo
             return from_table(file, "standard input" if path == "-" else path, cube, codes=codes)
     except OSError as error:
         raise ColourError(f"{path}: {error.strerror}", remedy="name a CSV file of colours") from error
-
-
-def _wavelengths(text: str | None) -> Array | None:
-    """'380:780:5' (end included) or '450,550,650' → (N,) nm. Raises `OptionError`."""
-    import numpy as np
-
-    if text is None:
-        return None
-    try:
-        if ":" not in text:
-            return np.array([float(part) for part in text.split(",")])
-        start, end, step = (float(part) for part in text.split(":"))
-        count = int((end - start) / step + 1e-9) + 1
-    except (ValueError, ZeroDivisionError, OverflowError) as error:
-        raise _unclear(text) from error
-    if not (step > 0 and end >= start and count <= MOST_WAVELENGTHS):
-        raise _unclear(text)
-    return start + step * np.arange(count, dtype=float)
-
-
-def _unclear(text: str) -> Exception:
-    from uplift.errors import OptionError
-
-    return OptionError(
-        f"wavelengths '{text}' are not clear", remedy="write START:END:STEP or a list, in nm: 380:780:5"
-    )

@@ -8,6 +8,8 @@ import signal
 import stat
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -223,3 +225,22 @@ def test_odd_names_are_names(tmp_path, name):
 def test_a_device_is_no_place_for_a_file():
     with pytest.raises(OutputError, match="is no regular file"):
         check_output("/dev/full", force=True)
+
+
+def test_threads_leave_the_umask_alone(tmp_path, monkeypatch):
+    umask = os.umask
+
+    def slow(mask):
+        before = umask(mask)
+        time.sleep(0.01)
+        return before
+
+    monkeypatch.setattr(os, "umask", slow)
+    own = umask(0o027)
+    try:
+        with ThreadPoolExecutor(4) as pool:
+            list(pool.map(lambda number: write(tmp_path / str(number), "text"), range(8)))
+    finally:
+        left = umask(own)
+    assert left == 0o027
+    assert {stat.S_IMODE(path.stat().st_mode) for path in tmp_path.iterdir()} == {0o640}

@@ -59,6 +59,10 @@ class ColourError(UpliftError):
     """A colour that cannot be asked for: outside [0, 1], NaN, or unreadable."""
 
 
+class TextureError(UpliftError):
+    """An image that cannot be read, or holds no colour."""
+
+
 class OutputError(UpliftError):
     """An output path that cannot be written, or that exists already."""
 

@@ -7,6 +7,7 @@ import os
 import re
 import stat
 import tempfile
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,6 +20,8 @@ except ImportError:  # not on Windows: there, what a killed process leaves stays
 
 SUFFIX = ".part"
 """Of files that are being written."""
+
+_UMASK = threading.Lock()
 
 
 def check_output(path: str | os.PathLike[str], *, force: bool = False) -> Path:
@@ -110,8 +113,9 @@ def _remove_stale(folder: Path, prefix: str) -> None:
 
 def _settle(temporary: Path) -> None:
     """On the disk, with the permissions of any new file, before it takes the name."""
-    umask = os.umask(0)
-    os.umask(umask)
+    with _UMASK:  # a process has one, and asking for it changes it
+        umask = os.umask(0)
+        os.umask(umask)
     temporary.chmod(0o666 & ~umask)
     with temporary.open("rb+") as file:
         os.fsync(file.fileno())

@@ -146,3 +146,12 @@ def test_bad_wavelengths_and_threads_are_refused(small_cube):
             bulk.spectra(small_cube, AT, threads=threads)
         with pytest.raises(OptionError, match="no number of threads"):
             bulk.coefficients(small_cube, threads=threads)
+
+
+def test_misses_are_the_fitting_distances_around(small_cube):
+    data = small_cube.data
+    found = bulk.misses(small_cube)
+    clear = ~np.isin(np.arange(data.lattice.size), data.pins.cells[0])  # of boxes of entries
+    expected = data.distance[clear]
+    np.testing.assert_allclose(found(data.lattice.points[clear])[:, 0], expected, rtol=0, atol=1e-7)
+    np.testing.assert_allclose(found(data.atlas.rgb), 0, atol=1e-7)

@@ -10,6 +10,6 @@ For a few thousand colours `uplift.Cube` answers sooner: here something is compi
 
 from __future__ import annotations
 
-from uplift.bulk.sampler import Sampler, coefficients, spectra
+from uplift.bulk.sampler import Sampler, coefficients, misses, spectra
 
-__all__ = ["Sampler", "coefficients", "spectra"]
+__all__ = ["Sampler", "coefficients", "misses", "spectra"]

@@ -67,6 +67,15 @@ def coefficients(cube: Cube, *, threads: int = 2) -> Sampler:
     return _sampler(table, thread_count(threads))
 
 
+def misses(cube: Cube, *, threads: int = 2) -> Sampler:
+    """By how much (1,) answers miss their colours, |linear RGB|, at the most: the fitting distances around."""
+    data = cube.data
+    return _sampler(
+        Table(data, data.distance[:, None], np.zeros((len(data.atlas.names), 1), np.float32)),
+        thread_count(threads),
+    )
+
+
 def _sampler(table: Table, threads: int) -> Sampler:
     with jax.enable_x64(True):
         return Sampler(table.data.sensor, jax.device_put(grid(table)), threads)

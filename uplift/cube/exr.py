@@ -26,7 +26,7 @@ def attributes(data: CubeData) -> dict[str, Any]:
     ``uplift.cube`` is the digest of the cube's content, ``uplift.model`` its model as JSON.
     """
     return {
-        "chromaticities": _chromaticities(data.sensor),
+        "chromaticities": chromaticities(data.sensor),
         "uplift.cube": digest(data),
         "uplift.dim": data.lattice.dim,
         "uplift.model": json.dumps(data.model.describe(), sort_keys=True),
@@ -65,7 +65,7 @@ def _float32(channel: str, plane: NDArray[Any]) -> NDArray[np.float32]:
     return np.ascontiguousarray(np.clip(plane, -LARGEST, LARGEST), dtype=np.float32)
 
 
-def _chromaticities(sensor: Sensor) -> tuple[float, ...]:
+def chromaticities(sensor: Sensor) -> tuple[float, ...]:
     """x, y of red, green, blue and white under the build illuminant, as OpenEXR orders them."""
     corners = sensor.xyz(np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]]))
     return tuple(map(float, (corners / corners.sum(axis=1, keepdims=True))[:, :2].ravel()))

@@ -1,0 +1,67 @@
+"""A picture of why: an image under other lights, from its spectral texture and as an RGB renderer would have it."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import OpenEXR
+
+from benchmarks.textures.pictures import Picture
+from uplift import observer, texture
+from uplift.cube.display import encode
+from uplift.difference import delta_e_2000, lab
+from uplift.lookup import Cube
+from uplift.report.figure import new_figure, write_png
+from uplift.sensor import Array, Light
+
+LIGHTS = {"A": "tungsten", "FL11": "three-band fluorescent", "HP1": "high-pressure sodium"}
+SHOWN = (slice(0, 300), slice(60, 460))
+"""Rows and columns of the picture."""
+
+
+def draw(cube: Cube, picture: Picture, path: Path) -> dict[str, float]:
+    """Write the figure; the mean ΔE00 between the two ways by light."""
+    seen = _spectra(cube, picture)
+    rgb = np.clip(picture.linear(), 0, 1)[SHOWN]
+    sensor = cube.data.sensor
+    figure = new_figure(10.2, 4.5)
+    panels = figure.subplots(2, len(LIGHTS) + 1)
+    _show(panels[0, 0], sensor.rgb(seen), "D65, from the texture's spectra")
+    _show(panels[1, 0], rgb, "the image")
+    apart = {}
+    for (above, below), (name, what) in zip(panels[:, 1:].T, LIGHTS.items(), strict=True):
+        light = observer.light(name)
+        spectral = seen @ light.xyz.T
+        colour = _screen(cube, light.white)
+        apart[name] = _apart(light, spectral, (rgb * colour) @ np.linalg.inv(sensor.xyz_to_rgb).T)
+        _show(above, _screen(cube, spectral) / colour.max(), f"{name}, {what}")
+        _show(below, rgb * colour / colour.max(), f"{name}, RGB × the light's RGB: ΔE00 {apart[name]:.1f}")
+    write_png(figure, path, force=True)
+    return apart
+
+
+def _spectra(cube: Cube, picture: Picture) -> Array:
+    """(h, w, N) of the texture, as OpenEXR's own reader has them."""
+    with tempfile.TemporaryDirectory() as folder:
+        uplifter = texture.prepare(cube)
+        texture.convert(uplifter, picture.path, Path(folder) / "texture.exr")
+        channels = OpenEXR.File(str(Path(folder) / "texture.exr"), separate_channels=True).channels()
+        return np.stack([channels[name].pixels[SHOWN] for name in uplifter.channels], axis=-1).astype(float)
+
+
+def _screen(cube: Cube, xyz: Array) -> Array:
+    """Linear sRGB of XYZ, white not adapted: what a camera balanced for daylight sees."""
+    return xyz @ cube.data.sensor.xyz_to_rgb.T
+
+
+def _apart(light: Light, first: Array, second: Array) -> float:
+    return float(delta_e_2000(lab(first, light.white), lab(second, light.white)).mean())
+
+
+def _show(axes: Any, linear: Array, title: str) -> None:
+    axes.imshow(encode(linear))
+    axes.set_title(title, fontsize=9, loc="left")
+    axes.set_axis_off()
