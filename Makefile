@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study textures munsell atlases cubes lock clean
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures scenes pictures
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -37,10 +37,34 @@ study: $(INSTALLED)
 	$(BIN)/python -m benchmarks.study
 	$(BIN)/python -m benchmarks.fidelity
 
-# What textures keep of real images, and take: docs/textures.md. The pictures come with packages that nothing else needs.
-textures: $(INSTALLED)
-	$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/pictures scikit-image==0.26.0 scikit-learn==1.9.1
+# Where it fails, and how: docs/stability.md.
+stability: $(INSTALLED)
+	$(BIN)/python -m benchmarks.storage
+	$(BIN)/python -m benchmarks.stability
+
+# Hostile input, a hundred thousand of each kind, and writers killed at random: docs/stability-hostile.json.
+nightly: $(INSTALLED)
+	$(BIN)/python -m hostile
+
+# The same bytes whatever the threads, and how far instruction sets take them apart: docs/stability-determinism.json.
+determinism: $(INSTALLED)
+	$(BIN)/python -m benchmarks.determinism
+
+# The ColorChecker as a renderer sees it: docs/render.md.
+demo-render: $(INSTALLED)
+	$(BIN)/python -m benchmarks.render
+
+# What textures keep of real images, and take: docs/textures.md.
+textures: pictures
 	$(BIN)/python -m benchmarks.textures
+
+# What cubes for a scene save: docs/scenes.md.
+scenes: pictures
+	$(BIN)/python -m benchmarks.scenes
+
+# Pictures come with packages that nothing else needs.
+pictures: $(INSTALLED)
+	$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/pictures scikit-image==0.26.0 scikit-learn==1.9.1
 
 # 1,269 chips of the Munsell book, for `make study`: measurements that are not ours to pass on.
 munsell: $(INSTALLED)

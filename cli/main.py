@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import importlib
+import sys
 import warnings
 from typing import Any
 
@@ -10,7 +12,9 @@ import click
 
 from uplift.errors import UpliftError, UpliftWarning
 
-COMMANDS = ("build", "query", "texture", "check", "report", "info", "slices", "atlas", "study")
+COMMANDS = ("build", "query", "texture", "check", "report", "info", "slices", "export", "atlas", "study")
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""What a write says where there is no room."""
 
 
 class Refusal(click.ClickException):
@@ -39,9 +43,15 @@ class Commands(click.Group):
             warnings.simplefilter("always", UpliftWarning)
             warnings.showwarning = _show_warning
             try:
-                return super().invoke(ctx)
+                done = super().invoke(ctx)
+                sys.stdout.flush()  # what is left goes now, while errors can be told
             except UpliftError as error:
                 raise Refusal(str(error)) from error
+            except OSError as error:
+                if error.errno not in FULL:
+                    raise
+                raise Refusal(f"standard output cannot be written: {error.strerror}; make room") from error
+            return done
 
 
 def _show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:

@@ -6,19 +6,25 @@ import click
 
 from .study_held_out import held_out
 from .study_moments import moments
+from .study_sensitivity import sensitivity
+from .study_stability import stability
 
 
 @click.group("study")
 def command() -> None:
-    """Measure on atlases what the choices behind the models are worth.
+    """Measure what the choices behind the models are worth, where they fail, and how far errors travel.
 
     \b
     Examples:
       uplift study moments
       uplift study moments --atlas paints.txt --output paints --format json
       uplift study held-out --atlas paints.txt
+      uplift study stability --quick
+      uplift study sensitivity cubes/moments-16-macbeth.uplift
     """
 
 
 command.add_command(moments)
 command.add_command(held_out)
+command.add_command(stability)
+command.add_command(sensitivity)

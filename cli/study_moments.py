@@ -13,6 +13,7 @@ from .options import force_option, format_option
 from .output import console
 from .progress import counting
 from .study_atlases import SHIPPED, read_each
+from .study_folder import check_folder
 
 if TYPE_CHECKING:
     from uplift.study.moments import Study
@@ -49,7 +50,7 @@ def moments(files: tuple[str, ...], most: int, output: str | None, style: str, f
 
     atlases = read_each(files)
     if output is not None:
-        _check(Path(output), force=force)
+        check_folder(Path(output), FILES, force=force)
     with counting("reconstructions") as watch:
         found = study(atlases, most, watch)
     if output is not None:
@@ -57,27 +58,13 @@ def moments(files: tuple[str, ...], most: int, output: str | None, style: str, f
     PRINTERS[style](found)
 
 
-def _check(folder: Path, *, force: bool) -> None:
-    """Make the folder and ask for every file before the work. Raises `OutputError`."""
-    from uplift.errors import OutputError
-    from uplift.files import check_output
-
-    try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise OutputError(
-            f"cannot be made: {error.strerror}", path=folder, remedy="name a folder to write to"
-        ) from error
-    for name in FILES:
-        check_output(folder / name, force=force)
-
-
 def _write(found: Study, folder: Path, *, force: bool) -> None:
     from uplift.study.moments_plots import curves, plot_errors, plot_patches, plot_worst
-    from uplift.study.moments_table import write_csv
+    from uplift.study.moments_table import records
+    from uplift.study.records import write_csv
 
     table, errors, patches, worst = (folder / name for name in FILES)
-    write_csv(found, table, force=force)
+    write_csv(records(found), table, force=force)
     plot_errors({"all entries": curves(found)}, errors, force=force)
     plot_patches(found, patches, force=force)
     plot_worst(found, worst, force=force)
@@ -91,9 +78,10 @@ def _print_json(found: Study) -> None:
 
 
 def _print_csv(found: Study) -> None:
-    from uplift.study.moments_table import csv_text
+    from uplift.study.moments_table import records
+    from uplift.study.records import csv_text
 
-    click.echo(csv_text(found), nl=False)
+    click.echo(csv_text(records(found)), nl=False)
 
 
 def _print_table(found: Study) -> None:

@@ -67,5 +67,5 @@ def test_links_lead_somewhere():
 def test_make_targets_that_the_pages_name_exist():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for page in PAGES:
-        for target in re.findall(r"`make (\w+)`", " ".join(page.read_text(encoding="utf-8").split())):
+        for target in re.findall(r"`make ([\w-]+)`", " ".join(page.read_text(encoding="utf-8").split())):
             assert re.search(rf"^{target}:", makefile, re.MULTILINE), target

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
 import stat
+import subprocess
+import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 
@@ -154,6 +157,74 @@ def test_links_in_a_circle_are_refused(tmp_path):
     with pytest.raises(OutputError, match="link: "):
         write(link, "new")
     assert os.listdir(tmp_path) == ["link"]
+
+
+WRITE = """
+import sys
+from uplift.files import replacing
+with replacing(sys.argv[1], force=True) as temporary:
+    temporary.write_text("half")
+    print(temporary, flush=True)
+    input()
+    temporary.write_text("whole")
+"""
+
+
+@pytest.fixture
+def writer(tmp_path):
+    """A process that writes to ``cube`` and waits for a line before it ends, and its temporary path."""
+    command = [sys.executable, "-c", WRITE, str(tmp_path / "cube")]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        yield process, process.stdout.readline().rstrip()
+        process.kill()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no locks there")
+def test_what_a_killed_writer_left_is_removed_by_the_next(tmp_path, writer):
+    process, temporary = writer
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    (tmp_path / ".cube.mine.part").write_text("no name that a temporary file is given")
+    assert os.path.exists(temporary)
+    write(tmp_path / "other", "text")
+    assert os.path.exists(temporary)  # it may be looked at until its own path is written to
+    write(tmp_path / "cube", "new")
+    assert sorted(os.listdir(tmp_path)) == [".cube.mine.part", "cube", "other"]
+    assert (tmp_path / "cube").read_text() == "new"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no locks there")
+def test_what_another_is_writing_is_left_to_it(tmp_path, writer):
+    process, temporary = writer
+    write(tmp_path / "cube", "first")
+    assert os.path.exists(temporary)
+    assert (tmp_path / "cube").read_text() == "first"
+    process.communicate("\n")
+    assert process.returncode == 0
+    assert os.listdir(tmp_path) == ["cube"]
+    assert (tmp_path / "cube").read_text() == "whole"  # of two, the last to end has it
+
+
+def test_a_dash_is_no_file_name_but_a_whole_path_to_one_is(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(OutputError, match="-: stands for standard output, which takes no files; name a file"):
+        write("-", "text")
+    write(tmp_path / "-", "text")
+    assert os.listdir(tmp_path) == ["-"]
+
+
+@pytest.mark.parametrize("name", ["with blank", "grün 👍", "-x", "*?[a]", "a'b\"c", ".hidden", "line\nbreak"])
+def test_odd_names_are_names(tmp_path, name):
+    for text in ("old", "new"):
+        write(tmp_path / name, text, force=True)
+    assert os.listdir(tmp_path) == [name]
+    assert (tmp_path / name).read_text() == "new"
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no such device")
+def test_a_device_is_no_place_for_a_file():
+    with pytest.raises(OutputError, match="is no regular file"):
+        check_output("/dev/full", force=True)
 
 
 def test_threads_leave_the_umask_alone(tmp_path, monkeypatch):

@@ -14,6 +14,7 @@ import pytest
 import uplift
 
 FOLDERS = {"uplift": "uplift", "cli": "uplift_cli"}
+C_PARTS = ("head", "lattice", "boxes", "no_boxes", "moments", "sigmoid", "tail")
 
 
 def source_files(repository):
@@ -74,6 +75,7 @@ def test_nothing_else_is_in_it(wheel):
     }
     data = {name for name in wheel.namelist() if ".dist-info/" not in name and not name.endswith(".py")}
     assert data == {
+        *(f"uplift/export/templates/{part}.h" for part in C_PARTS),
         "uplift/lookup/default.uplift",
         "uplift/py.typed",
         "uplift/report/page.css",

@@ -6,10 +6,14 @@ import warnings
 
 import numpy as np
 import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import uplift
 from uplift import observer
 from uplift.atlas import Entry, Spectra, on_grid, read_atlas
+from uplift.cube import digest
 from uplift.difference import colours_apart, spectra_apart
 from uplift.errors import OptionError, UnknownNameError, UpliftWarning
 from uplift.lattice import Status
@@ -158,11 +162,46 @@ def test_the_perfect_reflector_is_a_welcome_entry():
     np.testing.assert_allclose(cube.reflectance([1, 1, 1]), 1, atol=1e-4)
 
 
-def test_the_order_of_the_atlas_does_not_change_the_answers():
+@pytest.fixture(scope="session")
+def in_order():
+    return quietly(MACBETH, dim=5, coefficients=7).data
+
+
+@settings(max_examples=3, phases=[Phase.generate])
+@given(order=st.permutations(range(24)))
+def test_the_order_of_the_atlas_sets_the_order_of_its_table_and_nothing_else(in_order, order):
+    """The bytes of every point are the same, but that it names its entry by its row; the table's to rounding."""
     spectra = read_atlas(MACBETH)
-    backwards = Spectra(tuple(reversed(spectra.entries)))
-    here, there = (quietly(atlas, dim=6) for atlas in (spectra, backwards))
-    np.testing.assert_allclose(there.data.coefficients, here.data.coefficients, atol=1e-9)
+    shuffled = quietly(Spectra(tuple(spectra.entries[row] for row in order)), dim=5, coefficients=7).data
+    for name in ("coefficients", "rgb", "distance", "status", "standard_error"):
+        assert getattr(shuffled, name).tobytes() == getattr(in_order, name).tobytes()
+    row = [shuffled.atlas.names.index(name) for name in in_order.atlas.names]
+    for name in ("rgb", "coefficients", "reach", "error"):
+        np.testing.assert_allclose(
+            getattr(shuffled.atlas, name)[row], getattr(in_order.atlas, name), rtol=1e-12, atol=1e-13
+        )
+    np.testing.assert_array_equal(np.append(row, -1)[in_order.entry], shuffled.entry)
+
+
+def test_batches_do_not_show(monkeypatch):
+    """In a wide space too, where some points go on for long."""
+    options = {"dim": 7, "space": "ITU-R BT.2020"}
+    as_it_is = quietly(MACBETH, **options).data
+    monkeypatch.setattr("uplift.fit.batch.HOST", (1024, 64))
+    assert digest(quietly(MACBETH, **options).data) == digest(as_it_is)
+
+
+def test_threads_do_not_show():
+    """An atlas so large that BLAS shares its kriging out."""
+    spectra = read_atlas(MACBETH.with_name("cie2017.txt"), MACBETH.with_name("babelcolor.txt"))
+    digests = set()
+    for threads in (1, 4):
+        with threadpool_limits(threads, user_api="blas"):
+            digests.add(digest(quietly(spectra, dim=3, coefficients=7).data))
+            assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {
+                threads
+            }
+    assert len(digests) == 1
 
 
 def test_the_same_input_gives_the_same_bytes(tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import stat
 import tempfile
 import threading
@@ -12,11 +13,25 @@ from pathlib import Path
 
 from uplift.errors import OutputError
 
+try:
+    import fcntl
+except ImportError:  # not on Windows: there, what a killed process leaves stays until somebody removes it
+    fcntl = None  # type: ignore[assignment]
+
+SUFFIX = ".part"
+"""Of files that are being written."""
+
 _UMASK = threading.Lock()
 
 
 def check_output(path: str | os.PathLike[str], *, force: bool = False) -> Path:
     """The path, if it can be written. Raises `OutputError`; asks before long work, not after."""
+    if os.fspath(path) == "-":
+        raise OutputError(
+            "stands for standard output, which takes no files",
+            path=path,
+            remedy="name a file, or give the whole path of one that is called so",
+        )
     path = Path(path)
     mode = _mode(path)
     if mode is not None and not stat.S_ISREG(mode):
@@ -45,17 +60,20 @@ def _mode(path: Path) -> int | None:
 def replacing(path: str | os.PathLike[str], *, force: bool = False) -> Iterator[Path]:
     """A temporary path in the same folder; renamed to ``path`` if the block ends well, removed if not.
 
+    Of several at once to one path the last to end has it, whole. A link is kept, what it leads to replaced. What
+    killed processes left half-written beside ``path`` is removed; what others are writing now is locked, and stays.
+
     Raises `OutputError` where the path cannot be written, the disk is full, or the file exists and
     ``force`` is off.
     """
     path = check_output(path, force=force)
     target = path.resolve()
+    prefix = f".{target.name[:40]}."
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{target.name[:40]}.", suffix=".part", dir=target.parent)
-        os.close(handle)
+        _remove_stale(target.parent, prefix)
+        handle, temporary = _reserve(target.parent, prefix)
     except OSError as error:
         raise _cannot_write(path, error) from error
-    temporary = Path(name)
     try:
         yield temporary
         _settle(temporary)
@@ -64,6 +82,33 @@ def replacing(path: str | os.PathLike[str], *, force: bool = False) -> Iterator[
         raise _cannot_write(path, error) from error
     finally:
         temporary.unlink(missing_ok=True)
+        if fcntl is not None:
+            os.close(handle)
+
+
+def _reserve(folder: Path, prefix: str) -> tuple[int, Path]:
+    """A new file, locked for as long as its descriptor is open."""
+    while True:
+        handle, name = tempfile.mkstemp(prefix=prefix, suffix=SUFFIX, dir=folder)
+        if fcntl is None:
+            os.close(handle)  # Windows renames no open file
+            return handle, Path(name)
+        with contextlib.suppress(OSError):  # file systems without locks: nobody finds it stale there either
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        if os.fstat(handle).st_nlink:
+            return handle, Path(name)
+        os.close(handle)  # somebody took it for stale before it was locked
+
+
+def _remove_stale(folder: Path, prefix: str) -> None:
+    """Remove the temporary files of ``prefix`` that nobody holds: their writers were killed."""
+    if fcntl is None:
+        return
+    name = re.compile(re.escape(prefix) + "[a-z0-9_]{8}" + re.escape(SUFFIX))
+    for path in [Path(entry) for entry in os.scandir(folder) if name.fullmatch(entry.name)]:
+        with contextlib.suppress(OSError), path.open("rb+") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            path.unlink()
 
 
 def _settle(temporary: Path) -> None:

@@ -43,7 +43,8 @@ class Lattice:
     nodes: Array
 
     def __post_init__(self) -> None:
-        if self.nodes.ndim != 1 or len(self.nodes) < 2 or not (np.diff(self.nodes) > 0).all():
+        axis = self.nodes.ndim == 1 and len(self.nodes) >= 2 and bool(np.isfinite(self.nodes).all())
+        if not axis or not (np.diff(self.nodes) > 0).all():
             raise OptionError("a lattice needs at least 2 increasing nodes", remedy="use --dim 2 or more")
 
     @property

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
@@ -34,6 +35,17 @@ Watch = Callable[[fit.Round | fit.Storing | Reading], None]
 Atlas = Spectra | str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
 
 
+@contextmanager
+def _one_blas_thread() -> Iterator[None]:
+    """The same bytes whatever the threads: sums that BLAS shares out are rounded by how many there are, XLA's not."""
+    import scipy.linalg  # noqa: F401  it brings a BLAS of its own, and only what is there can be told
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1, user_api="blas"):
+        yield
+
+
+@_one_blas_thread()
 def build(
     atlas: Atlas = None, *, scene: Given | None = None, watch: Watch = lambda done: None, **options: Any
 ) -> Cube:
@@ -169,7 +181,7 @@ def _some(names: list[str]) -> str:
 
 
 def _warn(message: str) -> None:
-    warnings.warn(message, UpliftWarning, stacklevel=4)
+    warnings.warn(message, UpliftWarning, stacklevel=5)
 
 
 def _provenance(

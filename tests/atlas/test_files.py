@@ -23,6 +23,7 @@ GREY = Spectra((Entry("grey", np.array([400.0, 700.0]), np.array([0.5, 0.25])),)
     [
         ("", ": the file is empty; name a file that holds atlas entries"),
         (" \n\t\n", ": the file is empty; name a file that holds atlas entries"),
+        ("\ufeff\n\u2028", ": the file is empty; name a file that holds atlas entries"),
         ("a\nb\0c", ":2: binary data (a NUL byte), no text; save the atlas as UTF-8 text"),
         (PLAIN.encode("utf-16"), ":1: binary data (a NUL byte), no text; save the atlas as UTF-8 text"),
         (

@@ -91,6 +91,7 @@ def test_percent(save, text):
             2,
             "entry 'red': reflectance -0.2 at 550 nm is out of range; the scale",
         ),
+        (WIDE.replace("700", "1e308"), 2, "entry 'red': wavelength 1e+308 nm is out of range; give wave"),
     ],
 )
 def test_faults_name_file_line_entry_and_remedy(save, text, line, message):

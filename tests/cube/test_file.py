@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import re
 
 import numpy as np
 import pytest
@@ -359,7 +360,7 @@ def test_numbers_without_end_are_refused(data, tmp_path, name, bad):
 @pytest.mark.parametrize("threshold", [np.nan, np.inf, 0, -1e-4, "a"])
 def test_a_threshold_is_a_positive_number(data, tmp_path, threshold):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(threshold=threshold))
-    assert "is not a complete cube" in refused(path)
+    assert re.search("is not a complete cube|(NaN|Infinity) is no number", refused(path))
 
 
 @pytest.mark.parametrize("nodes", [[0.1, 1.0], [0.0, 0.9], [1.0, 0.0], [0.0, 0.0, 1.0], [1.0], [], 0.5])
@@ -397,7 +398,7 @@ def test_sigmoids_without_a_range_are_refused(small_sigmoid_cube, tmp_path, ends
     path = forge(
         small_sigmoid_cube.data, tmp_path / "cube", lambda tensors, metadata: metadata.update(model=model)
     )
-    assert "is not a complete cube" in refused(path)
+    assert re.search("is not a complete cube|NaN is no number", refused(path))
 
 
 def test_an_unknown_status_is_refused(data, tmp_path):
@@ -431,3 +432,38 @@ def test_the_cubes_of_the_project_are_read(repository):
     for path in cubes:
         write_again = digest(read(path))
         assert f'\\"digest\\":\\"{write_again}\\"'.encode() in path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "law"),
+    [
+        ("sensor.power", lambda array: 0 * array, "the perfect reflector is white"),
+        ("sensor.cmfs", lambda array: 2 * array[::-1], "the perfect reflector is white"),
+        ("sensor.xyz_to_rgb", lambda array: array[[0, 0, 0]], "the RGB space has three primaries"),
+        ("sensor.decoding", lambda array: array[::-1], "larger codes are lighter"),
+        ("sensor.cmfs", lambda array: array.astype(np.float16), "the sensor's cmfs has its shape"),
+        (
+            "atlas.coefficients",
+            lambda array: array.astype(np.complex64),
+            "every entry's coefficients has its shape",
+        ),
+        ("atlas.rgb", lambda array: array + 1, "every entry lies within the space"),
+        ("coefficients", lambda array: 1e300 * array, "every number is finite"),
+    ],
+)
+def test_forged_arrays_that_no_lookup_can_use_are_refused(data, tmp_path, name, change, law):
+    def forged(tensors, metadata):
+        tensors[name] = change(tensors[name])
+
+    assert f"it does not hold that {law}" in refused(forge(data, tmp_path / "cube", forged))
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), [float("-inf")]])
+def test_what_is_no_number_in_the_provenance_is_refused(data, tmp_path, value):
+    path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata["provenance"].update(a=value))
+    assert "is no number" in refused(path)
+
+
+def test_whole_numbers_without_end_are_refused(data, tmp_path):
+    path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(threshold=10**400))
+    assert "is not a complete cube (OverflowError" in refused(path)

@@ -132,8 +132,8 @@ def _sampled(sampling: Fields, samples: SampleText) -> tuple[Array, Array]:
     read: Callable[[Fields, SampleText], tuple[Array, Array]] = (
         _regular if fold(kind) == "regular" else _points
     )
-    wavelengths, values = read(sampling, samples)
-    with np.errstate(over="ignore"):  # an absurd scale is reported by name later
+    with np.errstate(over="ignore", invalid="ignore"):  # absurd scales and steps are reported by name later
+        wavelengths, values = read(sampling, samples)
         return wavelengths, values / scale
 
 

@@ -15,6 +15,9 @@ VISIBLE = (400.0, 700.0)
 LOWEST, HIGHEST = -0.05, 2.0
 """Sensor noise goes a little below 0, fluorescent whites above 1; anything beyond is a wrong scale."""
 
+LONGEST = 1e6
+"""nm: a millimetre. What lies beyond is no wavelength, and no number to interpolate with."""
+
 SLACK = 1e-6
 """nm that make no difference: by this a range may miss its end, as start + n × increment rounds."""
 
@@ -55,6 +58,8 @@ def _check_finite(wavelengths: Array, values: Array, place: Place) -> None:
 def _check_ascending(wavelengths: Array, place: Place) -> None:
     if wavelengths[0] <= 0:
         raise place.error(f"wavelength {wavelengths[0]:g} nm is not positive", "give wavelengths in nm")
+    if wavelengths[-1] > LONGEST:
+        raise place.error(f"wavelength {wavelengths[-1]:g} nm is out of range", "give wavelengths in nm")
     bad = np.flatnonzero(np.diff(wavelengths) < SLACK)
     if len(bad):
         i = bad[0]

@@ -68,9 +68,10 @@ def read_document(path: StrPath) -> Document:
     """
     place = Place(os.fspath(path))
     data = _bytes(place)
-    if not data.strip():
+    text = _text(data, place)
+    if not text.strip():
         raise place.error("the file is empty", "name a file that holds atlas entries")
-    return Document(os.fspath(path), _text(data, place), hashlib.sha256(data).hexdigest())
+    return Document(os.fspath(path), text, hashlib.sha256(data).hexdigest())
 
 
 def _bytes(place: Place) -> bytes:

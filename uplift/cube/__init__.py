@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from uplift.cube.data import AtlasTable, CubeData
-from uplift.cube.file import digest, read, write
+from uplift.cube.file import contents, digest, read, write
 from uplift.cube.sheet_file import check_sheet, write_sheet
 from uplift.cube.slices import check_slices, write_slices
 
@@ -12,6 +12,7 @@ __all__ = [
     "CubeData",
     "check_sheet",
     "check_slices",
+    "contents",
     "digest",
     "read",
     "write",

@@ -1,10 +1,11 @@
-"""What a cube file must hold: the arrays, and what is true of them."""
+"""What a cube must hold before anything is asked of it: whole arrays, a sensor that sees, numbers to reckon with."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uplift.cube.data import CubeData
 from uplift.lattice import Status
@@ -19,50 +20,74 @@ POINT_TYPES: dict[str, tuple[str, ...]] = {
     "round": ("int16",),
     "standard_error": ("float32",),
 }
-FEATURES = {"debug": "round", "errors": "standard_error"}
-"""Arrays that a cube may have or not, by the feature that says so."""
+LARGEST = 1e30
+"""No number of a cube comes near it, and squares of it can still be reckoned with."""
+WORST_CONDITION = 1e6
 ATLAS_ARRAYS = ("rgb", "coefficients", "reach", "error")
 
 
 def check(data: CubeData, stored: int) -> None:
     """Shapes, types and ranges that a lookup relies on, of a cube with ``stored`` points in its file.
 
-    Raises `ValueError`.
+    Raises ValueError for what does not hold.
     """
-    points, count, samples = data.lattice.size, data.model.count, len(data.sensor.wavelengths)
-    entries = len(data.atlas.names)
-    shapes = {"coefficients": (points, count), "rgb": (points, 3)}
-    for name, kinds in POINT_TYPES.items():
-        array = getattr(data, name)
-        fits = array is None or (array.shape == shapes.get(name, (points,)) and array.dtype.name in kinds)
-        _require(fits, f"{name} has its shape")
-    sensor_shapes = ((samples,), (samples, 3), (samples,), (3, 3), (256,))
-    for name, shape in zip(SENSOR_ARRAYS, sensor_shapes, strict=True):
-        _require(getattr(data.sensor, name).shape == shape, f"the sensor's {name} has its shape")
-    atlas_shapes = ((entries, 3), (entries, count), (entries,), (entries,))
-    for name, shape in zip(ATLAS_ARRAYS, atlas_shapes, strict=True):
-        _require(getattr(data.atlas, name).shape == shape, f"every entry has its {name}")
+    _check_arrays(data)
+    _check_sensor(data)
     sensor_names = (data.sensor.space, data.sensor.illuminant, data.sensor.observer)
     texts = (*data.atlas.names, *sensor_names, data.reference)
     _require(all(isinstance(text, str) for text in texts), "every name is a text")
     _require(isinstance(data.provenance, dict), "the provenance is a table")
-    floats: list[Any] = [data.coefficients, data.rgb, data.distance]
-    floats += [] if data.standard_error is None else [data.standard_error]
-    floats += [getattr(data.atlas, name) for name in ATLAS_ARRAYS]
-    floats += [getattr(data.sensor, name) for name in SENSOR_ARRAYS]
-    _require(all(np.isfinite(array).all() for array in floats), "every number is finite")
-    with np.errstate(all="ignore"):
-        basis = data.model.basis(data.sensor.wavelengths)
-    _require(basis.shape == (samples, count) and bool(np.isfinite(basis).all()), "the model has a range")
     _require(tuple(data.lattice.nodes[[0, -1]]) == (0, 1), "the lattice runs from 0 to 1")
     _require(0 < data.threshold < np.inf, "the threshold is a positive number")
     _require(bool((data.status < len(Status)).all()), "every status is known")
-    reaches = bool(((data.atlas.reach >= 0) & (data.atlas.reach <= 1)).all())
-    _require(reaches, "no entry reaches further than a step")
-    _require(bool(((data.entry >= -1) & (data.entry < entries)).all()), "every entry is in the atlas table")
     present = np.count_nonzero(data.present)
     _require(present == stored, "absent points are those that are not stored")
     _require(data.complete is None or bool(data.complete.any()), "a cell has all its corners")
+    atlas = data.atlas
+    _require(_within(atlas.reach, 0, 1), "no entry reaches further than a step")
+    _require(_within(atlas.rgb, 0, 1), "every entry lies within the space")
+    _require(_within(data.entry, -1, len(atlas.names) - 1), "every entry is in the atlas table")
+
+
+def _check_arrays(data: CubeData) -> None:
+    points, count, samples = data.lattice.size, data.model.count, len(data.sensor.wavelengths)
+    entries = len(data.atlas.names)
+    shapes: dict[str, tuple[int, ...]] = {"coefficients": (points, count), "rgb": (points, 3)}
+    arrays: list[tuple[str, Any, tuple[int, ...]]] = [
+        (name, getattr(data, name), shapes.get(name, (points,))) for name in POINT_TYPES
+    ]
+    sensor_shapes = ((samples,), (samples, 3), (samples,), (3, 3), (256,))
+    arrays += [
+        (f"the sensor's {name}", getattr(data.sensor, name), shape)
+        for name, shape in zip(SENSOR_ARRAYS, sensor_shapes, strict=True)
+    ]
+    atlas_shapes = ((entries, 3), (entries, count), (entries,), (entries,))
+    arrays += [
+        (f"every entry's {name}", getattr(data.atlas, name), shape)
+        for name, shape in zip(ATLAS_ARRAYS, atlas_shapes, strict=True)
+    ]
+    for name, array, shape in [*arrays, ("nodes", data.lattice.nodes, (data.lattice.dim,))]:
+        if array is not None:
+            fits = array.shape == shape and array.dtype.name in POINT_TYPES.get(name, ("float64",))
+            _require(fits, f"{name} has its shape")
+            _require(_within(array, -LARGEST, LARGEST), "every number is finite")
+
+
+def _check_sensor(data: CubeData) -> None:
+    sensor, count = data.sensor, data.model.count
+    with np.errstate(all="ignore"):
+        basis = data.model.basis(sensor.wavelengths)
+        white, condition = sensor.matrix.sum(axis=1), np.linalg.cond(sensor.xyz_to_rgb)
+    known = basis.shape == (len(sensor.wavelengths), count) and np.isfinite(basis).all()
+    _require(bool(known), "the model has a range")
+    _require(_within(white, 1 - 1e-6, 1 + 1e-6), "the perfect reflector is white")
+    _require(bool(condition < WORST_CONDITION), "the RGB space has three primaries")
+    _require(bool((np.diff(sensor.decoding) >= 0).all()), "larger codes are lighter")
+
+
+def _within(array: NDArray[Any], low: float, high: float) -> bool:
+    """NaN is not."""
+    return bool(((array >= low) & (array <= high)).all())
 
 
 def _require(holds: bool, law: str) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.cube import sparse
-from uplift.cube.checks import ATLAS_ARRAYS, FEATURES, POINT_TYPES, SENSOR_ARRAYS, check
+from uplift.cube.checks import ATLAS_ARRAYS, POINT_TYPES, SENSOR_ARRAYS, check
 from uplift.cube.data import AtlasTable, CubeData
 from uplift.errors import CubeFileError, UpliftError
 from uplift.files import replacing
@@ -27,6 +27,8 @@ KEY = "uplift"
 """The one metadata entry: safetensors does not keep several in a fixed order."""
 
 Tensors = dict[str, NDArray[Any]]
+FEATURES = {"debug": "round", "errors": "standard_error"}
+"""Arrays that a cube may have or not, by the feature that says so."""
 
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -34,7 +36,7 @@ def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) 
     from safetensors import SafetensorError
     from safetensors.numpy import save_file
 
-    tensors, metadata = _tensors(data), _metadata(data)
+    tensors, metadata = contents(data)
     metadata["digest"] = _digest(tensors, metadata)
     with replacing(path, force=force) as temporary:
         try:
@@ -61,14 +63,27 @@ def read(path: str | os.PathLike[str]) -> CubeData:
     try:
         data = _data(tensors, metadata)
         check(data, stored=len(tensors["status"]))
-    except (AttributeError, KeyError, MemoryError, TypeError, ValueError, UpliftError) as error:
+    except (
+        AttributeError,
+        KeyError,
+        MemoryError,
+        OverflowError,
+        TypeError,
+        ValueError,
+        UpliftError,
+    ) as error:
         raise _broken(path, f"is not a complete cube ({type(error).__name__}: {error})") from error
     return data
 
 
 def digest(data: CubeData) -> str:
     """Hex SHA-256 of the content; the same for cubes that answer alike in every bit."""
-    return _digest(_tensors(data), _metadata(data))
+    return _digest(*contents(data))
+
+
+def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
+    """The arrays that a file holds, by name, and its metadata but for the digest: JSON values."""
+    return _tensors(data), _metadata(data)
 
 
 def _load(path: Path) -> tuple[Tensors, dict[str, Any]]:
@@ -78,13 +93,17 @@ def _load(path: Path) -> tuple[Tensors, dict[str, Any]]:
         raise CubeFileError("no such file", path=path, remedy="'uplift build' makes cubes")
     try:
         with safe_open(path, framework="numpy") as file:
-            metadata = json.loads((file.metadata() or {}).get(KEY, "{}"))
+            metadata = json.loads((file.metadata() or {}).get(KEY, "{}"), parse_constant=_no_number)
             tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
     except (SafetensorError, ValueError, TypeError, OSError, RecursionError) as error:
         raise _broken(path, f"is not a cube file, or is cut short ({error})") from error
     if not isinstance(metadata, dict):
         raise _broken(path, "is a safetensors file, but no uplift cube")
     return tensors, metadata
+
+
+def _no_number(text: str) -> None:
+    raise ValueError(f"{text} is no number")
 
 
 def _broken(path: Path, problem: str) -> CubeFileError:

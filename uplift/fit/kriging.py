@@ -43,11 +43,11 @@ class Kriging:
 def krige(places: Array, deviations: Array, length: float = LENGTH) -> tuple[Kriging, Array]:
     """The kriging of deviations (E, C) at L*a*b* (E, 3), and what it says of each entry without it (E, C)."""
     from scipy.linalg import cho_factor, cho_solve
+    from scipy.linalg.lapack import dpotri
 
-    count = len(places)
-    factor = cho_factor(_kernel(places, places, length) + NUGGET * np.eye(count))
+    factor = cho_factor(_kernel(places, places, length) + NUGGET * np.eye(len(places)))
     weights = cho_solve(factor, deviations)
-    inverse = cho_solve(factor, np.eye(count))
+    inverse, _ = dpotri(factor[0], overwrite_c=True)
     return Kriging(places, weights, length), deviations - weights / np.diag(inverse)[:, None]
 
 

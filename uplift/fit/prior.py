@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,13 +11,16 @@ from uplift.difference import rgb_lab, spectra_apart
 from uplift.fit.entries import Entries
 from uplift.fit.kriging import Kriging, Uncertainty, krige, uncertainty
 from uplift.fit.problem import Problem
-from uplift.fit.smooth import Smooth, smooth
+from uplift.fit.realisable import unrealisable
+from uplift.fit.smooth import TABLE, Smooth, smooth
 from uplift.models import evaluate
 from uplift.sensor import Array, Light, Sensor
 
 FEWEST = 8
 """Entries that it takes to say anything of errors."""
 PASSES = 32
+MARGIN = 1e-3
+"""Linear RGB that starts of unrealisable colours keep from the boundary, where spectra turn into boxes."""
 BLOCK = 1 << 15
 """Points worked on at a time."""
 
@@ -56,10 +59,12 @@ class Prior:
 
 
 def learn(problem: Problem, sensor: Sensor, entries: Entries, light: Light) -> Prior:
-    """Learn from the atlas; errors are ΔE00 under ``light``."""
-    plain = smooth(problem.model, problem.forward)
+    """Learn from the atlas; errors are ΔE00 under ``light``. Sums round alike in whatever order the entries come."""
+    plain = smooth(problem.model, problem.forward, beyond=unrealisable(TABLE, sensor, MARGIN))
     if not len(entries.rgb):
         return Prior(sensor, plain)
+    order = np.lexsort(entries.rgb.T)
+    entries = Entries(*(getattr(entries, key.name)[order] for key in fields(Entries)))
     places = rgb_lab(sensor, entries.rgb)
     kriging, without = krige(places, entries.multipliers - plain(entries.rgb))
     if len(entries.rgb) < FEWEST:

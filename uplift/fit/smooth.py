@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.fit.quadrature import compiled
+from uplift.fit.realisable import NONE, Unrealisable
 from uplift.fit.solve import solve
 from uplift.lattice import Lattice
 from uplift.models import Model
@@ -22,7 +23,7 @@ BRIGHTENING = 0.5
 """Power of max(x) that a colour is divided by: 0 leaves it as it is, 1 makes it as bright as can be."""
 GREY = 2 / 3
 """Power of the mean of x' that is the reflectance of the grey to start from."""
-DIM = 17
+TABLE = Lattice(np.linspace(0, 1, 17) ** 2)
 DARKEST = 1e-4
 LIGHTEST = 0.98
 NO_FREEDOM = 3
@@ -31,7 +32,7 @@ NO_FREEDOM = 3
 
 @dataclass(frozen=True, eq=False)
 class Smooth:
-    """Multipliers to start from. ``coefficients`` (DIM³, C) of brightened colours; None where no table is needed."""
+    """Multipliers to start from. ``coefficients`` (17³, C) of brightened colours; None where no table is needed."""
 
     model: Model
     table: Lattice
@@ -49,14 +50,23 @@ class Smooth:
         return self.model.from_storage(factor * bright)
 
 
-def smooth(model: Model, forward: Forward, brightening: float = BRIGHTENING, grey: float = GREY) -> Smooth:
-    """Solve the table: brightened colours, each from its grey."""
-    table = Lattice(np.linspace(0, 1, DIM) ** 2)
+def smooth(
+    model: Model,
+    forward: Forward,
+    brightening: float = BRIGHTENING,
+    grey: float = GREY,
+    beyond: Unrealisable = NONE,
+) -> Smooth:
+    """Solve the table: brightened colours, each from its grey; in place of those ``beyond`` reflectances the nearest.
+
+    Solved for what no reflectance has, multipliers end anywhere, and take what lies between with them.
+    """
     if model.count == NO_FREEDOM:
-        return Smooth(model, table, None, brightening, grey)
-    start = _grey(model, table.points, grey)
-    found = solve(model, forward, start, table.points, tolerance=1e-5, passes=8)
-    return Smooth(model, table, model.to_storage(found.multipliers, compiled), brightening, grey)
+        return Smooth(model, TABLE, None, brightening, grey)
+    goal = TABLE.points.copy()
+    goal[beyond.points] = beyond.nearest
+    found = solve(model, forward, _grey(model, goal, grey), goal, tolerance=1e-5, passes=8)
+    return Smooth(model, TABLE, model.to_storage(found.multipliers, compiled), brightening, grey)
 
 
 def _grey(model: Model, rgb: Array, power: float) -> Array:

@@ -15,6 +15,7 @@ import numpy as np
 from uplift.fit.batch import batches, put, put_all
 from uplift.models import Model
 from uplift.models.least_change import Forward, residual, step
+from uplift.models.roots import STEEPEST
 from uplift.sensor import Array
 
 STEPS, MORE_STEPS = 2, 8
@@ -87,7 +88,7 @@ def _advance(
         count, here, damping, off = state
         there = here + step(model, forward, here, off, damping)
         off_there = residual(model, forward, there, target)
-        better = (off_there**2).sum(axis=1) < (off**2).sum(axis=1)
+        better = ((off_there**2).sum(axis=1) < (off**2).sum(axis=1)) & (abs(there).max(axis=1) <= STEEPEST)
         active = abs(off).max(axis=1) > tolerance
         move = (better & active)[:, None]
         damping = jnp.where(better, damping / 4, damping * 4)

@@ -18,6 +18,7 @@ from uplift.cube import CubeData
 from uplift.lookup.nodes import around, mix
 from uplift.models import Model, evaluate, reflectance
 from uplift.models.least_change import Forward, forward, residual, step
+from uplift.models.roots import STEEPEST
 from uplift.sensor import Array
 
 REFINED = 1e-8
@@ -97,9 +98,11 @@ def _descend(model: Model, ahead: Forward, multipliers: Array, rgb: Array) -> tu
         if not rows.size:
             break
         here = multipliers[rows]
-        there = here + step(model, ahead, here, off[rows], damping[rows])
-        off_there = residual(model, ahead, there, rgb[rows])
+        with np.errstate(over="ignore", invalid="ignore"):  # steps too far are turned down
+            there = here + step(model, ahead, here, off[rows], damping[rows])
+            off_there = residual(model, ahead, there, rgb[rows])
         better = (off_there**2).sum(axis=1) < (off[rows] ** 2).sum(axis=1)
+        better &= np.abs(there).max(axis=1) <= STEEPEST
         multipliers[rows[better]] = there[better]
         off[rows[better]] = off_there[better]
         damping[rows] = np.where(better, damping[rows] / 16, 4 * damping[rows] + FIRST_DAMPING)

@@ -1,0 +1,156 @@
+"""``make determinism``: the same cubes built under other circumstances → docs/stability-determinism.json.
+
+Threads, cores, devices and batches must not show: same bytes. Instruction sets may: by how much is what
+`uplift check` has to allow between machines (`uplift.report.regression`).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import warnings
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import click
+
+import uplift
+from benchmarks.timing import ROOT, circumstances
+from uplift.atlas import Spectra
+from uplift.report.regression import LIMITS, compare
+
+CASES: dict[str, dict[str, object]] = {
+    "moments, Macbeth, 16³": {"atlas": ("macbeth",), "dim": 16},
+    "sigmoid, Macbeth, 16³": {"atlas": ("macbeth",), "dim": 16, "model": "sigmoid"},
+    "17 coefficients, four atlases, 12³": {
+        "atlas": ("babelcolor", "cie2017", "pmc", "vs"),
+        "dim": 12,
+        "coefficients": 17,
+    },
+    "ProPhoto RGB, Macbeth, 12³": {"atlas": ("macbeth",), "dim": 12, "space": "ProPhoto RGB"},
+}
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Circumstances of a process: environment, a command before it, rows of a batch."""
+
+    name: str
+    environment: dict[str, str] = field(default_factory=dict)
+    prefix: tuple[str, ...] = ()
+    batch: tuple[int, ...] = ()
+
+
+AS_IT_IS = Setting("as it is")
+SAME = (
+    Setting("again"),
+    Setting("one core", prefix=("taskset", "-c", "0")),
+    Setting("1 thread of BLAS", {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}),
+    Setting("2 threads of BLAS", {"OPENBLAS_NUM_THREADS": "2", "OMP_NUM_THREADS": "2"}),
+    Setting("8 threads of BLAS", {"OPENBLAS_NUM_THREADS": "8"}),
+    Setting("1 thread of XLA", {"NPROC": "1"}),
+    Setting("16 threads of XLA", {"NPROC": "16"}),
+    Setting("no threads in a product of XLA", {"XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false"}),
+    Setting("3 devices", {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"}),
+    Setting("batches of 1024 and 64", batch=(1024, 64)),
+    Setting("batches of 4000 and 100", batch=(4000, 100)),
+)
+APART = (
+    Setting("XLA with AVX", {"XLA_FLAGS": "--xla_cpu_max_isa=AVX"}),
+    Setting("XLA with SSE 4.2", {"XLA_FLAGS": "--xla_cpu_max_isa=SSE4_2"}),
+    Setting("BLAS for Sandy Bridge", {"OPENBLAS_CORETYPE": "Sandybridge"}),
+    Setting("BLAS for Nehalem", {"OPENBLAS_CORETYPE": "Nehalem"}),
+    Setting("numpy without AVX2", {"NPY_DISABLE_CPU_FEATURES": "X86_V3"}),
+    Setting(
+        "all three without AVX",
+        {
+            "XLA_FLAGS": "--xla_cpu_max_isa=SSE4_2",
+            "OPENBLAS_CORETYPE": "Nehalem",
+            "NPY_DISABLE_CPU_FEATURES": "X86_V3",
+        },
+    ),
+)
+
+
+@click.command()
+@click.option("--into", metavar="FOLDER", help="Build the cubes into a folder, and compare nothing.")
+@click.option("--batch", nargs=2, type=int, help="Rows of a large and of a small batch.")
+def main(into: str | None, batch: tuple[int, int] | None) -> None:
+    """Build under all circumstances and compare."""
+    if into is not None:
+        _build(Path(into), batch)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        base = _run(AS_IT_IS, Path(folder) / "base")
+        same = [row for setting in SAME for row in _rows(setting, base, Path(folder) / setting.name)]
+        apart = [row for setting in APART for row in _rows(setting, base, Path(folder) / setting.name)]
+    worst = {name: max(row["measures"][name] for row in apart) for name in LIMITS}
+    facts = circumstances() | {"same": same, "apart": apart, "worst": worst, "limits": LIMITS}
+    (ROOT / "docs" / "stability-determinism.json").write_text(
+        json.dumps(facts, indent=1) + "\n", encoding="utf-8"
+    )
+    different = [row for row in same if not row["same_bytes"]]
+    click.echo(
+        f"{len(same)} builds that should have the same bytes, {len(different)} that have not: {different}"
+    )
+    click.echo(f"across instruction sets at most {worst}")
+    raise SystemExit(bool(different))
+
+
+def _build(folder: Path, batch: tuple[int, int] | None) -> None:
+    from uplift.fit import batch as batches
+
+    warnings.simplefilter("ignore", uplift.UpliftWarning)
+    if batch:
+        batches.HOST = batch
+    for number, options in enumerate(CASES.values()):
+        chosen = {key: value for key, value in options.items() if key != "atlas"}
+        cube = uplift.build(_atlas(options["atlas"]), **chosen)
+        cube.save(folder / f"{number}.uplift")
+
+
+def _atlas(names: object) -> Spectra:
+    """Atlases as one; names that several have are told apart."""
+    entries = []
+    for name in names:
+        entries += [
+            dataclasses.replace(entry, name=f"{name} {entry.name}")
+            for entry in uplift.read_atlas(ROOT / "atlases" / f"{name}.txt").entries
+        ]
+    return Spectra(tuple(entries))
+
+
+def _run(setting: Setting, folder: Path) -> Path:
+    folder.mkdir()
+    command = [*setting.prefix, sys.executable, "-m", "benchmarks.determinism", "--into", str(folder)]
+    if setting.batch:
+        command += ["--batch", *map(str, setting.batch)]
+    compiled = {"JAX_ENABLE_COMPILATION_CACHE": "false"}  # nothing that other circumstances left
+    subprocess.run(command, env=os.environ | compiled | setting.environment, cwd=ROOT, check=True)
+    return folder
+
+
+def _rows(setting: Setting, base: Path, folder: Path) -> list[dict[str, object]]:
+    _run(setting, folder)
+    rows = []
+    for number, case in enumerate(CASES):
+        one, other = base / f"{number}.uplift", folder / f"{number}.uplift"
+        comparison = compare(other, uplift.load(one).data, uplift.load(other).data)
+        rows.append(
+            {
+                "setting": setting.name,
+                "cube": case,
+                "same_bytes": one.read_bytes() == other.read_bytes(),
+                "measures": comparison.measures,
+                "status_same": comparison.stored_counts == comparison.rebuilt_counts,
+            }
+        )
+    return rows
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""The ColorChecker painted as RGB and rendered: ``make demo-render`` → docs/render.md."""

@@ -1,0 +1,73 @@
+"""The ColorChecker: its measured spectra, the RGB that it is painted with, and where its patches lie."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmarks.timing import ROOT
+from uplift import observer
+from uplift.atlas import on_grid, read_atlas
+from uplift.sensor import Array, Sensor
+
+MACBETH = ROOT / "atlases" / "macbeth.txt"
+COLUMNS, ROWS = 6, 4
+BACKGROUND = 0.03
+"""Reflectance between the patches."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """24 patches: ``measured`` (24, N) reflectances at ``wavelengths`` (N,) nm, ``painted`` (24, 3) linear sRGB.
+
+    ``outside`` (24,) tells which colours sRGB does not hold: they are painted clipped.
+    """
+
+    names: tuple[str, ...]
+    wavelengths: Array
+    measured: Array
+    painted: Array
+    outside: Array
+
+
+def chart() -> Chart:
+    sensor: Sensor = observer.sensor()
+    spectra = read_atlas(MACBETH)
+    measured = on_grid(spectra, sensor.wavelengths)
+    rgb = sensor.rgb(measured)
+    return Chart(spectra.names, sensor.wavelengths, measured, np.clip(rgb, 0, 1), ~sensor.holds(rgb))
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Patches of ``patch`` pixels with ``gap`` between and around them, in reading order."""
+
+    patch: int
+    gap: int
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the picture."""
+        pitch = self.patch + self.gap
+        return COLUMNS * pitch + self.gap, ROWS * pitch + self.gap
+
+    def corners(self) -> Iterator[tuple[int, int]]:
+        """Top left pixel (x, y) of each patch."""
+        pitch = self.patch + self.gap
+        for row in range(ROWS):
+            for column in range(COLUMNS):
+                yield self.gap + column * pitch, self.gap + row * pitch
+
+    def patches(self, inset: int = 0) -> Iterator[tuple[slice, slice]]:
+        """Rows and columns of the pixels of each patch but for ``inset`` pixels along its edges."""
+        for x, y in self.corners():
+            yield (
+                slice(y + inset, y + self.patch - inset),
+                slice(x + inset, x + self.patch - inset),
+            )
+
+    def means(self, image: Array) -> Array:
+        """(24, K) mean of each patch in an image (height, width, K)."""
+        return np.array([image[place].mean(axis=(0, 1)) for place in self.patches()])

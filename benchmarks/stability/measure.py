@@ -1,0 +1,67 @@
+"""What docs/stability.md is made of: the failure map, and the sensitivity of stored cubes → docs/stability/."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+import warnings
+from typing import Any
+
+import uplift
+from benchmarks.timing import ROOT, circumstances
+from uplift.provenance import recorded_atlas
+from uplift.study import sensitivity
+from uplift.study.made_atlases import MADE
+from uplift.study.records import write_csv
+from uplift.study.sensitivity_plots import plot_locality, plot_steepness
+from uplift.study.stability import NO_ATLAS, study
+from uplift.study.stability_design import Axes, design, grids
+from uplift.study.stability_plots import plot_map
+
+FOLDER = ROOT / "docs" / "stability"
+MAP, FIGURES = FOLDER / "map.csv", FOLDER / "sensitivity.json"
+PLAIN, CONSTRAINED = "moments-16", "moments-16-macbeth"
+CUBES = (PLAIN, CONSTRAINED, "sigmoid-16", "sigmoid-16-macbeth", "moments-8", "sigmoid-8")
+"""Of cubes/; the first two are drawn."""
+
+
+def main() -> None:
+    warnings.simplefilter("ignore", uplift.UpliftWarning)
+    FOLDER.mkdir(exist_ok=True)
+    for part in (_map, _sensitivity):
+        begin = time.perf_counter()
+        part()
+        print(f"{part.__name__[1:]}: {time.perf_counter() - begin:.0f} s", file=sys.stderr)
+
+
+def _map() -> None:
+    macbeth = {"macbeth": uplift.read_atlas(ROOT / "atlases" / "macbeth.txt")}
+    axes = Axes(atlases=(NO_ATLAS, "macbeth", *MADE))
+    found = study(design(axes), macbeth | {name: make() for name, make in MADE.items()}, _say)
+    write_csv([one.record() for one in found], MAP, force=True)
+    plot_map(grids(axes), {one.setting: one for one in found}, FOLDER / "map.png", force=True)
+
+
+def _sensitivity() -> None:
+    figures: dict[str, Any] = {"circumstances": circumstances(), "cubes": {}}
+    for name in CUBES:
+        path = ROOT / "cubes" / f"{name}.uplift"
+        cube = uplift.load(path)
+        atlas = recorded_atlas(cube.data, path) if name == CONSTRAINED else None
+        found = sensitivity.study(cube, atlas, 24)
+        figures["cubes"][name] = found.record()
+        if name in (PLAIN, CONSTRAINED):
+            plot_steepness(cube.data, found.steepness, FOLDER / f"steepness-{name}.png", force=True)
+        if found.left_out:
+            plot_locality(found.left_out, FOLDER / "locality.png", force=True)
+    FIGURES.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
+
+
+def _say(done: int, total: int) -> None:
+    if done % 20 == 0 or done == total:
+        print(f"{done} of {total} builds", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

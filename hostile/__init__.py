@@ -1,0 +1,1 @@
+"""Input that means harm, one file per target, outside the default run (`make nightly`): docs/stability-hostile.json."""

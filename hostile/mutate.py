@@ -1,0 +1,94 @@
+"""Bytes spoilt at random: a few changes each, as accidents and attackers make them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+Random = np.random.Generator
+Change = Callable[[bytes, Random, Sequence[bytes]], bytes]
+
+NUMBERS = (
+    b"nan", b"inf", b"-inf", b"-1", b"0", b"-0.0", b"1e999", b"1e-999", b"1_000", b"9" * 400, b"0x10", b"1,5",
+    b"1e308", b"4294967296", b"1000000000", b"18446744073709551616", b"\xd9\xa3", b"",
+)  # fmt: skip
+"""What numbers should not be."""
+
+
+def mutated(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+    """``content`` after one to eight changes; ``words`` are such as mean something to the reader."""
+    for _ in range(int(random.integers(1, 9))):
+        content = CHANGES[random.integers(len(CHANGES))](content, random, words)
+    return content
+
+
+def _place(content: bytes, random: Random) -> int:
+    return int(random.integers(len(content) + 1))
+
+
+def _span(content: bytes, random: Random) -> tuple[int, int]:
+    """Mostly short."""
+    first = _place(content, random)
+    return first, min(first + int(2 ** random.uniform(0, 10)), len(content))
+
+
+def _flip(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+    if not content:
+        return content
+    spoilt = bytearray(content)
+    spoilt[random.integers(len(content))] ^= 1 << int(random.integers(8))
+    return bytes(spoilt)
+
+
+def _delete(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+    first, last = _span(content, random)
+    return content[:first] + content[last:]
+
+
+def _repeat(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+    first, last = _span(content, random)
+    return content[:last] + content[first:last] * int(random.integers(1, 4)) + content[last:]
+
+
+def _insert(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+    place = _place(content, random)
+    return content[:place] + words[random.integers(len(words))] + content[place:]
+
+
+def _noise(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+    place = _place(content, random)
+    return content[:place] + random.bytes(int(random.integers(1, 9))) + content[place:]
+
+
+def _cut(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+    return content[: _place(content, random)] if random.random() < 0.2 else content
+
+
+def _replace_word(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+    """One word that is there by another."""
+    old, new = (words[random.integers(len(words))] for _ in range(2))
+    return content.replace(old, new, int(random.integers(1, 4))) if old else content
+
+
+def _replace_number(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+    """The digits around a place."""
+    first = last = _place(content, random)
+    while first and content[first - 1 : first] in DIGITS:
+        first -= 1
+    while content[last : last + 1] in DIGITS and last < len(content):
+        last += 1
+    return content[:first] + NUMBERS[random.integers(len(NUMBERS))] + content[last:]
+
+
+def _swap_lines(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+    lines = content.split(b"\n")
+    one, other = random.integers(len(lines), size=2)
+    lines[one], lines[other] = lines[other], lines[one]
+    return b"\n".join(lines)
+
+
+DIGITS = {bytes([code]) for code in b"0123456789.+-eE"}
+CHANGES: tuple[Change, ...] = (
+    _flip, _delete, _repeat, _insert, _noise, _cut, _replace_word, _replace_number, _swap_lines,
+)  # fmt: skip

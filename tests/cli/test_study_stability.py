@@ -1,0 +1,60 @@
+"""``uplift study stability`` and ``uplift study sensitivity``."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+
+import matplotlib.image
+
+NARROW = ("--dims", 4, "--coefficients", "9", "--models", "moments", "--spaces", "sRGB", "--drawn", 1)
+
+
+def test_a_map_of_little(run, home, repository):
+    tcs = repository / "atlases" / "tcs.txt"
+    few = ("--thresholds", "1e-3,1e-4", "--peer-dims", "2", "--atlas", tcs, "--atlases", "none,tcs")
+    rest = (*few, "-o", "out", "--format", "csv")
+    result = run("study", "stability", *NARROW, *rest)
+    assert result.stderr == "out: stability.csv, stability.json, stability.png\n"
+    rows = list(csv.DictReader(io.StringIO(result.stdout)))
+    assert (home / "out" / "stability.csv").read_text(encoding="utf-8") == result.stdout
+    objects = json.loads((home / "out" / "stability.json").read_text(encoding="utf-8"))
+    assert [{key: str(value) for key, value in one.items()} for one in objects] == rows
+    ours = [one for one in objects if one["solver"] == "uplift"]
+    assert {one["atlas"] for one in ours} == {"none", "tcs"}
+    assert all(one["success"] == 1 and one["worst"] <= one["threshold"] for one in ours)
+    assert {one["coefficients"] for one in objects if one["solver"] == "in c"} == {9}
+    assert matplotlib.image.imread(home / "out" / "stability.png").std() > 0.05
+
+
+def test_the_table_says_what_failed(run):
+    args = ("--thresholds", "1e-4", "--peer-dims", "2", "--drawn", 0, "--atlases", "none")
+    result = run("study", "stability", *NARROW[:-2], *args)
+    lines = result.stdout.splitlines()
+    assert any("in c" in line and "moments 9" in line for line in lines)
+    assert lines[-1].startswith("4 builds, ")
+    assert "unfitted in" in lines[-1]
+
+
+def test_what_is_no_list_is_refused(run, refuse):
+    assert "'4,x' is no list" in run("study", "stability", "--dims", "4,x", code=2).stderr
+    message = refuse("study", "stability", *NARROW, "--atlases", "none,moon")
+    assert message.startswith("unknown atlas 'moon'")
+
+
+def test_sensitivity_of_a_stored_cube(run, home, cubes):
+    cube = cubes / "moments-8-macbeth.uplift"
+    args = ("study", "sensitivity", cube, "--entries", 1)
+    record = json.loads(run(*args, "-o", "out", "--format", "json").stdout)
+    assert json.loads((home / "out" / "sensitivity.json").read_text(encoding="utf-8")) == record
+    assert [one["change"] for one in record["changes"]][3:] == ["dark skin wrong", "dark skin left out"]
+    for name in ("steepness", "locality"):
+        assert matplotlib.image.imread(home / "out" / f"sensitivity-{name}.png").std() > 0.05
+
+
+def test_sensitivity_of_the_package_s_own_cube_has_no_atlas_to_change(run, home):
+    result = run("study", "sensitivity", "-o", "out")
+    assert "Lipschitz constant" in result.stdout
+    assert "left out" not in result.stdout
+    assert result.stderr == "out: sensitivity.json, sensitivity-steepness.png\n"

@@ -1,0 +1,59 @@
+"""Any cube that may be written reads back the same, and is written again as the same bytes."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from uplift.cube import digest, read, write
+
+from .hand_made import hand_made
+
+TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | TEXT,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(TEXT, inner, max_size=3),
+    max_leaves=8,
+)
+DATA = hand_made(2)
+NUMBERS = st.floats(-1e30, 1e30)
+
+
+@st.composite
+def cubes(draw):
+    names = tuple(draw(st.lists(TEXT, min_size=2, max_size=2, unique=True)))
+    return replace(
+        DATA,
+        threshold=draw(st.floats(1e-9, 0.1)),
+        atlas=replace(DATA.atlas, names=names, error=draw(arrays(float, 2, elements=NUMBERS))),
+        coefficients=draw(arrays(float, (8, 3), elements=NUMBERS)),
+        distance=draw(arrays(np.float32, 8, elements=st.floats(0, 1024, width=32))),
+        status=draw(arrays(np.uint8, 8, elements=st.integers(0, 5))),
+        entry=draw(arrays(np.int32, 8, elements=st.integers(-1, 1))),
+        round=draw(st.none() | arrays(np.int16, 8)),
+        standard_error=draw(st.none() | arrays(np.float32, 8, elements=st.floats(0, 128, width=32))),
+        reference=draw(TEXT),
+        provenance=draw(st.dictionaries(TEXT, JSON, max_size=3)),
+    )
+
+
+@settings(max_examples=60)
+@given(cubes())
+def test_what_is_written_is_read_and_written_again_alike(data):
+    with tempfile.TemporaryDirectory() as folder:
+        first, second = Path(folder, "first"), Path(folder, "second")
+        write(data, first)
+        found = read(first)
+        write(found, second)
+        assert second.read_bytes() == first.read_bytes()
+    assert digest(found) == digest(data)
+    for name in ("coefficients", "distance", "status", "entry", "round", "standard_error"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(data, name))
+    assert found.atlas.names == data.atlas.names
+    assert found.provenance == data.provenance

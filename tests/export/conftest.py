@@ -1,0 +1,19 @@
+"""Cubes that the exporters have not met elsewhere."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from uplift.lookup import Cube
+from uplift.models import Moments, Phase
+
+
+@pytest.fixture(scope="session")
+def warped_cube(small_cube) -> Cube:
+    """Five of nine moments, over another range and warp: whatever spectra and colours these are."""
+    data = small_cube.data
+    atlas = replace(data.atlas, coefficients=data.atlas.coefficients[:, :5])
+    model = Moments(5, Phase(400, 700, "vision"))
+    return Cube(replace(data, model=model, atlas=atlas, coefficients=data.coefficients[:, :5]))

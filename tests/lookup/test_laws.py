@@ -1,0 +1,64 @@
+"""Laws of the interpolation: weights sum to 1, nodes have their own, neighbouring cells agree where they meet."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from uplift.lookup.nodes import around, mix
+from uplift.models import reflectance
+
+colours = arrays(float, (5, 3), elements=st.floats(0, 1))
+FACES = st.tuples(st.integers(1, 6), st.integers(0, 2), arrays(float, 3, elements=st.floats(0, 1)))
+
+
+@given(rgb=colours)
+def test_weights_are_a_partition_of_unity_entries_included(small_cube, rgb):
+    nodes = around(small_cube.data, rgb)
+    assert (nodes.weights >= 0).all()
+    assert ((nodes.share >= 0) & (nodes.share <= 1)).all()
+    data = small_cube.data
+    ones = nodes.mix(np.ones((data.lattice.size, 1)), np.ones((len(data.atlas.names), 1)))
+    np.testing.assert_allclose(ones, 1, atol=1e-14)
+
+
+@given(rgb=colours)
+def test_nodes_reproduce_the_colour_entries_included(small_cube, rgb):
+    data = small_cube.data
+    found = around(data, rgb).mix(data.lattice.points, data.atlas.rgb)
+    np.testing.assert_allclose(found, rgb, atol=1e-12)
+
+
+def test_entries_have_their_own_spectra(small_cube):
+    data = small_cube.data
+    own = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
+    np.testing.assert_allclose(small_cube.reflectance(data.atlas.rgb), own, rtol=0, atol=1e-12)
+
+
+@given(face=FACES)
+def test_both_cells_of_a_face_answer_it_alike(small_cube, face):
+    """The upper cell at its lower end, and the lower cell at its upper end."""
+    node, axis, rgb = face
+    data = small_cube.data
+    rgb = rgb.copy()
+    rgb[axis] = data.lattice.nodes[node]
+    low, fraction = data.lattice.cell(rgb[None])
+    assert (low[0, axis], fraction[0, axis]) == (node, 0)
+    below, end = low.copy(), fraction.copy()
+    below[0, axis], end[0, axis] = node - 1, 1
+    upper, lower = (
+        mix(data.coefficients, *data.lattice.around(cell, part))
+        for cell, part in ((low, fraction), (below, end))
+    )
+    np.testing.assert_allclose(lower, upper, rtol=0, atol=1e-15)
+
+
+@given(face=FACES)
+def test_a_hair_to_either_side_of_a_face_changes_an_answer_by_a_hair(small_cube, face):
+    node, axis, rgb = face
+    sides = np.repeat(rgb[None], 2, axis=0)
+    sides[:, axis] = small_cube.data.lattice.nodes[node] + np.array([-1e-12, 1e-12])
+    one, other = small_cube.reflectance(sides)
+    assert np.abs(one - other).max() < 1e-8

@@ -1,0 +1,127 @@
+"""Images as textures: where texels lie, how they blend, and in which variants."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+IMAGE = np.random.default_rng(8).random((3, 4, 3), dtype=np.float32)
+PLACES = [(0.1, 0.2), (0.83, 0.4), (0.999, 0.001), (0.5, 0.5), (1.3, -0.7), (-0.2, 1.9)]
+WITHIN = 1e-5
+"""Linear RGB: single precision."""
+
+
+@pytest.fixture
+def texture(mi, stored):
+    """A texture of the image, or of another."""
+
+    def texture(image=IMAGE, **options):
+        return mi.load_dict({"type": "uplift", "cube": stored, "bitmap": mi.Bitmap(image), **options})
+
+    return texture
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"filter_type": "nearest"},
+        {"wrap_mode": "mirror"},
+        {"wrap_mode": "clamp"},
+        {"filter_type": "nearest", "wrap_mode": "clamp"},
+    ],
+)
+def test_texels_lie_and_blend_as_in_mitsuba_s_own_bitmap(mi, texture, spectrum, sensor, options):
+    import drjit
+
+    ours, own = (
+        texture(**options),
+        mi.load_dict({"type": "bitmap", "bitmap": mi.Bitmap(IMAGE), "raw": True, **options}),
+    )
+    si = drjit.zeros(mi.SurfaceInteraction3f)
+    for uv in PLACES:
+        si.uv = mi.Point2f(*uv)
+        found = sensor.rgb(spectrum(ours, uv, sensor.wavelengths))
+        np.testing.assert_allclose(found, np.array(own.eval_3(si)), rtol=0, atol=WITHIN)
+
+
+@pytest.mark.parametrize("matrix", ["ScalarTransform3f", "ScalarTransform4f"])
+def test_uv_are_transformed(mi, texture, spectrum, matrix):
+    scale = [2, 3] if matrix == "ScalarTransform3f" else [2, 3, 1]
+    moved = texture(to_uv=getattr(mi, matrix)().scale(scale))
+    assert spectrum(moved, (0.1, 0.2), [500]) == pytest.approx(
+        spectrum(texture(), (0.2, 0.6), [500]), abs=1e-6
+    )
+
+
+def test_spectra_blend_not_multipliers(texture, spectrum, small_cube):
+    """Between a black and a white texel lies grey, whatever multipliers these have."""
+    image = np.array([[[0.01] * 3, [0.9] * 3]], dtype=np.float32)
+    ends = small_cube.reflectance(image[0], [500, 600], mode="refined")
+    found = spectrum(texture(image, wrap_mode="clamp"), (0.5, 0.5), [500, 600])
+    np.testing.assert_allclose(found, ends.mean(axis=0), atol=1e-5)
+
+
+def test_encoded_files_are_decoded_and_linear_ones_are_not(
+    mi, texture, spectrum, small_cube, tmp_path, stored
+):
+    codes = np.array([[[200, 30, 90]]], dtype=np.uint8)
+    linear = small_cube.decode(codes).astype(np.float32)
+    mi.Bitmap(codes).write(str(tmp_path / "image.png"))
+    mi.Bitmap(linear).write(str(tmp_path / "image.exr"))
+    expected = small_cube.reflectance(linear[0, 0], [450, 650], mode="refined")
+    for name in ("image.png", "image.exr"):
+        found = mi.load_dict({"type": "uplift", "cube": stored, "filename": str(tmp_path / name)})
+        np.testing.assert_allclose(spectrum(found, (0.5, 0.5), [450, 650]), expected, atol=1e-5)
+
+
+def test_what_mitsuba_asks_of_textures(texture, small_cube):
+    found = texture()
+    assert found.is_spatially_varying()
+    assert tuple(found.resolution()) == (4, 3)
+    whole = small_cube.reflectance(IMAGE, mode="refined")
+    assert found.mean() == pytest.approx(whole.mean(), abs=0.02)
+    assert "4 × 3, moments, 9 multipliers, repeat" in str(found)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"wrap_mode": "round"}, "unknown wrap_mode 'round'; use one of repeat, mirror, clamp"),
+        ({"filter_type": "cubic"}, "unknown filter_type 'cubic'"),
+        ({"image": 2 * IMAGE}, r"lies outside \[0, 1\]"),
+        ({"image": IMAGE * np.nan}, r"lies outside \[0, 1\]"),
+    ],
+)
+def test_mistakes_are_named(texture, options, told):
+    with pytest.raises(RuntimeError, match=told):
+        texture(**options)
+
+
+JIT = """
+import sys
+import drjit, mitsuba as mi, numpy as np
+from uplift.mitsuba import register
+mi.set_variant("llvm_ad_spectral")
+register()
+image = np.random.default_rng(8).random((3, 4, 3), dtype=np.float32)
+texture = mi.load_dict({"type": "uplift", "cube": sys.argv[1], "bitmap": mi.Bitmap(image)})
+si = drjit.zeros(mi.SurfaceInteraction3f, 6)
+si.uv = mi.Point2f([0.1, 0.83, 0.999, 0.5, 1.3, -0.2], [0.2, 0.4, 0.001, 0.5, -0.7, 1.9])
+si.wavelengths = mi.Spectrum(400, 500, 600, 700)
+print(*np.array(texture.eval(si)).T.ravel())
+"""
+
+
+def test_a_whole_wavefront_is_answered_as_ray_by_ray(texture, spectrum, stored):
+    """In a process of its own: an LLVM too old for Mitsuba takes the process down."""
+    done = subprocess.run([sys.executable, "-c", JIT, stored], capture_output=True, text=True)
+    if done.returncode and "LLVM" in done.stderr:
+        pytest.skip("Mitsuba finds no LLVM that it can use")
+    assert not done.returncode, done.stderr
+    found = np.array(done.stdout.split(), dtype=float).reshape(6, 4)
+    one_by_one = [spectrum(texture(), uv, [400, 500, 600, 700]) for uv in PLACES]
+    np.testing.assert_allclose(found, one_by_one, atol=1e-5)
