@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .options import force_option
+from .options import fill_option, force_option
 from .progress import waiting
 
 if TYPE_CHECKING:
@@ -23,8 +23,9 @@ SUFFIXES = {"coeff": ".coeff", "c": ".h", "npz": ".npz", "csv": ".csv"}
 @click.argument("out", metavar="[OUT]", required=False, type=click.Path())
 @click.option("--to", "to", type=click.Choice(tuple(SUFFIXES)), help="Format. [default: as OUT is called]")
 @click.option("--res", type=int, help="Points along each axis of a coeff table. [default: 64]")
+@fill_option()
 @force_option()
-def command(cube: str, out: str | None, to: str | None, res: int | None, force: bool) -> None:
+def command(cube: str, out: str | None, to: str | None, res: int | None, fill: bool, force: bool) -> None:
     """Write a cube in a format that other tools read.
 
     coeff, the table of rgb2spec that Mitsuba and colour-science read: sigmoid spectra of the cube's colours.
@@ -50,12 +51,13 @@ def command(cube: str, out: str | None, to: str | None, res: int | None, force: 
     out = out or Path(cube).stem + SUFFIXES[to]
     if os.path.realpath(out) == os.path.realpath(cube):
         raise click.UsageError("OUT is the cube itself.")
-    from uplift.cube import read
     from uplift.files import check_output
+    from uplift.lookup import load
 
     path = check_output(out, force=force)
     options = {} if res is None else {"res": res}
-    click.echo(f"{path}: {WRITERS[to](read(cube), path, force=force, **options)}")
+    asked = load(cube).filled() if fill else load(cube)
+    click.echo(f"{path}: {WRITERS[to](asked.data, path, force=force, **options)}")
 
 
 def _format_of(out: str | None) -> str:

@@ -64,4 +64,5 @@ def test_statuses_read_as_words():
         "improved",
         "unfitted",
         "unrealisable",
+        "absent",
     ]

@@ -77,3 +77,8 @@ def test_a_report_judges_what_is_there(run, scene, macbeth):
     assert found["atlas"]["absent"]
     other = json.loads(run("report", scene, "--atlas", macbeth.parent / "tcs.txt", "--format", "json").stdout)
     assert other["atlas"]["absent"]
+
+
+def test_an_export_that_needs_all_colours_is_filled(run, refuse, scene, home):
+    assert "a header has all colours" in refuse("export", scene, "--to", "c")
+    assert "512 points" in run("export", scene, "--to", "c", "--fill").stdout

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.cube import CubeData, digest
-from uplift.errors import UpliftWarning
+from uplift.errors import OptionError, UpliftWarning
 from uplift.files import replacing
 from uplift.models import Model, Moments, Sigmoid
 from uplift.models.phase import WARPS
@@ -32,8 +32,12 @@ def write_c(data: CubeData, path: str | os.PathLike[str], *, force: bool = False
     """Write the header, and say how many bytes it has. Its names begin with the file's, made an identifier.
 
     Spectra are interpolated as mode ``moments`` has it: coefficients, of lattice and entries alike.
-    Raises `OutputError`; warns where the header is large.
+    Raises `OutputError`, and `OptionError` for a cube of a scene: the header could not refuse other colours. Warns
+    where the header is large.
     """
+    if data.complete is not None:
+        problem = "the cube was built for the colours of a scene, and a header has all colours"
+        raise OptionError(problem, remedy="export it with --fill (in Python: cube.filled())")
     name = _identifier(Path(path).stem)
     with replacing(path, force=force) as temporary:
         with temporary.open("w", encoding="ascii", newline="\n") as file:

@@ -7,16 +7,18 @@ import os
 from collections.abc import Iterator
 from itertools import chain
 
+import numpy as np
+
 from uplift.cube import CubeData
 from uplift.files import replacing
-from uplift.lattice import Status
+from uplift.lattice import Indices, Status
 
 BLOCK = 1 << 12
 """Points made into text at a time."""
 
 
 def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
-    """Write a line for every lattice point under a line of names, and say how many points there are.
+    """Write a line for every lattice point that is present under a line of names, and say how many they are.
 
     Columns: target and lattice RGB, linear; fitting distance; status; the atlas entry that the point is based on,
     if any; round and standard error, of cubes that have them; the coefficients. Raises `OutputError`.
@@ -27,9 +29,10 @@ def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
     ):
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(_names(data))
-        for first in range(0, data.lattice.size, BLOCK):
-            writer.writerows(_rows(data, slice(first, first + BLOCK)))
-    return data.lattice.size
+        points = np.flatnonzero(data.present)
+        for first in range(0, len(points), BLOCK):
+            writer.writerows(_rows(data, points[first : first + BLOCK]))
+    return len(points)
 
 
 def _names(data: CubeData) -> list[str]:
@@ -41,7 +44,7 @@ def _names(data: CubeData) -> list[str]:
     ]
 
 
-def _rows(data: CubeData, block: slice) -> Iterator[list[object]]:
+def _rows(data: CubeData, block: Indices) -> Iterator[list[object]]:
     entries = [*data.atlas.names, ""]
     optional = [
         array[block, None].tolist() for array in (data.round, data.standard_error) if array is not None

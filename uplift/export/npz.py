@@ -14,12 +14,12 @@ from uplift.files import replacing
 def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
     """Write the arrays of docs/cube-file.md under their names, and say how many.
 
-    Beside them lie ``multipliers`` (dim³, C) and ``atlas.multipliers`` (E, C), from which spectra are evaluated at
-    once; ``atlas.names`` (E,); and ``metadata``, the JSON text. Nothing is pickled. Raises `OutputError`.
+    Beside them lie ``multipliers`` (n, C) of the points and ``atlas.multipliers`` (E, C), from which spectra are
+    evaluated at once; ``atlas.names`` (E,); and ``metadata``, the JSON text. Nothing is pickled. Raises `OutputError`.
     """
     tensors, metadata = contents(data)
     arrays = tensors | {
-        "multipliers": data.model.from_storage(data.coefficients),
+        "multipliers": data.model.from_storage(data.coefficients[data.present]),
         "atlas.multipliers": data.model.from_storage(data.atlas.coefficients),
         "atlas.names": np.array(data.atlas.names, dtype=np.str_),
         "metadata": np.array(json.dumps(metadata, ensure_ascii=False)),

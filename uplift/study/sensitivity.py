@@ -95,6 +95,11 @@ def study(
     if most < 0:
         raise OptionError(f"{most} entries cannot be left out", remedy="use 0 or more")
     light = observer.light(LIGHT, cube.data.sensor.observer)
+    if cube.data.complete is not None:
+        problem = (
+            "the cube was built for the colours of a scene, and between its cells there is nothing to measure"
+        )
+        raise OptionError(problem, remedy="build it without --scene")
     asked, steep = moves(cube, light), steepness(cube.data)
     if atlas is None or not most:
         return Sensitivity(cube, asked, steep, [], [], [])
