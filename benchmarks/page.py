@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from benchmarks.timing import ROOT, circumstances
+from benchmarks.timing import ROOT
+from uplift.timing import circumstances
 
 
 def write(name: str, introduction: str, sections: Iterable[str]) -> str:
