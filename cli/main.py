@@ -10,7 +10,7 @@ import click
 
 from uplift.errors import UpliftError, UpliftWarning
 
-COMMANDS = ("build", "query", "check", "report", "info", "slices", "atlas", "study")
+COMMANDS = ("build", "query", "check", "report", "info", "slices", "atlas", "study", "chart")
 
 
 class Refusal(click.ClickException):

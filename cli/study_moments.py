@@ -45,31 +45,17 @@ def moments(files: tuple[str, ...], most: int, output: str | None, style: str, f
       uplift study moments --atlas atlases/macbeth.txt --output out --force
       uplift study moments --most 8 --format json
     """
+    from uplift.files import check_folder
     from uplift.study.moments import study
 
     atlases = read_each(files)
     if output is not None:
-        _check(Path(output), force=force)
+        check_folder(output, FILES, force=force)
     with counting("reconstructions") as watch:
         found = study(atlases, most, watch)
     if output is not None:
         _write(found, Path(output), force=force)
     PRINTERS[style](found)
-
-
-def _check(folder: Path, *, force: bool) -> None:
-    """Make the folder and ask for every file before the work. Raises `OutputError`."""
-    from uplift.errors import OutputError
-    from uplift.files import check_output
-
-    try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise OutputError(
-            f"cannot be made: {error.strerror}", path=folder, remedy="name a folder to write to"
-        ) from error
-    for name in FILES:
-        check_output(folder / name, force=force)
 
 
 def _write(found: Study, folder: Path, *, force: bool) -> None:

@@ -14,6 +14,8 @@ from uplift.timing import Spread, timed
 FEWEST_RUNS = 3
 PATIENCE = 15
 """Laps that all runs together may take, if they are more than the fewest."""
+TRIAL = 512
+"""Colours that tell how many there is patience for."""
 CALLS = 64
 """Different colours asked one at a time."""
 
@@ -21,8 +23,11 @@ Times = dict[str, float]
 
 
 def batch_times(ask: Callable[[Array], object], effort: Effort) -> Times:
-    """Of as many random colours as the effort has; ns of all threads per colour."""
+    """Of as many random colours as the effort has, fewer of slow methods; ns of all threads per colour."""
     rgb = np.random.default_rng(2).random((effort.batch, 3))
+    ask(rgb[:1])
+    _, trial = timed(lambda: ask(rgb[:TRIAL]), 1)
+    rgb = rgb[: max(int(PATIENCE * effort.lap * TRIAL / max(trial.median, 1e-9)), TRIAL)]
     return _numbers("batch", *_repeated(lambda: ask(rgb), len(rgb), effort))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Callable, Iterable
 
 import numpy as np
@@ -48,7 +49,11 @@ def measure_one(family: Family, method: Method, task: Task) -> Row:
     """A method's row; what is broken or missing has no times."""
     state, why, numbers = State.MEASURED, "", {}
     try:
-        numbers = _numbers(method, task)
+        with warnings.catch_warnings():
+            warnings.simplefilter(
+                "ignore"
+            )  # what others' code has to say, and entries that all cubes leave out
+            numbers = _numbers(method, task)
     except NotInstalledError as error:
         state, why = State.MISSING, str(error)
     except BrokenError as error:

@@ -103,6 +103,8 @@ def parse_chart(text: str, path: str | os.PathLike[str]) -> Chart:
 
 
 def _row(line: dict[str, str]) -> Row:
+    if None in line or None in line.values():
+        raise ValueError("a line is longer or shorter than the first")
     texts = {name: line[name] for name in TEXTS if name != "state"}
     numbers = {name: float(line[name]) for name in line if name not in (*TEXTS, *FACTS) and line[name]}
     if not all(map(math.isfinite, numbers.values())):

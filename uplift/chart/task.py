@@ -28,14 +28,14 @@ class Effort:
     ``lap`` seconds each for a time, of no more than ``batch`` colours; ``builds`` of a cube, the last one counted.
     """
 
-    answering: float = 15.0
+    answering: float = 10.0
     runs: int = 7
     lap: float = 0.1
     batch: int = 1 << 16
     builds: int = 2
 
 
-QUICK = Effort(answering=1.0, runs=3, lap=0.01, batch=1 << 13, builds=1)
+QUICK = Effort(answering=0.3, runs=3, lap=0.01, batch=1 << 12, builds=1)
 
 
 @dataclass(frozen=True, eq=False)

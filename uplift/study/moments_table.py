@@ -7,7 +7,7 @@ import io
 import os
 from typing import Any
 
-from uplift.files import replacing
+from uplift.files import write_text
 from uplift.study.moments import MEASURES, Result, Study
 
 
@@ -28,8 +28,7 @@ def csv_text(study: Study) -> str:
 
 def write_csv(study: Study, path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Write the records as CSV. Raises `OutputError`."""
-    with replacing(path, force=force) as temporary:
-        temporary.write_text(csv_text(study), encoding="utf-8")
+    write_text(csv_text(study), path, force=force)
 
 
 def _record(study: Study, result: Result) -> dict[str, Any]:

@@ -9,11 +9,14 @@ from pkgutil import iter_modules
 from uplift.chart.method import Family, Method
 from uplift.errors import OptionError
 
-FAMILIES: tuple[Family, ...] = tuple(
-    family
-    for found in iter_modules(__path__, f"{__name__}.")
-    for family in import_module(found.name).FAMILIES
-)
+
+def found() -> tuple[Family, ...]:
+    """The families of all files here."""
+    files = (import_module(file.name) for file in iter_modules(__path__, f"{__name__}."))
+    return tuple(family for file in files for family in file.FAMILIES)
+
+
+FAMILIES = found()
 
 
 def chosen(patterns: tuple[str, ...] = (), *, quick: bool = False) -> list[tuple[Family, Method]]:

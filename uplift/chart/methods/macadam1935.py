@@ -17,7 +17,7 @@ from uplift.sensor import Array, Sensor
 
 STEPS, HALVINGS = 6, 4
 """Of Newton's method, and of a step that does not help; most edges settle in three."""
-STARTS = 200
+STARTS = 16
 """Boxes to start from; few colours need more than one."""
 CLOSE = 1e-7
 """CIE xy."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache, partial
@@ -11,7 +10,6 @@ import numpy as np
 
 from uplift.chart.method import Claims, Family, Method, Ready, Uplift, held, stopwatch
 from uplift.chart.task import Task
-from uplift.errors import UpliftWarning
 from uplift.lookup import MODES, Cube
 from uplift.models import Moments, Sigmoid
 from uplift.pipeline import build
@@ -82,16 +80,14 @@ ASKINGS = (
 def _cube(task: Task, recipe: Recipe) -> tuple[Cube, float]:
     """The cube, and the CPU seconds of its last build; what is compiled once is compiled by then."""
     for _ in range(task.effort.builds):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UpliftWarning)
-            cube, seconds = stopwatch(
-                lambda: build(
-                    task.kept if recipe.atlas else None,
-                    dim=recipe.dim,
-                    model=recipe.model,
-                    coefficients=recipe.count,
-                )
+        cube, seconds = stopwatch(
+            lambda: build(
+                task.kept if recipe.atlas else None,
+                dim=recipe.dim,
+                model=recipe.model,
+                coefficients=recipe.count,
             )
+        )
     return cube, seconds
 
 
