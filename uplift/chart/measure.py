@@ -33,16 +33,17 @@ def measure(
     methods: Iterable[tuple[Family, Method]], task: Task, watch: Watch = lambda done, total: None
 ) -> Chart:
     """Every method at the task, in order. ``watch`` hears how many of how many are done."""
-    methods, rows = list(methods), []
+    methods, rows, begin, where = list(methods), [], time.perf_counter(), circumstances()
     for family, method in methods:
         rows.append(measure_one(family, method, task))
         watch(len(rows), len(methods))
     effort = task.effort
     told = (
         f"CPU time of all threads, {effort.batch:,} colours at once, spectra at {len(task.sensor.wavelengths)} "
-        f"wavelengths; up to {effort.runs} runs; cubes are built {effort.builds}×, the last one counts"
+        f"wavelengths; up to {effort.runs} runs; cubes are built {effort.builds}×, the last one counts; "
+        f"{(time.perf_counter() - begin) / 60:.1f} minutes in all"
     )
-    return Chart({**circumstances(), **task.facts, "effort": told}, tuple(rows))
+    return Chart({**where, **task.facts, "effort": told}, tuple(rows))
 
 
 def measure_one(family: Family, method: Method, task: Task) -> Row:
@@ -106,9 +107,9 @@ def _answered(method: Method, ready: Ready, task: Task, rgb: Array) -> tuple[Arr
     """The colours (k, 3) that there was time for, and their spectra (k, N). Raises `BrokenError`."""
     try:
         ready.uplift(rgb[:1], task.sensor.wavelengths)
-        begin = time.perf_counter()
+        begin = time.process_time()
         first = ready.uplift(rgb[:FIRST], task.sensor.wavelengths)
-        each = (time.perf_counter() - begin) / FIRST
+        each = max(time.process_time() - begin, 1e-9) / FIRST
         count = len(rgb) if method.batch else min(len(rgb), int(task.effort.answering / each))
         rest = ready.uplift(rgb[FIRST:count], task.sensor.wavelengths) if count > FIRST else first[:0]
     except Exception as error:  # whatever another's code raises is its answer

@@ -41,10 +41,6 @@ class Recipe:
         return f"{model}, {self.dim}³{', atlas' if self.atlas else ''}"
 
     @property
-    def label(self) -> str:
-        return f"{self.count} · {self.dim}³"
-
-    @property
     def line(self) -> str:
         """The command that builds it."""
         model = f"--moments {self.count - 1}" if self.model == Moments.name else f"--model {self.model}"
@@ -126,7 +122,7 @@ def _usual(recipe: Recipe, asking: Asking) -> bool:
         nine or (recipe.count == 17 and recipe.atlas) or (recipe.model == Sigmoid.name and not recipe.atlas)
     )
     if asking.mode == "bulk":
-        return nine
+        return swept and recipe.model == Moments.name
     if asking.dtype == "float32":
         return nine and recipe.dim == 32
     return swept or recipe.dim == 32
@@ -149,7 +145,7 @@ def _methods(model: str, counts: tuple[int, ...], atlas: bool) -> Iterator[Metho
                 EXACT if exact else Claims(),
                 usual=_usual(recipe, asking),
                 quick=_quick(recipe, asking),
-                label=recipe.label,
+                label=f"{recipe.count} · {recipe.dim}³ {asking.mode}",
                 mode=asking.mode,
                 build=recipe.line,
                 ask=asking.call,
