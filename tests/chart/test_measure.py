@@ -29,7 +29,12 @@ def fail(rgb, wavelengths):
     raise ZeroDivisionError("by the last of these")
 
 
+def lazy(rgb, wavelengths):
+    return grey(rgb if len(rgb) < 60 else rgb[:1].repeat(len(rgb), axis=0), wavelengths)
+
+
 BROKEN = {
+    "lazy with many": (lazy, Claims(), "answers 64 colours otherwise than 50, by 0."),
     "not numbers": (nan, Claims(), "spectra are not numbers"),
     "too bright": (lambda rgb, at: 1.1 + grey(rgb, at), Claims(), "0 to 1 are claimed"),
     "below nothing": (lambda rgb, at: grey(rgb, at) - 0.2, Claims(), "0 to 1 are claimed"),

@@ -11,9 +11,9 @@ from uplift.report.charts import GREY, INK
 
 SHAPES = {"spectra": "o", "moments": "^", "refined": "s", "nearest": "D", "bulk": "P", "": "o"}
 SIZES = (1e3, 1e6, 1e8)
-NARROWEST, KILOBYTE, GROWTH = 300.0, 4.3, 0.125
+NARROWEST, KILOBYTE, GROWTH = 300.0, 4.2, 0.085
 """Bytes below which markers do not shrink, points that a kilobyte is wide, and the power of the bytes that widths grow
-by: areas grow by the fourth root."""
+by: areas grow by the sixth root."""
 ALONE: dict[str, Any] = {"markerfacecolor": "white", "markeredgewidth": 1.4}
 """Of a method that takes one colour a call."""
 FRONT: dict[str, Any] = {"linestyle": "-", "marker": "none", "color": INK, "linewidth": 1.1}

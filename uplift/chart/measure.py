@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from uplift.chart.clock import batch_times, single_times
-from uplift.chart.method import Claims, Family, Method, NotInstalledError, Ready
+from uplift.chart.method import Claims, Family, Method, NotInstalledError, Uplift
 from uplift.chart.table import Chart, Row, State
 from uplift.chart.task import LIGHTS, Task
 from uplift.difference import colours_apart
@@ -22,6 +22,10 @@ FAR = 10
 FIRST = 3
 """Colours that tell how long a slow method takes."""
 
+FEW, SAME = 50, 1e-5
+"""Of many colours those that are asked once more, and the reflectance by which rounding may change them."""
+
+Ask = Callable[[Array], Array]
 Watch = Callable[[int, int], None]
 
 
@@ -76,24 +80,39 @@ def measure_one(family: Family, method: Method, task: Task) -> Row:
 
 
 def _numbers(method: Method, task: Task) -> dict[str, float]:
-    ready, at = method.prepare(task), task.sensor.wavelengths
+    """Raises `BrokenError`, before anything is timed."""
+    ready = method.prepare(task)
+    ask = _guarded(ready.uplift, task.sensor.wavelengths)
     numbers: dict[str, float] = {"bytes": ready.bytes}
     if ready.seconds is not None:
         numbers["build_s"] = ready.seconds
-    numbers |= _errors(method, ready, task)
-    single = single_times(lambda rgb: ready.uplift(rgb, at), task.effort)
-    batch = batch_times(lambda rgb: ready.uplift(rgb, at), task.effort) if method.batch else {}
+    numbers |= _errors(method, ask, task)
+    if method.batch:
+        _check_long(ask, task.effort.batch)
+    single = single_times(ask, task.effort)
+    batch = batch_times(ask, task.effort) if method.batch else {}
     return numbers | batch | single | {"time_ns": batch.get("batch_ns", single["single_ns"])}
 
 
-def _errors(method: Method, ready: Ready, task: Task) -> dict[str, float]:
-    """Raises `BrokenError`."""
-    rgb, answered = _answered(method, ready, task, task.rgb)
+def _guarded(uplift: Uplift, wavelengths: Array) -> Ask:
+    """A function of colours (n, 3) alone, that raises nothing but `BrokenError`."""
+
+    def ask(rgb: Array) -> Array:
+        try:
+            return uplift(rgb, wavelengths)
+        except Exception as error:  # whatever another's code raises is its answer
+            raise BrokenError(f"raises {type(error).__name__}: {str(error)[:80]}") from error
+
+    return ask
+
+
+def _errors(method: Method, ask: Ask, task: Task) -> dict[str, float]:
+    rgb, answered = _answered(method, ask, task, task.rgb)
     apart = colours_apart(task.sensor, rgb, task.sensor.rgb(answered))
     _check_round_trip(apart, method.claims)
     numbers = _summary("round_trip", apart) | {"round_trip_colours": len(rgb)}
     for prefix, name, measured in (("", "unseen", task.unseen), ("own_", "own", task.own)):
-        asked, answered = _answered(method, ready, task, np.clip(task.sensor.rgb(measured), 0, 1))
+        asked, answered = _answered(method, ask, task, np.clip(task.sensor.rgb(measured), 0, 1))
         errors = judge(answered, measured[: len(asked)], LIGHTS)
         parts = dict(zip(LIGHTS, errors.delta_e.T, strict=True))
         parts |= {"lights": errors.delta_e.mean(axis=1), "rms": errors.rms}
@@ -103,20 +122,25 @@ def _errors(method: Method, ready: Ready, task: Task) -> dict[str, float]:
     return numbers
 
 
-def _answered(method: Method, ready: Ready, task: Task, rgb: Array) -> tuple[Array, Array]:
-    """The colours (k, 3) that there was time for, and their spectra (k, N). Raises `BrokenError`."""
-    try:
-        ready.uplift(rgb[:1], task.sensor.wavelengths)
-        begin = time.process_time()
-        first = ready.uplift(rgb[:FIRST], task.sensor.wavelengths)
-        each = max(time.process_time() - begin, 1e-9) / FIRST
-        count = len(rgb) if method.batch else min(len(rgb), int(task.effort.answering / each))
-        rest = ready.uplift(rgb[FIRST:count], task.sensor.wavelengths) if count > FIRST else first[:0]
-    except Exception as error:  # whatever another's code raises is its answer
-        raise BrokenError(f"raises {type(error).__name__}: {str(error)[:80]}") from error
-    answered = np.concatenate([first, rest])
+def _answered(method: Method, ask: Ask, task: Task, rgb: Array) -> tuple[Array, Array]:
+    """The colours (k, 3) that there was time for, and their spectra (k, N)."""
+    ask(rgb[:1])
+    begin = time.process_time()
+    first = ask(rgb[:FIRST])
+    each = max(time.process_time() - begin, 1e-9) / FIRST
+    count = len(rgb) if method.batch else min(len(rgb), int(task.effort.answering / each))
+    answered = np.concatenate([first, ask(rgb[FIRST:count])]) if count > FIRST else first
     _check_range(answered, len(task.sensor.wavelengths), method.claims)
     return rgb[: len(answered)], answered
+
+
+def _check_long(ask: Ask, count: int) -> None:
+    """Many colours at once, which is what is timed, may go another way than the few that errors are of."""
+    rgb = np.random.default_rng(4).random((count, 3))
+    rows = np.linspace(0, count - 1, FEW, dtype=int)
+    apart = np.abs(ask(rgb)[rows] - ask(rgb[rows])).max()
+    if not apart <= SAME:
+        raise BrokenError(f"answers {count:,} colours otherwise than {FEW}, by {apart:.2g} in reflectance")
 
 
 def _check_range(answered: Array, width: int, claims: Claims) -> None:

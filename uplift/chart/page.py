@@ -153,6 +153,7 @@ def _lines(row: Row) -> list[tuple[str, str]]:
     lines.append(("held", size_told(numbers["bytes"])))
     if "build_s" in numbers:
         lines.append(("build", build_told(numbers["build_s"])))
+    lines.append(("errors", "mean / 99 % / largest"))
     lines += [
         (name, " / ".join(error_told(numbers[f"{key}_{kind}"]) for kind in ("mean", "p99", "max")))
         for key, name in ERRORS.items()

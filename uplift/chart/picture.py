@@ -22,10 +22,12 @@ from uplift.sensor import Array
 
 COLUMNS, PANEL = 2, (6.6, 4.3)
 """Panels side by side, and inches of each."""
-MARGINS = {"left": 0.055, "right": 0.985, "bottom": 0.03, "top": 0.98, "wspace": 0.13, "hspace": 0.24}
+MARGINS = {"left": 0.066, "right": 0.985, "bottom": 0.03, "top": 0.98, "wspace": 0.13, "hspace": 0.24}
 """Shares of the figure, and of a panel."""
 POINTS = 72
 """An inch, whatever the resolution."""
+BEHIND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.6}
+"""A label on top of a crowd can still be read."""
 LED = 14
 """Points from a marker beyond which a line leads to its label."""
 
@@ -160,6 +162,7 @@ def _label(axes: Any, panel: Panel, chart: Chart, number: int) -> None:
             fontweight="bold" if row in front else "normal",
             color=known.get(row.family, OTHER),
             gid=f"label-{number}-{row_number}",
+            bbox=BEHIND,
         )
         for row_number, row in named
     ]

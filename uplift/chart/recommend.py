@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 
 from uplift.chart.numbers import error_told, time_told
+from uplift.chart.panels import NOTABLE
 from uplift.chart.table import Chart, Row, parse_chart
 from uplift.chart.task import LIGHTS
 from uplift.errors import OptionError
@@ -59,7 +60,7 @@ class Wish:
 
 
 def recommend(chart: Chart, wish: Wish) -> Row:
-    """Of the cubes measured the quickest that is near enough or, where only time is limited, the nearest.
+    """Of the cubes measured the quickest that is near enough; where only time is limited, as near as any in that time.
 
     Raises `OptionError` where nothing measured is, with what comes closest.
     """
@@ -81,7 +82,8 @@ def recommend(chart: Chart, wish: Wish) -> Row:
             remedy=f"the quickest, {least.method}, takes {time_told(time(least))}",
         )
     if wish.delta_e is None:
-        return min(quick, key=lambda row: (error(row), time(row)))
+        least_error = min(map(error, quick))
+        return min((row for row in quick if NOTABLE * error(row) <= least_error), key=time)
     near = [row for row in quick if error(row) <= wish.delta_e]
     if not near:
         least = min(quick, key=error)

@@ -12,7 +12,6 @@ from uplift.chart.method import Claims, Family, Method, Ready, Uplift, held, sto
 from uplift.chart.task import Task
 from uplift.lookup import MODES, Cube
 from uplift.models import Moments, Sigmoid
-from uplift.pipeline import build
 from uplift.sensor import Array
 
 DIMS = (8, 16, 32, 64)
@@ -75,6 +74,8 @@ ASKINGS = (
 @lru_cache(maxsize=1)
 def _cube(task: Task, recipe: Recipe) -> tuple[Cube, float]:
     """The cube, and the CPU seconds of its last build; what is compiled once is compiled by then."""
+    from uplift.pipeline import build
+
     for _ in range(task.effort.builds):
         cube, seconds = stopwatch(
             lambda: build(
