@@ -62,7 +62,7 @@ def test_the_table_tells_where_and_how_it_was_measured(quick):
 
 
 def test_mallett_s_round_trip_is_exact_in_srgb(numbers):
-    # Exact but for the digits that the table is printed with.
+    # Exact but for the rounding of its table.
     assert numbers["mallett2019"]["round_trip_max"] < 0.02
     assert numbers["mallett2019"]["round_trip_mean"] < 0.01 * numbers["smits1999"]["round_trip_mean"]
 

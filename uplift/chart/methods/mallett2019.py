@@ -35,7 +35,7 @@ FAMILIES = (
                 prepare,
                 Claims(round_trip=0.01, most=1 + 1e-6),
                 quick=True,
-                note="the table of colour-science, three digits of which are printed; one product of matrices",
+                note="the table of colour-science, one product of matrices",
             ),
         ),
     ),
