@@ -161,7 +161,7 @@ def test_an_entry_gets_its_own_spectrum(small_cube, mode):
     data = small_cube.data
     own = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
     found = small_cube.reflectance(data.atlas.rgb, mode=mode)
-    near = {"spectra": 1e-12, "moments": 1e-6, "refined": 1e-4}
+    near = {"spectra": 1e-12, "moments": 1e-6, "refined": 1e-4, "nearest": 1e-12}
     np.testing.assert_allclose(found, own, rtol=0, atol=near[mode])
     if mode == "spectra":
         by_itself = lattice_spectra(data, data.atlas.rgb, data.sensor.wavelengths)

@@ -51,7 +51,7 @@ class Nodes:
         points, weights = (
             np.take_along_axis(part, best, axis=1)[:, 0] for part in (self.points, self.weights)
         )
-        found = lattice[points]
+        found = lattice[points].astype(np.result_type(lattice, atlas), copy=False)
         own = self.share * (1 + weights[self.rows]) <= 1
         found[self.rows[own]] = atlas[self.entry[own]]
         return found
