@@ -62,8 +62,8 @@ SEEN = """\
   ten times the middle cell, with the sigmoid, whose darkest reds and magentas rise to nearly 1 at the ends, a
   hundred times, and the more the nearer the first node is to black. A code is a small step there: per code it is
   some hundredths at most.
-- *A changed entry is felt nearby alone*: what leaving one out does falls by a decade every 12 to 14 ΔE\\*ab, as
-  the correlation of the prior does, exp(−ΔE\\*ab / 6).
+- *A changed entry is felt nearby alone*: what leaving one out does falls by a decade every 11 to 12 ΔE\\*ab, a
+  little faster than the correlation of the prior, exp(−ΔE\\*ab / 6), which takes 14.
 - *Two changes are not smooth.* A lattice point that two entries are about as near to goes to one or the other,
   and noise decides. And the fit of a dark entry has minima of about the same depth but other multipliers, large
   ones, which the prior hands on to the whole lattice: the third draw of noise finds one. It changes the ends of
