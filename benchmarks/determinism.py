@@ -19,9 +19,10 @@ from pathlib import Path
 import click
 
 import uplift
-from benchmarks.timing import ROOT, circumstances
+from benchmarks.timing import ROOT
 from uplift.atlas import Spectra
 from uplift.report.regression import LIMITS, compare
+from uplift.timing import circumstances
 
 CASES: dict[str, dict[str, object]] = {
     "moments, Macbeth, 16³": {"atlas": ("macbeth",), "dim": 16},

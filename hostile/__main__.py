@@ -10,10 +10,10 @@ from pathlib import Path
 
 import click
 
-from benchmarks.timing import circumstances
 from hostile.attack import Tally
 from hostile.found import FOUND
 from hostile.run import KEPT, TARGETS, WRITERS, add, read, write
+from uplift.timing import circumstances
 
 BLOCK = 5000
 """Inputs that a process tries before another takes over: what leaks shows, and is gone."""

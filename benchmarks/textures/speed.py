@@ -11,7 +11,8 @@ import numpy as np
 from benchmarks.page import table
 from benchmarks.processes import UPLIFT
 from benchmarks.textures.pictures import pictures
-from benchmarks.timing import Spread, process
+from benchmarks.timing import process
+from uplift.timing import Spread
 
 FEW = ("--wavelengths", "400:700:10")
 JOBS: tuple[tuple[int, tuple[str, ...], int], ...] = (
