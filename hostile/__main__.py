@@ -58,9 +58,9 @@ def _tables(tallies: list[Tally], seed: int) -> list[dict[str, object]]:
             "columns": ["target", "tried", "taken", "refused", "failures"],
             "rows": [_cells(tally) for tally in tallies],
             "notes": [
-                "Readers get files and texts spoilt by seeded mutation; what they take is used, what they refuse is one "
-                "line. Nothing else may happen, nor take longer than some seconds or more memory than the file. Writers "
-                "are killed, raced and stranded: afterwards there is the old file or a whole new one.",
+                "Readers get files and texts spoilt by seeded mutation; what they take is used, what they refuse is "
+                "one line. Nothing else may happen, nor take longer than some seconds or much more memory than the "
+                "file. Writers are killed, raced and stranded: then there is the old file or a whole new one.",
                 f"Seed {seed}; {facts['machine']}; commit {facts['commit']}.",
             ],
         },
