@@ -38,7 +38,7 @@ def draw(cube: Cube, picture: Picture, path: Path) -> dict[str, float]:
         colour = _screen(cube, light.white)
         apart[name] = _apart(light, spectral, (rgb * colour) @ np.linalg.inv(sensor.xyz_to_rgb).T)
         _show(above, _screen(cube, spectral) / colour.max(), f"{name}, {what}")
-        _show(below, rgb * colour / colour.max(), f"{name}, RGB × the light's RGB: ΔE00 {apart[name]:.1f}")
+        _show(below, rgb * colour / colour.max(), f"{name}, RGB × RGB: ΔE00 {apart[name]:.1f}")
     write_png(figure, path, force=True)
     return apart
 
