@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures scenes pictures
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes pictures
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -25,7 +25,11 @@ test: $(INSTALLED)
 bench: $(INSTALLED)
 	$(BIN)/python -m benchmarks.bench
 
-# What `make bench` compares with where it finds it. Ceres is the system's: libceres-dev, cmake, g++.
+# Speed against accuracy of all methods: docs/chart.md and its pictures, and what `uplift chart --recommend` reads.
+chart: $(INSTALLED)
+	$(BIN)/python -m benchmarks.chart
+
+# What `make bench` and `make chart` compare with where it finds it. Ceres is the system's: libceres-dev, cmake, g++.
 peers: $(INSTALLED)
 	$(BIN)/pip install --quiet -c constraints.txt --no-build-isolation -e '.[peers]'
 

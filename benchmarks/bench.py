@@ -9,7 +9,8 @@ import click
 
 from benchmarks.page import write
 from benchmarks.processes import time_processes
-from benchmarks.timing import ROOT, circumstances
+from benchmarks.timing import ROOT
+from uplift.timing import circumstances
 
 INTRODUCTION = r"""# Performance
 

@@ -13,16 +13,22 @@ import subprocess
 import sys
 import tempfile
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import groupby
 from pathlib import Path
+from typing import Any
 
 import click
 
 import uplift
-from benchmarks.timing import ROOT, circumstances
+from benchmarks.timing import ROOT
 from uplift.atlas import Spectra
 from uplift.report.regression import LIMITS, compare
+from uplift.timing import circumstances
 
+Row = dict[str, Any]
+PATH = ROOT / "docs" / "stability-determinism.json"
 CASES: dict[str, dict[str, object]] = {
     "moments, Macbeth, 16³": {"atlas": ("macbeth",), "dim": 16},
     "sigmoid, Macbeth, 16³": {"atlas": ("macbeth",), "dim": 16, "model": "sigmoid"},
@@ -89,16 +95,59 @@ def main(into: str | None, batch: tuple[int, int] | None) -> None:
         same = [row for setting in SAME for row in _rows(setting, base, Path(folder) / setting.name)]
         apart = [row for setting in APART for row in _rows(setting, base, Path(folder) / setting.name)]
     worst = {name: max(row["measures"][name] for row in apart) for name in LIMITS}
-    facts = circumstances() | {"same": same, "apart": apart, "worst": worst, "limits": LIMITS}
-    (ROOT / "docs" / "stability-determinism.json").write_text(
-        json.dumps(facts, indent=1) + "\n", encoding="utf-8"
-    )
+    PATH.write_text(json.dumps(_tables(same, apart, worst), indent=1) + "\n", encoding="utf-8")
     different = [row for row in same if not row["same_bytes"]]
     click.echo(
         f"{len(same)} builds that should have the same bytes, {len(different)} that have not: {different}"
     )
     click.echo(f"across instruction sets at most {worst}")
     raise SystemExit(bool(different))
+
+
+def _tables(same: list[Row], apart: list[Row], worst: dict[str, float]) -> list[dict[str, object]]:
+    """For docs/stability.md, as `benchmarks.stability` has it."""
+    facts = circumstances()
+    return [
+        {
+            "title": "The same bytes",
+            "command": "make determinism",
+            "columns": ["circumstances", "cubes", "with other bytes"],
+            "rows": [
+                [name, len(rows), sum(not row["same_bytes"] for row in rows)]
+                for name, rows in _by_setting(same)
+            ],
+            "notes": [
+                f"The cubes are {'; '.join(CASES)}. Threads, cores, devices and batches must not show.",
+                f"{facts['machine']}; {facts['versions']}; commit {facts['commit']}.",
+            ],
+        },
+        {
+            "title": "Other instruction sets",
+            "command": "make determinism",
+            "columns": ["instructions", *LIMITS, "other status"],
+            "rows": [
+                *(
+                    [
+                        name,
+                        *(f"{max(row['measures'][one] for row in rows):.1e}" for one in LIMITS),
+                        sum(not row["status_same"] for row in rows),
+                    ]
+                    for name, rows in _by_setting(apart)
+                ),
+                ["largest", *(f"{value:.1e}" for value in worst.values()), ""],
+                ["what `uplift check` allows", *(f"{value:.0e}" for value in LIMITS.values()), 0],
+            ],
+            "notes": [
+                "The same cubes, the largest of each measure; points within 1e-3 of the boundary of what reflectances "
+                "reach are left out, as in `uplift check`.",
+            ],
+        },
+    ]
+
+
+def _by_setting(rows: list[Row]) -> Iterator[tuple[str, list[Row]]]:
+    for name, group in groupby(rows, key=lambda row: row["setting"]):
+        yield name, list(group)
 
 
 def _build(folder: Path, batch: tuple[int, int] | None) -> None:
@@ -134,7 +183,7 @@ def _run(setting: Setting, folder: Path) -> Path:
     return folder
 
 
-def _rows(setting: Setting, base: Path, folder: Path) -> list[dict[str, object]]:
+def _rows(setting: Setting, base: Path, folder: Path) -> list[Row]:
     _run(setting, folder)
     rows = []
     for number, case in enumerate(CASES):

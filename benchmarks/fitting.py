@@ -10,7 +10,7 @@ from itertools import pairwise
 import jax
 import numpy as np
 
-from benchmarks.timing import ROOT, Spread, spread
+from benchmarks.timing import ROOT
 from uplift import fit, observer
 from uplift.atlas import on_grid, read_atlas
 from uplift.lattice import Lattice
@@ -18,6 +18,7 @@ from uplift.models import Model, Moments, Sigmoid, reflectance
 from uplift.models.least_change import forward
 from uplift.options import Options
 from uplift.sensor import Array
+from uplift.timing import Spread, spread
 
 MODELS = (Sigmoid(), *(Moments(count) for count in (3, 5, 9, 13, 17)))
 DIMS = (16, 32, 64, 128)

@@ -12,9 +12,10 @@ import jax
 import numpy as np
 
 import uplift
-from benchmarks.timing import ROOT, Spread, timed
+from benchmarks.timing import ROOT
 from uplift import bulk
 from uplift.lookup import Cube
+from uplift.timing import Spread, timed
 
 WAVELENGTHS = np.linspace(400, 700, 16)
 BULK = 1_000_000

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
-from benchmarks.timing import ROOT, circumstances
+from benchmarks.timing import ROOT
+from uplift.timing import circumstances
 
 
-def write(name: str, introduction: str, sections: Iterable[str]) -> str:
-    """Write docs/``name``.md and return it."""
-    facts = "\n".join(f"- {key}: {value}" for key, value in circumstances().items())
+def write(
+    name: str, introduction: str, sections: Iterable[str], where: Mapping[str, str] | None = None
+) -> str:
+    """Write docs/``name``.md and return it; ``where`` it was measured is by default here and now."""
+    facts = "\n".join(f"- {key}: {value}" for key, value in (where or circumstances()).items())
     page = "\n".join([introduction, facts, *sections])
     (ROOT / "docs" / f"{name}.md").write_text(page, encoding="utf-8")
     return page

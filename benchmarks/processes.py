@@ -7,7 +7,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.timing import ROOT, Spread, process, spread
+from benchmarks.timing import ROOT, process
+from uplift.timing import Spread, spread
 
 UPLIFT = str(Path(sys.executable).parent / "uplift")
 MACBETH = str(ROOT / "atlases" / "macbeth.txt")

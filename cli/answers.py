@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import csv
-import json
 import sys
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from .output import console
+from .output import console, json_text
 
 if TYPE_CHECKING:
     from uplift.lookup import Answer, Cube
@@ -22,10 +21,12 @@ Writer = Callable[["Cube", Iterable["Answer"], bool], None]
 def as_json(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
     """One object for one colour asked on the command line, an array otherwise."""
     if single:
-        click.echo(json.dumps(_object(cube, next(iter(answers)))))
+        click.echo(json_text(_object(cube, next(iter(answers))), indent=None))
         return
     for number, answer in enumerate(answers):
-        click.echo(("[\n" if number == 0 else ",\n") + json.dumps(_object(cube, answer)), nl=False)
+        click.echo(
+            ("[\n" if number == 0 else ",\n") + json_text(_object(cube, answer), indent=None), nl=False
+        )
     click.echo("\n]")
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING
@@ -13,7 +12,7 @@ import click
 
 from .atlas_listing import Listing, Row, list_entries
 from .options import force_option, format_option, sensor_options
-from .output import console
+from .output import console, json_text
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -82,7 +81,7 @@ def _print_json(listing: Listing) -> None:
         "entries": rows,
         "skipped": [asdict(skipped) for skipped in listing.spectra.skipped],
     }
-    click.echo(json.dumps(answer, indent=2, ensure_ascii=False))
+    click.echo(json_text(answer))
 
 
 def _print_csv(listing: Listing) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .options import atlas_folders_option, format_option, verbosity_options
-from .output import console
+from .output import console, json_text
 
 if TYPE_CHECKING:
     from uplift.report.regression import Comparison
@@ -51,7 +50,7 @@ def command(
         rebuilt = {path: rebuild(cube, path, folders, watch=watch) for path, cube in stored.items()}
     comparisons = [compare(path, cube.data, rebuilt[path].data) for path, cube in stored.items()]
     if style == "json":
-        click.echo(json.dumps([_object(comparison) for comparison in comparisons], indent=2))
+        click.echo(json_text([_object(comparison) for comparison in comparisons]))
     elif not quiet:
         _table(comparisons)
     failed = [comparison.path for comparison in comparisons if comparison.failures]

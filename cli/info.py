@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import click
 
 from .options import format_option
-from .output import console
+from .output import console, json_text
 
 
 @click.command("info")
@@ -27,7 +26,7 @@ def command(file: str | None, style: str) -> None:
 
     facts = summary(load(file).data)
     if style == "json":
-        click.echo(json.dumps(facts, indent=2, ensure_ascii=False))
+        click.echo(json_text(facts))
     else:
         _table(file or "the package's own cube", facts)
 

@@ -12,7 +12,19 @@ import click
 
 from uplift.errors import UpliftError, UpliftWarning
 
-COMMANDS = ("build", "query", "texture", "check", "report", "info", "slices", "export", "atlas", "study")
+COMMANDS = (
+    "build",
+    "query",
+    "texture",
+    "chart",
+    "check",
+    "report",
+    "info",
+    "slices",
+    "export",
+    "atlas",
+    "study",
+)
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """What a write says where there is no room."""
 

@@ -39,10 +39,10 @@ class QueryCommand(click.Command):
 @wavelengths_option()
 @click.option(
     "--mode",
-    type=click.Choice(("spectra", "moments", "refined")),
+    type=click.Choice(("spectra", "moments", "refined", "nearest")),
     default="spectra",
     show_default=True,
-    help="Interpolate spectra (exact), coefficients (fast), or coefficients and refine them.",
+    help="Interpolate spectra (exact), coefficients (fast), coefficients and refine them, or take the nearest node.",
 )
 @fill_option()
 @format_option("table", "json", "csv")

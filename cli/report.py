@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from .options import atlas_folders_option, force_option, format_option
+from .output import json_text
 
 if TYPE_CHECKING:
     from uplift.atlas import Spectra
@@ -65,7 +65,7 @@ def command(
     colours: that shows what the cube makes of colours it was not built from, and whether its standard errors
     hold.
     """
-    from uplift.files import check_output
+    from uplift.files import check_output, write_text
     from uplift.lookup import load
 
     from .progress import waiting
@@ -80,7 +80,7 @@ def command(
     if path is None:
         click.echo(text, nl=False)
     else:
-        _write(text, path, force=force)
+        write_text(text, path, force=force)
         click.echo(f"{path}: {_told(found)}")
 
 
@@ -120,17 +120,10 @@ def _text(found: Assessment, style: str, worst: int) -> str:
     if style == "json":
         from uplift.report.numbers import numbers
 
-        return json.dumps(numbers(found), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+        return json_text(numbers(found)) + "\n"
     from uplift.report.page import page
 
     return page(found, worst)
-
-
-def _write(text: str, path: Path, *, force: bool) -> None:
-    from uplift.files import replacing
-
-    with replacing(path, force=force) as temporary:
-        temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
 def _told(found: Assessment) -> str:

@@ -1,4 +1,4 @@
-"""What only a whole process may set, before JAX is imported."""
+"""What only a whole process may set, before JAX and numpy are imported."""
 
 from __future__ import annotations
 
@@ -12,3 +12,10 @@ def keep_compiled() -> None:
     os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", user_cache_dir("uplift"))
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0")
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
+
+
+def one_thread() -> None:
+    """Keep numpy's linear algebra to one thread, for timings; read when numpy is imported."""
+    from uplift.timing import ONE_THREAD
+
+    os.environ.update(ONE_THREAD)

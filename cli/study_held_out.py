@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from .options import format_option
-from .output import console
+from .output import console, json_text
 from .progress import counting
 from .study_atlases import SHIPPED, read_each
 
@@ -73,7 +72,7 @@ def _records(found: Found) -> list[dict[str, Any]]:
 
 
 def _print_json(found: Found) -> None:
-    click.echo(json.dumps(_records(found), indent=2, ensure_ascii=False))
+    click.echo(json_text(_records(found)))
 
 
 def _print_csv(found: Found) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,10 +9,9 @@ from typing import TYPE_CHECKING
 import click
 
 from .options import force_option, format_option
-from .output import console
+from .output import console, json_text
 from .progress import counting
 from .study_atlases import SHIPPED, read_each
-from .study_folder import check_folder
 
 if TYPE_CHECKING:
     from uplift.study.moments import Study
@@ -46,11 +44,12 @@ def moments(files: tuple[str, ...], most: int, output: str | None, style: str, f
       uplift study moments --atlas atlases/macbeth.txt --output out --force
       uplift study moments --most 8 --format json
     """
+    from uplift.files import check_folder
     from uplift.study.moments import study
 
     atlases = read_each(files)
     if output is not None:
-        check_folder(Path(output), FILES, force=force)
+        check_folder(output, FILES, force=force)
     with counting("reconstructions") as watch:
         found = study(atlases, most, watch)
     if output is not None:
@@ -74,7 +73,7 @@ def _write(found: Study, folder: Path, *, force: bool) -> None:
 def _print_json(found: Study) -> None:
     from uplift.study.moments_table import records
 
-    click.echo(json.dumps(records(found), indent=2, ensure_ascii=False))
+    click.echo(json_text(records(found)))
 
 
 def _print_csv(found: Study) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .options import atlas_folders_option, force_option, format_option
-from .output import console
+from .output import console, json_text
 from .progress import counting
-from .study_folder import check_folder
 
 if TYPE_CHECKING:
     from uplift.study.sensitivity import Sensitivity
@@ -51,6 +49,7 @@ def sensitivity(
     from .startup import keep_compiled
 
     keep_compiled()
+    from uplift.files import check_folder
     from uplift.lookup import load
     from uplift.provenance import recorded_atlas
     from uplift.study.sensitivity import study
@@ -58,7 +57,7 @@ def sensitivity(
     loaded = load(cube)
     atlas = recorded_atlas(loaded.data, cube, folders) if cube is not None and entries else None
     if output is not None:
-        check_folder(Path(output), FILES if atlas else FILES[:2], force=force)
+        check_folder(output, FILES if atlas else FILES[:2], force=force)
     with counting("builds") as watch:
         found = study(loaded, atlas, entries, watch)
     if output is not None:
@@ -67,12 +66,11 @@ def sensitivity(
 
 
 def _write(found: Sensitivity, folder: Path, *, force: bool) -> None:
-    from uplift.files import replacing
+    from uplift.files import write_text
     from uplift.study.sensitivity_plots import plot_locality, plot_steepness
 
     written = [RESULTS, STEEPNESS]
-    with replacing(folder / RESULTS, force=force) as temporary:
-        temporary.write_text(json.dumps(found.record(), indent=1) + "\n", encoding="utf-8")
+    write_text(json_text(found.record()) + "\n", folder / RESULTS, force=force)
     plot_steepness(found.cube.data, found.steepness, folder / STEEPNESS, force=force)
     if found.left_out:
         plot_locality(found.left_out, folder / LOCALITY, force=force)
@@ -81,7 +79,7 @@ def _write(found: Sensitivity, folder: Path, *, force: bool) -> None:
 
 
 def _print_json(found: Sensitivity) -> None:
-    click.echo(json.dumps(found.record(), indent=2, ensure_ascii=False))
+    click.echo(json_text(found.record()))
 
 
 def _print_table(found: Sensitivity) -> None:

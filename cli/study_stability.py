@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .options import force_option, format_option
-from .output import console
+from .output import console, json_text
 from .progress import counting
-from .study_folder import check_folder
 
 if TYPE_CHECKING:
     from uplift.study.stability import Outcome
@@ -77,6 +75,7 @@ def stability(
     from .startup import keep_compiled
 
     keep_compiled()
+    from uplift.files import check_folder
     from uplift.study import stability_design as design
     from uplift.study.made_atlases import MADE
     from uplift.study.stability import NO_ATLAS, study
@@ -90,7 +89,7 @@ def stability(
     given = {name: value for name, value in chosen.items() if value is not None}
     axes = replace(design.QUICK if quick else design.Axes(), **({"atlases": (NO_ATLAS, *atlases)} | given))
     if output is not None:
-        check_folder(Path(output), FILES, force=force)
+        check_folder(output, FILES, force=force)
     with counting("builds") as watch:
         found = study(design.design(axes), atlases, watch)
     if output is not None:
@@ -99,21 +98,20 @@ def stability(
 
 
 def _write(axes: Axes, found: Sequence[Outcome], folder: Path, *, force: bool) -> None:
-    from uplift.files import replacing
+    from uplift.files import write_text
     from uplift.study.records import write_csv
     from uplift.study.stability_design import grids
     from uplift.study.stability_plots import plot_map
 
     table, text, picture = (folder / name for name in FILES)
     write_csv([one.record() for one in found], table, force=force)
-    with replacing(text, force=force) as temporary:
-        temporary.write_text(_json(found) + "\n", encoding="utf-8")
+    write_text(_json(found) + "\n", text, force=force)
     plot_map(grids(axes), {one.setting: one for one in found}, picture, force=force)
     click.echo(f"{folder}: {', '.join(FILES)}", err=True)
 
 
 def _json(found: Sequence[Outcome]) -> str:
-    return json.dumps([one.record() for one in found], indent=1)
+    return json_text([one.record() for one in found])
 
 
 def _print_json(found: Sequence[Outcome]) -> None:

@@ -76,6 +76,9 @@ def test_nothing_else_is_in_it(wheel):
     data = {name for name in wheel.namelist() if ".dist-info/" not in name and not name.endswith(".py")}
     assert data == {
         *(f"uplift/export/templates/{part}.h" for part in C_PARTS),
+        "uplift/chart/measured.csv",
+        "uplift/chart/page.css",
+        "uplift/chart/page.js",
         "uplift/lookup/default.uplift",
         "uplift/py.typed",
         "uplift/report/page.css",

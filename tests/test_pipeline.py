@@ -164,7 +164,7 @@ def test_the_perfect_reflector_is_a_welcome_entry():
 
 @pytest.fixture(scope="session")
 def in_order():
-    return quietly(MACBETH, dim=5, coefficients=7).data
+    return quietly(MACBETH, dim=5).data
 
 
 @settings(max_examples=3, phases=[Phase.generate])
@@ -172,7 +172,7 @@ def in_order():
 def test_the_order_of_the_atlas_sets_the_order_of_its_table_and_nothing_else(in_order, order):
     """The bytes of every point are the same, but that it names its entry by its row; the table's to rounding."""
     spectra = read_atlas(MACBETH)
-    shuffled = quietly(Spectra(tuple(spectra.entries[row] for row in order)), dim=5, coefficients=7).data
+    shuffled = quietly(Spectra(tuple(spectra.entries[row] for row in order)), dim=5).data
     for name in ("coefficients", "rgb", "distance", "status", "standard_error"):
         assert getattr(shuffled, name).tobytes() == getattr(in_order, name).tobytes()
     row = [shuffled.atlas.names.index(name) for name in in_order.atlas.names]
@@ -197,7 +197,7 @@ def test_threads_do_not_show():
     digests = set()
     for threads in (1, 4):
         with threadpool_limits(threads, user_api="blas"):
-            digests.add(digest(quietly(spectra, dim=3, coefficients=7).data))
+            digests.add(digest(quietly(spectra, dim=3).data))
             assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {
                 threads
             }

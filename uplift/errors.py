@@ -55,6 +55,10 @@ class CubeFileError(UpliftError):
     """A cube file that is missing, broken, of another version, or no cube at all."""
 
 
+class ChartFileError(UpliftError):
+    """A chart's table that is missing, broken, or no such table."""
+
+
 class ColourError(UpliftError):
     """A colour that cannot be asked for: outside [0, 1], NaN, or unreadable."""
 

@@ -8,7 +8,7 @@ import re
 import stat
 import tempfile
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from uplift.errors import OutputError
@@ -54,6 +54,26 @@ def _mode(path: Path) -> int | None:
         return None
     except (OSError, ValueError) as error:  # too long a name, a NUL in it, links in a circle
         raise OutputError(f"cannot be written: {error}", path=path, remedy="choose another name") from error
+
+
+def check_folder(path: str | os.PathLike[str], names: Iterable[str], *, force: bool = False) -> Path:
+    """The folder, made if it is not there, with room for files of these names. Raises `OutputError`."""
+    folder = Path(path)
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise OutputError(
+            f"cannot be made: {error.strerror}", path=folder, remedy="name a folder to write to"
+        ) from error
+    for name in names:
+        check_output(folder / name, force=force)
+    return folder
+
+
+def write_text(text: str, path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Write text as it is, atomically. Raises `OutputError`."""
+    with replacing(path, force=force) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
 @contextlib.contextmanager

@@ -20,7 +20,7 @@ START, END, STEP = 380.0, 780.0, 5.0
 
 
 @functools.cache
-def _colour() -> ModuleType:
+def colour_science() -> ModuleType:
     """colour-science, imported when first needed (a second) and silent about its optional parts.
 
     It sets how numpy prints; that is set back.
@@ -46,7 +46,7 @@ def sensor(space: str = "sRGB", illuminant: str = "D65", observer: str = DEFAULT
     ------
     UnknownNameError : with the nearest name that exists.
     """
-    colour = _colour()
+    colour = colour_science()
     rgb_space = _look_up(colour.RGB_COLOURSPACES, space, "RGB space")
     lit = light(illuminant, observer)
     white = colour.xy_to_XYZ(rgb_space.whitepoint)
@@ -66,12 +66,20 @@ def sensor(space: str = "sRGB", illuminant: str = "D65", observer: str = DEFAULT
 
 def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:
     """An illuminant to look under, on the grid of every sensor. Raises `UnknownNameError`."""
-    colour = _colour()
+    colour = colour_science()
     weights = _samples(colour.MSDS_CMFS, observer, "observer")
     weights = weights * _samples(colour.SDS_ILLUMINANTS, illuminant, "illuminant")[:, None]
     return Light(
         _look_up(colour.SDS_ILLUMINANTS, illuminant, "illuminant").name, (weights / weights[:, 1].sum()).T
     )
+
+
+def aligned(sensor: Sensor, start: float = START, end: float = END, step: float = STEP) -> tuple[Any, Any]:
+    """A sensor's observer and illuminant as colour-science's own objects, from ``start`` to ``end`` nm."""
+    colour = colour_science()
+    shape = colour.SpectralShape(start, end, step)
+    cmfs, light = colour.MSDS_CMFS[sensor.observer], colour.SDS_ILLUMINANTS[sensor.illuminant]
+    return cmfs.copy().align(shape), light.copy().align(shape)
 
 
 def axis_nodes(spacing: str, dim: int) -> Array:
@@ -80,7 +88,7 @@ def axis_nodes(spacing: str, dim: int) -> Array:
     if spacing == "linear":
         return even
     if spacing == "srgb":
-        return np.asarray(_colour().models.eotf_sRGB(even), dtype=float)
+        return np.asarray(colour_science().models.eotf_sRGB(even), dtype=float)
     raise suggest(spacing, ("srgb", "linear"), "axis spacing")
 
 
@@ -101,6 +109,6 @@ def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:
 
 def _samples(table: Mapping[str, Any], name: str, kind: str) -> Array:
     """Samples of a colour-science table on the grid; outside its data held flat, as colour-science aligns."""
-    colour = _colour()
+    colour = colour_science()
     shape = colour.SpectralShape(START, END, STEP)
     return np.asarray(_look_up(table, name, kind).copy().align(shape).values, dtype=float)

@@ -8,9 +8,7 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 
 from benchmarks.peers.row import Peer
-
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-"""Read when numpy is imported. With matrices as small as these, more threads made colour-science twice as slow."""
+from uplift.timing import ONE_THREAD
 
 
 def alone(tool: Callable[[int], list[Peer]], runs: int) -> list[Peer]:

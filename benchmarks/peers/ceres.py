@@ -14,8 +14,9 @@ import numpy as np
 
 from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge_multipliers, missing, model_of
-from benchmarks.timing import ROOT, spread
+from benchmarks.timing import ROOT
 from uplift.sensor import Array
+from uplift.timing import spread
 
 SOURCE, BUILT = ROOT / "benchmarks" / "ceres", ROOT / "out" / "ceres"
 NEEDS = "Ceres with cmake and a C++ compiler (libceres-dev, cmake, g++)"

@@ -9,7 +9,9 @@ import numpy as np
 from colour.recovery.jakob2019 import lightness_scale
 
 from benchmarks.peers import task
-from benchmarks.peers.row import Peer, judge, published_sigmoid
+from benchmarks.peers.row import Peer, judge
+from uplift import observer
+from uplift.models.sigmoid import published
 from uplift.sensor import Array
 
 SIZE = 3
@@ -20,10 +22,8 @@ LEAST, WITHIN = 0.8, 1e-2
 def colour_science(runs: int) -> list[Peer]:
     """A small table; a large one goes from point to point in shorter steps."""
     sensor = task.sensor()
-    shape = colour.SpectralShape(*sensor.wavelengths[[0, -1]], sensor.wavelengths[1] - sensor.wavelengths[0])
     space = colour.RGB_COLOURSPACES[sensor.space]
-    cmfs = colour.MSDS_CMFS[sensor.observer].copy().align(shape)
-    light = colour.SDS_ILLUMINANTS[sensor.illuminant].copy().align(shape)
+    cmfs, light = observer.aligned(sensor)
     table = colour.recovery.LUT3D_Jakob2019()
 
     def generate() -> Array:
@@ -33,7 +33,7 @@ def colour_science(runs: int) -> list[Peer]:
     target = _points(SIZE)
     coefficients, cpu = task.measured(generate, len(target), runs)
     answer = judge(
-        sensor.rgb(published_sigmoid(coefficients, sensor.wavelengths)), target, least=LEAST, within=WITHIN
+        sensor.rgb(published(coefficients, sensor.wavelengths)), target, least=LEAST, within=WITHIN
     )
     tool = f"colour-science {version('colour-science')} `LUT3D_Jakob2019`"
     notes = f"a table of size {SIZE}, 3 × {SIZE}³ points; it stops at a ΔE"

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from benchmarks.peers import task
-from benchmarks.peers.row import Peer, judge, missing, published_sigmoid
+from benchmarks.peers.row import Peer, judge, missing
+from uplift.models.sigmoid import published
 from uplift.sensor import Array
 
 VARIANT = "scalar_spectral"
@@ -30,7 +31,7 @@ def mitsuba_table(runs: int) -> list[Peer]:
         return np.array([mitsuba.srgb_model_fetch(rgb) for rgb in colours], dtype=float)
 
     coefficients, cpu = task.measured(fetch, len(target), runs)
-    spectra = published_sigmoid(coefficients, sensor.wavelengths)
+    spectra = published(coefficients, sensor.wavelengths)
     answer = judge(sensor.rgb(spectra), target, least=LEAST, within=WITHIN)
     rows = coefficients.tolist()
 
@@ -38,7 +39,7 @@ def mitsuba_table(runs: int) -> list[Peer]:
         return np.array([mitsuba.srgb_model_eval(row, wavelengths) for row in rows])
 
     values, evaluation = task.measured(evaluate, len(target), runs)
-    if not np.allclose(values, published_sigmoid(coefficients, np.array(wavelengths)), atol=1e-3):
+    if not np.allclose(values, published(coefficients, np.array(wavelengths)), atol=1e-3):
         raise RuntimeError("Mitsuba's coefficients mean something else")
     notes = (
         "no fit: its table, looked up from Python a colour a call (what fitted it is not exposed); "

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from benchmarks.timing import Spread
 from uplift.models import Model, Moments, Sigmoid, evaluate
 from uplift.sensor import Array, Sensor
+from uplift.timing import Spread
 
 THRESHOLD = 1e-4
 """Largest |linear RGB| by which a spectrum misses its colour and is counted as there: that of our cubes."""
@@ -47,12 +47,6 @@ def missing(tool: str, what: str, model: str, count: int) -> Peer:
 
 def model_of(name: str, count: int) -> Model:
     return Sigmoid() if name == "sigmoid" else Moments(count)
-
-
-def published_sigmoid(coefficients: Array, wavelengths: Array) -> Array:
-    """Reflectances (n, N) by eq. 5 of Jakob & Hanika 2019: coefficients (n, 3) for wavelengths in nm, not scaled."""
-    x = coefficients @ np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
-    return 0.5 + x / (2 * np.sqrt(1 + x * x))
 
 
 def judge(rgb: ArrayLike, target: ArrayLike, *, least: float, within: float = THRESHOLD) -> Answer:

@@ -8,10 +8,10 @@ from functools import cache
 
 import numpy as np
 
-from benchmarks.timing import Spread, spread
 from uplift import observer
 from uplift.lattice import Lattice
 from uplift.sensor import Array, Sensor
+from uplift.timing import Spread, spread
 
 DIM = 16
 

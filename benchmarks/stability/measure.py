@@ -9,7 +9,7 @@ import warnings
 from typing import Any
 
 import uplift
-from benchmarks.timing import ROOT, circumstances
+from benchmarks.timing import ROOT
 from uplift.provenance import recorded_atlas
 from uplift.study import sensitivity
 from uplift.study.made_atlases import MADE
@@ -18,6 +18,7 @@ from uplift.study.sensitivity_plots import plot_locality, plot_steepness
 from uplift.study.stability import NO_ATLAS, study
 from uplift.study.stability_design import Axes, design, grids
 from uplift.study.stability_plots import plot_map
+from uplift.timing import circumstances
 
 FOLDER = ROOT / "docs" / "stability"
 MAP, FIGURES = FOLDER / "map.csv", FOLDER / "sensitivity.json"

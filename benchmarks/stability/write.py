@@ -55,15 +55,15 @@ SEEN = """\
 - *Multipliers are what makes it easy*: least squares on the moments themselves, as in the thesis, leave more
   points the more coefficients there are, worst at white: near the boundary of the moments of reflectances there
   is no room to take a difference in. The same solver in multipliers leaves one or two, for want of steps alone.
-- *Answers move as the questions do*: by a code of 8 bits or by rounding, ΔE00 under FL11 is within a tenth of
-  that under the build light, in the mean and at most. No mode is worse than another.
+- *Answers move as the questions do*: by a code of 8 bits or by rounding, ΔE00 under FL11 is within two hundredths
+  of that under the build light in the mean, within a fifth at most. No mode is worse than another.
 - *A cube is steepest where it is dark and saturated*, where a small step of RGB takes the spectrum from one
   colour to another, and at the ends of the spectrum, where the eye hardly sees what changes: with moments some
   ten times the middle cell, with the sigmoid, whose darkest reds and magentas rise to nearly 1 at the ends, a
   hundred times, and the more the nearer the first node is to black. A code is a small step there: per code it is
   some hundredths at most.
-- *A changed entry is felt nearby alone*: what leaving one out does falls by a decade every 12 to 14 ΔE\\*ab, as
-  the correlation of the prior does, exp(−ΔE\\*ab / 6).
+- *A changed entry is felt nearby alone*: what leaving one out does falls by a decade every 11 to 12 ΔE\\*ab, a
+  little faster than the correlation of the prior, exp(−ΔE\\*ab / 6), which takes 14.
 - *Two changes are not smooth.* A lattice point that two entries are about as near to goes to one or the other,
   and noise decides. And the fit of a dark entry has minima of about the same depth but other multipliers, large
   ones, which the prior hands on to the whole lattice: the third draw of noise finds one. It changes the ends of

@@ -16,7 +16,8 @@ uplift texture 'shot.*.exr' uplifted --scheduler tcp://10.0.0.5:8786
 ![An image under four lights, above from spectra, below as RGB times RGB](textures/relit.png)
 
 NASA's portrait of Eileen Collins, as scikit-image has it. Above, its spectral texture under each light; below, what a
-renderer makes of it that multiplies RGB by the light's RGB: mean ΔE00 {apart}. The camera is balanced for daylight.
+renderer makes of it that multiplies RGB by the light's RGB: mean ΔE00
+{apart}. The camera is balanced for daylight.
 
 ## What goes in
 

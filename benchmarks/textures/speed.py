@@ -11,7 +11,8 @@ import numpy as np
 from benchmarks.page import table
 from benchmarks.processes import UPLIFT
 from benchmarks.textures.pictures import pictures
-from benchmarks.timing import Spread, process
+from benchmarks.timing import process
+from uplift.timing import Spread
 
 FEW = ("--wavelengths", "400:700:10")
 JOBS: tuple[tuple[int, tuple[str, ...], int], ...] = (
@@ -71,7 +72,7 @@ def _table(timings: list[TextureTiming]) -> str:
         "Pixels per second, and memory",
         "`uplift texture` as a process, start and compilation included, on a photograph tiled and with noise added, "
         "8-bit PNG. An image is read, uplifted and written a band of rows at a time: memory is that of the program, "
-        "of the cube's tables and of some bands, whatever the height. Most of the time OpenEXR compresses.",
+        "of the cube's tables and of some bands, whatever the height. Machines differ and are shared: compare rows.",
         ["options", "image", "million pixels", "seconds", "million pixels/s", "written MB", "peak memory MB"],
         [
             [

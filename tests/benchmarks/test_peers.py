@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 
 from benchmarks.peers import section
-from benchmarks.peers.alone import ONE_THREAD, alone
+from benchmarks.peers.alone import alone
 from benchmarks.peers.ceres import ceres
 from benchmarks.peers.mitsuba_table import mitsuba_table
 from benchmarks.peers.optimistix_dogleg import optimistix_dogleg
-from benchmarks.peers.row import Answer, Peer, judge, judge_multipliers, missing, published_sigmoid
+from benchmarks.peers.row import Answer, Peer, judge, judge_multipliers, missing
 from benchmarks.peers.task import lattice, measured, some
 from uplift.models import Sigmoid
+from uplift.timing import ONE_THREAD
 
 TARGET = np.full((10, 3), 0.5)
 
@@ -42,13 +43,6 @@ def test_spectra_of_another_colour_are_a_wrong_answer(sensor):
     assert judge_multipliers(Sigmoid(), grey, sensor, TARGET, least=1).share == 1
     with pytest.raises(RuntimeError, match="wrong answer"):
         judge_multipliers(Sigmoid(), grey, sensor, TARGET / 2, least=1)
-
-
-def test_published_sigmoid_is_ours_with_wavelengths_as_they_are(sensor):
-    ours = Sigmoid()
-    expected = ours.squash(sensor.wavelengths**2 * 1e-5 - sensor.wavelengths * 1e-2 + 2)
-    found = published_sigmoid(np.array([[1e-5, -1e-2, 2]]), sensor.wavelengths)
-    np.testing.assert_allclose(found, expected[None], atol=1e-12)
 
 
 @pytest.mark.parametrize(

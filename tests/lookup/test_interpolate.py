@@ -1,4 +1,4 @@
-"""The three modes between lattice points: exact on nodes, near the colour elsewhere."""
+"""The four modes between lattice points: exact on nodes, near the colour elsewhere."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def cube(request):
     return request.getfixturevalue(request.param)
 
 
-@pytest.mark.parametrize("mode", ["spectra", "moments"])
+@pytest.mark.parametrize("mode", ["spectra", "moments", "nearest"])
 def test_a_node_gets_its_own_spectrum(cube, mode):
     at = [380.0, 500.0, 612.3, 780.0]
     found = cube.reflectance(cube.data.lattice.points, at, mode)
@@ -112,7 +112,7 @@ def test_refined_multipliers_evaluate_to_the_colour(small_cube):
     np.testing.assert_allclose(data.sensor.rgb(spectra), rgb, rtol=0, atol=2 * REFINED)
 
 
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mode", ["spectra", "moments", "refined"])
 def test_answers_are_continuous_across_the_faces_of_cells(small_cube, mode):
     nodes = small_cube.data.lattice.nodes
     on = np.array([[nodes[3], 0.4, 0.2], [0.3, nodes[5], 0.7], [0.1, 0.6, nodes[1]]])
@@ -123,10 +123,37 @@ def test_answers_are_continuous_across_the_faces_of_cells(small_cube, mode):
     np.testing.assert_allclose(before, after, rtol=0, atol=1e-4)
 
 
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mode", ["spectra", "moments", "refined"])
 def test_the_modes_know_neighbouring_colours_apart(small_cube, mode):
     one, other = small_cube.reflectance([[0.5, 0.5, 0.5], [0.5, 0.51, 0.5]], mode=mode)
     assert np.abs(one - other).max() > 1e-3
+
+
+def test_the_nearest_lattice_point_answers_where_no_entry_is_near(plain_cube):
+    rgb, nodes, points = random_colours(200), plain_cube.data.lattice.nodes, plain_cube.data.lattice.points
+    low, fraction = plain_cube.data.lattice.cell(rgb)
+    wanted = nodes[low + (fraction > 0.5)]
+    rows = [int(np.flatnonzero((points == point).all(axis=1))[0]) for point in wanted]
+    expected = stored_spectra(plain_cube.data, plain_cube.data.sensor.wavelengths)[rows]
+    np.testing.assert_allclose(plain_cube.reflectance(rgb, mode="nearest"), expected, rtol=0, atol=1e-12)
+
+
+def test_of_an_entry_and_the_lattice_the_one_of_more_weight_is_nearest(small_cube):
+    data = small_cube.data
+    own = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
+    _, high = data.pins.faces
+    beside, off = (
+        data.atlas.rgb + 0.1 * (high - data.atlas.rgb),
+        data.atlas.rgb + 0.95 * (high - data.atlas.rgb),
+    )
+    np.testing.assert_allclose(small_cube.reflectance(beside, mode="nearest"), own, rtol=0, atol=1e-12)
+    apart = np.abs(small_cube.reflectance(off, mode="nearest") - own).max(axis=1)
+    assert (apart > 1e-3).mean() > 0.7
+    lattice = stored_spectra(data, data.sensor.wavelengths)
+    assert all(
+        np.abs(lattice - one).max(axis=1).min() < 1e-12
+        for one in small_cube.reflectance(off, mode="nearest")[apart > 0]
+    )
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -134,7 +161,7 @@ def test_an_entry_gets_its_own_spectrum(small_cube, mode):
     data = small_cube.data
     own = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
     found = small_cube.reflectance(data.atlas.rgb, mode=mode)
-    near = {"spectra": 1e-12, "moments": 1e-6, "refined": 1e-4}
+    near = {"spectra": 1e-12, "moments": 1e-6, "refined": 1e-4, "nearest": 1e-12}
     np.testing.assert_allclose(found, own, rtol=0, atol=near[mode])
     if mode == "spectra":
         by_itself = lattice_spectra(data, data.atlas.rgb, data.sensor.wavelengths)

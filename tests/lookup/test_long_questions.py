@@ -8,6 +8,7 @@ import pytest
 from uplift.errors import OptionError
 from uplift.lookup import MODES
 from uplift.lookup.blocks import BLOCK, blockwise
+from uplift.lookup.table import TABULATED
 
 AT = [450.0, 550.0, 650.0]
 
@@ -45,13 +46,14 @@ def test_float32_coefficients(small_sigmoid_cube):
     np.testing.assert_array_equal(found, small_sigmoid_cube.coefficients(rgb).astype(np.float32))
 
 
-def test_a_table_of_all_points_gives_the_same(small_cube, monkeypatch):
+@pytest.mark.parametrize("mode", TABULATED)
+def test_a_table_of_all_points_gives_the_same(small_cube, monkeypatch, mode):
     entries = small_cube.data.atlas.rgb
     rgb = np.concatenate([random_colours(600), entries, entries + 1e-3])
     assert len(rgb) >= small_cube.data.lattice.size
-    from_table = small_cube.reflectance(rgb, AT)
+    from_table = small_cube.reflectance(rgb, AT, mode)
     monkeypatch.setattr("uplift.lookup.cube.MOST_BYTES", 0)
-    np.testing.assert_allclose(small_cube.reflectance(rgb, AT), from_table, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(small_cube.reflectance(rgb, AT, mode), from_table, rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize("dtype", [np.float16, int, "complex128", "paint", object, 3])

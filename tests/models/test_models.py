@@ -13,6 +13,7 @@ from hypothesis.extra.numpy import arrays
 
 from uplift.errors import OptionError
 from uplift.models import Moments, Phase, Sigmoid, from_description
+from uplift.models.sigmoid import published
 
 GRID = np.arange(380.0, 781.0, 5.0)
 MODELS = [Moments(3), Moments(9), Moments(17), Moments(9, Phase(warp="vision")), Sigmoid()]
@@ -125,3 +126,9 @@ def test_outside_their_range_spectra_are_held_flat(model):
     ends = model.squash(multipliers @ model.basis([300, 380, 780, 900]).T)
     np.testing.assert_array_equal(ends[:, 0], ends[:, 1])
     np.testing.assert_array_equal(ends[:, 2], ends[:, 3])
+
+
+def test_published_sigmoid_is_ours_with_wavelengths_as_they_are(sensor):
+    expected = Sigmoid().squash(sensor.wavelengths**2 * 1e-5 - sensor.wavelengths * 1e-2 + 2)
+    found = published(np.array([[1e-5, -1e-2, 2]]), sensor.wavelengths)
+    np.testing.assert_allclose(found, expected[None], atol=1e-12)

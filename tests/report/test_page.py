@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from uplift.atlas import read_atlas
-from uplift.lookup import Cube
+from uplift.lookup import MODES, Cube
 from uplift.report.assessment import assess
 from uplift.report.charts import histogram_chart, spectra_chart
 from uplift.report.histogram import histogram, log_edges
@@ -92,7 +92,7 @@ def test_charts_are_xml_and_as_many_as_asked_for(html, judged):
     charts = re.findall(r"<svg.*?</svg>", html, re.DOTALL)
     for chart in charts:
         ElementTree.fromstring(chart)
-    keys, lattice, errors, trips, lights = 3, 2, 1, 3, len(judged.lights)
+    keys, lattice, errors, trips, lights = 3, 2, 1, len(MODES), len(judged.lights)
     assert len(charts) == keys + lattice + errors + trips + lights + 3
 
 

@@ -19,7 +19,7 @@ from uplift.lookup.fill import filled, lacking
 from uplift.lookup.interpolate import MODES, coefficients, standard_error
 from uplift.lookup.nodes import holds
 from uplift.lookup.question import colours, float_type, floats, thread_count, wavelengths_asked
-from uplift.lookup.table import tabulate
+from uplift.lookup.table import TABULATED, tabulate
 from uplift.sensor import Array
 
 MOST_BYTES = 1 << 28
@@ -63,7 +63,8 @@ class Cube:
         rgb : linear RGB in [0, 1] in the space of the cube.
         wavelengths : (N,) nm; by default those of the cube's sensor. Outside the model's range the
             spectrum is held flat.
-        mode : ``spectra`` (exact), ``moments`` (one reconstruction, nearly exact), ``refined`` (exact, ditto).
+        mode : ``spectra`` (exact), ``moments`` (one reconstruction, nearly exact), ``refined`` (exact, ditto),
+            ``nearest`` (the spectrum of the nearest node, whose colour differs).
         dtype : of the answer: float64 or float32, which takes half the room and differs by less than 1e-6.
         threads : how many share a question of thousands of colours; the answer is the same.
 
@@ -77,8 +78,8 @@ class Cube:
         at, kind, count = self.wavelengths(wavelengths), float_type(dtype), thread_count(threads)
         asked = colours(rgb, self.data.sensor)
         function: Function
-        if mode == "spectra" and self._tabulates(asked.size // 3, len(at) * kind.itemsize):
-            function = tabulate(self.data, at, kind, count).spectra
+        if mode in TABULATED and self._tabulates(asked.size // 3, len(at) * kind.itemsize):
+            function = partial(TABULATED[mode], tabulate(self.data, at, kind, count))
         else:
             function = partial(_reflectance, self.data, mode, at)
         return blockwise(function, asked, len(at), kind, count)

@@ -1,8 +1,9 @@
-"""Multipliers and spectra between lattice points, in three modes (docs/mathematics.md, 8). numpy alone.
+"""Multipliers and spectra between lattice points, in four modes (docs/mathematics.md, 8). numpy alone.
 
 spectra   the spectra of the nodes around, weighted: exact, as RGB is linear in the spectrum
 moments   their coefficients, weighted: one reconstruction in place of eight
 refined   ``moments``, then steps of least change to the very colour
+nearest   the spectrum of the node of most weight: of another colour, as near as nodes are close
 
 All of it in float64: on the way from moments to multipliers rounding grows.
 """
@@ -47,6 +48,13 @@ def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     return replace(nodes, points=point.reshape(nodes.points.shape), entry=entry).mix(
         reflectance(data.model, data.coefficients[points], wavelengths),
         reflectance(data.model, data.atlas.coefficients[entries], wavelengths),
+    )
+
+
+def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
+    """Reflectance (n, N) of the nearest node, lattice point or atlas entry."""
+    return reflectance(
+        data.model, around(data, rgb).nearest(data.coefficients, data.atlas.coefficients), wavelengths
     )
 
 
@@ -111,4 +119,4 @@ def _descend(model: Model, ahead: Forward, multipliers: Array, rgb: Array) -> tu
 
 Mode = Callable[[CubeData, Array, Array], Array]
 
-MODES: dict[str, Mode] = {"spectra": spectra, "moments": moments, "refined": refined}
+MODES: dict[str, Mode] = {"spectra": spectra, "moments": moments, "refined": refined, "nearest": nearest}

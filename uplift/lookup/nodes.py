@@ -1,7 +1,7 @@
 """The nodes around colours, and mixtures of what lies on them (docs/mathematics.md, 8). numpy alone.
 
 Around a colour are the eight corners of its cell and, near an atlas entry, the entry (`uplift.cube.pins`).
-Whatever nodes carry, be it coefficients, spectra or errors, is mixed alike.
+Whatever nodes carry, be it coefficients, spectra or errors, is mixed alike, or taken from the nearest node.
 """
 
 from __future__ import annotations
@@ -45,6 +45,17 @@ class Nodes:
         found = mix(lattice, self.points, self.weights)
         share = self.share.astype(found.dtype)[:, None]
         found[self.rows] = share * found[self.rows] + (1 - share) * atlas[self.entry]
+        return found
+
+    def nearest(self, lattice: Values, atlas: Values) -> Values:
+        """(n, K) of what the node of most weight carries, of lattice points (dim³, K) and entries (E, K)."""
+        best = self.weights.argmax(axis=1)[:, None]
+        points, weights = (
+            np.take_along_axis(part, best, axis=1)[:, 0] for part in (self.points, self.weights)
+        )
+        found = lattice[points].astype(np.result_type(lattice, atlas), copy=False)
+        own = self.share * (1 + weights[self.rows]) <= 1
+        found[self.rows[own]] = atlas[self.entry[own]]
         return found
 
 

@@ -32,8 +32,12 @@ class Table:
         return cls(data, lattice, atlas)
 
     def spectra(self, rgb: Array) -> Values:
-        """Reflectance (n, N) in [0, 1] at linear RGB (n, 3)."""
+        """Reflectance (n, N) in [0, 1] at linear RGB (n, 3), in mode ``spectra``."""
         return np.clip(around(self.data, rgb).mix(self.lattice, self.atlas), 0, 1)
+
+    def nearest(self, rgb: Array) -> Values:
+        """The same in mode ``nearest``."""
+        return around(self.data, rgb).nearest(self.lattice, self.atlas)
 
 
 def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1) -> Table:
@@ -49,3 +53,7 @@ def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, 
         )
 
     return Table.of_points(data, spectra(data.coefficients[data.present]), spectra(data.atlas.coefficients))
+
+
+TABULATED = {"spectra": Table.spectra, "nearest": Table.nearest}
+"""Modes that a table serves."""

@@ -57,3 +57,9 @@ class Sigmoid:
 
     def describe(self) -> dict[str, Any]:
         return {"name": self.name, **asdict(self)}
+
+
+def published(coefficients: Array, wavelengths: Array) -> Array:
+    """Reflectances (n, N) by eq. 5 of Jakob & Hanika 2019: coefficients (n, 3) for wavelengths in nm, not scaled."""
+    x = coefficients @ np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
+    return 0.5 + x / (2 * np.sqrt(1 + x * x))

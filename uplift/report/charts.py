@@ -67,7 +67,7 @@ def histogram_chart(
             axes.set_xlim(part.edges[0], part.edges[-1])
         axes.locator_params(axis="y", nbins=4, integer=True)
         axes.yaxis.set_major_formatter("{x:,.0f}")
-        return _svg(figure)
+        return svg(figure)
 
 
 def spectra_chart(wavelengths: Array, measured: Array, answered: Array, lattice: Array | None) -> Markup:
@@ -90,7 +90,7 @@ def spectra_chart(wavelengths: Array, measured: Array, answered: Array, lattice:
         )
         axes.yaxis.set_major_formatter("{x:g}")
         axes.grid(color=PALE, linewidth=0.5)
-        return _svg(figure)
+        return svg(figure)
 
 
 def _top(curves: Sequence[Array]) -> float:
@@ -110,7 +110,7 @@ def _axes(place: tuple[float, float, float, float]) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def _svg(figure: Figure) -> Markup:
+def svg(figure: Figure) -> Markup:
     """The ``svg`` element alone: sized by the page, with identifiers that no other chart of the page has."""
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 

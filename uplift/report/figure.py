@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import Any, Literal
 
 from uplift.files import replacing
 
 
-def new_figure(width: float, height: float) -> Any:
-    """An empty matplotlib figure, in inches."""
+def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Any:
+    """An empty matplotlib figure, in inches. Without a ``layout`` it is known at once where everything lies."""
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(width, height), layout="constrained")
+    return Figure(figsize=(width, height), layout=layout)
 
 
 def plain(axes: Any) -> None:

@@ -8,7 +8,7 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from uplift.files import replacing
+from uplift.files import write_text
 
 Records = Sequence[Mapping[str, Any]]
 
@@ -24,5 +24,4 @@ def csv_text(records: Records) -> str:
 
 def write_csv(records: Records, path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Write them as a file. Raises `OutputError`."""
-    with replacing(path, force=force) as temporary:
-        temporary.write_text(csv_text(records), encoding="utf-8")
+    write_text(csv_text(records), path, force=force)

@@ -1,0 +1,83 @@
+"""Tables of the chart."""
+
+from __future__ import annotations
+
+from benchmarks.page import table
+from uplift.chart.numbers import build_told, error_told, size_told, time_told
+from uplift.chart.panels import PANELS
+from uplift.chart.table import Chart, Row, State
+
+ERRORS = ("round_trip", "A", "FL2", "FL7", "FL11", "LED-B3", "rms", "own_lights")
+
+
+def fronts(chart: Chart) -> str:
+    return table(
+        "Pareto fronts",
+        "Of each panel, from the quickest to the nearest.",
+        ["panel", "method", "time", "mean error"],
+        [
+            [panel.title if row is front[0] else "", row.title, *panel.told(row)]
+            for panel in PANELS
+            for front in [panel.front(chart)]
+            for row in front
+        ],
+    )
+
+
+def methods(chart: Chart) -> str:
+    return table(
+        "Every method",
+        "CPU time of all threads per RGB, many at once and one a call: median, least and most in brackets. Errors are "
+        "means, the round trip's with its 99 % and its largest; those under lights are of unseen materials, *own* that "
+        "of the materials that cubes with an atlas were built from, mean of the five lights.",
+        [
+            "method",
+            "at once",
+            "one a call",
+            "held",
+            "build",
+            "round trip",
+            *ERRORS[1:-1],
+            "own",
+            "colours",
+            "materials",
+            "notes",
+        ],
+        [_cells(row) for row in chart.measured],
+    )
+
+
+def undrawn(chart: Chart) -> str:
+    rest = [row for row in chart.rows if row.state != State.MEASURED]
+    return table(
+        "Not drawn",
+        "An answer is checked before it is timed."
+        if rest
+        else "Nothing was broken, and nothing was missing.",
+        ["method", "", "why"],
+        [[row.title, row.state, row.why] for row in rest],
+    )
+
+
+def _cells(row: Row) -> list[str]:
+    numbers = row.numbers
+    trip = " / ".join(error_told(numbers[f"round_trip_{kind}"]) for kind in ("mean", "p99", "max"))
+    return [
+        row.title,
+        _spread(row, "batch"),
+        _spread(row, "single"),
+        size_told(numbers["bytes"]),
+        build_told(numbers.get("build_s")),
+        trip,
+        *(error_told(numbers[f"{key}_mean"]) for key in ERRORS[1:]),
+        f"{numbers['round_trip_colours']:,.0f}",
+        f"{numbers['unseen_spectra']:,.0f}",
+        row.note,
+    ]
+
+
+def _spread(row: Row, kind: str) -> str:
+    if f"{kind}_ns" not in row.numbers:
+        return ""
+    median, least, most = (time_told(row.numbers[f"{kind}_ns{end}"]) for end in ("", "_least", "_most"))
+    return f"{median} ({least}–{most})"

@@ -1,0 +1,1 @@
+"""Speed against accuracy: every method of spectral upsampling on the same colours and measured spectra."""

@@ -1,0 +1,164 @@
+"""The chart as one HTML page that needs nothing else: hover over a marker to see what stands for it."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+
+from uplift.chart.legend import OTHER, colours
+from uplift.chart.numbers import build_told, error_told, size_told, time_told
+from uplift.chart.panels import PANELS, Panel
+from uplift.chart.table import Chart, Row, State
+from uplift.chart.task import LIGHTS
+from uplift.report.markup import Markup, element, joined, number
+from uplift.report.page_parts import note, right, table
+
+TITLE = "Spectral upsampling: speed against accuracy"
+ERRORS = {
+    "round_trip": "round trip",
+    **{light: light for light in LIGHTS},
+    "rms": "rms",
+    "own_lights": "own, mean",
+}
+
+
+def page(chart: Chart, picture: Markup) -> str:
+    """The whole HTML text around the picture, an ``svg`` element. The same chart gives the same text."""
+    styles = _resource("uplift.report", "page.css") + _resource("uplift.chart", "page.css")
+    head = element(
+        "head",
+        element("meta", charset="utf-8"),
+        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        element("title", TITLE),
+        element("style", Markup(styles)),
+    )
+    body = element(
+        "body",
+        element("header", element("h1", TITLE), element("p", _lead(chart), class_="lead")),
+        _families(chart),
+        element("div", picture, class_="picture"),
+        _fronts(chart),
+        _table(chart),
+        _undrawn(chart),
+        _footer(chart),
+        element("div", id="tip", hidden=""),
+        element("script", _data(chart), type="application/json", id="rows"),
+        element(
+            "script", Markup(_resource("uplift.report", "page.js") + _resource("uplift.chart", "page.js"))
+        ),
+    )
+    return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
+
+
+def _resource(package: str, name: str) -> str:
+    return files(package).joinpath(name).read_text(encoding="utf-8")
+
+
+def _lead(chart: Chart) -> str:
+    return (
+        f"{len(chart.measured)} ways from RGB to a reflectance spectrum, at the same colours and the same measured "
+        "materials. Lower is nearer, left is quicker; nothing measured lies below the black line."
+    )
+
+
+def _families(chart: Chart) -> Markup:
+    """A box for each family, to show and hide it."""
+    known = colours()
+    boxes = [
+        element(
+            "label",
+            element("input", type="checkbox", checked="", value=name),
+            element("i", style=f"background:{known.get(name, OTHER)}"),
+            name,
+        )
+        for name in dict.fromkeys(row.family for row in chart.measured)
+    ]
+    return element("p", *boxes, class_="families")
+
+
+def _fronts(chart: Chart) -> Markup:
+    title = element("h2", "Pareto fronts")
+    told = note("From the quickest to the nearest: each is notably nearer than all that are quicker.")
+    tables = [element("div", element("h3", panel.title), _front(panel, chart)) for panel in PANELS]
+    return element("section", title, told, element("div", *tables, class_="fronts"))
+
+
+def _front(panel: Panel, chart: Chart) -> Markup:
+    lines = [[row.title, *map(number, panel.told(row))] for row in panel.front(chart)]
+    return table(["method", right("time"), right(panel.unit)], lines)
+
+
+def _table(chart: Chart) -> Markup:
+    headings = [
+        element("th", "method"),
+        right("time per RGB"),
+        right("one a call"),
+        right("bytes"),
+        right("build"),
+    ]
+    headings += [right(name) for name in ERRORS.values()]
+    told = note(
+        "Time per RGB of many colours at once, or of one a call where a method takes no more. Errors are means: of the "
+        "round trip in ΔE00 under D65; of unseen materials in ΔE00 under each light, and rms of reflectance; of the "
+        "materials that cubes with an atlas were built from in ΔE00 over the five lights. Click a heading to sort."
+    )
+    lines = (_cells(row) for row in chart.measured)
+    return element("section", element("h2", "Every method"), told, table(headings, lines, "sortable"))
+
+
+def _cells(row: Row) -> list[Markup]:
+    numbers = row.numbers
+    shown = [
+        ("time_ns", time_told(numbers["time_ns"])),
+        ("single_ns", time_told(numbers["single_ns"])),
+        ("bytes", size_told(numbers["bytes"])),
+        ("build_s", build_told(numbers.get("build_s"))),
+        *((f"{key}_mean", error_told(numbers[f"{key}_mean"])) for key in ERRORS),
+    ]
+    cells = [element("td", row.title, element("small", row.note) if row.note else None, class_="name")]
+    return cells + [number(told, data_value=f"{numbers.get(key, -1):.6g}") for key, told in shown]
+
+
+def _undrawn(chart: Chart) -> Markup | None:
+    rest = [row for row in chart.rows if row.state != State.MEASURED]
+    if not rest:
+        return None
+    lines = [[row.title, element("td", row.state, class_="bad"), row.why] for row in rest]
+    told = note("An answer is checked before it is timed; what is broken has no place among the quick.")
+    return element("section", element("h2", "Not drawn"), told, table(["method", "", "why"], lines))
+
+
+def _footer(chart: Chart) -> Markup:
+    facts = [element("div", element("dt", name), element("dd", told)) for name, told in chart.facts.items()]
+    sources = dict.fromkeys(f"{row.family}: {row.source}" for row in chart.rows)
+    named = [element("p", source) for source in sources]
+    return element("footer", element("dl", *facts), joined(named))
+
+
+def _data(chart: Chart) -> Markup:
+    """What the script shows of each row, by its number."""
+    told = [{"title": row.title, "family": row.family, "lines": _lines(row)} for row in chart.rows]
+    return Markup(json.dumps(told, ensure_ascii=False).replace("<", "\\u003c"))
+
+
+def _lines(row: Row) -> list[tuple[str, str]]:
+    numbers = row.numbers
+    if row.state != State.MEASURED:
+        return []
+    lines = [("one colour a call", time_told(numbers["single_ns"]))]
+    if "batch_ns" in numbers:
+        lines.insert(
+            0, (f"{numbers['batch_colours']:,.0f} at once", f"{time_told(numbers['batch_ns'])} each")
+        )
+    lines.append(("held", size_told(numbers["bytes"])))
+    if "build_s" in numbers:
+        lines.append(("build", build_told(numbers["build_s"])))
+    lines.append(("errors", "mean / 99 % / largest"))
+    lines += [
+        (name, " / ".join(error_told(numbers[f"{key}_{kind}"]) for kind in ("mean", "p99", "max")))
+        for key, name in ERRORS.items()
+    ]
+    lines.append(
+        ("asked", f"{numbers['round_trip_colours']:g} colours, {numbers['unseen_spectra']:g} materials")
+    )
+    return lines + [(name, told) for name, told in (("", row.build), ("", row.ask), ("", row.note)) if told]
