@@ -214,6 +214,20 @@ def test_an_unknown_encoding_is_refused(plain_cube):
         points_of(plain_cube, PHOTO, encoding="log")
 
 
+def test_in_a_wide_space_colours_come_back_where_they_can(tmp_path):
+    rgb = np.random.default_rng(2).random((8, 8, 3)).astype(np.float32)
+    path = write_exr(tmp_path / "wide.exr", planes(rgb))
+    cube = uplift.build(scene=[path], dim=8, space="ITU-R BT.2020")
+    data, asked = cube.data, rgb.reshape(-1, 3).astype(float)
+    assert data.counts()["unfitted"] == 0
+    assert data.counts()["unrealisable"] > 0
+    corners, _ = data.lattice.corners(asked)
+    possible = ~(data.status[corners] == Status.UNREALISABLE).any(axis=1)
+    back = data.sensor.rgb(cube.reflectance(asked))
+    assert possible.sum() > 10
+    np.testing.assert_allclose(back[possible], asked[possible], rtol=0, atol=data.threshold)
+
+
 def test_it_is_made_again_without_its_images(scene_cube):
     again = rebuild(scene_cube, "photo.uplift", [ATLASES])
     assert digest(again.data) == digest(scene_cube.data)
