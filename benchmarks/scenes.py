@@ -36,9 +36,9 @@ builds only what the colours of these images need: the corners of every cell tha
 around an atlas entry reaches into such a cell, those of all cells that the box reaches into, for colours in it are
 answered from its faces. Colours within 1e-6 of another cell take that one too. Nothing else is fitted or stored. The
 answers to the images' colours, and to all others in the same cells, are those of the whole cube: every point is fitted
-by itself. Two things may differ, neither of which was met in sRGB. A point that has to be fitted from its neighbours, as some
-of wide spaces have, may lack these, and so get another spectrum of its colour. And coefficients are stored in single
-precision if that is good enough for every point there.
+by itself. Two things may differ, neither of which was met in sRGB. A point that has to be fitted from its neighbours,
+as some of wide spaces have, may lack these, and so get another spectrum of its colour. And coefficients are stored in
+single precision if that is good enough for every point there.
 
 - **Images** are read as `uplift texture` reads them ([textures.md](textures.md)), a band at a time, and decoded alike;
   `--encoding` is for both. The cube records their names and digests. `uplift check` needs no image: the stored points
