@@ -15,10 +15,11 @@ import numpy as np
 import uplift
 from benchmarks.page import table, write
 from benchmarks.textures.pictures import Picture, pictures
-from benchmarks.timing import ROOT, Spread, timed
+from benchmarks.timing import ROOT
 from uplift.lookup import Cube
 from uplift.scene import Images
 from uplift.sensor import Array
+from uplift.timing import Spread, timed
 
 ATLAS = ROOT / "atlases" / "macbeth.txt"
 DIMS = (32, 64, 128)

@@ -20,9 +20,10 @@ from uplift.report.assessment import assess
 from uplift.report.calibration import Calibration, calibration
 from uplift.report.crowding import crowding
 from uplift.report.failures import NAMED, failures
-from uplift.report.fidelity import COLOURS, about_other, about_own, about_stored, entries, round_trips
+from uplift.report.fidelity import about_other, about_own, about_stored, entries
 from uplift.report.histogram import histogram, linear_edges, log_edges
 from uplift.report.smoothness import smoothness
+from uplift.report.trips import COLOURS, round_trips
 from uplift.report.viewing import LIGHTS, hex_codes, viewings
 
 

@@ -10,17 +10,16 @@ import pytest
 from uplift import observer
 from uplift.atlas import read_atlas
 from uplift.errors import OptionError
-from uplift.lookup import MODES
 from uplift.study import sensitivity
 from uplift.study.locality import Change, before, left_out, noisy, reversed_entry
-from uplift.study.nearby import moves
+from uplift.study.nearby import MOVING, moves
 
 LIGHT = observer.light("FL11")
 
 
 def test_answers_move_with_the_question(small_cube):
     found = moves(small_cube, LIGHT, 200)
-    assert [move.mode for move in found[::3]] == list(MODES)
+    assert [move.mode for move in found[::3]] == list(MOVING)
     for wide, narrow, rounding in zip(found[::3], found[1::3], found[2::3], strict=True):
         assert wide.rms_mean == pytest.approx(4 * narrow.rms_mean, rel=0.1)
         assert wide.own_mean == pytest.approx(4 * narrow.own_mean, rel=0.05)

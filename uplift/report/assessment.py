@@ -21,11 +21,11 @@ from uplift.report.fidelity import (
     about_own,
     about_stored,
     entries,
-    round_trips,
 )
 from uplift.report.histogram import Histogram, histogram, linear_edges, log_edges
 from uplift.report.smoothness import smoothness
 from uplift.report.summary import summary
+from uplift.report.trips import round_trips
 from uplift.report.viewing import LIGHTS, viewings
 from uplift.sensor import Array, Sensor
 

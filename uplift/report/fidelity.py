@@ -1,4 +1,4 @@
-"""What a cube answers, beside what was measured: the error of every atlas entry, and of colours at random."""
+"""What a cube answers, beside what was measured: the error of every atlas entry."""
 
 from __future__ import annotations
 
@@ -10,17 +10,13 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import Spectra, resample
 from uplift.cube import CubeData
-from uplift.difference import colours_apart, spectra_apart
+from uplift.difference import spectra_apart
 from uplift.lattice import Indices
-from uplift.lookup import MODES, Cube
+from uplift.lookup import Cube
 from uplift.lookup.interpolate import lattice_spectra
 from uplift.models import reflectance
 from uplift.observer import light
 from uplift.sensor import Array, Sensor
-
-COLOURS = 4096
-SEED = 20200617
-"""Of the random colours: the same for every report, so that reports compare."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,25 +174,6 @@ def _own(cube: Cube, found: Entries, rows: Indices, lights: tuple[Sensor, ...]) 
         reach=data.atlas.reach[rows],
         codes=np.maximum(high - middle, middle - low).min(axis=1),
     )
-
-
-def round_trips(cube: Cube) -> dict[str, Array]:
-    """ΔE00 (n,) under the cube's illuminant between random linear RGB and what comes back, for each mode."""
-    asked, sensor = _random(cube.data), cube.data.sensor
-    asked = asked[cube.holds(asked)]
-    return {
-        mode: colours_apart(sensor, asked, sensor.rgb(cube.reflectance(asked, mode=mode))) for mode in MODES
-    }
-
-
-def _random(data: CubeData) -> Array:
-    """Linear RGB (n, 3), even in the cube or, where it is sparse, in its complete cells."""
-    random = np.random.default_rng(SEED)
-    asked = random.random((COLOURS, 3))
-    if data.complete is None:
-        return asked
-    low = data.lattice.position(random.choice(np.flatnonzero(data.complete), COLOURS))
-    return data.lattice.nodes[low] + asked * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])
 
 
 def _under(lights: tuple[Sensor, ...], first: Array, second: Array) -> Array:

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from uplift.report.assessment import Assessment
-from uplift.report.fidelity import COLOURS, SEED, Entries
+from uplift.report.fidelity import Entries
 from uplift.report.histogram import Histogram
+from uplift.report.trips import SEED
 from uplift.report.viewing import hex_codes
 from uplift.sensor import Sensor
 
@@ -26,7 +27,7 @@ def numbers(found: Assessment) -> dict[str, Any]:
             "failures": _failures(found),
             "fitting_distance": _histogram(found.distance),
             "round_trip": {
-                "colours": COLOURS,
+                "colours": found.round_trips["spectra"].counts.sum(),
                 "seed": SEED,
                 "illuminant": found.data.sensor.illuminant,
                 "delta_e_2000": {mode: _histogram(part) for mode, part in found.round_trips.items()},

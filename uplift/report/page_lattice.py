@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from uplift.report.assessment import Assessment
-from uplift.report.fidelity import COLOURS
 from uplift.report.markup import Markup, counted, element, joined, number, power, triple
 from uplift.report.page_parts import charts, figure, note, right, swatch, table
 from uplift.report.viewing import screen_codes
@@ -97,7 +96,8 @@ def distributions_section(found: Assessment) -> Markup:
         figure(f"Round trip in mode {mode}", part, f"ΔE00 under {light}")
         for mode, part in found.round_trips.items()
     ]
-    told = f"{COLOURS:,} random linear RGB, {_whence(found)}: the colour asked against what comes back."
+    count = found.round_trips["spectra"].counts.sum()
+    told = f"{count:,} random linear RGB, {_whence(found)}: the colour asked against what comes back."
     parts = [element("h3", "Lattice"), charts(lattice)]
     parts += [element("h3", "Colours that come back"), note(told), charts(trips)]
     if found.delta_e:

@@ -11,6 +11,8 @@ from uplift.lookup import MODES, Cube
 from uplift.sensor import Array, Light
 
 COLOURS = 4096
+MOVING = tuple(mode for mode in MODES if mode != "nearest")
+"""Modes whose answers move as the question does; the nearest node jumps."""
 STEPS = {"1/255": 1.0, "1/1023": 255 / 1023}
 """A code of 8 and of 10 bits, in codes of 8."""
 ROUNDING = "1e-7"
@@ -48,7 +50,9 @@ def moves(cube: Cube, light: Light, count: int = COLOURS) -> list[Move]:
     asked = cube.decode(codes)
     moved = {name: cube.decode(codes + step * signs) for name, step in STEPS.items()}
     moved[ROUNDING] = np.clip(asked + FLOAT * signs, 0, 1)
-    return [_move(cube, light, mode, name, asked, beside) for mode in MODES for name, beside in moved.items()]
+    return [
+        _move(cube, light, mode, name, asked, beside) for mode in MOVING for name, beside in moved.items()
+    ]
 
 
 def _move(cube: Cube, light: Light, mode: str, step: str, asked: Array, beside: Array) -> Move:
