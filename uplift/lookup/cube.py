@@ -87,7 +87,7 @@ class Cube:
     def _tabulates(self, colours: int, bytes_each: int) -> bool:
         """Whether to work out the spectra of all lattice points first, so that no block does so again."""
         table = self.data.lattice.size * bytes_each
-        return colours >= int(self.data.present.sum()) and table <= MOST_BYTES
+        return table <= MOST_BYTES and colours >= int(self.data.present.sum())
 
     def holds(self, rgb: ArrayLike) -> Mask:
         """Whether (…,) linear RGB (…, 3) can be asked: always, but for cubes of a scene. Raises `ColourError`."""
