@@ -209,6 +209,11 @@ def test_bad_images_are_refused(plain_cube, tmp_path, make, error, match):
         points_of(plain_cube, tmp_path / "image.exr")
 
 
+def test_a_scene_of_no_images_is_refused():
+    with pytest.raises(OptionError, match="a scene without images"):
+        uplift.build(scene=[], dim=4)
+
+
 def test_an_unknown_encoding_is_refused(plain_cube):
     with pytest.raises(OptionError, match="unknown encoding 'log'"):
         points_of(plain_cube, PHOTO, encoding="log")

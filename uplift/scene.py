@@ -62,6 +62,10 @@ class Images:
             watch(Reading(done, len(self.paths)))
             for rgb in _colours(path, sensor, self.encoding):
                 cells[touched(pins.lattice, rgb)] = True
+        if not cells.any():
+            raise OptionError(
+                "a scene without images has no colours", remedy="name one, or build without a scene"
+            )
         return pins.needs(cells)
 
     def describe(self) -> list[dict[str, Any]]:
