@@ -87,7 +87,7 @@ def _kind(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
 
 def _shape(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
     name = _some(tensors, random)
-    array = tensors[name]
+    array = np.atleast_1d(tensors[name])
     shapes = (
         array[:-1],
         array[:0],
