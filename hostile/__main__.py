@@ -76,7 +76,8 @@ def _tables(tallies: list[Tally], seed: int) -> list[dict[str, object]]:
 
 def _cells(tally: Tally) -> list[str]:
     failures = ", ".join(f"{count} {kind}" for kind, count in tally.failures.items()) or "none"
-    return [tally.target, f"{tally.inputs:,}", f"{tally.taken:,}", f"{tally.refused:,}", failures]
+    answers = [f"{count:,}" if tally.taken or tally.refused else "" for count in (tally.taken, tally.refused)]
+    return [tally.target, f"{tally.inputs:,}", *answers, failures]
 
 
 if __name__ == "__main__":
