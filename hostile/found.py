@@ -58,6 +58,12 @@ FOUND = (
         "now": "the next writer to that path removes it; one that is still being written is locked, and stays",
     },
     {
+        "target": "SIGKILL while saving",
+        "input": "a writer killed while safetensors writes by a temporary file of its own",
+        "was": "that file stayed for ever",
+        "now": "it writes to ours, by bytes",
+    },
+    {
         "target": "standard output",
         "input": "uplift query > /dev/full",
         "was": "a traceback",

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+import uplift
 from hostile.attack import Tally
 from hostile.target import ROOT
 
@@ -47,10 +48,9 @@ def killed_savers(count: int, random: np.random.Generator, folder: Path) -> Tall
             time.sleep(random.uniform(0, 0.05))
             saver.send_signal(signal.SIGKILL)
         fine = path.read_bytes() in whole if path.exists() else not number % 2
-        _count(tally, fine, "a broken file")
-    shutil.copy(OLD, path)
-    _save(path, NEW)
-    _count(tally, os.listdir(folder) == [path.name], "litter that the next writer leaves")
+        uplift.load(NEW).save(path, force=True)
+        tidy = os.listdir(folder) == [path.name]
+        _count(tally, fine and tidy, "litter that the next writer leaves" if fine else "a broken file")
     return tally
 
 

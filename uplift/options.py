@@ -70,8 +70,8 @@ def check_size(options: Options) -> None:
 
 
 def _point(count: int) -> int:
-    """Bytes of a lattice point: multipliers, coefficients in their place and in single precision, the rest."""
-    return 12 * count + 60
+    """Bytes of a lattice point: multipliers, their coefficients in single precision, the rest; or those and the file."""
+    return 16 * count + 60
 
 
 def _gigabytes(count: int) -> str:

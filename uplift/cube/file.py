@@ -33,16 +33,13 @@ FEATURES = {"debug": "round", "errors": "standard_error"}
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Write atomically. Raises `OutputError`."""
-    from safetensors import SafetensorError
-    from safetensors.numpy import save_file
+    from safetensors.numpy import save
 
     tensors, metadata = contents(data)
     metadata["digest"] = _digest(tensors, metadata)
     with replacing(path, force=force) as temporary:
-        try:
-            save_file(tensors, temporary, metadata={KEY: _json(metadata)})
-        except SafetensorError as error:
-            raise OSError(str(error)) from error
+        # Its own way to a file has a temporary one too, which nobody would remove if this process were killed.
+        temporary.write_bytes(save(tensors, metadata={KEY: _json(metadata)}))
 
 
 def read(path: str | os.PathLike[str]) -> CubeData:
