@@ -70,7 +70,7 @@ def check_size(options: Options) -> None:
 
 
 def _point(count: int) -> int:
-    """Bytes of a lattice point: multipliers, their coefficients in single precision, the rest; or those and the file."""
+    """Bytes of a lattice point: multipliers, and coefficients in single precision, the rest; or these and a file."""
     return 16 * count + 60
 
 

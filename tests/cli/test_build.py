@@ -202,14 +202,14 @@ def test_a_build_killed_while_writing_leaves_the_old_cube(home, cubes):
     path.write_bytes((cubes / "moments-8.uplift").read_bytes())
     before = path.read_bytes()
     code = (
-        "import os, signal, safetensors.numpy as numpy, uplift\n"
-        "save = numpy.save_file\n"
-        "def save_and_die(tensors, path, metadata):\n"
-        "    save(tensors, path, metadata=metadata)\n"
-        "    os.truncate(path, 1000)\n"
-        "    os.kill(os.getpid(), signal.SIGKILL)\n"
-        "numpy.save_file = save_and_die\n"
+        "import os, signal\n"
+        "from pathlib import Path\n"
         "from uplift.lookup import load\n"
+        "def write_half_and_die(path, content):\n"
+        "    with path.open('wb') as file:\n"
+        "        file.write(content[:1000])\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+        "Path.write_bytes = write_half_and_die\n"
         "load().save('cube.uplift', force=True)\n"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=home, capture_output=True)
