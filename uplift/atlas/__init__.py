@@ -7,10 +7,11 @@ import warnings
 
 from uplift.atlas import art, art_write, table
 from uplift.atlas.distributions import from_distributions
-from uplift.atlas.document import StrPath, read_document, write_whole
+from uplift.atlas.document import StrPath, read_document
 from uplift.atlas.resample import Clip, Resampled, on_grid, resample
 from uplift.atlas.spectra import Entry, Header, Skipped, Source, Spectra, merge
 from uplift.errors import OutputError, UpliftWarning
+from uplift.files import write_text
 
 __all__ = [
     "Clip",
@@ -57,7 +58,7 @@ def write_atlas(spectra: Spectra, path: StrPath, header: Header | None = None) -
         raise OutputError("no entries to write", path=path, remedy="name an atlas that holds reflectances")
     is_table = os.fspath(path).lower().endswith(".csv")
     text = table.text(spectra) if is_table else art_write.text(spectra, header or _joined(spectra))
-    write_whole(path, text)
+    write_text(text, path, force=True)
 
 
 def _read(path: StrPath) -> Spectra:

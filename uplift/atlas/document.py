@@ -10,7 +10,6 @@ from functools import cached_property
 from pathlib import Path
 
 from uplift.errors import AtlasError
-from uplift.files import replacing
 
 SHOWN = 40
 """Characters of a faulty token or name that a message shows."""
@@ -119,12 +118,6 @@ def nanometres(token: str, place: Place, what: str) -> float:
 def without_unit(token: str) -> str:
     """``380.0`` of ``380.0 nm``."""
     return token.strip().removesuffix("nm").rstrip()
-
-
-def write_whole(path: StrPath, text: str) -> None:
-    """Write UTF-8 text at once, replacing ``path``. Raises `OutputError`."""
-    with replacing(path, force=True) as temporary:
-        temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
 def _reason(error: Exception) -> str:
