@@ -57,8 +57,8 @@ def sensor(space: str = "sRGB", illuminant: str = "D65", observer: str = DEFAULT
         illuminant=lit.name,
         observer=_look_up(colour.MSDS_CMFS, observer, "observer").name,
         wavelengths=grid(),
-        cmfs=_samples(colour.MSDS_CMFS, observer, "observer"),
-        power=_samples(colour.SDS_ILLUMINANTS, illuminant, "illuminant"),
+        cmfs=matching_functions(observer),
+        power=power(illuminant),
         xyz_to_rgb=matrix / (matrix @ lit.white)[:, None],
         decoding=np.asarray(rgb_space.cctf_decoding(np.arange(256) / 255), dtype=float),
     )
@@ -67,8 +67,7 @@ def sensor(space: str = "sRGB", illuminant: str = "D65", observer: str = DEFAULT
 def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:
     """An illuminant to look under, on the grid of every sensor. Raises `UnknownNameError`."""
     colour = colour_science()
-    weights = _samples(colour.MSDS_CMFS, observer, "observer")
-    weights = weights * _samples(colour.SDS_ILLUMINANTS, illuminant, "illuminant")[:, None]
+    weights = matching_functions(observer) * power(illuminant)[:, None]
     return Light(
         _look_up(colour.SDS_ILLUMINANTS, illuminant, "illuminant").name, (weights / weights[:, 1].sum()).T
     )
@@ -107,8 +106,21 @@ def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:
         raise suggest(name, table, kind) from None
 
 
-def _samples(table: Mapping[str, Any], name: str, kind: str) -> Array:
-    """Samples of a colour-science table on the grid; outside its data held flat, as colour-science aligns."""
-    colour = colour_science()
-    shape = colour.SpectralShape(START, END, STEP)
+def matching_functions(
+    observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
+) -> Array:
+    """(N, 3) colour-matching functions from ``start`` to ``end`` nm. Raises `UnknownNameError`."""
+    return _samples(colour_science().MSDS_CMFS, observer, "observer", (start, end, step))
+
+
+def power(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
+    """(N,) relative spectral power from ``start`` to ``end`` nm. Raises `UnknownNameError`."""
+    return _samples(colour_science().SDS_ILLUMINANTS, illuminant, "illuminant", (start, end, step))
+
+
+def _samples(
+    table: Mapping[str, Any], name: str, kind: str, shape: tuple[float, float, float] = (START, END, STEP)
+) -> Array:
+    """Samples of a colour-science table; outside its data held flat, as colour-science aligns."""
+    shape = colour_science().SpectralShape(*shape)
     return np.asarray(_look_up(table, name, kind).copy().align(shape).values, dtype=float)
