@@ -15,7 +15,7 @@ from .equations import Equations, equations, undetermined, unknowns
 from .factor import FactorModel
 from .palette import Palette
 
-ENOUGH, MOST_STEPS = 1e-12, 500
+ENOUGH, MOST_STEPS = 1e-11, 1000
 """Relative change at which the bounded solver stops, and steps after which it gives up."""
 
 
@@ -69,17 +69,19 @@ def design(palette: Palette, model: FactorModel) -> Design:
 def solve(problem: Equations) -> Array:
     """x (n,) of least ‖M x − y‖ within the bounds."""
     from scipy.optimize import lsq_linear
+    from threadpoolctl import threadpool_limits
 
     if np.isinf(problem.low).all() and np.isinf(problem.high).all():
         return np.asarray(np.linalg.lstsq(problem.matrix, problem.values, rcond=None)[0])
-    found = lsq_linear(
-        problem.matrix,
-        problem.values,
-        (problem.low, problem.high),
-        method="trf",
-        tol=ENOUGH,
-        max_iter=MOST_STEPS,
-    )
+    with threadpool_limits(1, user_api="blas"):  # the matrix is small: threads would wait for one another
+        found = lsq_linear(
+            problem.matrix,
+            problem.values,
+            (problem.low, problem.high),
+            method="trf",
+            tol=ENOUGH,
+            max_iter=MOST_STEPS,
+        )
     if not found.success:
         warnings.warn(
             f"stopped after {MOST_STEPS} steps: colours may be a little off", UpliftWarning, stacklevel=2

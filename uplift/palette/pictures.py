@@ -22,7 +22,7 @@ PATCH, SMALL = (0.92, 0.66), 8.0
 """Shares of the cell that a patch takes; points of the numbers below it."""
 NARROWEST = 5.2
 """Inches that the key takes."""
-KEY = "left: wanted; right: obtained, above by spectra, below by factor model\nΔE00: from wanted to obtained · of the model"
+KEY = "left: wanted; right: obtained, above by spectra,\nbelow by factor model; ΔE00 from wish, of model"
 LONGEST = 18
 """Characters of a name that fit."""
 
