@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes pictures
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes pictures palette
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -65,6 +65,10 @@ textures: pictures
 # What cubes for a scene save: docs/scenes.md.
 scenes: pictures
 	$(BIN)/python -m benchmarks.scenes
+
+# How near the factor model of palettes comes, and the examples: docs/palette.md and its pictures.
+palette: $(INSTALLED)
+	$(BIN)/python -m benchmarks.palette
 
 # Pictures come with packages that nothing else needs.
 pictures: $(INSTALLED)
