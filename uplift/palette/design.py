@@ -87,4 +87,4 @@ def solve(problem: Equations) -> Array:
         warnings.warn(
             f"stopped after {MOST_STEPS} steps: colours may be a little off", UpliftWarning, stacklevel=2
         )
-    return np.asarray(found.x)
+    return np.clip(found.x, problem.low, problem.high)  # by rounding alone it may lie outside
