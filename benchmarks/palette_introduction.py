@@ -125,7 +125,7 @@ a block of rows of M x ≈ y, with its weight (3.2–3.3 there):
 
 A designed light has the same rows with its materials. Without bounds the pseudo-inverse gives the minimum, and of
 several the shortest; with bounds active sets do (scipy's `lsq_linear`, BVLS). The problem is convex, so either way it
-is the global minimum; bounds are kept to the bit. (`uplift/palette/equations.py`, `design.py`)
+is the global minimum; bounds are kept to the bit. (`uplift/palette/equations.py`, `solve.py`)
 
 ## The factor model
 

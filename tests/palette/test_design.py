@@ -6,16 +6,17 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.optimize import lsq_linear
 
 from uplift.difference import colours_apart
 from uplift.errors import PaletteError
 from uplift.palette import Palette, design, matrix
 from uplift.palette.colours import screen_matrix
-from uplift.palette.design import solve
 from uplift.palette.equations import Equations, equations, unknowns
 from uplift.palette.lights import illuminant
 from uplift.palette.matrix import difference
 from uplift.palette.palette import Apart, Part, Wish
+from uplift.palette.solve import solve
 
 BLACK = np.zeros(3)
 
@@ -81,6 +82,22 @@ def test_without_bounds_it_is_the_pseudo_inverse():
     rows, values, wide = draw.random((4, 9)), draw.random(4), np.full(9, np.inf)
     x = solve(Equations(rows, values, -wide, wide))
     np.testing.assert_allclose(x, np.linalg.pinv(rows) @ values, atol=1e-12)
+
+
+def test_what_has_nothing_in_common_is_solved_apart():
+    """As it is when solved at once, whatever the order of rows and columns."""
+    draw = np.random.default_rng(2)
+    first, second = draw.random((5, 4)), draw.random((6, 3))
+    matrix = np.zeros((11, 8))  # the last column has no equation
+    matrix[:5, :4], matrix[5:, 4:7] = first, second
+    rows, columns = draw.permutation(11), draw.permutation(8)
+    values, low, high = draw.random(11), np.full(8, 0.1), np.full(8, 0.6)
+    found = solve(Equations(matrix[np.ix_(rows, columns)], values[rows], low, high))
+    expected = [
+        lsq_linear(block, part, (0.1, 0.6), method="bvls").x
+        for block, part in ((first, values[:5]), (second, values[5:]))
+    ]
+    np.testing.assert_allclose(found, np.append(np.concatenate(expected), 0.1)[columns], atol=1e-9)
 
 
 def test_a_free_colour_costs_less_than_any_other(metamers, model, found):

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.errors import PaletteError, UpliftWarning
+from uplift.errors import PaletteError
 from uplift.sensor import Array
 
-from .equations import Equations, equations, undetermined, unknowns
+from .equations import equations, undetermined, unknowns
 from .factor import FactorModel
 from .palette import Palette
-
-ENOUGH, MOST_STEPS = 1e-12, 1000
-"""Relative change at which the bounded solver stops, and steps after which it gives up."""
+from .solve import solve
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,10 +38,6 @@ class Design:
 def design(palette: Palette, model: FactorModel) -> Design:
     """Find what is open in a palette.
 
-    Without bounds by the pseudo-inverse: the global minimum, and of several the shortest. With bounds by active sets
-    (BVLS of Stark & Parker 1995 in scipy's ``lsq_linear``): the minimum is global too, as the problem is convex, and
-    the bounds are kept to the bit.
-
     Raises
     ------
     PaletteError : a colour of which neither light nor material is given.
@@ -65,26 +58,3 @@ def design(palette: Palette, model: FactorModel) -> Design:
         ),
         {name: found[where.free(name)] for name in palette.free},
     )
-
-
-def solve(problem: Equations) -> Array:
-    """x (n,) of least ‖M x − y‖ within the bounds."""
-    from scipy.optimize import lsq_linear
-    from threadpoolctl import threadpool_limits
-
-    if np.isinf(problem.low).all() and np.isinf(problem.high).all():
-        return np.asarray(np.linalg.lstsq(problem.matrix, problem.values, rcond=None)[0])
-    with threadpool_limits(1, user_api="blas"):  # the matrix is small: threads would wait for one another
-        found = lsq_linear(
-            problem.matrix,
-            problem.values,
-            (problem.low, problem.high),
-            method="bvls",
-            tol=ENOUGH,
-            max_iter=MOST_STEPS,
-        )
-    if not found.success:
-        warnings.warn(
-            f"stopped after {MOST_STEPS} steps: colours may be a little off", UpliftWarning, stacklevel=2
-        )
-    return np.clip(found.x, problem.low, problem.high)  # by rounding alone it may lie outside
