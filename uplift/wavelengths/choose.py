@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from uplift import observer
 from uplift.errors import OptionError
+from uplift.wavelengths.meyer import meyer
 from uplift.wavelengths.optimise import optimised
 from uplift.wavelengths.plain import bins, uniform
 from uplift.wavelengths.sampling import MEASURES, Errors, Sampling, judge
@@ -14,6 +15,7 @@ from uplift.wavelengths.setting import Setting
 
 METHODS: Mapping[str, Callable[[Setting, int], Sampling]] = {
     "optimised": optimised,
+    "meyer": meyer,
     "uniform": uniform,
     "bins": bins,
 }
