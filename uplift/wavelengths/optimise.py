@@ -14,7 +14,7 @@ from uplift.wavelengths.setting import Setting
 
 RANGES = ((400.0, 700.0), (410.0, 680.0))
 """Where the starts are spread (nm): least squares ends in the nearest minimum, so it starts twice."""
-PAIRS = 2400
+PAIRS = 1600
 """Materials times lights that are fitted; of more, every so-many-th. All are judged."""
 
 

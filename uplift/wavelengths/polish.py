@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares
+from threadpoolctl import threadpool_limits
 
 from uplift.sensor import Array
 from uplift.wavelengths import metric
@@ -72,12 +73,14 @@ def polish(problem: Problem, start: Sampling) -> Sampling:
     others = len(unknowns) - len(start)
     low = np.concatenate([np.full(len(start), nm[0]), np.zeros(others)])
     high = np.concatenate([np.full(len(start), nm[-1]), np.full(others, np.inf)])
-    found = least_squares(
-        problem.residuals,
-        np.clip(unknowns, low, high),
-        problem.jacobian,
-        bounds=(low, high),
-        x_scale="jac",
-        max_nfev=STEPS,
-    )
+    # The matrices are small: threads wait for each other longer than they work.
+    with threadpool_limits(1, user_api="blas"):
+        found = least_squares(
+            problem.residuals,
+            np.clip(unknowns, low, high),
+            problem.jacobian,
+            bounds=(low, high),
+            x_scale="jac",
+            max_nfev=STEPS,
+        )
     return problem.unpack(found.x)
