@@ -67,7 +67,7 @@ def choose(
 
 
 def _fixed(setting: Setting, method: str, count: int) -> Choice:
-    sampling = METHODS[method](setting, count)
+    sampling = METHODS[method](setting, count).ordered()
     return Choice(method, sampling, judge(setting, sampling))
 
 

@@ -32,7 +32,7 @@ def optimised(setting: Setting, count: int) -> Sampling:
 
 def _from(fitted: Problem, start: Array) -> Sampling:
     found = polish(fitted, plain.prefiltered(fitted.setting, start))
-    return _scaled(fitted.setting, found).ordered()
+    return _scaled(fitted.setting, found.ordered())
 
 
 def _scaled(setting: Setting, sampling: Sampling) -> Sampling:
@@ -40,9 +40,7 @@ def _scaled(setting: Setting, sampling: Sampling) -> Sampling:
 
     Only the product of weight and power is seen, so a factor may pass from one to the other at each wavelength.
     """
-    order = np.argsort(sampling.wavelengths)
-    nearby = np.empty(len(sampling))
-    nearby[order] = plain.prefiltered(setting, sampling.wavelengths[order]).powers.sum(axis=0)
+    nearby = plain.prefiltered(setting, sampling.wavelengths).powers.sum(axis=0)
     fitted = sampling.powers.sum(axis=0)
     factor = np.where(fitted > 0, nearby / np.where(fitted > 0, fitted, 1), 1.0)
     return replace(sampling, to_xyz=sampling.to_xyz / factor[:, None], powers=sampling.powers * factor)
