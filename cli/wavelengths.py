@@ -8,18 +8,22 @@ import click
 
 from .options import force_option, format_option, sensor_options
 from .progress import waiting
+from .sampling import parse_wavelengths
 from .study_atlases import SHIPPED, read_each
 from .wavelengths_answers import PRINTERS, Found
 
 if TYPE_CHECKING:
     from uplift.atlas import Spectra
 
-ONE_OF_TWO = "Of --count and --target give one. See 'uplift wavelengths --help'."
+ONE_OF_THREE = "Of --count, --target and --at give one. See 'uplift wavelengths --help'."
 
 
 @click.command("wavelengths")
 @click.option("--count", metavar="N", type=int, help="So many wavelengths, 1 to 40.")
 @click.option("--target", metavar="ΔE", type=float, help="The fewest that stay under this ΔE00.")
+@click.option(
+    "--at", metavar="NM", help="These, START:END:STEP or a list: weights and powers alone are fitted."
+)
 @click.option(
     "--measure",
     type=click.Choice(("mean", "p95", "max")),
@@ -29,10 +33,10 @@ ONE_OF_TWO = "Of --count and --target give one. See 'uplift wavelengths --help'.
 )
 @click.option(
     "--method",
-    type=click.Choice(("optimised", "meyer", "uniform", "bins")),
+    type=click.Choice(("optimised", "meyer", "uniform", "bins", "fitted")),
     default="optimised",
     show_default=True,
-    help="Fitted to materials and lights; Meyer's quadrature; evenly spaced, read off or in bins.",
+    help="All fitted; Meyer's quadrature; even wavelengths: read off, in bins, or with weights fitted.",
 )
 @click.option(
     "--atlas",
@@ -51,6 +55,7 @@ ONE_OF_TWO = "Of --count and --target give one. See 'uplift wavelengths --help'.
 def command(
     count: int | None,
     target: float | None,
+    at: str | None,
     measure: str,
     method: str,
     files: tuple[str, ...],
@@ -74,10 +79,12 @@ def command(
       uplift wavelengths --count 8
       uplift wavelengths --target 1 --light D65 --light FL11 --plot wavelengths.png
       uplift wavelengths --target 0.5 --measure p95 --atlas paints.csv --format json
+      uplift wavelengths --at 400:700:20 --light A --light LED-B3 --format csv
       uplift wavelengths --count 4 --method meyer --light C --atlas atlases/macbeth.txt
     """
-    if (count is None) == (target is None):
-        raise click.UsageError(ONE_OF_TWO)
+    if sum(option is not None for option in (count, target, at)) != 1:
+        raise click.UsageError(ONE_OF_THREE)
+    given = parse_wavelengths(at)
     from uplift import wavelengths
     from uplift.atlas import merge, on_grid
     from uplift.files import check_output
@@ -92,7 +99,11 @@ def command(
         on_grid(spectra, wavelengths.grid()), lights or ("D65",), observer_name=seen_by
     )
     with waiting("fitting wavelengths"):
-        choice = wavelengths.choose(setting, count=count, target=target, measure=measure, method=method)
+        choice = (
+            wavelengths.choose(setting, count=count, target=target, measure=measure, method=method)
+            if given is None
+            else wavelengths.weigh(setting, given)
+        )
     if plot_path is not None:
         from uplift.report.wavelengths import plot_choice
 

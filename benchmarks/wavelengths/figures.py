@@ -13,7 +13,7 @@ from uplift.report.figure import new_figure, plain, write_png
 from uplift.wavelengths import METHODS
 from uplift.wavelengths.experiments import Trials, triangle
 
-COLOURS = ("#20509a", "#d1495b", "#2e8b57", "#c98a1b")
+COLOURS = ("#20509a", "#d1495b", "#2e8b57", "#c98a1b", "#7fa3d9")
 CORNERS = np.array([[0.5, np.sqrt(0.75)], [0.0, 0.0], [1.0, 0.0]])
 """Where the first, second and third channel have all wavelengths."""
 
@@ -88,6 +88,6 @@ def methods(comparisons: Sequence[Comparison], path: Path) -> None:
             plain(axes)
         panels[0].set_ylabel("mean ΔE00, unseen materials")
         figure.legend(
-            *panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False
+            *panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=5, frameon=False
         )
         write_png(figure, path, force=True)

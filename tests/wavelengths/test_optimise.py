@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from uplift.difference import delta_e_2000
+from uplift.errors import OptionError
 from uplift.sensor import Array
-from uplift.wavelengths import METHODS, Setting, choose, judge, set_up
+from uplift.wavelengths import Setting, choose, judge, set_up, weigh
 from uplift.wavelengths.metric import rows
-from uplift.wavelengths.optimise import PAIRS, optimised
+from uplift.wavelengths.optimise import PAIRS, at, optimised
 from uplift.wavelengths.plain import bins, even, prefiltered, uniform
 from uplift.wavelengths.polish import polish, problem
 
@@ -87,11 +88,11 @@ def test_nothing_is_negative_and_powers_look_like_the_lights(spiky: Setting, cou
 def test_beats_the_others_on_materials_that_it_has_not_seen(
     smooth: Setting, spiky: Setting, count: int
 ) -> None:
-    odd, others = np.arange(24) % 2 == 1, [method for method in METHODS if method != "optimised"]
+    odd = np.arange(24) % 2 == 1
     for seen, factor in ((smooth, 1.5), (spiky, 3.0)):
         unseen = seen.only(odd)
         ours = judge(unseen, optimised(seen.only(~odd), count)).mean
-        for method in others:
+        for method in ("meyer", "uniform", "bins"):
             assert factor * ours < choose(unseen, count=count, method=method).errors.mean, method
 
 
@@ -109,3 +110,18 @@ def test_a_single_material_and_more_than_are_fitted(checker: Array) -> None:
     assert many.errors.delta_e.shape == (1, len(shades))
     assert len(shades) > PAIRS
     assert many.errors.mean < 2
+
+
+def test_given_wavelengths_are_kept_and_their_weights_better_than_plain_ones(spiky: Setting) -> None:
+    nm = even(7)
+    found = at(spiky, nm[::-1])
+    np.testing.assert_array_equal(found.wavelengths, nm)
+    assert min(found.to_xyz.min(), found.powers.min()) >= 0
+    ours = judge(spiky, found).mean
+    assert judge(spiky, optimised(spiky, 7)).mean < ours < judge(spiky, bins(spiky, 7)).mean / 1.5
+
+
+@pytest.mark.parametrize("nm", [[], [500, 500], [300, 500], [500, 800], [[500]], [np.nan]])
+def test_refuses_wavelengths_that_are_none(smooth: Setting, nm: list[float]) -> None:
+    with pytest.raises(OptionError, match="; give each once, from 380 to 770 nm"):
+        weigh(smooth, nm)
