@@ -11,6 +11,7 @@ from uplift.report.charts import GREY, INK, STYLE
 from uplift.report.figure import new_figure, plain, write_png
 from uplift.sensor import Array
 from uplift.wavelengths import Choice, Setting
+from uplift.wavelengths.setting import read_off
 
 WIDTH, PANEL, HEAD = 7.2, 1.55, 0.9
 """Inches: of the picture, of a panel's height, of what is above and below."""
@@ -78,6 +79,6 @@ def _draw_weights(axes: Any, setting: Setting, choice: Choice) -> None:
 
 def _tints(setting: Setting, wavelengths: Array) -> Array:
     """(n, 3) how the wavelengths look, as far as sRGB can show."""
-    xyz = np.stack([np.interp(wavelengths, setting.wavelengths, cmf) for cmf in setting.cmfs.T], axis=1)
+    xyz = read_off(wavelengths, setting.wavelengths, setting.cmfs.T).T
     rgb = np.clip(xyz @ TINTS.T, 0, None) + 1e-3
     return np.asarray((rgb / rgb.max(axis=1, keepdims=True)) ** (1 / 2.2))
