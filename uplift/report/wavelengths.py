@@ -54,9 +54,8 @@ def _draw_light(axes: Any, setting: Setting, choice: Choice, light: int) -> None
     scale = inside.sum() / power.sum()
     axes.plot(setting.wavelengths, power * scale, color=GREY, linewidth=0.7)
     axes.vlines(sampling.wavelengths, 0, powers, color=INK, linewidth=1)
-    axes.scatter(
-        sampling.wavelengths, powers, s=26, c=_tints(setting, sampling.wavelengths), edgecolors=INK, zorder=3
-    )
+    tints = _tints(setting, sampling.wavelengths)
+    axes.scatter(sampling.wavelengths, powers, s=26, c=tints, edgecolors=INK, zorder=3, clip_on=False)
     axes.set(ylim=(0, 1.3 * max(powers.max(), np.quantile(power * scale, 0.97))), ylabel="power")
     axes.set_title(sampling.lights[light], loc="left", fontsize=9, color=INK)
     plain(axes)
