@@ -85,7 +85,7 @@ def summary(comparisons: Sequence[Comparison], materials: int) -> str:
         f"The {materials} entries of `atlases/`. *unseen*: fitted to every other entry, judged by the rest; *all*: "
         "fitted to all and judged by all. Ratios of mean ΔE00, 4 to 16 wavelengths: median (least at so many–most); "
         "*best other* is that of Meyer's, uniform and bins. Then the fewest of 4 to 16 wavelengths whose mean is at "
-        "most 1.",
+        "most 1; – where 16 do not reach it.",
         [*head, *METHODS],
         rows,
     )
