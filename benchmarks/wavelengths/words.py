@@ -60,8 +60,8 @@ undefined orders. Three digits of the tables are slips of print or scan, as they
 501.5 for 601.5; A, order 9, weight 0.01056 for 0.01036, and C2, order 7, 0.27843 for 0.27643, as the weights of an
 order add up to the channel's integral. Table 2 repeats 0.71695 of table 1a as 0.71595.
 
-Table 2 states mean ΔE76 of 5.432 and 5.429 for the four wavelengths; ours are 5.448 and 5.551, on another measurement of
-the ColorChecker. There the second row is no gain over the first. This takes as white the light seen through the same
+Table 2 states mean ΔE76 of 5.432 and 5.429 for the four wavelengths; ours are 5.448 and 5.551, on another measurement
+of the ColorChecker. There the second row is no gain over the first. As white this takes the light seen through the same
 wavelengths; against the white of the whole spectrum ΔE76 is 6.19 and 6.29, so the paper must have done the same.
 
 ![Mean ΔE76 over the number of wavelengths, three spaces](wavelengths/figure-6.png)
