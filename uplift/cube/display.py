@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from uplift.overflow import SRGB, Gamut, contained, conversion
 from uplift.sensor import Array
 
-SHOWN = "desaturate-oklab"
-"""What becomes of colours that no screen shows: the hue of a swatch is what one looks for."""
+SHOWN = "desaturate"
+"""What becomes of colours that no screen shows: swatches keep luminance and dominant wavelength."""
 
 
 def decode(codes: Array) -> Array:

@@ -53,7 +53,7 @@ def desaturate(rgb: Array, gamut: Gamut) -> Array:
 
 
 def desaturate_oklab(rgb: Array, gamut: Gamut) -> Array:
-    """The same at constant lightness and hue of Oklab, whose lines of one hue are bent where the eye's are."""
+    """The same at constant lightness and hue of Oklab, on whose lines reds and yellows look more of one hue."""
     lab = oklab(rgb, gamut)
     # A row a response, then a row a component: twice as fast as three numbers side by side.
     grey = np.ascontiguousarray(roots(np.clip(lab[:, :1], 0, 1) * [1, 0, 0]).T)
