@@ -27,21 +27,21 @@ def from_arguments(words: Sequence[str], cube: Cube, *, codes: bool) -> Array:
     return _linear([_parse(parts, "")], cube, codes=codes)
 
 
-def from_table(file: IO[str], name: str, cube: Cube, *, codes: bool, way: str) -> Array:
+def from_table(file: IO[str], name: str, cube: Cube, *, codes: bool, bounded: bool) -> Array:
     """Colours (n, 3) from lines of 'r,g,b' or hex; a first line without numbers is a header.
 
-    Further columns are left alone. Linear numbers lie in [0, 1], or anywhere with another ``way`` than 'error'
-    (`uplift.overflow.CHOICES`). Raises `ColourError` with the line.
+    Further columns are left alone. Linear numbers lie in [0, 1] if they are ``bounded``, else anywhere. Raises
+    `ColourError` with the line.
     """
     colours = {line: _parse(row, f"{name}:{line}: ") for line, row in _rows(file, name)}
     if not colours:
         raise ColourError(f"{name}: no colours in it", remedy="give lines of r,g,b or of hex colours")
     for line, (is_hex, numbers) in colours.items():
-        _check_range(numbers, name, line, codes=is_hex or codes, way=way)
+        _check_range(numbers, name, line, codes=is_hex or codes, bounded=bounded)
     return _linear(list(colours.values()), cube, codes=codes)
 
 
-def _check_range(numbers: tuple[float, ...], name: str, line: int, *, codes: bool, way: str) -> None:
+def _check_range(numbers: tuple[float, ...], name: str, line: int, *, codes: bool, bounded: bool) -> None:
     """As the cube checks them, but with the line."""
     values = "(" + ", ".join(f"{number:g}" for number in numbers) + ")"
     if codes:
@@ -49,7 +49,7 @@ def _check_range(numbers: tuple[float, ...], name: str, line: int, *, codes: boo
             remedy = "leave out --8bit for linear floats"
             raise ColourError(f"{values} lies outside 0 to 255", path=name, line=line, remedy=remedy)
         return
-    if way == "error":
+    if bounded:
         from uplift.sensor import SLACK
 
         if not all(-SLACK <= number <= 1 + SLACK for number in numbers):

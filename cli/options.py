@@ -35,6 +35,11 @@ def out_of_gamut_option(default: str = "error", what: str = "linear RGB") -> Dec
     )
 
 
+def primaries_option(help: str) -> Decorator:
+    """Its value is for `cli.primaries`."""
+    return click.option("--primaries", metavar="SPACE", help=help)
+
+
 def encoding_option(what: str = "colours are") -> Decorator:
     return click.option(
         "--encoding",

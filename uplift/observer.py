@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from uplift.errors import UnknownNameError
+from uplift.overflow import Primaries
 from uplift.sensor import Array, Light, Sensor
 
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
@@ -62,6 +63,12 @@ def sensor(space: str = "sRGB", illuminant: str = "D65", observer: str = DEFAULT
         xyz_to_rgb=matrix / (matrix @ lit.white)[:, None],
         decoding=np.asarray(rgb_space.cctf_decoding(np.arange(256) / 255), dtype=float),
     )
+
+
+def primaries(space: str) -> Primaries:
+    """Primaries and white of an RGB space by name. Raises `UnknownNameError`."""
+    found = _look_up(colour_science().RGB_COLOURSPACES, space, "RGB space")
+    return Primaries.of([*found.primaries.ravel(), *found.whitepoint])
 
 
 def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:

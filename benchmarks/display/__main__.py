@@ -39,8 +39,8 @@ def _ways(found: Chips) -> str:
     words = (
         f"{len(found.hues):,} chips of the Munsell book that lie outside sRGB. *Hue*: ΔE00 from what is shown to the "
         "nearest colour that the renotation gives the chip's hue, as light as what is shown: what a way does to "
-        "hue, as observers saw it. *Lightness*: |ΔL\\*| to the chip, *ΔE00*: to the chip; something must be given up, so "
-        "that neither can be 0. *ns*: CPU time of a colour that is moved, one thread, median (least–most) of "
+        "hue, as observers saw it. *Lightness*: |ΔL\\*| to the chip, *ΔE00*: to the chip; something must be given "
+        "up, so that neither can be 0. *ns*: CPU time of a colour that is moved, one thread, median (least–most) of "
         f"{RUNS} runs over {TIMED:,}."
     )
     return table("What the ways keep", words, ["way", *OFF_HUE, "ns"], rows)
@@ -72,10 +72,10 @@ def _spaces(found: Chips) -> str:
     ]
     words = (
         "The same chips at constant lightness and hue of several spaces, as colour-science has them. *Hollow*: how "
-        "far, in linear RGB, straight lines from grey to the surface of a gamut leave it on the way. Where they do, colours "
-        "that are hardly apart end far apart, and textures tear. CIELUV has none, "
-        "being lines of one dominant wavelength: `desaturate`. Of the others, much alike for hue but for CAM16-UCS, "
-        "Oklab has the shallowest, and needs no more than two matrices and cubes."
+        "far, in linear RGB, straight lines from grey to the surface of a gamut leave it on the way. Where they do, "
+        "colours that are hardly apart end far apart, and textures tear. CIELUV has none, being lines of one dominant "
+        "wavelength: `desaturate`. Of the others, much alike for hue but for CAM16-UCS, Oklab has the shallowest, and "
+        "needs no more than two matrices and cubes."
     )
     return table("Which space", words, ["space", *OFF_HUE, "hollow of sRGB", "of ACEScg"], rows)
 

@@ -9,6 +9,7 @@ import math
 import subprocess
 import sys
 
+import colour
 import matplotlib.image
 import numpy as np
 import pytest
@@ -142,6 +143,38 @@ def test_what_cannot_be_moved_is_named(refuse, table, text, problem):
     assert refuse("query", "nan", "0", "0", "--out-of-gamut", "scale").startswith(
         "linear RGB (nan, 0, 0) is not finite; "
     )
+
+
+P3 = "0.68,0.32 0.265,0.69 0.15,0.06 0.3127,0.329"
+
+
+@pytest.mark.parametrize("name", ["P3-D65", P3])
+def test_colours_of_another_display(ask, name):
+    theirs = colour.matrix_RGB_to_RGB("P3-D65", "sRGB")
+    asked = ask("0.5", "0.6", "0.3", "--primaries", name)["asked"]
+    np.testing.assert_allclose(asked, theirs @ [0.5, 0.6, 0.3], rtol=0, atol=3e-4)
+    green = ask("0", "1", "0", "--primaries", name, "--out-of-gamut", "clip")
+    np.testing.assert_allclose(green["asked"], theirs[:, 1], rtol=0, atol=3e-4)
+    assert green["rgb"] == [0, 1, 0]
+
+
+def test_what_lies_outside_another_display_may_lie_inside(ask, table):
+    """The numbers of a file are judged where they are asked."""
+    asked = ask("--input", table("-0.1,0.5,0.4"), "--primaries", "0.4,0.34 0.31,0.4 0.25,0.2 0.3127,0.329")
+    assert 0 <= min(asked[0]["rgb"]) <= max(asked[0]["rgb"]) <= 1
+
+
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [
+        ("P9", "unknown RGB space 'P9'; did you mean"),
+        ("1,2", "primaries and white are eight numbers, not 2; "),
+        ("1,2,", "primaries '1,2,' are not clear; "),
+        ("1,0 2,0 3,0 0.3,0.3", "(1,0 2,0 3,0 0.3,0.3) are the primaries and white of no display; "),
+    ],
+)
+def test_what_is_no_display_is_refused(refuse, name, problem):
+    assert refuse("query", "0.5", "0.6", "0.3", "--primaries", name).startswith(problem)
 
 
 def test_codes_outside_have_no_colour_to_move(refuse):
