@@ -8,8 +8,8 @@ inside, to do the same again. What leaves after the i-th time is (1 − ρ) (1 �
 
 The thesis, with ρ_i = ρ, prints (1 − ρ)² / (ρ (1 − ρ T² R_g)): its sum starts at 1, and the term with i = 0 was not
 taken away again, so that the numerator lacks ρ T² R_g, the only one that the ground is in; its R is above 1 for
-every small ρ. The right one is Saunderson's correction (10.10) of T² R_g, which is what Kubelka and Munk give for S
-= 0.
+every small ρ. The right one is Saunderson's correction (10.10) of T² R_g, which is what Kubelka and Munk give
+without scattering.
 """
 
 from __future__ import annotations
