@@ -33,6 +33,7 @@ def as_json(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
 def _object(cube: Cube, answer: Answer) -> dict[str, Any]:
     return {
         "rgb": answer.rgb.tolist(),
+        "asked": answer.asked.tolist(),
         "wavelengths": answer.wavelengths.tolist(),
         "reflectance": answer.reflectance.tolist(),
         "round_trip": {"rgb": answer.round_trip.tolist(), "delta_e_2000": answer.delta_e_2000},
@@ -67,8 +68,9 @@ def as_table(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
 
 def _sheet(cube: Cube, answer: Answer) -> None:
     data = cube.data
-    patch = click.style("        ", bg=_codes(cube, answer))
+    patch = click.style("        ", bg=_shown(cube, answer))
     facts = {
+        **_moved(cube, answer),
         "linear RGB": f"{_triple(answer.rgb)}  {_hex(cube, answer)}  {patch}",
         "cell": f"{answer.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in answer.statuses)}",
         "round trip": f"{_triple(answer.round_trip)}  ΔE00 {answer.delta_e_2000:.2g} ({data.sensor.illuminant})",
@@ -85,6 +87,16 @@ def _sheet(cube: Cube, answer: Answer) -> None:
         click.echo(f"{name:<12}{text}")
     click.echo()
     _columns(answer)
+
+
+def _moved(cube: Cube, answer: Answer) -> dict[str, str]:
+    """What was asked, where it lay outside [0, 1]."""
+    from uplift.difference import colours_apart
+
+    if (answer.asked == answer.rgb).all():
+        return {}
+    apart = float(colours_apart(cube.data.sensor, answer.asked, answer.rgb))
+    return {"asked": f"{_triple(answer.asked)}  outside [0, 1], moved by ΔE00 {apart:.2g}"}
 
 
 def _expected(cube: Cube, answer: Answer) -> str:
@@ -112,7 +124,7 @@ def _lines(cube: Cube, answers: Iterable[Answer]) -> None:
     for heading in ("", "hex", "linear RGB", "ΔE00", "atlas entry", "spectrum"):
         table.add_column(heading, no_wrap=True)
     for answer in answers:
-        red, green, blue = _codes(cube, answer)
+        red, green, blue = _shown(cube, answer)
         table.add_row(
             Text("   ", style=f"on rgb({red},{green},{blue})"),
             _hex(cube, answer),
@@ -126,6 +138,14 @@ def _lines(cube: Cube, answers: Iterable[Answer]) -> None:
 
 def _codes(cube: Cube, answer: Answer) -> tuple[int, int, int]:
     red, green, blue = (round(float(code)) for code in cube.encode(answer.rgb))
+    return red, green, blue
+
+
+def _shown(cube: Cube, answer: Answer) -> tuple[int, int, int]:
+    """What the terminal's screen shows it as."""
+    from uplift.cube.display import shown
+
+    red, green, blue = (int(code) for code in shown(answer.rgb, cube.data.sensor))
     return red, green, blue
 
 

@@ -22,6 +22,19 @@ def fill_option() -> Decorator:
     )
 
 
+def out_of_gamut_option(default: str = "error") -> Decorator:
+    """Names of `uplift.overflow.CHOICES`, which is not imported for them."""
+    return click.option(
+        "--out-of-gamut",
+        "way",
+        type=click.Choice(("error", "clip", "scale", "desaturate", "desaturate-oklab")),
+        default=default,
+        show_default=True,
+        help="What becomes of linear RGB outside [0, 1]: refused; clipped; made darker; or less saturated, at constant "
+        "luminance and dominant wavelength, or at constant lightness and hue of Oklab.",
+    )
+
+
 def encoding_option(what: str = "colours are") -> Decorator:
     return click.option(
         "--encoding",

@@ -175,7 +175,7 @@ def test_json_holds_the_whole_answer(ask, cubes):
     row = cube.data.atlas.names.index("red")
     answer = ask("--cube", path, *cube.data.atlas.rgb[row].tolist())
     assert answer.keys() == {
-        *("rgb", "wavelengths", "reflectance", "round_trip", "cell", "status", "realisable"),
+        *("rgb", "asked", "wavelengths", "reflectance", "round_trip", "cell", "status", "realisable"),
         *("entry", "standard_error", "reference"),
     }
     assert answer["standard_error"] == pytest.approx(cube.data.atlas.error[row])
