@@ -12,6 +12,7 @@ from .colours import from_arguments
 if TYPE_CHECKING:
     from uplift.atlas import Spectra
     from uplift.lookup import Cube
+    from uplift.mixing.recipes import Ingredients
     from uplift.sensor import Array
 
 PARTS = re.compile(r"\s*([0-9.+-][0-9.eE+-]*)\s*:(.*)", re.DOTALL)
@@ -83,10 +84,25 @@ class Shelf:
         return self.cube.reflectance(rgb, self.wavelengths)
 
 
+def given(ingredients: list[Ingredient], count: int | None = None) -> Ingredients:
+    """As the library takes them, at the first ``count`` wavelengths."""
+    import numpy as np
+
+    from uplift.mixing.recipes import Ingredients
+
+    return Ingredients(
+        np.stack([one.spectrum[:count] for one in ingredients]),
+        tuple(None if one.on_black is None else one.on_black[:count] for one in ingredients),
+    )
+
+
 def _number(text: str, word: str) -> float:
     from uplift.errors import OptionError
 
     try:
-        return float(text)
-    except ValueError as error:
-        raise OptionError(f"'{word}' has parts that are no number", remedy="write '2:#1f3a93'") from error
+        parts = float(text)
+    except ValueError:
+        parts = 0.0
+    if not 0 < parts < float("inf"):
+        raise OptionError(f"'{word}' has parts that are no number above 0", remedy="write '2:#1f3a93'")
+    return parts

@@ -32,9 +32,7 @@ class Coat:
         return self.surface.seen(self.layer.over(_beneath(self.surface, ground)))
 
 
-def of_dyes(
-    spectra: ArrayLike, parts: ArrayLike, thickness: float = 1.0, surface: Surface = NONE
-) -> Coat:
+def of_dyes(spectra: ArrayLike, parts: ArrayLike, thickness: float = 1.0, surface: Surface = NONE) -> Coat:
     """``parts`` (…, n) of dyes that on white, one unit thick, are seen with reflectances (n, N)."""
     mixture = dyes.mixed(dyes.of_reflectance(spectra, surface), parts)
     through = dyes.transmittance(mixture, thickness=thickness)
@@ -71,9 +69,7 @@ def paint(
 
 def palette(paints: Sequence[Pigment]) -> Pigment:
     """Paints (N,) side by side, as (n, N)."""
-    return Pigment(
-        np.stack([one.absorption for one in paints]), np.stack([one.scattering for one in paints])
-    )
+    return Pigment(np.stack([one.absorption for one in paints]), np.stack([one.scattering for one in paints]))
 
 
 def _beneath(surface: Surface, seen: ArrayLike) -> Array:

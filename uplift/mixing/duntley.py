@@ -21,6 +21,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+
 from uplift.mixing import kubelka_munk
 from uplift.mixing.layers import Layer
 from uplift.mixing.pigments import Pigment

@@ -40,7 +40,7 @@ class Brush:
 
     def over(self, rgb: Floats) -> Floats:
         """Linear RGB (…, 3) of what linear RGB (…, 3) in [0, 1] become under the coat; may leave [0, 1]."""
-        return blockwise(partial(_painted, self), rgb, 3, np.float32, self.threads)
+        return blockwise(partial(_painted, self), rgb.astype(float), 3, np.float32, self.threads)
 
 
 def ready(
@@ -66,7 +66,7 @@ def paint_over(
     source: str | os.PathLike[str],
     target: str | os.PathLike[str],
     *,
-    seen: Callable[[Array], Values] = lambda rgb: rgb,
+    seen: Callable[[Values], Values] = lambda rgb: rgb,
     force: bool = False,
     watch: Watch = lambda done, total: None,
 ) -> Counts:
@@ -90,9 +90,7 @@ def paint_over(
     return counts
 
 
-def _band(
-    brush: Brush, plan: Plan, band: Values, seen: Callable[[Array], Values]
-) -> tuple[Values, Counts]:
+def _band(brush: Brush, plan: Plan, band: Values, seen: Callable[[Values], Values]) -> tuple[Values, Counts]:
     rest = band[..., plan.rest]
     if plan.part.codes:
         rest = rest / np.float32(plan.part.codes)
@@ -103,4 +101,4 @@ def _band(
 
 
 def _painted(brush: Brush, rgb: Array) -> Array:
-    return brush.uplifter.cube.data.sensor.rgb(brush.coat.over(brush.uplifter.sample(rgb)))
+    return brush.uplifter.cube.data.sensor.rgb(brush.coat.over(brush.uplifter.sample(rgb.astype(np.float32))))

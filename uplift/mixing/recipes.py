@@ -1,0 +1,93 @@
+"""From what is mixed to a mixture, by kind: pigments, dyes, filters or lights, in any number of proportions at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.errors import OptionError
+from uplift.mixing import additive, coats, filters, surface
+from uplift.mixing.amounts import amounts
+from uplift.mixing.coats import Coat
+from uplift.mixing.pigments import GRADING
+from uplift.sensor import Array
+
+COATS = ("pigment", "dye")
+KINDS = (*COATS, "filter", "light")
+
+
+@dataclass(frozen=True, eq=False)
+class Ingredients:
+    """``seen`` (n, N): pigments when they hide, dyes a unit thick on white; what filters let through, lights give.
+
+    ``on_black`` (N,) of those pigments that are given a unit thick on white and on black instead.
+    """
+
+    seen: Array
+    on_black: tuple[Array | None, ...]
+
+
+@dataclass(frozen=True)
+class Medium:
+    """``thickness`` in units, None for the kind's own; ``index`` of refraction of the vehicle, 1 for no surface.
+
+    ``grading`` of pigments' scattering, as `pigments` has it.
+    """
+
+    thickness: float | None = None
+    index: float = 1.0
+    grading: float = GRADING
+
+
+def coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium) -> Coat:
+    """A coat of ``parts`` (…, n) of pigments, hiding if no thickness is given, or of dyes, by default a unit thick.
+
+    Raises `OptionError` for other kinds, and `ColourError` for pigments that cannot be.
+    """
+    if kind not in COATS:
+        raise OptionError(f"{kind}s make no coat", remedy=f"use {' or '.join(COATS)}")
+    face = surface.perpendicular(medium.index)
+    if kind == "dye":
+        if any(one is not None for one in ingredients.on_black):
+            raise OptionError("dyes have no colour on black", remedy="give their colour on white alone")
+        thickness = 1.0 if medium.thickness is None else medium.thickness
+        return coats.of_dyes(ingredients.seen, parts, thickness, face)
+    paints = [
+        coats.paint(seen, on_black, surface=face, grading=medium.grading)
+        for seen, on_black in zip(ingredients.seen, ingredients.on_black, strict=True)
+    ]
+    return coats.of_paints(coats.palette(paints), parts, medium.thickness, face)
+
+
+def mixed(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, ground: ArrayLike) -> Array:
+    """Spectra (…, N) of ``parts`` (…, n): coats on a ``ground`` (N,), thickness of filters, strength of lights.
+
+    Raises `OptionError` for unknown kinds and for a medium that the kind has not; what is raised by `coat`.
+    """
+    if kind in COATS:
+        return coat(kind, ingredients, parts, medium).over(ground)
+    if kind not in KINDS:
+        raise OptionError(f"unknown kind of mixture '{kind}'", remedy=f"use one of {', '.join(KINDS)}")
+    if medium != Medium() or any(one is not None for one in ingredients.on_black):
+        raise OptionError(
+            f"{kind}s have no thickness, index, or colour on black",
+            remedy="leave them out: parts of filters are their thickness",
+        )
+    mix = filters.stacked if kind == "filter" else additive.lights
+    return mix(ingredients.seen, parts)
+
+
+def ramp(parts: ArrayLike, steps: int) -> Array:
+    """(steps, n): from all of the first ingredient to all of the last, through those between; ``parts`` (n,).
+
+    (0, 1) where there is only one. Raises `OptionError` for less than two steps.
+    """
+    if steps < 2:
+        raise OptionError(f"a ramp of {steps} steps", remedy="give 2 or more")
+    ends = np.diag(amounts(parts))
+    if len(ends) < 2:
+        return np.empty((0, len(ends)))
+    at, places = np.linspace(0, len(ends) - 1, steps), np.arange(len(ends))
+    return np.stack([np.interp(at, places, column) for column in ends.T], axis=-1)
