@@ -34,11 +34,11 @@ class Criterion:
 CRITERIA = (
     Criterion("mixed with itself: no change", "worst ΔE00", 0.1),
     Criterion("with black: chromaticity kept", "worst Δu'v'", 0.005),
-    Criterion("with black: darker", "least fall of L*, negated", 0.0),
-    Criterion("with white: hue kept", "worst turn about white, degrees", 3.0),
-    Criterion("with white: lighter", "least rise of L*, negated", 0.0),
+    Criterion("with black: darker", "largest change of L*", 0.0),
+    Criterion("with white: hue kept", "worst turn, degrees", 3.0),
+    Criterion("with white: lighter", "largest fall of L*", 0.0),
     Criterion("with its complement: grey", "worst C*ab", 10.0),
-    Criterion("blue and yellow: green", "least max(R, B) − G", -0.01),
+    Criterion("blue and yellow: green", "max(R, B) − G at best", -0.01),
 )
 
 
