@@ -22,7 +22,7 @@ def fill_option() -> Decorator:
     )
 
 
-def out_of_gamut_option(default: str = "error") -> Decorator:
+def out_of_gamut_option(default: str = "error", what: str = "linear RGB") -> Decorator:
     """Names of `uplift.overflow.CHOICES`, which is not imported for them."""
     return click.option(
         "--out-of-gamut",
@@ -30,7 +30,7 @@ def out_of_gamut_option(default: str = "error") -> Decorator:
         type=click.Choice(("error", "clip", "scale", "desaturate", "desaturate-oklab")),
         default=default,
         show_default=True,
-        help="What becomes of linear RGB outside [0, 1]: refused; clipped; made darker; or less saturated, at constant "
+        help=f"What becomes of {what} outside [0, 1]: refused; clipped; made darker; or less saturated, at constant "
         "luminance and dominant wavelength, or at constant lightness and hue of Oklab.",
     )
 

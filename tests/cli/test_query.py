@@ -94,6 +94,60 @@ def test_what_is_no_colour_is_refused(refuse, words, problem):
     assert refuse("query", *words).startswith(f"{problem}; ")
 
 
+@pytest.mark.parametrize(
+    ("way", "rgb"),
+    [
+        ("clip", [1, 0.3, 0]),
+        ("scale", [1, 0.26667, 0]),
+        ("desaturate", [1, 0.3916, 0.1704]),
+        ("desaturate-oklab", [1, 0.4215, 0.1069]),
+    ],
+)
+def test_colours_outside_are_moved_and_told(run, ask, way, rgb):
+    words = ("1.4", "0.3", "-0.1", "--out-of-gamut", way)
+    result = run("query", *words)
+    assert result.stderr == (
+        f"warning: 1 of 1 colours lie outside [0, 1]: moved inside ({way}), a component by up to 0.4\n"
+    )
+    assert result.stdout.startswith("asked       1.400000 0.300000 -0.100000  outside [0, 1], moved by ΔE00 ")
+    answer = ask(*words)
+    np.testing.assert_allclose(answer["rgb"], rgb, rtol=0, atol=1e-3)
+    assert answer["asked"] == [1.4, 0.3, -0.1]
+    assert answer["round_trip"]["delta_e_2000"] < 0.01
+
+
+def test_colours_outside_in_files_are_moved_and_told(run, ask, table):
+    path = table("0.8,0.2,0.1\n1.5,0.5,0.25\n#cc3319\n")
+    words = ("--input", path, "--out-of-gamut", "scale")
+    assert "warning: 1 of 3 colours lie outside" in run("query", *words).stderr
+    answers = ask(*words)
+    np.testing.assert_allclose(
+        [answer["rgb"] for answer in answers], [[0.8, 0.2, 0.1], [1, 1 / 3, 1 / 6], RED]
+    )
+    np.testing.assert_allclose(
+        [answer["asked"] for answer in answers], [[0.8, 0.2, 0.1], [1.5, 0.5, 0.25], RED]
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("0,0,0\n0,0,inf\n", ":2: (0, 0, inf) is not finite"),
+        ("nan,0,0\n", ":1: (nan, 0, 0) is not finite"),
+    ],
+)
+def test_what_cannot_be_moved_is_named(refuse, table, text, problem):
+    path = table(text)
+    assert refuse("query", "--input", path, "--out-of-gamut", "clip").startswith(f"{path}{problem}; ")
+    assert refuse("query", "nan", "0", "0", "--out-of-gamut", "scale").startswith(
+        "linear RGB (nan, 0, 0) is not finite; "
+    )
+
+
+def test_codes_outside_have_no_colour_to_move(refuse):
+    assert refuse("query", "--8bit", "256", "0", "0", "--out-of-gamut", "clip").startswith("8-bit codes run")
+
+
 def test_a_file_and_a_colour_are_too_much(run, table):
     assert "Give one colour" in run("query", "#fff", "--input", table("0,0,0"), code=2).stderr
 

@@ -17,10 +17,10 @@ from uplift.overflow.gamut import Gamut
 from uplift.overflow.oklab import oklab, responses, roots
 from uplift.sensor import Array
 
-NEARLY = 1.5e-3
+NEARLY = 2.5e-3
 """Linear RGB, relative to the largest, by which Oklab's lines may leave a gamut on the way from grey to its edge.
 
-Seen from grey the walls of gamuts have a hollow near blue: lines leave sRGB by 0.0007, ACEScg by 0.0012, and come back.
+Seen from grey the walls of gamuts have a hollow near blue: lines leave sRGB by 0.0008, ACEScg by 0.0021, and come back.
 Were that taken for the end of a line, colours on either side would end far apart.
 """
 HALVINGS = 24

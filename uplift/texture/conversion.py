@@ -51,7 +51,8 @@ def convert(
 ) -> Conversion:
     """Write the texture of an image, atomically.
 
-    Raises `TextureError`, `OutputError`, and `ColourError` for colours that a cube of a scene has no points for.
+    Raises `TextureError`, `OutputError`, `OptionError` for encoded floats that should be moved, and `ColourError` for
+    colours that a cube of a scene has no points for, or that lie outside [0, 1] where that is an error.
     """
     begin = time.perf_counter()
     with opened(source) as image:
@@ -61,7 +62,7 @@ def convert(
                 counts = _write(uplifter, image, planned, writer, watch)
         except ColourError as error:
             raise ColourError(error.problem, path=source, remedy=error.remedy) from error
-    remarks = (*counts.remarks(), *_strange(uplifter.cube, image))
+    remarks = (*counts.remarks(uplifter.out_of_gamut), *_strange(uplifter.cube, image))
     return Conversion(Path(source), Path(target), counts, remarks, time.perf_counter() - begin)
 
 
