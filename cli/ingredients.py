@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from uplift.sensor import Array
 
 PARTS = re.compile(r"\s*([0-9.+-][0-9.eE+-]*)\s*:(.*)", re.DOTALL)
-NAMED = {"white": (1.0, 1.0, 1.0), "black": (0.0, 0.0, 0.0)}
+NAMED = {"white": 1.0, "black": 0.0}
+"""The perfect reflector, and nothing: the same at all wavelengths."""
 REMEDY = "write '#rrggbb', 'r,g,b' in linear RGB, or an entry of the cube's atlas or of --atlas"
 
 
@@ -44,6 +45,8 @@ class Shelf:
 
     def spectrum(self, text: str) -> Array:
         """(N,) of a colour, 'white', 'black' or an entry. Raises `ColourError`."""
+        import numpy as np
+
         from uplift.atlas import Spectra as Atlas
         from uplift.atlas import on_grid
 
@@ -52,6 +55,8 @@ class Shelf:
         if text in self.atlas.names:
             entry = self.atlas.entries[self.atlas.names.index(text)]
             return on_grid(Atlas((entry,)), self.wavelengths)[0]
+        if text in NAMED:
+            return np.full(len(self.wavelengths), NAMED[text])
         return self._uplifted(self._colour(text))
 
     def knows(self, text: str) -> bool:
@@ -69,12 +74,8 @@ class Shelf:
 
     def _colour(self, text: str) -> Array:
         """Linear RGB (3,)."""
-        import numpy as np
-
         from uplift.errors import ColourError
 
-        if text in NAMED:
-            return np.array(NAMED[text])
         try:
             return from_arguments([text], self.cube, codes=False)[0]
         except ColourError as error:
@@ -82,6 +83,16 @@ class Shelf:
 
     def _uplifted(self, rgb: Array) -> Array:
         return self.cube.reflectance(rgb, self.wavelengths)
+
+
+def shelf_of(cube: Cube, atlases: tuple[str, ...], asked: Array) -> Shelf:
+    """Spectra at the cube's wavelengths, which colours are told from, and at those asked for."""
+    import numpy as np
+
+    from uplift.atlas import Spectra, read_atlas
+
+    at = np.concatenate([cube.data.sensor.wavelengths, asked])
+    return Shelf(cube, read_atlas(*atlases) if atlases else Spectra(), at)
 
 
 def given(ingredients: list[Ingredient], count: int | None = None) -> Ingredients:

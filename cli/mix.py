@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING
 
 import click
 
-from uplift.errors import UpliftWarning
-
-from .ingredients import given
-from .mixtures import Mixture, as_json, as_table, draw
+from .ingredients import shelf_of
+from .mixtures import as_json, as_table, draw, mixed_on
 from .options import (
     cube_option,
     encoding_option,
@@ -24,11 +21,8 @@ from .query import QueryCommand
 from .wavelengths import parse_wavelengths
 
 if TYPE_CHECKING:
-    from uplift.lookup import Cube
     from uplift.mixing.recipes import Medium
-    from uplift.sensor import Array
-
-    from .ingredients import Ingredient, Shelf
+    from uplift.mixing.surface import Surface
 
 WRITERS = {"table": as_table, "json": as_json}
 
@@ -59,6 +53,13 @@ WRITERS = {"table": as_table, "json": as_json}
     help="Refraction of the vehicle, 1.5 for oil. [default: no surface]",
 )
 @click.option(
+    "--incident",
+    type=click.Choice(("perpendicular", "diffuse")),
+    default="perpendicular",
+    show_default=True,
+    help="How light falls on the vehicle that --index is of.",
+)
+@click.option(
     "--constants",
     type=click.Choice(("two", "one")),
     default="two",
@@ -70,7 +71,7 @@ WRITERS = {"table": as_table, "json": as_json}
     "--atlas", "atlases", multiple=True, metavar="FILE", help="Measured spectra to name; may be repeated."
 )
 @wavelengths_option()
-@out_of_gamut_option("scale")
+@out_of_gamut_option("scale", "mixtures and pixels")
 @format_option(*WRITERS)
 @click.option("--swatches", metavar="PNG", help="Draw the way from the first to the last.")
 @click.option(
@@ -78,7 +79,7 @@ WRITERS = {"table": as_table, "json": as_json}
 )
 @click.option("--over", metavar="IMAGE", help="Lay the coat over a painting (EXR, PNG, JPEG, TIFF).")
 @click.option("-o", "--output", metavar="EXR", help="With --over: the painted image.")
-@encoding_option("with --over, colours of the image are")
+@encoding_option("the image's colours are")
 @force_option()
 def command(
     words: tuple[str, ...],
@@ -86,6 +87,7 @@ def command(
     thickness: float | None,
     ground: str | None,
     index: float,
+    incident: str,
     constants: str,
     cube_path: str | None,
     atlases: tuple[str, ...],
@@ -117,19 +119,20 @@ def command(
     """
     from uplift.files import check_output
     from uplift.lookup import load
+    from uplift.mixing.surface import INCIDENT
 
     _check_usage(kind, ground, over, output, swatches)
     for path in filter(None, (swatches, output)):
         check_output(path, force=force)
     cube = load(cube_path)
-    medium = _medium(thickness, index, constants)
+    medium = _medium(thickness, INCIDENT[incident](index), constants)
     asked = cube.wavelengths(parse_wavelengths(wavelengths))
-    shelf = _shelf(cube, atlases, asked)
+    shelf = shelf_of(cube, atlases, asked)
     ingredients = shelf.ingredients(words)
     if over is not None and output is not None:
-        paint(brush(cube, kind, ingredients, medium, encoding), over, output, way, force=force)
+        paint(brush(cube, kind, ingredients, medium, encoding, way), over, output, force=force)
         return
-    mixture = _mixture(shelf, kind, ingredients, medium, ground, steps, way)
+    mixture = mixed_on(shelf, kind, ingredients, medium, ground, steps, way)
     if swatches is not None:
         draw(cube, mixture, swatches, force=force)
     WRITERS[style](cube, mixture)
@@ -151,46 +154,7 @@ def _check_usage(
         raise OutputError("painted images are OpenEXR", path=output, remedy="name the file .exr")
 
 
-def _medium(thickness: float | None, index: float, constants: str) -> Medium:
+def _medium(thickness: float | None, surface: Surface, constants: str) -> Medium:
     from uplift.mixing.recipes import Medium
 
-    return Medium(thickness, index) if constants == "two" else Medium(thickness, index, grading=0.0)
-
-
-def _shelf(cube: Cube, atlases: tuple[str, ...], asked: Array) -> Shelf:
-    """Spectra at the cube's wavelengths, which colours are told from, and at those asked for."""
-    import numpy as np
-
-    from uplift.atlas import Spectra, read_atlas
-
-    from .ingredients import Shelf
-
-    at = np.concatenate([cube.data.sensor.wavelengths, asked])
-    return Shelf(cube, read_atlas(*atlases) if atlases else Spectra(), at)
-
-
-def _mixture(
-    shelf: Shelf,
-    kind: str,
-    ingredients: list[Ingredient],
-    medium: Medium,
-    ground: str | None,
-    steps: int,
-    way: str,
-) -> Mixture:
-    import numpy as np
-
-    from uplift.mixing.recipes import mixed, ramp
-    from uplift.overflow import contained
-
-    sensor = shelf.cube.data.sensor
-    parts = np.array([one.parts for one in ingredients])
-    amounts = np.concatenate([parts[None], ramp(parts, steps)])
-    spectra = mixed(kind, given(ingredients), amounts, medium, shelf.spectrum(ground or "white"))
-    count = len(sensor.wavelengths)
-    moved = contained(sensor.rgb(spectra[:, :count]), sensor, way)
-    if moved.outside[0]:
-        warnings.warn(f"the mixture lies outside [0, 1]: moved inside ({way})", UpliftWarning, stacklevel=1)
-    return Mixture(
-        kind, tuple(ingredients), amounts, shelf.wavelengths[count:], spectra[0, count:], moved.rgb
-    )
+    return Medium(thickness, surface) if constants == "two" else Medium(thickness, surface, grading=0.0)

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import click
 
+from uplift.errors import UpliftWarning
+
 from .answers import columns, hex_code, shown_codes, sparkline, triple
+from .ingredients import given
 from .output import json_text
 
 if TYPE_CHECKING:
     from uplift.lookup import Cube
+    from uplift.mixing.recipes import Medium
     from uplift.sensor import Array
 
-    from .ingredients import Ingredient
+    from .ingredients import Ingredient, Shelf
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +44,34 @@ class Mixture:
     def told(self) -> str:
         """'2 of blue, 1 of yellow'."""
         return ", ".join(f"{one.parts:g} of {one.name}" for one in self.ingredients)
+
+
+def mixed_on(
+    shelf: Shelf,
+    kind: str,
+    ingredients: list[Ingredient],
+    medium: Medium,
+    ground: str | None,
+    steps: int,
+    way: str,
+) -> Mixture:
+    """The mixture, and ``steps`` on the way through its ingredients; a mixture that was moved inside is said."""
+    import numpy as np
+
+    from uplift.mixing.recipes import mixed, ramp
+    from uplift.overflow import contained
+
+    sensor = shelf.cube.data.sensor
+    parts = np.array([one.parts for one in ingredients])
+    amounts = np.concatenate([parts[None], ramp(parts, steps)])
+    spectra = mixed(kind, given(ingredients), amounts, medium, shelf.spectrum(ground or "white"))
+    count = len(sensor.wavelengths)
+    moved = contained(sensor.rgb(spectra[:, :count]), sensor, way)
+    if moved.outside[0]:
+        warnings.warn(f"the mixture lies outside [0, 1]: moved inside ({way})", UpliftWarning, stacklevel=1)
+    return Mixture(
+        kind, tuple(ingredients), amounts, shelf.wavelengths[count:], spectra[0, count:], moved.rgb
+    )
 
 
 def as_json(cube: Cube, mixture: Mixture) -> None:

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from .ingredients import Ingredient
 
 
-def brush(cube: Cube, kind: str, ingredients: list[Ingredient], medium: Medium, encoding: str) -> Brush:
+def brush(
+    cube: Cube, kind: str, ingredients: list[Ingredient], medium: Medium, encoding: str, way: str
+) -> Brush:
     """Made ready to paint with, at the wavelengths of the cube's sensor."""
     keep_compiled()
     from dataclasses import asdict
@@ -29,30 +31,18 @@ def brush(cube: Cube, kind: str, ingredients: list[Ingredient], medium: Medium, 
     from uplift.mixing.painting import ready
     from uplift.mixing.recipes import coat
 
-    made = coat(
-        kind,
-        given(ingredients, len(cube.data.sensor.wavelengths)),
-        [one.parts for one in ingredients],
-        medium,
-    )
+    count = len(cube.data.sensor.wavelengths)
+    made = coat(kind, given(ingredients, count), [one.parts for one in ingredients], medium)
     recipe = {"kind": kind, "of": [[one.parts, one.name] for one in ingredients], **asdict(medium)}
-    return ready(cube, made, recipe, encoding=encoding)
+    return ready(cube, made, recipe, encoding=encoding, out_of_gamut=way)
 
 
-def paint(brush: Brush, over: str, output: str, way: str, *, force: bool) -> None:
+def paint(brush: Brush, over: str, output: str, *, force: bool) -> None:
+    """Paint, and say what should be said."""
     from uplift.mixing.painting import paint_over
-    from uplift.overflow import contained
 
-    sensor = brush.uplifter.cube.data.sensor
     with counting("rows") as watch:
-        counts = paint_over(
-            brush,
-            over,
-            output,
-            seen=lambda rgb: contained(rgb, sensor, way).rgb,
-            force=force,
-            watch=watch,
-        )
-    for remark in counts.remarks():
+        painted = paint_over(brush, over, output, force=force, watch=watch)
+    for remark in painted.remarks:
         warnings.warn(f"{over}: {remark}", UpliftWarning, stacklevel=1)
-    click.echo(f"{output}: {counts.pixels:,} pixels painted over")
+    click.echo(f"{output}: {painted.counts.pixels:,} pixels painted over")

@@ -32,7 +32,9 @@ def test_blue_and_yellow_are_green(mixed):
 
 
 @pytest.mark.parametrize("kind", ["--pigment", "--dye"])
-@pytest.mark.parametrize("options", [(), ("--index", "1.3"), ("--constants", "one")])
+@pytest.mark.parametrize(
+    "options", [(), ("--index", "1.3"), ("--index", "1.2", "--incident", "diffuse"), ("--constants", "one")]
+)
 def test_a_colour_mixed_with_itself_is_itself(mixed, kind, options):
     assert mixed(kind, "2:#c8a070", "1:#c8a070", *options)["hex"] == "#c8a070"
 

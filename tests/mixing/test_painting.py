@@ -8,7 +8,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from uplift.errors import OptionError, OutputError, TextureError
+from uplift.errors import ColourError, OptionError, OutputError, TextureError
 from uplift.mixing import coats, painting
 
 from ..texture.conftest import channels, held, planes, write_exr
@@ -43,8 +43,8 @@ def test_pixels_are_uplifted_painted_and_seen(small_cube, glaze, brush, image):
 def test_an_exr_comes_out_with_all_its_channels(brush, image, tmp_path):
     alpha = np.linspace(0, 1, 30, dtype=np.float16).reshape(6, 5)
     write_exr(tmp_path / "in.exr", {**planes(image), "A": alpha})
-    counts = painting.paint_over(brush, tmp_path / "in.exr", tmp_path / "out.exr")
-    assert (counts.pixels, counts.outside) == (30, 0)
+    painted = painting.paint_over(brush, tmp_path / "in.exr", tmp_path / "out.exr")
+    assert (painted.counts.pixels, painted.moved, painted.remarks) == (30, 0, ())
     np.testing.assert_array_equal(held(tmp_path / "out.exr", "RGB"), brush.over(image))
     found = channels(tmp_path / "out.exr")
     assert found["R"].dtype == np.float32
@@ -75,15 +75,31 @@ def test_no_paint_leaves_the_painting(small_cube, image):
     np.testing.assert_allclose(painting.ready(small_cube, none, threads=1).over(image), image, atol=1e-5)
 
 
-def test_what_is_seen_may_be_moved_before_it_is_written(brush, image, tmp_path):
-    write_exr(tmp_path / "in.exr", planes(image))
-    painting.paint_over(brush, tmp_path / "in.exr", tmp_path / "out.exr", seen=lambda rgb: rgb / 2)
-    np.testing.assert_array_equal(held(tmp_path / "out.exr", "RGB"), brush.over(image) / 2)
+def test_pixels_outside_are_moved_before_and_after_and_that_is_said(small_cube, image, tmp_path):
+    """A dye is as saturated as it is thick."""
+    seen = small_cube.reflectance([[0.9, 0.1, 0.02]])
+    dye = coats.of_dyes(seen, [1], 3.0)
+    write_exr(tmp_path / "in.exr", planes(image + 0.5))
+    brush = painting.ready(small_cube, dye, threads=1)
+    painted = painting.paint_over(brush, tmp_path / "in.exr", tmp_path / "out.exr")
+    assert 0 < painted.counts.outside < 30
+    assert painted.moved > 0
+    first, second = painted.remarks
+    assert f"{painted.counts.outside} of 30 pixels lie outside [0, 1]: scaled" in first
+    assert second == f"{painted.moved} painted pixels lie outside [0, 1]: scaled"
+    found = held(tmp_path / "out.exr", "RGB")
+    assert ((found >= 0) & (found <= 1)).all()
+    strict = painting.ready(small_cube, dye, out_of_gamut="error", threads=1)
+    with pytest.raises(ColourError, match=r"in\.exr: linear RGB"):
+        painting.paint_over(strict, tmp_path / "in.exr", tmp_path / "strict.exr")
+    assert not (tmp_path / "strict.exr").exists()
 
 
 def test_bad_input(small_cube, glaze, brush, image, tmp_path):
     with pytest.raises(OptionError, match="encoding"):
         painting.ready(small_cube, glaze, encoding="srgb")
+    with pytest.raises(OptionError, match="out of gamut"):
+        painting.ready(small_cube, glaze, out_of_gamut="away")
     with pytest.raises(TextureError, match="no such file"):
         painting.paint_over(brush, tmp_path / "none.exr", tmp_path / "out.exr")
     write_exr(tmp_path / "in.exr", planes(image))

@@ -10,6 +10,7 @@ from uplift.mixing import coats, kubelka_munk, recipes, surface
 from uplift.mixing.recipes import Ingredients, Medium, coat, mixed, ramp
 
 WHITE = np.ones(5)
+OIL, OVERCAST = surface.perpendicular(1.5), surface.overcast(1.5)
 
 
 @pytest.fixture
@@ -19,32 +20,33 @@ def two(rng):
 
 
 @pytest.mark.parametrize("kind", recipes.COATS)
-@pytest.mark.parametrize("medium", [Medium(), Medium(index=1.5), Medium(grading=0)])
+@pytest.mark.parametrize(
+    "medium", [Medium(), Medium(surface=OIL), Medium(surface=OVERCAST), Medium(grading=0)]
+)
 def test_one_colour_alone_is_itself(two, kind, medium):
     for parts, expected in (([1, 0], two.seen[0]), ([0, 3], two.seen[1])):
         np.testing.assert_allclose(mixed(kind, two, parts, medium, WHITE), expected, rtol=1e-9)
 
 
 @pytest.mark.parametrize("kind", recipes.COATS)
-@pytest.mark.parametrize("index", [1.0, 1.5])
-def test_no_thickness_leaves_the_ground(two, rng, kind, index):
+@pytest.mark.parametrize("face", [surface.NONE, OIL, OVERCAST])
+def test_no_thickness_leaves_the_ground(two, rng, kind, face):
     ground = rng.uniform(0.1, 1, 5)
-    np.testing.assert_allclose(mixed(kind, two, [1, 1], Medium(0.0, index), ground), ground)
+    np.testing.assert_allclose(mixed(kind, two, [1, 1], Medium(0.0, face), ground), ground)
 
 
-@pytest.mark.parametrize("index", [1.0, 1.5])
-def test_thick_paint_hides_any_ground(two, index):
-    hiding = mixed("pigment", two, [1, 1], Medium(index=index), 0.0)
-    np.testing.assert_allclose(mixed("pigment", two, [1, 1], Medium(1e6, index), WHITE), hiding)
+@pytest.mark.parametrize("face", [surface.NONE, OIL, OVERCAST])
+def test_thick_paint_hides_any_ground(two, face):
+    hiding = mixed("pigment", two, [1, 1], Medium(surface=face), 0.0)
+    np.testing.assert_allclose(mixed("pigment", two, [1, 1], Medium(1e6, face), WHITE), hiding)
 
 
 def test_paint_seen_on_white_and_black_is_seen_so_again(rng):
     layer = kubelka_munk.layer(coats.paint(rng.uniform(0.2, 0.8, 5)), 1.0)
-    face = surface.perpendicular(1.5)
-    white, black = face.seen(layer.over(1.0)), face.seen(layer.over(0.0))
+    white, black = OIL.seen(layer.over(1.0)), OIL.seen(layer.over(0.0))
     given = Ingredients(white[None], (black,))
     for ground, expected in ((1.0, white), (0.04, black)):
-        found = mixed("pigment", given, [2], Medium(1.0, 1.5), ground)
+        found = mixed("pigment", given, [2], Medium(1.0, OIL), ground)
         np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 
@@ -73,12 +75,11 @@ def test_ramps():
     [
         ("paint", Medium(), None, "unknown kind of mixture 'paint'"),
         ("filter", Medium(2.0), None, "have no thickness"),
-        ("light", Medium(index=1.5), None, "have no thickness"),
+        ("light", Medium(surface=OIL), None, "have no thickness"),
         ("light", Medium(), WHITE, "colour on black"),
         ("dye", Medium(), WHITE, "dyes have no colour on black"),
         ("dye", Medium(-1.0), None, "thickness -1.0"),
         ("pigment", Medium(float("inf")), None, "thickness inf"),
-        ("pigment", Medium(index=0.5), None, "index of refraction"),
         ("pigment", Medium(grading=-1), None, "grading -1"),
     ],
 )

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.errors import OptionError
-from uplift.mixing import additive, coats, filters, surface
+from uplift.mixing import additive, coats, filters
 from uplift.mixing.amounts import amounts
 from uplift.mixing.coats import Coat
 from uplift.mixing.pigments import GRADING
+from uplift.mixing.surface import NONE, Surface
 from uplift.sensor import Array
 
 COATS = ("pigment", "dye")
@@ -31,13 +32,13 @@ class Ingredients:
 
 @dataclass(frozen=True)
 class Medium:
-    """``thickness`` in units, None for the kind's own; ``index`` of refraction of the vehicle, 1 for no surface.
+    """``thickness`` in units, None for the kind's own; the vehicle's ``surface``, that of air for none.
 
     ``grading`` of pigments' scattering, as `pigments` has it.
     """
 
     thickness: float | None = None
-    index: float = 1.0
+    surface: Surface = NONE
     grading: float = GRADING
 
 
@@ -48,17 +49,16 @@ def coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium) 
     """
     if kind not in COATS:
         raise OptionError(f"{kind}s make no coat", remedy=f"use {' or '.join(COATS)}")
-    face = surface.perpendicular(medium.index)
     if kind == "dye":
         if any(one is not None for one in ingredients.on_black):
             raise OptionError("dyes have no colour on black", remedy="give their colour on white alone")
         thickness = 1.0 if medium.thickness is None else medium.thickness
-        return coats.of_dyes(ingredients.seen, parts, thickness, face)
+        return coats.of_dyes(ingredients.seen, parts, thickness, medium.surface)
     paints = [
-        coats.paint(seen, on_black, surface=face, grading=medium.grading)
+        coats.paint(seen, on_black, surface=medium.surface, grading=medium.grading)
         for seen, on_black in zip(ingredients.seen, ingredients.on_black, strict=True)
     ]
-    return coats.of_paints(coats.palette(paints), parts, medium.thickness, face)
+    return coats.of_paints(coats.palette(paints), parts, medium.thickness, medium.surface)
 
 
 def mixed(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, ground: ArrayLike) -> Array:
@@ -72,7 +72,7 @@ def mixed(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium,
         raise OptionError(f"unknown kind of mixture '{kind}'", remedy=f"use one of {', '.join(KINDS)}")
     if medium != Medium() or any(one is not None for one in ingredients.on_black):
         raise OptionError(
-            f"{kind}s have no thickness, index, or colour on black",
+            f"{kind}s have no thickness, surface, or colour on black",
             remedy="leave them out: parts of filters are their thickness",
         )
     mix = filters.stacked if kind == "filter" else additive.lights

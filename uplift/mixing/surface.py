@@ -86,6 +86,10 @@ def overcast(index: float) -> Surface:
     return Surface(diffuse(index), inside(index))
 
 
+INCIDENT = {"perpendicular": perpendicular, "diffuse": overcast}
+"""How light falls, by name."""
+
+
 def _index(index: float) -> float:
     if not (np.isfinite(index) and index >= 1):
         raise OptionError(f"index of refraction {index}", remedy="give 1 or more: 1.5 is linseed oil")

@@ -62,11 +62,11 @@ def convert(
                 counts = _write(uplifter, image, planned, writer, watch)
         except ColourError as error:
             raise ColourError(error.problem, path=source, remedy=error.remedy) from error
-    remarks = (*counts.remarks(uplifter.out_of_gamut), *_strange(uplifter.cube, image))
+    remarks = (*counts.remarks(uplifter.out_of_gamut), *other_primaries(uplifter.cube, image))
     return Conversion(Path(source), Path(target), counts, remarks, time.perf_counter() - begin)
 
 
-def _strange(cube: Cube, image: Image) -> tuple[str, ...]:
+def other_primaries(cube: Cube, image: Image) -> tuple[str, ...]:
     """A remark on an image that says it is of another space."""
     own = np.array(exr.chromaticities(cube.data.sensor))
     told = [part.chromaticities for part in image.parts if part.chromaticities is not None]
