@@ -24,6 +24,7 @@ PAIRS = {
 """Names of entries, or codes."""
 DRAWN = (
     "pigments",
+    "pigments in oil",
     "pigments, one constant",
     "dyes",
     "average",

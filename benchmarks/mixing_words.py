@@ -51,24 +51,25 @@ painting.paint_over(brush, "painting.exr", "painted.exr")
 
 ## Ramps
 
-Blue `#005fa0` and yellow `#ffd200`, by Kubelka and Munk with S = √R, with S alike everywhere, as dyes, and by the
+Blue `#005fa0` and yellow `#ffd200`, by Kubelka and Munk with S = √R, the same in oil (`--index 1.5`: what the surface
+throws back is no part of the paint, and without it greens are purer), with S alike everywhere, as dyes, and by the
 heuristics. The mean of RGB goes through grey and brown; spectra leave what both reflect, which is green. Filters,
 phosphors and products have the shares for their thickness here, so that ramps begin and end with their colours.
 
-![Seven ramps from blue to yellow](mixing/blue-yellow.png)
+![Eight ramps from blue to yellow](mixing/blue-yellow.png)
 
 Blue and yellow of the ColorChecker: its blue, like ultramarine, reflects little green, and gives a dull one.
 
-![Seven ramps from the ColorChecker's blue to its yellow](mixing/atlas-blue-yellow.png)
+![Eight ramps from the ColorChecker's blue to its yellow](mixing/atlas-blue-yellow.png)
 
 Red into white: a little white leaves paint strong; in means of RGB, the thesis's heuristic included, it fades at
 once.
 
-![Seven ramps from red to white](mixing/red-white.png)
+![Eight ramps from red to white](mixing/red-white.png)
 
 Red and green, which painters call complements:
 
-![Seven ramps from red to green](mixing/red-green.png)
+![Eight ramps from red to green](mixing/red-green.png)
 
 Coats of doubling thickness, on white and on black, and dyes as thick:
 

@@ -12,6 +12,7 @@ from uplift.mixing.mixers import Mixer, mixers
 SELF, CHROMATICITY, DARKER, HUE, LIGHTER, GREY, GREEN = range(len(CRITERIA))
 OBEYED = {
     "pigments": {SELF, DARKER, LIGHTER, GREEN},
+    "pigments in oil": {SELF, DARKER, LIGHTER},
     "pigments, one constant": {SELF, DARKER, LIGHTER, GREEN},
     "pigments, Amy": {DARKER, GREEN},
     "dyes": {SELF, DARKER, LIGHTER, GREEN},

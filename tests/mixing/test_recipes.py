@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.errors import ColourError, OptionError
+from uplift.errors import ColourError, OptionError, UpliftWarning
 from uplift.mixing import coats, kubelka_munk, recipes, surface
 from uplift.mixing.recipes import Ingredients, Medium, coat, mixed, ramp
 
@@ -87,6 +87,13 @@ def test_what_makes_no_sense_is_refused(two, kind, medium, on_black, problem):
     given = Ingredients(two.seen, (on_black, None))
     with pytest.raises(OptionError, match=problem):
         mixed(kind, given, [1, 1], medium, WHITE)
+
+
+def test_what_is_darker_than_its_surface_is_told_of(two):
+    dark = Ingredients(np.stack([two.seen[0], np.full(5, 0.03)]), (None, None))
+    with pytest.warns(UpliftWarning, match="1 of 2 colours are in part darker than the surface"):
+        found = mixed("pigment", dark, [0, 1], Medium(surface=OIL), WHITE)
+    np.testing.assert_allclose(found, 0.04, atol=1e-4)
 
 
 def test_lights_make_no_coat(two):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.lookup import Cube
-from uplift.mixing import additive, amy, dyes, filters, kubelka_munk, phosphors, pigments, ryb
+from uplift.mixing import additive, amy, dyes, filters, kubelka_munk, phosphors, pigments, ryb, surface
 from uplift.sensor import Array
 
 Mix = Callable[[Array, Array], Array]
@@ -24,10 +24,17 @@ class Mixer:
     mix: Mix
 
 
+OIL = surface.perpendicular(1.5)
 SPECTRAL: dict[str, tuple[str, Mix]] = {
     "pigments": (
         "Kubelka–Munk, S = √R",
         lambda spectra, parts: kubelka_munk.hiding(pigments.of_hiding(spectra).mixed(parts)),
+    ),
+    "pigments in oil": (
+        "Kubelka–Munk, S = √R, in oil (index 1.5)",
+        lambda spectra, parts: OIL.seen(
+            kubelka_munk.hiding(pigments.of_hiding(np.clip(OIL.beneath(spectra), 0, 1)).mixed(parts))
+        ),
     ),
     "pigments, one constant": (
         "Kubelka–Munk, S = 1",

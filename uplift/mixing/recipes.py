@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.errors import OptionError
+from uplift.errors import OptionError, UpliftWarning
 from uplift.mixing import additive, coats, filters
 from uplift.mixing.amounts import amounts
 from uplift.mixing.coats import Coat
 from uplift.mixing.pigments import GRADING
 from uplift.mixing.surface import NONE, Surface
-from uplift.sensor import Array
+from uplift.sensor import SLACK, Array
 
 COATS = ("pigment", "dye")
 KINDS = (*COATS, "filter", "light")
@@ -45,10 +46,12 @@ class Medium:
 def coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium) -> Coat:
     """A coat of ``parts`` (…, n) of pigments, hiding if no thickness is given, or of dyes, by default a unit thick.
 
-    Raises `OptionError` for other kinds, and `ColourError` for pigments that cannot be.
+    An `UpliftWarning` tells of colours darker than the surface. Raises `OptionError` for other kinds, and `ColourError`
+    for pigments that cannot be.
     """
     if kind not in COATS:
         raise OptionError(f"{kind}s make no coat", remedy=f"use {' or '.join(COATS)}")
+    _warn_of_dark(ingredients, medium.surface)
     if kind == "dye":
         if any(one is not None for one in ingredients.on_black):
             raise OptionError("dyes have no colour on black", remedy="give their colour on white alone")
@@ -59,6 +62,17 @@ def coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium) 
         for seen, on_black in zip(ingredients.seen, ingredients.on_black, strict=True)
     ]
     return coats.of_paints(coats.palette(paints), parts, medium.thickness, medium.surface)
+
+
+def _warn_of_dark(ingredients: Ingredients, surface: Surface) -> None:
+    """What is seen with less than the surface throws back cannot be beneath it."""
+    given = [*ingredients.seen, *(one for one in ingredients.on_black if one is not None)]
+    dark = sum(bool((surface.beneath(one) < -SLACK).any()) for one in given)
+    if dark:
+        told = (
+            f"{dark} of {len(given)} colours are in part darker than the surface alone: taken for black there"
+        )
+        warnings.warn(told, UpliftWarning, stacklevel=3)
 
 
 def mixed(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, ground: ArrayLike) -> Array:
