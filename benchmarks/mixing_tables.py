@@ -57,7 +57,7 @@ def gradings(cube: Cube) -> str:
     words = (
         "Of paints with known K and S, in three bands, the reflectance of all pairs at 1:3, 1:1 and 3:1 is "
         "worked out by Kubelka and Munk with both constants, and again from the paints' reflectances alone "
-        "with S = R^p. The sets are twelve watercolours (Curtis et al. 1997, figure 5) and fourteen "
+        "with S = R^p. The sets are twelve watercolours (Curtis et al. 1997, as painty has them) and fourteen "
         "measured paints (T. Lindemeier's painty, 2020): tests/reference/paints_rgb.csv. They are best at p"
         " = 0.9 and 0.75; S alike everywhere, the single-constant theory, errs two to three times as much. "
         "The last column is what becomes of criterion 5 with blue and yellow that are measured: above p = ½"
