@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes pictures display
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart mixing scenes pictures display
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -65,6 +65,10 @@ textures: pictures
 # What becomes of colours that no screen shows: docs/display.md and its picture.
 display: $(INSTALLED)
 	$(BIN)/python -m benchmarks.display
+
+# Mixtures: ramps, who breaks which criterion, times: docs/mixing.md.
+mixing: $(INSTALLED)
+	$(BIN)/python -m benchmarks.mixing
 
 # What cubes for a scene save: docs/scenes.md.
 scenes: pictures

@@ -16,6 +16,8 @@ from uplift.overflow import Primaries
 from uplift.sensor import Array, Light, Sensor
 
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
+CRT = "Typical CRT Brainard 1997"
+"""A cathode-ray tube's phosphors, as D. H. Brainard measured them."""
 START, END, STEP = 380.0, 780.0, 5.0
 """Where every table of the CIE has data (nm)."""
 
@@ -123,6 +125,13 @@ def matching_functions(
 def power(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
     """(N,) relative spectral power from ``start`` to ``end`` nm. Raises `UnknownNameError`."""
     return _samples(colour_science().SDS_ILLUMINANTS, illuminant, "illuminant", (start, end, step))
+
+
+def display_primaries(
+    display: str = CRT, start: float = START, end: float = END, step: float = STEP
+) -> Array:
+    """(N, 3) relative power of a display's red, green and blue. Raises `UnknownNameError`."""
+    return _samples(colour_science().MSDS_DISPLAY_PRIMARIES, display, "display", (start, end, step))
 
 
 def _samples(
