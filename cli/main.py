@@ -18,6 +18,7 @@ COMMANDS = (
     "texture",
     "chart",
     "check",
+    "compare",
     "report",
     "info",
     "slices",

@@ -1,0 +1,59 @@
+"""Comparisons of representations as tables of the terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .output import console
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from uplift.comparison.filters import Tuned
+    from uplift.comparison.measure import Comparison
+    from uplift.comparison.statistics import Statistics
+
+
+def print_comparison(found: Comparison) -> None:
+    """A table for each set of lights, ranked."""
+    from uplift.chart.numbers import time_told
+    from uplift.comparison.statistics import HEADINGS
+
+    for name, title in found.sets.items():
+        table = _table(
+            f"ΔE00 under {title}", ("representation",), (*HEADINGS, "floats", "of a light", "product")
+        )
+        for row in found.of(name):
+            cost = (f"{row.floats:.1f}", f"{row.light_floats:.1f}", time_told(row.ns.median))
+            table.add_row(row.name, *_told(row.statistics), *cost)
+        console().print(table)
+
+
+def print_filters(tuned: tuple[Tuned, ...]) -> None:
+    """The best filter of each kind."""
+    from uplift.comparison.statistics import HEADINGS
+
+    table = _table(
+        "point sampling after the best low-pass filter of each kind",
+        ("lights", "samples", "filter", "parameters"),
+        HEADINGS,
+    )
+    for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
+        table.add_row(one.lights, str(one.count), one.kind, one.told, *_told(one.statistics))
+    console().print(table)
+
+
+def _table(caption: str, left: tuple[str, ...], right: tuple[str, ...]) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, caption=caption)
+    for heading in left:
+        table.add_column(heading, no_wrap=True)
+    for heading in right:
+        table.add_column(heading, justify="right", no_wrap=True)
+    return table
+
+
+def _told(found: Statistics) -> list[str]:
+    return [f"{value:.3f}" for value in found]
