@@ -84,7 +84,9 @@ def command(
     if folder is not None:
         _write(found, tuned, folder, force=force)
     if target is not None:
-        _advise(found, target)
+        from .compare_tables import print_advice
+
+        print_advice(found, target)
         return
     PRINTERS[style](found, tuned)
 
@@ -138,23 +140,6 @@ def _write(found: Comparison, tuned: tuple[Tuned, ...], folder: Path, *, force: 
     }
     write_text(page(found, pictures, tuned), html, force=force)
     click.echo(f"{folder}: {', '.join((*FILES, FILTERS) if tuned else FILES)}", err=True)
-
-
-def _advise(found: Comparison, target: float) -> None:
-    from uplift.chart.numbers import error_told, time_told
-    from uplift.comparison.advice import cheapest, nearest
-
-    for name, title in found.sets.items():
-        row = cheapest(found, name, target)
-        if row is None:
-            best = nearest(found, name)
-            told = f"none; the nearest, {best.name}, has {error_told(best.statistics.q97_5)}"
-        else:
-            told = (
-                f"{row.name} ({row.family}): 97.5 % within {error_told(row.statistics.q97_5)}, {row.floats:.4g} floats "
-                f"a surface, {row.light_floats:.4g} a light, {time_told(row.ns.median)} a product"
-            )
-        click.echo(f"{title}: {told}")
 
 
 def _print_table(found: Comparison, tuned: tuple[Tuned, ...]) -> None:

@@ -1,8 +1,10 @@
-"""Comparisons of representations as tables of the terminal."""
+"""Comparisons of representations as the terminal shows them: tables, and advice."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+
+import click
 
 from .output import console
 
@@ -41,6 +43,24 @@ def print_filters(tuned: tuple[Tuned, ...]) -> None:
     for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
         table.add_row(one.lights, str(one.count), one.kind, one.told, *_told(one.statistics))
     console().print(table)
+
+
+def print_advice(found: Comparison, target: float) -> None:
+    """The cheapest representation under each set of lights."""
+    from uplift.chart.numbers import error_told, time_told
+    from uplift.comparison.advice import cheapest, nearest
+
+    for name, title in found.sets.items():
+        row = cheapest(found, name, target)
+        if row is None:
+            best = nearest(found, name)
+            told = f"none; the nearest, {best.name}, has {error_told(best.statistics.q97_5)}"
+        else:
+            told = (
+                f"{row.name} ({row.family}): 97.5 % within {error_told(row.statistics.q97_5)}, {row.floats:.4g} floats "
+                f"a surface, {row.light_floats:.4g} a light, {time_told(row.ns.median)} a product"
+            )
+        click.echo(f"{title}: {told}")
 
 
 def _table(caption: str, left: tuple[str, ...], right: tuple[str, ...]) -> Table:

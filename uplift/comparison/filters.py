@@ -11,14 +11,13 @@ from itertools import product
 
 import numpy as np
 
-from uplift.comparison.measure import Watch, errors
+from uplift.comparison.measure import Watch, judge
 from uplift.comparison.scene import LightSet, Scene
-from uplift.comparison.statistics import Statistics, statistics
+from uplift.comparison.statistics import Statistics
 from uplift.difference import delta_e_2000
 from uplift.representations.dense import TABLE
 from uplift.representations.filters import FINE, KINDS, Filter, candidates, conversion
 from uplift.representations.point import filtered, point
-from uplift.representations.samples import Samples
 from uplift.sensor import Array
 
 COUNTS = (4, 8, 16)
@@ -57,22 +56,17 @@ def tune(
     The search tries ``every`` so many of the choices for each parameter.
     """
     found = [
-        Tuned(NONE, count, part.name, None, _statistics(point(count), scene, part))
+        Tuned(NONE, count, part.name, None, judge(point(count), scene, part))
         for count in counts
         for part in scene.sets
     ]
     tasks = list(product(kinds, counts))
     for done, (kind, count) in enumerate(tasks, 1):
         for part, low_pass in zip(scene.sets, _best(candidates(kind, every), count, scene), strict=True):
-            best = _statistics(filtered(count, low_pass), scene, part)
+            best = judge(filtered(count, low_pass), scene, part)
             found.append(Tuned(kind, count, part.name, low_pass, best))
         watch(done, len(tasks))
     return tuple(found)
-
-
-def _statistics(samples: Samples, scene: Scene, part: LightSet) -> Statistics:
-    surfaces = samples.surface(scene.surfaces)
-    return statistics(errors(samples, surfaces, part, scene, scene.reference(part)))
 
 
 def _best(tried: Sequence[Filter], count: int, scene: Scene) -> list[Filter]:
@@ -86,7 +80,7 @@ def _best(tried: Sequence[Filter], count: int, scene: Scene) -> list[Filter]:
 
 
 def _judge(scene: Scene, part: LightSet, count: int) -> Callable[[Array], float]:
-    """From what takes the 5 nm table to samples, (81, count), to the mean ΔE00: `errors`, quicker."""
+    """From what takes the 5 nm table to samples, (81, count), to the mean ΔE00: `judge`, quicker."""
     surfaces, lights = scene.surfaces[:, ::TABLE], part.powers[:, ::TABLE]
     reference, weights = scene.reference(part), point(count).weights
 

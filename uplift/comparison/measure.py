@@ -109,6 +109,12 @@ def errors(
     return apart
 
 
+def judge(representation: Representation, scene: Scene, part: LightSet) -> Statistics:
+    """The errors of a representation under a set of lights, and no cost. Raises `UpliftError`."""
+    surfaces = representation.surface(scene.surfaces)
+    return statistics(errors(representation, surfaces, part, scene, scene.reference(part)))
+
+
 def _row(
     representation: Representation, surfaces: Any, part: LightSet, scene: Scene, reference: Array, ns: Spread
 ) -> Row:

@@ -16,8 +16,8 @@ from uplift.report.page_parts import note, right, table
 
 TITLE = "Representations of spectra"
 SOURCES = (
-    "Kment 2011, a diploma thesis on spectral data representations: point sampling, Riemann sums and their "
-    "enhancement, the test scenarios.",
+    "Kment 2011, Spectral data representation techniques for realistic image synthesis: point sampling, Riemann sums "
+    "and their enhancement, the lights and the statistics.",
     "Sun, Drew & Fracchia 1999: the composite model. Peercy 1993: linear models. Wilkie et al. 2014: hero wavelengths. "
     "Peters et al. 2019: trigonometric moments. Jakob & Hanika 2019: the sigmoid.",
 )

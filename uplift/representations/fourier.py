@@ -2,7 +2,8 @@
 
 Kment 2011, 4.3 and 5.4: 380–780 nm is the period, so that a spectrum whose ends differ has a jump there. ``count``
 real numbers are a_0 to a_m and b_1 to b_m. Where the text leaves a choice open: coefficients are those of eq. 4.7
-over the 5 nm table; a product, made point by point as the text has it, keeps as many coefficients as went into it.
+over the 5 nm table, with the mean of both ends where they meet; a product, made point by point as the text has it,
+keeps as many coefficients as went into it.
 """
 
 from __future__ import annotations
@@ -39,7 +40,9 @@ class Fourier:
         return "Fourier coefficients"
 
     def light(self, power: Array) -> Array:
-        return _analysed(power[:, TABLE::TABLE], self.waves[:, TABLE::TABLE])
+        periodic = power[:, :-1:TABLE].copy()
+        periodic[:, 0] = (power[:, 0] + power[:, -1]) / 2
+        return _analysed(periodic, self.waves[:, :-1:TABLE])
 
     def surface(self, reflectance: Array) -> Array:
         return self.light(reflectance)

@@ -6,7 +6,7 @@ where that leaves anything open, or cannot be had, to its values at 5 nm.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,9 +18,9 @@ from uplift.representations.table import Tabled
 from uplift.sensor import Array
 
 LIGHT = "D65"
-SHAPE = 1e-3
+SHAPE = 1e-4
 """What an error at one wavelength counts beside one of the colour."""
-STEPS = 60
+STEPS = 20
 EASE, EAGER, FIRST = 10.0, 0.3, 1e-3
 """The damping of the first step, and what it grows and falls by after a bad and after a good one."""
 
@@ -29,7 +29,7 @@ EASE, EAGER, FIRST = 10.0, 0.3, 1e-3
 class SigmoidCurve(Tabled):
     """Three coefficients."""
 
-    model: Sigmoid = Sigmoid()  # noqa: RUF009 - frozen
+    model: Sigmoid = field(default_factory=Sigmoid)
     name = "SG3"
     family = "sigmoid"
 
