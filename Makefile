@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes pictures
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes representations pictures
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -65,6 +65,10 @@ textures: pictures
 # What cubes for a scene save: docs/scenes.md.
 scenes: pictures
 	$(BIN)/python -m benchmarks.scenes
+
+# Ways to hold spectra, beside a thesis of 2011: docs/representations.md.
+representations: $(INSTALLED)
+	$(BIN)/python -m benchmarks.representations
 
 # Pictures come with packages that nothing else needs.
 pictures: $(INSTALLED)

@@ -41,11 +41,10 @@ def test_twice_the_light_is_twice_the_colour(every, checker, lit, name):
     np.testing.assert_allclose(twice, 2 * once, rtol=1e-9)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [name for name in NAMES if not name.startswith("HW")])
 def test_every_row_is_by_itself(every, checker, lit, name):
+    """But those of hero wavelengths: there a row is a pixel with random numbers of its own."""
     one = every[name]
-    if name.startswith("HW"):
-        pytest.skip("a row is a pixel with random numbers of its own")
     whole = one.xyz(one.product(one.light(lit("FL2")), one.surface(checker.surfaces)))
     part = one.xyz(one.product(one.light(lit("FL2")[5:7]), one.surface(checker.surfaces[5:7])))
     np.testing.assert_allclose(part, whole[5:7], rtol=1e-9)
