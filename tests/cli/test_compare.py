@@ -52,7 +52,7 @@ def test_the_tables_hold_every_representation_and_filter(quick):
 
     rows = read("compare.csv")
     assert {row["lights"] for row in rows} == {"smooth", "spiky"}
-    assert len({row["representation"] for row in rows}) == len(rows) / 2 == 32
+    assert len({row["representation"] for row in rows}) == len(rows) / 2 == 36
     assert len(read("compare-filters.csv")) == 2 * 3 * 9
 
 

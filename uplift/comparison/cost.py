@@ -17,7 +17,7 @@ from uplift.comparison.measure import Comparison, Row
 from uplift.report.figure import new_figure
 from uplift.sensor import Array
 
-PANEL, KEY_HEIGHT = (6.6, 4.3), 0.55
+PANEL, KEY_HEIGHT = (6.0, 4.0), 0.55
 """Inches of a panel, and of the key below all."""
 LEAST = 1e-3
 """ΔE00 below are drawn there: nobody sees less."""
