@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes representations pictures
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart representations mixing scenes pictures display
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -61,6 +61,14 @@ demo-render: $(INSTALLED)
 # What textures keep of real images, and take: docs/textures.md.
 textures: pictures
 	$(BIN)/python -m benchmarks.textures
+
+# What becomes of colours that no screen shows: docs/display.md and its picture.
+display: $(INSTALLED)
+	$(BIN)/python -m benchmarks.display
+
+# Mixtures: ramps, who breaks which criterion, times: docs/mixing.md.
+mixing: $(INSTALLED)
+	$(BIN)/python -m benchmarks.mixing
 
 # What cubes for a scene save: docs/scenes.md.
 scenes: pictures

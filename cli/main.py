@@ -16,6 +16,7 @@ COMMANDS = (
     "build",
     "query",
     "texture",
+    "mix",
     "chart",
     "check",
     "compare",
