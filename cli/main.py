@@ -19,6 +19,7 @@ COMMANDS = (
     "mix",
     "chart",
     "check",
+    "compare",
     "report",
     "info",
     "slices",
