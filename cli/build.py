@@ -11,7 +11,7 @@ import click
 
 from .built import tell, tell_improvements
 from .frames import expanded
-from .options import encoding_option, force_option, sensor_options, verbosity_options
+from .options import encoding_option, force_option, out_of_gamut_option, sensor_options, verbosity_options
 
 
 class Dim(click.ParamType):  # type: ignore[type-arg]
@@ -74,6 +74,7 @@ class Dim(click.ParamType):  # type: ignore[type-arg]
     help="Build only what the colours of this image, or quoted pattern, need; may be given several times.",
 )
 @encoding_option("--scene images are")
+@out_of_gamut_option("clip", "linear RGB of --scene images")
 @click.option("--debug", is_flag=True, help="Keep the round of every point, for the slices.")
 @force_option()
 @verbosity_options
@@ -82,6 +83,7 @@ def command(
     output: str | None,
     images: tuple[str, ...],
     encoding: str,
+    way: str,
     force: bool,
     quiet: bool,
     verbose: bool,
@@ -113,8 +115,10 @@ def command(
 
     if encoding != "auto" and not images:
         raise click.UsageError("--encoding is of --scene images, and there are none.")
+    if way != "clip" and not images:
+        raise click.UsageError("--out-of-gamut is of --scene images, and there are none.")
     path = check_output(_default_name(atlases, images, chosen) if output is None else output, force=force)
-    scene = Images(tuple(map(Path, expanded(images))), encoding) if images else None
+    scene = Images(tuple(map(Path, expanded(images))), encoding, way) if images else None
     given = {name: value for name, value in chosen.items() if value not in (None, ())}
     begin = time.perf_counter()
     with watching(quiet=quiet, verbose=verbose) as watch:

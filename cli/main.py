@@ -16,8 +16,10 @@ COMMANDS = (
     "build",
     "query",
     "texture",
+    "mix",
     "chart",
     "check",
+    "compare",
     "report",
     "info",
     "slices",
@@ -25,6 +27,7 @@ COMMANDS = (
     "palette",
     "atlas",
     "study",
+    "wavelengths",
 )
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """What a write says where there is no room."""

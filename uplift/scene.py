@@ -15,6 +15,7 @@ from uplift.cube import CubeData
 from uplift.cube.pins import MARGIN, Pins
 from uplift.errors import OptionError
 from uplift.lattice import CORNERS, Lattice, Mask
+from uplift.overflow import check_way
 from uplift.sensor import Array, Sensor
 from uplift.texture.colours import check_encoding, decoder
 from uplift.texture.plan import coloured
@@ -53,14 +54,16 @@ class Images:
 
     paths: tuple[Path, ...]
     encoding: str = "auto"
+    out_of_gamut: str = "clip"
 
     def points(self, pins: Pins, sensor: Sensor, watch: Watch) -> Mask:
-        """Raises `OptionError`, `TextureError`."""
+        """Raises `OptionError`, `TextureError`, and `ColourError` for colours outside [0, 1] that are an error."""
         check_encoding(self.encoding)
+        check_way(self.out_of_gamut)
         cells = np.zeros(pins.lattice.size, dtype=bool)
         for done, path in enumerate(self.paths):
             watch(Reading(done, len(self.paths)))
-            for rgb in _colours(path, sensor, self.encoding):
+            for rgb in self._colours(path, sensor):
                 cells[touched(pins.lattice, rgb)] = True
         if not cells.any():
             raise OptionError(
@@ -69,9 +72,20 @@ class Images:
         return pins.needs(cells)
 
     def describe(self) -> list[dict[str, Any]]:
-        return [
-            {"name": path.name, "digest": _digest(path), "encoding": self.encoding} for path in self.paths
-        ]
+        read = {"encoding": self.encoding, "out_of_gamut": self.out_of_gamut}
+        return [{"name": path.name, "digest": _digest(path), **read} for path in self.paths]
+
+    def _colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
+        """Linear RGB (n, 3) in [0, 1] of an image, block by block."""
+        with opened(path) as image:
+            for part, places in coloured(image):
+                if places is None:
+                    continue
+                decode = decoder(sensor, part, self.encoding, self.out_of_gamut)
+                for _, band in image.bands(part):
+                    pixels = band.reshape(-1, band.shape[-1])
+                    for first in range(0, len(pixels), BLOCK):
+                        yield decode(pixels[first : first + BLOCK, places])[0].astype(float)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,19 +120,6 @@ def touched(lattice: Lattice, rgb: Array) -> Array:
     between = (low != high).any(axis=1)
     beside = np.where(CORNERS[:, None, :] == 1, high[between], low[between]).reshape(-1, 3)
     return np.concatenate([lattice.index(low), lattice.index(beside)])
-
-
-def _colours(path: Path, sensor: Sensor, encoding: str) -> Iterator[Array]:
-    """Linear RGB (n, 3) in [0, 1] of an image, block by block."""
-    with opened(path) as image:
-        for part, places in coloured(image):
-            if places is None:
-                continue
-            decode = decoder(sensor, part, encoding)
-            for _, band in image.bands(part):
-                pixels = band.reshape(-1, band.shape[-1])
-                for first in range(0, len(pixels), BLOCK):
-                    yield decode(pixels[first : first + BLOCK, places])[0].astype(float)
 
 
 def _digest(path: Path) -> str:

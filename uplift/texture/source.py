@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.errors import TextureError
+from uplift.texture.profile import Profile, profile_of
 
 FORMATS = ("openexr", "png", "jpeg", "tiff")
 BAND = 1 << 25
@@ -46,7 +47,7 @@ class Part:
     """One part of a file; all but OpenEXR have one.
 
     ``kinds`` are the channels' types: half, float, uint, uint8, uint16. ``block`` is how many rows are decoded
-    together. ``chromaticities`` are x, y of red, green, blue and white, if the file tells; ``date`` likewise.
+    together. ``profile`` is what the file says its RGB are of, if it does; ``date`` likewise.
     """
 
     number: int
@@ -56,7 +57,7 @@ class Part:
     kinds: tuple[str, ...]
     block: int
     tiled: bool
-    chromaticities: tuple[float, ...] | None
+    profile: Profile | None
     date: str | None
 
     @property
@@ -171,7 +172,7 @@ def _part(spec: Any, number: int, path: Path) -> Part:
         kinds=tuple(map(str, formats)),
         block=spec.tile_height or max(spec.get_int_attribute("oiio:RowsPerChunk", 1), 1),
         tiled=bool(spec.tile_width),
-        chromaticities=spec.getattribute("chromaticities"),
+        profile=profile_of(spec),
         date=spec.get_string_attribute("DateTime") or None,
     )
 
