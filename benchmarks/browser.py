@@ -20,6 +20,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 OPTIONS = ("--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--remote-debugging-pipe")
 HANDS_OVER = """import os, sys
@@ -28,6 +31,17 @@ os.dup2(int(reads), 3)
 os.dup2(int(writes), 4)
 os.execv(command[0], command)"""
 """Chromium reads from descriptor 3 and writes to 4."""
+CANVAS = """(async () => {
+  await new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)));
+  const canvas = document.getElementById("NAME");
+  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+  copy.drawImage(canvas, 0, 0);
+  const codes = copy.getImageData(0, 0, canvas.width, canvas.height).data;
+  let text = "";
+  for (let at = 0; at < codes.length; at += 8192) text += String.fromCharCode(...codes.subarray(at, at + 8192));
+  return [canvas.width, canvas.height, btoa(text)];
+})()"""
+"""Read from a copy: the page's own canvas is drawn to and never read."""
 PATIENCE = 60.0
 """Seconds that an answer may take."""
 
@@ -71,18 +85,20 @@ class Browser:
             raise RuntimeError(answer["exceptionDetails"]["exception"].get("description", "uncaught"))
         return answer["result"].get("value")
 
-    def open(self, path: Path, ready: str) -> None:
-        """Show a file and wait until the expression ``ready`` holds. Raises `TimeoutError`."""
+    def open(self, path: Path) -> None:
+        """Show a page and wait until its ``main`` is busy no more. Raises `TimeoutError`."""
         self.errors.clear()
         self.call("Page.navigate", url=path.resolve().as_uri())
-        self.wait(ready)
-
-    def wait(self, condition: str) -> None:
         end = time.monotonic() + PATIENCE
-        while not self.evaluate(condition):
+        while not self.evaluate("document.querySelector('main')?.getAttribute('aria-busy') === 'false'"):
             if time.monotonic() > end:
-                raise TimeoutError(f"{condition}; {self.errors}")
+                raise TimeoutError(f"{path} stays busy: {self.errors}")
             time.sleep(0.02)
+
+    def canvas(self, name: str) -> NDArray[np.uint8]:
+        """(H, W, 4) red, green, blue and alpha of the canvas with this id, after the frame that is due."""
+        width, height, text = self.evaluate(CANVAS.replace("NAME", name))
+        return np.frombuffer(base64.b64decode(text), np.uint8).reshape(height, width, 4)
 
     def window(self, width: int, height: int, scheme: str = "light") -> None:
         """The page's size in pixels, and light or dark."""

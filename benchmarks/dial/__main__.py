@@ -1,0 +1,131 @@
+"""The light dial in a browser: ``make dial`` → docs/palette-dial.md and its picture.
+
+Frames are counted while the dial moves at each of them. The picture is held against numpy before.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.browser import Browser, browser
+from benchmarks.page import table, write
+from benchmarks.timing import ROOT
+from uplift import observer, read_atlas
+from uplift.atlas.resample import on_grid
+from uplift.cube.display import encode
+from uplift.palette import standard_model
+from uplift.palette.dial.cutaway import cutaway
+from uplift.palette.dial.page import page
+from uplift.palette.dial.relighting import Relighting, relighting
+from uplift.palette.lights import illuminant
+from uplift.timing import Spread, circumstances, spread
+
+MATERIALS = ("foliage", "moderate red", "red", "yellow", "blue sky", "neutral 5 (.70 D)")
+LIGHTS = ("D65", "A", "FL11", "LED-RGB1")
+TASKS = ((5, 512), (7, 512), (9, 512), (7, 1024))
+"""Coefficients a pixel, and pixels a side."""
+RUNS, SECONDS = 5, 3.0
+WINDOW = (1240, 1130)
+MOVE = """(async seconds => {
+  const next = requestAnimationFrame.bind(window), script = [];
+  window.requestAnimationFrame = frame => next(now => {
+    const begin = performance.now();
+    frame(now);
+    script.push(performance.now() - begin);
+  });
+  const press = key => document.getElementById("dial").dispatchEvent(new KeyboardEvent("keydown", { key }));
+  const ways = ["ArrowDown", "ArrowRight", "ArrowUp", "ArrowLeft"];
+  const begin = performance.now();
+  let frames = 0;
+  while (performance.now() - begin < 1000 * seconds) {
+    press(ways[(frames >> 4) & 3]);
+    await new Promise(next);
+    frames++;
+  }
+  window.requestAnimationFrame = next;
+  return [1000 * frames / (performance.now() - begin), script.sort((a, b) => a - b)[script.length >> 1]];
+})"""
+WORDS = (
+    "*Script* is the time that a frame takes in the page's own code; what the browser does with it, in software here, "
+    "comes on top, and sixty frames a second are the most that it shows. Median (least–most) of "
+    f"{RUNS} runs of {SECONDS:g} s. *Largest error* is that of any pixel against numpy, in 8-bit codes."
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """Frames a second, milliseconds of script a frame, largest error in 8-bit codes, bytes of the page."""
+
+    coefficients: int
+    side: int
+    frames: Spread
+    script: Spread
+    error: int
+    size: int
+
+
+def main() -> None:
+    introduction = (ROOT / "benchmarks" / "dial.md").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder, browser() as tab:
+        tab.window(*WINDOW)
+        rows = [_row(tab, Path(folder) / "page.html", *task) for task in TASKS]
+        where = circumstances() | {
+            "browser": tab.call("Browser.getVersion")["product"] + ", no graphics card"
+        }
+    head = ["coefficients", "pixels", "frames a second", "script, ms a frame", "largest error", "page, MB"]
+    told = [_told(row) for row in rows]
+    print(write("palette-dial", introduction, [table("Frames a second", WORDS, head, told)], where))
+
+
+def _row(tab: Browser, path: Path, coefficients: int, side: int) -> Row:
+    shown = _shown(coefficients, side)
+    path.write_text(page(shown), encoding="utf-8")
+    tab.open(path)
+    error = _error(tab, shown)
+    measured = [tab.evaluate(f"{MOVE}({SECONDS})") for _ in range(RUNS + 1)][1:]
+    assert tab.errors == [], tab.errors
+    frames, script = (spread(list(column)) for column in zip(*measured, strict=True))
+    return Row(coefficients, side, frames, script, error, path.stat().st_size)
+
+
+def _shown(coefficients: int, side: int) -> Relighting:
+    sensor = observer.sensor()
+    found = read_atlas(ROOT / "atlases" / "macbeth.txt")
+    spectra = dict(zip(found.names, np.clip(on_grid(found, sensor.wavelengths), 0, 1), strict=True))
+    return relighting(
+        "Six materials of the ColorChecker",
+        sensor,
+        standard_model(sensor, coefficients),
+        {name: spectra[name] for name in MATERIALS},
+        {name: illuminant(sensor, name) for name in LIGHTS},
+        cutaway(len(MATERIALS), side),
+    )
+
+
+def _error(tab: Browser, shown: Relighting) -> int:
+    """The largest difference to numpy under equal parts of all lights, in 8-bit codes."""
+    tab.evaluate("document.getElementById('dial').dispatchEvent(new KeyboardEvent('keydown', {key: '0'}))")
+    seen = tab.canvas("picture")[..., :3]
+    wanted = np.rint(255 * encode(shown.rgb(np.full(len(LIGHTS), 1 / len(LIGHTS)))))
+    error = int(np.abs(seen - wanted).max())
+    assert error <= 1, f"{error} codes off"
+    return error
+
+
+def _told(row: Row) -> list[str]:
+    return [
+        str(row.coefficients),
+        f"{row.side} × {row.side}",
+        f"{row.frames:.0f}",
+        f"{row.script:.1f}",
+        str(row.error),
+        f"{row.size / 1e6:.1f}",
+    ]
+
+
+if __name__ == "__main__":
+    main()
