@@ -25,7 +25,7 @@ def box(tab, selector):
 def places(lights):
     """(L, 2) the first light at the top, the others clockwise."""
     turn = 2 * np.pi * np.arange(lights) / lights
-    return np.stack([np.sin(turn), -np.cos(turn)], axis=1) if lights > 1 else np.zeros((1, 2))
+    return np.stack([np.sin(turn), -np.cos(turn)], axis=1)
 
 
 def shares(at, lights):

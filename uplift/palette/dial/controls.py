@@ -30,7 +30,7 @@ def _dial() -> Markup:
     return element(
         "svg",
         id="dial",
-        viewBox="-150 -112 300 224",
+        viewBox="-160 -112 320 224",
         tabindex=0,
         role="slider",
         aria_label="Light dial",

@@ -16,7 +16,8 @@ function drawDial(names, white) {
   const across = 2 * DISC;
   const disc = drawn("image", { href: discImage(stands, white), x: -DISC, y: -DISC, width: across, height: across });
   const knob = drawn("g", { id: "handle" }, drawn("circle", { r: 10 }), drawn("circle", { r: 3 }));
-  byId("dial").append(disc, drawn("circle", { r: DISC, class: "rim" }), ...names.map((name, j) => stand(name, stands[j], white[j])), knob);
+  const marks = names.map((name, j) => stand(name, stands[j], white[j]));
+  byId("dial").append(disc, drawn("circle", { r: DISC, class: "rim" }), ...marks, knob);
 }
 
 function discImage(stands, white) {
@@ -29,8 +30,7 @@ function discImage(stands, white) {
     for (let column = 0; column < 2 * DISC; column++) {
       const position = [(column + 0.5) / DISC - 1, (row + 0.5) / DISC - 1];
       if (Math.hypot(...position) > 1) continue;
-      const [r, g, b] = onScreen(sum(shares(position, stands), white)).map(code);
-      out[row * 2 * DISC + column] = 0xff000000 | (b << 16) | (g << 8) | r;
+      out[row * 2 * DISC + column] = opaque(...onScreen(sum(shares(position, stands), white)));
     }
   context.putImageData(image, 0, 0);
   return canvas.toDataURL();
@@ -39,7 +39,7 @@ function discImage(stands, white) {
 const onScreen = rgb => rgb.map(linear => linear / Math.max(1e-9, ...rgb));
 
 function stand(name, [x, y], white) {
-  const short = name.length > 15 ? name.slice(0, 14) + "…" : name;
+  const short = name.length > 12 ? name.slice(0, 11) + "…" : name;
   const anchor = Math.abs(x) < 0.3 ? "middle" : x > 0 ? "start" : "end";
   const words = { x: x * (DISC + 13), y: y * (DISC + 18) + 3.5, "text-anchor": anchor };
   const spot = drawn("circle", { cx: x * DISC, cy: y * DISC, r: 7, fill: hex(onScreen(white)) });
@@ -58,7 +58,8 @@ function drawSpectrum(wavelengths) {
   const [first, last] = [wavelengths[0], wavelengths.at(-1)];
   const place = nm => left + ((right - left) * (nm - first)) / (last - first);
   const ticks = [400, 500, 600, 700].filter(nm => nm >= first && nm <= last);
-  const marks = ticks.map(nm => drawn("text", { x: place(nm), y: bottom + 14, "text-anchor": "middle" }, nm === ticks[0] ? `${nm} nm` : nm));
+  const words = nm => (nm === ticks[0] ? `${nm} nm` : nm);
+  const marks = ticks.map(nm => drawn("text", { x: place(nm), y: bottom + 14, "text-anchor": "middle" }, words(nm)));
   const lines = ticks.map(nm => drawn("path", { d: `M${place(nm)} ${bottom}v4`, class: "axis" }));
   const axis = drawn("path", { d: `M${left} ${bottom}H${right}`, class: "axis" });
   byId("spectrum").append(drawn("path", { id: "total" }), drawn("g", { id: "parts" }), axis, ...lines, ...marks);
@@ -69,8 +70,10 @@ function showSpectrum(wavelengths, power, weights) {
   const total = sum(weights, power);
   const most = Math.max(...total, 1e-9);
   const step = (right - left) / (wavelengths.at(-1) - wavelengths[0]);
-  const at = (nm, value) => `${(left + step * (nm - wavelengths[0])).toFixed(1)} ${(bottom - (bottom - top) * (value / most)).toFixed(1)}`;
-  const line = values => "M" + values.map((value, i) => at(wavelengths[i], value)).join("L");
+  const across = nm => (left + step * (nm - wavelengths[0])).toFixed(1);
+  const up = value => (bottom - (bottom - top) * (value / most)).toFixed(1);
+  const line = values => "M" + values.map((value, i) => `${across(wavelengths[i])} ${up(value)}`).join("L");
   byId("total").setAttribute("d", `${line(total)}L${right} ${bottom}L${left} ${bottom}Z`);
-  byId("parts").replaceChildren(...power.map((values, j) => drawn("path", { d: line(values.map(value => weights[j] * value)) })));
+  const parts = power.map((values, j) => line(values.map(value => weights[j] * value)));
+  byId("parts").replaceChildren(...parts.map(d => drawn("path", { d })));
 }

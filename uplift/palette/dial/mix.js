@@ -1,11 +1,12 @@
 // What the hands have set, and what follows from it. Positions are on a disc of radius 1; y points down, as on screens.
-const sum = (weights, rows) => rows[0].map((_, k) => weights.reduce((total, weight, j) => total + weight * rows[j][k], 0));
-const times = (matrix, vector) => matrix.map(row => row.reduce((total, value, k) => total + value * vector[k], 0));
+const dot = (these, those) => these.reduce((total, value, k) => total + value * those[k], 0);
+const times = (matrix, vector) => matrix.map(row => dot(row, vector));
+const sum = (weights, rows) => rows[0].map((_, k) => dot(weights, rows.map(row => row[k])));
 
-// Lights stand on the rim, the first at the top; one alone stands in the middle.
+// Lights stand on the rim, the first at the top.
 function places(count) {
   const turn = j => (2 * Math.PI * j) / count - Math.PI / 2;
-  return count === 1 ? [[0, 0]] : Array.from({ length: count }, (_, j) => [Math.cos(turn(j)), Math.sin(turn(j))]);
+  return Array.from({ length: count }, (_, j) => [Math.cos(turn(j)), Math.sin(turn(j))]);
 }
 
 // Shares of the lights at a position: by the inverse square of their distance, all of one where it stands.

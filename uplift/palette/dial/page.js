@@ -1,10 +1,11 @@
 // Hands set where the dial stands, the lights' sliders and exposure; a frame shows what follows from them.
-const { lights, materials, wavelengths, power, white, light: lamps, material, colours, toRgb } = JSON.parse(byId("numbers").textContent);
+const numbers = JSON.parse(byId("numbers").textContent);
+const { lights, materials, wavelengths, power, white, colours, toRgb } = numbers;
 const stands = places(lights.length);
 const START = stands[0];
 const picture = byId("picture").getContext("2d");
 const image = picture.createImageData(picture.canvas.width, picture.canvas.height);
-const out = new Uint32Array(image.data.buffer);
+const out = new Uint32Array(image.data.buffer).fill(opaque(0, 0, 0));
 const [pixels, labels] = await Promise.all([unpackedHalves("pixels"), unpacked("labels", 1)]);
 const gains = lights.map((_, j) => byId(`gain-${j}`));
 const exposure = byId("exposure");
@@ -19,9 +20,9 @@ function show() {
   due = 0;
   const mix = weights();
   const stops = 2 ** exposure.value;
-  const lamp = sum(mix, lamps);
+  const lamp = sum(mix, numbers.light);
   const matrix = Float64Array.from(toRgb.flatMap(row => row.map((value, k) => stops * value * lamp[k])));
-  const clipped = light(pixels, matrix, out);
+  const clipped = light(pixels, labels, matrix, out);
   picture.putImageData(image, 0, 0);
   tell(mix, clipped);
   showPatches(mix, lamp, stops);
@@ -33,14 +34,14 @@ function tell(mix, clipped) {
   mix.forEach((weight, j) => (byId(`gain-${j}-told`).value = percent(weight)));
   byId("exposure-told").value = `${exposure.value > 0 ? "+" : ""}${Number(exposure.value).toFixed(2)} EV`;
   const share = (100 * clipped) / out.length;
-  byId("clipped").textContent = clipped ? `Clipped: ${share < 0.1 ? "under 0.1" : share.toFixed(1)} % of the picture` : "";
+  byId("clipped").textContent = clipped ? `Clipped: ${Math.max(share, 0.1).toFixed(1)} % of the picture` : "";
 }
 
 function showPatches(mix, lamp, stops) {
   const bright = rgb => rgb.map(linear => stops * linear);
   patch("white", bright(sum(mix, white)));
   materials.forEach((_, i) => {
-    const factor = times(toRgb, lamp.map((value, k) => value * material[i][k]));
+    const factor = times(toRgb, lamp.map((value, k) => value * numbers.material[i][k]));
     patch(i, bright(sum(mix, colours[i])), bright(factor));
   });
 }
@@ -93,7 +94,8 @@ dial.addEventListener("keydown", event => {
 });
 
 for (const slider of [...gains, exposure]) slider.addEventListener("input", soon);
-for (const button of document.querySelectorAll("[data-light]")) button.addEventListener("click", () => alone(Number(button.dataset.light)));
+for (const button of document.querySelectorAll("[data-light]"))
+  button.addEventListener("click", () => alone(Number(button.dataset.light)));
 byId("reset").addEventListener("click", () => {
   for (const slider of [...gains, exposure]) slider.value = slider.defaultValue;
   move(START);
