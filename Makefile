@@ -66,6 +66,11 @@ textures: pictures
 scenes: pictures
 	$(BIN)/python -m benchmarks.scenes
 
+# The light dial in Chromium, frames a second: docs/palette-dial.md.
+.PHONY: dial
+dial: $(INSTALLED)
+	$(BIN)/python -m benchmarks.dial
+
 # Pictures come with packages that nothing else needs.
 pictures: $(INSTALLED)
 	$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/pictures scikit-image==0.26.0 scikit-learn==1.9.1

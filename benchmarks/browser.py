@@ -116,8 +116,8 @@ class Browser:
             self.call("Input.dispatchKeyEvent", type=kind, key=name, modifiers=modifiers, **text)
 
     def screenshot(self) -> bytes:
-        """The window as PNG."""
-        return base64.b64decode(self.call("Page.captureScreenshot")["data"])
+        """The window as JPEG."""
+        return base64.b64decode(self.call("Page.captureScreenshot", format="jpeg", quality=88)["data"])
 
     def _next(self) -> Answer:
         while b"\0" not in self._rest:

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.browser import Browser, browser
+from benchmarks.dial.introduction import INTRODUCTION
 from benchmarks.page import table, write
 from benchmarks.timing import ROOT
 from uplift import observer, read_atlas
@@ -69,7 +70,6 @@ class Row:
 
 
 def main() -> None:
-    introduction = (ROOT / "benchmarks" / "dial.md").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder, browser() as tab:
         tab.window(*WINDOW)
         rows = [_row(tab, Path(folder) / "page.html", *task) for task in TASKS]
@@ -78,7 +78,7 @@ def main() -> None:
         }
     head = ["coefficients", "pixels", "frames a second", "script, ms a frame", "largest error", "page, MB"]
     told = [_told(row) for row in rows]
-    print(write("palette-dial", introduction, [table("Frames a second", WORDS, head, told)], where))
+    print(write("palette-dial", INTRODUCTION, [table("Frames a second", WORDS, head, told)], where))
 
 
 def _row(tab: Browser, path: Path, coefficients: int, side: int) -> Row:

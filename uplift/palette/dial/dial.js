@@ -61,19 +61,22 @@ function drawSpectrum(wavelengths) {
   const words = nm => (nm === ticks[0] ? `${nm} nm` : nm);
   const marks = ticks.map(nm => drawn("text", { x: place(nm), y: bottom + 14, "text-anchor": "middle" }, words(nm)));
   const lines = ticks.map(nm => drawn("path", { d: `M${place(nm)} ${bottom}v4`, class: "axis" }));
-  const axis = drawn("path", { d: `M${left} ${bottom}H${right}`, class: "axis" });
+  const axis = drawn("path", { id: "zero", class: "axis" });
   byId("spectrum").append(drawn("path", { id: "total" }), drawn("g", { id: "parts" }), axis, ...lines, ...marks);
 }
 
+// A designed light may have less than no power somewhere, if its palette lets it.
 function showSpectrum(wavelengths, power, weights) {
   const { left, right, top, bottom } = SPECTRUM;
+  const parts = power.map((values, j) => values.map(value => weights[j] * value));
   const total = sum(weights, power);
-  const most = Math.max(...total, 1e-9);
+  const least = Math.min(0, ...total);
   const step = (right - left) / (wavelengths.at(-1) - wavelengths[0]);
+  const slope = (bottom - top) / Math.max(Math.max(...total) - least, 1e-9);
   const across = nm => (left + step * (nm - wavelengths[0])).toFixed(1);
-  const up = value => (bottom - (bottom - top) * (value / most)).toFixed(1);
+  const up = value => (bottom - slope * (value - least)).toFixed(1);
   const line = values => "M" + values.map((value, i) => `${across(wavelengths[i])} ${up(value)}`).join("L");
-  byId("total").setAttribute("d", `${line(total)}L${right} ${bottom}L${left} ${bottom}Z`);
-  const parts = power.map((values, j) => line(values.map(value => weights[j] * value)));
-  byId("parts").replaceChildren(...parts.map(d => drawn("path", { d })));
+  byId("zero").setAttribute("d", `M${left} ${up(0)}H${right}`);
+  byId("total").setAttribute("d", `${line(total)}L${right} ${up(0)}L${left} ${up(0)}Z`);
+  byId("parts").replaceChildren(...parts.map(values => drawn("path", { d: line(values) })));
 }

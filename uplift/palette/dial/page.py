@@ -63,7 +63,8 @@ def _picture(shown: Relighting) -> Markup:
     caption = element(
         "figcaption", element("span", id="pointed"), element("span", id="clipped"), class_="note"
     )
-    view = element("div", canvas, mask, class_="view", style=f"aspect-ratio:{width}/{height}")
+    wait = element("p", "Unpacking the picture, which takes a browser of 2023 or later …", class_="wait")
+    view = element("div", wait, canvas, mask, class_="view", style=f"aspect-ratio:{width}/{height}")
     return element("figure", view, caption, class_="picture")
 
 
