@@ -66,11 +66,14 @@ class Browser:
             self.call(f"{domain}.enable")
 
     def call(self, method: str, **params: Any) -> Answer:
-        """Call a method and wait for its answer. Raises `RuntimeError`, `TimeoutError`."""
+        """Call a method of the tab and wait for its answer. Raises `RuntimeError`, `TimeoutError`."""
+        return self._call(self._session, method, **params)
+
+    def _call(self, session: str, method: str, **params: Any) -> Answer:
         number = next(self._numbers)
         message = {"id": number, "method": method, "params": params}
-        if self._session:
-            message["sessionId"] = self._session
+        if session:
+            message["sessionId"] = session
         os.write(self._write, json.dumps(message).encode() + b"\0")
         while (answer := self._next()).get("id") != number:
             self._note(answer)
@@ -114,6 +117,11 @@ class Browser:
         for kind in ("keyDown", "keyUp"):
             text = {"text": name} if kind == "keyDown" and len(name) == 1 else {}
             self.call("Input.dispatchKeyEvent", type=kind, key=name, modifiers=modifiers, **text)
+
+    def cpu(self) -> float:
+        """CPU seconds that all of the browser's processes have taken."""
+        processes = self._call("", "SystemInfo.getProcessInfo")["processInfo"]
+        return float(sum(process["cpuTime"] for process in processes))
 
     def screenshot(self) -> bytes:
         """The window as JPEG."""
