@@ -22,6 +22,7 @@ COMMANDS = (
     "info",
     "slices",
     "export",
+    "palette",
     "atlas",
     "study",
 )

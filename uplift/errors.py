@@ -59,6 +59,10 @@ class ChartFileError(UpliftError):
     """A chart's table that is missing, broken, or no such table."""
 
 
+class PaletteError(UpliftError):
+    """A palette's spec that cannot be read, or asks for what cannot be worked out."""
+
+
 class ColourError(UpliftError):
     """A colour that cannot be asked for: outside [0, 1], NaN, or unreadable."""
 

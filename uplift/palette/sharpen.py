@@ -32,19 +32,21 @@ def sharpen(sensor: Sensor, basis: Array, projection: Array, ways: Bounces) -> A
     """
     from scipy.linalg import null_space
     from scipy.optimize import least_squares
+    from threadpoolctl import threadpool_limits
 
     white = projection.sum(axis=1)
     free = null_space(white[None])
     task = _task(sensor, basis, projection, ways, free)
     start = _peaks(basis, projection) @ free
-    found = least_squares(
-        task.residuals,
-        start.ravel(),
-        jac=task.slope,
-        loss="soft_l1",
-        f_scale=OUTLIER,
-        max_nfev=MOST_STEPS,
-    )
+    with threadpool_limits(1, user_api="blas"):  # the matrices are small: threads would wait for one another
+        found = least_squares(
+            task.residuals,
+            start.ravel(),
+            jac=task.slope,
+            loss="soft_l1",
+            f_scale=OUTLIER,
+            max_nfev=MOST_STEPS,
+        )
     return task.transform(found.x)
 
 
