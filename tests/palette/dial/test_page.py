@@ -14,11 +14,13 @@ import pytest
 
 from uplift.cube.display import encode
 from uplift.errors import OptionError
+from uplift.palette import Palette, design
 from uplift.palette.dial.cutaway import cutaway
 from uplift.palette.dial.packing import halves, packed
 from uplift.palette.dial.page import page
 from uplift.palette.dial.relighting import MOST, relighting
 from uplift.palette.lights import illuminant
+from uplift.palette.palette import Part
 
 from .conftest import arbitrary
 from .seen import codes, wanted
@@ -93,21 +95,24 @@ def test_nothing_that_is_not_finite_gets_into_a_page(shown):
         page(dataclasses.replace(shown, lights=lights))
 
 
-def test_a_palette_of_a_factor_model_looks_as_its_spectra_do(model, sensor, small_cube):
+def test_a_palette_s_picture_looks_as_its_spectra_do(model, sensor, small_cube):
     """Under smooth lights the picture is what whole spectra would give, but for the factor model's small error."""
     colours = {"red": (0.5, 0.1, 0.1), "leaf": (0.1, 0.3, 0.05), "sky": (0.2, 0.4, 0.7)}
-    spectra = {name: small_cube.reflectance(rgb, sensor.wavelengths) for name, rgb in colours.items()}
-    lights = {name: illuminant(sensor, name) for name in ("D65", "A")}
-    found = relighting("three", sensor, model, spectra, lights, cutaway(3, size=64))
+    materials = [Part(name, small_cube.reflectance(rgb, sensor.wavelengths)) for name, rgb in colours.items()]
+    lights = [Part(name, illuminant(sensor, name)) for name in ("D65", "A")]
+    palette = Palette(sensor, tuple(lights), tuple(materials), (), {})
+    found = relighting("three", design(palette, model), cutaway(3, size=64))
     mix = np.array([0.6, 0.4])
     whole = found.weights @ np.einsum("j,njk->nk", mix, found.materials.colours)
     assert np.abs(found.rgb(mix) - whole).max() < 0.02
+    assert found.materials.names == tuple(colours)
     assert found.materials.colours[0, 0] == pytest.approx(np.array(colours["red"]), abs=1e-3)
     assert found.lights.white[0] == pytest.approx([1, 1, 1], abs=1e-3)
 
 
 def test_more_materials_than_labels_are_refused(model, sensor):
     flat = np.ones_like(sensor.wavelengths)
-    many = {str(row): flat for row in range(MOST + 1)}
+    many = tuple(Part(str(row), flat) for row in range(MOST + 1))
+    found = design(Palette(sensor, (Part("E", flat),), many, (), {}), model)
     with pytest.raises(OptionError, match="256 materials"):
-        relighting("many", sensor, model, many, {"E": flat}, np.zeros((1, 1, MOST + 1), np.float32))
+        relighting("many", found, np.zeros((1, 1, MOST + 1), np.float32))

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from uplift.errors import OptionError
-from uplift.palette.colours import screen_matrix
-from uplift.palette.factor import FactorModel
-from uplift.sensor import Array, Sensor
+from uplift.palette.design import Design
+from uplift.palette.matrix import matrix
+from uplift.sensor import Array
 
 MOST = 255
 """Materials that labels tell apart."""
@@ -86,30 +85,20 @@ class Relighting:
         return self.pixels @ (self.to_rgb * light).T
 
 
-def relighting(
-    title: str,
-    sensor: Sensor,
-    model: FactorModel,
-    materials: Mapping[str, Array],
-    lights: Mapping[str, Array],
-    weights: NDArray[np.float32],
-) -> Relighting:
-    """A picture of ``materials`` (reflectances (N,) by name), to be lit by ``lights`` (powers (N,)).
+def relighting(title: str, found: Design, weights: NDArray[np.float32]) -> Relighting:
+    """A picture of a palette's materials, to be lit by its lights; ``weights`` (H, W, n) are as in `Relighting`.
 
-    ``weights`` (H, W, n) are as in `Relighting`. The sensor is of sRGB, as the page is. Raises `OptionError` for
-    more materials than labels can tell apart.
+    Raises `OptionError` for more materials than labels can tell apart.
     """
-    if len(materials) > MOST:
-        raise OptionError(f"{len(materials)} materials in a picture", remedy=f"show {MOST} at most")
-    spectra, power = (np.array(list(each.values())) for each in (materials, lights))
-    screen = screen_matrix(sensor).T
+    palette, model, colours = found.palette, found.model, matrix(found)
+    if len(palette.materials) > MOST:
+        raise OptionError(f"{len(palette.materials)} materials in a picture", remedy=f"show {MOST} at most")
+    lights, materials = (tuple(part.name for part in parts) for parts in (palette.lights, palette.materials))
     return Relighting(
         title=title,
         weights=weights,
-        materials=Materials(
-            tuple(materials), model.reflectance(spectra), (spectra[:, None] * power) @ screen
-        ),
-        lights=Lights(tuple(lights), power, model.light(power), power @ screen),
+        materials=Materials(materials, model.reflectance(found.reflectances), colours.obtained),
+        lights=Lights(lights, found.powers, model.light(found.powers), colours.whites),
         to_rgb=model.matrix,
-        wavelengths=sensor.wavelengths,
+        wavelengths=model.wavelengths,
     )
