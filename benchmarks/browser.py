@@ -123,9 +123,12 @@ class Browser:
         processes = self._call("", "SystemInfo.getProcessInfo")["processInfo"]
         return float(sum(process["cpuTime"] for process in processes))
 
-    def screenshot(self) -> bytes:
-        """The window as JPEG."""
-        return base64.b64decode(self.call("Page.captureScreenshot", format="jpeg", quality=88)["data"])
+    def screenshot(self, selector: str = "body", scale: float = 1.0) -> bytes:
+        """An element, as far as the window shows it, as JPEG."""
+        told = self.evaluate(f"document.querySelector('{selector}').getBoundingClientRect().toJSON()")
+        clip = {name: told[name] for name in ("x", "y", "width", "height")} | {"scale": scale}
+        answer = self.call("Page.captureScreenshot", format="jpeg", quality=88, clip=clip)
+        return base64.b64decode(answer["data"])
 
     def _next(self) -> Answer:
         while b"\0" not in self._rest:

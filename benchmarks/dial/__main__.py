@@ -1,10 +1,13 @@
-"""The light dial in a browser: ``make dial`` → docs/palette-dial.md and its picture.
+"""The light dial in a browser: ``make dial`` → docs/palette-dial.md and its pictures.
 
 Frames are counted while the dial moves at each of them. The picture is held against numpy before.
 """
 
 from __future__ import annotations
 
+import dataclasses
+import functools
+import os
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,22 +18,18 @@ from benchmarks.browser import Browser, browser
 from benchmarks.dial.introduction import INTRODUCTION
 from benchmarks.page import table, write
 from benchmarks.timing import ROOT
-from uplift import observer, read_atlas
-from uplift.atlas.resample import on_grid
 from uplift.cube.display import encode
-from uplift.palette import standard_model
+from uplift.palette import Design, design, read_palette, standard_model
 from uplift.palette.dial.cutaway import cutaway
 from uplift.palette.dial.page import page
 from uplift.palette.dial.relighting import Relighting, relighting
-from uplift.palette.lights import illuminant
 from uplift.timing import Spread, circumstances, spread
 
-MATERIALS = ("foliage", "moderate red", "red", "yellow", "blue sky", "neutral 5 (.70 D)")
-LIGHTS = ("D65", "A", "FL11", "LED-RGB1")
+FOLDER = ROOT / "docs" / "palette-dial"
 TASKS = ((5, 512), (7, 512), (9, 512), (7, 1024))
 """Coefficients a pixel, and pixels a side."""
 RUNS, SECONDS = 5, 3.0
-WINDOW = (1240, 1130)
+WINDOW = (1240, 1440)
 MOVE = """(async seconds => {
   const next = requestAnimationFrame.bind(window), script = [];
   window.requestAnimationFrame = frame => next(now => {
@@ -74,6 +73,7 @@ class Row:
 def main() -> None:
     with tempfile.TemporaryDirectory() as folder, browser() as tab:
         tab.window(*WINDOW)
+        _show(tab, Path(folder) / "page.html")
         rows = [_row(tab, Path(folder) / "page.html", *task) for task in TASKS]
         where = circumstances() | {
             "browser": tab.call("Browser.getVersion")["product"] + ", no graphics card"
@@ -89,6 +89,35 @@ def main() -> None:
     ]
     told = [_told(row) for row in rows]
     print(write("palette-dial", INTRODUCTION, [table("Frames a second", WORDS, head, told)], where))
+
+
+def _show(tab: Browser, path: Path) -> None:
+    """The page's pictures: whole, and its picture under each light."""
+    shown = _shown(7, 512)
+    path.write_text(page(shown), encoding="utf-8")
+    tab.open(path)
+    for number, name in enumerate(shown.lights.names, start=1):
+        _press(tab, str(number))
+        tab.canvas("picture")
+        (FOLDER / f"{name}.jpg").write_bytes(tab.screenshot(".view", scale=0.5))
+    _press(tab, "2")
+    for _ in range(15):
+        _press(tab, "ArrowLeft")
+    tab.canvas("picture")
+    (FOLDER / "page.jpg").write_bytes(tab.screenshot())
+
+
+def _browser(tab: Browser) -> dict[str, str]:
+    return {
+        "browser": f"{tab.call('Browser.getVersion')['product']}, no graphics card",
+        "meanwhile": f"{os.getloadavg()[1]:.1f} processes on average, the browser's own among them",
+    }
+
+
+def _press(tab: Browser, key: str) -> None:
+    tab.evaluate(
+        f"document.getElementById('dial').dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'}}))"
+    )
 
 
 def _row(tab: Browser, path: Path, coefficients: int, side: int) -> Row:
@@ -109,25 +138,22 @@ def _moved(tab: Browser) -> tuple[float, float, float]:
     return rate, script, 1000 * (tab.cpu() - begin) / frames
 
 
+@functools.cache
+def _designed(coefficients: int) -> Design:
+    palette = dataclasses.replace(read_palette(FOLDER / "engine.toml"), count=coefficients)
+    return design(palette, standard_model(palette.sensor, coefficients))
+
+
 def _shown(coefficients: int, side: int) -> Relighting:
-    sensor = observer.sensor()
-    found = read_atlas(ROOT / "atlases" / "macbeth.txt")
-    spectra = dict(zip(found.names, np.clip(on_grid(found, sensor.wavelengths), 0, 1), strict=True))
-    return relighting(
-        "Six materials of the ColorChecker",
-        sensor,
-        standard_model(sensor, coefficients),
-        {name: spectra[name] for name in MATERIALS},
-        {name: illuminant(sensor, name) for name in LIGHTS},
-        cutaway(len(MATERIALS), side),
-    )
+    found = _designed(coefficients)
+    return relighting("engine", found, cutaway(len(found.palette.materials), side))
 
 
 def _error(tab: Browser, shown: Relighting) -> int:
     """The largest difference to numpy under equal parts of all lights, in 8-bit codes."""
-    tab.evaluate("document.getElementById('dial').dispatchEvent(new KeyboardEvent('keydown', {key: '0'}))")
-    seen = tab.canvas("picture")[..., :3]
-    wanted = np.rint(255 * encode(shown.rgb(np.full(len(LIGHTS), 1 / len(LIGHTS)))))
+    _press(tab, "0")
+    seen, lights = tab.canvas("picture")[..., :3], len(shown.lights.names)
+    wanted = np.rint(255 * encode(shown.rgb(np.full(lights, 1 / lights))))
     error = int(np.abs(seen - wanted).max())
     assert error <= 1, f"{error} codes off"
     return error
