@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from uplift.palette.design import Design, design
 from uplift.palette.factor import FactorModel, factor_model
+from uplift.palette.linear import LinearModel
 from uplift.palette.matrix import Matrix, matrix
 from uplift.palette.misses import Miss, misses
 from uplift.palette.palette import Palette
@@ -15,6 +16,7 @@ from uplift.palette.written import designed_atlas, write_designed
 __all__ = [
     "Design",
     "FactorModel",
+    "LinearModel",
     "Matrix",
     "Miss",
     "Palette",

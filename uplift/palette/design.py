@@ -15,7 +15,7 @@ from .equations import Equations, equations, undetermined, unknowns
 from .factor import FactorModel
 from .palette import Palette
 
-ENOUGH, MOST_STEPS = 1e-11, 1000
+ENOUGH, MOST_STEPS = 1e-12, 1000
 """Relative change at which the bounded solver stops, and steps after which it gives up."""
 
 
@@ -41,8 +41,9 @@ class Design:
 def design(palette: Palette, model: FactorModel) -> Design:
     """Find what is open in a palette.
 
-    Without bounds by the pseudo-inverse: the global minimum, and of several the shortest. With bounds by scipy's
-    ``lsq_linear``, whose minimum is global too, as the problem is convex.
+    Without bounds by the pseudo-inverse: the global minimum, and of several the shortest. With bounds by active sets
+    (BVLS of Stark & Parker 1995 in scipy's ``lsq_linear``): the minimum is global too, as the problem is convex, and
+    the bounds are kept to the bit.
 
     Raises
     ------
@@ -78,7 +79,7 @@ def solve(problem: Equations) -> Array:
             problem.matrix,
             problem.values,
             (problem.low, problem.high),
-            method="trf",
+            method="bvls",
             tol=ENOUGH,
             max_iter=MOST_STEPS,
         )
