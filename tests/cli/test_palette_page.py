@@ -6,7 +6,6 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-
 SPEC = """
 lights.day.illuminant = "D65"
 lights.lamp.illuminant = "FL11"
