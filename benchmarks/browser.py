@@ -24,7 +24,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
-OPTIONS = ("--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--remote-debugging-pipe")
+OPTIONS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-dev-shm-usage",
+    "--hide-scrollbars",
+    "--remote-debugging-pipe",
+)
 HANDS_OVER = """import os, sys
 reads, writes, *command = sys.argv[1:]
 os.dup2(int(reads), 3)
@@ -153,9 +160,10 @@ class Browser:
 
 @contextlib.contextmanager
 def browser() -> Iterator[Browser]:
-    """A browser, which is ended with the block."""
+    """A browser, which is ended with the block. Raises `RuntimeError` where there is none."""
     path = chromium()
-    assert path is not None
+    if path is None:
+        raise RuntimeError(f"none of {', '.join(NAMES)} is installed")
     reads, write = os.pipe()
     read, writes = os.pipe()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
