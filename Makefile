@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes pictures
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes pictures palette
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -70,6 +70,10 @@ scenes: pictures
 .PHONY: dial
 dial: $(INSTALLED)
 	$(BIN)/python -m benchmarks.dial
+
+# How near the factor model of palettes comes, and the examples: docs/palette.md and its pictures.
+palette: $(INSTALLED)
+	$(BIN)/python -m benchmarks.palette
 
 # Pictures come with packages that nothing else needs.
 pictures: $(INSTALLED)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -34,6 +36,22 @@ def test_the_page_shows_it(name):
     page = (ROOT / "docs" / "palette.md").read_text(encoding="utf-8")
     assert f"uplift palette docs/palette/{name}.toml" in page
     assert f"](palette/{name}-matrix.png)" in page
+
+
+def test_the_page_s_python_runs():
+    page = (ROOT / "docs" / "palette.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    exec(compile(code, "palette.md", "exec"), {})
+
+
+def test_the_page_s_impossible_soot_is_missed(model, tmp_path):
+    page = (ROOT / "docs" / "palette.md").read_text(encoding="utf-8")
+    text = next(text for text in re.findall(r"```toml\n(.*?)```", page, re.DOTALL) if "soot" in text)
+    (tmp_path / "soot.toml").write_text(text, encoding="utf-8")
+    told = [str(miss) for miss in misses(design(read_palette(tmp_path / "soot.toml"), model))]
+    assert [line[: line.index("; relax")] for line in told] == re.findall(
+        r"^missed: (.*?); relax", page, re.M
+    )
 
 
 def test_metamers_split_under_the_second_light(examples):
