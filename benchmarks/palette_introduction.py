@@ -176,6 +176,6 @@ model.rgb(model.product(wall, wall, lamp))  # linear sRGB of light that met the 
 
 Colours of whole spectra at 5 nm are the truth. So that dark ones count, each is exposed to a luminance of 18 %, and
 what is compared with it by the same factor; ΔE00 against the screen's white. One reflection: every measurement; two
-to four: {drawn} ways drawn at random, the same for all. RGB products take a surface's RGB under a flat white (eq. 9–12); under
-D65 instead, as textures are painted, they are worse.
+to four: {drawn} ways drawn at random, the same for all. RGB products take a surface's RGB under a flat white
+(eq. 9–12); under D65 instead, as textures are painted, they are worse.
 """

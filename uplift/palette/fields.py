@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -16,6 +17,11 @@ from uplift.sensor import Array, Sensor
 
 HEX = 7
 """Characters of '#rrggbb'."""
+CHANNELS = 3
+LARGEST = 1e6
+"""What is larger is a slip, and no number to solve equations with."""
+NAME = re.compile(r"[^\W_][\w .+-]*(?<! )")
+"""Names go into tables, pictures and atlases."""
 
 
 @dataclass
@@ -52,8 +58,8 @@ class Fields:
 
     def number(self, key: str, default: float | None = None, least: float = -math.inf) -> float:
         found = self._take(key, default)
-        if isinstance(found, bool) or not isinstance(found, int | float) or not math.isfinite(found):
-            raise self.error(f"'{key}' is {_told(found)}", "write a number")
+        if not _is_small(found):
+            raise self.error(f"'{key}' is {_told(found)}", f"write a number of at most {LARGEST:,.0f}")
         if found < least:
             raise self.error(f"'{key}' is {found:g}", f"write a number of at least {least:g}")
         return float(found)
@@ -68,8 +74,7 @@ class Fields:
         if found is False:
             return -math.inf, math.inf
         numbers = isinstance(found, list) and all(
-            isinstance(one, int | float) and not isinstance(one, bool) and not math.isnan(one)
-            for one in found
+            _is_small(one) or one in (-math.inf, math.inf) for one in found
         )
         if not numbers or len(found) != 2 or not found[0] < found[1]:
             raise self.error(f"'{key}' is {_told(found)}", "write [low, high] or false")
@@ -89,15 +94,21 @@ class Fields:
         try:
             if isinstance(found, str) and len(found) == HEX and found[0] == "#":
                 return sensor.decode(list(bytes.fromhex(found[1:])))
-            if isinstance(found, list) and not any(isinstance(one, bool) for one in found):
-                rgb = np.array(found, dtype=float)
-                if rgb.shape == (3,) and np.isfinite(rgb).all():
-                    return rgb
-        except (TypeError, ValueError):
+        except ValueError:
             pass
+        if isinstance(found, list) and len(found) == CHANNELS and all(map(_is_small, found)):
+            return np.array(found, dtype=float)
         raise self.error(
             f"'{key}' is {_told(found)}, no colour", "write '#cc3319', or linear [0.6, 0.03, 0.01]"
         )
+
+    def name(self, name: str) -> str:
+        """The name of a part, if it is a plain one."""
+        if not NAME.fullmatch(name):
+            raise self.error(
+                f"{_told(name)} is no name", "write letters, digits, blanks, '.', '+', '-' and '_'"
+            )
+        return name
 
     def finish(self) -> None:
         """Refuse keys that nobody took."""
@@ -123,6 +134,11 @@ class Fields:
 
     def _name(self, key: str) -> str:
         return f"{self.place}.{key}" if self.place else key
+
+
+def _is_small(found: object) -> bool:
+    """Whether it is a number that one may compute with."""
+    return isinstance(found, int | float) and not isinstance(found, bool) and abs(found) <= LARGEST
 
 
 def _told(found: object) -> str:

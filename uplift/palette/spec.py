@@ -64,7 +64,7 @@ def _parse(path: str | os.PathLike[str]) -> dict[str, Any]:
 def _parts(fields: Fields, sensor: Sensor, make: Callable[[str, Fields, Sensor], Part]) -> tuple[Part, ...]:
     if not fields.values:
         raise fields.error("there are none", "name at least one")
-    return tuple(make(name, fields.table(name), sensor) for name in fields.values)
+    return tuple(make(fields.name(name), fields.table(name), sensor) for name in fields.values)
 
 
 def _wishes(
@@ -87,7 +87,7 @@ def _wish(row: Fields, material: str, light: str, value: object, sensor: Sensor)
     fields = row.table(light)
     weight = fields.number("weight", 1.0, least=0)
     if fields.has("free"):
-        wish = Wish(material, light, free=fields.text("free"), weight=weight)
+        wish = Wish(material, light, free=fields.name(fields.text("free")), weight=weight)
     else:
         wish = Wish(material, light, rgb=fields.colour("rgb", sensor), weight=weight)
     fields.finish()
