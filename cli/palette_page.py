@@ -52,12 +52,12 @@ def read_picture(
 
 
 def _told(labels: tuple[str, ...]) -> dict[str, str] | None:
-    """Colour by material; a name may hold '=' too."""
+    """Colour by material."""
     from uplift.errors import OptionError
 
     told: dict[str, str] = {}
     for label in labels:
-        name, sign, colour = label.rpartition("=")
+        name, sign, colour = label.partition("=")
         if not sign:
             raise OptionError(f"label '{label}' has no colour", remedy="write it as NAME=#rrggbb")
         if name in told:
