@@ -74,6 +74,11 @@ mixing: $(INSTALLED)
 scenes: pictures
 	$(BIN)/python -m benchmarks.scenes
 
+# The light dial in Chromium, frames a second: docs/palette-dial.md.
+.PHONY: dial
+dial: $(INSTALLED)
+	$(BIN)/python -m benchmarks.dial
+
 # How near the factor model of palettes comes, and the examples: docs/palette.md and its pictures.
 palette: $(INSTALLED)
 	$(BIN)/python -m benchmarks.palette

@@ -17,7 +17,8 @@ uplift build --atlas paints.txt --dim auto
 It prints the matrix of the palette: for every material under every light the colour wanted, the colour obtained, and
 that of the factor model (below), with ΔE00 from the first to the second and from the second to the third. `--atlas`
 writes the designed materials as an atlas, so that they constrain a cube like measured ones; `--format json` holds all
-spectra, those of designed lights too.
+spectra, those of designed lights too. `--html` writes a page that mixes the lights on a picture of the materials, in
+real time ([palette-dial.md](palette-dial.md)).
 
 ## Four effects
 

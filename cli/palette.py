@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .options import force_option, format_option
+from .palette_page import page_options, read_picture, write_page
 from .palette_tables import PRINTERS
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 )
 @click.option("--matrix", "matrix_path", metavar="PNG", help="Draw the matrix of colours.")
 @click.option("--spectra", "spectra_path", metavar="PNG", help="Draw the spectra of lights and materials.")
+@page_options
 @format_option("table", "json")
 @force_option()
 def command(
@@ -27,6 +29,9 @@ def command(
     atlas: str | None,
     matrix_path: str | None,
     spectra_path: str | None,
+    html: str | None,
+    image: str | None,
+    labels: tuple[str, ...],
     style: str,
     force: bool,
 ) -> None:
@@ -42,19 +47,23 @@ def command(
       uplift palette docs/palette/metamers.toml
       uplift palette docs/palette/metamers.toml --matrix matrix.png --spectra spectra.png
       uplift palette docs/palette/metamers.toml --atlas paints.txt
+      uplift palette docs/palette-dial/engine.toml --html engine.html
       uplift palette docs/palette/vanish.toml --format json > vanish.json
     """
     from uplift.files import check_output
     from uplift.palette import design, matrix, misses, read_palette, standard_model
 
-    for path in (atlas, matrix_path, spectra_path):
+    for path in (atlas, matrix_path, spectra_path, html):
         if path is not None:
             check_output(path, force=force)
     palette = read_palette(spec)
+    picture = read_picture(palette, html, image, labels)
     found = design(palette, standard_model(palette.sensor, palette.count))
     colours = matrix(found)
     PRINTERS[style](found, colours, misses(found))
     _write(found, atlas, matrix_path, spectra_path, force=force)
+    if html is not None:
+        write_page(found, spec, picture, html, force=force)
 
 
 def _write(
