@@ -45,6 +45,13 @@ def points_of(cube, *paths, encoding="auto", out_of_gamut="clip"):
     return Images(paths, encoding, out_of_gamut).points(data.pins, data.sensor, lambda done: None)
 
 
+def test_images_of_another_space_are_remarked_on(small_cube, tmp_path):
+    display_p3 = (0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.329)
+    path = write_exr(tmp_path / "a.exr", planes(np.full((2, 2, 3), 0.5, "f4")), chromaticities=display_p3)
+    with pytest.warns(UpliftWarning, match=r"a\.exr: the image names other primaries; .* taken for sRGB"):
+        points_of(small_cube, path)
+
+
 def test_its_points_are_those_of_the_whole_cube(scene_cube, macbeth_cube):
     part, whole = scene_cube.data, macbeth_cube.data
     there = part.present

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +14,7 @@ import numpy as np
 
 from uplift.cube import CubeData
 from uplift.cube.pins import MARGIN, Pins
-from uplift.errors import OptionError
+from uplift.errors import OptionError, UpliftWarning
 from uplift.lattice import CORNERS, Lattice, Mask
 from uplift.overflow import check_way
 from uplift.sensor import Array, Sensor
@@ -57,7 +58,10 @@ class Images:
     out_of_gamut: str = "clip"
 
     def points(self, pins: Pins, sensor: Sensor, watch: Watch) -> Mask:
-        """Raises `OptionError`, `TextureError`, and `ColourError` for colours outside [0, 1] that are an error."""
+        """Raises `OptionError`, `TextureError`, and `ColourError` for colours outside [0, 1] that are an error.
+
+        An `UpliftWarning` names images that say they are of another space.
+        """
         check_encoding(self.encoding)
         check_way(self.out_of_gamut)
         cells = np.zeros(pins.lattice.size, dtype=bool)
@@ -78,6 +82,8 @@ class Images:
     def _colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
         """Linear RGB (n, 3) in [0, 1] of an image, block by block."""
         with opened(path) as image:
+            for remark in image.remarks(sensor):
+                warnings.warn(f"{path}: {remark}", UpliftWarning, stacklevel=5)
             for part, places in coloured(image):
                 if places is None:
                     continue

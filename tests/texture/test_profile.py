@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import struct
 import zlib
 
@@ -16,23 +17,48 @@ from uplift.texture import profile
 
 GAMMA = struct.pack(">4sIIHxx", b"curv", 0, 1, round(2.2 * 256))
 LINEAR = struct.pack(">4sII", b"curv", 0, 0)
-SRGB_PARA = struct.pack(">4sIHH5i", b"para", 0, 3, 0, *(round(65536 * value) for value in profile.SRGB_CURVE))
+SRGB_PARA = struct.pack(
+    ">4sIHH5i",
+    b"para",
+    0,
+    3,
+    0,
+    *(round(65536 * n) for n in (2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)),
+)
+SRGB_1024 = (65535 * colour.models.eotf_sRGB(np.linspace(0, 1, 1024))).round().astype(int)
+SRGB_TABLE = struct.pack(">4sII1024H", b"curv", 0, 1024, *SRGB_1024)
 
 
-def icc(space, curve):
-    """A display profile with the primaries of a space of colour-science, adapted to D50."""
+def d50(space):
+    """Linear RGB of a space of colour-science to XYZ, adapted to D50."""
     found = colour.RGB_COLOURSPACES[space]
-    d50 = np.array([0.9642, 1, 0.8249])
     white = colour.xy_to_XYZ(found.whitepoint)
-    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(white, d50, transform="Bradford")
-    columns = adapt @ colour.normalised_primary_matrix(found.primaries, found.whitepoint)
+    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
+        white, [0.9642, 1, 0.8249], transform="Bradford"
+    )
+    return adapt @ colour.normalised_primary_matrix(found.primaries, found.whitepoint)
+
+
+def by_matrix(space, curve):
+    """A display profile of three colorants and a curve."""
     tags = {
         name: struct.pack(">4sI3i", b"XYZ ", 0, *(round(65536 * value) for value in column))
-        for name, column in zip((b"rXYZ", b"gXYZ", b"bXYZ"), columns.T, strict=True)
+        for name, column in zip((b"rXYZ", b"gXYZ", b"bXYZ"), d50(space).T, strict=True)
     }
-    tags |= dict.fromkeys((b"rTRC", b"gTRC", b"bTRC"), curve)
+    return icc(space, tags | dict.fromkeys((b"rTRC", b"gTRC", b"bTRC"), curve))
+
+
+def by_table(space):
+    """The same with the curve of sRGB, and a table of what each corner of RGB has for a matrix."""
+    corners = np.maximum(np.array(list(itertools.product((0, 1), repeat=3))) @ d50(space).T, 0)
+    head = struct.pack(">4sI4B9i2H", b"mft2", 0, 3, 3, 2, 0, *(65536 * np.eye(3, dtype=int)).ravel(), 1024, 2)
+    numbers = [*np.tile(SRGB_1024, 3), *(32768 * corners).round().astype(int).ravel(), *(0, 65535) * 3]
+    return icc(space, {b"A2B0": head + struct.pack(f">{len(numbers)}H", *numbers)})
+
+
+def icc(space, tags):
     text = space.encode("utf-16-be")
-    tags[b"desc"] = struct.pack(">4sIII4sII", b"mluc", 0, 1, 12, b"enUS", len(text), 28) + text
+    tags = {b"desc": struct.pack(">4sIII4sII", b"mluc", 0, 1, 12, b"enUS", len(text), 28) + text, **tags}
     start, table, body = 132 + 12 * len(tags), b"", b""
     for name, tag in tags.items():
         table += struct.pack(">4sII", name, start + len(body), len(tag))
@@ -51,47 +77,55 @@ def remarks(spectral, path):
     return texture.convert(spectral, path, path.with_suffix(".exr"), force=True).remarks
 
 
-SRGB_TOO = [
-    ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes(),
-    icc("sRGB", SRGB_PARA),
-    icc(
-        "sRGB",
-        struct.pack(
-            ">4sII1024H",
-            b"curv",
-            0,
-            1024,
-            *(65535 * colour.models.eotf_sRGB(np.linspace(0, 1, 1024))).round().astype(int),
-        ),
-    ),
-]
+SRGB_TOO = {
+    "by lcms": ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes(),
+    "parameters": by_matrix("sRGB", SRGB_PARA),
+    "a table": by_matrix("sRGB", SRGB_TABLE),
+}
 
 
-@pytest.mark.parametrize("data", SRGB_TOO, ids=["by lcms", "parameters", "a table"])
+@pytest.mark.parametrize("data", SRGB_TOO.values(), ids=SRGB_TOO)
 @pytest.mark.parametrize("suffix", ["png", "jpg", "tif"])
 def test_profiles_of_srgb_need_no_remark(data, suffix, spectral, tmp_path):
     assert remarks(spectral, save(tmp_path / f"a.{suffix}", data)) == ()
 
 
+CANNOT = "primaries that cannot be read and a curve that cannot be read"
+OTHERS = [
+    (by_matrix("Display P3", SRGB_PARA), "other primaries (Display P3)"),
+    (by_table("sRGB"), "primaries that cannot be read (sRGB)"),
+    (by_matrix("Adobe RGB (1998)", GAMMA), "other primaries and another curve (Adobe RGB (1998))"),
+    (by_matrix("sRGB", GAMMA), "another curve (sRGB)"),
+    (by_matrix("sRGB", LINEAR), "another curve (sRGB)"),
+    (by_matrix("sRGB", b"mft2 and so on"), f"{CANNOT} (sRGB)"),
+]
+
+
 @pytest.mark.parametrize("suffix", ["png", "jpg", "tif"])
-@pytest.mark.parametrize(
-    ("space", "curve", "told"),
-    [
-        ("Display P3", SRGB_PARA, "other primaries (Display P3)"),
-        ("Adobe RGB (1998)", GAMMA, "other primaries and another curve (Adobe RGB (1998))"),
-        ("sRGB", GAMMA, "another curve (sRGB)"),
-        ("sRGB", LINEAR, "another curve (sRGB)"),
-        ("sRGB", b"mft2 and so on", "a curve that cannot be read (sRGB)"),
-    ],
-)
-def test_profiles_of_other_spaces_are_told(suffix, space, curve, told, spectral, tmp_path):
-    path = save(tmp_path / f"a.{suffix}", icc(space, curve))
+@pytest.mark.parametrize(("data", "told"), OTHERS)
+def test_profiles_of_other_spaces_are_told(suffix, data, told, spectral, tmp_path):
+    path = save(tmp_path / f"a.{suffix}", data)
     assert remarks(spectral, path) == (f"the image names {told}; its colours are taken for sRGB",)
+
+
+@pytest.mark.parametrize("suffix", ["jpg", "tif"])  # PNG files lose them when they are read
+@pytest.mark.parametrize(
+    ("data", "name"),
+    [
+        (by_matrix("sRGB", GAMMA)[:300], "an ICC profile without a name"),
+        (by_matrix("sRGB", GAMMA).replace(b"RGB ", b"GRAY"), "sRGB"),
+        (b"no profile", "an ICC profile without a name"),
+    ],
+    ids=["cut short", "of greys", "none"],
+)
+def test_profiles_that_cannot_be_read_are_told(suffix, data, name, spectral, tmp_path):
+    (told,) = remarks(spectral, save(tmp_path / f"a.{suffix}", data))
+    assert told == f"the image names {CANNOT} ({name}); its colours are taken for sRGB"
 
 
 def test_the_profile_of_a_wide_cube_s_own_space_needs_no_remark(tmp_path):
     """Adobe RGB's white is adapted to D50 in the profile, and the cube's to its illuminant."""
-    path = save(tmp_path / "a.png", icc("Adobe RGB (1998)", GAMMA))
+    path = save(tmp_path / "a.png", by_matrix("Adobe RGB (1998)", GAMMA))
     handle = OpenImageIO.ImageInput.open(str(path))
     found = profile.profile_of(handle.spec())
     handle.close()
@@ -121,33 +155,15 @@ def test_code_points_of_a_png_are_told(points, told, spectral, tmp_path):
     assert remarks(spectral, path) == expected
 
 
-@pytest.mark.parametrize(
-    ("kind", "numbers", "expected"),
-    [
-        (0, (2.0,), lambda x: x**2),
-        (1, (2.0, 2.0, -1.0), lambda x: np.where(x >= 0.5, (2 * x - 1) ** 2, 0)),
-        (2, (2.0, 1.6, -0.8, 0.25), lambda x: np.where(x >= 0.5, (1.6 * x - 0.8) ** 2 + 0.25, 0.25)),
-        (3, profile.SRGB_CURVE, colour.models.eotf_sRGB),
-        (
-            4,
-            (2.0, 0.5, 0.0, 0.5, 0.25, 0.5, 0.125),
-            lambda x: np.where(x >= 0.25, x**2 / 4 + 0.5, x / 2 + 0.125),
-        ),
-    ],
-)
-def test_parametric_curves(kind, numbers, expected):
-    tag = struct.pack(f">4sIHH{len(numbers)}i", b"para", 0, kind, 0, *(round(65536 * n) for n in numbers))
-    np.testing.assert_allclose(profile._curve(tag), expected(profile.CODES), rtol=0, atol=1e-4)
-
-
 def test_spoilt_profiles_are_read_as_far_as_they_go():
-    whole = icc("Display P3", SRGB_PARA)
+    whole = by_matrix("Display P3", SRGB_PARA)
     rng = np.random.default_rng(0)
-    for length in rng.integers(0, len(whole), 200):
+    read = 0
+    for length in rng.integers(0, 2 * len(whole), 300):
         spoilt = bytearray(whole[:length])
-        for place in rng.integers(0, max(length, 1), 8 if length else 0):
+        for place in rng.integers(0, max(len(spoilt), 1), 8 if spoilt else 0):
             spoilt[place] = rng.integers(256)
-        tags = profile._tags(bytes(spoilt))
-        curve = profile._curve(tags.get(b"gTRC", b""))
-        assert curve is None or (np.isfinite(curve).all() and curve.shape == (256,))
-        profile._colorants(tags)
+        found = profile._icc("spoilt", bytes(spoilt))
+        assert found.greys is None or found.greys.shape == (256, 3)
+        read += found.greys is not None
+    assert 0 < read < 300

@@ -24,7 +24,7 @@ from uplift.overflow import check_way, contained
 from uplift.sensor import Array
 from uplift.texture import Counts, Uplifter
 from uplift.texture.colours import MOVED, Floats, check_encoding
-from uplift.texture.conversion import Watch, other_primaries
+from uplift.texture.conversion import Watch
 from uplift.texture.plan import Plan, plans
 from uplift.texture.source import Image, Values, opened
 from uplift.texture.target import Writer, writing
@@ -97,7 +97,7 @@ def paint_over(
         except ColourError as error:
             raise ColourError(error.problem, path=source, remedy=error.remedy) from error
         way = brush.uplifter.out_of_gamut
-        remarks = [*found.counts.remarks(way), *other_primaries(brush.uplifter.cube, image)]
+        remarks = [*found.counts.remarks(way), *image.remarks(brush.uplifter.cube.data.sensor)]
     if found.moved:
         remarks.append(f"{found.moved:,} painted pixels lie outside [0, 1]: {MOVED[way]}")
     return replace(found, remarks=tuple(remarks))

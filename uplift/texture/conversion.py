@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from uplift.errors import ColourError
-from uplift.lookup import Cube
 from uplift.texture.colours import Counts, Floats
 from uplift.texture.plan import Plan, plans
 from uplift.texture.source import Image, Values, opened
@@ -59,19 +58,8 @@ def convert(
                 counts = _write(uplifter, image, planned, writer, watch)
         except ColourError as error:
             raise ColourError(error.problem, path=source, remedy=error.remedy) from error
-    remarks = (*counts.remarks(uplifter.out_of_gamut), *other_primaries(uplifter.cube, image))
+    remarks = (*counts.remarks(uplifter.out_of_gamut), *image.remarks(uplifter.cube.data.sensor))
     return Conversion(Path(source), Path(target), counts, remarks, time.perf_counter() - begin)
-
-
-def other_primaries(cube: Cube, image: Image) -> tuple[str, ...]:
-    """A remark on an image that says it is of another space."""
-    sensor = cube.data.sensor
-    remarks = []
-    for part in image.parts:
-        if part.profile is not None and (what := part.profile.unlike(sensor, codes=bool(part.codes))):
-            name = f" ({part.profile.name})" if part.profile.name else ""
-            remarks.append(f"the image names {what}{name}; its colours are taken for {sensor.space}")
-    return tuple(dict.fromkeys(remarks))
 
 
 def _write(uplifter: Uplifter, image: Image, planned: list[Plan], writer: Writer, watch: Watch) -> Counts:

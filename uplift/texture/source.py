@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.errors import TextureError
+from uplift.sensor import Sensor
 from uplift.texture.profile import Profile, profile_of
 
 FORMATS = ("openexr", "png", "jpeg", "tiff")
@@ -87,6 +88,15 @@ class Image:
     def text(self, name: str) -> str:
         """A text of the first part's header, empty where there is none."""
         return str(self.handle.spec(0).get_string_attribute(name))
+
+    def remarks(self, sensor: Sensor) -> tuple[str, ...]:
+        """One for each space that it names that is not the sensor's."""
+        told = []
+        for part in self.parts:
+            if part.profile is not None and (what := part.profile.unlike(sensor, codes=bool(part.codes))):
+                name = f" ({part.profile.name})" if part.profile.name else ""
+                told.append(f"the image names {what}{name}; its colours are taken for {sensor.space}")
+        return tuple(dict.fromkeys(told))
 
     def last(self, part: Part) -> Values:
         """The last row (1, width, channels). Raises `TextureError` where it is missing."""
