@@ -16,7 +16,8 @@ from dataclasses import replace
 import numpy as np
 
 from uplift.cube import CubeData
-from uplift.lookup.nodes import around, mix
+from uplift.lattice import mix
+from uplift.lookup.nodes import around
 from uplift.lookup.refine import towards
 from uplift.models import evaluate, reflectance
 from uplift.sensor import Array

@@ -28,7 +28,7 @@ _SAMPLES = 1 << 18
 """Samples held at a time."""
 _ROWS = 1 << 12
 """Spectra worked on at a time: what one needs stays in the cache."""
-_INWARD = (0.0, 1e-10, 1e-8, 1e-6, 1e-4)
+_INWARD = (1e-10, 1e-8, 1e-6, 1e-4)
 
 
 def cosines(phase: Array, count: int) -> Array:
@@ -92,20 +92,26 @@ def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
     ------
     UpliftError : no reflectance has these moments.
     """
-    dual: Any = mirrored.dual if np.isrealobj(moments) else circle.dual
+    dual = mirrored.dual if np.isrealobj(moments) else circle.dual
     grey = np.zeros_like(moments[:1])
     grey[:, 0] = 0.5
-    multipliers = np.empty_like(moments)
-    left = np.arange(len(moments))
+    multipliers, valid = _by_blocks(dual, moments)
     for share in _INWARD:
-        valid = np.empty(left.size, dtype=bool)
-        for first in range(0, left.size, _ROWS):
-            rows = left[first : first + _ROWS]
-            multipliers[rows], valid[first : first + _ROWS] = dual((1 - share) * moments[rows] + share * grey)
-        left = left[~valid]
+        left = np.flatnonzero(~valid)
         if not left.size:
             return multipliers
-    raise UpliftError(f"{len(left)} sets of coefficients are not the moments of any reflectance")
+        multipliers[left], valid[left] = _by_blocks(dual, (1 - share) * moments[left] + share * grey)
+    if valid.all():
+        return multipliers
+    raise UpliftError(f"{(~valid).sum()} sets of coefficients are not the moments of any reflectance")
+
+
+def _by_blocks(dual: Any, moments: RealOrComplex) -> tuple[RealOrComplex, NDArray[np.bool_]]:
+    multipliers, valid = np.empty_like(moments), np.empty(len(moments), dtype=bool)
+    for first in range(0, len(moments), _ROWS):
+        part = slice(first, first + _ROWS)
+        multipliers[part], valid[part] = dual(moments[part])
+    return multipliers, valid
 
 
 def _trapezoid(nodes: int, count: int) -> tuple[Array, Array]:
