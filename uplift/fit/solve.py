@@ -18,7 +18,7 @@ from uplift.models.least_change import Forward, residual, step
 from uplift.models.roots import STEEPEST
 from uplift.sensor import Array
 
-STEPS, MORE_STEPS = 2, 16
+STEPS, MORE_STEPS = 2, 8
 """Damped steps a pass: of many points most have arrived after two; of few it costs more to ask than to go on."""
 FEW = 1024
 """As many points are few."""
