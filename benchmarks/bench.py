@@ -35,9 +35,10 @@ Figures in this list were taken once, when each choice was made; all others are 
   nothing, be it a polynomial, a quotient or partial fractions: 20 passes over memory take the 10 ns that it takes.
 - *Temporary arrays* above a megabyte are given back to the system and fetched again, a page at a time: up to 1 µs a
   colour. A thousand colours at a time avoid that; a few hundred spend as much on calling numpy.
-- *The last points* of a lattice, some hundreds, go in batches of 64: a large one takes as long as its slowest point, all
-  2,048 rows of it, 15 ms of each block. Smaller batches, sorted ones and one shape for both gained nothing; more steps
-  a pass gain 5 %, but take the table of smooth spectra elsewhere. Whole columns for rows cost XLA a tenth of a step.
+- *The last points* of a lattice, some hundreds, go in batches of 64: a large one goes on for its slowest point with all
+  2,048 rows, some 15 ms a block. Smaller batches, and points sorted by what they miss, gained nothing; more steps a
+  pass gain some per cent, but take the table of smooth spectra elsewhere. Spectra as columns, which numpy likes, cost
+  XLA a tenth of a step.
 - *Single precision* for the first step would save 0.3 µs a point of some ten; not kept. *Fewer wavelengths* lose
   what the table below says.
 """
