@@ -31,8 +31,9 @@ Figures in this list were taken once, when each choice was made; all others are 
   to compile. Real moments need no complex number: half of that again. *Back*, quadrature nodes are put between those
   there instead of taken anew.
 - *Refined lookups* evaluate a colour once and then follow what each step changes, the arc tangents of small numbers:
-  three quarters of the time. Five in six are there after one step at 32³. In numpy an arc tangent of one's own gains
-  nothing, be it a polynomial, a quotient or partial fractions: 20 passes over memory take the 10 ns that it takes.
+  three quarters of the time. Five in six are there after one step at 32³. An arc tangent of one's own would gain
+  nothing in numpy: even a quotient of polynomials takes some 25 passes over memory, which at 0.2 to 0.5 ns, and 1.4 for
+  a root, come to about the 10 ns of numpy's own.
 - *Temporary arrays* above a megabyte are given back to the system and fetched again, a page at a time: up to 1 µs a
   colour. A thousand colours at a time avoid that; a few hundred spend as much on calling numpy.
 - *The last points* of a lattice, some hundreds, go in batches of 64: a large one goes on for its slowest point with all
