@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
 from itertools import product
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ from uplift.sensor import Array
 
 Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
+Values = NDArray[Any]
+"""float64 or float32."""
 
 CORNERS = np.array(list(product((0, 1), repeat=3)))
 """(8, 3) steps from a cell's lowest point to its corners."""
@@ -132,3 +135,10 @@ class Lattice:
         position = self.position(index)[:, None, :] + self.steps
         inside: Mask = np.all((position >= 0) & (position < self.dim), axis=-1)
         return self.index(np.clip(position, 0, self.dim - 1)), inside
+
+
+def mix(values: Values, points: Indices, weights: Array) -> Values:
+    """Rows (n, K) of values (m, K), weighted: points and weights (n, 8)."""
+    # Indices are known to be good: "clip" spares the check, and the copy that it would need.
+    corners = values.take(points, axis=0, mode="clip")
+    return (weights.astype(values.dtype, copy=False)[:, None, :] @ corners)[:, 0, :]

@@ -16,20 +16,21 @@ LARGE, SMALL = HOST
 
 
 @pytest.mark.parametrize(
-    ("count", "sizes"),
+    ("count", "smaller", "sizes"),
     [
-        (0, []),
-        (1, [SMALL]),
-        (SMALL + 1, [SMALL, SMALL]),
-        (4 * SMALL, [SMALL] * 4),
-        (4 * SMALL + 1, [LARGE]),
-        (LARGE, [LARGE]),
-        (2 * LARGE + 3, [LARGE, LARGE, SMALL]),
+        (0, 4, []),
+        (1, 4, [SMALL]),
+        (SMALL + 1, 4, [SMALL, SMALL]),
+        (4 * SMALL, 4, [SMALL] * 4),
+        (4 * SMALL + 1, 4, [LARGE]),
+        (4 * SMALL + 1, 5, [SMALL] * 5),
+        (LARGE, 4, [LARGE]),
+        (2 * LARGE + 3, 4, [LARGE, LARGE, SMALL]),
     ],
 )
-def test_every_row_is_in_one_batch(count, sizes):
+def test_every_row_is_in_one_batch(count, smaller, sizes):
     rows = np.arange(count) + 7
-    parts = list(batches(rows))
+    parts = list(batches(rows, smaller))
     np.testing.assert_array_equal(np.concatenate([rows[:0], *(part for part, _ in parts)]), rows)
     assert [len(padded) for _, padded in parts] == sizes
     for part, padded in parts:

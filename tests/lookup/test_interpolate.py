@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from uplift.lookup import MODES
-from uplift.lookup.interpolate import REFINED, lattice_spectra, refined_multipliers
+from uplift.lookup.interpolate import lattice_spectra, refined_multipliers
+from uplift.lookup.refine import REFINED
 from uplift.models import reflectance
 
 

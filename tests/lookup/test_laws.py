@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from uplift.lookup.nodes import around, mix
+from uplift.lattice import mix
+from uplift.lookup.nodes import around
 from uplift.models import reflectance
 
 colours = arrays(float, (5, 3), elements=st.floats(0, 1))

@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.integrate import quad
-from scipy.linalg import toeplitz
 
 from uplift.errors import UpliftError
 from uplift.models import duality
@@ -41,23 +40,6 @@ def test_a_grey_has_its_reflectance_as_moment_and_nothing_else():
     moments = duality.moments_from_multipliers(multipliers)
     np.testing.assert_allclose(moments[:, 0], 0.5 + np.arctan([-1, 0, 2]) / np.pi, atol=1e-15)
     np.testing.assert_allclose(moments[:, 1:], 0, atol=1e-15)
-
-
-def test_levinson_solves_what_a_dense_solver_solves():
-    rng = np.random.default_rng(5)
-    column = rng.normal(size=(20, 9)) + 1j * rng.normal(size=(20, 9))
-    column[:, 0] = 12
-    solution, scale, positive = duality.levinson(column.T)
-    assert positive.all()
-    for row, q in zip(column, (solution / scale).T, strict=True):
-        np.testing.assert_allclose(toeplitz(row) @ q, np.eye(9)[0], atol=1e-12)
-
-
-def test_levinson_says_where_the_matrix_is_not_positive():
-    column = np.array([[1.0, 2.0], [-1.0, 0.1], [2.0, 0.5]], dtype=complex)
-    with np.errstate(all="ignore"):
-        *_, positive = duality.levinson(column.T)
-    assert positive.tolist() == [False, False, True]
 
 
 def test_near_boxes_take_more_nodes_and_are_as_exact():

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from uplift.models.product import ALONE, product
+from uplift.models.product import ALONE, across, product
 
 
 @pytest.mark.parametrize(
@@ -17,6 +17,12 @@ def test_slices_do_not_show(count, shape):
     rows, matrix = rng.normal(size=(count, shape[0])), rng.normal(size=shape)
     for one, other in ((rows, matrix), (rows.copy("F"), matrix.copy("F"))):
         np.testing.assert_allclose(product(one, other), rows @ matrix, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(across(other.T, one.T), (rows @ matrix).T, rtol=1e-12, atol=1e-12)
+
+
+def test_columns_may_be_some_of_more():
+    matrix, columns = np.arange(6.0).reshape(2, 3), np.arange(30.0).reshape(3, 10)
+    np.testing.assert_allclose(across(matrix, columns[:, 3:7]), (matrix @ columns)[:, 3:7])
 
 
 def test_jax_arrays_are_taken():

@@ -18,15 +18,15 @@ HOST, ACCELERATOR = (2048, 64), (1 << 17, 4096)
 """Rows of a batch on each device: what the cache of a core holds or keeps a GPU busy, and a size for small rounds."""
 
 
-def batches(rows: Indices) -> Iterator[tuple[Indices, Indices]]:
+def batches(rows: Indices, smaller: int = 4) -> Iterator[tuple[Indices, Indices]]:
     """Split ``rows``; with each part, the part with its last row repeated up to the size of a batch.
 
-    Parts are of the larger size as long as they fill it; the rest is too, or of the smaller one where it is small.
+    Parts are of the larger size as long as they fill it; the rest is too, or up to so many of the ``smaller`` size.
     """
     devices = len(jax.devices())
     large, small = (devices * size for size in (HOST if jax.default_backend() == "cpu" else ACCELERATOR))
     whole = len(rows) // large * large
-    size = large if len(rows) - whole > 4 * small else small
+    size = large if len(rows) - whole > smaller * small else small
     for first, last, width in ((0, whole, large), (whole, len(rows), size)):
         for begin in range(first, last, width):
             part = rows[begin : min(begin + width, last)]

@@ -14,7 +14,7 @@ import numpy as np
 from uplift.fit.quadrature import compiled
 from uplift.fit.realisable import NONE, Unrealisable
 from uplift.fit.solve import solve
-from uplift.lattice import Lattice
+from uplift.lattice import Lattice, mix
 from uplift.models import Model
 from uplift.models.least_change import Forward
 from uplift.sensor import Array
@@ -45,8 +45,7 @@ class Smooth:
         if self.coefficients is None:
             return _grey(self.model, rgb, self.grey)
         factor = np.maximum(rgb.max(axis=1), DARKEST)[:, None] ** self.brightening
-        corners, weights = self.table.corners(np.minimum(rgb / factor, 1))
-        bright = (weights[:, None, :] @ self.coefficients[corners])[:, 0, :]
+        bright = mix(self.coefficients, *self.table.corners(np.minimum(rgb / factor, 1)))
         return self.model.from_storage(factor * bright)
 
 

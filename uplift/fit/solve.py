@@ -22,6 +22,8 @@ STEPS, MORE_STEPS = 2, 8
 """Damped steps a pass: of many points most have arrived after two; of few it costs more to ask than to go on."""
 FEW = 1024
 """As many points are few."""
+SMALLER = 12
+"""Small batches that together take less than a large one, which goes on for as long as its last point does."""
 FIRST_DAMPING = 1e-6
 """μ at the start; a quarter of it after a step that helped, four times after one that did not."""
 
@@ -60,7 +62,7 @@ def solve(
         for _ in range(passes):
             before = distance[left]
             steps = MORE_STEPS if len(left) <= FEW else STEPS
-            for rows, padded in batches(left):
+            for rows, padded in batches(left, SMALLER):
                 batch = (put(array[padded]) for array in (multipliers, damping, target))
                 found = _advance(model, constants, *batch, tolerance, steps)
                 for whole, part in zip((multipliers, damping, distance), found, strict=True):

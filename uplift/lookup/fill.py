@@ -12,8 +12,9 @@ from uplift.cube import CubeData, digest
 from uplift.errors import ColourError
 from uplift.lattice import Indices, Status
 from uplift.lookup.blocks import blockwise
-from uplift.lookup.interpolate import refined, towards
+from uplift.lookup.interpolate import refined
 from uplift.lookup.nodes import cells
+from uplift.lookup.refine import towards
 from uplift.models import reflectance
 from uplift.sensor import Array, Sensor
 

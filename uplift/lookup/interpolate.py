@@ -16,17 +16,11 @@ from dataclasses import replace
 import numpy as np
 
 from uplift.cube import CubeData
-from uplift.lookup.nodes import around, mix
-from uplift.models import Model, evaluate, reflectance
-from uplift.models.least_change import Forward, forward, residual, step
-from uplift.models.roots import STEEPEST
+from uplift.lattice import mix
+from uplift.lookup.nodes import around
+from uplift.lookup.refine import towards
+from uplift.models import evaluate, reflectance
 from uplift.sensor import Array
-
-REFINED = 1e-8
-"""Residual, max |linear RGB|, at which ``refined`` stops."""
-MOST_STEPS = 24
-FIRST_DAMPING = 1e-2
-"""μ after a full step that did not help; nearly all colours need two full steps and no damping."""
 
 
 def coefficients(data: CubeData, rgb: Array) -> Array:
@@ -80,41 +74,6 @@ def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
     """Multipliers (n, C) that start at the interpolated coefficients and evaluate to ``rgb`` (n, 3)."""
     return towards(data, data.model.from_storage(coefficients(data, rgb)), rgb)
-
-
-def towards(data: CubeData, start: Array, rgb: Array) -> Array:
-    """Multipliers ``start`` (n, C) moved to ``rgb`` (n, 3) by steps of least change, in place.
-
-    Where a start is hopeless, as the sigmoid's near white in coarse cells, they start from grey.
-    """
-    ahead = forward(data.model, data.sensor.wavelengths, data.sensor.matrix)
-    multipliers, distance = _descend(data.model, ahead, start, rgb)
-    rows = np.flatnonzero(distance > data.threshold)
-    if rows.size:
-        again, distance_again = _descend(data.model, ahead, np.zeros_like(multipliers[rows]), rgb[rows])
-        better = distance_again < distance[rows]
-        multipliers[rows[better]] = again[better]
-    return multipliers
-
-
-def _descend(model: Model, ahead: Forward, multipliers: Array, rgb: Array) -> tuple[Array, Array]:
-    """Steps of least change, in place, each only where it helps; multipliers (n, C) and distance (n,)."""
-    off = residual(model, ahead, multipliers, rgb)
-    damping = np.zeros(len(rgb))
-    for _ in range(MOST_STEPS):
-        rows = np.flatnonzero(np.abs(off).max(axis=1) > REFINED)
-        if not rows.size:
-            break
-        here = multipliers[rows]
-        with np.errstate(over="ignore", invalid="ignore"):  # steps too far are turned down
-            there = here + step(model, ahead, here, off[rows], damping[rows])
-            off_there = residual(model, ahead, there, rgb[rows])
-        better = (off_there**2).sum(axis=1) < (off[rows] ** 2).sum(axis=1)
-        better &= np.abs(there).max(axis=1) <= STEEPEST
-        multipliers[rows[better]] = there[better]
-        off[rows[better]] = off_there[better]
-        damping[rows] = np.where(better, damping[rows] / 16, 4 * damping[rows] + FIRST_DAMPING)
-    return multipliers, np.abs(off).max(axis=1)
 
 
 Mode = Callable[[CubeData, Array, Array], Array]

@@ -7,19 +7,14 @@ Whatever nodes carry, be it coefficients, spectra or errors, is mixed alike, or 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.cube import CubeData
 from uplift.cube.pins import Pinned
 from uplift.errors import ColourError
-from uplift.lattice import Indices, Mask
+from uplift.lattice import Indices, Mask, Values, mix
 from uplift.sensor import Array
-
-Values = NDArray[Any]
-"""float64 or float32."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,13 +52,6 @@ class Nodes:
         own = self.share * (1 + weights[self.rows]) <= 1
         found[self.rows[own]] = atlas[self.entry[own]]
         return found
-
-
-def mix(values: Values, points: Indices, weights: Array) -> Values:
-    """Rows (n, K) of values (m, K), weighted: points and weights (n, 8)."""
-    # Indices are known to be good: "clip" spares the check, and the copy that it would need.
-    corners = values.take(points, axis=0, mode="clip")
-    return (weights.astype(values.dtype, copy=False)[:, None, :] @ corners)[:, 0, :]
 
 
 def around(data: CubeData, rgb: Array) -> Nodes:

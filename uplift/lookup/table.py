@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from uplift.cube import CubeData
+from uplift.lattice import Values
 from uplift.lookup.blocks import blockwise
-from uplift.lookup.nodes import Values, around
+from uplift.lookup.nodes import around
 from uplift.models import reflectance
 from uplift.sensor import Array
 

@@ -1,18 +1,18 @@
 """Trigonometric moments ↔ multipliers of the bounded maximum-entropy spectrum (docs/mathematics.md, 4).
 
-Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded signals for spectral
-rendering", ACM TOG 38(4); Markoff 1896 for the duality between bounded and unbounded moment problems.
+`circle` and `mirrored` have the dual of complex and of real moments; `roots` the moments of near boxes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar, cast
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uplift.errors import UpliftError
+from uplift.models import circle, mirrored
 from uplift.models.arctan import arctan
 from uplift.models.roots import moments_by_roots
 from uplift.sensor import Array
@@ -28,7 +28,7 @@ _SAMPLES = 1 << 18
 """Samples held at a time."""
 _ROWS = 1 << 12
 """Spectra worked on at a time: what one needs stays in the cache."""
-_INWARD = (0.0, 1e-10, 1e-8, 1e-6, 1e-4)
+_INWARD = (1e-10, 1e-8, 1e-6, 1e-4)
 
 
 def cosines(phase: Array, count: int) -> Array:
@@ -92,39 +92,26 @@ def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
     ------
     UpliftError : no reflectance has these moments.
     """
+    dual = mirrored.dual if np.isrealobj(moments) else circle.dual
     grey = np.zeros_like(moments[:1])
     grey[:, 0] = 0.5
-    multipliers = np.empty_like(moments)
-    left = np.arange(len(moments))
+    multipliers, valid = _by_blocks(dual, moments)
     for share in _INWARD:
-        valid = np.empty(left.size, dtype=bool)
-        for first in range(0, left.size, _ROWS):
-            rows = left[first : first + _ROWS]
-            found, valid[first : first + _ROWS] = _dual((1 - share) * moments[rows] + share * grey)
-            multipliers[rows] = found
-        left = left[~valid]
+        left = np.flatnonzero(~valid)
         if not left.size:
             return multipliers
-    raise UpliftError(f"{len(left)} sets of coefficients are not the moments of any reflectance")
+        multipliers[left], valid[left] = _by_blocks(dual, (1 - share) * moments[left] + share * grey)
+    if valid.all():
+        return multipliers
+    raise UpliftError(f"{(~valid).sum()} sets of coefficients are not the moments of any reflectance")
 
 
-def levinson(column: Complex) -> tuple[Complex, Array, NDArray[np.bool_]]:
-    """Solve T q = e₀ for Hermitian Toeplitz T with first ``column`` (C, n); also say where T is positive.
-
-    Durbin's form of Levinson's recursion: a solution of order k, padded, and its own mirror image make up one
-    of order k + 1. It comes as (C, n) with q_0 taken out, and 1 / q_0 (n,), which saves a division a number.
-    """
-    solution = np.zeros_like(column)
-    solution[0] = 1
-    scale = column[0].real.copy()
-    positive = scale > 0
-    for order in range(1, len(column)):
-        reflection = (column[order:0:-1] * solution[:order]).sum(axis=0) / scale
-        mirror = solution[order - 1 :: -1].conj()
-        solution[1 : order + 1] -= reflection * mirror
-        scale *= 1 - (reflection.real**2 + reflection.imag**2)
-        positive &= scale > 0
-    return solution, scale, positive
+def _by_blocks(dual: Any, moments: RealOrComplex) -> tuple[RealOrComplex, NDArray[np.bool_]]:
+    multipliers, valid = np.empty_like(moments), np.empty(len(moments), dtype=bool)
+    for first in range(0, len(moments), _ROWS):
+        part = slice(first, first + _ROWS)
+        multipliers[part], valid[part] = dual(moments[part])
+    return multipliers, valid
 
 
 def _trapezoid(nodes: int, count: int) -> tuple[Array, Array]:
@@ -145,48 +132,3 @@ def _analysis(table: Array, weights: Array) -> Array:
     projection = weights[:, None] * table
     projection[:, 1:] /= 2
     return projection
-
-
-def _dual(moments: RealOrComplex) -> tuple[RealOrComplex, NDArray[np.bool_]]:
-    """Multipliers (n, C) by docs/mathematics.md, 4, and where (n,) they can be trusted.
-
-    Inside, the order comes first, so that all arithmetic runs along contiguous spectra.
-    """
-    orders = cast(RealOrComplex, np.ascontiguousarray(moments.T))
-    with np.errstate(all="ignore"):
-        # The dual knows the zeroth moment only up to whole numbers.
-        bounded = (orders[0].real >= 0) & (orders[0].real <= 1)
-        exponential = _exponential_moments(orders)
-        column = exponential / 2
-        column[0] = exponential[0].real
-        solution, scale, positive = levinson(column)
-        multipliers = _bounded(exponential, solution, mirrored=np.isrealobj(moments)) / scale
-    return cast(RealOrComplex, multipliers.T), bounded & positive & np.isfinite(multipliers).all(axis=0)
-
-
-def _exponential_moments(moments: RealOrComplex) -> Complex:
-    h = np.empty(moments.shape, dtype=complex)
-    h[0] = np.exp(1j * np.pi * (moments[0].real - 0.5))
-    scaled = 2j * np.pi * np.arange(len(moments))[:, None] * moments
-    for order in range(1, len(moments)):
-        h[order] = (scaled[order:0:-1] * h[:order]).sum(axis=0) / order
-    return h
-
-
-def _bounded(h: Complex, q: Complex, *, mirrored: bool) -> Array | Complex:
-    """Σ_k n_{k+l} q̄_k / i (C, n); of a mirrored signal the real part, as the rest is nothing."""
-    n = np.stack([(h[: k + 1] * q[k::-1]).sum(axis=0) for k in range(len(h))]) / 1j
-    parts = [np.ascontiguousarray(part) for part in (n.real, n.imag, q.real, q.imag)]
-    n_real, n_imaginary, q_real, q_imaginary = parts
-    real = _correlation(n_real, q_real) + _correlation(n_imaginary, q_imaginary)
-    if mirrored:
-        return real
-    imaginary = _correlation(n_imaginary, q_real) - _correlation(n_real, q_imaginary)
-    imaginary[0] = 0
-    return real + 1j * imaginary
-
-
-def _correlation(first: Array, second: Array) -> Array:
-    """Σ_k first_{k+l} second_k of all lags l (C, n)."""
-    count = len(first)
-    return np.stack([(first[lag:] * second[: count - lag]).sum(axis=0) for lag in range(count)])

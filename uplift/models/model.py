@@ -39,6 +39,10 @@ class Model(Protocol):
         """Derivative of ``squash``."""
         ...
 
+    def rise(self, x: Array, change: Array) -> Array:
+        """squash(x + change) − squash(x) of (N, n), quicker where little changes. numpy alone."""
+        ...
+
     def unsquash(self, reflectance: Array) -> Array:
         """The linear part that ``squash`` takes to a reflectance in (0, 1). numpy alone."""
         ...

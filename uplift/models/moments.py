@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from uplift.errors import OptionError
 from uplift.models import duality
-from uplift.models.arctan import arctan
+from uplift.models.arctan import arctan, arctan_rise
 from uplift.models.duality import Quadrature
 from uplift.models.phase import Phase
 from uplift.sensor import Array
@@ -47,6 +47,9 @@ class Moments:
 
     def slope(self, x: Any) -> Any:
         return 1 / (np.pi * (1 + x * x))
+
+    def rise(self, x: Array, change: Array) -> Array:
+        return arctan_rise(x, change) / np.pi
 
     def unsquash(self, reflectance: Array) -> Array:
         return np.tan(np.pi * (reflectance - 0.5))

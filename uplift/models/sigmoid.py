@@ -39,6 +39,9 @@ class Sigmoid:
     def slope(self, x: Any) -> Any:
         return 0.5 / (1 + x * x) ** 1.5
 
+    def rise(self, x: Array, change: Array) -> Array:
+        return np.asarray(self.squash(x + change) - self.squash(x))
+
     def unsquash(self, reflectance: Array) -> Array:
         half = reflectance - 0.5
         return np.asarray(2 * half / np.sqrt(1 - 4 * half * half))
