@@ -60,7 +60,7 @@ class Images:
         cells = np.zeros(pins.lattice.size, dtype=bool)
         for done, path in enumerate(self.paths):
             watch(Reading(done, len(self.paths)))
-            for rgb in _colours(path, sensor, self.encoding):
+            for rgb in colours_of(path, sensor, self.encoding):
                 cells[touched(pins.lattice, rgb)] = True
         if not cells.any():
             raise OptionError(
@@ -108,7 +108,7 @@ def touched(lattice: Lattice, rgb: Array) -> Array:
     return np.concatenate([lattice.index(low), lattice.index(beside)])
 
 
-def _colours(path: Path, sensor: Sensor, encoding: str) -> Iterator[Array]:
+def colours_of(path: Path, sensor: Sensor, encoding: str) -> Iterator[Array]:
     """Linear RGB (n, 3) in [0, 1] of an image, block by block."""
     with opened(path) as image:
         for part, places in coloured(image):
