@@ -16,6 +16,7 @@ COMMANDS = (
     "build",
     "query",
     "texture",
+    "plan",
     "chart",
     "check",
     "report",

@@ -70,7 +70,7 @@ class Images:
 
     def describe(self) -> list[dict[str, Any]]:
         return [
-            {"name": path.name, "digest": _digest(path), "encoding": self.encoding} for path in self.paths
+            {"name": path.name, "digest": file_digest(path), "encoding": self.encoding} for path in self.paths
         ]
 
 
@@ -121,6 +121,7 @@ def colours_of(path: Path, sensor: Sensor, encoding: str) -> Iterator[Array]:
                     yield decode(pixels[first : first + BLOCK, places])[0].astype(float)
 
 
-def _digest(path: Path) -> str:
+def file_digest(path: Path) -> str:
+    """sha256 (hex) of a file."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,0 +1,92 @@
+"""A plan as one HTML page that needs nothing else: what to build, and what each candidate would have cost."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+
+from uplift.chart.numbers import error_told
+from uplift.plan.decision import Decision
+from uplift.plan.lines import build_line, spelt_line, texture_line
+from uplift.plan.planning import Plan
+from uplift.plan.told import about, rows, unknown, verdict
+from uplift.report.markup import Markup, element, number
+from uplift.report.page_parts import note, right, table
+
+
+def page(plan: Plan, path: Path) -> str:
+    """The whole HTML text; ``path`` is that of the plan's file."""
+    styles = files("uplift.report").joinpath("page.css").read_text(encoding="utf-8")
+    title = f"A plan for {plan.brief.path.stem}"
+    head = element(
+        "head",
+        element("meta", charset="utf-8"),
+        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        element("title", title),
+        element("style", Markup(styles)),
+    )
+    body = element(
+        "body",
+        element("header", element("h1", title), element("p", f"{verdict(plan)}.", class_="lead")),
+        _summary(plan),
+        _lines(plan, path),
+        *(_section(decision) for decision in plan.decisions),
+        _judged(plan),
+    )
+    return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
+
+
+def _summary(plan: Plan) -> Markup:
+    lines = [
+        [row.title, element("b", row.chosen), number(row.error), row.cost, element("code", row.typed)]
+        for row in rows(plan)
+    ]
+    headings = ["", "the least that will do", right("ΔE00 so far"), "cost", "say"]
+    return element("section", table(headings, lines), note(f"{about(plan)}. {unknown(plan)}"))
+
+
+def _lines(plan: Plan, path: Path) -> Markup:
+    typed = (build_line(path), spelt_line(plan, path), texture_line(plan, path))
+    return element(
+        "section", element("h2", "To type"), *(element("p", element("code", line)) for line in typed)
+    )
+
+
+def _section(decision: Decision) -> Markup:
+    lines = [
+        [
+            element("td", element("b", trial.name) if place == decision.taken else trial.name, class_="name"),
+            trial.told,
+            number(error_told(trial.error.quantile)),
+            number(error_told(trial.error.worst.mean)),
+            number(error_told(trial.error.worst.largest)),
+            f"{trial.error.worst.group}, {trial.error.worst.light}",
+        ]
+        for place, trial in enumerate(decision.trials)
+    ]
+    headings = ["", "cost", right("ΔE00"), right("mean"), right("largest"), "of"]
+    told = note(f"From the least on, until the chain so far stays within ΔE00 {decision.limit:g}.")
+    return element("section", element("h2", decision.title), told, table(headings, lines))
+
+
+def _judged(plan: Plan) -> Markup:
+    parts = zip(plan.predicted.parts, plan.confirmed.parts, strict=True)
+    lines = [
+        [one.group, one.light]
+        + [
+            number(error_told(value))
+            for part in (one, other)
+            for value in (part.mean, part.quantile, part.largest)
+        ]
+        for one, other in parts
+    ]
+    kinds = ("mean", f"{plan.brief.quantile:.4g}", "largest")
+    headings = [
+        "",
+        "light",
+        *(right(f"{who}, {kind}") for who in ("predicted", "confirmed") for kind in kinds),
+    ]
+    told = note(
+        "Predicted by the pixels that chose; confirmed by other pixels, asked of the cube that was built."
+    )
+    return element("section", element("h2", "Predicted, and confirmed"), told, table(headings, lines))
