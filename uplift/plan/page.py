@@ -6,12 +6,19 @@ from importlib.resources import files
 from pathlib import Path
 
 from uplift.chart.numbers import error_told
+from uplift.plan.charts import budget_chart, trials_chart
 from uplift.plan.decision import Decision
 from uplift.plan.lines import build_line, spelt_line, texture_line
 from uplift.plan.planning import Plan
-from uplift.plan.told import about, rows, unknown, verdict
+from uplift.plan.told import about, percent, rows, unknown, verdict
 from uplift.report.markup import Markup, element, number
-from uplift.report.page_parts import note, right, table
+from uplift.report.page_parts import note, right, swatch, table
+
+OWN = """
+.columns { grid-template-columns: repeat(auto-fit, minmax(430px, 1fr)); }
+.large .swatch i { width: 52px; height: 34px; } .large td { padding-right: 28px; }
+.budget { max-width: 860px; }
+"""
 
 
 def page(plan: Plan, path: Path) -> str:
@@ -23,13 +30,14 @@ def page(plan: Plan, path: Path) -> str:
         element("meta", charset="utf-8"),
         element("meta", name="viewport", content="width=device-width, initial-scale=1"),
         element("title", title),
-        element("style", Markup(styles)),
+        element("style", Markup(styles + OWN)),
     )
     body = element(
         "body",
         element("header", element("h1", title), element("p", f"{verdict(plan)}.", class_="lead")),
         _summary(plan),
         _lines(plan, path),
+        _sights(plan),
         *(_section(decision) for decision in plan.decisions),
         _judged(plan),
     )
@@ -42,7 +50,26 @@ def _summary(plan: Plan) -> Markup:
         for row in rows(plan)
     ]
     headings = ["", "the least that will do", right("ΔE00 so far"), "cost", "say"]
-    return element("section", table(headings, lines), note(f"{about(plan)}. {unknown(plan)}"))
+    told = note(f"{about(plan)}. {unknown(plan)}")
+    return element(
+        "section", table(headings, lines), told, element("div", budget_chart(plan), class_="budget")
+    )
+
+
+def _sights(plan: Plan) -> Markup:
+    """Pairs of swatches, a column for each share of the pixels."""
+    shares = list(dict.fromkeys(sight.share for sight in plan.sights))
+    lights = dict.fromkeys(sight.light for sight in plan.sights)
+    by_place = {(sight.light, sight.share): sight for sight in plan.sights}
+    lines = [
+        [light, *(element("td", swatch(seen.wanted, seen.planned), error_told(seen.delta_e)) for seen in row)]
+        for light, row in ((light, [by_place[light, share] for share in shares]) for light in lights)
+    ]
+    headings = ["", *(f"{percent(share)} of the pixels are no worse" for share in shares)]
+    told = note(
+        "Left the best cube at all wavelengths, right the plan; swatches touch, so that a difference shows."
+    )
+    return element("section", element("h2", "What it looks like"), told, table(headings, lines, "slim large"))
 
 
 def _lines(plan: Plan, path: Path) -> Markup:
@@ -65,8 +92,12 @@ def _section(decision: Decision) -> Markup:
         for place, trial in enumerate(decision.trials)
     ]
     headings = ["", "cost", right("ΔE00"), right("mean"), right("largest"), "of"]
-    told = note(f"From the least on, until the chain so far stays within ΔE00 {decision.limit:g}.")
-    return element("section", element("h2", decision.title), told, table(headings, lines))
+    told = note(
+        f"From the least on, until the chain so far stays within ΔE00 {decision.limit:g}, the dashed line."
+    )
+    figure = element("div", trials_chart(decision))
+    beside = element("div", figure, table(headings, lines), class_="columns")
+    return element("section", element("h2", decision.title), told, beside)
 
 
 def _judged(plan: Plan) -> Markup:
@@ -80,7 +111,7 @@ def _judged(plan: Plan) -> Markup:
         ]
         for one, other in parts
     ]
-    kinds = ("mean", f"{plan.brief.quantile:.4g}", "largest")
+    kinds = ("mean", percent(plan.brief.quantile), "largest")
     headings = [
         "",
         "light",

@@ -17,6 +17,7 @@ from uplift.plan.built import Built, built
 from uplift.plan.decision import Decision
 from uplift.plan.question import Error, Question
 from uplift.plan.rendering import Rendering
+from uplift.plan.sights import Sight, sights
 from uplift.plan.storage import Storage, storage
 from uplift.plan.wavelengths import wavelengths
 
@@ -40,6 +41,7 @@ class Plan:
     built : the cube as it was built in the end.
     predicted : the error by the pixels that chose; ``confirmed`` that of other pixels, by what was built.
     expected : ΔE00 under A that measurements of such colours may differ by from any answer; None where nobody knows.
+    sights : colours of the textures as they would be seen, from the plan and from the best cube.
     """
 
     brief: Brief
@@ -51,6 +53,7 @@ class Plan:
     predicted: Error
     confirmed: Error
     expected: float | None
+    sights: tuple[Sight, ...]
 
     @property
     def within(self) -> bool:
@@ -84,6 +87,7 @@ def plan(brief: Brief, effort: Effort | None = None, watch: Watch = lambda step:
     watch(Step("building it"))
     made = built(found, options)
     watch(Step("confirming"))
+    confirmed, shown = _confirmed(found, made, options, rendering, held)
     return Plan(
         brief=brief,
         decisions=(coefficients, lattice, fewest, pixel),
@@ -92,7 +96,8 @@ def plan(brief: Brief, effort: Effort | None = None, watch: Watch = lambda step:
         storage=held,
         built=made,
         predicted=pixel.trial.error,
-        confirmed=_confirmed(found, made, options, rendering, held),
+        confirmed=confirmed,
+        sights=shown,
         expected=_expected(made, question),
     )
 
@@ -110,14 +115,15 @@ def _check_reachable(brief: Brief, best: Error) -> None:
 
 def _confirmed(
     found: Bench, made: Built, options: Mapping[str, Any], rendering: Rendering, held: Storage
-) -> Error:
+) -> tuple[Error, tuple[Sight, ...]]:
     """By other pixels, and more of them, asked of the cube that was built."""
     question, _ = found.question(found.colours.confirming)
     answered = [held.read_back(made.cube, question.groups[0].rgb, rendering.wavelengths)]
     if len(found.materials):  # the textures may not have their colours, and the cube no points for them
         cube = found.cube(found.materials, **options)
         answered.append(held.read_back(cube, found.materials, rendering.wavelengths))
-    return question.seen(rendering.xyz(np.concatenate(answered)))
+    xyz = rendering.xyz(np.concatenate(answered))
+    return question.seen(xyz), sights(question, xyz, found.brief.observer)
 
 
 def _expected(made: Built, question: Question) -> float | None:

@@ -79,14 +79,21 @@ class Question:
 
     def seen(self, xyz: Sequence[Array]) -> Error:
         """Of the XYZ (n, 3) under each light; white has Y = 1, whoever computes them."""
-        ends = np.cumsum([len(group.rgb) for group in self.groups])
-        parts = []
+        ends = np.cumsum([len(group.rgb) for group in self.groups])[:-1]
+        parts = [
+            self._part(group, light, values)
+            for light, apart in zip(self.lights, self.apart(xyz), strict=True)
+            for group, values in zip(self.groups, np.split(apart, ends), strict=True)
+        ]
+        return Error(tuple(parts))
+
+    def apart(self, xyz: Sequence[Array]) -> list[Array]:
+        """ΔE00 (n,) under each light, of XYZ (n, 3) under each."""
+        found = []
         for light, seen in zip(self.lights, xyz, strict=True):
             apart = delta_e_2000(*(lab(each, light.white) for each in (self.wanted @ light.xyz.T, seen)))
-            apart = np.where(np.isfinite(apart), apart, WRONG)
-            for group, values in zip(self.groups, np.split(apart, ends[:-1]), strict=True):
-                parts.append(self._part(group, light, values))
-        return Error(tuple(parts))
+            found.append(np.where(np.isfinite(apart), apart, WRONG))
+        return found
 
     def _part(self, group: Group, light: Light, values: Array) -> Part:
         counts = np.quantile(values, self.share, weights=group.weights, method="inverted_cdf")

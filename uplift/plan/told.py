@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from uplift.chart.numbers import error_told, size_told
-from uplift.plan.built import WORTH, Built
+from uplift.plan.built import Built
 from uplift.plan.decision import Decision
 from uplift.plan.planning import Plan
 from uplift.plan.question import Error
@@ -56,8 +56,8 @@ def verdict(plan: Plan) -> str:
 def about(plan: Plan) -> str:
     """What the errors are."""
     return (
-        f"ΔE00 that {plan.brief.quantile:.4g} of the textures' pixels and of the atlas's materials stay within, under "
-        f"the worst of {', '.join(plan.brief.lights)}; pixels against a cube of the finest lattice and the most "
+        f"ΔE00 that {percent(plan.brief.quantile)} of the textures' pixels and of the atlas's materials stay within, "
+        f"under the worst of {', '.join(plan.brief.lights)}; pixels against a cube of the finest lattice and the most "
         "coefficients at all wavelengths, materials against their measurements"
     )
 
@@ -72,10 +72,11 @@ def unknown(plan: Plan) -> str:
     )
 
 
+def percent(share: float) -> str:
+    """97.5 %."""
+    return f"{100 * share:.4g} %"
+
+
 def deciding(error: Error) -> str:
     """textures under FL11."""
     return f"{error.worst.group} under {error.worst.light}"
-
-
-def why_whole() -> str:
-    return f"cells alone are built where that saves {size_told(WORTH)}, for they answer no other colours"
