@@ -13,7 +13,7 @@ from uplift.errors import UpliftWarning
 
 from .answers import WRITERS
 from .options import cube_option, fill_option, force_option, format_option, wavelengths_option
-from .wavelengths import parse_wavelengths
+from .sampling import parse_wavelengths
 
 if TYPE_CHECKING:
     from uplift.lookup import Answer, Cube

@@ -13,7 +13,7 @@ import click
 from .frames import frames
 from .options import cube_option, encoding_option, fill_option, force_option, wavelengths_option
 from .progress import counting
-from .wavelengths import parse_wavelengths
+from .sampling import parse_wavelengths
 
 if TYPE_CHECKING:
     from uplift.sensor import Array

@@ -1,0 +1,28 @@
+"""As few wavelengths as a scene needs: `choose` for a `Setting` of materials and lights.
+
+from uplift import wavelengths
+
+seen = wavelengths.set_up(reflectances, ["D65", "FL11"])
+choice = wavelengths.choose(seen, target=1.0)
+choice.sampling.wavelengths, choice.sampling.to_xyz, choice.sampling.powers, choice.errors.max
+"""
+
+from __future__ import annotations
+
+from uplift.wavelengths.choose import METHODS, MOST, Choice, choose
+from uplift.wavelengths.sampling import MEASURES, Errors, Sampling, judge
+from uplift.wavelengths.setting import Setting, grid, set_up
+
+__all__ = [
+    "MEASURES",
+    "METHODS",
+    "MOST",
+    "Choice",
+    "Errors",
+    "Sampling",
+    "Setting",
+    "choose",
+    "grid",
+    "judge",
+    "set_up",
+]
