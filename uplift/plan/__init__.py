@@ -3,7 +3,7 @@
 from uplift import plan
 
 found = plan.plan(plan.read_brief("kitchen.toml"))
-found.confirmed.quantile, found.options, found.rendering.wavelengths
+found.confirmed.quantile, found.options, found.sampling.wavelengths
 """
 
 from __future__ import annotations

@@ -27,13 +27,12 @@ AGAIN = "plan again: uplift plan SCENE.toml"
 def numbers(plan: Plan, path: Path) -> dict[str, Any]:
     """All of a plan in JSON values; paths are relative to the folder of ``path``, where it is to be written."""
     brief, made = plan.brief, plan.built
-    lights = [light.name for light in brief.seen_under()]
     return {
         "format": FORMAT,
         "uplift": version("uplift"),
         "scene": {
             "file": brief.path.name,
-            "lights": lights,
+            "lights": list(brief.lights),
             "tolerance": brief.tolerance,
             "quantile": brief.quantile,
             "encoding": brief.encoding,
@@ -43,8 +42,11 @@ def numbers(plan: Plan, path: Path) -> dict[str, Any]:
         "build": {**plan.options, "lights": list(plan.options["lights"])},
         "cells": "sparse" if made.is_sparse else "whole",
         "texture": asdict(plan.storage),
-        "wavelengths": plan.rendering.wavelengths.tolist(),
-        "weights": dict(zip(lights, plan.rendering.weights.tolist(), strict=True)),
+        "rendering": {
+            "wavelengths": plan.sampling.wavelengths.tolist(),
+            "to_xyz": plan.sampling.to_xyz.tolist(),
+            "powers": dict(zip(plan.sampling.lights, plan.sampling.powers.tolist(), strict=True)),
+        },
         "error": {
             "predicted": _error(plan.predicted),
             "confirmed": _error(plan.confirmed),

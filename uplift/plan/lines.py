@@ -10,6 +10,7 @@ from pathlib import Path
 
 from uplift.options import Options
 from uplift.plan.planning import Plan
+from uplift.plan.wavelengths import typed
 from uplift.texture import Spectrum
 
 SUFFIX = ".plan.json"
@@ -47,13 +48,8 @@ def texture_line(plan: Plan, path: Path) -> str:
     target = f"{textures[0].stem}-uplifted.exr" if len(textures) == 1 else "uplifted"
     words = [*textures, target, "--cube", cube_name(path), "--as", held.form, "--depth", held.depth]
     if held.form == Spectrum.name:
-        words += ["--wavelengths", wavelengths_text(plan)]
+        words += ["--wavelengths", typed(plan.sampling)]
     return _line("uplift texture", [*words, *_encoding(plan)])
-
-
-def wavelengths_text(plan: Plan) -> str:
-    """412.5,455,… nm."""
-    return ",".join(f"{wavelength:g}" for wavelength in plan.rendering.wavelengths)
 
 
 def _encoding(plan: Plan) -> list[str]:

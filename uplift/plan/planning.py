@@ -16,10 +16,10 @@ from uplift.plan.brief import Brief
 from uplift.plan.built import Built, built
 from uplift.plan.decision import Decision
 from uplift.plan.question import Error, Question
-from uplift.plan.rendering import Rendering
 from uplift.plan.sights import Sight, sights
 from uplift.plan.storage import Storage, storage
 from uplift.plan.wavelengths import wavelengths
+from uplift.wavelengths import Sampling
 
 SHARES = {"coefficients": 0.4, "lattice": 0.55, "wavelengths": 0.9, "storage": 1.0}
 """Of the tolerance, that the chain may have used up after each decision. What one leaves, the next may use.
@@ -37,7 +37,7 @@ class Plan:
     ----------
     decisions : in the order they were taken.
     options : of `uplift.build`.
-    rendering : wavelengths, and their weights under each light of the brief.
+    sampling : wavelengths to render at, the lights there, and weights to sum with.
     built : the cube as it was built in the end.
     predicted : the error by the pixels that chose; ``confirmed`` that of other pixels, by what was built.
     expected : ΔE00 under A that measurements of such colours may differ by from any answer; None where nobody knows.
@@ -47,7 +47,7 @@ class Plan:
     brief: Brief
     decisions: tuple[Decision, ...]
     options: Mapping[str, Any]
-    rendering: Rendering
+    sampling: Sampling
     storage: Storage
     built: Built
     predicted: Error
@@ -80,19 +80,19 @@ def plan(brief: Brief, effort: Effort | None = None, watch: Watch = lambda step:
     lattice = cubes.lattice(found, question, limits["lattice"], count)
     options = {**found.options, **coefficients.trial.choice, **lattice.trial.choice}
     cube = found.cube(question.rgb, **options)
-    fewest, rendering = wavelengths(found, question, limits["wavelengths"], cube)
-    pixel = storage(found, question, limits["storage"], cube, rendering)
+    fewest, sampling = wavelengths(found, question, limits["wavelengths"], cube)
+    pixel = storage(found, question, limits["storage"], cube, sampling)
     held = Storage(pixel.trial.choice["as"], pixel.trial.choice["depth"])
 
     watch(Step("building it"))
     made = built(found, options)
     watch(Step("confirming"))
-    confirmed, shown = _confirmed(found, made, options, rendering, held)
+    confirmed, shown = _confirmed(found, made, options, sampling, held)
     return Plan(
         brief=brief,
         decisions=(coefficients, lattice, fewest, pixel),
         options=options,
-        rendering=rendering,
+        sampling=sampling,
         storage=held,
         built=made,
         predicted=pixel.trial.error,
@@ -114,15 +114,15 @@ def _check_reachable(brief: Brief, best: Error) -> None:
 
 
 def _confirmed(
-    found: Bench, made: Built, options: Mapping[str, Any], rendering: Rendering, held: Storage
+    found: Bench, made: Built, options: Mapping[str, Any], sampling: Sampling, held: Storage
 ) -> tuple[Error, tuple[Sight, ...]]:
     """By other pixels, and more of them, asked of the cube that was built."""
     question, _ = found.question(found.colours.confirming)
-    answered = [held.read_back(made.cube, question.groups[0].rgb, rendering.wavelengths)]
+    answered = [held.read_back(made.cube, question.groups[0].rgb, sampling.wavelengths)]
     if len(found.materials):  # the textures may not have their colours, and the cube no points for them
         cube = found.cube(found.materials, **options)
-        answered.append(held.read_back(cube, found.materials, rendering.wavelengths))
-    xyz = rendering.xyz(np.concatenate(answered))
+        answered.append(held.read_back(cube, found.materials, sampling.wavelengths))
+    xyz = sampling.xyz(np.concatenate(answered))
     return question.seen(xyz), sights(question, xyz, found.brief.observer)
 
 

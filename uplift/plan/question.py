@@ -77,7 +77,7 @@ class Question:
         """Of reflectances (n, N) on the grid of the lights."""
         return self.seen([answered @ light.xyz.T for light in self.lights])
 
-    def seen(self, xyz: Sequence[Array]) -> Error:
+    def seen(self, xyz: Sequence[Array] | Array) -> Error:
         """Of the XYZ (n, 3) under each light; white has Y = 1, whoever computes them."""
         ends = np.cumsum([len(group.rgb) for group in self.groups])[:-1]
         parts = [
@@ -87,7 +87,7 @@ class Question:
         ]
         return Error(tuple(parts))
 
-    def apart(self, xyz: Sequence[Array]) -> list[Array]:
+    def apart(self, xyz: Sequence[Array] | Array) -> list[Array]:
         """ΔE00 (n,) under each light, of XYZ (n, 3) under each."""
         found = []
         for light, seen in zip(self.lights, xyz, strict=True):

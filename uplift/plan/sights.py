@@ -28,7 +28,7 @@ class Sight:
     planned: str
 
 
-def sights(question: Question, xyz: Sequence[Array], observer: str) -> tuple[Sight, ...]:
+def sights(question: Question, xyz: Sequence[Array] | Array, observer: str) -> tuple[Sight, ...]:
     """Of the textures, for half the pixels, for the share that counts, and for all; XYZ (n, 3) under each light."""
     textures = question.groups[0]
     found = []

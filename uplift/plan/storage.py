@@ -17,8 +17,8 @@ from uplift.models import evaluate, reflectance
 from uplift.plan.bench import Bench, Step
 from uplift.plan.decision import Decision, Trial, decide
 from uplift.plan.question import Question
-from uplift.plan.rendering import Rendering
 from uplift.sensor import Array
+from uplift.wavelengths import Sampling
 
 DEPTHS: dict[str, DTypeLike] = {"half": np.float16, "float": np.float32}
 
@@ -56,15 +56,15 @@ class Storage:
 STORAGES = tuple(Storage(name, depth) for name, form in texture.FORMS.items() for depth in form().depths)
 
 
-def storage(bench: Bench, question: Question, limit: float, cube: Cube, rendering: Rendering) -> Decision:
+def storage(bench: Bench, question: Question, limit: float, cube: Cube, sampling: Sampling) -> Decision:
     """By the bytes of a pixel; at the same size spectra first, which take nothing to evaluate."""
-    at = rendering.wavelengths
+    at = sampling.wavelengths
     order = sorted(STORAGES, key=lambda each: each.size(cube, at))
 
     def trials() -> Iterator[Trial]:
         for done, each in enumerate(order):
             bench.watch(Step(f"{each.form} as {each.depth}", done, len(order)))
-            error = question.seen(rendering.xyz(each.read_back(cube, question.rgb, at)))
+            error = question.seen(sampling.xyz(each.read_back(cube, question.rgb, at)))
             size = each.size(cube, at)
             choice: dict[str, Any] = {"as": each.form, "depth": each.depth}
             typed = f"--as {each.form} --depth {each.depth}"
