@@ -19,6 +19,7 @@ COMMANDS = (
     "plan",
     "chart",
     "check",
+    "compare",
     "report",
     "info",
     "slices",

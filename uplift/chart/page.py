@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
-from importlib.resources import files
-
+from uplift.chart.document import Told, document, family_boxes, footer
 from uplift.chart.legend import OTHER, colours
 from uplift.chart.numbers import build_told, error_told, size_told, time_told
 from uplift.chart.panels import PANELS, Panel
 from uplift.chart.table import Chart, Row, State
 from uplift.chart.task import LIGHTS
-from uplift.report.markup import Markup, element, joined, number
+from uplift.report.markup import Markup, element, number
 from uplift.report.page_parts import note, right, table
 
 TITLE = "Spectral upsampling: speed against accuracy"
@@ -24,34 +22,17 @@ ERRORS = {
 
 def page(chart: Chart, picture: Markup) -> str:
     """The whole HTML text around the picture, an ``svg`` element. The same chart gives the same text."""
-    styles = _resource("uplift.report", "page.css") + _resource("uplift.chart", "page.css")
-    head = element(
-        "head",
-        element("meta", charset="utf-8"),
-        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        element("title", TITLE),
-        element("style", Markup(styles)),
-    )
-    body = element(
-        "body",
-        element("header", element("h1", TITLE), element("p", _lead(chart), class_="lead")),
-        _families(chart),
+    known = colours()
+    families = dict.fromkeys(row.family for row in chart.measured)
+    parts = [
+        family_boxes({name: known.get(name, OTHER) for name in families}),
         element("div", picture, class_="picture"),
         _fronts(chart),
         _table(chart),
         _undrawn(chart),
         _footer(chart),
-        element("div", id="tip", hidden=""),
-        element("script", _data(chart), type="application/json", id="rows"),
-        element(
-            "script", Markup(_resource("uplift.report", "page.js") + _resource("uplift.chart", "page.js"))
-        ),
-    )
-    return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
-
-
-def _resource(package: str, name: str) -> str:
-    return files(package).joinpath(name).read_text(encoding="utf-8")
+    ]
+    return document(TITLE, _lead(chart), parts, [_told(row) for row in chart.rows])
 
 
 def _lead(chart: Chart) -> str:
@@ -59,21 +40,6 @@ def _lead(chart: Chart) -> str:
         f"{len(chart.measured)} ways from RGB to a reflectance spectrum, at the same colours and the same measured "
         "materials. Lower is nearer, left is quicker; nothing measured lies below the black line."
     )
-
-
-def _families(chart: Chart) -> Markup:
-    """A box for each family, to show and hide it."""
-    known = colours()
-    boxes = [
-        element(
-            "label",
-            element("input", type="checkbox", checked="", value=name),
-            element("i", style=f"background:{known.get(name, OTHER)}"),
-            name,
-        )
-        for name in dict.fromkeys(row.family for row in chart.measured)
-    ]
-    return element("p", *boxes, class_="families")
 
 
 def _fronts(chart: Chart) -> Markup:
@@ -129,16 +95,11 @@ def _undrawn(chart: Chart) -> Markup | None:
 
 
 def _footer(chart: Chart) -> Markup:
-    facts = [element("div", element("dt", name), element("dd", told)) for name, told in chart.facts.items()]
-    sources = dict.fromkeys(f"{row.family}: {row.source}" for row in chart.rows)
-    named = [element("p", source) for source in sources]
-    return element("footer", element("dl", *facts), joined(named))
+    return footer(chart.facts, dict.fromkeys(f"{row.family}: {row.source}" for row in chart.rows))
 
 
-def _data(chart: Chart) -> Markup:
-    """What the script shows of each row, by its number."""
-    told = [{"title": row.title, "family": row.family, "lines": _lines(row)} for row in chart.rows]
-    return Markup(json.dumps(told, ensure_ascii=False).replace("<", "\\u003c"))
+def _told(row: Row) -> Told:
+    return {"title": row.title, "family": row.family, "lines": _lines(row)}
 
 
 def _lines(row: Row) -> list[tuple[str, str]]:

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import math
 import os
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from uplift.chart.labels import place
 from uplift.chart.legend import ALONE, FRONT, OTHER, SHAPES, WHISKER, colours, legend, width
 from uplift.chart.numbers import time_told
 from uplift.chart.panels import AXES, FLOORS, LEAST, PANELS, Panel
+from uplift.chart.scatter import Name, label, set_up, stairs
 from uplift.chart.table import Chart, Row
 from uplift.files import write_text
-from uplift.report.charts import GREY, INK, PALE, STYLE, svg
+from uplift.report.charts import STYLE, svg
 from uplift.report.figure import new_figure, write_png
 from uplift.report.markup import Markup
 from uplift.sensor import Array
@@ -24,12 +23,6 @@ COLUMNS, PANEL = 2, (6.6, 4.3)
 """Panels side by side, and inches of each."""
 MARGINS = {"left": 0.066, "right": 0.985, "bottom": 0.03, "top": 0.98, "wspace": 0.13, "hspace": 0.24}
 """Shares of the figure, and of a panel."""
-POINTS = 72
-"""An inch, whatever the resolution."""
-BEHIND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.6}
-"""A label on top of a crowd can still be read."""
-LED = 14
-"""Points from a marker beyond which a line leads to its label."""
 
 Path = str | os.PathLike[str]
 
@@ -79,15 +72,10 @@ def _draw_panel(axes: Any, panel: Panel, chart: Chart, number: int) -> None:
 def _set_up(axes: Any, panel: Panel) -> None:
     from matplotlib.ticker import LogLocator
 
-    axes.set(xscale="log", yscale="log", xlabel=AXES[panel.across])
-    axes.set_title(f"{panel.title}, {panel.unit}", loc="left", fontsize=11, fontweight="bold", color=INK)
+    set_up(axes, f"{panel.title}, {panel.unit}", AXES[panel.across])
     axes.xaxis.set_major_formatter(lambda value, _: _time(panel, value))
     axes.yaxis.set_major_locator(LogLocator(subs=(1,) if panel.whiskers else (1, 2, 5)))
-    axes.minorticks_off()
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}" if value > LEAST else f"≤ {value:g}")
-    axes.grid(color=PALE, linewidth=0.5)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
 
 
 def _time(panel: Panel, value: float) -> str:
@@ -135,49 +123,25 @@ def _draw_row(axes: Any, panel: Panel, row: Row, name: str, *, color: str, ahead
 
 
 def _stairs(axes: Any, panel: Panel, chart: Chart) -> Array:
-    """The Pareto front (k, 2) as a staircase: who stands above it is beaten in both respects."""
+    """The Pareto front (k, 2) as a staircase."""
     points = np.array([panel.point(row) for row in panel.front(chart)]).reshape(-1, 2)
-    x = np.append(points[:, 0].repeat(2)[1:], axes.get_xlim()[1])
-    return np.stack([x, points[:, 1].repeat(2)], axis=1)
+    return stairs(points, axes.get_xlim()[1])
 
 
 def _label(axes: Any, panel: Panel, chart: Chart, number: int) -> None:
     """Names of what is on the front, and of all that is not ours."""
     front, drawn = panel.front(chart), _drawn(panel, chart)
-    named = [(row_number, row) for row_number, row in drawn if row in front or not row.build]
-    if not named:
-        return
-    scale, known = POINTS / axes.figure.dpi, colours()
-    line = np.concatenate([np.geomspace(*pair, 40) for pair in pairwise(_stairs(axes, panel, chart))])
-    anchors, markers, line = (
-        scale * axes.transData.transform(points)
-        for points in ([panel.point(row) for _, row in named], [panel.point(row) for _, row in drawn], line)
-    )
-    texts = [
-        axes.annotate(
+    known = colours()
+    names = [
+        Name(
             row.label,
-            (0, 0),
-            xycoords="figure points",
-            fontsize=7.5,
-            fontweight="bold" if row in front else "normal",
-            color=known.get(row.family, OTHER),
+            panel.point(row) or (1, 1),
+            known.get(row.family, OTHER),
+            bold=row in front,
             gid=f"label-{number}-{row_number}",
-            bbox=BEHIND,
         )
-        for row_number, row in named
+        for row_number, row in drawn
+        if row in front or not row.build
     ]
-    renderer = axes.figure.canvas.get_renderer()
-    sizes = scale * np.array([text.get_window_extent(renderer).size for text in texts])
-    within = scale * axes.get_window_extent(renderer).extents
-    corners = place(anchors, sizes, np.concatenate([markers, line]), within)
-    for text, corner, size, anchor in zip(texts, corners, sizes, anchors, strict=True):
-        text.set_position(corner)
-        text.xy = tuple(corner)
-        _lead(axes, np.clip(anchor, corner, corner + size), anchor)
-
-
-def _lead(axes: Any, end: Array, start: Array) -> None:
-    if np.linalg.norm(end - start) > LED:
-        style = {"arrowstyle": "-", "color": GREY, "linewidth": 0.5}
-        there = {"xycoords": "figure points", "textcoords": "figure points"}
-        axes.annotate("", end, start, arrowprops=style, zorder=1, **there)
+    markers = np.array([panel.point(row) for _, row in drawn], dtype=float)
+    label(axes, names, markers, _stairs(axes, panel, chart))

@@ -1,0 +1,1 @@
+"""``make representations``: ways to hold spectra, on the shipped atlases and beside the thesis."""

@@ -1,0 +1,1 @@
+"""How a renderer may hold spectra: one representation a file, all behind `Representation`."""
