@@ -74,7 +74,7 @@ def budget_chart(plan: Plan) -> Markup:
 
     with matplotlib.rc_context(STYLE):
         figure, axes = _bare(WIDE)
-        named = [(each.title, each.trial.error.quantile, each.limit) for each in plan.decisions]
+        named = [(each.title, each.trial.error.quantile, each.limit) for each in plan.chain]
         named.append(("Confirmed", plan.confirmed.quantile, plan.brief.tolerance))
         for row, (_, error, limit) in enumerate(named):
             axes.barh(row, error, height=0.55, color=INK if row == len(named) - 1 else ACCENT)

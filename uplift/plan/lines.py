@@ -57,4 +57,4 @@ def _encoding(plan: Plan) -> list[str]:
 
 
 def _line(command: str, words: Iterable[object]) -> str:
-    return " ".join([command, *(shlex.quote(str(word)) for word in words)])
+    return f"{command} {shlex.join(map(str, words))}"

@@ -10,22 +10,24 @@ import numpy as np
 
 from uplift.chart.numbers import error_told
 from uplift.errors import PlanFileError
+from uplift.observer import DEFAULT_OBSERVER
 from uplift.plan import cubes
 from uplift.plan.bench import Bench, Effort, Step, Watch, bench
 from uplift.plan.brief import Brief
 from uplift.plan.built import Built, built
 from uplift.plan.decision import Decision
 from uplift.plan.question import Error, Question
+from uplift.plan.representation import representation
 from uplift.plan.sights import Sight, sights
 from uplift.plan.storage import Storage, storage
 from uplift.plan.wavelengths import wavelengths
 from uplift.wavelengths import Sampling
 
-SHARES = {"coefficients": 0.4, "lattice": 0.55, "wavelengths": 0.9, "storage": 1.0}
+SHARES = {"coefficients": 0.4, "lattice": 0.55, "wavelengths": 0.9, "storage": 1.0, "representation": 0.9}
 """Of the tolerance, that the chain may have used up after each decision. What one leaves, the next may use.
 
 Errors of different origin add up about as their squares do, so that these give wavelengths, which each ray pays for,
-the most: 0.4, 0.38, 0.71 and 0.44 of the tolerance to each by itself.
+the most: 0.4, 0.38, 0.71 and 0.44 of the tolerance to each by itself. A representation takes the place of wavelengths.
 """
 
 
@@ -56,6 +58,11 @@ class Plan:
     sights: tuple[Sight, ...]
 
     @property
+    def chain(self) -> tuple[Decision, ...]:
+        """Those that build upon one another; a representation stands beside the wavelengths."""
+        return tuple(each for each in self.decisions if each.key != "representation")
+
+    @property
     def within(self) -> bool:
         """Whether what was confirmed is within the tolerance."""
         return self.confirmed.quantile <= self.brief.tolerance
@@ -84,13 +91,17 @@ def plan(brief: Brief, effort: Effort | None = None, watch: Watch = lambda step:
     pixel = storage(found, question, limits["storage"], cube, sampling)
     held = Storage(pixel.trial.choice["as"], pixel.trial.choice["depth"])
 
+    decisions = [coefficients, lattice, fewest, pixel]
+    if brief.observer == DEFAULT_OBSERVER:  # the only one that representations know
+        decisions.append(representation(found, question, limits["representation"], cube))
+
     watch(Step("building it"))
     made = built(found, options)
     watch(Step("confirming"))
     confirmed, shown = _confirmed(found, made, options, sampling, held)
     return Plan(
         brief=brief,
-        decisions=(coefficients, lattice, fewest, pixel),
+        decisions=tuple(decisions),
         options=options,
         sampling=sampling,
         storage=held,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,14 @@ class Group:
     rgb: Array
     wanted: Array
     weights: Array
+
+    def thinned(self, most: int) -> Group:
+        """``most`` colours at the most, each for as many others."""
+        if len(self.rgb) <= most:
+            return self
+        drawn = np.searchsorted(np.cumsum(self.weights), (np.arange(most) + 0.5) / most)
+        rows, times = np.unique(np.minimum(drawn, len(self.rgb) - 1), return_counts=True)
+        return Group(self.name, self.rgb[rows], self.wanted[rows], times / most)
 
 
 @dataclass(frozen=True)
@@ -72,6 +80,10 @@ class Question:
     def wanted(self) -> Array:
         """(n, N) reflectances."""
         return np.concatenate([group.wanted for group in self.groups])
+
+    def thinned(self, most: int) -> Question:
+        """``most`` colours of each group at the most."""
+        return replace(self, groups=tuple(group.thinned(most) for group in self.groups))
 
     def error(self, answered: Array) -> Error:
         """Of reflectances (n, N) on the grid of the lights."""

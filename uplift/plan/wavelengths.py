@@ -15,8 +15,8 @@ from uplift.wavelengths import Sampling, Setting, choose, set_up
 
 COUNTS = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, 32, 40)
 """After the last, all that there are."""
-MATERIALS = 200
-"""Spectra that wavelengths are chosen for; all are judged."""
+FITTED = 200
+"""Colours of the textures, and as many materials, that wavelengths are chosen for; all are judged."""
 DIGITS = 2
 """Of a wavelength in nm: what can be typed is what is measured."""
 
@@ -44,15 +44,10 @@ def typed(sampling: Sampling) -> str:
 
 
 def _setting(bench: Bench, question: Question, cube: Cube) -> Setting:
-    """Answers for pixels that stand for as many others each, and for all materials."""
-    textures = question.groups[0]
-    drawn = np.searchsorted(np.cumsum(textures.weights), (np.arange(MATERIALS) + 0.5) / MATERIALS)
-    rows = np.unique(np.minimum(drawn, len(textures.rgb) - 1))
-    asked = np.concatenate([textures.rgb[rows], bench.materials])
-    lights = [light.name for light in question.lights]
+    """Answers for pixels that stand for as many others each, and for the materials."""
     return set_up(
-        cube.reflectance(asked),
-        lights,
+        cube.reflectance(question.thinned(FITTED).rgb),
+        [light.name for light in question.lights],
         wavelengths=bench.sensor.wavelengths,
         observer_name=bench.sensor.observer,
     )
