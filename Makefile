@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes pictures
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes plan pictures
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -65,6 +65,10 @@ textures: pictures
 # What cubes for a scene save: docs/scenes.md.
 scenes: pictures
 	$(BIN)/python -m benchmarks.scenes
+
+# Plans for real images, and whether what they predict is so: docs/plan.md.
+plan: pictures
+	$(BIN)/python -m benchmarks.plan
 
 # Pictures come with packages that nothing else needs.
 pictures: $(INSTALLED)

@@ -59,12 +59,11 @@ def read_brief(path: str | os.PathLike[str]) -> Brief:
     try:
         said = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        line = re.search(r"at line (\d+)", str(error))
+        at = re.search(r"at line (\d+)", str(error))
+        line = int(at[1]) if at else max(len(text.splitlines()), 1)  # or at the end of the document
         problem = re.sub(r" \(at .*\)$", "", str(error)).rstrip(".")
         remedy = f"write lines such as {EXAMPLE}"
-        raise PlanFileError(
-            f"is no TOML: {problem}", path=path, line=int(line[1]) if line else None, remedy=remedy
-        ) from error
+        raise PlanFileError(f"is no TOML: {problem}", path=path, line=line, remedy=remedy) from error
     return _Reader(Path(path), text, said).brief()
 
 

@@ -37,10 +37,10 @@ def _row(decision: Decision) -> Row:
 def _cells(made: Built, error: str) -> Row:
     cost = f"{made.points:,} points, {size_told(made.size)}, {made.seconds:.1f} s"
     if made.is_sparse:
-        return Row(
-            "Cells", "the textures' own", f"{cost}; all: {size_told(made.whole)}", "--scene IMAGE", error
-        )
-    return Row("Cells", "all", f"{cost}; the textures' own: {size_told(made.sparse)}", "", error)
+        told = f"{cost}; all: {size_told(made.whole)}"
+        return Row("Cells", "the textures' own", told, "--scene IMAGE", error)
+    told = f"{cost}; the textures' own: {size_told(made.sparse)}, too little saved to answer no other colours"
+    return Row("Cells", "all", told, "", error)
 
 
 def verdict(plan: Plan) -> str:
