@@ -35,7 +35,7 @@ def trials_chart(decision: Decision) -> Markup:
             axes.annotate(
                 trial.name,
                 (cost, error),
-                xytext=(5, 5),
+                xytext=(5, 5 if place % 2 or taken else -11),
                 textcoords="offset points",
                 fontsize=7.5,
                 fontweight="bold" if taken else "normal",

@@ -17,6 +17,7 @@ from uplift.report.page_parts import note, right, swatch, table
 OWN = """
 .columns { grid-template-columns: repeat(auto-fit, minmax(430px, 1fr)); }
 .large .swatch i { width: 52px; height: 34px; } .large td { padding-right: 28px; }
+.columns td { white-space: nowrap; }
 .budget { max-width: 860px; }
 """
 
@@ -95,7 +96,7 @@ def _section(decision: Decision) -> Markup:
     told = note(
         f"From the least on, until the chain so far stays within ΔE00 {decision.limit:g}, the dashed line."
     )
-    figure = element("div", trials_chart(decision))
+    figure = element("div", trials_chart(decision)) if len(lines) > 1 else None
     beside = element("div", figure, table(headings, lines), class_="columns")
     return element("section", element("h2", decision.title), told, beside)
 

@@ -55,10 +55,12 @@ def verdict(plan: Plan) -> str:
 
 def about(plan: Plan) -> str:
     """What the errors are."""
+    brief = plan.brief
+    own, measured = " and of the atlas's materials", ", materials against their measurements"
     return (
-        f"ΔE00 that {percent(plan.brief.quantile)} of the textures' pixels and of the atlas's materials stay within, "
-        f"under the worst of {', '.join(plan.brief.lights)}; pixels against a cube of the finest lattice and the most "
-        "coefficients at all wavelengths, materials against their measurements"
+        f"ΔE00 that {percent(brief.quantile)} of the textures' pixels{own if brief.atlases else ''} stay within, under "
+        f"the worst of {', '.join(brief.lights)}; pixels against a cube of the finest lattice and the most "
+        f"coefficients at all wavelengths{measured if brief.atlases else ''}"
     )
 
 
