@@ -71,13 +71,13 @@ def _confirmed(made: list[Found]) -> str:
             ]
         )
     head = ["texture", "atlas", "lights", "tolerated", "cube", "wavelengths", "a pixel"]
-    head += ["predicted", "confirmed", "in full", "off by", "of", "took"]
+    head += ["predicted", "confirmed", "in full", "off by", "of", "CPU"]
     words = (
         "ΔE00 that 97.5 % stay within, of pixels or materials under the worst light. *Predicted* by the plan, "
         "*confirmed* by the plan on other pixels, and *in full* by an independent computation: the plan's lines run "
         "as processes, every pixel of the texture read by OpenEXR, spectra of the best cube (128³ × 17, float, 81 "
         "wavelengths) and measured materials integrated by colour-science, and its ΔE00. *Off by* is the last against "
-        "the first. *Took* is the wall time of `uplift plan`, on two cores shared with much other work."
+        "the first. *CPU* seconds are those of `uplift plan`, start and compilation included."
     )
     return table("Predicted, and so", words, head, rows)
 

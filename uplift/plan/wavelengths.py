@@ -54,11 +54,11 @@ def _setting(bench: Bench, question: Question, cube: Cube) -> Setting:
 
 
 def _chosen(setting: Setting, count: int) -> Sampling:
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(1, user_api="blas"):  # matrices this small gain nothing by more, and lose a lot
-        found = choose(setting, count=count).sampling
-    return replace(found, wavelengths=np.round(found.wavelengths, DIGITS))
+    """Wavelengths to a few digits, no two the same."""
+    found = choose(setting, count=count).sampling
+    least = np.arange(count) / 10**DIGITS
+    apart = np.maximum.accumulate(np.round(found.wavelengths, DIGITS) - least) + least
+    return replace(found, wavelengths=np.round(apart, DIGITS))
 
 
 def _trial(question: Question, cube: Cube, sampling: Sampling) -> Trial:
