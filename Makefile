@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes plan pictures
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -69,6 +69,10 @@ scenes: pictures
 # Plans for real images, and whether what they predict is so: docs/plan.md.
 plan: pictures
 	$(BIN)/python -m benchmarks.plan
+
+# Meyer's tables anew, and what few wavelengths cost: docs/wavelengths.md.
+wavelengths: $(INSTALLED)
+	$(BIN)/python -m benchmarks.wavelengths
 
 # Pictures come with packages that nothing else needs.
 pictures: $(INSTALLED)

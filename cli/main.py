@@ -26,6 +26,7 @@ COMMANDS = (
     "export",
     "atlas",
     "study",
+    "wavelengths",
 )
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """What a write says where there is no room."""

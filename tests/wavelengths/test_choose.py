@@ -16,6 +16,7 @@ def test_gives_as_many_as_asked_and_states_what_a_renderer_would_get(smooth: Set
     sampling = choice.sampling
     assert len(sampling) == 5
     assert (np.diff(sampling.wavelengths) > 0).all()
+    assert sampling.to_xyz[:, 1].sum() == pytest.approx(1)
     # The plain way: trace every light at every wavelength, sum with the weights.
     for light, name in enumerate(smooth.lights):
         for material in (0, 13):

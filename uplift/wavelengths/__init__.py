@@ -1,4 +1,4 @@
-"""As few wavelengths as a scene needs: `choose` for a `Setting` of materials and lights.
+"""As few wavelengths as a scene needs: `choose` for a `Setting` of materials and lights; `weigh` for given ones.
 
 from uplift import wavelengths
 
@@ -9,7 +9,7 @@ choice.sampling.wavelengths, choice.sampling.to_xyz, choice.sampling.powers, cho
 
 from __future__ import annotations
 
-from uplift.wavelengths.choose import METHODS, MOST, Choice, choose
+from uplift.wavelengths.choose import METHODS, MOST, Choice, choose, weigh
 from uplift.wavelengths.sampling import MEASURES, Errors, Sampling, judge
 from uplift.wavelengths.setting import Setting, grid, set_up
 
@@ -25,4 +25,5 @@ __all__ = [
     "grid",
     "judge",
     "set_up",
+    "weigh",
 ]

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from numpy.typing import ArrayLike
+
 from uplift import observer
 from uplift.errors import OptionError
 from uplift.wavelengths.meyer import meyer
-from uplift.wavelengths.optimise import optimised
+from uplift.wavelengths.optimise import at, even, optimised
 from uplift.wavelengths.plain import bins, uniform
 from uplift.wavelengths.sampling import MEASURES, Errors, Sampling, judge
 from uplift.wavelengths.setting import Setting
@@ -18,7 +20,10 @@ METHODS: Mapping[str, Callable[[Setting, int], Sampling]] = {
     "meyer": meyer,
     "uniform": uniform,
     "bins": bins,
+    "fitted": even,
 }
+GIVEN = "given"
+"""The method where the wavelengths are given."""
 MOST = 40
 """More wavelengths than that are no saving: tables have 40 at 10 nm."""
 
@@ -66,8 +71,14 @@ def choose(
     raise OptionError("either a count or a target says how many", remedy="give one of the two")
 
 
+def weigh(setting: Setting, wavelengths: ArrayLike) -> Choice:
+    """The best weights and powers for wavelengths that are given. Raises `OptionError`."""
+    sampling = at(setting, wavelengths).ordered()
+    return Choice(GIVEN, sampling, judge(setting, sampling))
+
+
 def _fixed(setting: Setting, method: str, count: int) -> Choice:
-    sampling = METHODS[method](setting, count)
+    sampling = METHODS[method](setting, count).ordered()
     return Choice(method, sampling, judge(setting, sampling))
 
 

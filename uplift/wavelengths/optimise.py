@@ -5,16 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from uplift.sensor import Array
+from uplift.errors import OptionError
 from uplift.wavelengths import plain
-from uplift.wavelengths.polish import Problem, polish, problem
+from uplift.wavelengths.polish import polish, polish_weights, problem
 from uplift.wavelengths.sampling import Sampling, judge
 from uplift.wavelengths.setting import Setting
 
 RANGES = ((400.0, 700.0), (410.0, 680.0))
 """Where the starts are spread (nm): least squares ends in the nearest minimum, so it starts twice."""
-PAIRS = 2400
+PAIRS = 1600
 """Materials times lights that are fitted; of more, every so-many-th. All are judged."""
 
 
@@ -24,15 +25,32 @@ def optimised(setting: Setting, count: int) -> Sampling:
     Starts are evenly spaced and prefiltered. The same input gives the same answer.
     """
     fitted = problem(_thinned(setting))
-    return min(
-        (_from(fitted, plain.even(count, *span)) for span in RANGES),
-        key=lambda sampling: judge(setting, sampling).mean,
-    )
+    starts = (plain.prefiltered(fitted.setting, plain.even(count, *span)) for span in RANGES)
+    found = [_scaled(fitted.setting, polish(fitted, start).ordered()) for start in starts]
+    return min(found, key=lambda sampling: judge(setting, sampling).mean)
 
 
-def _from(fitted: Problem, start: Array) -> Sampling:
-    found = polish(fitted, plain.prefiltered(fitted.setting, start))
-    return _scaled(fitted.setting, found).ordered()
+def at(setting: Setting, wavelengths: ArrayLike) -> Sampling:
+    """Weights and powers of least ΔE00 for given wavelengths (n,) nm, distinct and within the setting's.
+
+    Raises
+    ------
+    OptionError : none of them, one outside, one named twice.
+    """
+    nm = np.sort(np.asarray(wavelengths, dtype=float))
+    first, last = setting.wavelengths[[0, -1]]
+    if nm.ndim != 1 or not len(nm) or np.any(np.diff(nm) <= 0) or not first <= nm[0] <= nm[-1] <= last:
+        raise OptionError(
+            "the wavelengths are not distinct ones of the spectrum",
+            remedy=f"give each once, from {first:g} to {last:g} nm",
+        )
+    fitted = problem(_thinned(setting))
+    return _scaled(fitted.setting, polish_weights(fitted, plain.prefiltered(fitted.setting, nm)))
+
+
+def even(setting: Setting, count: int) -> Sampling:
+    """Evenly spaced wavelengths, weights and powers fitted."""
+    return at(setting, plain.even(count))
 
 
 def _scaled(setting: Setting, sampling: Sampling) -> Sampling:
@@ -40,9 +58,7 @@ def _scaled(setting: Setting, sampling: Sampling) -> Sampling:
 
     Only the product of weight and power is seen, so a factor may pass from one to the other at each wavelength.
     """
-    order = np.argsort(sampling.wavelengths)
-    nearby = np.empty(len(sampling))
-    nearby[order] = plain.prefiltered(setting, sampling.wavelengths[order]).powers.sum(axis=0)
+    nearby = plain.prefiltered(setting, sampling.wavelengths).powers.sum(axis=0)
     fitted = sampling.powers.sum(axis=0)
     factor = np.where(fitted > 0, nearby / np.where(fitted > 0, fitted, 1), 1.0)
     return replace(sampling, to_xyz=sampling.to_xyz / factor[:, None], powers=sampling.powers * factor)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares
+from threadpoolctl import threadpool_limits
 
 from uplift.sensor import Array
 from uplift.wavelengths import metric
@@ -67,17 +68,34 @@ def problem(setting: Setting) -> Problem:
 
 def polish(problem: Problem, start: Sampling) -> Sampling:
     """The nearest sampling to ``start`` that fits best, its weights and powers at least 0."""
-    nm = problem.setting.wavelengths
+    return _fit(problem, start, held=0)
+
+
+def polish_weights(problem: Problem, start: Sampling) -> Sampling:
+    """The same with the wavelengths kept."""
+    return _fit(problem, start, held=len(start))
+
+
+def _fit(problem: Problem, start: Sampling, held: int) -> Sampling:
+    """Least squares over all unknowns but the first ``held``."""
+    nm, count = problem.setting.wavelengths, len(start)
     unknowns = np.concatenate([start.wavelengths, start.to_xyz.ravel(), start.powers.ravel()])
-    others = len(unknowns) - len(start)
-    low = np.concatenate([np.full(len(start), nm[0]), np.zeros(others)])
-    high = np.concatenate([np.full(len(start), nm[-1]), np.full(others, np.inf)])
-    found = least_squares(
-        problem.residuals,
-        np.clip(unknowns, low, high),
-        problem.jacobian,
-        bounds=(low, high),
-        x_scale="jac",
-        max_nfev=STEPS,
-    )
-    return problem.unpack(found.x)
+    others = len(unknowns) - count
+    low = np.concatenate([np.full(count, nm[0]), np.zeros(others)])
+    high = np.concatenate([np.full(count, nm[-1]), np.full(others, np.inf)])
+    unknowns = np.clip(unknowns, low, high)
+
+    def whole(free: Array) -> Array:
+        return np.concatenate([unknowns[:held], free])
+
+    # The matrices are small: threads wait for each other longer than they work.
+    with threadpool_limits(1, user_api="blas"):
+        found = least_squares(
+            lambda free: problem.residuals(whole(free)),
+            unknowns[held:],
+            lambda free: problem.jacobian(whole(free))[:, held:],
+            bounds=(low[held:], high[held:]),
+            x_scale="jac",
+            max_nfev=STEPS,
+        )
+    return problem.unpack(whole(found.x))

@@ -1,0 +1,1 @@
+"""``make wavelengths``: Meyer's figures derived anew, and what few wavelengths cost → docs/wavelengths.md."""
