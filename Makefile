@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -73,6 +73,10 @@ plan: pictures
 # Meyer's tables anew, and what few wavelengths cost: docs/wavelengths.md.
 wavelengths: $(INSTALLED)
 	$(BIN)/python -m benchmarks.wavelengths
+
+# Ways to hold spectra, beside a thesis of 2011: docs/representations.md.
+representations: $(INSTALLED)
+	$(BIN)/python -m benchmarks.representations
 
 # Pictures come with packages that nothing else needs.
 pictures: $(INSTALLED)

@@ -56,10 +56,10 @@ def command(
     """Compare representations of spectra, in colour and in cost, for a renderer's lights and surfaces.
 
     Each multiplies every light with every reflectance of the atlases; ΔE00 to the products of densely sampled
-    data: mean, standard deviation, median, quantiles. Point samples (PS), Riemann sums (RS, enhanced RE), Sun's
-    composite model (CS), Gaussian quadrature (GQ), trigonometric moments (TM), the sigmoid (SG), linear models (LM) and
-    hero wavelengths (HW), by their numbers; what each stores, and what a product takes. With --light the lights are
-    those named, in place of a smooth and a spiky set.
+    data: mean, standard deviation, median, quantiles. Point samples (PS, filtered PF), Riemann sums (RS, enhanced
+    RE), Sun's composite model (CS), Gaussian quadrature (GQ), trigonometric moments (TM), the sigmoid (SG), linear
+    models (LM) and hero wavelengths (HW), by their numbers; what each stores, and what a product takes. With --light
+    the lights are those named, in place of a smooth and a spiky set.
 
     With --target one line for each set of lights names the cheapest representation that is near enough: it stores
     least of a surface, then of a light, then is the quickest. --output writes compare.csv, box plots and the

@@ -60,7 +60,7 @@ def _publish() -> None:
         *(tables.filters(tuned, name, title, printed_filters) for name, title in found.sets.items()),
         *(tables.ranked(beyond, name, {}) for name in beyond.sets),
     ]
-    print(write("representations", introduction(found, tuned), sections, found.facts))
+    print(write("representations", introduction(found, tuned, readings, printed), sections, found.facts))
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,10 @@ from uplift.comparison.measure import Comparison, Row
 from uplift.report.figure import new_figure
 from uplift.sensor import Array
 
-PANEL, KEY_HEIGHT = (6.6, 4.3), 0.55
+PANEL, KEY_HEIGHT = (6.0, 4.0), 0.55
 """Inches of a panel, and of the key below all."""
+JOINED = {"linewidth": 0.8, "alpha": 0.45, "zorder": 1}
+"""Lines from each size of a family to the next."""
 LEAST = 1e-3
 """ΔE00 below are drawn there: nobody sees less."""
 
@@ -101,8 +104,9 @@ def _draw_panel(axes: Any, title: str, cost: Cost, rows: Sequence[Row], gids: di
     ahead = front(rows, cost)
     for family in families(rows):
         members = sorted((row for row in rows if row.family == family), key=lambda row: row.floats)
-        points = np.array([_point(row, cost) for row in members])
-        axes.plot(*points.T, color=colour(family), linewidth=0.8, alpha=0.45, zorder=1)
+        for pair in pairwise(members):
+            ends = np.array([_point(row, cost) for row in pair])
+            axes.plot(*ends.T, gid=f"whisker-{gids[pair[1].name]}", **{**JOINED, "color": colour(family)})
     for row in rows:
         axes.plot(
             *_point(row, cost),

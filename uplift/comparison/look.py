@@ -8,6 +8,7 @@ from uplift.comparison.measure import Row
 
 COLOURS = {
     "point sampling": "#1f6fb4",
+    "point sampling, filtered": "#35a7d8",
     "Riemann sums": "#d98200",
     "enhanced Riemann sums": "#8c4a00",
     "Sun's composite": "#c8323f",

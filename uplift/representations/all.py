@@ -8,7 +8,7 @@ from uplift.representations.composite import enhanced, sun
 from uplift.representations.hero import Hero
 from uplift.representations.linear import linear
 from uplift.representations.moments import moments
-from uplift.representations.point import point
+from uplift.representations.point import point, prefiltered
 from uplift.representations.quadrature import quadrature
 from uplift.representations.representation import Representation
 from uplift.representations.riemann import riemann
@@ -26,7 +26,7 @@ PATHS = (1, 4, 16, 64)
 
 def representations(lights: Array, surfaces: Array) -> tuple[Representation, ...]:
     """All, for a scene of lights (L, 401) and surfaces (E, 401), which the linear models are made from."""
-    found: list[Any] = [make(count) for make in (point, riemann, enhanced) for count in SIZES]
+    found: list[Any] = [make(count) for make in (point, prefiltered, riemann, enhanced) for count in SIZES]
     found += [sun(count) for count in COEFFICIENTS]
     found += [quadrature(count) for count in SIZES]
     found += [moments(count) for count in MOMENTS]
