@@ -22,6 +22,7 @@ import uplift
 from benchmarks.timing import ROOT
 from uplift import models, observer
 from uplift.atlas import read_atlas, resample
+from uplift.plan.colours import Some
 from uplift.sensor import Array
 
 with warnings.catch_warnings():
@@ -120,15 +121,15 @@ def _pixels(
 
 
 def _materials(folder: Path, case: Case, plan: dict[str, Any]) -> Iterator[tuple[tuple[str, str], Array]]:
-    """The atlas's entries, asked of the whole cube of the same options."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
-        options = {**plan["build"], "lights": tuple(plan["build"]["lights"])}
-        cube = uplift.build(folder / case.atlas, **options)
-    sensor = cube.data.sensor
+    """The atlas's entries, asked of a cube of the same options that has their points."""
+    sensor = observer.sensor()
     measured = resample(read_atlas(folder / case.atlas), sensor.wavelengths).values
     rgb = sensor.rgb(measured)
     measured, rgb = measured[sensor.holds(rgb)], np.clip(rgb[sensor.holds(rgb)], 0, 1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        options = {**plan["build"], "lights": tuple(plan["build"]["lights"])}
+        cube = uplift.build(folder / case.atlas, scene=Some(rgb), **options)
     answered = cube.reflectance(rgb, plan["rendering"]["wavelengths"])
     for light in case.lights:
         seen = _rendered(answered, plan, light)
