@@ -48,14 +48,15 @@ weights of the wavelengths too; `kitchen.plan.html` shows every candidate. `--fo
 - **Confirming**: in the end the cube is built in earnest, as `--plan` will, and 8,000 other pixels go the whole
   way.
 - **Cells alone** are built where that saves a megabyte, for they answer no other colours ([scenes.md](scenes.md)).
-- **A representation** stands beside the wavelengths, for renderers that hold spectra otherwise: of all that `uplift
-  compare` knows, the one with the least numbers a surface that stays within 90 % of the tolerance.
+- **A representation** stands beside the wavelengths, for renderers that hold spectra otherwise: of all that
+  `uplift compare` knows ([representations.md](representations.md)), the one with the least numbers a surface that
+  stays within 90 % of the tolerance.
 - A tolerance that the best cube misses is refused, and the best is told.
 
-Wavelengths are fitted to the scene's own spectra and lights, and so are the lights' powers at them (`uplift
-wavelengths` is about these): render with the `powers` and the `to_xyz` of the plan's file, not with the lights'
-values at these wavelengths. XYZ under a light is Σ powers · reflectance · to_xyz over the wavelengths, and white
-has Y = 1.
+Wavelengths are fitted to the scene's own spectra and lights, and so are the lights' powers at them
+([wavelengths.md](wavelengths.md)): render with the `powers` and the `to_xyz` of the plan's file, not with the lights'
+values at these wavelengths. XYZ under a light is Σ powers · reflectance · to_xyz over the wavelengths, and white has
+Y = 1.
 
 A plan records sha256 of textures and atlases, and `uplift build --plan` refuses what has changed since. From
 Python:

@@ -32,7 +32,7 @@ def test_textures_alone_will_do(say, tmp_path):
 
 def test_all_can_be_said(say, tmp_path):
     found = say(
-        'textures = ["a.png", "b.*.exr"]\natlases = "c.txt"\nlights = ["A", "FL11", "A"]\ntolerance = 2\n'
+        'textures = ["a.png", "b.*.exr"]\natlases = "c.txt"\nlights = ["A", "FL11", "a"]\ntolerance = 2\n'
         'quantile = 0.9\nencoding = "linear"\nspace = "ITU-R BT.2020"\nilluminant = "D50"\n'
         'observer = "CIE 1964 10 Degree Standard Observer"'
     )

@@ -9,7 +9,7 @@ import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from uplift import observer
 from uplift.errors import PlanFileError, UpliftError
@@ -106,13 +106,11 @@ class _Reader:
 
     def _check(self, found: Brief) -> None:
         """Names that only the tables know."""
-        lights = {"lights": lambda: found.seen_under()} if "lights" in self.said else {}
         checks: dict[str, Callable[[], Any]] = {
             "encoding": lambda: check_encoding(found.encoding),
             "space": lambda: observer.sensor(found.space),
             "illuminant": lambda: observer.power(found.illuminant),
             "observer": lambda: observer.matching_functions(found.observer),
-            **lights,
         }
         for key, check in checks.items():
             try:
@@ -139,7 +137,12 @@ class _Reader:
         return [folder / each for each in found]
 
     def _lights(self, key: str) -> tuple[str, ...]:
-        return tuple(dict.fromkeys(self._texts(key)))
+        """By the names that the tables have, each once."""
+        names = self._texts(key)
+        try:
+            return tuple(dict.fromkeys(observer.light(name).name for name in names))
+        except UpliftError as error:
+            self._raise(key, error)
 
     def _texts(self, key: str) -> list[str]:
         value = self.said[key]
@@ -161,10 +164,10 @@ class _Reader:
             self._fail(key, f"{key} is no name", f'write {key} = "{getattr(Brief, key)}"')
         return str(self.said[key])
 
-    def _fail(self, key: str, problem: str, remedy: str) -> None:
+    def _fail(self, key: str, problem: str, remedy: str) -> NoReturn:
         raise PlanFileError(problem, path=self.path, line=self._line(key), remedy=remedy)
 
-    def _raise(self, key: str, error: UpliftError) -> None:
+    def _raise(self, key: str, error: UpliftError) -> NoReturn:
         """The same error, with its place."""
         raise PlanFileError(
             error.problem, path=self.path, line=self._line(key), remedy=error.remedy
