@@ -49,7 +49,10 @@ def _confirmed(made: list[Found]) -> str:
     rows = []
     for each in made:
         error, share = each.plan["error"], each.plan["scene"]["quantile"]
-        by = {key: float(np.quantile(values, share)) for key, values in each.apart.items()}
+        by = {
+            key: float(np.quantile(values, share, method="inverted_cdf"))
+            for key, values in each.apart.items()
+        }
         full, predicted = max(by.values()), error["predicted"]["quantile"]
         group, light = max(by, key=lambda key: by[key])
         build, texture = each.plan["build"], each.plan["texture"]

@@ -75,8 +75,6 @@ def found(folder: Path, case: Case) -> Found:
     _run(folder, f"{texture} --force")
     best = _best(folder, case)
     apart = dict(_pixels(folder, case, plan, best)) | dict(_materials(folder, case, plan))
-    for (group, light), values in apart.items():
-        print(f"{group} {light}: {np.quantile(values, plan['scene']['quantile']):.4f}", file=sys.stderr)
     return Found(case, plan, seconds, apart)
 
 

@@ -18,6 +18,7 @@ OWN = """
 .columns { grid-template-columns: repeat(auto-fit, minmax(430px, 1fr)); }
 .large .swatch i { width: 52px; height: 34px; } .large td { padding-right: 28px; }
 .columns td { white-space: nowrap; }
+.word { display: inline-block; max-width: 100%; }
 .budget { max-width: 860px; }
 """
 
@@ -47,7 +48,7 @@ def page(plan: Plan, path: Path) -> str:
 
 def _summary(plan: Plan) -> Markup:
     lines = [
-        [row.title, element("b", row.chosen), number(row.error), row.cost, element("code", row.typed)]
+        [row.title, element("b", row.chosen), number(row.error), row.cost, _code(row.typed)]
         for row in rows(plan)
     ]
     headings = ["", "the least that will do", right("ΔE00 so far"), "cost", "say"]
@@ -75,9 +76,13 @@ def _sights(plan: Plan) -> Markup:
 
 def _lines(plan: Plan, path: Path) -> Markup:
     typed = (build_line(path), spelt_line(plan, path), texture_line(plan, path))
-    return element(
-        "section", element("h2", "To type"), *(element("p", element("code", line)) for line in typed)
-    )
+    return element("section", element("h2", "To type"), *(element("p", _code(line)) for line in typed))
+
+
+def _code(line: str) -> Markup:
+    """Words that do not break at their hyphens."""
+    words = [element("span", word, class_="word") for word in line.split()]
+    return element("code", *(part for word in words for part in (word, " ")))
 
 
 def _section(decision: Decision) -> Markup:
