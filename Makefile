@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -62,6 +62,14 @@ demo-render: $(INSTALLED)
 textures: pictures
 	$(BIN)/python -m benchmarks.textures
 
+# What becomes of colours that no screen shows: docs/display.md and its picture.
+display: $(INSTALLED)
+	$(BIN)/python -m benchmarks.display
+
+# Mixtures: ramps, who breaks which criterion, times: docs/mixing.md.
+mixing: $(INSTALLED)
+	$(BIN)/python -m benchmarks.mixing
+
 # What cubes for a scene save: docs/scenes.md.
 scenes: pictures
 	$(BIN)/python -m benchmarks.scenes
@@ -69,6 +77,15 @@ scenes: pictures
 # Plans for real images, and whether what they predict is so: docs/plan.md.
 plan: pictures
 	$(BIN)/python -m benchmarks.plan
+
+# The light dial in Chromium, frames a second: docs/palette-dial.md.
+.PHONY: dial
+dial: $(INSTALLED)
+	$(BIN)/python -m benchmarks.dial
+
+# How near the factor model of palettes comes, and the examples: docs/palette.md and its pictures.
+palette: $(INSTALLED)
+	$(BIN)/python -m benchmarks.palette
 
 # Meyer's tables anew, and what few wavelengths cost: docs/wavelengths.md.
 wavelengths: $(INSTALLED)

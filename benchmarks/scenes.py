@@ -41,9 +41,9 @@ by itself. Two things may differ, neither of which was met in sRGB. A point that
 as some of wide spaces have, may lack these, and so get another spectrum of its colour. And coefficients are stored in
 single precision if that is good enough for every point there.
 
-- **Images** are read as `uplift texture` reads them ([textures.md](textures.md)), a band at a time, and decoded alike;
-  `--encoding` is for both. The cube records their names and digests. `uplift check` needs no image: the stored points
-  tell which.
+- **Images** are read as `uplift texture` reads them ([textures.md](textures.md)), a band at a time, decoded and
+  remarked on alike; `--encoding` is for both. The cube records their names and digests. `uplift check` needs no image:
+  the stored points tell which.
 - **Other colours** are refused, by `query`, by `texture` and in Python; `Cube.holds` tells which can be asked. With
   `--fill`, in Python `cube.filled()`, the lattice points that they lack come from the package's own cube: its spectrum
   at the point's colour, in the sparse cube's model, moved to the very colour. It knows no atlas, so the standard error

@@ -13,6 +13,7 @@ from .output import console, json_text
 
 if TYPE_CHECKING:
     from uplift.lookup import Answer, Cube
+    from uplift.sensor import Array
 
 BLOCKS = "▁▂▃▄▅▆▇█"
 Writer = Callable[["Cube", Iterable["Answer"], bool], None]
@@ -33,6 +34,7 @@ def as_json(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
 def _object(cube: Cube, answer: Answer) -> dict[str, Any]:
     return {
         "rgb": answer.rgb.tolist(),
+        "asked": answer.asked.tolist(),
         "wavelengths": answer.wavelengths.tolist(),
         "reflectance": answer.reflectance.tolist(),
         "round_trip": {"rgb": answer.round_trip.tolist(), "delta_e_2000": answer.delta_e_2000},
@@ -67,11 +69,12 @@ def as_table(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
 
 def _sheet(cube: Cube, answer: Answer) -> None:
     data = cube.data
-    patch = click.style("        ", bg=_codes(cube, answer))
+    patch = click.style("        ", bg=shown_codes(cube, answer.rgb))
     facts = {
-        "linear RGB": f"{_triple(answer.rgb)}  {_hex(cube, answer)}  {patch}",
+        **_moved(cube, answer),
+        "linear RGB": f"{triple(answer.rgb)}  {hex_code(cube, answer.rgb)}  {patch}",
         "cell": f"{answer.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in answer.statuses)}",
-        "round trip": f"{_triple(answer.round_trip)}  ΔE00 {answer.delta_e_2000:.2g} ({data.sensor.illuminant})",
+        "round trip": f"{triple(answer.round_trip)}  ΔE00 {answer.delta_e_2000:.2g} ({data.sensor.illuminant})",
         **(
             {}
             if answer.realisable
@@ -79,12 +82,22 @@ def _sheet(cube: Cube, answer: Answer) -> None:
         ),
         "atlas entry": answer.entry or "none here",
         "measured": _expected(cube, answer),
-        "spectrum": f"{_sparkline(answer)}  {answer.wavelengths[0]:g}–{answer.wavelengths[-1]:g} nm",
+        "spectrum": f"{sparkline(answer.reflectance)}  {answer.wavelengths[0]:g}–{answer.wavelengths[-1]:g} nm",
     }
     for name, text in facts.items():
         click.echo(f"{name:<12}{text}")
     click.echo()
-    _columns(answer)
+    columns(answer.wavelengths, answer.reflectance)
+
+
+def _moved(cube: Cube, answer: Answer) -> dict[str, str]:
+    """What was asked, where it lay outside [0, 1]."""
+    from uplift.difference import colours_apart
+
+    if (answer.asked == answer.rgb).all():
+        return {}
+    apart = float(colours_apart(cube.data.sensor, answer.asked, answer.rgb))
+    return {"asked": f"{triple(answer.asked)}  outside [0, 1], moved by ΔE00 {apart:.2g}"}
 
 
 def _expected(cube: Cube, answer: Answer) -> str:
@@ -93,11 +106,11 @@ def _expected(cube: Cube, answer: Answer) -> str:
     return f"may differ by ΔE00 {answer.standard_error:.2g} ({cube.data.reference}; standard error)"
 
 
-def _columns(answer: Answer) -> None:
+def columns(wavelengths: Array, reflectance: Array) -> None:
     """Wavelengths and reflectances, four pairs a line, to be read downwards."""
     cells = [
         f"{wavelength:>6g} nm {value:8.5f}"
-        for wavelength, value in zip(answer.wavelengths, answer.reflectance, strict=True)
+        for wavelength, value in zip(wavelengths, reflectance, strict=True)
     ]
     height = -(-len(cells) // 4)
     for line in range(height):
@@ -112,36 +125,45 @@ def _lines(cube: Cube, answers: Iterable[Answer]) -> None:
     for heading in ("", "hex", "linear RGB", "ΔE00", "atlas entry", "spectrum"):
         table.add_column(heading, no_wrap=True)
     for answer in answers:
-        red, green, blue = _codes(cube, answer)
+        red, green, blue = shown_codes(cube, answer.rgb)
         table.add_row(
             Text("   ", style=f"on rgb({red},{green},{blue})"),
-            _hex(cube, answer),
+            hex_code(cube, answer.rgb),
             " ".join(f"{value:.3f}" for value in answer.rgb),
             f"{answer.delta_e_2000:.2g}",
             Text(answer.entry or ""),
-            _sparkline(answer, 20),
+            sparkline(answer.reflectance, 20),
         )
     console().print(table)
 
 
-def _codes(cube: Cube, answer: Answer) -> tuple[int, int, int]:
-    red, green, blue = (round(float(code)) for code in cube.encode(answer.rgb))
+def _codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:
+    red, green, blue = (round(float(code)) for code in cube.encode(rgb))
     return red, green, blue
 
 
-def _hex(cube: Cube, answer: Answer) -> str:
-    return "#" + "".join(f"{code:02x}" for code in _codes(cube, answer))
+def shown_codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:
+    """What the terminal's screen shows it as."""
+    from uplift.cube.display import shown
+
+    red, green, blue = (int(code) for code in shown(rgb, cube.data.sensor))
+    return red, green, blue
 
 
-def _triple(rgb: Iterable[float]) -> str:
+def hex_code(cube: Cube, rgb: Array) -> str:
+    """'#rrggbb' as the cube's space encodes linear RGB (3,)."""
+    return "#" + "".join(f"{code:02x}" for code in _codes(cube, rgb))
+
+
+def triple(rgb: Iterable[float]) -> str:
     return " ".join(f"{value:.6f}" for value in rgb)
 
 
-def _sparkline(answer: Answer, width: int = 40) -> str:
+def sparkline(reflectance: Array, width: int = 40) -> str:
     """The spectrum in eighths of a line, 0 to 1."""
-    count = len(answer.reflectance)
+    count = len(reflectance)
     picks = [round(i * (count - 1) / max(min(width, count) - 1, 1)) for i in range(min(width, count))]
-    return "".join(BLOCKS[round(float(answer.reflectance[pick]) * (len(BLOCKS) - 1))] for pick in picks)
+    return "".join(BLOCKS[round(float(reflectance[pick]) * (len(BLOCKS) - 1))] for pick in picks)
 
 
 WRITERS: dict[str, Writer] = {"table": as_table, "json": as_json, "csv": as_csv}

@@ -36,13 +36,15 @@ class Listing:
 def list_entries(spectra: Spectra, sensor: Sensor) -> Listing:
     """Colours of all entries under a sensor, clipped as a cube would have them."""
     from uplift.atlas import resample
+    from uplift.cube.display import shown
     from uplift.observer import sensor as make_sensor
+    from uplift.overflow import SRGB
 
     resampled = resample(spectra, sensor.wavelengths)
     display = make_sensor("sRGB", sensor.illuminant, sensor.observer)
     clips = {clip.name: (str(clip),) for clip in resampled.clips}
     colours = sensor.rgb(resampled.values).tolist()
-    codes = display.decoding.searchsorted(display.rgb(resampled.values)).clip(0, 255).tolist()
+    codes = shown(display.rgb(resampled.values), SRGB).astype(int).tolist()
     rows = [
         Row(
             entry.name,

@@ -13,7 +13,7 @@ import click
 
 from .built import tell, tell_improvements
 from .frames import expanded
-from .options import encoding_option, force_option, sensor_options, verbosity_options
+from .options import encoding_option, force_option, out_of_gamut_option, sensor_options, verbosity_options
 
 if TYPE_CHECKING:
     from uplift.lookup import Cube
@@ -83,6 +83,7 @@ class Dim(click.ParamType):  # type: ignore[type-arg]
 )
 @encoding_option("--scene images are")
 @click.option("--plan", "plan_path", metavar="PLAN", help="Build what 'uplift plan' planned.")
+@out_of_gamut_option("clip", "linear RGB of --scene images")
 @click.option("--debug", is_flag=True, help="Keep the round of every point, for the slices.")
 @force_option()
 @verbosity_options
@@ -92,6 +93,7 @@ def command(
     output: str | None,
     images: tuple[str, ...],
     encoding: str,
+    way: str,
     force: bool,
     quiet: bool,
     verbose: bool,
@@ -124,8 +126,10 @@ def command(
 
     if encoding != "auto" and not images and plan_path is None:
         raise click.UsageError("--encoding is of --scene images, and there are none.")
+    if way != "clip" and not images and plan_path is None:
+        raise click.UsageError("--out-of-gamut is of --scene images, and there are none.")
     if plan_path is None:
-        scene = Images(tuple(map(Path, expanded(images))), encoding) if images else None
+        scene = Images(tuple(map(Path, expanded(images))), encoding, way) if images else None
         given = {name: value for name, value in chosen.items() if value not in (None, ())}
         make: Callable[..., Cube] = partial(
             build, atlases or None, scene=scene, coefficients=moments + 1, **given

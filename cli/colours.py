@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import re
 from collections.abc import Iterable, Sequence
 from typing import IO, TYPE_CHECKING
@@ -26,31 +27,36 @@ def from_arguments(words: Sequence[str], cube: Cube, *, codes: bool) -> Array:
     return _linear([_parse(parts, "")], cube, codes=codes)
 
 
-def from_table(file: IO[str], name: str, cube: Cube, *, codes: bool) -> Array:
+def from_table(file: IO[str], name: str, cube: Cube, *, codes: bool, bounded: bool) -> Array:
     """Colours (n, 3) from lines of 'r,g,b' or hex; a first line without numbers is a header.
 
-    Further columns are left alone. Raises `ColourError` with the line.
+    Further columns are left alone. Linear numbers lie in [0, 1] if they are ``bounded``, else anywhere. Raises
+    `ColourError` with the line.
     """
     colours = {line: _parse(row, f"{name}:{line}: ") for line, row in _rows(file, name)}
     if not colours:
         raise ColourError(f"{name}: no colours in it", remedy="give lines of r,g,b or of hex colours")
     for line, (is_hex, numbers) in colours.items():
-        _check_range(numbers, name, line, codes=is_hex or codes)
+        _check_range(numbers, name, line, codes=is_hex or codes, bounded=bounded)
     return _linear(list(colours.values()), cube, codes=codes)
 
 
-def _check_range(numbers: tuple[float, ...], name: str, line: int, *, codes: bool) -> None:
+def _check_range(numbers: tuple[float, ...], name: str, line: int, *, codes: bool, bounded: bool) -> None:
     """As the cube checks them, but with the line."""
-    from uplift.sensor import SLACK
+    values = "(" + ", ".join(f"{number:g}" for number in numbers) + ")"
+    if codes:
+        if not all(0 <= number <= 255 for number in numbers):
+            remedy = "leave out --8bit for linear floats"
+            raise ColourError(f"{values} lies outside 0 to 255", path=name, line=line, remedy=remedy)
+        return
+    if bounded:
+        from uplift.sensor import SLACK
 
-    low, high = (0.0, 255.0) if codes else (-SLACK, 1 + SLACK)
-    if not all(low <= number <= high for number in numbers):
-        values = ", ".join(f"{number:g}" for number in numbers)
-        problem = f"({values}) lies outside " + ("0 to 255" if codes else "[0, 1]")
-        remedy = (
-            "leave out --8bit for linear floats" if codes else "scale or clip it, or use --8bit for codes"
-        )
-        raise ColourError(problem, path=name, line=line, remedy=remedy)
+        if not all(-SLACK <= number <= 1 + SLACK for number in numbers):
+            remedy = "move it with --out-of-gamut, or use --8bit for codes"
+            raise ColourError(f"{values} lies outside [0, 1]", path=name, line=line, remedy=remedy)
+    elif not all(map(math.isfinite, numbers)):
+        raise ColourError(f"{values} is not finite", path=name, line=line, remedy=REMEDY)
 
 
 def _rows(file: IO[str], name: str) -> Iterable[tuple[int, list[str]]]:

@@ -62,7 +62,7 @@ def command(
     the lights are those named, in place of a smooth and a spiky set.
 
     With --target one line for each set of lights names the cheapest representation that is near enough: it stores
-    least of a surface, then of a light, then is the quickest. --output writes compare.csv, box plots and the
+    least of a surface, then of a light, then is the nearest. --output writes compare.csv, box plots and the
     chart of error over cost as PNG, a page, and with --filters compare-filters.csv.
 
     \b

@@ -22,6 +22,24 @@ def fill_option() -> Decorator:
     )
 
 
+def out_of_gamut_option(default: str = "error", what: str = "linear RGB") -> Decorator:
+    """Names of `uplift.overflow.CHOICES`, which is not imported for them."""
+    return click.option(
+        "--out-of-gamut",
+        "way",
+        type=click.Choice(("error", "clip", "scale", "desaturate", "desaturate-oklab")),
+        default=default,
+        show_default=True,
+        help=f"What becomes of {what} outside [0, 1]: refused; clipped; made darker; or less saturated, at constant "
+        "luminance and dominant wavelength, or at constant lightness and hue of Oklab.",
+    )
+
+
+def primaries_option(help: str) -> Decorator:
+    """Its value is for `cli.primaries`."""
+    return click.option("--primaries", metavar="SPACE", help=help)
+
+
 def encoding_option(what: str = "colours are") -> Decorator:
     return click.option(
         "--encoding",

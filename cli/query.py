@@ -12,11 +12,21 @@ import click
 from uplift.errors import UpliftWarning
 
 from .answers import WRITERS
-from .options import cube_option, fill_option, force_option, format_option, wavelengths_option
+from .options import (
+    cube_option,
+    fill_option,
+    force_option,
+    format_option,
+    out_of_gamut_option,
+    primaries_option,
+    wavelengths_option,
+)
+from .primaries import parse_primaries
 from .sampling import parse_wavelengths
 
 if TYPE_CHECKING:
     from uplift.lookup import Answer, Cube
+    from uplift.overflow import Contained
     from uplift.sensor import Array
 
 NEGATIVE = re.compile(r"-\.?\d")
@@ -44,6 +54,10 @@ class QueryCommand(click.Command):
     show_default=True,
     help="Interpolate spectra (exact), coefficients (fast), coefficients and refine them, or take the nearest node.",
 )
+@primaries_option(
+    "Display that linear RGB are of: a space by name, or x,y of red, green, blue and white. [default: the cube's]"
+)
+@out_of_gamut_option()
 @fill_option()
 @format_option("table", "json", "csv")
 @click.option("--plot", "plot_path", metavar="PNG", help="Draw the spectra into a picture.")
@@ -55,6 +69,8 @@ def command(
     codes: bool,
     wavelengths: str | None,
     mode: str,
+    primaries: str | None,
+    way: str,
     fill: bool,
     style: str,
     plot_path: str | None,
@@ -63,7 +79,7 @@ def command(
     """Ask a cube for the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
 
     Numbers are linear RGB from 0 to 1 in the cube's space; hex colours, and numbers with --8bit, are
-    encoded as the space has it.
+    encoded as the space has it. With --primaries they are of another display.
 
     \b
     Examples:
@@ -71,24 +87,44 @@ def command(
       uplift query --cube macbeth-32.uplift '#cc3319' --plot red.png
       uplift query --8bit 204 51 25 --wavelengths 400:700:10 --format json
       uplift query --input colours.csv --format csv > spectra.csv
+      uplift query 1.4 0.3 -0.1 --out-of-gamut desaturate
+      uplift query --primaries P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
       echo 0.5,0.5,0.5 | uplift query - --format json
     """
     from uplift.files import check_output
     from uplift.lookup import answers, load
+    from uplift.overflow import contained, conversion
 
     if plot_path is not None:
         check_output(plot_path, force=force)
     cube = load(cube_path)
-    rgb = _colours(colour, input_path, cube, codes=codes)
+    bounded = way == "error" and primaries is None
+    rgb = _colours(colour, input_path, cube, codes=codes, bounded=bounded)
+    if primaries is not None:
+        rgb = rgb @ conversion(parse_primaries(primaries), cube.data.sensor).T
+    moved = contained(rgb, cube.data.sensor, way)
+    _tell(moved, way)
     if fill:
-        cube = _filled(cube, rgb)
-    found: Iterable[Answer] = answers(cube, rgb, parse_wavelengths(wavelengths), mode)
+        cube = _filled(cube, moved.rgb)
+    found: Iterable[Answer] = answers(
+        cube, moved.rgb, parse_wavelengths(wavelengths), mode, asked=moved.asked
+    )
     if plot_path is not None:
         from uplift.report.spectra import plot_answers
 
         found = list(found)
         plot_answers(cube, found, plot_path, force=force)
     WRITERS[style](cube, found, bool(colour) and colour != ("-",))
+
+
+def _tell(moved: Contained, way: str) -> None:
+    """Colours that were moved are said: how many, and how far."""
+    if moved.count:
+        told = (
+            f"{moved.count} of {len(moved.rgb)} colours lie outside [0, 1]: moved inside ({way}), "
+            f"a component by up to {moved.farthest:.3g}"
+        )
+        warnings.warn(told, UpliftWarning, stacklevel=1)
 
 
 def _filled(cube: Cube, rgb: Array) -> Cube:
@@ -100,7 +136,7 @@ def _filled(cube: Cube, rgb: Array) -> Cube:
     return cube.filled(rgb)
 
 
-def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: bool) -> Array:
+def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: bool, bounded: bool) -> Array:
     from uplift.errors import ColourError
 
     from .colours import from_arguments, from_table
@@ -113,6 +149,8 @@ def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: boo
         return from_arguments(words, cube, codes=codes)
     try:
         with click.open_file(path, encoding="utf-8-sig") as file:
-            return from_table(file, "standard input" if path == "-" else path, cube, codes=codes)
+            return from_table(
+                file, "standard input" if path == "-" else path, cube, codes=codes, bounded=bounded
+            )
     except OSError as error:
         raise ColourError(f"{path}: {error.strerror}", remedy="name a CSV file of colours") from error

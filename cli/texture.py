@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING
 import click
 
 from .frames import frames
-from .options import cube_option, encoding_option, fill_option, force_option, wavelengths_option
+from .options import (
+    cube_option,
+    encoding_option,
+    fill_option,
+    force_option,
+    out_of_gamut_option,
+    wavelengths_option,
+)
 from .progress import counting
 from .sampling import parse_wavelengths
 
@@ -39,6 +46,7 @@ if TYPE_CHECKING:
     help="16 or 32 bits a number. [default: half for spectra, else float]",
 )
 @encoding_option()
+@out_of_gamut_option("clip")
 @fill_option()
 @click.option("--processes", type=click.IntRange(min=1), help="For several images. [default: one a core]")
 @click.option("--scheduler", metavar="ADDRESS", help="Dask cluster to work on; it needs uplift[cluster].")
@@ -53,6 +61,7 @@ def command(
     wavelengths: str | None,
     depth: str | None,
     encoding: str,
+    way: str,
     fill: bool,
     processes: int | None,
     scheduler: str | None,
@@ -67,12 +76,13 @@ def command(
       uplift texture wood.png wood.exr
       uplift texture wood.png wood.exr --cube macbeth-32.uplift --as moments
       uplift texture 'shot.*.exr' uplifted --wavelengths 400:700:10 --resume
+      uplift texture fire.exr bright.exr --out-of-gamut scale
       uplift texture shot.*.exr uplifted --scheduler tcp://10.0.0.5:8786
 
     'spectrum' is a spectral EXR as Fichet et al. 2021 have it, at --wavelengths. 'moments' can be filtered and
     mip-mapped, 'multipliers' evaluated at once; the header tells how. Alpha and other channels pass through.
-    Colours outside [0, 1] are clamped, NaN is taken for 0; both are counted. Several images, or a quoted
-    pattern, go into the folder OUT.
+    Colours outside [0, 1] are clipped, or as --out-of-gamut says, NaN is taken for 0; both are counted. Several
+    images, or a quoted pattern, go into the folder OUT.
     """
     from .startup import keep_compiled
 
@@ -85,7 +95,7 @@ def command(
     count = processes or min(cores, len(pairs))
     form = _form(kind, parse_wavelengths(wavelengths))
     cube = None if cube_path is None else os.path.abspath(cube_path)
-    recipe = texture.Recipe(cube, form, depth, encoding, max(cores // count, 1), fill)
+    recipe = texture.Recipe(cube, form, depth, encoding, max(cores // count, 1), fill, way)
     jobs = [texture.Job(recipe, source.absolute(), made.absolute(), force) for source, made in pairs]
     todo = texture.left(jobs, resume=resume)
     texture.ready(recipe)  # what is wrong with the options is said once

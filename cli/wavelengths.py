@@ -27,16 +27,13 @@ ONE_OF_THREE = "Of --count, --target and --at give one. See 'uplift wavelengths 
 @click.option(
     "--measure",
     type=click.Choice(("mean", "p95", "max")),
-    default="max",
-    show_default=True,
-    help="What the target is about, over all materials under all lights.",
+    help="What the target is about, over all materials under all lights. [default: max]",
 )
 @click.option(
     "--method",
     type=click.Choice(("optimised", "meyer", "uniform", "bins", "fitted")),
-    default="optimised",
-    show_default=True,
-    help="All fitted; Meyer's quadrature; even wavelengths: read off, in bins, or with weights fitted.",
+    help="All fitted; Meyer's quadrature; even wavelengths: read off, in bins, or with weights fitted. "
+    "[default: optimised]",
 )
 @click.option(
     "--atlas",
@@ -56,8 +53,8 @@ def command(
     count: int | None,
     target: float | None,
     at: str | None,
-    measure: str,
-    method: str,
+    measure: str | None,
+    method: str | None,
     files: tuple[str, ...],
     lights: tuple[str, ...],
     space: str,
@@ -84,6 +81,8 @@ def command(
     """
     if sum(option is not None for option in (count, target, at)) != 1:
         raise click.UsageError(ONE_OF_THREE)
+    if (measure is not None and target is None) or (method is not None and at is not None):
+        raise click.UsageError("--measure goes with --target, --method with --count or --target.")
     given = parse_wavelengths(at)
     from uplift import wavelengths
     from uplift.atlas import merge, on_grid
@@ -99,11 +98,12 @@ def command(
         on_grid(spectra, wavelengths.grid()), lights or ("D65",), observer_name=seen_by
     )
     with waiting("fitting wavelengths"):
-        choice = (
-            wavelengths.choose(setting, count=count, target=target, measure=measure, method=method)
-            if given is None
-            else wavelengths.weigh(setting, given)
-        )
+        if given is None:
+            choice = wavelengths.choose(
+                setting, count=count, target=target, measure=measure or "max", method=method or "optimised"
+            )
+        else:
+            choice = wavelengths.weigh(setting, given)
     if plot_path is not None:
         from uplift.report.wavelengths import plot_choice
 

@@ -84,3 +84,10 @@ def test_samples_at_1_nm_hold_those_at_5():
     np.testing.assert_allclose(fine[::5], coarse, atol=1e-12)
     assert observer.power("FL11", 380.0, 770.0, 1.0).shape == (391,)
     np.testing.assert_allclose(observer.power("FL11", step=1.0)[::5], observer.power("FL11"), atol=1e-9)
+
+
+def test_primaries_are_those_of_the_space():
+    found = observer.primaries("Display P3")
+    assert str(found) == "0.68,0.32 0.265,0.69 0.15,0.06 0.3127,0.329"
+    with pytest.raises(UnknownNameError, match="unknown RGB space 'P9'"):
+        observer.primaries("P9")

@@ -14,6 +14,7 @@ import pytest
 import uplift
 
 FOLDERS = {"uplift": "uplift", "cli": "uplift_cli"}
+DIAL = ("dial", "find", "mix", "page", "screen", "unpack")
 C_PARTS = ("head", "lattice", "boxes", "no_boxes", "moments", "sigmoid", "tail")
 
 
@@ -80,6 +81,8 @@ def test_nothing_else_is_in_it(wheel):
         "uplift/chart/page.css",
         "uplift/chart/page.js",
         "uplift/lookup/default.uplift",
+        *(f"uplift/palette/dial/{part}.js" for part in DIAL),
+        "uplift/palette/dial/page.css",
         "uplift/py.typed",
         "uplift/report/page.css",
         "uplift/report/page.js",

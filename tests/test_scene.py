@@ -40,9 +40,16 @@ def photo_colours(scene_cube):
     return scene_cube.decode(np.unique(codes, axis=0)[::5])
 
 
-def points_of(cube, *paths, encoding="auto"):
+def points_of(cube, *paths, encoding="auto", out_of_gamut="clip"):
     data = cube.data
-    return Images(paths, encoding).points(data.pins, data.sensor, lambda done: None)
+    return Images(paths, encoding, out_of_gamut).points(data.pins, data.sensor, lambda done: None)
+
+
+def test_images_of_another_space_are_remarked_on(small_cube, tmp_path):
+    display_p3 = (0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.329)
+    path = write_exr(tmp_path / "a.exr", planes(np.full((2, 2, 3), 0.5, "f4")), chromaticities=display_p3)
+    with pytest.warns(UpliftWarning, match=r"a\.exr: the image names other primaries; .* taken for sRGB"):
+        points_of(small_cube, path)
 
 
 def test_its_points_are_those_of_the_whole_cube(scene_cube, macbeth_cube):
@@ -191,6 +198,16 @@ def test_what_is_no_colour_is_clamped_as_in_textures(plain_cube, tmp_path):
     np.testing.assert_array_equal(points_of(plain_cube, path), points_of(plain_cube, expected))
 
 
+def test_colours_outside_are_moved_as_in_textures(plain_cube, tmp_path):
+    path = write_exr(tmp_path / "bright.exr", planes(np.array([[[4, 2, 1]] * 2], np.float32)))
+    expected = write_exr(tmp_path / "scaled.exr", planes(np.array([[[1, 0.5, 0.25]] * 2], np.float32)))
+    scaled = points_of(plain_cube, path, out_of_gamut="scale")
+    np.testing.assert_array_equal(scaled, points_of(plain_cube, expected))
+    assert (scaled != points_of(plain_cube, path)).any()
+    with pytest.raises(ColourError, match=r"\(4, 2, 1\) lies outside"):
+        points_of(plain_cube, path, out_of_gamut="error")
+
+
 @pytest.mark.parametrize(
     ("make", "error", "match"),
     [
@@ -217,6 +234,8 @@ def test_a_scene_of_no_images_is_refused():
 def test_an_unknown_encoding_is_refused(plain_cube):
     with pytest.raises(OptionError, match="unknown encoding 'log'"):
         points_of(plain_cube, PHOTO, encoding="log")
+    with pytest.raises(OptionError, match="unknown way out of gamut 'squash'"):
+        points_of(plain_cube, PHOTO, out_of_gamut="squash")
 
 
 def test_in_a_wide_space_colours_come_back_where_they_can(tmp_path):

@@ -63,6 +63,10 @@ class PlanFileError(UpliftError):
     """A scene file or a plan that is missing, broken, out of date, or asks for what cannot be."""
 
 
+class PaletteError(UpliftError):
+    """A palette's spec that cannot be read, or asks for what cannot be worked out."""
+
+
 class ColourError(UpliftError):
     """A colour that cannot be asked for: outside [0, 1], NaN, or unreadable."""
 

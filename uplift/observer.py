@@ -12,9 +12,12 @@ from typing import Any
 import numpy as np
 
 from uplift.errors import UnknownNameError
+from uplift.overflow import Primaries
 from uplift.sensor import Array, Light, Sensor
 
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
+CRT = "Typical CRT Brainard 1997"
+"""A cathode-ray tube's phosphors, as D. H. Brainard measured them."""
 START, END, STEP = 380.0, 780.0, 5.0
 """Where every table of the CIE has data (nm)."""
 
@@ -62,6 +65,12 @@ def sensor(space: str = "sRGB", illuminant: str = "D65", observer: str = DEFAULT
         xyz_to_rgb=matrix / (matrix @ lit.white)[:, None],
         decoding=np.asarray(rgb_space.cctf_decoding(np.arange(256) / 255), dtype=float),
     )
+
+
+def primaries(space: str) -> Primaries:
+    """Primaries and white of an RGB space by name. Raises `UnknownNameError`."""
+    found = _look_up(colour_science().RGB_COLOURSPACES, space, "RGB space")
+    return Primaries.of([*found.primaries.ravel(), *found.whitepoint])
 
 
 def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:
@@ -116,6 +125,13 @@ def matching_functions(
 def power(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
     """(N,) relative spectral power from ``start`` to ``end`` nm. Raises `UnknownNameError`."""
     return _samples(colour_science().SDS_ILLUMINANTS, illuminant, "illuminant", (start, end, step))
+
+
+def display_primaries(
+    display: str = CRT, start: float = START, end: float = END, step: float = STEP
+) -> Array:
+    """(N, 3) relative power of a display's red, green and blue. Raises `UnknownNameError`."""
+    return _samples(colour_science().MSDS_DISPLAY_PRIMARIES, display, "display", (start, end, step))
 
 
 def _samples(

@@ -64,7 +64,7 @@ def build(
 
     Warns
     -----
-    UpliftWarning : naming every entry that is left out, clipped, or crowded.
+    UpliftWarning : naming every entry that is left out, clipped, or crowded, and images of another space.
     """
     chosen = Options(**options)
     model = chosen.spectrum_model()

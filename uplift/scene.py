@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,8 +14,9 @@ import numpy as np
 
 from uplift.cube import CubeData
 from uplift.cube.pins import MARGIN, Pins
-from uplift.errors import OptionError
+from uplift.errors import OptionError, UpliftWarning
 from uplift.lattice import CORNERS, Lattice, Mask
+from uplift.overflow import check_way
 from uplift.sensor import Array, Sensor
 from uplift.texture.colours import check_encoding, decoder
 from uplift.texture.plan import coloured
@@ -53,14 +55,19 @@ class Images:
 
     paths: tuple[Path, ...]
     encoding: str = "auto"
+    out_of_gamut: str = "clip"
 
     def points(self, pins: Pins, sensor: Sensor, watch: Watch) -> Mask:
-        """Raises `OptionError`, `TextureError`."""
+        """Raises `OptionError`, `TextureError`, and `ColourError` for colours outside [0, 1] that are an error.
+
+        An `UpliftWarning` names images that say they are of another space.
+        """
         check_encoding(self.encoding)
+        check_way(self.out_of_gamut)
         cells = np.zeros(pins.lattice.size, dtype=bool)
         for done, path in enumerate(self.paths):
             watch(Reading(done, len(self.paths)))
-            for rgb in colours_of(path, sensor, self.encoding):
+            for rgb in self.colours(path, sensor):
                 cells[touched(pins.lattice, rgb)] = True
         if not cells.any():
             raise OptionError(
@@ -69,9 +76,22 @@ class Images:
         return pins.needs(cells)
 
     def describe(self) -> list[dict[str, Any]]:
-        return [
-            {"name": path.name, "digest": file_digest(path), "encoding": self.encoding} for path in self.paths
-        ]
+        read = {"encoding": self.encoding, "out_of_gamut": self.out_of_gamut}
+        return [{"name": path.name, "digest": file_digest(path), **read} for path in self.paths]
+
+    def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
+        """Linear RGB (n, 3) in [0, 1] of an image, block by block."""
+        with opened(path) as image:
+            for remark in image.remarks(sensor):
+                warnings.warn(f"{path}: {remark}", UpliftWarning, stacklevel=5)
+            for part, places in coloured(image):
+                if places is None:
+                    continue
+                decode = decoder(sensor, part, self.encoding, self.out_of_gamut)
+                for _, band in image.bands(part):
+                    pixels = band.reshape(-1, band.shape[-1])
+                    for first in range(0, len(pixels), BLOCK):
+                        yield decode(pixels[first : first + BLOCK, places])[0].astype(float)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,19 +126,6 @@ def touched(lattice: Lattice, rgb: Array) -> Array:
     between = (low != high).any(axis=1)
     beside = np.where(CORNERS[:, None, :] == 1, high[between], low[between]).reshape(-1, 3)
     return np.concatenate([lattice.index(low), lattice.index(beside)])
-
-
-def colours_of(path: Path, sensor: Sensor, encoding: str) -> Iterator[Array]:
-    """Linear RGB (n, 3) in [0, 1] of an image, block by block."""
-    with opened(path) as image:
-        for part, places in coloured(image):
-            if places is None:
-                continue
-            decode = decoder(sensor, part, encoding)
-            for _, band in image.bands(part):
-                pixels = band.reshape(-1, band.shape[-1])
-                for first in range(0, len(pixels), BLOCK):
-                    yield decode(pixels[first : first + BLOCK, places])[0].astype(float)
 
 
 def file_digest(path: Path) -> str:

@@ -80,6 +80,11 @@ class Sensor:
         array = np.asarray(rgb, dtype=float)
         return np.asarray(((array >= -SLACK) & (array <= 1 + SLACK)).all(axis=-1))
 
+    @cached_property
+    def rgb_to_xyz(self) -> Array:
+        """(3, 3) linear RGB to XYZ under the build illuminant."""
+        return np.asarray(np.linalg.inv(self.xyz_to_rgb))
+
     def xyz(self, rgb: ArrayLike) -> Array:
         """XYZ (…, 3) under the build illuminant of linear RGB (…, 3)."""
-        return np.asarray(rgb, dtype=float) @ np.linalg.inv(self.xyz_to_rgb).T
+        return np.asarray(rgb, dtype=float) @ self.rgb_to_xyz.T

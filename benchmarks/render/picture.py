@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.render.chart import Layout
-from uplift.cube.display import encode
+from uplift.cube.display import shown
 from uplift.observer import sensor
+from uplift.overflow import SRGB
 from uplift.report.figure import new_figure, write_png
 from uplift.sensor import Array
 
@@ -39,7 +40,7 @@ def draw(
             axes, image = grid[row, column], images[light, way].copy()
             for place in layout.patches(round(INSET * layout.patch)):
                 image[place] = images[light, truth][place]
-            axes.imshow(encode(_binned(image) @ to_screen), interpolation="nearest")
+            axes.imshow(shown(_binned(image) @ to_screen, SRGB).astype(np.uint8), interpolation="nearest")
             axes.set_xticks([])
             axes.set_yticks([])
             axes.spines[:].set_visible(False)

@@ -31,8 +31,8 @@ def advice(comparisons: Iterable[Comparison]) -> str:
     return table(
         "Model no more than a scene needs",
         "`uplift compare --target`: of all whose 97.5 % quantile stays within the target, the one that stores least of "
-        "a surface (in brackets: its floats, and those of a light). The second line leaves out what needs the whole "
-        "table of the light.",
+        "a surface, then of a light, then is the nearest (in brackets: the floats of a surface, and of a light). The "
+        "second line leaves out what needs the whole table of the light.",
         ["lights", *(f"ΔE00 {target:g}" for target in TARGETS)],
         rows,
     )

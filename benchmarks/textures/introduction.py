@@ -26,10 +26,12 @@ renderer makes of it that multiplies RGB by the light's RGB: mean ΔE00
 - **Colour** is in R, G and B, or in those of the only layer that has them (`diffuse.R`), or in Y, which is grey. Each
   part of a file that has colour is uplifted; the others pass through.
 - **Encoding**: 8-bit and 16-bit whole numbers are taken for encoded as the cube's space has it, floats for linear.
-  `--encoding linear` and `--encoding encoded` overrule it. An image that names other primaries than the cube's is taken
-  for the cube's space all the same, and remarked on: convert it, or build a cube with `--space`.
-- **What is no colour**: below 0 and above 1 is clamped, channel by channel; NaN is taken for 0, infinities are clamped.
-  Pixels of either kind are counted and told. So are those in wide spaces that no reflectance has.
+  `--encoding linear` and `--encoding encoded` overrule it. An image whose ICC profile, `chromaticities` (OpenEXR) or
+  code points (`cICP` of PNG) name other primaries than the cube's, or another curve, is taken for the cube's space all
+  the same, and remarked on: convert it, or build a cube with `--space`. One that says nothing is not.
+- **What is no colour**: below 0 and above 1 is clamped, channel by channel, or refused, scaled or desaturated as
+  `--out-of-gamut` says ([display.md](display.md)); NaN is taken for 0, infinities are clamped. Pixels of either kind
+  are counted and told, and how far they were moved. So are those in wide spaces that no reflectance has.
 - **All other channels**, alpha among them, pass through: half, float and 8-bit and 16-bit numbers to the bit; whole
   numbers of 32 bits up to 2²⁴, and beyond the image is refused. Colours are uplifted as they stand: those of an
   OpenEXR file multiplied by alpha, those of a PNG not.

@@ -11,9 +11,10 @@ import OpenEXR
 
 from benchmarks.textures.pictures import Picture
 from uplift import observer, texture
-from uplift.cube.display import encode
+from uplift.cube.display import shown
 from uplift.difference import delta_e_2000, lab
 from uplift.lookup import Cube
+from uplift.overflow import SRGB
 from uplift.report.figure import new_figure, write_png
 from uplift.sensor import Array, Light
 
@@ -62,6 +63,6 @@ def _apart(light: Light, first: Array, second: Array) -> float:
 
 
 def _show(axes: Any, linear: Array, title: str) -> None:
-    axes.imshow(encode(linear))
+    axes.imshow(shown(linear, SRGB).astype(np.uint8))
     axes.set_title(title, fontsize=9, loc="left")
     axes.set_axis_off()

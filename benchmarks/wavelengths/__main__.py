@@ -10,13 +10,17 @@ import uplift
 from benchmarks.page import write
 from benchmarks.timing import ROOT
 from benchmarks.wavelengths import figures, meyer_tables
-from benchmarks.wavelengths.methods import SMOOTH, SPIKY, Comparison, compare, reached, section, told
+from benchmarks.wavelengths.bounces import bounces
+from benchmarks.wavelengths.methods import SMOOTH, SPIKY, Comparison, compare, section, summary
 from benchmarks.wavelengths.words import INTRODUCTION
 from uplift.atlas import on_grid
+from uplift.sensor import Array
 from uplift.wavelengths import grid, set_up
 from uplift.wavelengths.experiments import trials
 from uplift.wavelengths.opponent import cones, opponent, plain
 
+MIXED = ("D65", "FL11")
+"""Lights of several bounces."""
 PICTURES = ROOT / "docs" / "wavelengths"
 
 
@@ -33,25 +37,18 @@ def main() -> None:
     materials = on_grid(uplift.read_atlas(*atlases), grid())
     smooth, spiky = (_compared(materials, lights) for lights in (SMOOTH, SPIKY))
     figures.methods((smooth, spiky), PICTURES / "methods.png")
-    introduction = INTRODUCTION.format(
-        materials=len(materials),
-        smooth=told(smooth.unseen),
-        spiky=told(spiky.unseen),
-        smooth_seen=told(smooth.seen),
-        spiky_seen=told(spiky.seen),
-        smooth_one=reached(smooth.unseen, 1.0),
-        spiky_one=reached(spiky.unseen, 1.0),
-    )
     sections = [
+        summary((smooth, spiky), len(materials)),
         *(part for comparison in (smooth, spiky) for part in _sections(comparison)),
+        bounces(materials, MIXED),
         meyer_tables.matrices(checker, found),
         meyer_tables.quadrature(checker, found.space),
         meyer_tables.four_wavelengths(checker, found.space),
     ]
-    print(write("wavelengths", introduction, sections))
+    print(write("wavelengths", INTRODUCTION, sections))
 
 
-def _compared(materials: uplift.sensor.Array, lights: tuple[str, ...]) -> Comparison:
+def _compared(materials: Array, lights: tuple[str, ...]) -> Comparison:
     begin = time.perf_counter()
     found = compare(materials, lights)
     print(f"{', '.join(lights)}: {time.perf_counter() - begin:.0f} s", file=sys.stderr)

@@ -91,7 +91,7 @@ def test_swatches_where_the_terminal_has_colours(monkeypatch):
     monkeypatch.setenv("COLORTERM", "truecolor")
     monkeypatch.setenv("TERM", "xterm-256color")
     monkeypatch.delenv("NO_COLOR", raising=False)
-    assert "\x1b[48;2;117;80;64m" in invoke(MACBETH).stdout
+    assert "\x1b[48;2;116;79;63m" in invoke(MACBETH).stdout
 
 
 def test_convert_there_and_back(tmp_path):

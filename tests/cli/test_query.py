@@ -9,6 +9,7 @@ import math
 import subprocess
 import sys
 
+import colour
 import matplotlib.image
 import numpy as np
 import pytest
@@ -94,6 +95,92 @@ def test_what_is_no_colour_is_refused(refuse, words, problem):
     assert refuse("query", *words).startswith(f"{problem}; ")
 
 
+@pytest.mark.parametrize(
+    ("way", "rgb"),
+    [
+        ("clip", [1, 0.3, 0]),
+        ("scale", [1, 0.26667, 0]),
+        ("desaturate", [1, 0.3916, 0.1704]),
+        ("desaturate-oklab", [1, 0.4215, 0.1069]),
+    ],
+)
+def test_colours_outside_are_moved_and_told(run, ask, way, rgb):
+    words = ("1.4", "0.3", "-0.1", "--out-of-gamut", way)
+    result = run("query", *words)
+    assert result.stderr == (
+        f"warning: 1 of 1 colours lie outside [0, 1]: moved inside ({way}), a component by up to 0.4\n"
+    )
+    assert result.stdout.startswith("asked       1.400000 0.300000 -0.100000  outside [0, 1], moved by ΔE00 ")
+    answer = ask(*words)
+    np.testing.assert_allclose(answer["rgb"], rgb, rtol=0, atol=1e-3)
+    assert answer["asked"] == [1.4, 0.3, -0.1]
+    assert answer["round_trip"]["delta_e_2000"] < 0.01
+
+
+def test_colours_outside_in_files_are_moved_and_told(run, ask, table):
+    path = table("0.8,0.2,0.1\n1.5,0.5,0.25\n#cc3319\n")
+    words = ("--input", path, "--out-of-gamut", "scale")
+    assert "warning: 1 of 3 colours lie outside" in run("query", *words).stderr
+    answers = ask(*words)
+    np.testing.assert_allclose(
+        [answer["rgb"] for answer in answers], [[0.8, 0.2, 0.1], [1, 1 / 3, 1 / 6], RED]
+    )
+    np.testing.assert_allclose(
+        [answer["asked"] for answer in answers], [[0.8, 0.2, 0.1], [1.5, 0.5, 0.25], RED]
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("0,0,0\n0,0,inf\n", ":2: (0, 0, inf) is not finite"),
+        ("nan,0,0\n", ":1: (nan, 0, 0) is not finite"),
+    ],
+)
+def test_what_cannot_be_moved_is_named(refuse, table, text, problem):
+    path = table(text)
+    assert refuse("query", "--input", path, "--out-of-gamut", "clip").startswith(f"{path}{problem}; ")
+    assert refuse("query", "nan", "0", "0", "--out-of-gamut", "scale").startswith(
+        "linear RGB (nan, 0, 0) is not finite; "
+    )
+
+
+P3 = "0.68,0.32 0.265,0.69 0.15,0.06 0.3127,0.329"
+
+
+@pytest.mark.parametrize("name", ["P3-D65", P3])
+def test_colours_of_another_display(ask, name):
+    theirs = colour.matrix_RGB_to_RGB("P3-D65", "sRGB")
+    asked = ask("0.5", "0.6", "0.3", "--primaries", name)["asked"]
+    np.testing.assert_allclose(asked, theirs @ [0.5, 0.6, 0.3], rtol=0, atol=3e-4)
+    green = ask("0", "1", "0", "--primaries", name, "--out-of-gamut", "clip")
+    np.testing.assert_allclose(green["asked"], theirs[:, 1], rtol=0, atol=3e-4)
+    assert green["rgb"] == [0, 1, 0]
+
+
+def test_what_lies_outside_another_display_may_lie_inside(ask, table):
+    """The numbers of a file are judged where they are asked."""
+    asked = ask("--input", table("-0.1,0.5,0.4"), "--primaries", "0.4,0.34 0.31,0.4 0.25,0.2 0.3127,0.329")
+    assert 0 <= min(asked[0]["rgb"]) <= max(asked[0]["rgb"]) <= 1
+
+
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [
+        ("P9", "unknown RGB space 'P9'; did you mean"),
+        ("1,2", "primaries and white are eight numbers, not 2; "),
+        ("1,2,", "primaries '1,2,' are not clear; "),
+        ("1,0 2,0 3,0 0.3,0.3", "(1,0 2,0 3,0 0.3,0.3) are the primaries and white of no display; "),
+    ],
+)
+def test_what_is_no_display_is_refused(refuse, name, problem):
+    assert refuse("query", "0.5", "0.6", "0.3", "--primaries", name).startswith(problem)
+
+
+def test_codes_outside_have_no_colour_to_move(refuse):
+    assert refuse("query", "--8bit", "256", "0", "0", "--out-of-gamut", "clip").startswith("8-bit codes run")
+
+
 def test_a_file_and_a_colour_are_too_much(run, table):
     assert "Give one colour" in run("query", "#fff", "--input", table("0,0,0"), code=2).stderr
 
@@ -175,7 +262,7 @@ def test_json_holds_the_whole_answer(ask, cubes):
     row = cube.data.atlas.names.index("red")
     answer = ask("--cube", path, *cube.data.atlas.rgb[row].tolist())
     assert answer.keys() == {
-        *("rgb", "wavelengths", "reflectance", "round_trip", "cell", "status", "realisable"),
+        *("rgb", "asked", "wavelengths", "reflectance", "round_trip", "cell", "status", "realisable"),
         *("entry", "standard_error", "reference"),
     }
     assert answer["standard_error"] == pytest.approx(cube.data.atlas.error[row])

@@ -39,6 +39,7 @@ def test_build_refuses_bad_scenes(run, refuse, home):
     assert "no file is named like 'b.*.exr'" in refuse("build", "--scene", "b.*.exr")
     assert "c.png: there is no such file" in refuse("build", "--dim", 4, "--scene", "c.png")
     assert "--encoding is of --scene images" in run("build", "--encoding", "linear", code=2).stderr
+    assert "--out-of-gamut is of --scene images" in run("build", "--out-of-gamut", "scale", code=2).stderr
     assert not list(home.glob("*.uplift"))
 
 

@@ -39,7 +39,7 @@ def test_a_sequence_goes_on_where_one_image_is_bad(run, frames, cubes):
     warning, error = result.stderr.splitlines()
     assert warning.startswith("warning: ")
     assert "shot.1.exr: " in warning
-    assert warning.endswith(" of 30 pixels lie outside [0, 1]: clamped")
+    assert " of 30 pixels lie outside [0, 1]: clamped, a component by up to 0.9" in warning
     assert error.startswith("error: ")
     assert "shot.2.exr: " in error
     assert sorted(path.name for path in (frames / "out").iterdir()) == ["shot.0.exr", "shot.1.exr"]
@@ -64,6 +64,18 @@ def test_a_sequence_goes_on_where_one_image_is_bad(run, frames, cubes):
 )
 def test_bad_input(refuse, frames, words, problem):
     assert problem in refuse("texture", *words)
+
+
+def test_out_of_gamut(run, refuse, frames, cubes):
+    words = ("texture", "shot.1.exr", "out.exr", "--cube", cubes / "moments-8.uplift", "--as", "moments")
+    told = run(*words, "--out-of-gamut", "scale").stderr
+    assert " of 30 pixels lie outside [0, 1]: scaled, a component by up to " in told
+    scaled = OpenEXR.File("out.exr", separate_channels=True).channels()
+    assert max(scaled[letter].pixels.max() for letter in "RGB") == 1
+    run(*words, "--force")
+    clipped = OpenEXR.File("out.exr", separate_channels=True).channels()
+    assert (scaled["G"].pixels < clipped["G"].pixels).any()
+    assert "lies outside [0, 1]; use --out-of-gamut" in refuse(*words, "--force", "--out-of-gamut", "error")
 
 
 def test_a_folder_is_not_the_images_own(refuse, frames):

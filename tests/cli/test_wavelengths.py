@@ -115,3 +115,10 @@ def test_an_existing_picture_is_kept(refuse, home, macbeth):
     (home / "a.png").write_text("mine")
     assert "a.png" in refuse("wavelengths", "--atlas", macbeth, "--count", "4", "--plot", "a.png")
     assert (home / "a.png").read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    "options", [["--count", "4", "--measure", "mean"], ["--at", "500", "--method", "bins"]]
+)
+def test_nothing_asked_for_is_left_aside(run, options):
+    assert "--measure goes with --target, --method with" in run("wavelengths", *options, code=2).output

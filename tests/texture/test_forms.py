@@ -107,7 +107,7 @@ def test_the_header_tells_which_cube_and_how(spectral, small_cube, colours, tmp_
     assert json.loads(header["uplift.model"]) == small_cube.data.model.describe()
     made = json.loads(header["uplift.texture"])
     assert made.pop("wavelengths") == list(AT)
-    assert made == {"as": "spectrum", "depth": "float", "encoding": "auto"}
+    assert made == {"as": "spectrum", "depth": "float", "encoding": "auto", "out_of_gamut": "clip"}
     srgb = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]
     np.testing.assert_allclose(header["chromaticities"], srgb, atol=2e-4)
 
@@ -119,6 +119,8 @@ def test_what_cannot_be_is_refused(small_cube, small_sigmoid_cube):
         texture.prepare(small_cube, texture.Multipliers(), depth="half")
     with pytest.raises(OptionError, match="unknown encoding 'log'"):
         texture.prepare(small_cube, encoding="log")
+    with pytest.raises(OptionError, match="unknown way out of gamut 'squash'"):
+        texture.prepare(small_cube, out_of_gamut="squash")
     for unordered in ((500.0, 400.0), (500.0, 500.0), (500.0, 500.0 + 1e-8)):
         with pytest.raises(OptionError, match="ascend"):
             texture.prepare(small_cube, texture.Spectrum(unordered))

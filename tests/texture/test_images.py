@@ -10,7 +10,8 @@ import pytest
 from PIL import Image
 
 from uplift import texture
-from uplift.errors import TextureError
+from uplift.errors import ColourError, OptionError, TextureError
+from uplift.overflow import contained
 
 from .conftest import AT, channels, held, planes, small_tiles, write_exr
 
@@ -115,9 +116,9 @@ def test_what_is_no_colour_is_clamped_counted_and_nothing_else_is_touched(colour
     bad[3, 3] = (-0.25, 0.5, 2)
     bad[4, 4, 0] = -1e-3
     result, found = made(write_exr(tmp_path / "bad.exr", planes(bad)))
-    assert result.counts == texture.Counts(pixels=600, outside=2, not_finite=2)
+    assert result.counts == texture.Counts(pixels=600, outside=2, not_finite=2, farthest=1)
     assert result.remarks == (
-        "2 of 600 pixels lie outside [0, 1]: clamped",
+        "2 of 600 pixels lie outside [0, 1]: clamped, a component by up to 1",
         "2 of 600 pixels are not finite: NaN is taken for 0, infinity clamped",
     )
     good = np.clip(np.nan_to_num(bad, nan=0, posinf=1, neginf=0), 0, 1)
@@ -128,6 +129,52 @@ def test_what_is_no_colour_is_clamped_counted_and_nothing_else_is_touched(colour
     np.testing.assert_allclose(spectra, spectral.cube.reflectance(good, AT), atol=1e-6)
     result, _ = made(write_exr(tmp_path / "good.exr", planes(good)))
     assert result.remarks == ()
+
+
+@pytest.mark.parametrize(
+    ("way", "told"),
+    [
+        ("scale", "scaled"),
+        ("desaturate", "desaturated"),
+        ("desaturate-oklab", "desaturated in Oklab"),
+    ],
+)
+def test_pixels_outside_are_moved_as_asked(way, told, colours, made, spectral, tmp_path):
+    bad = colours.copy()
+    bad[3, :5] = np.array([[-0.25, 0.5, 2], [8, 4, 1], [0.2, 0.6, -0.1], [-1, -1, -1], [7, 7, 7]])
+    bad[4, 4] = (np.inf, 5, np.nan)
+    source = write_exr(tmp_path / "bad.exr", planes(bad))
+    result, found = made(source, replace(spectral, out_of_gamut=way))
+    bad[4, 4] = (1, 1, 0)
+    moved = contained(bad, spectral.cube.data.sensor, way)
+    np.testing.assert_array_equal(rgb_of(found), moved.rgb)
+    assert result.counts == texture.Counts(600, outside=5, not_finite=1, farthest=moved.farthest)
+    assert result.remarks[0] == (
+        f"5 of 600 pixels lie outside [0, 1]: {told}, a component by up to {moved.farthest:.3g}"
+    )
+
+
+@pytest.mark.parametrize("bad", [1.5, -0.5, np.nan])
+def test_pixels_outside_can_be_an_error(bad, colours, spectral, tmp_path):
+    strict = replace(spectral, out_of_gamut="error")
+    good = write_exr(tmp_path / "good.exr", planes(colours))
+    texture.convert(strict, good, tmp_path / "out.exr")
+    rgb = colours.copy()
+    rgb[3, 3, 0] = bad
+    source = write_exr(tmp_path / "bad.exr", planes(rgb))
+    with pytest.raises(
+        ColourError, match=r"outside \[0, 1\]; use --out-of-gamut clip, or another way"
+    ) as caught:
+        texture.convert(strict, source, tmp_path / "bad-out.exr")
+    assert str(caught.value).startswith(f"{source}: linear RGB ({bad:g}, ")
+    assert not (tmp_path / "bad-out.exr").exists()
+
+
+def test_encodings_end_at_one(colours, spectral, tmp_path):
+    Image.fromarray(colours[..., 0]).save(tmp_path / "float.tif")
+    scaled = replace(spectral, encoding="encoded", out_of_gamut="scale")
+    with pytest.raises(OptionError, match="encoded floats end at 0 and 1"):
+        texture.convert(scaled, tmp_path / "float.tif", tmp_path / "out.exr")
 
 
 def other_planes(shape):

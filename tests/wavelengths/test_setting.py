@@ -25,6 +25,13 @@ def test_colours_are_those_of_the_project_on_its_own_grid() -> None:
     np.testing.assert_allclose(seen.lab[0], lab(reflectances @ light.xyz.T, light.white), rtol=1e-9)
 
 
+@pytest.mark.parametrize("count", [101, 64])
+def test_grids_of_any_step_see_nearly_the_same(smooth: Setting, count: int) -> None:
+    nm = np.linspace(380, 770, count)
+    coarse = set_up(smooth.curves(nm), smooth.lights, wavelengths=nm)
+    np.testing.assert_allclose(coarse.lab, smooth.lab, atol=0.2)
+
+
 def test_a_light_named_twice_counts_once(checker: Array) -> None:
     assert set_up(checker, ["A", "A"]).lights == ("A",)
 

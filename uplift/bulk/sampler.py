@@ -14,8 +14,9 @@ from uplift.bulk.kernel import answer
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.nodes import require
-from uplift.lookup.question import thread_count, triples, within
+from uplift.lookup.question import thread_count, within
 from uplift.lookup.table import Table, tabulate
+from uplift.overflow import triples
 from uplift.sensor import Sensor
 
 CHUNKS = (1 << 16, 1 << 12)

@@ -138,4 +138,4 @@ def _key(figure: Any, found: Comparison) -> None:
     entries = [(name, {**PLAIN, "color": code}) for name, code in families(found.rows).items()]
     entries.append(("Pareto front", {**PLAIN, **FRONT}))
     handles = [Line2D([], [], **style) for _, style in entries]
-    figure.legend(handles, [name for name, _ in entries], loc="lower center", ncols=5, **KEY)
+    figure.legend(handles, [name for name, _ in entries], loc="lower center", ncols=6, **KEY)

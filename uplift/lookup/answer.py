@@ -24,6 +24,7 @@ HALF_A_CODE = 0.5
 class Answer:
     """One colour: linear RGB (3,), its reflectance (N,) at wavelengths (N,) nm, and its round trip.
 
+    ``asked`` is what ``rgb`` was before it was moved into [0, 1], if it was (`uplift.overflow`);
     ``cell`` is the lowest corner's position along the axes (r, g, b); ``statuses`` are those of the cell's
     corners; ``entry`` is the atlas entry that the colour sits on, if any; ``standard_error`` is by how much, in
     ΔE00 under the cube's reference light, a measurement may be expected to differ, if the cube tells;
@@ -31,6 +32,7 @@ class Answer:
     """
 
     rgb: Array
+    asked: Array
     wavelengths: Array
     reflectance: Array
     round_trip: Array
@@ -43,15 +45,23 @@ class Answer:
 
 
 def answers(
-    cube: Cube, rgb: Array, wavelengths: ArrayLike | None = None, mode: str = "spectra"
+    cube: Cube,
+    rgb: Array,
+    wavelengths: ArrayLike | None = None,
+    mode: str = "spectra",
+    asked: Array | None = None,
 ) -> Iterator[Answer]:
-    """Answers for linear RGB (n, 3), in order, as they are made. Raises as `Cube.reflectance`."""
+    """Answers for linear RGB (n, 3), in order, as they are made. Raises as `Cube.reflectance`.
+
+    ``asked`` (n, 3) is what they were before they were moved into [0, 1], if any were.
+    """
     at = cube.wavelengths(wavelengths)
     for start in range(0, len(rgb), BLOCK):
-        yield from _block(cube, rgb[start : start + BLOCK], at, mode)
+        block = slice(start, start + BLOCK)
+        yield from _block(cube, rgb[block], (rgb if asked is None else asked)[block], at, mode)
 
 
-def _block(cube: Cube, rgb: Array, at: Array, mode: str) -> Iterator[Answer]:
+def _block(cube: Cube, rgb: Array, asked: Array, at: Array, mode: str) -> Iterator[Answer]:
     sensor, lattice = cube.data.sensor, cube.data.lattice
     count = len(sensor.wavelengths)
     both = cube.reflectance(rgb, np.concatenate([sensor.wavelengths, at]), mode)
@@ -64,6 +74,7 @@ def _block(cube: Cube, rgb: Array, at: Array, mode: str) -> Iterator[Answer]:
     for row, cell in enumerate(cells):
         yield Answer(
             rgb=rgb[row],
+            asked=asked[row],
             wavelengths=at,
             reflectance=both[row, count:],
             round_trip=back[row],

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.errors import ColourError, OptionError, UpliftError
+from uplift.overflow import refuse, triples
 from uplift.sensor import SLACK, Array, Sensor
 
 TYPES = (np.dtype(np.float64), np.dtype(np.float32))
@@ -18,26 +19,12 @@ def colours(rgb: ArrayLike, sensor: Sensor) -> Array:
     return within(triples(rgb), sensor)
 
 
-def triples(rgb: ArrayLike) -> NDArray[Any]:
-    """``rgb`` (…, 3) as float32, if that is what it is, or float64. Raises `ColourError` for other shapes."""
-    single = isinstance(rgb, np.ndarray) and rgb.dtype == np.float32
-    array = np.asarray(rgb) if single else floats(rgb, "a colour is three numbers")
-    if array.ndim == 0 or array.shape[-1] != 3:
-        raise ColourError(f"a colour is three numbers, not an array of shape {array.shape}")
-    return array
-
-
 def within(rgb: NDArray[Any], sensor: Sensor) -> Array:
     """Linear RGB (…, 3) in [0, 1], float64. Raises `ColourError`, quoting the first that lies outside."""
     array = np.asarray(rgb, dtype=float)
     # Much quicker than asking for each; NaN fails both comparisons.
     if array.size and not (array.min() >= -SLACK and array.max() <= 1 + SLACK):
-        first = np.argwhere(~sensor.holds(array))[0]
-        values = ", ".join(f"{value:g}" for value in array[tuple(first)])
-        raise ColourError(
-            f"linear RGB ({values}) lies outside [0, 1]",
-            remedy="reflectances reach no further; scale or clip it, or use --8bit for codes",
-        )
+        refuse(array[~sensor.holds(array)])
     return np.clip(array, 0, 1)
 
 

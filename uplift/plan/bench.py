@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,6 +47,14 @@ class Step:
 Watch = Callable[[Step], None]
 
 
+@contextlib.contextmanager
+def silent() -> Iterator[None]:
+    """The build that counts says what is to be said of atlas and textures."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        yield
+
+
 @dataclass(frozen=True, eq=False)
 class Bench:
     """A scene ready to measure on; ``bench`` makes it.
@@ -74,9 +83,8 @@ class Bench:
         }
 
     def cube(self, rgb: Array, **options: Any) -> Cube:
-        """A cube for linear RGB (n, 3) alone. The build that counts says what is to be said of the atlas."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UpliftWarning)
+        """A cube for linear RGB (n, 3) alone."""
+        with silent():
             return build(self.atlas, scene=Some(rgb), **{**self.options, **options})
 
     def question(self, drawn: Pixels) -> tuple[Question, Error]:
@@ -107,5 +115,6 @@ def bench(brief: Brief, effort: Effort, watch: Watch) -> Bench:
         watch(Step("reading textures", done, total))
 
     wanted = effort.predicting, effort.confirming
-    found = colours(brief.textures, sensor, brief.encoding, wanted, reading)
+    with silent():
+        found = colours(brief.textures, sensor, brief.encoding, wanted, reading)
     return Bench(brief, effort, sensor, atlas, measured[held], np.clip(rgb[held], 0, 1), found, watch)

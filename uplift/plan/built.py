@@ -11,7 +11,7 @@ from typing import Any
 
 from uplift.lookup import Cube
 from uplift.pipeline import build
-from uplift.plan.bench import Bench
+from uplift.plan.bench import Bench, silent
 from uplift.scene import Images
 
 WORTH = 1e6
@@ -49,7 +49,8 @@ def built(bench: Bench, options: Mapping[str, Any]) -> Built:
 
 
 def _whole(bench: Bench, options: Mapping[str, Any], sparse: int) -> Built:
-    cube, seconds = _timed(bench, options)
+    with silent():  # all has been said by the build before
+        cube, seconds = _timed(bench, options)
     size = _size(cube)
     return Built(cube, size, seconds, size, sparse)
 

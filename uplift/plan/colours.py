@@ -12,7 +12,7 @@ import numpy as np
 from uplift.cube.pins import Pins
 from uplift.errors import PlanFileError
 from uplift.lattice import Lattice, Mask
-from uplift.scene import Reading, colours_of, touched
+from uplift.scene import Images, Reading, touched
 from uplift.sensor import Array, Sensor
 from uplift.texture.plan import coloured
 from uplift.texture.source import opened
@@ -56,7 +56,7 @@ def colours(
 
     Raises `TextureError`, and `PlanFileError` for images without a pixel.
     """
-    total = sum(map(_pixels, textures))
+    total, scene = sum(map(_pixels, textures)), Images(textures, encoding)
     if not total:
         raise PlanFileError("the textures have no pixels", remedy="name one that has")
     first = wanted[0] / total
@@ -65,7 +65,7 @@ def colours(
     drawn: tuple[list[Array], list[Array]] = [], []
     for done, path in enumerate(textures):
         watch(done, len(textures))
-        for rgb in colours_of(path, sensor, encoding):
+        for rgb in scene.colours(path, sensor):
             kinds[_kind(sensor, rgb)] = rgb
             lot = rng.random(len(rgb))
             drawn[0].append(rgb[(lot < first) | (last > 1)])

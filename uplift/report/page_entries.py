@@ -52,7 +52,8 @@ def entries_section(found: Assessment, worst: int) -> Markup:
 
 def _note_on_entries(found: Assessment, entries: Entries) -> Markup:
     text = (
-        f"Swatches: measured on the left, answered on the right. ΔE00 above {SEEN:g} is bold, above {BAD:g} orange. "
+        "Swatches: measured on the left, answered on the right; what sRGB cannot show is less saturated there. "
+        f"ΔE00 above {SEEN:g} is bold, above {BAD:g} orange. "
         "rms is between the answer and the measured spectrum"
     )
     if entries.lattice is not None:

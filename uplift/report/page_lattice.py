@@ -5,7 +5,7 @@ from __future__ import annotations
 from uplift.report.assessment import Assessment
 from uplift.report.markup import Markup, counted, element, joined, number, power, triple
 from uplift.report.page_parts import charts, figure, note, right, swatch, table
-from uplift.report.viewing import screen_codes
+from uplift.report.viewing import hex_codes
 
 
 def failures_section(found: Assessment) -> Markup:
@@ -43,7 +43,9 @@ def _missed(found: Assessment) -> Markup | None:
     if not len(points):
         return None
     target = data.lattice.points[points]
-    pairs = zip(screen_codes(data, target), screen_codes(data, data.rgb[points].astype(float)), strict=True)
+    pairs = zip(
+        hex_codes(target, data.sensor), hex_codes(data.rgb[points].astype(float), data.sensor), strict=True
+    )
     lines = [
         [
             swatch(*codes),
@@ -121,7 +123,7 @@ def _aside(found: Assessment) -> Markup:
         "div",
         f"The dashed line is the threshold, {found.data.threshold:g}. Neighbours are points next to each other along "
         "an axis; between these two the spectrum changes most:",
-        swatch(*screen_codes(found.data, found.steepest)),
+        swatch(*hex_codes(found.steepest, found.data.sensor)),
         f"({first}) and ({second}).",
         class_="aside",
     )

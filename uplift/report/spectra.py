@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 
+from uplift.cube.display import shown
 from uplift.lookup import Answer, Cube
 from uplift.report.figure import new_figure, spectral, write_png
 
@@ -19,10 +20,12 @@ def plot_answers(
     figure = new_figure(7.2, 4.0)
     axes = figure.subplots()
     for answer in answers:
-        codes = cube.encode(answer.rgb) / 255
-        name = answer.entry or "#" + "".join(f"{round(255 * code):02x}" for code in codes)
+        name = answer.entry or "#" + "".join(
+            f"{round(code):02x}" for code in cube.encode(answer.rgb).tolist()
+        )
+        colour = tuple(shown(answer.rgb, cube.data.sensor) / 255)
         axes.plot(answer.wavelengths, answer.reflectance, color="0.25", linewidth=3.4, solid_capstyle="round")
-        axes.plot(answer.wavelengths, answer.reflectance, color=tuple(codes), linewidth=2.4, label=name)
+        axes.plot(answer.wavelengths, answer.reflectance, color=colour, linewidth=2.4, label=name)
     spectral(axes)
     if len(answers) <= NAMED:
         axes.legend(frameon=False)

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from uplift.cube import CubeData
-from uplift.cube.display import encode
+from uplift.cube.display import shown
 from uplift.observer import sensor
+from uplift.overflow import SRGB, Gamut
 from uplift.sensor import Array, Sensor
 
 LIGHTS = ("D65", "A", "FL2", "FL7", "FL11", "LED-B3")
@@ -24,12 +24,6 @@ def viewings(names: Sequence[str], observer: str) -> tuple[Sensor, ...]:
     return tuple({viewing.illuminant: viewing for viewing in found}.values())
 
 
-def hex_codes(linear: Array) -> list[str]:
-    """``#rrggbb`` of linear sRGB (n, 3); what the screen cannot show is clipped."""
-    return ["#" + bytes(code).hex() for code in np.rint(255 * encode(linear)).astype(np.uint8)]
-
-
-def screen_codes(data: CubeData, rgb: Array) -> list[str]:
-    """``#rrggbb`` of linear RGB (n, 3) of the cube's space, as its own illuminant shows them."""
-    screen = sensor("sRGB", data.sensor.illuminant, data.sensor.observer)
-    return hex_codes(data.sensor.xyz(rgb) @ screen.xyz_to_rgb.T)
+def hex_codes(rgb: Array, gamut: Gamut = SRGB) -> list[str]:
+    """``#rrggbb`` of linear RGB (n, 3); what the screen cannot show has less chroma there."""
+    return ["#" + bytes(code).hex() for code in shown(rgb, gamut).astype(np.uint8)]

@@ -11,6 +11,7 @@ from uplift.report.charts import GREY, INK, STYLE
 from uplift.report.figure import new_figure, plain, write_png
 from uplift.sensor import Array
 from uplift.wavelengths import Choice, Setting
+from uplift.wavelengths.setting import read_off
 
 WIDTH, PANEL, HEAD = 7.2, 1.55, 0.9
 """Inches: of the picture, of a panel's height, of what is above and below."""
@@ -53,9 +54,8 @@ def _draw_light(axes: Any, setting: Setting, choice: Choice, light: int) -> None
     scale = inside.sum() / power.sum()
     axes.plot(setting.wavelengths, power * scale, color=GREY, linewidth=0.7)
     axes.vlines(sampling.wavelengths, 0, powers, color=INK, linewidth=1)
-    axes.scatter(
-        sampling.wavelengths, powers, s=26, c=_tints(setting, sampling.wavelengths), edgecolors=INK, zorder=3
-    )
+    tints = _tints(setting, sampling.wavelengths)
+    axes.scatter(sampling.wavelengths, powers, s=26, c=tints, edgecolors=INK, zorder=3, clip_on=False)
     axes.set(ylim=(0, 1.3 * max(powers.max(), np.quantile(power * scale, 0.97))), ylabel="power")
     axes.set_title(sampling.lights[light], loc="left", fontsize=9, color=INK)
     plain(axes)
@@ -78,6 +78,6 @@ def _draw_weights(axes: Any, setting: Setting, choice: Choice) -> None:
 
 def _tints(setting: Setting, wavelengths: Array) -> Array:
     """(n, 3) how the wavelengths look, as far as sRGB can show."""
-    xyz = np.stack([np.interp(wavelengths, setting.wavelengths, cmf) for cmf in setting.cmfs.T], axis=1)
+    xyz = read_off(wavelengths, setting.wavelengths, setting.cmfs.T).T
     rgb = np.clip(xyz @ TINTS.T, 0, None) + 1e-3
     return np.asarray((rgb / rgb.max(axis=1, keepdims=True)) ** (1 / 2.2))

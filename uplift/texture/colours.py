@@ -3,36 +3,55 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.errors import OptionError, TextureError
+from uplift.errors import ColourError, OptionError, TextureError
+from uplift.overflow import contained
 from uplift.sensor import Sensor
 from uplift.texture.source import Part, Values
 
 Floats = NDArray[np.float32]
 ENCODINGS = ("auto", "linear", "encoded")
+MOVED = {
+    "error": "refused",
+    "clip": "clamped",
+    "scale": "scaled",
+    "desaturate": "desaturated",
+    "desaturate-oklab": "desaturated in Oklab",
+}
+"""What is said of pixels, by the names of `uplift.overflow.CHOICES`."""
 COLOUR_KINDS = {"uint8", "uint16", "half", "float", "double"}
 
 
 @dataclass(frozen=True)
 class Counts:
-    """Pixels; those outside [0, 1]; those not finite; those that their spectra may miss."""
+    """Pixels; those outside [0, 1]; those not finite; those that their spectra may miss.
+
+    ``farthest`` is the largest change, of a component of linear RGB, that brought a pixel inside.
+    """
 
     pixels: int = 0
     outside: int = 0
     not_finite: int = 0
     missed: int = 0
+    farthest: float = 0.0
 
     def __add__(self, other: Counts) -> Counts:
-        return Counts(*(mine + its for mine, its in zip(astuple(self), astuple(other), strict=True)))
+        return Counts(
+            self.pixels + other.pixels,
+            self.outside + other.outside,
+            self.not_finite + other.not_finite,
+            self.missed + other.missed,
+            max(self.farthest, other.farthest),
+        )
 
-    def remarks(self) -> tuple[str, ...]:
-        """What should be said of them."""
+    def remarks(self, way: str = "clip") -> tuple[str, ...]:
+        """What should be said of them, where ``way`` was what became of those outside."""
         said = {
-            "lie outside [0, 1]: clamped": self.outside,
+            f"lie outside [0, 1]: {MOVED[way]}, a component by up to {self.farthest:.3g}": self.outside,
             "are not finite: NaN is taken for 0, infinity clamped": self.not_finite,
             "are or border on colours that no reflectance has: their spectra have less chroma": self.missed,
         }
@@ -75,18 +94,29 @@ class Decoder:
 
     function: Callable[[Values], Floats]
     codes: bool
+    sensor: Sensor
+    way: str
 
     def __call__(self, colours: Values) -> tuple[Floats, Counts]:
-        """Linear RGB (…, 3) in [0, 1]: what lies outside is clamped, NaN becomes 0; and the counts."""
+        """Linear RGB (…, 3) in [0, 1], what lies outside brought inside, NaN being 0; and the counts.
+
+        Raises `ColourError` for either where the way is ``error``.
+        """
         pixels = colours.size // 3
         if self.codes:
             return self.function(colours), Counts(pixels)
         if colours.size and colours.min() >= 0 and colours.max() <= 1:  # NaN fails both
             return self.function(colours), Counts(pixels)
-        finite = np.isfinite(colours).all(axis=-1)
-        outside = ((colours < 0) | (colours > 1)).any(axis=-1) & finite
-        clamped = np.clip(np.nan_to_num(colours, nan=0.0, posinf=1.0, neginf=0.0), 0, 1)
-        return self.function(clamped), Counts(pixels, int(outside.sum()), int((~finite).sum()))
+        finite = np.asarray(np.isfinite(colours).all(axis=-1))
+        if self.way != "error":
+            clamped = np.clip(np.nan_to_num(colours, nan=0.0, posinf=1.0, neginf=0.0), 0, 1)
+            colours = np.where(finite[..., None], colours, clamped)
+        try:
+            moved = contained(colours, self.sensor, self.way)
+        except ColourError as error:
+            raise ColourError(error.problem, remedy="use --out-of-gamut clip, or another way") from error
+        unfit = int((~finite).sum())
+        return self.function(moved.rgb), Counts(pixels, moved.count, unfit, farthest=moved.farthest)
 
 
 def check_encoding(encoding: str) -> None:
@@ -95,13 +125,20 @@ def check_encoding(encoding: str) -> None:
         raise OptionError(f"unknown encoding '{encoding}'", remedy=f"use one of {', '.join(ENCODINGS)}")
 
 
-def decoder(sensor: Sensor, part: Part, encoding: str) -> Decoder:
-    """8-bit and 16-bit codes are encoded as the sensor's space has it, all else is linear, unless told otherwise."""
+def decoder(sensor: Sensor, part: Part, encoding: str, way: str = "clip") -> Decoder:
+    """8-bit and 16-bit codes are encoded as the sensor's space has it, all else is linear, unless told otherwise.
+
+    ``way`` is what becomes of what lies outside [0, 1] (`uplift.overflow.CHOICES`). Raises `OptionError` for encoded
+    floats that should be moved: encodings end at 0 and 1.
+    """
     if part.codes:
         share = np.linspace(0, 1, part.codes + 1)
         values = share if encoding == "linear" else sensor.decode(255 * share)
         table = values.astype(np.float32)
-        return Decoder(lambda codes: table[codes], codes=True)
+        return Decoder(lambda codes: table[codes], True, sensor, way)
     if encoding == "encoded":
-        return Decoder(lambda floats: sensor.decode(255 * floats).astype(np.float32), codes=False)
-    return Decoder(lambda floats: floats.astype(np.float32, copy=False), codes=False)
+        if way not in ("error", "clip"):
+            problem = f"encoded floats end at 0 and 1: there is nothing beyond to {way}"
+            raise OptionError(problem, remedy="use --out-of-gamut clip, or --encoding linear")
+        return Decoder(lambda floats: sensor.decode(255 * floats).astype(np.float32), False, sensor, way)
+    return Decoder(lambda floats: floats.astype(np.float32, copy=False), False, sensor, way)

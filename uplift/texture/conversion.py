@@ -10,9 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.cube import exr
 from uplift.errors import ColourError
-from uplift.lookup import Cube
 from uplift.texture.colours import Counts, Floats
 from uplift.texture.plan import Plan, plans
 from uplift.texture.source import Image, Values, opened
@@ -23,8 +21,6 @@ BAND = 1 << 27
 """Bytes of a band that is written at once."""
 LINES = 16
 """Rows that OpenEXR compresses together."""
-SAME_PRIMARIES = 2e-3
-"""x or y by which chromaticities may differ."""
 
 Watch = Callable[[int, int], None]
 """Told rows done, and rows in all."""
@@ -51,7 +47,8 @@ def convert(
 ) -> Conversion:
     """Write the texture of an image, atomically.
 
-    Raises `TextureError`, `OutputError`, and `ColourError` for colours that a cube of a scene has no points for.
+    Raises `TextureError`, `OutputError`, `OptionError` for encoded floats that should be moved, and `ColourError` for
+    colours that a cube of a scene has no points for, or that lie outside [0, 1] where that is an error.
     """
     begin = time.perf_counter()
     with opened(source) as image:
@@ -61,17 +58,8 @@ def convert(
                 counts = _write(uplifter, image, planned, writer, watch)
         except ColourError as error:
             raise ColourError(error.problem, path=source, remedy=error.remedy) from error
-    remarks = (*counts.remarks(), *_strange(uplifter.cube, image))
+    remarks = (*counts.remarks(uplifter.out_of_gamut), *image.remarks(uplifter.cube.data.sensor))
     return Conversion(Path(source), Path(target), counts, remarks, time.perf_counter() - begin)
-
-
-def _strange(cube: Cube, image: Image) -> tuple[str, ...]:
-    """A remark on an image that says it is of another space."""
-    own = np.array(exr.chromaticities(cube.data.sensor))
-    told = [part.chromaticities for part in image.parts if part.chromaticities is not None]
-    if all(np.abs(own - other).max() < SAME_PRIMARIES for other in told):
-        return ()
-    return (f"the image names other primaries; its colours are taken for {cube.data.sensor.space}",)
 
 
 def _write(uplifter: Uplifter, image: Image, planned: list[Plan], writer: Writer, watch: Watch) -> Counts:

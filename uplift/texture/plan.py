@@ -60,7 +60,13 @@ def _plan(uplifter: Uplifter, image: Image, part: Part, colours: Places | None) 
             raise TextureError(f"has a channel '{min(taken)}' beside its colour", remedy=remedy)
         names, kinds = (*made, *names), (*(uplifter.depth,) * len(made), *kinds)
     layout = Layout(part.name, part.window, names, kinds, uplifter.header, part.date or _date(image))
-    return Plan(part, colours, rest, decoder(uplifter.cube.data.sensor, part, uplifter.encoding), layout)
+    return Plan(
+        part,
+        colours,
+        rest,
+        decoder(uplifter.cube.data.sensor, part, uplifter.encoding, uplifter.out_of_gamut),
+        layout,
+    )
 
 
 def _exact(kind: str) -> str:

@@ -34,6 +34,7 @@ class Recipe:
     encoding: str
     threads: int
     fill: bool = False
+    out_of_gamut: str = "clip"
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,14 @@ def ready(recipe: Recipe) -> Uplifter:
     cube = load(recipe.cube)
     if recipe.fill:
         cube = cube.filled(threads=recipe.threads)
-    return prepare(cube, recipe.form, depth=recipe.depth, encoding=recipe.encoding, threads=recipe.threads)
+    return prepare(
+        cube,
+        recipe.form,
+        depth=recipe.depth,
+        encoding=recipe.encoding,
+        out_of_gamut=recipe.out_of_gamut,
+        threads=recipe.threads,
+    )
 
 
 def run(job: Job) -> Conversion | Failure:

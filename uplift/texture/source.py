@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.errors import TextureError
+from uplift.sensor import Sensor
+from uplift.texture.profile import Profile, profile_of
 
 FORMATS = ("openexr", "png", "jpeg", "tiff")
 BAND = 1 << 25
@@ -46,7 +48,7 @@ class Part:
     """One part of a file; all but OpenEXR have one.
 
     ``kinds`` are the channels' types: half, float, uint, uint8, uint16. ``block`` is how many rows are decoded
-    together. ``chromaticities`` are x, y of red, green, blue and white, if the file tells; ``date`` likewise.
+    together. ``profile`` is what the file says its RGB are of, if it does; ``date`` likewise.
     """
 
     number: int
@@ -56,7 +58,7 @@ class Part:
     kinds: tuple[str, ...]
     block: int
     tiled: bool
-    chromaticities: tuple[float, ...] | None
+    profile: Profile | None
     date: str | None
 
     @property
@@ -86,6 +88,15 @@ class Image:
     def text(self, name: str) -> str:
         """A text of the first part's header, empty where there is none."""
         return str(self.handle.spec(0).get_string_attribute(name))
+
+    def remarks(self, sensor: Sensor) -> tuple[str, ...]:
+        """One for each space that it names that is not the sensor's."""
+        told = []
+        for part in self.parts:
+            if part.profile is not None and (what := part.profile.unlike(sensor, codes=bool(part.codes))):
+                name = f" ({part.profile.name})" if part.profile.name else ""
+                told.append(f"the image names {what}{name}; its colours are taken for {sensor.space}")
+        return tuple(dict.fromkeys(told))
 
     def last(self, part: Part) -> Values:
         """The last row (1, width, channels). Raises `TextureError` where it is missing."""
@@ -171,7 +182,7 @@ def _part(spec: Any, number: int, path: Path) -> Part:
         kinds=tuple(map(str, formats)),
         block=spec.tile_height or max(spec.get_int_attribute("oiio:RowsPerChunk", 1), 1),
         tiled=bool(spec.tile_width),
-        chromaticities=spec.getattribute("chromaticities"),
+        profile=profile_of(spec),
         date=spec.get_string_attribute("DateTime") or None,
     )
 

@@ -12,6 +12,7 @@ from uplift.cube import exr
 from uplift.errors import OptionError
 from uplift.lattice import Status
 from uplift.lookup import Cube
+from uplift.overflow import check_way
 from uplift.texture.colours import check_encoding
 from uplift.texture.forms import Form, Sample, Spectrum
 
@@ -22,7 +23,7 @@ class Uplifter:
 
     Parameters
     ----------
-    depth, encoding : as `prepare` takes them.
+    depth, encoding, out_of_gamut : as `prepare` takes them.
     channels : names (N,) of what a pixel holds.
     header : attributes of every texture, which tell what evaluates it.
     sample : from linear RGB to what a pixel holds.
@@ -32,6 +33,7 @@ class Uplifter:
     cube: Cube
     depth: str
     encoding: str
+    out_of_gamut: str
     channels: tuple[str, ...]
     header: Mapping[str, Any]
     sample: Sample
@@ -44,6 +46,7 @@ def prepare(
     *,
     depth: str | None = None,
     encoding: str = "auto",
+    out_of_gamut: str = "clip",
     threads: int = 2,
 ) -> Uplifter:
     """A cube made ready for textures.
@@ -53,12 +56,13 @@ def prepare(
     form : what textures hold: `Spectrum` (the default), `Moments` or `Multipliers`.
     depth : half or float; by default what the form is exact enough in.
     encoding : ``auto`` takes whole numbers for encoded and floats for linear; ``linear``; ``encoded``.
+    out_of_gamut : what becomes of pixels outside [0, 1]: one of `uplift.overflow.CHOICES`.
     threads : that share a band.
 
     Raises
     ------
     OptionError : a depth that the form does not have, moments of a cube that has none, unclear wavelengths,
-        an unknown encoding.
+        an unknown encoding or way out of gamut.
     """
     form = Spectrum() if form is None else form
     depth = form.depths[0] if depth is None else depth
@@ -66,9 +70,12 @@ def prepare(
         problem = f"{form.name} are not exact enough as {depth}"
         raise OptionError(problem, remedy=f"use {' or '.join(form.depths)}")
     check_encoding(encoding)
+    check_way(out_of_gamut)
     channels = form.channels(cube)
-    made = json.dumps({**form.describe(cube), "depth": depth, "encoding": encoding})
+    asked = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
+    made = json.dumps({**form.describe(cube), **asked})
     header = {**exr.attributes(cube.data), "uplift.texture": made, **form.header()}
     beyond = (cube.data.status == Status.UNREALISABLE).any()
     misses = bulk.misses(cube, threads=threads) if beyond else None
-    return Uplifter(cube, depth, encoding, channels, header, form.sample(cube, threads), misses)
+    sample = form.sample(cube, threads)
+    return Uplifter(cube, depth, encoding, out_of_gamut, channels, header, sample, misses)

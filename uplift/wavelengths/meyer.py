@@ -12,7 +12,7 @@ from uplift.gauss import Rule, Undefined, gauss, interpolatory
 from uplift.sensor import Array
 from uplift.wavelengths.opponent import Space, opponent
 from uplift.wavelengths.sampling import Sampling, judge
-from uplift.wavelengths.setting import Setting
+from uplift.wavelengths.setting import Setting, read_off
 
 POINTS = np.linspace(380.0, 770.0, 101)
 """Where the paper must have summed its functions, a hundred steps of 3.9 nm: with these its tables come out to the
@@ -26,8 +26,7 @@ Rules = tuple[Mapping[int, Rule | Undefined], ...]
 
 def functions(space: Space, wavelengths: Array, cmfs: Array) -> Array:
     """(3, 101) the channels of a space at `POINTS`, times the step."""
-    seen = np.stack([np.interp(POINTS, wavelengths, cmf) for cmf in cmfs.T])
-    return (POINTS[1] - POINTS[0]) * space.matrix @ seen
+    return (POINTS[1] - POINTS[0]) * space.matrix @ read_off(POINTS, wavelengths, cmfs.T)
 
 
 def rules(space: Space, wavelengths: Array, cmfs: Array, most: int = MOST) -> Rules:

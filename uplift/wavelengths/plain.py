@@ -6,7 +6,7 @@ import numpy as np
 
 from uplift.sensor import Array
 from uplift.wavelengths.sampling import Sampling
-from uplift.wavelengths.setting import Setting
+from uplift.wavelengths.setting import Setting, read_off
 
 FROM, TO = 400.0, 700.0
 """Where even spacing does best for few wavelengths: beyond, the eye sees little (nm)."""
@@ -20,7 +20,7 @@ def even(count: int, start: float = FROM, end: float = TO) -> Array:
 def uniform(setting: Setting, count: int) -> Sampling:
     """Evenly spaced, lights and matching functions read off at the wavelengths; whites balanced."""
     nm = even(count)
-    weights = np.stack([np.interp(nm, setting.wavelengths, cmf) for cmf in setting.cmfs.T], axis=1)
+    weights = read_off(nm, setting.wavelengths, setting.cmfs.T).T
     return Sampling(nm, weights, setting.lights, setting.sampled_powers(nm)).balanced()
 
 

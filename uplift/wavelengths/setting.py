@@ -65,7 +65,7 @@ class Setting:
 
     def sampled_powers(self, wavelengths: Array) -> Array:
         """(K, n) the lights read off at wavelengths (n,) nm: what a renderer does that knows no better."""
-        return np.stack([np.interp(wavelengths, self.wavelengths, power) for power in self.powers])
+        return read_off(wavelengths, self.wavelengths, self.powers)
 
     def only(self, materials: ArrayLike) -> Setting:
         """The same lights on some of the materials: indices or a mask."""
@@ -99,10 +99,17 @@ def set_up(
     lights = tuple(dict.fromkeys(lights))
     if not lights:
         raise OptionError("there is no light", remedy="name at least one: D65")
-    shape = float(nm[0]), float(nm[-1]), float(nm[1] - nm[0])
-    cmfs = observer.matching_functions(observer_name, *shape)
-    powers = np.stack([observer.power(name, *shape) for name in lights])
+    # Tables have steps of whole nanometres; a grid may have any.
+    shape = np.floor(nm[0]), np.ceil(nm[-1]), 1.0
+    whole = np.arange(shape[0], shape[1] + 0.5)
+    cmfs = read_off(nm, whole, observer.matching_functions(observer_name, *shape).T).T
+    powers = read_off(nm, whole, np.stack([observer.power(name, *shape) for name in lights]))
     return Setting(nm, materials, lights, powers / (powers @ cmfs[:, 1])[:, None], cmfs)
+
+
+def read_off(wavelengths: Array, known: Array, curves: Array) -> Array:
+    """Curves (C, …) at ``known`` (…,) nm → (C, n) at ``wavelengths`` (n,)."""
+    return np.stack([np.interp(wavelengths, known, curve) for curve in curves])
 
 
 def _check(nm: Array, materials: Array) -> None:

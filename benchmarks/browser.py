@@ -1,0 +1,185 @@
+"""Chromium without a window, spoken to over two pipes in the DevTools protocol: real input, what it shows, its errors.
+
+https://chromedevtools.github.io/devtools-protocol/
+"""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import itertools
+import json
+import os
+import select
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
+OPTIONS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-dev-shm-usage",
+    "--hide-scrollbars",
+    "--remote-debugging-pipe",
+)
+HANDS_OVER = """import os, sys
+reads, writes, *command = sys.argv[1:]
+os.dup2(int(reads), 3)
+os.dup2(int(writes), 4)
+os.execv(command[0], command)"""
+"""Chromium reads from descriptor 3 and writes to 4."""
+CANVAS = """(async () => {
+  await new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)));
+  const canvas = document.getElementById("NAME");
+  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+  copy.drawImage(canvas, 0, 0);
+  const codes = copy.getImageData(0, 0, canvas.width, canvas.height).data;
+  let text = "";
+  for (let at = 0; at < codes.length; at += 8192) text += String.fromCharCode(...codes.subarray(at, at + 8192));
+  return [canvas.width, canvas.height, btoa(text)];
+})()"""
+"""Read from a copy: the page's own canvas is drawn to and never read."""
+PATIENCE = 60.0
+"""Seconds that an answer may take."""
+
+Answer = dict[str, Any]
+
+
+def chromium() -> str | None:
+    """The browser's path, None where none is installed."""
+    return next(filter(None, map(shutil.which, NAMES)), None)
+
+
+class Browser:
+    """One tab. ``errors`` are what its console complained of, and exceptions that nobody caught."""
+
+    def __init__(self, write: int, read: int) -> None:
+        self._write, self._read, self._rest = write, read, b""
+        self._numbers, self._session = itertools.count(1), ""
+        self.errors: list[str] = []
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log"):
+            self.call(f"{domain}.enable")
+
+    def call(self, method: str, **params: Any) -> Answer:
+        """Call a method of the tab and wait for its answer. Raises `RuntimeError`, `TimeoutError`."""
+        return self._call(self._session, method, **params)
+
+    def _call(self, session: str, method: str, **params: Any) -> Answer:
+        number = next(self._numbers)
+        message = {"id": number, "method": method, "params": params}
+        if session:
+            message["sessionId"] = session
+        os.write(self._write, json.dumps(message).encode() + b"\0")
+        while (answer := self._next()).get("id") != number:
+            self._note(answer)
+        if "error" in answer:
+            raise RuntimeError(f"{method}: {answer['error']['message']}")
+        return dict(answer["result"])
+
+    def evaluate(self, code: str) -> Any:
+        """The value of an expression in the page, waited for if it is a promise. Raises `RuntimeError`."""
+        answer = self.call("Runtime.evaluate", expression=code, awaitPromise=True, returnByValue=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(answer["exceptionDetails"]["exception"].get("description", "uncaught"))
+        return answer["result"].get("value")
+
+    def open(self, path: Path) -> None:
+        """Show a page and wait until its ``main`` is busy no more. Raises `TimeoutError`."""
+        self.errors.clear()
+        self.call("Page.navigate", url=path.resolve().as_uri())
+        end = time.monotonic() + PATIENCE
+        while not self.evaluate("document.querySelector('main')?.getAttribute('aria-busy') === 'false'"):
+            if time.monotonic() > end:
+                raise TimeoutError(f"{path} stays busy: {self.errors}")
+            time.sleep(0.02)
+
+    def canvas(self, name: str) -> NDArray[np.uint8]:
+        """(H, W, 4) red, green, blue and alpha of the canvas with this id, after the frame that is due."""
+        width, height, text = self.evaluate(CANVAS.replace("NAME", name))
+        return np.frombuffer(base64.b64decode(text), np.uint8).reshape(height, width, 4)
+
+    def window(self, width: int, height: int, scheme: str = "light") -> None:
+        """The page's size in pixels, and light or dark."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.call("Emulation.setDeviceMetricsOverride", **size)
+        self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+
+    def mouse(self, kind: str, x: float, y: float) -> None:
+        """``kind`` is mousePressed, mouseMoved or mouseReleased; the left button."""
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
+
+    def key(self, name: str, modifiers: int = 0) -> None:
+        for kind in ("keyDown", "keyUp"):
+            text = {"text": name} if kind == "keyDown" and len(name) == 1 else {}
+            self.call("Input.dispatchKeyEvent", type=kind, key=name, modifiers=modifiers, **text)
+
+    def cpu(self) -> float:
+        """CPU seconds that all of the browser's processes have taken."""
+        processes = self._call("", "SystemInfo.getProcessInfo")["processInfo"]
+        return float(sum(process["cpuTime"] for process in processes))
+
+    def screenshot(self, selector: str = "body", scale: float = 1.0) -> bytes:
+        """An element, as far as the window shows it, as JPEG."""
+        told = self.evaluate(f"document.querySelector('{selector}').getBoundingClientRect().toJSON()")
+        clip = {name: told[name] for name in ("x", "y", "width", "height")} | {"scale": scale}
+        answer = self.call("Page.captureScreenshot", format="jpeg", quality=88, clip=clip)
+        return base64.b64decode(answer["data"])
+
+    def _next(self) -> Answer:
+        while b"\0" not in self._rest:
+            if not select.select([self._read], [], [], PATIENCE)[0]:
+                raise TimeoutError("the browser does not answer")
+            found = os.read(self._read, 1 << 20)
+            if not found:
+                raise RuntimeError("the browser is gone")
+            self._rest += found
+        message, _, self._rest = self._rest.partition(b"\0")
+        return dict(json.loads(message))
+
+    def _note(self, message: Answer) -> None:
+        method, params = message.get("method"), message.get("params", {})
+        if method == "Runtime.exceptionThrown":
+            self.errors.append(json.dumps(params["exceptionDetails"]))
+        elif method == "Runtime.consoleAPICalled" and params["type"] in ("error", "warning", "assert"):
+            self.errors.append(json.dumps(params["args"]))
+        elif method == "Log.entryAdded" and params["entry"]["level"] in ("error", "warning"):
+            self.errors.append(params["entry"]["text"])
+
+
+@contextlib.contextmanager
+def browser() -> Iterator[Browser]:
+    """A browser, which is ended with the block. Raises `RuntimeError` where there is none."""
+    path = chromium()
+    if path is None:
+        raise RuntimeError(f"none of {', '.join(NAMES)} is installed")
+    reads, write = os.pipe()
+    read, writes = os.pipe()
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        command = [sys.executable, "-c", HANDS_OVER, str(reads), str(writes), path, *OPTIONS]
+        child = subprocess.Popen(
+            [*command, f"--user-data-dir={profile}"], pass_fds=(reads, writes), stderr=subprocess.DEVNULL
+        )
+        for end in (reads, writes):
+            os.close(end)
+        try:
+            yield Browser(write, read)
+        finally:
+            for end in (write, read):
+                os.close(end)  # it ends when its pipe does
+            try:
+                child.wait(10)
+            except subprocess.TimeoutExpired:
+                child.kill()
+                child.wait()

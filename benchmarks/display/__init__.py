@@ -1,0 +1,1 @@
+"""What becomes of colours that no screen shows: ``make display`` writes docs/display.md and its picture."""

@@ -1,0 +1,94 @@
+"""Chips of the Munsell book that sRGB cannot show, and how far colours lie from those of a chip's hue.
+
+The renotation (Newhall, Nickerson & Judd 1943) as colour-science has it: chips that were made and seen, not
+extrapolated ones. Hue and lightness are what observers found equal, which no space of the ways knows.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+
+import colour
+import numpy as np
+
+from uplift.difference import delta_e_2000, lab
+from uplift.overflow import SRGB, Primaries, conversion
+from uplift.sensor import Array
+
+BRIGHTEST, DARKEST = 9, 2
+"""Values between which hues are well known."""
+STEP = 0.25
+"""Of chroma, along a line of one hue and value."""
+WHITE = SRGB.rgb_to_xyz.sum(axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Chips:
+    """Linear sRGB (n, 3) and hues (n,) of the chips outside; x, y (k, 2) of each hue and value, from grey outwards."""
+
+    rgb: Array
+    hues: tuple[str, ...]
+    lines: dict[tuple[str, float], Array]
+
+    def off_hue(self, shown: Array) -> Array:
+        """ΔE00 (n,) from linear sRGB (n, 3), shown for the chips, to the nearest colour of the chip's hue as light."""
+        light = (shown @ SRGB.rgb_to_xyz.T)[:, 1]
+        values = np.clip(colour.notation.munsell_value_ASTMD1535(100 * light), 1, 9)
+        nearest = [
+            delta_e_2000(_lab_of(self._line(hue, value), y), seen).min()
+            for hue, value, y, seen in zip(self.hues, values, light, _lab(shown), strict=True)
+        ]
+        return np.array(nearest)
+
+    def _line(self, hue: str, value: float) -> Array:
+        """Between those of the values below and above, at the same chroma."""
+        low = min(int(value), 8)
+        below, above = self.lines[hue, low], self.lines[hue, low + 1]
+        count = min(len(below), len(above))
+        return below[:count] + (value - low) * (above[:count] - below[:count])
+
+
+def chips() -> Chips:
+    """Those that sRGB cannot show; white is the screen's, by Bradford adaptation from illuminant C."""
+    c = tuple(colour.CCS_ILLUMINANTS["CIE 1931 2 Degree Standard Observer"]["C"])
+    to_srgb = conversion(Primaries(SRGB.red, SRGB.green, SRGB.blue, c), SRGB)
+    from_xyz = to_srgb @ np.linalg.inv(Primaries(SRGB.red, SRGB.green, SRGB.blue, c).rgb_to_xyz)
+    real = {name for name, _ in colour.MUNSELL_COLOURS["Munsell Colours Real"]}
+    book = colour.MUNSELL_COLOURS["Munsell Colours All"]  # lines go on beyond the chips
+    names = [name for name, _ in book]
+    xyz = colour.xyY_to_XYZ(np.array([xyY for _, xyY in book]) / [1, 1, 100])
+    rgb = xyz @ from_xyz.T
+    asked = [
+        row
+        for row, name in enumerate(names)
+        if name in real and DARKEST <= name[1] <= BRIGHTEST and ((rgb[row] < 0) | (rgb[row] > 1)).any()
+    ]
+    return Chips(rgb[asked], tuple(names[row][0] for row in asked), _lines(names, rgb @ SRGB.rgb_to_xyz.T))
+
+
+def _lines(names: list[tuple[str, float, float]], xyz: Array) -> dict[tuple[str, float], Array]:
+    found = defaultdict(list)
+    for (hue, value, chroma), row in zip(names, xyz, strict=True):
+        found[hue, value].append((chroma, *(row[:2] / row.sum())))
+    lines = {}
+    for key, points in found.items():
+        chroma, x, y = np.array([(0.0, *SRGB.white), *sorted(points)]).T
+        at = np.arange(0, chroma[-1] + STEP / 2, STEP)
+        lines[key] = np.stack([np.interp(at, chroma, x), np.interp(at, chroma, y)], axis=1)
+    return lines
+
+
+def _lab_of(xy: Array, light: float) -> Array:
+    x, y = xy.T
+    return lab(np.stack([x, y, 1 - x - y], axis=1) * (light / y)[:, None], WHITE)
+
+
+def _lab(rgb: Array) -> Array:
+    return lab(rgb @ SRGB.rgb_to_xyz.T, WHITE)
+
+
+def apart(chips: Chips, shown: Array) -> tuple[Array, Array]:
+    """ΔE00 (n,) and |ΔL*| (n,) from the chips to what is shown for them."""
+    asked, seen = _lab(chips.rgb), _lab(shown)
+    return delta_e_2000(asked, seen), np.abs(asked[:, 0] - seen[:, 0])

@@ -1,0 +1,77 @@
+"""Ramps of every way of mixing, and coats of growing thickness, as PNG."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from uplift.cube.display import shown
+from uplift.lookup import Cube
+from uplift.mixing import coats
+from uplift.mixing.mixers import mixers
+from uplift.mixing.recipes import ramp
+from uplift.report.swatches import Strip, plot_strips
+from uplift.sensor import Array
+
+STEPS = 11
+PAIRS = {
+    "blue-yellow": ("#005fa0", "#ffd200"),
+    "atlas-blue-yellow": ("blue", "yellow"),
+    "red-white": ("#b01030", "#ffffff"),
+    "red-green": ("#d02020", "#20a040"),
+}
+"""Names of entries, or codes."""
+DRAWN = (
+    "pigments",
+    "pigments in oil",
+    "pigments, one constant",
+    "dyes",
+    "average",
+    "ryb",
+    "phosphors",
+    "product",
+)
+"""Filters and products are given the shares as thickness, so that a ramp ends at its colours."""
+
+
+def draw(cube: Cube, folder: Path) -> None:
+    """One picture a pair, and one of coats."""
+    folder.mkdir(exist_ok=True)
+    for name, pair in PAIRS.items():
+        rgb = np.array([colour(cube, word) for word in pair])
+        plot_strips(_ramps(cube, rgb), folder / f"{name}.png", force=True)
+    plot_strips(_coats(cube), folder / "thickness.png", force=True)
+
+
+def colour(cube: Cube, word: str) -> Array:
+    """Linear RGB (3,) of an entry or of '#rrggbb'."""
+    if word.startswith("#"):
+        return cube.decode([int(word[place : place + 2], 16) for place in (1, 3, 5)])
+    return np.asarray(cube.data.atlas.rgb[cube.data.atlas.names.index(word)], dtype=float)
+
+
+def _ramps(cube: Cube, rgb: Array) -> list[Strip]:
+    by_name = {mixer.name: mixer for mixer in mixers(cube)}
+    parts = ramp(np.ones(2), STEPS)
+    return [_strip(cube, by_name[name].title, by_name[name].mix(rgb, parts)) for name in DRAWN]
+
+
+def _coats(cube: Cube) -> list[Strip]:
+    """Half a strip on white, half on black, each of doubling thickness."""
+    thickness = [0, *(2.0 ** np.arange(-4, 3))]
+    spectra = cube.reflectance(np.array([colour(cube, word) for word in ("#b01030", "#ffd200", "#005fa0")]))
+    strips = []
+    for name, spectrum in zip(("red", "yellow", "blue"), spectra, strict=True):
+        paint = coats.palette([coats.paint(spectrum)])
+        for ground, on in ((1.0, "white"), (0.0, "black")):
+            seen = [coats.of_paints(paint, [1], x).over(np.full(81, ground)) for x in thickness]
+            title = f"{name} paint on {on}, {', '.join(f'{x:.3g}' for x in thickness)} units thick"
+            strips.append(_strip(cube, title, cube.data.sensor.rgb(seen)))
+        seen = [coats.of_dyes(spectrum[None], [1], x).over(1.0) for x in thickness]
+        strips.append(_strip(cube, f"{name} dye on white, as thick", cube.data.sensor.rgb(seen)))
+    return strips
+
+
+def _strip(cube: Cube, title: str, rgb: Array) -> Strip:
+    return Strip(title, shown(rgb, cube.data.sensor) / 255)
