@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart mixing scenes wavelengths pictures display representations palette
+.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -73,6 +73,10 @@ mixing: $(INSTALLED)
 # What cubes for a scene save: docs/scenes.md.
 scenes: pictures
 	$(BIN)/python -m benchmarks.scenes
+
+# Plans for real images, and whether what they predict is so: docs/plan.md.
+plan: pictures
+	$(BIN)/python -m benchmarks.plan
 
 # The light dial in Chromium, frames a second: docs/palette-dial.md.
 .PHONY: dial

@@ -4,14 +4,22 @@ from __future__ import annotations
 
 import re
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from .built import tell, tell_improvements
 from .frames import expanded
 from .options import encoding_option, force_option, out_of_gamut_option, sensor_options, verbosity_options
+
+if TYPE_CHECKING:
+    from uplift.lookup import Cube
+
+BESIDE_A_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose")
+"""Parameters that go with --plan."""
 
 
 class Dim(click.ParamType):  # type: ignore[type-arg]
@@ -74,11 +82,13 @@ class Dim(click.ParamType):  # type: ignore[type-arg]
     help="Build only what the colours of this image, or quoted pattern, need; may be given several times.",
 )
 @encoding_option("--scene images are")
+@click.option("--plan", "plan_path", metavar="PLAN", help="Build what 'uplift plan' planned.")
 @out_of_gamut_option("clip", "linear RGB of --scene images")
 @click.option("--debug", is_flag=True, help="Keep the round of every point, for the slices.")
 @force_option()
 @verbosity_options
 def command(
+    plan_path: str | None,
     atlases: tuple[str, ...],
     output: str | None,
     images: tuple[str, ...],
@@ -99,6 +109,7 @@ def command(
       uplift build --atlas paints.csv --dim auto --within 1
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
+      uplift build --plan kitchen.plan.json
 
     Warnings name entries that were left out, clipped or crowded. Without --atlas the spectra of the cube are
     smooth, and dark where the colour is dark. With --scene the cube is sparse, smaller and sooner built: it answers
@@ -113,21 +124,40 @@ def command(
 
     from .progress import watching
 
-    if encoding != "auto" and not images:
+    if encoding != "auto" and not images and plan_path is None:
         raise click.UsageError("--encoding is of --scene images, and there are none.")
-    if way != "clip" and not images:
+    if way != "clip" and not images and plan_path is None:
         raise click.UsageError("--out-of-gamut is of --scene images, and there are none.")
-    path = check_output(_default_name(atlases, images, chosen) if output is None else output, force=force)
-    scene = Images(tuple(map(Path, expanded(images))), encoding, way) if images else None
-    given = {name: value for name, value in chosen.items() if value not in (None, ())}
+    if plan_path is None:
+        scene = Images(tuple(map(Path, expanded(images))), encoding, way) if images else None
+        given = {name: value for name, value in chosen.items() if value not in (None, ())}
+        make: Callable[..., Cube] = partial(
+            build, atlases or None, scene=scene, coefficients=moments + 1, **given
+        )
+        name = _default_name(atlases, images, chosen)
+    else:
+        make, name = _planned(plan_path, click.get_current_context())
+    path = check_output(name if output is None else output, force=force)
     begin = time.perf_counter()
     with watching(quiet=quiet, verbose=verbose) as watch:
-        cube = build(atlases or None, scene=scene, watch=watch, coefficients=moments + 1, **given)
+        cube = make(watch=watch)
     cube.save(path, force=force)
     if verbose:
         tell_improvements(cube)
     if not quiet:
         tell(cube, path, time.perf_counter() - begin)
+
+
+def _planned(path: str, context: click.Context) -> tuple[Callable[..., Cube], str]:
+    """What builds the cube of a plan, and its name. Raises click's error for options that would change it."""
+    from uplift.plan import read_plan
+    from uplift.plan.lines import cube_name
+
+    said = click.core.ParameterSource.COMMANDLINE
+    given = [each for each in context.command.params if context.get_parameter_source(each.name or "") == said]
+    if other := [each.opts[-1] for each in given if each.name not in BESIDE_A_PLAN]:
+        raise click.UsageError(f"the plan says all of that already: leave out {', '.join(other)}.")
+    return partial(read_plan(path).build, debug=context.params["debug"]), cube_name(path)
 
 
 def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], chosen: dict[str, Any]) -> str:

@@ -16,6 +16,7 @@ COMMANDS = (
     "build",
     "query",
     "texture",
+    "plan",
     "mix",
     "chart",
     "check",

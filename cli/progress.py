@@ -12,6 +12,7 @@ import click
 if TYPE_CHECKING:
     from uplift.fit import Round, Storing
     from uplift.pipeline import Watch
+    from uplift.plan import Step
     from uplift.scene import Reading
 
 
@@ -95,3 +96,15 @@ def counting(what: str) -> Iterator[Callable[[int, int], None]]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task(what, total=None)
         yield lambda done, total: progress.update(task, completed=done, total=total)
+
+
+@contextlib.contextmanager
+def stepping() -> Iterator[Callable[[Step], None]]:
+    """A watcher of a plan: a spinner that says what is measured, on a terminal."""
+    if not sys.stderr.isatty():
+        yield lambda step: None
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status("…") as status:
+        yield lambda step: status.update(f"{step.what} ({step.done + 1} of {step.total}) …")

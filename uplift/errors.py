@@ -59,6 +59,10 @@ class ChartFileError(UpliftError):
     """A chart's table that is missing, broken, or no such table."""
 
 
+class PlanFileError(UpliftError):
+    """A scene file or a plan that is missing, broken, out of date, or asks for what cannot be."""
+
+
 class PaletteError(UpliftError):
     """A palette's spec that cannot be read, or asks for what cannot be worked out."""
 

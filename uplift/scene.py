@@ -67,7 +67,7 @@ class Images:
         cells = np.zeros(pins.lattice.size, dtype=bool)
         for done, path in enumerate(self.paths):
             watch(Reading(done, len(self.paths)))
-            for rgb in self._colours(path, sensor):
+            for rgb in self.colours(path, sensor):
                 cells[touched(pins.lattice, rgb)] = True
         if not cells.any():
             raise OptionError(
@@ -77,9 +77,9 @@ class Images:
 
     def describe(self) -> list[dict[str, Any]]:
         read = {"encoding": self.encoding, "out_of_gamut": self.out_of_gamut}
-        return [{"name": path.name, "digest": _digest(path), **read} for path in self.paths]
+        return [{"name": path.name, "digest": file_digest(path), **read} for path in self.paths]
 
-    def _colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
+    def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
         """Linear RGB (n, 3) in [0, 1] of an image, block by block."""
         with opened(path) as image:
             for remark in image.remarks(sensor):
@@ -128,6 +128,7 @@ def touched(lattice: Lattice, rgb: Array) -> Array:
     return np.concatenate([lattice.index(low), lattice.index(beside)])
 
 
-def _digest(path: Path) -> str:
+def file_digest(path: Path) -> str:
+    """sha256 (hex) of a file."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

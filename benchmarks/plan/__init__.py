@@ -1,0 +1,1 @@
+"""Plans for real textures, and whether what they predict is so."""
