@@ -12,24 +12,16 @@ import click
 
 from uplift.errors import UpliftError, UpliftWarning
 
-COMMANDS = (
-    "build",
-    "query",
-    "texture",
-    "plan",
-    "mix",
-    "chart",
-    "check",
-    "compare",
-    "report",
-    "info",
-    "slices",
-    "export",
-    "palette",
-    "atlas",
-    "study",
-    "wavelengths",
-)
+GROUPS = {
+    "Cubes": ("build", "query", "texture", "mix", "export"),
+    "What a cube holds, and what it is worth": ("info", "slices", "report", "check", "atlas"),
+    "What a scene needs": ("plan", "wavelengths", "compare", "palette"),
+    "Measurements": ("chart", "study"),
+}
+"""The commands by what they are for, as the help has them."""
+COMMANDS = tuple(name for names in GROUPS.values() for name in names)
+WHOLE = 200
+"""Letters of a command's first sentence in the help: all of them."""
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """What a write says where there is no room."""
 
@@ -54,6 +46,14 @@ class Commands(click.Group):
             return None
         command = importlib.import_module(f".{name}", __package__).command
         return command if isinstance(command, click.Command) else None
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        width = max(map(len, COMMANDS))
+        for title, names in GROUPS.items():
+            found = ((name, self.get_command(ctx, name)) for name in names)
+            rows = [(f"{name:<{width}}", each.get_short_help_str(WHOLE)) for name, each in found if each]
+            with formatter.section(title):
+                formatter.write_dl(rows)
 
     def invoke(self, ctx: click.Context) -> Any:
         with warnings.catch_warnings():
