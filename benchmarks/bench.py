@@ -40,6 +40,10 @@ Figures in this list were taken once, when each choice was made; all others are 
   2,048 rows, some 15 ms a block. Smaller batches, and points sorted by what they miss, gained nothing; more steps a
   pass gain some per cent, but take the table of smooth spectra elsewhere. Spectra as columns, which numpy likes, cost
   XLA a tenth of a step.
+- *Threads*: BLAS has one, as in builds; with two the same fit spent half as much again at 16³, spinning. XLA's own two
+  gain nothing on two cores either: held to one core (`NPROC=1`) the lattice took 6.5, 4.7, 4.4 and 4.1 µs a point at
+  16³ to 128³ where two took 9.0, 6.0, 5.3 and 5.3, and 128³ 15.9 s where two took 18.4. Left to XLA, as machines with
+  more cores have not been measured.
 - *Single precision* for the first step would save 0.3 µs a point of some ten; not kept. *Fewer wavelengths* lose
   what the table below says.
 """

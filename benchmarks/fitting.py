@@ -18,6 +18,7 @@ from uplift.models import Model, Moments, Sigmoid, reflectance
 from uplift.models.least_change import forward
 from uplift.options import Options
 from uplift.sensor import Array
+from uplift.threads import one_blas_thread
 from uplift.timing import Spread, spread
 
 MODELS = (Sigmoid(), *(Moments(count) for count in (3, 5, 9, 13, 17)))
@@ -86,8 +87,9 @@ def time_fit(model: Model, dim: int, runs: int) -> FitTiming:
     )
 
 
+@one_blas_thread()
 def _once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float], float]:
-    """CPU seconds of each phase of a whole fit, and the worst stored point by our own evaluation."""
+    """CPU seconds of each phase of a whole fit as a build has it, and the worst stored point by our own evaluation."""
     sensor, lattice = observer.sensor(), Lattice(observer.axis_nodes("srgb", dim))
     problem = fit.Problem(model, forward(model, sensor.wavelengths, sensor.matrix), lattice)
     lights = [observer.light(name) for name in Options.lights]

@@ -75,4 +75,16 @@ FOUND = (
         "was": "a file called '-'",
         "now": "refused: standard output takes no files",
     },
+    {
+        "target": "scene to plan, plan, palette",
+        "input": "TOML or JSON of many thousand brackets",
+        "was": "RecursionError",
+        "now": "refused",
+    },
+    {
+        "target": "scene to plan",
+        "input": "names longer than a system takes, with NUL in a pattern, patterns of 100,000 letters",
+        "was": "OSError, ValueError, minutes of waiting",
+        "now": "refused",
+    },
 )

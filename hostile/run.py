@@ -9,13 +9,17 @@ from pathlib import Path
 
 import numpy as np
 
-from hostile import atlas_table, atlas_text, cube_bytes, cube_forged, writers
+from hostile import atlas_table, atlas_text, cube_bytes, cube_forged, palette_spec, scene_spec, writers
 from hostile.attack import Tally, attack
 from hostile.target import ROOT
 
 TARGETS = {
     target.name: target
-    for target in (module.TARGET for module in (atlas_text, atlas_table, cube_bytes, cube_forged))
+    for target in (
+        *(module.TARGET for module in (atlas_text, atlas_table, cube_bytes, cube_forged, palette_spec)),
+        scene_spec.BRIEFS,
+        scene_spec.PLANS,
+    )
 }
 Writers = Callable[[int, np.random.Generator, Path], Tally]
 WRITERS: tuple[tuple[Writers, int], ...] = (

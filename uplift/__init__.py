@@ -14,7 +14,6 @@ Importing this module is light and changes nothing; each name below brings in wh
 from __future__ import annotations
 
 import importlib
-import importlib.metadata
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -48,7 +47,9 @@ _HOMES = {
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        return importlib.metadata.version("uplift")
+        from importlib.metadata import version  # a tenth of a query's time
+
+        return version("uplift")
     if name not in _HOMES:
         raise AttributeError(f"module 'uplift' has no attribute '{name}'")
     return getattr(importlib.import_module(_HOMES[name]), name)

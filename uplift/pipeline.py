@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
@@ -24,6 +23,7 @@ from uplift.models.least_change import Forward, forward
 from uplift.options import AUTO, AXES, Options, check_size
 from uplift.scene import Given, Reading, Scene, scene_of
 from uplift.sensor import Array, Light, Sensor
+from uplift.threads import one_blas_thread
 
 NAMED = 6
 """Entries that a warning names."""
@@ -35,17 +35,7 @@ Watch = Callable[[fit.Round | fit.Storing | Reading], None]
 Atlas = Spectra | str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
 
 
-@contextmanager
-def _one_blas_thread() -> Iterator[None]:
-    """The same bytes whatever the threads: sums that BLAS shares out are rounded by how many there are, XLA's not."""
-    import scipy.linalg  # noqa: F401  it brings a BLAS of its own, and only what is there can be told
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(1, user_api="blas"):
-        yield
-
-
-@_one_blas_thread()
+@one_blas_thread()
 def build(
     atlas: Atlas = None, *, scene: Given | None = None, watch: Watch = lambda done: None, **options: Any
 ) -> Cube:

@@ -178,7 +178,7 @@ def test_what_other_files_lack_is_told_by_them(read):
         read(HEAD + 'materials.x = { atlas = "none.txt", entry = "a" }')
 
 
-@pytest.mark.parametrize("content", [b"\xff\xfe", None])
+@pytest.mark.parametrize("content", [b"\xff\xfe", b"x = " + b"[" * 50_000, None])
 def test_files_that_are_no_text_are_told(tmp_path, content):
     path = tmp_path / "spec.toml"
     if content is not None:

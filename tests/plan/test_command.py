@@ -60,3 +60,5 @@ def test_what_is_wrong_with_the_scene_is_one_line(refuse, here):
 def test_what_is_no_plan_is_refused(refuse, here):
     assert "wood.exr: is no plan of this version; plan again" in refuse("build", "--plan", "wood.exr")
     assert "there.json: cannot be read" in refuse("build", "--plan", "there.json")
+    (here / "deep.json").write_text("[" * 100_000)
+    assert "deep.json: is no plan of this version" in refuse("build", "--plan", "deep.json")

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.errors import PaletteError
+from uplift.palette.equations import equations, undetermined, unknowns
+from uplift.palette.factor import FactorModel
+from uplift.palette.palette import Palette
+from uplift.palette.solve import solve
 from uplift.sensor import Array
-
-from .equations import equations, undetermined, unknowns
-from .factor import FactorModel
-from .palette import Palette
-from .solve import solve
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,11 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uplift.palette.colours import screen_matrix
+from uplift.palette.factor import FactorModel
+from uplift.palette.palette import Palette, Part, Wish
 from uplift.sensor import Array
-
-from .colours import screen_matrix
-from .factor import FactorModel
-from .palette import Palette, Part, Wish
 
 SPACING = 10.0
 """nm between the samples of the source, for which its weights are meant."""

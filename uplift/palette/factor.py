@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.errors import OptionError
+from uplift.palette.bounces import Bounces, bounces
+from uplift.palette.colours import lab_per_rgb, screen_matrix
+from uplift.palette.sharpen import sharpen
 from uplift.sensor import Array, Sensor
-
-from .bounces import Bounces, bounces
-from .colours import lab_per_rgb, screen_matrix
-from .sharpen import sharpen
 
 COUNTS = range(3, 13)
 """Coefficients that a model may have; Bergner takes 5 to 7."""

@@ -8,11 +8,10 @@ from pathlib import Path
 from uplift import lookup
 from uplift.atlas import on_grid, read_atlas
 from uplift.atlas.spectra import Spectra
+from uplift.palette.fields import Fields
+from uplift.palette.lights import illuminant, planck
+from uplift.palette.palette import Part
 from uplift.sensor import Sensor
-
-from .fields import Fields
-from .lights import illuminant, planck
-from .palette import Part
 
 LIGHT_KINDS, MATERIAL_KINDS = ["illuminant", "planck", "design"], ["atlas", "rgb", "design"]
 

@@ -8,9 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.palette.factor import FactorModel
 from uplift.sensor import Array
-
-from .factor import FactorModel
 
 
 @dataclass(frozen=True, eq=False)

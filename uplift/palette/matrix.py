@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.difference import colours_apart
+from uplift.palette.colours import screen_matrix
+from uplift.palette.design import Design
+from uplift.palette.palette import Apart, Wish
 from uplift.sensor import Array
-
-from .colours import screen_matrix
-from .design import Design
-from .palette import Apart, Wish
 
 
 @dataclass(frozen=True, eq=False)

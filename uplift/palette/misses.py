@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .design import Design, design
-from .matrix import difference, matrix, place
-from .palette import Apart, Palette, Part, Wish
+from uplift.palette.design import Design, design
+from uplift.palette.matrix import difference, matrix, place
+from uplift.palette.palette import Apart, Palette, Part, Wish
 
 VISIBLE = 0.5
 """ΔE00 from which a colour counts as missed; about half of what is seen side by side."""

@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from uplift.palette.design import Design
+from uplift.palette.matrix import Matrix
+from uplift.palette.palette import Part
 from uplift.report.charts import BAND, GREY, INK
 from uplift.report.figure import new_figure, plain, write_png
 from uplift.report.viewing import hex_codes
 from uplift.sensor import Array
-
-from .design import Design
-from .matrix import Matrix
-from .palette import Part
 
 CELL, NAMES, TOP = (1.5, 1.0), 1.35, 0.75
 """Inches of a cell, of the column of names, and of the row of lights."""

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uplift.palette.bounces import Bounces
+from uplift.palette.colours import lab_per_rgb, screen_matrix
 from uplift.sensor import Array, Sensor
-
-from .bounces import Bounces
-from .colours import lab_per_rgb, screen_matrix
+from uplift.threads import one_blas_thread
 
 OUTLIER = 2.0
 """L*a*b* errors beyond this count less than by their square: no single light may decide."""
@@ -32,13 +32,12 @@ def sharpen(sensor: Sensor, basis: Array, projection: Array, ways: Bounces) -> A
     """
     from scipy.linalg import null_space
     from scipy.optimize import least_squares
-    from threadpoolctl import threadpool_limits
 
     white = projection.sum(axis=1)
     free = null_space(white[None])
     task = _task(sensor, basis, projection, ways, free)
     start = _peaks(basis, projection) @ free
-    with threadpool_limits(1, user_api="blas"):  # the matrices are small: threads would wait for one another
+    with one_blas_thread():
         found = least_squares(
             task.residuals,
             start.ravel(),

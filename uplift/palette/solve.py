@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.errors import UpliftWarning
+from uplift.palette.equations import Equations
 from uplift.sensor import Array
-
-from .equations import Equations
+from uplift.threads import one_blas_thread
 
 ENOUGH, MOST_STEPS = 1e-12, 1000
 """Relative change at which the bounded solver stops, and steps after which it gives up."""
@@ -25,10 +25,8 @@ def solve(problem: Equations) -> Array:
     Without bounds by the pseudo-inverse: of several minima the shortest. With bounds by active sets (BVLS of Stark &
     Parker 1995 in scipy's ``lsq_linear``). What has no equation in common is solved apart.
     """
-    from threadpoolctl import threadpool_limits
-
     found = np.zeros(problem.matrix.shape[1])
-    with threadpool_limits(1, user_api="blas"):  # the matrices are small: threads would wait for one another
+    with one_blas_thread():
         for rows, columns in _apart(problem.matrix):
             part = Equations(
                 problem.matrix[np.ix_(rows, columns)],

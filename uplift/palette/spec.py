@@ -10,12 +10,11 @@ from typing import Any
 
 from uplift import observer
 from uplift.errors import PaletteError
+from uplift.palette import givens
+from uplift.palette.factor import COUNTS
+from uplift.palette.fields import Fields
+from uplift.palette.palette import Apart, Palette, Part, Wish
 from uplift.sensor import Array, Sensor
-
-from . import givens
-from .factor import COUNTS
-from .fields import Fields
-from .palette import Apart, Palette, Part, Wish
 
 DARKEST, LIGHTEST = "#000000", "#ffffff"
 """Bounds of free colours: what a screen shows."""
@@ -53,10 +52,8 @@ def read_palette(path: str | os.PathLike[str]) -> Palette:
 def _parse(path: str | os.PathLike[str]) -> dict[str, Any]:
     try:
         return tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except (
-        OSError,
-        ValueError,
-    ) as error:  # TOML and UTF-8 raise kinds of ValueError, as does a NUL in a path
+    except (OSError, ValueError, RecursionError) as error:
+        # TOML and UTF-8 raise kinds of ValueError, as does a NUL in a path; tables that nest deeply RecursionError.
         reason = getattr(error, "strerror", None) or str(error)
         raise PaletteError(f"cannot be read: {reason}", path=path, remedy="write a spec in TOML") from None
 

@@ -7,10 +7,9 @@ import itertools
 import numpy as np
 
 from uplift import lookup
+from uplift.palette.factor import FactorModel, factor_model
+from uplift.palette.lights import illuminant
 from uplift.sensor import Array, Sensor
-
-from .factor import FactorModel, factor_model
-from .lights import illuminant
 
 LIGHTS = ("D65", "A", "D50", "E")
 NODES = np.linspace(0.02, 0.98, 5) ** 2

@@ -9,8 +9,7 @@ from uplift.atlas import Entry, Header, Spectra, write_atlas
 from uplift.atlas.checks import HIGHEST, LOWEST
 from uplift.errors import PaletteError, UpliftWarning
 from uplift.files import check_output
-
-from .design import Design
+from uplift.palette.design import Design
 
 CONTENT = "Reflectances designed by uplift palette"
 

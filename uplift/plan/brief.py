@@ -18,6 +18,8 @@ from uplift.texture.colours import check_encoding
 
 LEAST, MOST = 0.01, 100.0
 """Tolerances that mean anything, ΔE00."""
+LONGEST = 4096
+"""Letters of a path; patterns that are longer take minutes."""
 EXAMPLE = 'textures = ["wood.png"]'
 
 
@@ -64,6 +66,8 @@ def read_brief(path: str | os.PathLike[str]) -> Brief:
         problem = re.sub(r" \(at .*\)$", "", str(error)).rstrip(".")
         remedy = f"write lines such as {EXAMPLE}"
         raise PlanFileError(f"is no TOML: {problem}", path=path, line=line, remedy=remedy) from error
+    except RecursionError as error:
+        raise PlanFileError("nests too deeply", path=path, remedy=f"write lines such as {EXAMPLE}") from error
     return _Reader(Path(path), text, said).brief()
 
 
@@ -120,7 +124,7 @@ class _Reader:
 
     def _files(self, key: str) -> tuple[Path, ...]:
         paths = tuple(path for name in self._texts(key) for path in self._named(key, name))
-        if missing := [path for path in paths if not path.is_file()]:
+        if missing := [path for path in paths if not os.path.isfile(path)]:
             self._fail(
                 key, f"{key}: there is no file {missing[0]}", "paths are taken from the scene file's folder"
             )
@@ -129,7 +133,9 @@ class _Reader:
     def _named(self, key: str, name: str) -> list[Path]:
         """A file, or all that a pattern fits."""
         folder = self.path.parent
-        if (folder / name).exists() or not glob.has_magic(name):
+        if len(name) > LONGEST or "\0" in name:
+            self._fail(key, f"{key}: '{name[:20]}…' is no path", "name a file, or a pattern")
+        if os.path.exists(folder / name) or not glob.has_magic(name):
             return [folder / name]
         found = sorted(glob.glob(name, root_dir=folder))
         if not found:

@@ -120,7 +120,7 @@ def read_plan(path: str | os.PathLike[str]) -> Planned:
     except OSError as error:
         problem = f"cannot be read: {error.strerror or error}"
         raise PlanFileError(problem, path=path, remedy="make it: uplift plan SCENE.toml") from error
-    except (ValueError, KeyError, TypeError, AttributeError, UpliftError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, UpliftError) as error:
         raise PlanFileError("is no plan of this version", path=path, remedy=AGAIN) from error
     for file, wanted in (textures | atlases).items():
         _check(path, file, wanted)
@@ -128,7 +128,7 @@ def read_plan(path: str | os.PathLike[str]) -> Planned:
 
 
 def _check(path: Path, file: Path, wanted: str) -> None:
-    if not file.is_file():
+    if not os.path.isfile(file):
         raise PlanFileError(f"there is no file {file}", path=path, remedy=f"bring it back, or {AGAIN}")
     if file_digest(file) != wanted:
         raise PlanFileError(f"{file} has changed since the plan was measured", path=path, remedy=AGAIN)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares
-from threadpoolctl import threadpool_limits
 
 from uplift.sensor import Array
+from uplift.threads import one_blas_thread
 from uplift.wavelengths import metric
 from uplift.wavelengths.sampling import Sampling
 from uplift.wavelengths.setting import Setting
@@ -88,8 +88,7 @@ def _fit(problem: Problem, start: Sampling, held: int) -> Sampling:
     def whole(free: Array) -> Array:
         return np.concatenate([unknowns[:held], free])
 
-    # The matrices are small: threads wait for each other longer than they work.
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         found = least_squares(
             lambda free: problem.residuals(whole(free)),
             unknowns[held:],
