@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 
 import pytest
@@ -41,6 +42,13 @@ def test_all_can_be_said(say, tmp_path):
     assert (found.lights, found.tolerance, found.quantile) == (("A", "FL11"), 2.0, 0.9)
     assert found.sensor().illuminant == "D50"
     assert [light.name for light in found.seen_under()] == ["A", "FL11"]
+
+
+def test_every_field_can_be_said(say):
+    """A key that is none would be unknown; these are only of the wrong kind."""
+    for field in dataclasses.fields(Brief)[1:]:
+        with pytest.raises(PlanFileError, match=f"{field.name} is no "):
+            say(f"textures = 'a.png'\n{field.name} = []" if field.name != "textures" else "textures = 3")
 
 
 @pytest.mark.parametrize(

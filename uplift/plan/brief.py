@@ -7,7 +7,7 @@ import os
 import re
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -98,7 +98,6 @@ class _Reader:
             "quantile": lambda key: self._number(key, 0.5, 1.0),
             **dict.fromkeys(("encoding", "space", "illuminant", "observer"), self._word),
         }
-        assert readers.keys() == {field.name for field in fields(Brief)} - {"path"}
         for key in self.said.keys() - readers.keys():
             self._raise(key, observer.suggest(key, readers, "key"))
         if "textures" not in self.said:

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from uplift.cube.display import encode
+from uplift.overflow import SRGB, contained
 from uplift.report.charts import GREY, INK, STYLE
 from uplift.report.figure import new_figure, plain, write_png
 from uplift.sensor import Array
@@ -16,8 +18,6 @@ from uplift.wavelengths.setting import read_off
 WIDTH, PANEL, HEAD = 7.2, 1.55, 0.9
 """Inches: of the picture, of a panel's height, of what is above and below."""
 CHANNELS = {"X": "#c0392b", "Y": "#2e8b57", "Z": "#2f5fb3"}
-TINTS = np.array([[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]])
-"""XYZ to linear sRGB (IEC 61966-2-1), for the colours of dots alone."""
 
 
 def plot_choice(
@@ -79,5 +79,5 @@ def _draw_weights(axes: Any, setting: Setting, choice: Choice) -> None:
 def _tints(setting: Setting, wavelengths: Array) -> Array:
     """(n, 3) how the wavelengths look, as far as sRGB can show."""
     xyz = read_off(wavelengths, setting.wavelengths, setting.cmfs.T).T
-    rgb = np.clip(xyz @ TINTS.T, 0, None) + 1e-3
-    return np.asarray((rgb / rgb.max(axis=1, keepdims=True)) ** (1 / 2.2))
+    rgb = contained(xyz @ np.linalg.inv(SRGB.rgb_to_xyz).T, SRGB, "scale").rgb + 1e-3
+    return encode(rgb / rgb.max(axis=1, keepdims=True))
