@@ -48,7 +48,7 @@ stability: $(INSTALLED)
 
 # Hostile input, a hundred thousand of each kind, and writers killed at random: docs/stability-hostile.json.
 nightly: $(INSTALLED)
-	$(BIN)/python -m hostile
+	$(BIN)/python -m tests.fuzz
 
 # The same bytes whatever the threads, and how far instruction sets take them apart: docs/stability-determinism.json.
 determinism: $(INSTALLED)

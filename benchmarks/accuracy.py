@@ -9,10 +9,9 @@ import numpy as np
 
 import uplift
 from benchmarks.page import table, write
-from uplift.difference import colours_apart
+from benchmarks.timing import ROOT
+from uplift.colorimetry.delta_e import colours_apart
 from uplift.lookup import MODES, Cube
-
-from .timing import ROOT
 
 LIGHTS = ("D65", "A", "FL2", "FL7", "FL11", "LED-B3", "HP1")
 MACBETH = ROOT / "atlases" / "macbeth.txt"

@@ -10,7 +10,7 @@ import click
 from benchmarks.page import write
 from benchmarks.processes import time_processes
 from benchmarks.timing import ROOT
-from uplift.timing import circumstances
+from uplift.lab.timing import circumstances
 
 INTRODUCTION = r"""# Performance
 

@@ -11,7 +11,7 @@ from uplift_cli.startup import keep_compiled, one_thread
 from benchmarks.timing import ROOT
 
 if TYPE_CHECKING:
-    from uplift.chart.table import Chart
+    from uplift.lab.chart.table import Chart
 
 INTRODUCTION = """# Speed against accuracy
 
@@ -37,16 +37,16 @@ def main(source: str | None) -> None:
 
 
 def _read(source: str) -> Chart:
-    from uplift.chart.table import read_chart
+    from uplift.lab.chart.table import read_chart
 
     return read_chart(source)
 
 
 def _measure() -> Chart:
     from uplift.atlas import read_atlas
-    from uplift.chart.measure import measure
-    from uplift.chart.methods import chosen
-    from uplift.chart.task import task
+    from uplift.lab.chart.measure import measure
+    from uplift.lab.chart.methods import chosen
+    from uplift.lab.chart.task import task
 
     atlases = {path.stem: read_atlas(path) for path in sorted((ROOT / "atlases").glob("*.txt"))}
     methods = chosen()
@@ -58,11 +58,11 @@ def publish(found: Chart) -> None:
     """Write table, pictures and pages of a chart."""
     from benchmarks.chart_tables import fronts, methods, undrawn
     from benchmarks.page import write
-    from uplift.chart.page import page
-    from uplift.chart.picture import write_pictures
-    from uplift.chart.recommend import MEASURED
-    from uplift.chart.table import csv_text
-    from uplift.files import check_folder, write_text
+    from uplift.common.files import check_folder, write_text
+    from uplift.lab.chart.page import page
+    from uplift.lab.chart.picture import write_pictures
+    from uplift.lab.chart.recommend import MEASURED
+    from uplift.lab.chart.table import csv_text
 
     folder = check_folder(ROOT / "docs" / "chart", (), force=True)
     write_text(csv_text(found), ROOT / "uplift" / "chart" / MEASURED, force=True)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from benchmarks.page import table
-from uplift.chart.numbers import build_told, error_told, size_told, time_told
-from uplift.chart.panels import PANELS
-from uplift.chart.table import Chart, Row, State
+from uplift.lab.chart.panels import PANELS
+from uplift.lab.chart.table import Chart, Row, State
+from uplift.viz.format import build_told, error_told, size_told, time_told
 
 ERRORS = ("round_trip", "A", "FL2", "FL7", "FL11", "LED-B3", "rms", "own_lights")
 

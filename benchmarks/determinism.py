@@ -24,8 +24,8 @@ import click
 import uplift
 from benchmarks.timing import ROOT
 from uplift.atlas import Spectra
+from uplift.lab.timing import circumstances
 from uplift.report.regression import LIMITS, compare
-from uplift.timing import circumstances
 
 Row = dict[str, Any]
 PATH = ROOT / "docs" / "stability-determinism.json"

@@ -11,15 +11,16 @@ import jax
 import numpy as np
 
 from benchmarks.timing import ROOT
-from uplift import fit, observer
+from uplift import fit
 from uplift.atlas import on_grid, read_atlas
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array
+from uplift.common.threads import one_blas_thread
+from uplift.lab.timing import Spread, spread
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, Sigmoid, reflectance
-from uplift.models.least_change import forward
-from uplift.options import Options
-from uplift.sensor import Array
-from uplift.threads import one_blas_thread
-from uplift.timing import Spread, spread
+from uplift.models.minimum_norm import forward
+from uplift.pipeline.options import Options
 
 MODELS = (Sigmoid(), *(Moments(count) for count in (3, 5, 9, 13, 17)))
 DIMS = (16, 32, 64, 128)

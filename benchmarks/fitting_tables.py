@@ -8,7 +8,7 @@ from benchmarks.fitting import ACCELERATED, FitTiming
 from benchmarks.nodes import NodesError
 from benchmarks.page import table
 from benchmarks.processes import ProcessTiming
-from uplift.timing import Spread
+from uplift.lab.timing import Spread
 
 
 def dims_table(rows: Sequence[FitTiming]) -> str:

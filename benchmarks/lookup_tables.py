@@ -41,7 +41,7 @@ def lookup_table(rows: Sequence[LookupTiming]) -> str:
 def bulk_table(rows: Sequence[LookupTiming]) -> str:
     return table(
         "Lookups in bulk",
-        "`uplift.bulk` on the same cube, float32 out. *ready* is what making the tables takes, *compile* what a first "
+        "`uplift.lookup.bulk` on the same cube, float32 out. *ready* is what making the tables takes, *compile* what a first "
         "run takes longer than the next; the error is the largest difference from numpy in float64.",
         [
             "what",

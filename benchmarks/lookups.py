@@ -13,9 +13,8 @@ import numpy as np
 
 import uplift
 from benchmarks.timing import ROOT
-from uplift import bulk
-from uplift.lookup import Cube
-from uplift.timing import Spread, timed
+from uplift.lab.timing import Spread, timed
+from uplift.lookup import Cube, bulk
 
 WAVELENGTHS = np.linspace(400, 700, 16)
 BULK = 1_000_000

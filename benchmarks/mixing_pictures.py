@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.cube.display import shown
+from uplift.colorimetry.srgb import shown
+from uplift.common.arrays import Array
+from uplift.design.mixing import coats
+from uplift.design.mixing.mixers import mixers
+from uplift.design.mixing.recipes import ramp
 from uplift.lookup import Cube
-from uplift.mixing import coats
-from uplift.mixing.mixers import mixers
-from uplift.mixing.recipes import ramp
-from uplift.report.swatches import Strip, plot_strips
-from uplift.sensor import Array
+from uplift.viz.swatches import Strip, plot_strips
 
 STEPS = 11
 PAIRS = {

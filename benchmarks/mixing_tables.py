@@ -10,12 +10,12 @@ import numpy as np
 from benchmarks.mixing_pictures import colour
 from benchmarks.page import table
 from benchmarks.timing import ROOT
+from uplift.common.arrays import Array
+from uplift.design.mixing import kubelka_munk, pigments, surface
+from uplift.design.mixing.criteria import CRITERIA, SHARES, Verdict, judge
+from uplift.design.mixing.mixers import mixers
+from uplift.design.mixing.pigments import Pigment
 from uplift.lookup import Cube
-from uplift.mixing import kubelka_munk, pigments, surface
-from uplift.mixing.criteria import CRITERIA, SHARES, Verdict, judge
-from uplift.mixing.mixers import mixers
-from uplift.mixing.pigments import Pigment
-from uplift.sensor import Array
 
 PAINTS = ROOT / "tests" / "reference" / "paints_rgb.csv"
 GRADINGS = (0.0, 0.25, 0.5, 0.75, 0.9, 1.0)

@@ -9,13 +9,13 @@ import numpy as np
 
 from benchmarks.mixing_pictures import colour
 from benchmarks.page import table
+from uplift.colorimetry.observer import colour_science
+from uplift.common.arrays import Array
+from uplift.design.mixing import coats, hsl, kubelka_munk, overpaint
+from uplift.design.mixing.mixers import SPECTRAL, mixers
+from uplift.design.mixing.pigments import Pigment
+from uplift.lab.timing import Spread, timed
 from uplift.lookup import Cube
-from uplift.mixing import coats, hsl, kubelka_munk, painting
-from uplift.mixing.mixers import SPECTRAL, mixers
-from uplift.mixing.pigments import Pigment
-from uplift.observer import colour_science
-from uplift.sensor import Array
-from uplift.timing import Spread, timed
 
 MIXTURES, PIXELS, COLOURS = 20_000, 1_000_000, 1_000_000
 RUNS = 5
@@ -55,7 +55,7 @@ def images(cube: Cube) -> str:
     rng = np.random.default_rng(0)
     red = coats.palette([coats.paint(cube.reflectance(colour(cube, "red")))])
     coat = coats.of_paints(red, [1], 0.5)
-    brush = painting.ready(cube, coat, threads=1)
+    brush = overpaint.ready(cube, coat, threads=1)
     image = rng.random((PIXELS, 3)).astype(np.float32)
     expected = cube.data.sensor.rgb(coat.over(cube.reflectance(image[:CHECKED])))
     if np.abs(brush.over(image)[:CHECKED] - expected).max() > 1e-5:

@@ -9,9 +9,9 @@ from scipy.linalg import qr
 from scipy.optimize import nnls
 
 from benchmarks.timing import ROOT
+from uplift.common.arrays import Array
 from uplift.lookup import load
 from uplift.models import reflectance
-from uplift.sensor import Array
 
 COUNTS = (16, 24, 32, 48)
 SPECTRA = 3000

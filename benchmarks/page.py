@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from benchmarks.timing import ROOT
-from uplift.timing import circumstances
+from uplift.lab.timing import circumstances
 
 
 def write(

@@ -11,8 +11,9 @@ from benchmarks import palette_tables as tables
 from benchmarks.page import write
 from benchmarks.palette_introduction import INTRODUCTION
 from benchmarks.palette_ways import BOUNCES, DRAWN, LIGHTS, Product, Ways, by_factors, by_rgb, ways
-from uplift import observer
-from uplift.palette import (
+from benchmarks.timing import ROOT
+from uplift.colorimetry import observer
+from uplift.design.palette import (
     FactorModel,
     design,
     matrix,
@@ -21,8 +22,6 @@ from uplift.palette import (
     read_palette,
     standard_model,
 )
-
-from .timing import ROOT
 
 FOLDER = ROOT / "docs" / "palette"
 EXAMPLES = ("metamers", "vanish", "light", "constant")

@@ -15,7 +15,7 @@ from benchmarks.palette_ways import (
     by_rgb,
     unsharpened,
 )
-from uplift.palette import FactorModel
+from uplift.design.palette import FactorModel
 
 
 def by_bounces(ways: Ways, models: dict[int, FactorModel]) -> str:

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchmarks.timing import ROOT
 from uplift.atlas import on_grid, read_atlas
-from uplift.difference import colours_apart
-from uplift.palette import FactorModel, LinearModel
-from uplift.palette.colours import exposure, screen_matrix
-from uplift.palette.lights import illuminant
-from uplift.sensor import Array, Sensor
-
-from .timing import ROOT
+from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array
+from uplift.design.palette import FactorModel, LinearModel
+from uplift.design.palette.colours import exposure, screen_matrix
+from uplift.design.palette.lights import illuminant
 
 LIGHTS = ("D65", "D50", "A", "E", "FL2", "FL7", "FL11", "LED-B3", "HP1")
 BOUNCES = (1, 2, 3, 4)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.timing import ROOT, process
-from uplift.timing import Spread, spread
+from uplift.lab.timing import Spread, spread
 
 UPLIFT = str(Path(sys.executable).parent / "uplift")
 MACBETH = str(ROOT / "atlases" / "macbeth.txt")

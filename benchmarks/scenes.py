@@ -16,10 +16,10 @@ import uplift
 from benchmarks.page import table, write
 from benchmarks.textures.pictures import Picture, pictures
 from benchmarks.timing import ROOT
+from uplift.common.arrays import Array
+from uplift.io.scene_colours import Images
+from uplift.lab.timing import Spread, timed
 from uplift.lookup import Cube
-from uplift.scene import Images
-from uplift.sensor import Array
-from uplift.timing import Spread, timed
 
 ATLAS = ROOT / "atlases" / "macbeth.txt"
 DIMS = (32, 64, 128)

@@ -13,15 +13,17 @@ from itertools import product
 import numpy as np
 
 from benchmarks.timing import ROOT
-from uplift import fit, observer
-from uplift.difference import delta_e_2000, lab
-from uplift.errors import UpliftError
+from uplift import fit
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array
+from uplift.common.errors import UpliftError
 from uplift.fit.grow import grow
 from uplift.fit.store import LOSS
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, Sigmoid, evaluate
-from uplift.models.least_change import forward
-from uplift.sensor import Array, Sensor
+from uplift.models.minimum_norm import forward
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ProPhoto RGB")
 MODELS: tuple[Model, ...] = (*(Moments(count) for count in (3, 5, 9, 13, 17)), Sigmoid())

@@ -10,11 +10,10 @@ import uplift
 from benchmarks import study_tables as tables
 from benchmarks import warps
 from benchmarks.page import write
-from uplift.study.moments import Study, study
-from uplift.study.moments_plots import Curve, curves, plot_errors, plot_patches, plot_worst
-from uplift.study.technique import TECHNIQUES, Technique
-
-from .timing import ROOT
+from benchmarks.timing import ROOT
+from uplift.lab.study.moments import Study, study
+from uplift.lab.study.moments_plots import Curve, curves, plot_errors, plot_patches, plot_worst
+from uplift.lab.study.technique import TECHNIQUES, Technique
 
 PICTURES = ROOT / "docs" / "moments"
 

@@ -6,10 +6,9 @@ import csv
 from collections.abc import Callable, Iterable, Mapping
 
 from benchmarks.page import table
-from uplift.study.moments import LIGHTS, MEASURES, Result, Study
-from uplift.study.technique import TECHNIQUES, Technique
-
-from .timing import ROOT
+from benchmarks.timing import ROOT
+from uplift.lab.study.moments import LIGHTS, MEASURES, Result, Study
+from uplift.lab.study.technique import TECHNIQUES, Technique
 
 THESIS = ROOT / "tests" / "reference" / "moments_todova2020.csv"
 STORED = (3, 5, 9, 13, 16)

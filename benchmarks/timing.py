@@ -1,4 +1,4 @@
-"""Whole processes, and where the repository lies; `uplift.timing` times the rest."""
+"""Whole processes, and where the repository lies; `uplift.lab.timing` times the rest."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from uplift.timing import Spread, spread
+from uplift.lab.timing import Spread, spread
 
 ROOT = Path(__file__).parents[1]
 

@@ -10,12 +10,12 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import minimize
 
-from uplift import observer
-from uplift.difference import delta_e_1976, lab
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_1976, lab
+from uplift.common.arrays import Array
+from uplift.lab.study.moments import fine_grid
+from uplift.lab.study.technique import TECHNIQUES
 from uplift.models import phase
-from uplift.sensor import Array
-from uplift.study.moments import fine_grid
-from uplift.study.technique import TECHNIQUES
 
 Warp = Callable[[Array], Array]
 FITTED_MOMENTS = 2

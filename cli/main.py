@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from uplift.errors import UpliftError, UpliftWarning
+from uplift.common.errors import UpliftError, UpliftWarning
 
 GROUPS = {
     "Cubes": ("build", "query", "texture", "mix", "export"),
@@ -44,7 +44,7 @@ class Commands(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         if name not in COMMANDS:
             return None
-        command = importlib.import_module(f".{name}", __package__).command
+        command = importlib.import_module(f"uplift_cli.commands.{name}").command
         return command if isinstance(command, click.Command) else None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -16,6 +16,6 @@ def keep_compiled() -> None:
 
 def one_thread() -> None:
     """Keep numpy's linear algebra to one thread, for timings; read when numpy is imported."""
-    from uplift.timing import ONE_THREAD
+    from uplift.lab.timing import ONE_THREAD
 
     os.environ.update(ONE_THREAD)

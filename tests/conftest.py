@@ -9,9 +9,9 @@ import pytest
 from hypothesis import settings
 
 import uplift
-from uplift import observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import Sensor
 from uplift.lookup import Cube
-from uplift.sensor import Sensor
 
 ROOT = Path(__file__).parents[1]
 # Machines are shared: how long an example takes says nothing.

@@ -9,7 +9,7 @@ import click
 import pytest
 from uplift_cli.main import COMMANDS, main
 
-from .conftest import ROOT
+from tests.conftest import ROOT
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 README = PAGES[0].read_text(encoding="utf-8")

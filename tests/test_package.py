@@ -76,16 +76,16 @@ def test_nothing_else_is_in_it(wheel):
     }
     data = {name for name in wheel.namelist() if ".dist-info/" not in name and not name.endswith(".py")}
     assert data == {
-        *(f"uplift/export/templates/{part}.h" for part in C_PARTS),
-        "uplift/chart/measured.csv",
-        "uplift/chart/page.css",
-        "uplift/chart/page.js",
+        *(f"uplift/io/export/templates/{part}.h" for part in C_PARTS),
+        "uplift/lab/chart/measured.csv",
+        "uplift/lab/chart/page.css",
+        "uplift/lab/chart/page.js",
         "uplift/lookup/default.uplift",
-        *(f"uplift/palette/dial/{part}.js" for part in DIAL),
-        "uplift/palette/dial/page.css",
+        *(f"uplift/design/palette/relight_viewer/{part}.js" for part in DIAL),
+        "uplift/design/palette/relight_viewer/page.css",
         "uplift/py.typed",
-        "uplift/report/page.css",
-        "uplift/report/page.js",
+        "uplift/viz/page.css",
+        "uplift/viz/page.js",
     }
 
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from uplift.atlas import Spectra, read_atlas, write_atlas
-    from uplift.errors import UpliftError, UpliftWarning
+    from uplift.common.errors import UpliftError, UpliftWarning
     from uplift.lookup import Cube, load
     from uplift.pipeline import build
 
@@ -36,8 +36,8 @@ __all__ = [
 _HOMES = {
     "Cube": "uplift.lookup",
     "Spectra": "uplift.atlas",
-    "UpliftError": "uplift.errors",
-    "UpliftWarning": "uplift.errors",
+    "UpliftError": "uplift.common.errors",
+    "UpliftWarning": "uplift.common.errors",
     "build": "uplift.pipeline",
     "load": "uplift.lookup",
     "read_atlas": "uplift.atlas",

@@ -18,12 +18,12 @@ from benchmarks.browser import Browser, browser
 from benchmarks.dial.introduction import INTRODUCTION
 from benchmarks.page import table, write
 from benchmarks.timing import ROOT
-from uplift.cube.display import encode
-from uplift.palette import Design, design, read_palette, standard_model
-from uplift.palette.dial.cutaway import cutaway
-from uplift.palette.dial.page import page
-from uplift.palette.dial.relighting import Relighting, relighting
-from uplift.timing import Spread, circumstances, spread
+from uplift.colorimetry.srgb import encode
+from uplift.design.palette import Design, design, read_palette, standard_model
+from uplift.design.palette.relight_viewer.cutaway import cutaway
+from uplift.design.palette.relight_viewer.page import page
+from uplift.design.palette.relight_viewer.relighting import Relighting, relighting
+from uplift.lab.timing import Spread, circumstances, spread
 
 FOLDER = ROOT / "docs" / "palette-dial"
 TASKS = ((5, 512), (7, 512), (9, 512), (7, 1024))

@@ -13,9 +13,9 @@ from benchmarks.display.picture import WAYS, draw
 from benchmarks.display.spaces import ACESCG, SPACES, desaturated, hollow
 from benchmarks.page import table, write
 from benchmarks.timing import ROOT
-from uplift.overflow import SRGB, contained
-from uplift.sensor import Array
-from uplift.timing import timed
+from uplift.colorimetry.gamut import SRGB, contained
+from uplift.common.arrays import Array
+from uplift.lab.timing import timed
 
 PICTURES = ROOT / "docs" / "display"
 TIMED = 1 << 16

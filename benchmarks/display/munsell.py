@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import colour
 import numpy as np
 
-from uplift.difference import delta_e_2000, lab
-from uplift.overflow import SRGB, Primaries, conversion
-from uplift.sensor import Array
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.gamut import SRGB, Primaries, conversion
+from uplift.common.arrays import Array
 
 BRIGHTEST, DARKEST = 9, 2
 """Values between which hues are well known."""

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.cube.display import encode
-from uplift.overflow import CHOICES, SRGB, Primaries, contained, conversion
-from uplift.report.figure import new_figure, write_png
-from uplift.sensor import Array
+from uplift.colorimetry.gamut import CHOICES, SRGB, Primaries, contained, conversion
+from uplift.colorimetry.srgb import encode
+from uplift.common.arrays import Array
+from uplift.viz.figure import new_figure, write_png
 
 REC_2020 = Primaries((0.708, 0.292), (0.170, 0.797), (0.131, 0.046), (0.3127, 0.3290))
 WAYS = tuple(way for way in CHOICES if way != "error")

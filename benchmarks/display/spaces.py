@@ -9,8 +9,8 @@ from typing import Any
 import colour
 import numpy as np
 
-from uplift.overflow import SRGB, Primaries
-from uplift.sensor import Array
+from uplift.colorimetry.gamut import SRGB, Primaries
+from uplift.common.arrays import Array
 
 HALVINGS = 30
 NEARLY = 1e-4

@@ -7,22 +7,15 @@ from itertools import product
 
 import numpy as np
 
-from benchmarks.fidelity.materials import (
-    SENSOR,
-    Materials,
-    ahead,
-    entries,
-    large,
-    materials,
-)
+from benchmarks.fidelity.materials import SENSOR, Materials, ahead, entries, large, materials
 from benchmarks.fidelity.start import solved
 from benchmarks.page import table
-from uplift.difference import rgb_lab
+from uplift.colorimetry.delta_e import rgb_lab
+from uplift.common.arrays import Array
 from uplift.fit.kriging import LENGTH, krige
 from uplift.fit.smooth import smooth
+from uplift.lab.study.held_out import judge
 from uplift.models import Moments
-from uplift.sensor import Array
-from uplift.study.held_out import judge
 
 SPLITS = 3
 LENGTHS = (3.0, 4.0, 6.0, 8.0, 10.0, 14.0)

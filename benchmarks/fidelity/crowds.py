@@ -6,12 +6,13 @@ import numpy as np
 
 from benchmarks.fidelity.materials import SENSOR, ahead, entries, large, materials
 from benchmarks.page import table
-from uplift import fit, observer
-from uplift.fit.crowding import DIMS, lattice_error
+from uplift import fit
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import Light
+from uplift.fit.lattice_size import DIMS, lattice_error
 from uplift.lattice import Lattice
 from uplift.models import Moments
-from uplift.options import AXES, Options
-from uplift.sensor import Light
+from uplift.pipeline.options import AXES, Options
 
 WITHIN = (0.5, 1.0)
 

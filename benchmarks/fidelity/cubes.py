@@ -23,15 +23,16 @@ from benchmarks.fidelity.materials import (
     spectra_of,
 )
 from benchmarks.page import table
-from uplift import fit, observer
-from uplift.difference import spectra_apart
+from uplift import fit
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import spectra_apart
+from uplift.common.arrays import Array
+from uplift.lab.study.held_out import Split, halves, judge
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.models import Moments
 from uplift.report.calibration import calibration
 from uplift.report.smoothness import smoothness
-from uplift.sensor import Array
-from uplift.study.held_out import Split, halves, judge
 
 DIM = 32
 COUNTS = (9, 13, 17)

@@ -11,12 +11,13 @@ import numpy as np
 
 import uplift
 from benchmarks.timing import ROOT
-from uplift import fit, observer
+from uplift import fit
 from uplift.atlas import Spectra, read_atlas, resample
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array
+from uplift.lab.study.held_out import LIGHTS, judge
 from uplift.models import Model
-from uplift.models.least_change import Forward, forward
-from uplift.sensor import Array
-from uplift.study.held_out import LIGHTS, judge
+from uplift.models.minimum_norm import Forward, forward
 
 CHOSEN_ON = ("rawtoaces", "babelcolor", "pmc", "tcs", "vs")
 """Atlases that choices are made on."""
@@ -67,7 +68,7 @@ def ahead(model: Model) -> Forward:
 def entries(
     model: Model,
     some: Materials,
-    lights: Sequence[str] = uplift.options.Options.lights,
+    lights: Sequence[str] = uplift.pipeline.options.Options.lights,
     weights: fit.Weights = fit.objective.BALANCED,
 ) -> fit.Entries:
     shine = [observer.light(name) for name in lights]

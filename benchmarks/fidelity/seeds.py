@@ -16,9 +16,9 @@ from benchmarks.fidelity.materials import (
 )
 from benchmarks.page import table
 from uplift.fit import Weights
+from uplift.lab.study.held_out import judge
 from uplift.models import Moments
-from uplift.options import Options
-from uplift.study.held_out import judge
+from uplift.pipeline.options import Options
 
 LIT = Options.lights
 WITHOUT_LED = LIT[:4]

@@ -6,12 +6,12 @@ import numpy as np
 
 from benchmarks.fidelity.materials import HEAD, JUDGED_ON, SENSOR, ahead, large, materials, row
 from benchmarks.page import table
+from uplift.common.arrays import Array
 from uplift.fit.smooth import BRIGHTENING, GREY, smooth
 from uplift.fit.solve import solve
+from uplift.lab.study.held_out import judge
 from uplift.models import Model, Moments, Phase, Sigmoid
-from uplift.models.least_change import forward
-from uplift.sensor import Array
-from uplift.study.held_out import judge
+from uplift.models.minimum_norm import forward
 
 NINE = Moments(9)
 DARK = np.array(

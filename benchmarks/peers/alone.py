@@ -8,7 +8,7 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 
 from benchmarks.peers.row import Peer
-from uplift.timing import ONE_THREAD
+from uplift.lab.timing import ONE_THREAD
 
 
 def alone(tool: Callable[[int], list[Peer]], runs: int) -> list[Peer]:

@@ -15,8 +15,8 @@ import numpy as np
 from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge_multipliers, missing, model_of
 from benchmarks.timing import ROOT
-from uplift.sensor import Array
-from uplift.timing import spread
+from uplift.common.arrays import Array
+from uplift.lab.timing import spread
 
 SOURCE, BUILT = ROOT / "benchmarks" / "ceres", ROOT / "out" / "ceres"
 NEEDS = "Ceres with cmake and a C++ compiler (libceres-dev, cmake, g++)"

@@ -10,9 +10,9 @@ from colour.recovery.jakob2019 import lightness_scale
 
 from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge
-from uplift import observer
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array
 from uplift.models.sigmoid import published
-from uplift.sensor import Array
 
 SIZE = 3
 LEAST, WITHIN = 0.8, 1e-2

@@ -6,8 +6,8 @@ import numpy as np
 
 from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge, missing
+from uplift.common.arrays import Array
 from uplift.models.sigmoid import published
-from uplift.sensor import Array
 
 VARIANT = "scalar_spectral"
 """Of those that know spectra, the one that needs no LLVM."""

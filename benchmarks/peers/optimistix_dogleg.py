@@ -11,8 +11,8 @@ import numpy as np
 
 from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge_multipliers, missing
+from uplift.common.arrays import Array
 from uplift.models import Moments
-from uplift.sensor import Array
 
 COUNT = 9
 POINTS = 1024

@@ -6,9 +6,10 @@ import numpy as np
 
 from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge_multipliers, model_of
-from uplift import fit, observer
-from uplift.models.least_change import forward
-from uplift.sensor import Array
+from uplift import fit
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array
+from uplift.models.minimum_norm import forward
 
 DIMS = (16, 32)
 MODELS = (("sigmoid", 3), ("moments", 3), ("moments", 5), ("moments", 9), ("moments", 17))

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array
+from uplift.lab.timing import Spread
 from uplift.models import Model, Moments, Sigmoid, evaluate
-from uplift.sensor import Array, Sensor
-from uplift.timing import Spread
 
 THRESHOLD = 1e-4
 """Largest |linear RGB| by which a spectrum misses its colour and is counted as there: that of our cubes."""

@@ -10,9 +10,9 @@ from scipy.optimize import least_squares
 
 from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge_multipliers
-from uplift.errors import UpliftError
+from uplift.common.arrays import Array
+from uplift.common.errors import UpliftError
 from uplift.models import Moments
-from uplift.sensor import Array
 
 COUNT = 9
 POINTS = 32

@@ -8,10 +8,11 @@ from functools import cache
 
 import numpy as np
 
-from uplift import observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array
+from uplift.lab.timing import Spread, spread
 from uplift.lattice import Lattice
-from uplift.sensor import Array, Sensor
-from uplift.timing import Spread, spread
 
 DIM = 16
 

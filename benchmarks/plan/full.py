@@ -20,10 +20,11 @@ import OpenEXR
 
 import uplift
 from benchmarks.timing import ROOT
-from uplift import models, observer
+from uplift import models
 from uplift.atlas import read_atlas, resample
-from uplift.plan.colours import Some
-from uplift.sensor import Array
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array
+from uplift.scene.plan.colours import Some
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # of its optional parts

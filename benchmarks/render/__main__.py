@@ -18,9 +18,9 @@ from benchmarks.render import scene
 from benchmarks.render.chart import MACBETH, Chart, Layout, chart
 from benchmarks.render.picture import draw
 from benchmarks.timing import ROOT
-from uplift.difference import delta_e_2000, lab
-from uplift.observer import light
-from uplift.sensor import Array
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.observer import light
+from uplift.common.arrays import Array
 
 LIGHTS = ("D65", "A", "FL11")
 TRUTH, BUILT_IN, PLAIN, ATLAS, ATLAS_17 = (

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.timing import ROOT
-from uplift import observer
 from uplift.atlas import on_grid, read_atlas
-from uplift.sensor import Array, Sensor
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array
 
 MACBETH = ROOT / "atlases" / "macbeth.txt"
 COLUMNS, ROWS = 6, 4

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.render.chart import Layout
-from uplift.cube.display import shown
-from uplift.observer import sensor
-from uplift.overflow import SRGB
-from uplift.report.figure import new_figure, write_png
-from uplift.sensor import Array
+from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.observer import sensor
+from uplift.colorimetry.srgb import shown
+from uplift.common.arrays import Array
+from uplift.viz.figure import new_figure, write_png
 
 INSET = 0.3
 """Share of a patch's width to each side of the truth in its middle."""

@@ -8,9 +8,9 @@ import mitsuba as mi
 import numpy as np
 
 from benchmarks.render.chart import BACKGROUND, Chart, Layout
-from uplift.mitsuba import register
-from uplift.observer import sensor
-from uplift.sensor import Array
+from uplift.colorimetry.observer import sensor
+from uplift.common.arrays import Array
+from uplift.io.mitsuba import register
 
 VARIANT = "scalar_spectral"
 """Of those that know spectra, the one that needs no LLVM."""

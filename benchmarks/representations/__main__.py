@@ -10,7 +10,7 @@ import click
 from uplift_cli.startup import one_thread
 
 if TYPE_CHECKING:
-    from uplift.comparison.scene import Scene
+    from uplift.lab.comparison.scene import Scene
 
 OTHERS = ("LED-B3", "LED-RGB1", "HP1")
 
@@ -29,12 +29,12 @@ def _publish() -> None:
     from benchmarks.representations.closed import both
     from benchmarks.representations.introduction import introduction
     from benchmarks.timing import ROOT
-    from uplift.comparison.filters import tune
-    from uplift.comparison.measure import Comparison, compare
-    from uplift.comparison.pictures import DRAWN, write_picture
-    from uplift.comparison.scene import scene
-    from uplift.files import check_folder
-    from uplift.representations.all import representations
+    from uplift.common.files import check_folder
+    from uplift.lab.comparison.filters import tune
+    from uplift.lab.comparison.measure import Comparison, compare
+    from uplift.lab.comparison.pictures import DRAWN, write_picture
+    from uplift.lab.comparison.scene import scene
+    from uplift.scene.representations.registry import representations
 
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     atlases = {path.stem: uplift.read_atlas(path) for path in sorted((ROOT / "atlases").glob("*.txt"))}

@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from uplift import observer
-from uplift.comparison.measure import judge
-from uplift.comparison.scene import Scene
-from uplift.comparison.statistics import Statistics
-from uplift.representations import composite
-from uplift.representations.composite import ENHANCED, Composite
-from uplift.representations.dense import TABLE, observed, wavelengths
-from uplift.representations.riemann import riemann
-from uplift.representations.samples import Samples
-from uplift.sensor import Array
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array
+from uplift.lab.comparison.measure import judge
+from uplift.lab.comparison.scene import Scene
+from uplift.lab.comparison.statistics import Statistics
+from uplift.scene.representations import composite
+from uplift.scene.representations.composite import ENHANCED, Composite
+from uplift.scene.representations.dense import TABLE, observed, wavelengths
+from uplift.scene.representations.riemann import riemann
+from uplift.scene.representations.samples import Samples
 
 COUNTS = (8, 16, 32)
 

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 
 from benchmarks.representations.closed import Closed
 from benchmarks.representations.thesis import Printed
-from uplift.chart.numbers import time_told
-from uplift.comparison.filters import NONE, Tuned
-from uplift.comparison.measure import Comparison
+from uplift.lab.comparison.filters import NONE, Tuned
+from uplift.lab.comparison.measure import Comparison
+from uplift.viz.format import time_told
 
 WIDTH = 118
 TEXT = """# Which representation of spectra does a scene need?
@@ -87,7 +87,7 @@ renderers.
 composite model, *GQ* Gaussian quadrature, *TM* trigonometric moments, *SG* the sigmoid, *LM* Peercy's linear model (a
 surface is a matrix), *HW* hero wavelengths. Moments and the sigmoid hold surfaces; their light is the 5 nm table, as
 are their products. What was chosen where the thesis leaves a choice open is in the docstrings of
-`uplift/representations/`. The ΔE00 is `uplift.difference`, which the tests hold against the 34 published pairs of
+`uplift/representations/`. The ΔE00 is `uplift.colorimetry.delta_e`, which the tests hold against the 34 published pairs of
 Sharma, Wu & Dalal 2005.
 """
 

@@ -7,12 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from benchmarks.page import table
 from benchmarks.representations.closed import Closed
 from benchmarks.representations.thesis import Printed
-from uplift.chart.numbers import error_told, time_told
-from uplift.comparison.advice import cheapest
-from uplift.comparison.filters import NONE, Tuned
-from uplift.comparison.look import heading
-from uplift.comparison.measure import Comparison, Row
-from uplift.comparison.statistics import HEADINGS, Statistics
+from uplift.lab.comparison.filters import NONE, Tuned
+from uplift.lab.comparison.measure import Comparison, Row
+from uplift.lab.comparison.recommend import cheapest
+from uplift.lab.comparison.statistics import HEADINGS, Statistics
+from uplift.lab.comparison.style import heading
+from uplift.viz.format import error_told, time_told
 
 TARGETS = (2.0, 1.0, 0.5)
 TABLE = 81

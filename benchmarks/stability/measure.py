@@ -10,15 +10,15 @@ from typing import Any
 
 import uplift
 from benchmarks.timing import ROOT
-from uplift.provenance import recorded_atlas
-from uplift.study import sensitivity
-from uplift.study.made_atlases import MADE
-from uplift.study.records import write_csv
-from uplift.study.sensitivity_plots import plot_locality, plot_steepness
-from uplift.study.stability import NO_ATLAS, study
-from uplift.study.stability_design import Axes, design, grids
-from uplift.study.stability_plots import plot_map
-from uplift.timing import circumstances
+from uplift.lab.study import sensitivity
+from uplift.lab.study.records import write_csv
+from uplift.lab.study.sensitivity_plots import plot_locality, plot_steepness
+from uplift.lab.study.stability import NO_ATLAS, study
+from uplift.lab.study.stability_design import Axes, design, grids
+from uplift.lab.study.stability_plots import plot_map
+from uplift.lab.study.synthetic_atlases import MADE
+from uplift.lab.timing import circumstances
+from uplift.pipeline.provenance import recorded_atlas
 
 FOLDER = ROOT / "docs" / "stability"
 MAP, FIGURES = FOLDER / "map.csv", FOLDER / "sensitivity.json"

@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from benchmarks.page import table
-from uplift.study.locality import MOVED, NOISE
-from uplift.study.pointwise import EVALUATIONS, IN_MOMENTS, IN_MULTIPLIERS
-from uplift.study.sensitivity import LIGHT
-from uplift.study.stability import NO_ATLAS, OURS
-from uplift.study.stability_design import COMPARED, SPACES
+from uplift.lab.study.locality import MOVED, NOISE
+from uplift.lab.study.pointwise import EVALUATIONS, IN_MOMENTS, IN_MULTIPLIERS
+from uplift.lab.study.sensitivity import LIGHT
+from uplift.lab.study.stability import NO_ATLAS, OURS
+from uplift.lab.study.stability_design import COMPARED, SPACES
 
 Row = Mapping[str, Any]
 DIM, THRESHOLD = 17, 1e-4
@@ -34,7 +34,7 @@ def summary(rows: Sequence[Row], cubes: Mapping[str, Any], constrained: str) -> 
     ]
     return table(
         "What was tried, what failed, what happens now",
-        "Points are lattice points of a colour that some reflectance has (`uplift.solid`); one fails whose stored "
+        "Points are lattice points of a colour that some reflectance has (`uplift.colorimetry.solid`); one fails whose stored "
         "spectrum misses its colour by more than the threshold.",
         ["inputs", "tried", "failures", "what happens now"],
         lines,

@@ -11,11 +11,11 @@ import OpenEXR
 
 from benchmarks.page import table
 from benchmarks.textures.pictures import Picture, colour, pictures
-from uplift import texture
-from uplift.difference import colours_apart
+from uplift.colorimetry.delta_e import colours_apart
+from uplift.common.arrays import Array
+from uplift.io import texture
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
-from uplift.sensor import Array
 
 FORMS: tuple[tuple[str, texture.Form, str], ...] = (
     ("spectrum, half", texture.Spectrum(), "half"),

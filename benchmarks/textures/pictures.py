@@ -12,7 +12,7 @@ import matplotlib
 import numpy as np
 
 from benchmarks.timing import ROOT
-from uplift.sensor import Array
+from uplift.common.arrays import Array
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # of its optional parts

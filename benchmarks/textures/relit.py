@@ -10,13 +10,15 @@ import numpy as np
 import OpenEXR
 
 from benchmarks.textures.pictures import Picture
-from uplift import observer, texture
-from uplift.cube.display import shown
-from uplift.difference import delta_e_2000, lab
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.sensor import Light
+from uplift.colorimetry.srgb import shown
+from uplift.common.arrays import Array
+from uplift.io import texture
 from uplift.lookup import Cube
-from uplift.overflow import SRGB
-from uplift.report.figure import new_figure, write_png
-from uplift.sensor import Array, Light
+from uplift.viz.figure import new_figure, write_png
 
 LIGHTS = {"A": "tungsten", "FL11": "three-band fluorescent", "HP1": "high-pressure sodium"}
 SHOWN = (slice(0, 300), slice(60, 460))

@@ -12,7 +12,7 @@ from benchmarks.page import table
 from benchmarks.processes import UPLIFT
 from benchmarks.textures.pictures import pictures
 from benchmarks.timing import process
-from uplift.timing import Spread
+from uplift.lab.timing import Spread
 
 FEW = ("--wavelengths", "400:700:10")
 JOBS: tuple[tuple[int, tuple[str, ...], int], ...] = (

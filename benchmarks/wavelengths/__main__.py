@@ -14,10 +14,10 @@ from benchmarks.wavelengths.bounces import bounces
 from benchmarks.wavelengths.methods import SMOOTH, SPIKY, Comparison, compare, section, summary
 from benchmarks.wavelengths.words import INTRODUCTION
 from uplift.atlas import on_grid
-from uplift.sensor import Array
-from uplift.wavelengths import grid, set_up
-from uplift.wavelengths.experiments import trials
-from uplift.wavelengths.opponent import cones, opponent, plain
+from uplift.common.arrays import Array
+from uplift.scene.wavelengths import grid, set_up
+from uplift.scene.wavelengths.experiments import trials
+from uplift.scene.wavelengths.opponent import cones, opponent, plain
 
 MIXED = ("D65", "FL11")
 """Lights of several bounces."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from benchmarks.page import table
-from uplift.sensor import Array
-from uplift.wavelengths import METHODS, judge, set_up
+from uplift.common.arrays import Array
+from uplift.scene.wavelengths import METHODS, judge, set_up
 
 COUNTS = (6, 8, 12)
 PATHS = 400

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.page import table
-from uplift.sensor import Array
-from uplift.wavelengths import METHODS, Errors, Setting, choose, judge, set_up
+from uplift.common.arrays import Array
+from uplift.scene.wavelengths import METHODS, Errors, Setting, choose, judge, set_up
 
 OURS, EVEN = "optimised", "fitted"
 """Ours in full, and with wavelengths that are even."""

@@ -6,12 +6,12 @@ import numpy as np
 
 from benchmarks.page import table
 from benchmarks.wavelengths import printed
-from uplift.gauss import Rule, Undefined, gauss
-from uplift.sensor import Array
-from uplift.wavelengths import Setting
-from uplift.wavelengths.experiments import error
-from uplift.wavelengths.meyer import POINTS, Rules, four, functions, rules
-from uplift.wavelengths.opponent import Opponent, Space, cones
+from uplift.common.arrays import Array
+from uplift.scene.quadrature import Rule, Undefined, gauss
+from uplift.scene.wavelengths import Setting
+from uplift.scene.wavelengths.experiments import error
+from uplift.scene.wavelengths.meyer import POINTS, Rules, four, functions, rules
+from uplift.scene.wavelengths.opponent import Opponent, Space, cones
 
 STEPS = {"100 steps of 3.9 nm": POINTS, "1 nm": np.arange(380.0, 771.0), "5 nm": np.arange(380.0, 771.0, 5)}
 """Ways to sum the functions from 380 to 770 nm."""

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from benchmarks.timing import ROOT
-from uplift.sensor import Array
+from uplift.common.arrays import Array
 
 CHANNELS = ("A", "C1", "C2")
 Nodes = tuple[Array, Array]

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.atlas.atlas_texts import ORANGE, PLAIN, THESIS
 from uplift.atlas import read_atlas
-from uplift.errors import AtlasError, UpliftWarning
-
-from .atlas_texts import ORANGE, PLAIN, THESIS
+from uplift.common.errors import AtlasError, UpliftWarning
 
 HEADER_1_0 = "ART measurement archive version 1.0\n\nArchive content: greys\n\n"
 HEADER_1_1 = (

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from uplift.atlas import from_distributions, read_atlas, write_atlas
-from uplift.errors import AtlasError
+from uplift.common.errors import AtlasError
 
 NM = np.array([400.0, 550.0, 700.0])
 RED = SimpleNamespace(name="red", wavelengths=NM, values=np.array([0.1, 0.2, 0.9]))

@@ -10,10 +10,9 @@ import sys
 import numpy as np
 import pytest
 
+from tests.atlas.atlas_texts import PLAIN
 from uplift.atlas import Entry, Header, Spectra, read_atlas, write_atlas
-from uplift.errors import AtlasError, OutputError
-
-from .atlas_texts import PLAIN
+from uplift.common.errors import AtlasError, OutputError
 
 GREY = Spectra((Entry("grey", np.array([400.0, 700.0]), np.array([0.5, 0.25])),))
 
@@ -150,6 +149,6 @@ def test_nothing_to_write(tmp_path):
 
 
 def test_importing_costs_neither_scipy_nor_colour_nor_jax():
-    code = "import sys, uplift.atlas; print({'scipy', 'colour', 'jax', 'uplift.observer'} & set(sys.modules))"
+    code = "import sys, uplift.atlas; print({'scipy', 'colour', 'jax', 'uplift.colorimetry.observer'} & set(sys.modules))"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "set()"

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uplift.atlas import Entry, Spectra, on_grid, resample
-from uplift.errors import AtlasError, UpliftWarning
+from uplift.common.errors import AtlasError, UpliftWarning
 
 GRID = np.arange(380.0, 785.0, 5.0)
 UNIT = st.lists(st.floats(0.0, 1.0), min_size=9, max_size=9)

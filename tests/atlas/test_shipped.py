@@ -8,10 +8,9 @@ import colour
 import numpy as np
 import pytest
 
+from tests.atlas.atlas_texts import ATLASES
 from uplift.atlas import on_grid, read_atlas
-from uplift.errors import UpliftWarning
-
-from .atlas_texts import ATLASES
+from uplift.common.errors import UpliftWarning
 
 GRID = np.arange(380.0, 785.0, 5.0)
 SHIPPED = {

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from uplift.atlas import Entry, Spectra, read_atlas, write_atlas
-from uplift.errors import AtlasError, OutputError, UpliftWarning
+from uplift.common.errors import AtlasError, OutputError, UpliftWarning
 
 WIDE = "name,400,550,700\nred,0.1,0.2,0.9\nblue,0.8,0.3,0.05\n"
 TALL = "wavelength,red,blue\n400,0.1,0.8\n550,0.2,0.3\n700,0.9,0.05\n"

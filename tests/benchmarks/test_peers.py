@@ -16,8 +16,8 @@ from benchmarks.peers.mitsuba_table import mitsuba_table
 from benchmarks.peers.optimistix_dogleg import optimistix_dogleg
 from benchmarks.peers.row import Answer, Peer, judge, judge_multipliers, missing
 from benchmarks.peers.task import lattice, measured, some
+from uplift.lab.timing import ONE_THREAD
 from uplift.models import Sigmoid
-from uplift.timing import ONE_THREAD
 
 TARGET = np.full((10, 3), 0.5)
 

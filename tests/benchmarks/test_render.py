@@ -11,7 +11,7 @@ from benchmarks.render import __main__ as demo
 from benchmarks.render import scene
 from benchmarks.render.chart import Layout, chart
 from benchmarks.render.picture import draw
-from uplift.observer import light
+from uplift.colorimetry.observer import light
 
 LAYOUT, SPP = Layout(patch=4, gap=2), 32
 

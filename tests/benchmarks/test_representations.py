@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.representations import introduction, thesis
 from benchmarks.representations.closed import closed, enhanced
-from uplift.representations.dense import observed
+from uplift.scene.representations.dense import observed
 
 
 @pytest.mark.parametrize("count", [8, 16, 32])

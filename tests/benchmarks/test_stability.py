@@ -7,8 +7,8 @@ import json
 from benchmarks.stability import tables
 from benchmarks.stability.measure import CONSTRAINED, FIGURES
 from benchmarks.stability.write import others, read_map
-from uplift.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS
-from uplift.study.stability_design import SPACES
+from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS
+from uplift.lab.study.stability_design import SPACES
 
 
 def test_a_file_beside_the_page_is_a_section(tmp_path):

@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from uplift_cli.atlas import command
+from uplift_cli.commands.atlas import command
 
-from uplift import observer
 from uplift.atlas import on_grid, read_atlas
-from uplift.errors import AtlasError, OutputError, UnknownNameError, UpliftWarning
+from uplift.colorimetry import observer
+from uplift.common.errors import AtlasError, OutputError, UnknownNameError, UpliftWarning
 
 ATLASES = Path(__file__).parents[2] / "atlases"
 MACBETH = str(ATLASES / "macbeth.txt")
@@ -131,8 +131,6 @@ def test_help_names_the_library_s_default_observer():
 
 
 def test_importing_the_command_is_cheap():
-    code = (
-        "import sys, uplift_cli.atlas; print({'numpy', 'rich', 'scipy', 'colour', 'jax'} & set(sys.modules))"
-    )
+    code = "import sys, uplift_cli.commands.atlas; print({'numpy', 'rich', 'scipy', 'colour', 'jax'} & set(sys.modules))"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "set()"

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import uplift
-from uplift.options import Options
+from uplift.pipeline.options import Options
 
 SMALL = ("--dim", "4", "--moments", "3")
 
@@ -164,7 +164,7 @@ def test_bad_input_is_refused_before_building(refuse, monkeypatch, home, args, p
 
 
 def test_the_dim_proposed_is_one_that_fits(refuse):
-    from uplift.pipeline import Options, check_size
+    from uplift.pipeline.build_cube import Options, check_size
 
     dim = int(refuse("build", "--dim", "100000").split("use --dim ")[1].split()[0])
     check_size(Options(dim=dim))

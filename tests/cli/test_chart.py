@@ -9,9 +9,9 @@ import pytest
 from click.testing import CliRunner
 from uplift_cli.main import main
 
-from uplift.chart.recommend import MEASURED, shipped
-from uplift.chart.table import csv_text, read_chart
-from uplift.timing import ONE_THREAD
+from uplift.lab.chart.recommend import MEASURED, shipped
+from uplift.lab.chart.table import csv_text, read_chart
+from uplift.lab.timing import ONE_THREAD
 
 FILES = ["chart.csv", "chart.html", "chart.png", "chart.svg"]
 

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 from uplift_cli.main import main
 
-from uplift.timing import ONE_THREAD
+from uplift.lab.timing import ONE_THREAD
 
 FILES = ["compare-boxes.png", "compare-cost.png", "compare-filters.csv", "compare.csv", "compare.html"]
 

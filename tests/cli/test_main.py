@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from uplift_cli.main import COMMANDS, main
 
 import uplift
-from uplift.errors import UpliftError, UpliftWarning
+from uplift.common.errors import UpliftError, UpliftWarning
 
 
 @pytest.mark.parametrize("name", COMMANDS)

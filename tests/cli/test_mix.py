@@ -8,7 +8,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-from ..texture.conftest import held, planes, write_exr
+from tests.io.texture.conftest import held, planes, write_exr
 
 BLUE, YELLOW = "#005fa0", "#ffd200"
 

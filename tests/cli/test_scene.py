@@ -7,8 +7,8 @@ import json
 import numpy as np
 import pytest
 
+from tests.io.texture.conftest import channels, planes, write_exr
 from tests.sparse_cubes import dark, robbed
-from tests.texture.conftest import channels, planes, write_exr
 from uplift.cube import read, write
 
 

@@ -7,9 +7,8 @@ import pytest
 from click.testing import CliRunner
 from uplift_cli.main import main
 
+from tests.cube.hand_made import hand_made
 from uplift.cube import write
-
-from ..cube.hand_made import hand_made
 
 
 @pytest.fixture

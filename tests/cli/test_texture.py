@@ -6,7 +6,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from ..texture.conftest import planes, write_exr
+from tests.io.texture.conftest import planes, write_exr
 
 
 @pytest.fixture

@@ -10,9 +10,10 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-from uplift import observer, read_atlas
+from uplift import read_atlas
 from uplift.atlas import on_grid
-from uplift.difference import delta_e_2000, lab
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 
 
 @pytest.fixture

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from uplift.colorimetry.observer import axis_nodes, sensor
 from uplift.cube import AtlasTable, CubeData
 from uplift.lattice import Lattice, Status
 from uplift.models import Moments
-from uplift.observer import axis_nodes, sensor
 
 
 def hand_made(dim: int = 4, **changes: object) -> CubeData:

@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 from safetensors.numpy import load_file, save_file
 
+from tests.cube.cube_files import forge, header_length, with_header, with_header_length
+from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube import digest, read, write
 from uplift.cube.file import KEY, POINT_TYPES, SENSOR_ARRAYS
-from uplift.errors import CubeFileError, OutputError
 from uplift.lattice import Status
-
-from .cube_files import forge, header_length, with_header, with_header_length
 
 FLIPS, CUTS = 1500, 200
 

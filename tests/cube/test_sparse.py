@@ -5,16 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.cube.cube_files import forge
+from tests.cube.hand_made import hand_made
 from tests.sparse_cubes import dark, robbed
-from uplift.cube import digest, read, write, write_sheet, write_slices
+from uplift.common.errors import CubeFileError
+from uplift.cube import digest, read, write
 from uplift.cube.checks import POINT_TYPES
-from uplift.cube.panels import BACKGROUND, panels
-from uplift.cube.slices import channels
-from uplift.errors import CubeFileError
+from uplift.io.slices import write_slices
+from uplift.io.slices.slices import channels
 from uplift.lattice import Lattice, Status
-
-from .cube_files import forge
-from .hand_made import hand_made
+from uplift.viz.sheet import write_sheet
+from uplift.viz.sheet.panels import BACKGROUND, panels
 
 
 @pytest.fixture

@@ -5,15 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift import observer
+from tests.conftest import MACBETH
 from uplift.atlas import on_grid, read_atlas
-from uplift.difference import delta_e_2000, lab
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.fit.entries import fit_entries
 from uplift.fit.objective import BALANCED, Weights, objective, shape_rows
 from uplift.models import Moments, Sigmoid
-from uplift.models.least_change import forward
-
-from ..conftest import MACBETH
+from uplift.models.minimum_norm import forward
 
 LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3")
 

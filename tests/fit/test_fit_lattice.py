@@ -8,14 +8,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from uplift import observer
+from uplift.colorimetry import observer
 from uplift.fit import Prior, Problem, fit_lattice, seed
 from uplift.fit.grow import NEVER, grow
 from uplift.fit.improve import improve
 from uplift.fit.smooth import smooth
 from uplift.lattice import Lattice, Status
 from uplift.models import Moments, Sigmoid, reflectance
-from uplift.models.least_change import forward, residual
+from uplift.models.minimum_norm import forward, residual
 
 MODEL = Moments(9)
 LATTICE = Lattice(observer.axis_nodes("srgb", 7))

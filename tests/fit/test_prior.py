@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift import fit, observer
+from tests.conftest import ATLASES
+from uplift import fit
 from uplift.atlas import read_atlas, resample
-from uplift.difference import spectra_apart
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import spectra_apart
 from uplift.fit.prior import FEWEST
 from uplift.lattice import Lattice
 from uplift.models import Moments
-from uplift.models.least_change import forward
-
-from ..conftest import ATLASES
+from uplift.models.minimum_norm import forward
 
 LIGHT = observer.light("A")
 SPLITS = 6

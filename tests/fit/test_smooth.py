@@ -8,7 +8,7 @@ import pytest
 from uplift.fit.smooth import smooth
 from uplift.fit.solve import solve
 from uplift.models import Moments, Sigmoid
-from uplift.models.least_change import forward, residual
+from uplift.models.minimum_norm import forward, residual
 
 DARK = np.array(
     [

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 from uplift.fit.batch import HOST
 from uplift.fit.solve import solve
 from uplift.models import Moments, Sigmoid
-from uplift.models.least_change import forward, residual
+from uplift.models.minimum_norm import forward, residual
 
 RNG = np.random.default_rng(2)
 TARGETS = RNG.uniform(0.05, 0.95, (40, 3))

@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from uplift import fit, observer
+from uplift import fit
+from uplift.colorimetry import observer
 from uplift.fit.store import LOSS, store
 from uplift.lattice import Lattice
 from uplift.models import Moments
-from uplift.models.least_change import forward
+from uplift.models.minimum_norm import forward
 
 DIM = 9
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import uplift
-from uplift.errors import ColourError, OptionError
+from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import Status
 from uplift.lookup import MODES
 from uplift.lookup.blocks import BLOCK

@@ -9,7 +9,7 @@ import pytest
 
 import uplift
 from tests.sparse_cubes import dark, robbed
-from uplift.errors import ColourError
+from uplift.common.errors import ColourError
 from uplift.lookup import MODES, Cube
 
 RGB = np.random.default_rng(8).random((400, 3))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.integrate import quad
 
-from uplift.errors import UpliftError
+from uplift.common.errors import UpliftError
 from uplift.models import duality
 
 small = st.floats(-3, 3)

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from uplift.errors import OptionError
+from uplift.common.errors import OptionError
 from uplift.models import Moments, Phase, Sigmoid, from_description
 from uplift.models.sigmoid import published
 

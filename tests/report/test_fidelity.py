@@ -11,20 +11,20 @@ import pytest
 
 import uplift
 from uplift.atlas import on_grid
+from uplift.colorimetry.display_sensors import LIGHTS, hex_codes, viewings
+from uplift.colorimetry.observer import light
+from uplift.common.errors import UnknownNameError
 from uplift.cube import AtlasTable
-from uplift.errors import UnknownNameError
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
-from uplift.observer import light
 from uplift.report.assessment import assess
 from uplift.report.calibration import Calibration, calibration
 from uplift.report.crowding import crowding
 from uplift.report.failures import NAMED, failures
 from uplift.report.fidelity import about_other, about_own, about_stored, entries
-from uplift.report.histogram import histogram, linear_edges, log_edges
+from uplift.report.round_trip import COLOURS, round_trips
 from uplift.report.smoothness import smoothness
-from uplift.report.trips import COLOURS, round_trips
-from uplift.report.viewing import LIGHTS, hex_codes, viewings
+from uplift.viz.histogram import histogram, linear_edges, log_edges
 
 
 def delta_e(first, second, name):

@@ -11,16 +11,15 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from tests.report.conftest import HOSTILE
 from uplift.atlas import read_atlas
 from uplift.lookup import MODES, Cube
 from uplift.report.assessment import assess
-from uplift.report.charts import histogram_chart, spectra_chart
-from uplift.report.histogram import histogram, log_edges
-from uplift.report.markup import EMPTY, Markup, decade, element, power
-from uplift.report.numbers import numbers
+from uplift.report.json_export import numbers
 from uplift.report.page import page
-
-from .conftest import HOSTILE
+from uplift.viz.charts import histogram_chart, spectra_chart
+from uplift.viz.histogram import histogram, log_edges
+from uplift.viz.markup import EMPTY, Markup, decade, element, power
 
 
 class Reader(HTMLParser):

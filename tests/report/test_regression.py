@@ -9,9 +9,9 @@ import colour
 import numpy as np
 import pytest
 
-from uplift.errors import CubeFileError
+from uplift.colorimetry.observer import light
+from uplift.common.errors import CubeFileError
 from uplift.lattice import Lattice, Status
-from uplift.observer import light
 from uplift.report.regression import LIGHTS, LIMITS, Comparison, compare
 
 PATH = Path("cube.uplift")

@@ -6,12 +6,13 @@ import os
 import warnings
 
 from uplift.atlas import art, art_write, table
+from uplift.atlas.atlas import Entry, Header, Skipped, Source, Spectra, merge
 from uplift.atlas.distributions import from_distributions
-from uplift.atlas.document import StrPath, read_document
+from uplift.atlas.document import read_document
 from uplift.atlas.resample import Clip, Resampled, on_grid, resample
-from uplift.atlas.spectra import Entry, Header, Skipped, Source, Spectra, merge
-from uplift.errors import OutputError, UpliftWarning
-from uplift.files import write_text
+from uplift.common.arrays import StrPath
+from uplift.common.errors import OutputError, UpliftWarning
+from uplift.common.files import write_text
 
 __all__ = [
     "Clip",

@@ -8,9 +8,9 @@ import numpy as np
 
 from uplift.atlas.art_fields import NOT_STATED, Block, Fields, Line, fold, key_of, parse_fields, split
 from uplift.atlas.art_samples import SampleText, enclosed, pairs, plain
+from uplift.atlas.atlas import Entry, Header, Skipped, Source, Spectra
 from uplift.atlas.checks import Array
 from uplift.atlas.document import Document, Place, nanometres, number, shown
-from uplift.atlas.spectra import Entry, Header, Skipped, Source, Spectra
 
 MAGIC = "ART measurement archive"
 REFLECTANCE = "reflectance spectrum"

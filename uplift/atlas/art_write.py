@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from uplift.atlas.art_fields import NOT_STATED
+from uplift.atlas.atlas import Entry, Header, Spectra
 from uplift.atlas.checks import Array
-from uplift.atlas.spectra import Entry, Header, Spectra
 
 
 def text(spectra: Spectra, header: Header) -> str:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import art_write
+from uplift.atlas.atlas import Entry, Header, Source, Spectra
 from uplift.atlas.document import Place
-from uplift.atlas.spectra import Entry, Header, Source, Spectra
 
 FORMS = (
     "pass a mapping of names to distributions with .wavelengths and .values, "

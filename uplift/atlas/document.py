@@ -9,12 +9,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from uplift.errors import AtlasError
+from uplift.common.arrays import StrPath
+from uplift.common.errors import AtlasError
 
 SHOWN = 40
 """Characters of a faulty token or name that a message shows."""
-
-StrPath = str | os.PathLike[str]
 
 
 @dataclass(frozen=True)

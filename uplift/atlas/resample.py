@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.atlas.atlas import Entry, Spectra
 from uplift.atlas.checks import Array
-from uplift.atlas.spectra import Entry, Spectra
-from uplift.errors import UpliftWarning
+from uplift.common.errors import UpliftWarning
 
 NOISE = 1e-6
 """Distance from [0, 1] that is not worth a word: sensors give −2e−16 for black."""

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uplift.atlas.atlas import Entry, Source, Spectra
 from uplift.atlas.checks import HIGHEST, SLACK, VISIBLE
 from uplift.atlas.document import Document, Place, nanometres, number, without_unit
-from uplift.atlas.spectra import Entry, Source, Spectra
-from uplift.errors import OutputError, UpliftWarning
+from uplift.common.errors import OutputError, UpliftWarning
 
 DELIMITERS = ",;\t"
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"

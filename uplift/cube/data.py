@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.cube.pins import Pins
-from uplift.lattice import Lattice, Mask, Status
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array, Mask
+from uplift.lattice import Lattice, Status
+from uplift.lattice.entry_boxes import Pins
 from uplift.models import Model
-from uplift.sensor import Array, Sensor
 
 
 @dataclass(frozen=True, eq=False)

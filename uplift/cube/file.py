@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.errors import CubeFileError, UpliftError
+from uplift.common.files import replacing
 from uplift.cube import sparse
 from uplift.cube.checks import ATLAS_ARRAYS, POINT_TYPES, SENSOR_ARRAYS, check
 from uplift.cube.data import AtlasTable, CubeData
-from uplift.errors import CubeFileError, UpliftError
-from uplift.files import replacing
 from uplift.lattice import Lattice
 from uplift.models import from_description
-from uplift.sensor import Sensor
 
 FORMAT = "uplift cube"
 VERSION = 3

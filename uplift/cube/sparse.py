@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.lattice import Mask, Status
+from uplift.common.arrays import Mask
+from uplift.lattice import Status
 
 FEATURE = "sparse"
 POINTS = "points"

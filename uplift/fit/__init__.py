@@ -8,20 +8,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.fit.crowding import DIMS, roomiest
+from uplift.common.arrays import Array, Indices
 from uplift.fit.entries import Entries, fit_entries
 from uplift.fit.grow import NEVER, grow
 from uplift.fit.improve import Improvement, improve
+from uplift.fit.lattice_size import DIMS, roomiest
 from uplift.fit.objective import Weights
 from uplift.fit.prior import Prior, learn
 from uplift.fit.problem import Problem
-from uplift.fit.reach import reach
-from uplift.fit.realisable import Unrealisable, unrealisable
+from uplift.fit.progress import Round, Storing, Watch
 from uplift.fit.seed import Seeds, seed
 from uplift.fit.store import store
-from uplift.fit.watch import Round, Storing, Watch
-from uplift.lattice import Indices, Status
-from uplift.sensor import Array
+from uplift.fit.unrealisable import Unrealisable, unrealisable
+from uplift.lattice import Status
+from uplift.lattice.box_widths import reach
 
 __all__ = [
     "DIMS",

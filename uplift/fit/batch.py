@@ -9,10 +9,10 @@ import jax
 import numpy as np
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
-from uplift.lattice import Indices
+from uplift.common.arrays import Indices
 
 if TYPE_CHECKING:
-    from uplift.sensor import Array
+    from uplift.common.arrays import Array
 
 HOST, ACCELERATOR = (2048, 64), (1 << 17, 4096)
 """Rows of a batch on each device: what the cache of a core holds or keeps a GPU busy, and a size for small rounds."""

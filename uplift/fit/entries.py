@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.difference import spectra_apart
+from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.sensor import Light
+from uplift.common.arrays import Array
 from uplift.fit.objective import BALANCED, Weights, objective
 from uplift.fit.solve import solve
 from uplift.models import Model
-from uplift.models.least_change import Forward
-from uplift.sensor import Array, Light
+from uplift.models.minimum_norm import Forward
 
 PASSES = 32
 

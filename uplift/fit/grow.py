@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.fit.problem import Problem
-from uplift.fit.watch import Round, Watch
-from uplift.lattice import Indices, Lattice, Mask
-from uplift.sensor import Array
+from uplift.fit.progress import Round, Watch
+from uplift.lattice import Lattice
 
 PASSES = 24
 NEVER = -1

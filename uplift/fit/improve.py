@@ -12,9 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uplift.common.arrays import Array, Indices
 from uplift.fit.problem import Problem
-from uplift.lattice import Indices
-from uplift.sensor import Array
 
 PASSES = 192
 NUDGE = 0.5

@@ -13,7 +13,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from uplift.sensor import Array
+from uplift.common.arrays import Array
 
 LENGTH = 6.0
 """Distance in CIE L*a*b*, by cross-validation: docs/fidelity.md."""

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.difference import lab, lab_slope
+from uplift.colorimetry.delta_e import lab, lab_slope
+from uplift.colorimetry.sensor import Light
+from uplift.common.arrays import Array
 from uplift.models import Model
-from uplift.sensor import Array, Light
 
 ENDS = 8
 """An end of the spectrum is this part of it: 50 nm of 380–780."""

@@ -7,14 +7,15 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.difference import rgb_lab, spectra_apart
+from uplift.colorimetry.delta_e import rgb_lab, spectra_apart
+from uplift.colorimetry.sensor import Light, Sensor
+from uplift.common.arrays import Array
 from uplift.fit.entries import Entries
 from uplift.fit.kriging import Kriging, Uncertainty, krige, uncertainty
 from uplift.fit.problem import Problem
-from uplift.fit.realisable import unrealisable
 from uplift.fit.smooth import TABLE, Smooth, smooth
+from uplift.fit.unrealisable import unrealisable
 from uplift.models import evaluate
-from uplift.sensor import Array, Light, Sensor
 
 FEWEST = 8
 """Entries that it takes to say anything of errors."""

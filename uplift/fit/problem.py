@@ -7,12 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
-from uplift.fit.realisable import NONE, Unrealisable
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.fit.solve import Solution, solve
-from uplift.lattice import Indices, Lattice, Mask
+from uplift.fit.unrealisable import NONE, Unrealisable
+from uplift.lattice import Lattice
 from uplift.models import Model
-from uplift.models.least_change import Forward
-from uplift.sensor import Array
+from uplift.models.minimum_norm import Forward
 
 
 @dataclass(frozen=True, eq=False)

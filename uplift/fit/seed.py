@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uplift.lattice import Indices, Lattice, Mask
-from uplift.sensor import Array
+from uplift.common.arrays import Array, Indices, Mask
+from uplift.lattice import Lattice
 
 
 class Collision(NamedTuple):

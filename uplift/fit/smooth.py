@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.fit.quadrature import compiled
-from uplift.fit.realisable import NONE, Unrealisable
+from uplift.common.arrays import Array
+from uplift.fit.quadrature_jit import compiled
 from uplift.fit.solve import solve
+from uplift.fit.unrealisable import NONE, Unrealisable
 from uplift.lattice import Lattice, mix
 from uplift.models import Model
-from uplift.models.least_change import Forward
-from uplift.sensor import Array
+from uplift.models.minimum_norm import Forward
 
 BRIGHTENING = 0.5
 """Power of max(x) that a colour is divided by: 0 leaves it as it is, 1 makes it as bright as can be."""

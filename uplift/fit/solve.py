@@ -12,11 +12,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from uplift.common.arrays import Array
 from uplift.fit.batch import batches, put, put_all
 from uplift.models import Model
-from uplift.models.least_change import Forward, residual, step
+from uplift.models.minimum_norm import Forward, residual, step
 from uplift.models.roots import STEEPEST
-from uplift.sensor import Array
 
 STEPS, MORE_STEPS = 2, 8
 """Damped steps a pass: of many points most have arrived after two; of few it costs more to ask than to go on."""

@@ -10,14 +10,13 @@ import jax
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.common.arrays import Array, Indices
 from uplift.fit.batch import batches, put, put_all
 from uplift.fit.problem import Problem
-from uplift.fit.quadrature import compiled
-from uplift.fit.watch import Storing, Watch
-from uplift.lattice import Indices
+from uplift.fit.progress import Storing, Watch
+from uplift.fit.quadrature_jit import compiled
 from uplift.models import Model
-from uplift.models.least_change import Forward, reached
-from uplift.sensor import Array
+from uplift.models.minimum_norm import Forward, reached
 
 BLOCK = 1 << 15
 """Points worked on at a time."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from uplift.lookup.answer import Answer, answers
 from uplift.lookup.cube import Cube, load
 from uplift.lookup.interpolate import MODES
+from uplift.lookup.query import Answer, answers
 
 __all__ = ["MODES", "Answer", "Cube", "answers", "load"]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from uplift.sensor import Array
+from uplift.common.arrays import Array
 
 BLOCK = 4096
 """Rows worked on at a time: what they need stays in a core's cache."""

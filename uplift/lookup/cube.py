@@ -11,16 +11,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from uplift.common.arrays import Array, Mask
+from uplift.common.errors import ColourError, OptionError
 from uplift.cube import CubeData, read, write
-from uplift.errors import ColourError, OptionError
-from uplift.lattice import Mask
 from uplift.lookup.blocks import Function, blockwise
 from uplift.lookup.fill import filled, lacking
 from uplift.lookup.interpolate import MODES, coefficients, standard_error
+from uplift.lookup.node_table import TABULATED, tabulate
 from uplift.lookup.nodes import holds
-from uplift.lookup.question import colours, float_type, floats, thread_count, wavelengths_asked
-from uplift.lookup.table import TABULATED, tabulate
-from uplift.sensor import Array
+from uplift.lookup.validation import colours, float_type, floats, thread_count, wavelengths_asked
 
 MOST_BYTES = 1 << 28
 """Largest table of the lattice's spectra that a question is answered from."""

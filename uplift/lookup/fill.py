@@ -8,15 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array, Indices
+from uplift.common.errors import ColourError
 from uplift.cube import CubeData, digest
-from uplift.errors import ColourError
-from uplift.lattice import Indices, Status
+from uplift.lattice import Status
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined
 from uplift.lookup.nodes import cells
 from uplift.lookup.refine import towards
 from uplift.models import reflectance
-from uplift.sensor import Array, Sensor
 
 FINITE = 1e-6
 """Nearest to 0 and 1 that a reflectance is taken for where multipliers are sought."""

@@ -15,12 +15,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lattice import mix
 from uplift.lookup.nodes import around
 from uplift.lookup.refine import towards
 from uplift.models import evaluate, reflectance
-from uplift.sensor import Array
 
 
 def coefficients(data: CubeData, rgb: Array) -> Array:

@@ -1,6 +1,6 @@
 """The nodes around colours, and mixtures of what lies on them (docs/mathematics.md, 8). numpy alone.
 
-Around a colour are the eight corners of its cell and, near an atlas entry, the entry (`uplift.cube.pins`).
+Around a colour are the eight corners of its cell and, near an atlas entry, the entry (`uplift.lattice.entry_boxes`).
 Whatever nodes carry, be it coefficients, spectra or errors, is mixed alike, or taken from the nearest node.
 """
 
@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uplift.common.arrays import Array, Indices, Mask, Values
+from uplift.common.errors import ColourError
 from uplift.cube import CubeData
-from uplift.cube.pins import Pinned
-from uplift.errors import ColourError
-from uplift.lattice import Indices, Mask, Values, mix
-from uplift.sensor import Array
+from uplift.lattice import mix
+from uplift.lattice.entry_boxes import Pinned
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Multipliers moved to their very colours by steps of least change (`uplift.models.least_change`), in numpy alone.
+"""Multipliers moved to their very colours by steps of least change (`uplift.models.minimum_norm`), in numpy alone.
 
 Spectra are columns here, so that all arithmetic runs along contiguous memory. A colour is evaluated once; from there on
 it is followed by what each step changes, which takes no arc tangents of large numbers.
@@ -10,13 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
-from uplift.lattice import Indices
 from uplift.models import Model
-from uplift.models.least_change import Forward, forward, solve_3x3
-from uplift.models.product import across
+from uplift.models.matmul import across
+from uplift.models.minimum_norm import Forward, forward, solve_3x3
 from uplift.models.roots import STEEPEST
-from uplift.sensor import Array
 
 REFINED = 1e-8
 """Residual, max |linear RGB|, at which it stops."""
@@ -88,7 +87,7 @@ def _move(model: Model, ahead: Forward, way: _Way, columns: slice | Indices, lin
 
 
 def step(model: Model, ahead: Forward, linear: Array, off: Array, damping: Array) -> Array:
-    """`uplift.models.least_change.step` of columns: (C, n), of the linear part (N, n), for residual (3, n)."""
+    """`uplift.models.minimum_norm.step` of columns: (C, n), of the linear part (N, n), for residual (3, n)."""
     jacobian = across(ahead.products.T, model.slope(linear)).reshape(3, len(ahead.root), -1)
     gram = [[np.einsum("cn,cn->n", jacobian[a], jacobian[b]) for b in range(a + 1)] for a in range(3)]
     y = solve_3x3(gram, damping * (gram[0][0] + gram[1][1] + gram[2][2]), off)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.sensor import Array
+from uplift.common.arrays import Array
 
 # arctan(√u) / √u on [0, 1], interpolated at 20 Chebyshev nodes in 60 digits; to 3e-16 of the value.
 _POLYNOMIAL = (

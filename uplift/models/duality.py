@@ -11,11 +11,11 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.errors import UpliftError
-from uplift.models import circle, mirrored
+from uplift.common.arrays import Array
+from uplift.common.errors import UpliftError
+from uplift.models import complex_moments, real_moments
 from uplift.models.arctan import arctan
 from uplift.models.roots import moments_by_roots
-from uplift.sensor import Array
 
 Complex = NDArray[np.complex128]
 RealOrComplex = TypeVar("RealOrComplex", bound=Array | Complex)
@@ -92,7 +92,7 @@ def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
     ------
     UpliftError : no reflectance has these moments.
     """
-    dual = mirrored.dual if np.isrealobj(moments) else circle.dual
+    dual = real_moments.dual if np.isrealobj(moments) else complex_moments.dual
     grey = np.zeros_like(moments[:1])
     grey[:, 0] = 0.5
     multipliers, valid = _by_blocks(dual, moments)

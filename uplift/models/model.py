@@ -7,9 +7,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.common.arrays import Array
 from uplift.models.duality import Quadrature, quadrature
-from uplift.models.product import product
-from uplift.sensor import Array
+from uplift.models.matmul import product
 
 
 class Model(Protocol):

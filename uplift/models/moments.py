@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.errors import OptionError
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
 from uplift.models import duality
 from uplift.models.arctan import arctan, arctan_rise
 from uplift.models.duality import Quadrature
 from uplift.models.phase import Phase
-from uplift.sensor import Array
 
 FEWEST, MOST = 3, 17
 """Coefficients: 2 to 16 moments, and the zeroth."""

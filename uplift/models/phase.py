@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.errors import OptionError
-from uplift.sensor import Array
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
 
 
 def _even(wavelengths: Array) -> Array:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.sensor import Array
+from uplift.common.arrays import Array
 
 Complex = NDArray[np.complex128]
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.common.arrays import Array
 from uplift.models.duality import Quadrature, quadrature
-from uplift.sensor import Array
 
 
 @dataclass(frozen=True)

@@ -9,25 +9,19 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import Spectra
+from uplift.colorimetry.display_sensors import LIGHTS, viewings
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lookup import Cube
 from uplift.report.calibration import Calibration, calibration
 from uplift.report.crowding import Crowding, crowding
 from uplift.report.failures import Failures, failures
-from uplift.report.fidelity import (
-    Entries,
-    Question,
-    about_other,
-    about_own,
-    about_stored,
-    entries,
-)
-from uplift.report.histogram import Histogram, histogram, linear_edges, log_edges
+from uplift.report.fidelity import Entries, Question, about_other, about_own, about_stored, entries
+from uplift.report.round_trip import round_trips
 from uplift.report.smoothness import smoothness
 from uplift.report.summary import summary
-from uplift.report.trips import round_trips
-from uplift.report.viewing import LIGHTS, viewings
-from uplift.sensor import Array, Sensor
+from uplift.viz.histogram import Histogram, histogram, linear_edges, log_edges
 
 EXACT = 1e-9
 """Distances and differences below this are rounding, and stand together in the lowest bin."""

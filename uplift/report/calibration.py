@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.sensor import Array
+from uplift.common.arrays import Array
 
 ABOUT_RIGHT = 1.25
 """Factor, either way, within which nobody should make anything of a difference of real and stated errors."""

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
-from uplift.lattice import Indices
 from uplift.report.fidelity import Entries
-from uplift.sensor import Array
 
 CLOSE = 1 + 1e-9
 """Lattice steps within which another entry crowds; two in a voxel are never farther apart."""

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from uplift.common.arrays import Indices
 from uplift.cube import CubeData
-from uplift.lattice import Indices, Status
+from uplift.lattice import Status
 
 NAMED = 24
 """Points over the threshold that are named, worst first."""

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas import Spectra, resample
+from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.observer import light
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
-from uplift.difference import spectra_apart
-from uplift.lattice import Indices
 from uplift.lookup import Cube
 from uplift.lookup.interpolate import lattice_spectra
 from uplift.models import reflectance
-from uplift.observer import light
-from uplift.sensor import Array, Sensor
 
 
 @dataclass(frozen=True, eq=False)

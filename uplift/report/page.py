@@ -5,11 +5,11 @@ from __future__ import annotations
 from importlib.resources import files
 
 from uplift.report.assessment import Assessment
-from uplift.report.markup import Markup, counted, element, joined, power
 from uplift.report.page_crowding import crowding_section, crowding_told
 from uplift.report.page_entries import entries_section
 from uplift.report.page_lattice import distributions_section, failures_section
 from uplift.report.page_standard_error import mean_told, standard_error_section, standard_error_told
+from uplift.viz.markup import Markup, counted, element, joined, power
 
 
 def page(found: Assessment, worst: int) -> str:
@@ -39,7 +39,7 @@ def page(found: Assessment, worst: int) -> str:
 
 
 def _resource(name: str) -> Markup:
-    return Markup(files("uplift.report").joinpath(name).read_text(encoding="utf-8"))
+    return Markup(files("uplift.viz").joinpath(name).read_text(encoding="utf-8"))
 
 
 def _lead(found: Assessment) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from uplift.report.assessment import Assessment
 from uplift.report.crowding import Crowding
-from uplift.report.markup import Markup, counted, element, joined
 from uplift.report.page_parts import (
     error_cells,
     error_headings,
@@ -15,6 +14,7 @@ from uplift.report.page_parts import (
     swatches_of,
     table,
 )
+from uplift.viz.markup import Markup, counted, element, joined
 
 
 def crowding_section(found: Assessment) -> Markup | None:

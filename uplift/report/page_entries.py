@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from uplift.report.assessment import Assessment
 from uplift.report.fidelity import Entries
-from uplift.report.markup import Markup, counted, element, joined, number
 from uplift.report.page_parts import (
     BAD,
     SEEN,
@@ -23,6 +22,7 @@ from uplift.report.page_parts import (
     table,
 )
 from uplift.report.page_spectra import small_multiples
+from uplift.viz.markup import Markup, counted, element, joined, number
 
 
 def entries_section(found: Assessment, worst: int) -> Markup:

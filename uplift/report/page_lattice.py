@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from uplift.colorimetry.display_sensors import hex_codes
 from uplift.report.assessment import Assessment
-from uplift.report.markup import Markup, counted, element, joined, number, power, triple
 from uplift.report.page_parts import charts, figure, note, right, swatch, table
-from uplift.report.viewing import hex_codes
+from uplift.viz.markup import Markup, counted, element, joined, number, power, triple
 
 
 def failures_section(found: Assessment) -> Markup:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from uplift.report.charts import histogram_chart
+from uplift.colorimetry.sensor import Sensor
 from uplift.report.fidelity import Entries
-from uplift.report.histogram import Histogram
-from uplift.report.markup import Markup, element, joined, number, power, rows, triple
-from uplift.report.numbers import swatches
-from uplift.sensor import Sensor
+from uplift.report.json_export import swatches
+from uplift.viz.charts import histogram_chart
+from uplift.viz.histogram import Histogram
+from uplift.viz.markup import Markup, element, joined, number, power, rows, triple
 
 SEEN, BAD = 1.0, 3.0
 """ΔE00 that one sees side by side, and that nobody overlooks."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from uplift.report.assessment import Assessment
-from uplift.report.charts import ACCENT, BAND, INK, spectra_chart
 from uplift.report.fidelity import Entries
-from uplift.report.markup import Markup, element, joined, triple
 from uplift.report.page_parts import Swatches, severity, swatch
+from uplift.viz.charts import ACCENT, BAND, INK, spectra_chart
+from uplift.viz.markup import Markup, element, joined, triple
 
 
 def small_multiples(found: Assessment, entries: Entries, shown: Swatches, worst: int) -> Markup:

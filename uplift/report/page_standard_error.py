@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from uplift.report.assessment import Assessment
 from uplift.report.calibration import Calibration
-from uplift.report.histogram import Histogram
-from uplift.report.markup import Markup, counted, element, joined
 from uplift.report.page_parts import charts, figure, note
+from uplift.viz.histogram import Histogram
+from uplift.viz.markup import Markup, counted, element, joined
 
 VERDICTS = {
     0: "Its standard errors hold.",

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
+from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.observer import light
+from uplift.colorimetry.solid import solid
+from uplift.common.arrays import Array, Mask
+from uplift.common.errors import CubeFileError
 from uplift.cube import CubeData
-from uplift.difference import spectra_apart
-from uplift.errors import CubeFileError
-from uplift.lattice import Mask, Status
+from uplift.lattice import Status
 from uplift.models import reflectance
-from uplift.observer import light
-from uplift.sensor import Array
-from uplift.solid import solid
 
 LIGHTS = ("D65", "A", "FL11")
 

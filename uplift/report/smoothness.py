@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.models import reflectance
-from uplift.sensor import Array
 
 NO_PAIR = -1.0
 """In place of a difference, where a neighbour is absent."""

@@ -1,0 +1,149 @@
+"""``uplift atlas``: what an atlas holds, how it looks, and its other format."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+import click
+
+from ..output.atlas_listing import Listing, Row, list_entries
+from ..output.console import console, json_text
+from ..params.options import force_option, format_option, sensor_options
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+    from uplift.atlas import Spectra
+
+
+@click.command("atlas")
+@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path())
+@sensor_options
+@format_option("table", "json", "csv")
+@click.option(
+    "--convert", metavar="OUT", type=click.Path(), help="Write all entries to OUT and list nothing."
+)
+@force_option()
+def command(
+    files: tuple[str, ...],
+    space: str,
+    illuminant: str,
+    observer: str | None,
+    style: str,
+    convert: str | None,
+    force: bool,
+) -> None:
+    """List the entries of atlas files: range, colour, gamut, oddities.
+
+    An atlas holds measured reflectances, as text (the ART measurement archive) or as a CSV table, a row or a
+    column per sample. Several files are read as one atlas. --convert writes CSV where OUT ends in .csv, text
+    otherwise.
+
+    \b
+    Examples:
+      uplift atlas atlases/macbeth.txt
+      uplift atlas --space "Display P3" --illuminant A atlases/macbeth.txt
+      uplift atlas --format json atlases/*.txt
+      uplift atlas paints.csv --convert paints.txt
+    """
+    from uplift.atlas import read_atlas
+
+    spectra = read_atlas(*files)
+    if convert is not None:
+        _convert(spectra, convert, force)
+        return
+    from uplift.colorimetry.observer import DEFAULT_OBSERVER, sensor
+
+    PRINTERS[style](list_entries(spectra, sensor(space, illuminant, observer or DEFAULT_OBSERVER)))
+
+
+def _convert(spectra: Spectra, path: str, force: bool) -> None:
+    from uplift.atlas import write_atlas
+    from uplift.common.files import check_output
+
+    write_atlas(spectra, check_output(path, force=force))
+    click.echo(f"{path}: {len(spectra)} entries written", err=True)
+
+
+def _print_json(listing: Listing) -> None:
+    rows = [{key: value for key, value in asdict(row).items() if key != "swatch"} for row in listing.rows]
+    sensor = listing.sensor
+    answer = {
+        "space": sensor.space,
+        "illuminant": sensor.illuminant,
+        "observer": sensor.observer,
+        "sources": [{"name": source.name, "digest": source.digest} for source in listing.spectra.sources],
+        "entries": rows,
+        "skipped": [asdict(skipped) for skipped in listing.spectra.skipped],
+    }
+    click.echo(json_text(answer))
+
+
+def _print_csv(listing: Listing) -> None:
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"])
+    for row in listing.rows:
+        gamut, notes = str(row.in_gamut).lower(), "; ".join(row.warnings)
+        writer.writerow([row.name, row.start, row.end, row.step, *row.rgb, gamut, notes])
+    click.echo(out.getvalue(), nl=False)
+
+
+def _print_table(listing: Listing) -> None:
+    out = console()
+    out.print(_table(listing, out))
+    out.print(_summary(listing), markup=False)
+
+
+def _table(listing: Listing, out: Console) -> Table:
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    sensor = listing.sensor
+    table = Table(box=box.SIMPLE_HEAD, caption=f"linear {sensor.space} under {sensor.illuminant}")
+    swatches = out.color_system is not None
+    for title in [""] * swatches + ["name", "range (nm)", "step", "R", "G", "B", "gamut", "warnings"]:
+        right = title in ("step", "R", "G", "B")
+        table.add_column(title, justify="right" if right else "left", no_wrap=right, overflow="fold")
+    for row in listing.rows:
+        red, green, blue = row.swatch
+        swatch = [Text("   ", style=f"on rgb({red},{green},{blue})")] * swatches
+        table.add_row(*swatch, *map(Text, _cells(row)))
+    return table
+
+
+def _cells(row: Row) -> Iterator[str]:
+    yield row.name
+    yield f"{row.start:g}–{row.end:g}"
+    yield "irregular" if row.step is None else f"{row.step:g}"
+    yield from (f"{channel:.4f}" for channel in row.rgb)
+    yield "in" if row.in_gamut else "out"
+    yield "; ".join(row.warnings)
+
+
+def _summary(listing: Listing) -> str:
+    outside = [row.name for row in listing.rows if not row.in_gamut]
+    skipped = [skipped.name for skipped in listing.spectra.skipped]
+    parts = [
+        f"{len(listing.rows)} entries",
+        _counted(outside, f"out of the {listing.sensor.space} gamut"),
+        _counted(skipped, "skipped"),
+    ]
+    return ", ".join(parts)
+
+
+def _counted(names: Sequence[str], what: str) -> str:
+    return f"{len(names)} {what}" + (f" ({', '.join(names)})" if names else "")
+
+
+PRINTERS: dict[str, Callable[[Listing], None]] = {
+    "table": _print_table,
+    "json": _print_json,
+    "csv": _print_csv,
+}

@@ -1,0 +1,105 @@
+"""``uplift check``: stored cubes against their rebuilding, for CI."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from ..output.console import console, json_text
+from ..params.options import atlas_folders_option, format_option, verbosity_options
+
+if TYPE_CHECKING:
+    from uplift.report.regression import Comparison
+
+
+@click.command("check")
+@click.argument("files", nargs=-1, required=True)
+@atlas_folders_option()
+@click.option("--update", is_flag=True, help="Replace the cubes that differ by what is built now.")
+@format_option("table", "json")
+@verbosity_options
+def command(
+    files: tuple[str, ...], folders: tuple[str, ...], update: bool, style: str, quiet: bool, verbose: bool
+) -> None:
+    """Rebuild stored cubes from their recorded options and compare.
+
+    \b
+    Examples:
+      uplift check cubes/*.uplift
+      uplift check cubes/*.uplift --atlas-dir atlases --format json
+      uplift check cubes/*.uplift --update
+
+    Compared are the lattice RGB, the spectra (largest and rms difference), their ΔE00 under D65, A and
+    FL11, and the number of points of each status. Exit code 0: all within their limits; 1: some are not.
+    Atlases are looked for by name and content in --atlas-dir, beside the cube, here, and in 'atlases'.
+    """
+    from ..startup import keep_compiled
+
+    keep_compiled()
+    from uplift.lookup import load
+    from uplift.pipeline.rebuild import rebuild
+    from uplift.report.regression import compare
+
+    from ..output.progress import watching
+
+    stored = {Path(file): load(file) for file in files}
+    with watching(quiet=quiet, verbose=verbose) as watch:
+        rebuilt = {path: rebuild(cube, path, folders, watch=watch) for path, cube in stored.items()}
+    comparisons = [compare(path, cube.data, rebuilt[path].data) for path, cube in stored.items()]
+    if style == "json":
+        click.echo(json_text([_object(comparison) for comparison in comparisons]))
+    elif not quiet:
+        _table(comparisons)
+    failed = [comparison.path for comparison in comparisons if comparison.failures]
+    if failed and not update:
+        raise SystemExit(1)
+    for path in failed:
+        rebuilt[path].save(path, force=True)
+        click.echo(f"{path}: replaced", err=True)
+
+
+def _object(comparison: Comparison) -> dict[str, object]:
+    return {
+        "cube": str(comparison.path),
+        "passed": not comparison.failures,
+        "failures": list(comparison.failures),
+        "measures": comparison.measures,
+        "status": {"stored": comparison.stored_counts, "rebuilt": comparison.rebuilt_counts},
+    }
+
+
+def _table(comparisons: Sequence[Comparison]) -> None:
+    from rich.table import Table
+
+    from uplift.report.regression import LIMITS
+
+    table = Table(box=None, pad_edge=False)
+    headings = {"rgb": "RGB", "spectra_max": "spectra max", "spectra_rms": "rms"}
+    table.add_column("cube", no_wrap=True)
+    for name in LIMITS:
+        table.add_column(headings.get(name, name.replace("delta_e_", "ΔE00 ")), justify="right", no_wrap=True)
+    table.add_column("status", no_wrap=True)
+    table.add_column("", no_wrap=True)
+    for comparison in comparisons:
+        table.add_row(*_row(comparison))
+    table.add_row(
+        "[dim]limit[/dim]", *(f"[dim]{limit:.0e}[/dim]" for limit in LIMITS.values()), "[dim]same[/dim]", ""
+    )
+    console().print(table)
+
+
+def _row(comparison: Comparison) -> list[str]:
+    from rich.markup import escape
+
+    from uplift.report.regression import LIMITS
+
+    def cell(name: str, text: str) -> str:
+        return f"[bold red]{text}[/]" if name in comparison.failures else text
+
+    measures = [cell(name, f"{comparison.measures[name]:.1e}") for name in LIMITS]
+    status = cell("status", "same" if "status" not in comparison.failures else "differs")
+    verdict = "[bold red]FAILED[/]" if comparison.failures else "[green]passed[/]"
+    return [escape(str(comparison.path)), *measures, status, verdict]

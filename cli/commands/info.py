@@ -1,0 +1,56 @@
+"""``uplift info``: what a cube file holds."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from ..output.console import console, json_text
+from ..params.options import format_option
+
+
+@click.command("info")
+@click.argument("file", required=False)
+@format_option("table", "json")
+def command(file: str | None, style: str) -> None:
+    """Tell what a cube file holds and how it was made. Without FILE: the package's own cube.
+
+    \b
+    Examples:
+      uplift info macbeth-32.uplift
+      uplift info macbeth-32.uplift --format json | jq .status
+    """
+    from uplift.lookup import load
+    from uplift.report.summary import summary
+
+    facts = summary(load(file).data)
+    if style == "json":
+        click.echo(json_text(facts))
+    else:
+        _table(file or "the package's own cube", facts)
+
+
+def _table(name: str, facts: dict[str, Any]) -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    click.echo(name)
+    table = Table(show_header=False, box=None, pad_edge=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    provenance = facts.pop("provenance")
+    options = provenance.pop("options", {})
+    for section in (facts, provenance, {f"option {key}": value for key, value in options.items()}):
+        for key, value in section.items():
+            table.add_row(key.replace("_", " "), Text(_text(value)))
+    console().print(table)
+
+
+def _text(value: Any) -> str:
+    """One line, however nested; no more digits than tell something."""
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_text(inner)}" for key, inner in value.items())
+    if isinstance(value, list):
+        return "; ".join(_text(inner) for inner in value) or "none"
+    return f"{value:.3g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,51 @@
+"""``uplift slices``: a cube to look into, as OpenEXR slices and as a contact sheet."""
+
+from __future__ import annotations
+
+import os
+
+import click
+
+from ..params.options import force_option
+
+
+@click.command("slices")
+@click.argument("cube", metavar="CUBE", type=click.Path())
+@click.argument("out", metavar="[OUT.exr]", required=False, type=click.Path())
+@click.option("--sheet", metavar="FILE", type=click.Path(), help="Contact sheet to write, .exr or .png.")
+@force_option()
+def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
+    """Write the blue slices of a cube as images.
+
+    OUT.exr gets a part per blue slice: red rises to the right, green upwards, a pixel per lattice point.
+    Its channels hold lattice and target RGB, fitting distance, ΔE00, status, atlas entry, round (of cubes
+    with debug information) and every coefficient; -1 is no entry, no round.
+
+    --sheet tiles all slices on one image that any viewer shows: lattice RGB, fitting distance, status and
+    round, with their keys.
+
+    \b
+    Examples:
+      uplift slices macbeth-32.uplift macbeth-32.exr
+      uplift slices macbeth-32.uplift --sheet macbeth-32.png
+      uplift slices macbeth-32.uplift macbeth-32.exr --sheet sheet.exr --force
+    """
+    if out is None and sheet is None:
+        raise click.UsageError("Nothing to write: name OUT.exr, --sheet FILE, or both.")
+    if out is not None and sheet is not None and os.path.realpath(out) == os.path.realpath(sheet):
+        raise click.UsageError("OUT.exr and --sheet name the same file.")
+    from uplift.cube import read
+    from uplift.io.slices import check_slices, write_slices
+    from uplift.viz.sheet import check_sheet, write_sheet
+
+    if out is not None:
+        check_slices(out, force=force)
+    if sheet is not None:
+        check_sheet(sheet, force=force)
+    data = read(cube)
+    if out is not None:
+        write_slices(data, out, force=force)
+        click.echo(f"{out}: {data.lattice.dim} blue slices")
+    if sheet is not None:
+        write_sheet(data, sheet, force=force)
+        click.echo(f"{sheet}: contact sheet")

@@ -1,0 +1,122 @@
+"""``uplift study sensitivity``: how answers move with what they rest on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..output.console import console, json_text
+from ..output.progress import counting
+from ..params.options import atlas_folders_option, force_option, format_option
+
+if TYPE_CHECKING:
+    from uplift.lab.study.sensitivity import Sensitivity
+
+RESULTS, STEEPNESS, LOCALITY = FILES = (
+    "sensitivity.json",
+    "sensitivity-steepness.png",
+    "sensitivity-locality.png",
+)
+
+
+@click.command("sensitivity")
+@click.argument("cube", metavar="[CUBE]", required=False)
+@atlas_folders_option()
+@click.option("--entries", default=24, show_default=True, help="Atlas entries to change, one at a time.")
+@click.option("-o", "--output", metavar="DIR", help="Folder to write the figures and the pictures to.")
+@format_option("table", "json")
+@force_option()
+def sensitivity(
+    cube: str | None, folders: tuple[str, ...], entries: int, output: str | None, style: str, force: bool
+) -> None:
+    """Move the colours asked and the measurements behind a cube, and see how far its answers move.
+
+    Queries beside one another by a code of 8 bits, of 10 bits, and by float rounding; the Lipschitz constant of mode
+    'spectra' in every cell; the cube built anew with noise on its atlas, with one entry read from the wrong end, and
+    with one left out. CUBE defaults to the package's own, which has no atlas.
+
+    --output writes sensitivity.json and, as PNG, where the cube is steep and how far from an entry it changes.
+
+    \b
+    Examples:
+      uplift study sensitivity
+      uplift study sensitivity cubes/moments-16-macbeth.uplift --output out --force
+      uplift study sensitivity cubes/moments-8-macbeth.uplift --entries 4 --format json
+    """
+    from ..startup import keep_compiled
+
+    keep_compiled()
+    from uplift.common.files import check_folder
+    from uplift.lab.study.sensitivity import study
+    from uplift.lookup import load
+    from uplift.pipeline.provenance import recorded_atlas
+
+    loaded = load(cube)
+    atlas = recorded_atlas(loaded.data, cube, folders) if cube is not None and entries else None
+    if output is not None:
+        check_folder(output, FILES if atlas else FILES[:2], force=force)
+    with counting("builds") as watch:
+        found = study(loaded, atlas, entries, watch)
+    if output is not None:
+        _write(found, Path(output), force=force)
+    PRINTERS[style](found)
+
+
+def _write(found: Sensitivity, folder: Path, *, force: bool) -> None:
+    from uplift.common.files import write_text
+    from uplift.lab.study.sensitivity_plots import plot_locality, plot_steepness
+
+    written = [RESULTS, STEEPNESS]
+    write_text(json_text(found.record()) + "\n", folder / RESULTS, force=force)
+    plot_steepness(found.cube.data, found.steepness, folder / STEEPNESS, force=force)
+    if found.left_out:
+        plot_locality(found.left_out, folder / LOCALITY, force=force)
+        written.append(LOCALITY)
+    click.echo(f"{folder}: {', '.join(written)}", err=True)
+
+
+def _print_json(found: Sensitivity) -> None:
+    click.echo(json_text(found.record()))
+
+
+def _print_table(found: Sensitivity) -> None:
+    from uplift.lab.study.sensitivity import LIGHT
+
+    record = found.record()
+    _table(
+        ("mode", "step", "rms", "most", "any wavelength", f"ΔE00 {LIGHT}", "most", "ΔE00 own", "most"),
+        [tuple(move.values()) for move in record["moves"]],
+    )
+    steep = record["lipschitz"]
+    where = ", ".join(f"{value:.4f}" for value in steep["steepest_cell"])
+    click.echo(
+        f"Lipschitz constant {steep['largest']:.3g} rms per unit of linear RGB (median of the cells "
+        f"{steep['median_cell']:.2g}), {steep['largest_per_code']:.2g} per 8-bit code; steepest cell at {where}, "
+        f"steepest wavelength {steep['steepest_wavelength']:g} nm"
+    )
+    if record["changes"]:
+        heads = ("change", "moved", "RGB radius", "ΔE*ab radius", f"ΔE00 {LIGHT}", "most", "rms", "most")
+        _table(heads, [tuple(change.values()) for change in record["changes"]])
+
+
+def _table(heads: tuple[str, ...], rows: list[tuple[Any, ...]]) -> None:
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD)
+    for head in heads:
+        table.add_column(
+            head, justify="left" if head in ("mode", "step", "change") else "right", no_wrap=True
+        )
+    for row in rows:
+        table.add_row(
+            *(Text(cell if isinstance(cell, str) else "" if cell is None else f"{cell:.2g}") for cell in row)
+        )
+    console().print(table)
+
+
+PRINTERS: dict[str, Callable[[Sensitivity], None]] = {"table": _print_table, "json": _print_json}

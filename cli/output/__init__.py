@@ -1,0 +1,1 @@
+"""Tables, JSON, CSV and progress on the terminal."""

@@ -1,0 +1,79 @@
+"""Comparisons of representations as the terminal shows them: tables, and advice."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from .console import console
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from uplift.lab.comparison.filters import Tuned
+    from uplift.lab.comparison.measure import Comparison
+    from uplift.lab.comparison.statistics import Statistics
+
+
+def print_comparison(found: Comparison) -> None:
+    """A table for each set of lights, ranked."""
+    from uplift.lab.comparison.statistics import HEADINGS
+    from uplift.viz.format import time_told
+
+    for name, title in found.sets.items():
+        table = _table(
+            f"ΔE00 under {title}", ("representation",), (*HEADINGS, "floats", "of a light", "product")
+        )
+        for row in found.of(name):
+            cost = (f"{row.floats:.1f}", f"{row.light_floats:.1f}", time_told(row.ns.median))
+            table.add_row(row.name, *_told(row.statistics), *cost)
+        console().print(table)
+
+
+def print_filters(tuned: tuple[Tuned, ...]) -> None:
+    """The best filter of each kind."""
+    from uplift.lab.comparison.statistics import HEADINGS
+
+    table = _table(
+        "point sampling after the best low-pass filter of each kind",
+        ("lights", "samples", "filter", "parameters"),
+        HEADINGS,
+    )
+    for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
+        table.add_row(one.lights, str(one.count), one.kind, one.told, *_told(one.statistics))
+    console().print(table)
+
+
+def print_advice(found: Comparison, target: float) -> None:
+    """The cheapest representation under each set of lights."""
+    from uplift.lab.comparison.recommend import cheapest, nearest
+    from uplift.viz.format import error_told, time_told
+
+    for name, title in found.sets.items():
+        row = cheapest(found, name, target)
+        if row is None:
+            best = nearest(found, name)
+            told = f"none; the nearest, {best.name}, has {error_told(best.statistics.q97_5)}"
+        else:
+            told = (
+                f"{row.name} ({row.family}): 97.5 % within {error_told(row.statistics.q97_5)}, {row.floats:.4g} floats "
+                f"a surface, {row.light_floats:.4g} a light, {time_told(row.ns.median)} a product"
+            )
+        click.echo(f"{title}: {told}")
+
+
+def _table(caption: str, left: tuple[str, ...], right: tuple[str, ...]) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, caption=caption)
+    for heading in left:
+        table.add_column(heading, no_wrap=True)
+    for heading in right:
+        table.add_column(heading, justify="right", no_wrap=True)
+    return table
+
+
+def _told(found: Statistics) -> list[str]:
+    return [f"{value:.3f}" for value in found]

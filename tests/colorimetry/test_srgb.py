@@ -1,0 +1,48 @@
+"""What screens show of colours: their own to the code, others at their luminance and dominant wavelength."""
+
+from __future__ import annotations
+
+import colour
+import numpy as np
+import pytest
+
+from uplift.colorimetry import observer
+from uplift.colorimetry.gamut import SRGB, contained
+from uplift.colorimetry.srgb import decode, encode, shown
+
+
+def test_the_curve_is_the_standard_s_and_leads_back():
+    linear = np.linspace(0, 1, 300)
+    np.testing.assert_allclose(encode(linear), colour.models.eotf_inverse_sRGB(linear), rtol=0, atol=1e-6)
+    np.testing.assert_allclose(decode(encode(linear)), linear, rtol=0, atol=1e-6)
+
+
+def test_srgb_is_shown_as_it_is(small_cube):
+    codes = np.random.default_rng(0).integers(0, 256, (500, 3))
+    np.testing.assert_array_equal(shown(decode(codes / 255), SRGB), codes)
+    of_cube = shown(small_cube.decode(codes), small_cube.data.sensor)  # its white is that of D65 at 5 nm
+    assert np.abs(of_cube - codes).max() <= 1
+    assert (of_cube == codes).mean() > 0.98
+
+
+@pytest.mark.parametrize(("space", "illuminant"), [("P3-D65", "D65"), ("ProPhoto RGB", "D50"), ("sRGB", "A")])
+def test_other_spaces_are_shown_as_they_look(space, illuminant):
+    """What a sensor of the screen's sees under the cube's light, which adapts by Bradford's transform too."""
+    own, screen = (observer.sensor(name, illuminant) for name in (space, "sRGB"))
+    rgb = 0.3 + 0.3 * np.random.default_rng(1).random((200, 3))  # pale enough for sRGB
+    expected = 255 * encode(own.xyz(rgb) @ screen.xyz_to_rgb.T)
+    assert np.abs(shown(rgb, own) - expected).max() < 0.6
+    np.testing.assert_array_equal(shown([1, 1, 1], own), [255, 255, 255])
+
+
+def test_what_no_screen_shows_keeps_its_luminance():
+    wide = observer.sensor("P3-D65")
+    red = np.array([0.6, 0, 0])
+    linear = wide.xyz(red) @ np.linalg.inv(SRGB.rgb_to_xyz).T
+    assert linear.min() < -0.01
+    codes = shown(red, wide)
+    light = decode(codes / 255) @ SRGB.rgb_to_xyz[1]
+    assert light == pytest.approx(wide.xyz(red)[1], abs=2e-3)
+    clipped = decode(np.rint(255 * encode(linear)) / 255) @ SRGB.rgb_to_xyz[1]
+    assert abs(clipped - wide.xyz(red)[1]) > 5e-3
+    np.testing.assert_array_equal(codes, np.rint(255 * encode(contained(linear, SRGB, "desaturate").rgb)))

@@ -1,0 +1,246 @@
+"""Files that are whole or not there."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import stat
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from uplift.common.errors import OutputError
+from uplift.common.files import check_output, replacing
+
+AS_ROOT = os.name == "nt" or not hasattr(os, "geteuid") or os.geteuid() == 0
+
+
+def write(path, text, **options):
+    with replacing(path, **options) as temporary:
+        temporary.write_text(text)
+
+
+def fail(path, error):
+    with replacing(path, force=True) as temporary:
+        temporary.write_text("half")
+        raise error
+
+
+def test_a_new_file_takes_its_place_and_nothing_else(tmp_path):
+    write(tmp_path / "new", "text")
+    assert os.listdir(tmp_path) == ["new"]
+    assert (tmp_path / "new").read_text() == "text"
+
+
+def test_nothing_bears_the_name_before_the_block_ends(tmp_path):
+    with replacing(tmp_path / "new") as temporary:
+        temporary.write_text("half")
+        assert temporary.parent == tmp_path
+        assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt])
+def test_an_exception_leaves_the_old_file_and_no_litter(tmp_path, error):
+    path = tmp_path / "old"
+    path.write_text("old")
+    with pytest.raises(error):
+        fail(path, error)
+    assert os.listdir(tmp_path) == ["old"]
+    assert path.read_text() == "old"
+
+
+def test_an_exception_leaves_no_new_file(tmp_path):
+    with pytest.raises(RuntimeError):
+        fail(tmp_path / "new", RuntimeError)
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_full_disk_is_told_with_path_and_comfort(tmp_path):
+    path = tmp_path / "old"
+    path.write_text("old")
+    with pytest.raises(OutputError) as caught, replacing(path, force=True):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert str(caught.value) == f"{path}: cannot be written: No space left on device; the old file is intact"
+    assert os.listdir(tmp_path) == ["old"]
+    assert path.read_text() == "old"
+
+
+def test_an_existing_file_is_replaced_by_force_alone(tmp_path):
+    path = tmp_path / "old"
+    path.write_text("old")
+    with pytest.raises(OutputError, match=r"old: exists already; use --force to replace it"):
+        write(path, "new")
+    assert path.read_text() == "old"
+    write(path, "new", force=True)
+    assert path.read_text() == "new"
+
+
+def test_a_file_that_can_be_written_is_checked_without_a_trace(tmp_path):
+    assert check_output(str(tmp_path / "new")) == tmp_path / "new"
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("force", [False, True])
+def test_a_folder_is_no_place_for_a_file(tmp_path, force):
+    with pytest.raises(OutputError, match="is no regular file; name a file to write to"):
+        check_output(tmp_path, force=force)
+
+
+@pytest.mark.parametrize("name", ["none/new", "file/new"])
+def test_a_missing_folder_is_named(tmp_path, name):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match=r"there is no folder .*|cannot be written: Not a directory"):
+        check_output(tmp_path / name)
+
+
+@pytest.mark.skipif(AS_ROOT, reason="root writes everywhere")
+def test_a_folder_without_permission_is_named(tmp_path):
+    tmp_path.chmod(0o500)
+    with pytest.raises(OutputError, match=r"no permission to write in .*; choose another place"):
+        check_output(tmp_path / "new")
+    tmp_path.chmod(0o700)
+
+
+@pytest.mark.parametrize("name", ["a\0b", "x" * 300])
+def test_impossible_names_are_output_errors(tmp_path, name):
+    for function in (check_output, lambda path: write(path, "")):
+        with pytest.raises(OutputError, match=r"cannot be written: .*; choose another name"):
+            function(tmp_path / name)
+
+
+@pytest.mark.parametrize("letter", ["x", "ü"])
+def test_the_longest_names_of_the_file_system_are_possible(tmp_path, letter):
+    path = tmp_path / (letter * (255 // len(letter.encode())))
+    write(path, "text")
+    assert path.read_text() == "text"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no umask there")
+@pytest.mark.parametrize(("umask", "mode"), [(0o022, 0o644), (0o077, 0o600), (0o002, 0o664)])
+def test_permissions_are_those_of_any_new_file(tmp_path, umask, mode):
+    before = os.umask(umask)
+    try:
+        write(tmp_path / "new", "")
+        assert os.umask(umask) == umask  # asking for it has not changed it
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE((tmp_path / "new").stat().st_mode) == mode
+
+
+def test_a_link_is_kept_and_its_target_replaced(tmp_path):
+    target, link = tmp_path / "far" / "target", tmp_path / "link"
+    target.parent.mkdir()
+    target.write_text("old")
+    link.symlink_to(target)
+    write(link, "new", force=True)
+    assert link.is_symlink()
+    assert target.read_text() == "new"
+    assert not target.is_symlink()
+    assert os.listdir(target.parent) == ["target"]
+
+
+def test_a_link_to_nothing_is_filled(tmp_path):
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path / "target")
+    write(link, "new")
+    assert link.is_symlink()
+    assert (tmp_path / "target").read_text() == "new"
+
+
+def test_links_in_a_circle_are_refused(tmp_path):
+    link = tmp_path / "link"
+    link.symlink_to(link)
+    with pytest.raises(OutputError, match="link: "):
+        write(link, "new")
+    assert os.listdir(tmp_path) == ["link"]
+
+
+WRITE = """
+import sys
+from uplift.files import replacing
+with replacing(sys.argv[1], force=True) as temporary:
+    temporary.write_text("half")
+    print(temporary, flush=True)
+    input()
+    temporary.write_text("whole")
+"""
+
+
+@pytest.fixture
+def writer(tmp_path):
+    """A process that writes to ``cube`` and waits for a line before it ends, and its temporary path."""
+    command = [sys.executable, "-c", WRITE, str(tmp_path / "cube")]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        yield process, process.stdout.readline().rstrip()
+        process.kill()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no locks there")
+def test_what_a_killed_writer_left_is_removed_by_the_next(tmp_path, writer):
+    process, temporary = writer
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    (tmp_path / ".cube.mine.part").write_text("no name that a temporary file is given")
+    assert os.path.exists(temporary)
+    write(tmp_path / "other", "text")
+    assert os.path.exists(temporary)  # it may be looked at until its own path is written to
+    write(tmp_path / "cube", "new")
+    assert sorted(os.listdir(tmp_path)) == [".cube.mine.part", "cube", "other"]
+    assert (tmp_path / "cube").read_text() == "new"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no locks there")
+def test_what_another_is_writing_is_left_to_it(tmp_path, writer):
+    process, temporary = writer
+    write(tmp_path / "cube", "first")
+    assert os.path.exists(temporary)
+    assert (tmp_path / "cube").read_text() == "first"
+    process.communicate("\n")
+    assert process.returncode == 0
+    assert os.listdir(tmp_path) == ["cube"]
+    assert (tmp_path / "cube").read_text() == "whole"  # of two, the last to end has it
+
+
+def test_a_dash_is_no_file_name_but_a_whole_path_to_one_is(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(OutputError, match="-: stands for standard output, which takes no files; name a file"):
+        write("-", "text")
+    write(tmp_path / "-", "text")
+    assert os.listdir(tmp_path) == ["-"]
+
+
+@pytest.mark.parametrize("name", ["with blank", "grün 👍", "-x", "*?[a]", "a'b\"c", ".hidden", "line\nbreak"])
+def test_odd_names_are_names(tmp_path, name):
+    for text in ("old", "new"):
+        write(tmp_path / name, text, force=True)
+    assert os.listdir(tmp_path) == [name]
+    assert (tmp_path / name).read_text() == "new"
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no such device")
+def test_a_device_is_no_place_for_a_file():
+    with pytest.raises(OutputError, match="is no regular file"):
+        check_output("/dev/full", force=True)
+
+
+def test_threads_leave_the_umask_alone(tmp_path, monkeypatch):
+    umask = os.umask
+
+    def slow(mask):
+        before = umask(mask)
+        time.sleep(0.01)
+        return before
+
+    monkeypatch.setattr(os, "umask", slow)
+    own = umask(0o027)
+    try:
+        with ThreadPoolExecutor(4) as pool:
+            list(pool.map(lambda number: write(tmp_path / str(number), "text"), range(8)))
+    finally:
+        left = umask(own)
+    assert left == 0o027
+    assert {stat.S_IMODE(path.stat().st_mode) for path in tmp_path.iterdir()} == {0o640}

@@ -1,0 +1,44 @@
+"""Spectra, pigments and colours that the laws are tried on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift.design.mixing.pigments import Pigment
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(10)
+
+
+@pytest.fixture
+def spectra(rng):
+    """(4, 3, 7): three spectra of each of four mixtures, 0 and 1 among them."""
+    found = rng.random((4, 3, 7))
+    found[0, 0, :2] = 0, 1
+    return found
+
+
+@pytest.fixture
+def parts(rng):
+    """(4, 3)"""
+    return rng.random((4, 3))
+
+
+@pytest.fixture
+def paint(rng):
+    """K and S over five decades, none and both 0 among them."""
+    K, S = 10 ** rng.uniform(-4, 1, (2, 60))
+    K[:2], S[1:3] = 0, 0
+    return Pigment(K, S)
+
+
+@pytest.fixture(scope="session")
+def paints(small_cube):
+    """Linear RGB (n, 3) of the ColorChecker's coloured patches, by name."""
+    atlas = small_cube.data.atlas
+    return {
+        name: rgb for name, rgb in zip(atlas.names, atlas.rgb, strict=True) if np.ptp(rgb) > 0.1 * rgb.max()
+    }

@@ -1,0 +1,109 @@
+"""Duntley: his equations integrated, and what they come to for two constants, for dyes, and in thick layers."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_bvp
+
+from uplift.design.mixing import duntley, kubelka_munk
+from uplift.design.mixing.duntley import Flux
+from uplift.design.mixing.pigments import Pigment
+
+BEAM = Flux(np.array([0.4, 0.1]), np.array([0.7, 0.2]), np.array([0.9, 1.5]))
+DIFFUSE = Flux(np.array([0.6, 0.3]), np.array([1.1, 0.5]), np.array([0.8, 2.0]))
+NONE = np.zeros(2)
+
+
+def integrated(beam, diffuse, X):
+    """R and T of one wavelength, the differential equations solved numerically."""
+    mu = beam.absorption + beam.backward + beam.forward
+    K, B = diffuse.absorption, diffuse.backward
+
+    def slopes(x, flux):
+        t, s = flux
+        left = np.exp(-mu * x)
+        return np.stack(
+            [beam.forward * left - (K + B) * t + B * s, (K + B) * s - B * t - beam.backward * left]
+        )
+
+    x = np.linspace(0, X, 80)
+    solved = solve_bvp(
+        slopes, lambda top, bottom: np.array([top[0], bottom[1]]), x, np.zeros((2, 80)), tol=1e-9
+    )
+    return solved.y[1, 0], solved.y[0, -1] + np.exp(-mu * X)
+
+
+def at(flux, place):
+    return Flux(*(values[place] for values in (flux.absorption, flux.backward, flux.forward)))
+
+
+@pytest.mark.parametrize("place", [0, 1])
+def test_the_differential_equations_are_solved(place):
+    found = duntley.layer(BEAM, DIFFUSE, 1.3)
+    R, T = integrated(at(BEAM, place), at(DIFFUSE, place), 1.3)
+    assert found.reflectance[place] == pytest.approx(R, abs=1e-7)
+    assert found.transmittance[place] == pytest.approx(T, abs=1e-7)
+
+
+def test_forward_scattering_of_diffuse_light_plays_no_part():
+    more = Flux(DIFFUSE.absorption, DIFFUSE.backward, 5 * DIFFUSE.forward)
+    np.testing.assert_array_equal(
+        duntley.layer(BEAM, DIFFUSE, 1.0).reflectance, duntley.layer(BEAM, more, 1.0).reflectance
+    )
+
+
+def test_dyes():
+    """B = B' = F = F' = 0: nothing is reflected, and T = exp(−K'X)."""
+    found = duntley.layer(Flux(np.array([0.4, 2.0]), NONE, NONE), Flux(np.array([0.4, 0.7]), NONE, NONE), 1.5)
+    np.testing.assert_array_equal(found.reflectance, 0)
+    np.testing.assert_allclose(found.transmittance, np.exp([-0.6, -3]))
+
+
+def test_thick_layers():
+    """R∞ = Q' B / (K + B + γ) − P'."""
+    K, B = DIFFUSE.absorption, DIFFUSE.backward
+    P, Q = duntley._sources(BEAM, DIFFUSE)
+    expected = Q * B / (K + B + np.sqrt(K * (K + 2 * B))) - P
+    found = duntley.layer(BEAM, DIFFUSE, 200.0)
+    np.testing.assert_allclose(found.reflectance, expected)
+    np.testing.assert_allclose(found.transmittance, 0, atol=1e-12)
+
+
+def test_light_that_is_diffuse_at_once_is_the_two_constant_theory():
+    """P' → 0 and Q' → 1: the beam is scattered on long before it meets anything else."""
+    beam = Flux(BEAM.absorption, BEAM.backward, np.full(2, 1e7))
+    P, Q = duntley._sources(beam, DIFFUSE)
+    np.testing.assert_allclose(P, 0, atol=1e-6)
+    np.testing.assert_allclose(Q, 1, atol=1e-6)
+    two = kubelka_munk.layer(Pigment(DIFFUSE.absorption, DIFFUSE.backward), 0.9)
+    found = duntley.layer(beam, DIFFUSE, 0.9)
+    np.testing.assert_allclose(found.reflectance, two.reflectance, atol=1e-6)
+    np.testing.assert_allclose(found.transmittance, two.transmittance, atol=1e-6)
+
+
+@pytest.mark.parametrize("off", [0, 1e-14, 1e-9, 1e-7, 1e-5, 3e-5])
+def test_where_the_denominator_vanishes_it_stays_finite_and_smooth(off):
+    """μ = γ: the beam dies out as fast as diffuse light does."""
+    gamma = np.sqrt(DIFFUSE.absorption * (DIFFUSE.absorption + 2 * DIFFUSE.backward))
+    forward = np.array([0.5, 0.3])
+    beam = Flux(gamma - forward - 0.1 + off, np.full(2, 0.1), forward)
+    found = duntley.layer(beam, DIFFUSE, 1.0)
+    R, T = integrated(at(beam, 0), at(DIFFUSE, 0), 1.0)
+    assert found.reflectance[0] == pytest.approx(R, abs=1e-7)
+    assert found.transmittance[0] == pytest.approx(T, abs=1e-7)
+
+
+def test_energy_never_grows(rng):
+    beam, diffuse = (Flux(*10 ** rng.uniform(-3, 1, (3, 200))) for _ in range(2))
+    for X in (0.01, 1.0, 30.0):
+        found = duntley.layer(beam, diffuse, X)
+        assert (found.reflectance >= -1e-12).all()
+        assert (found.transmittance >= -1e-12).all()
+        assert (found.reflectance + found.transmittance <= 1 + 1e-9).all()
+
+
+def test_nothing_at_all_lets_all_through():
+    found = duntley.layer(Flux(NONE, NONE, NONE), Flux(NONE, NONE, NONE), 3.0)
+    np.testing.assert_array_equal(found.transmittance, 1)
+    np.testing.assert_array_equal(found.reflectance, 0)

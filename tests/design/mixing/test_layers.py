@@ -1,0 +1,39 @@
+"""Layers against the series of reflections summed one by one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from uplift.design.mixing.layers import Layer
+
+UPPER = Layer(np.array([0.2, 0.5, 0.0]), np.array([0.7, 0.1, 1.0]))
+LOWER = Layer(np.array([0.3, 0.9, 0.4]), np.array([0.6, 0.1, 0.0]))
+
+
+def summed(upper, ground):
+    return upper.reflectance + sum(
+        upper.transmittance**2 * ground * (upper.reflectance * ground) ** bounce for bounce in range(2000)
+    )
+
+
+def test_on_a_ground_it_is_the_sum_of_all_reflections():
+    ground = np.array([0.9, 1.0, 0.5])
+    np.testing.assert_allclose(UPPER.over(ground), summed(UPPER, ground))
+
+
+def test_black_ground_and_clear_layer():
+    np.testing.assert_array_equal(UPPER.over(0), UPPER.reflectance)
+    clear = Layer(np.zeros(3), np.ones(3))
+    np.testing.assert_array_equal(clear.over([0.1, 0.2, 1]), [0.1, 0.2, 1])
+
+
+def test_a_layer_upon_another_is_it_on_a_ground_that_lets_through():
+    both = UPPER.upon(LOWER)
+    np.testing.assert_allclose(both.reflectance, summed(UPPER, LOWER.reflectance))
+    assert (both.reflectance + both.transmittance <= 1).all()
+
+
+def test_perfect_mirrors_face_to_face_give_no_nan():
+    mirror = Layer(np.ones(1), np.zeros(1))
+    assert mirror.over(1.0) == 1
+    assert np.isfinite(mirror.upon(mirror).reflectance).all()

@@ -1,0 +1,35 @@
+"""docs/palette-dial/engine.toml does what docs/palette-dial.md says of it, in the picture too."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift.colorimetry.delta_e import colours_apart
+from uplift.design.palette import design, matrix, read_palette
+
+HAZE, BLOCK, VALVE, PISTON = range(4)
+DAY, LAMP, NIGHT = range(3)
+
+
+@pytest.fixture(scope="module")
+def colours(model, repository):
+    """By whole spectra, and as the picture is drawn: (4, 3, 3) linear RGB each."""
+    palette = read_palette(repository / "docs" / "palette-dial" / "engine.toml")
+    found = matrix(design(palette, model))
+    return {"whole": found.obtained, "drawn": found.factor}
+
+
+@pytest.mark.parametrize(("kind", "alike"), [("whole", 0.2), ("drawn", 4)])
+def test_an_engine_s_parts_are_alike_by_day_and_part_under_the_lamp(colours, sensor, kind, alike):
+    found = colours[kind]
+    assert (colours_apart(sensor, found[BLOCK:, DAY], found[BLOCK, DAY]) < alike).all()
+    assert colours_apart(sensor, found[BLOCK, DAY], found[BLOCK, LAMP]) < alike
+    for pair in ((BLOCK, VALVE), (BLOCK, PISTON), (VALVE, PISTON)):
+        assert colours_apart(sensor, *found[list(pair), LAMP]) > 5
+
+
+@pytest.mark.parametrize("kind", ["whole", "drawn"])
+def test_the_haze_is_gone_by_night(colours, sensor, kind):
+    assert colours_apart(sensor, colours[kind][HAZE, NIGHT], np.zeros(3)) < 1
+    assert colours_apart(sensor, colours[kind][HAZE, DAY], np.zeros(3)) > 30

@@ -1,0 +1,79 @@
+"""Designed materials as atlases, and palettes as pictures."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+import uplift
+from uplift.colorimetry.display_sensors import hex_codes
+from uplift.common.errors import OutputError, PaletteError, UpliftWarning
+from uplift.design.palette import design, matrix, plot_matrix, plot_spectra, write_designed
+from uplift.design.palette.palette import Part
+
+
+@pytest.fixture(scope="module")
+def found(metamers, model):
+    given = Part("given", np.full(81, 0.5))
+    return design(dataclasses.replace(metamers, materials=(*metamers.materials, given)), model)
+
+
+def test_designed_materials_come_back_from_the_atlas(found, tmp_path):
+    for name in ("out.txt", "out.csv"):
+        assert write_designed(found, tmp_path / name) == 2
+        back = uplift.read_atlas(tmp_path / name)
+        assert back.names == ("fox", "moss")
+        for entry, row in zip(back.entries, found.reflectances, strict=False):
+            np.testing.assert_array_equal(entry.values, row)
+    assert back.sources[0].name == "out.csv"
+
+
+def test_an_atlas_of_designs_constrains_a_cube(found, tmp_path):
+    """The cube gives the designed spectrum back, as well as its few coefficients can."""
+    write_designed(found, tmp_path / "out.txt")
+    with pytest.warns(UpliftWarning, match="crowded"):
+        cube = uplift.build(tmp_path / "out.txt", dim=3, coefficients=5)
+    assert cube.data.atlas.names == ("fox", "moss")
+    colour = found.palette.sensor.rgb(found.reflectances[0])
+    back = cube.data.sensor.rgb(cube.reflectance(colour))
+    np.testing.assert_allclose(back, colour, atol=1e-3)
+
+
+def test_what_no_atlas_holds_is_named(found, tmp_path):
+    wild = dataclasses.replace(found, reflectances=found.reflectances - [[0.2], [0], [0]])
+    with pytest.warns(UpliftWarning, match="'fox' is left out of the atlas: -0.2 to"):
+        assert write_designed(wild, tmp_path / "out.txt") == 1
+    assert uplift.read_atlas(tmp_path / "out.txt").names == ("moss",)
+
+
+def test_an_atlas_of_nothing_is_refused(found, tmp_path):
+    given = tuple(dataclasses.replace(part, samples=np.ones(81)) for part in found.palette.materials)
+    nothing = dataclasses.replace(found, palette=dataclasses.replace(found.palette, materials=given))
+    with pytest.raises(PaletteError, match="no designed material"):
+        write_designed(nothing, tmp_path / "out.txt")
+
+
+def test_files_are_not_replaced_unasked(found, tmp_path):
+    (tmp_path / "out.txt").write_text("mine", encoding="utf-8")
+    with pytest.raises(OutputError, match="exists already"):
+        write_designed(found, tmp_path / "out.txt")
+
+
+def test_the_matrix_shows_every_colour(found, tmp_path):
+    """Wanted, obtained and the factor model's, each where the PNG has it."""
+    colours = matrix(found)
+    split = dataclasses.replace(colours, wanted=colours.wanted * 0.5, factor=colours.factor * 0.8)
+    plot_matrix(found, split, tmp_path / "m.png")
+    pixels = np.rint(255 * imread(tmp_path / "m.png")[..., :3]).astype(np.uint8)
+    drawn = {bytes(pixel) for pixel in np.unique(pixels.reshape(-1, 3), axis=0)}
+    for kind in (split.wanted[:2], split.obtained, split.factor):
+        for code in hex_codes(kind.reshape(-1, 3)):
+            assert bytes.fromhex(code[1:]) in drawn
+
+
+def test_spectra_are_drawn(found, tmp_path):
+    plot_spectra(found, tmp_path / "s.png")
+    assert imread(tmp_path / "s.png").shape[1] == 1000

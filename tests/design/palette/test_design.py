@@ -1,0 +1,194 @@
+"""The laws of designs: metamers match and part, bounds hold, minima are minima, free colours are free."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+
+from uplift.colorimetry.delta_e import colours_apart
+from uplift.common.errors import PaletteError
+from uplift.design.palette import Palette, design, matrix
+from uplift.design.palette.colours import screen_matrix
+from uplift.design.palette.equations import Equations, equations, unknowns
+from uplift.design.palette.lights import illuminant
+from uplift.design.palette.matrix import difference
+from uplift.design.palette.palette import Apart, Part, Wish
+from uplift.design.palette.solve import solve
+
+BLACK = np.zeros(3)
+
+
+def cost(problem, x):
+    return float(np.sum((problem.matrix @ x - problem.values) ** 2))
+
+
+@pytest.fixture(scope="module")
+def found(metamers, model):
+    return design(metamers, model)
+
+
+def test_metamers_match_by_day_and_part_under_the_lamp_as_asked(found, metamers):
+    colours = matrix(found)
+    asked = metamers.wishes[2].rgb, metamers.wishes[3].rgb
+    day, lamp = (difference(found, colours, Apart(("fox", "moss"), light, 0)) for light in ("day", "lamp"))
+    assert day <= 0.1
+    assert lamp >= colours_apart(metamers.sensor, *asked) - 0.01 > 15
+    assert colours.model_error.max() < 0.5
+
+
+def test_bounds_are_kept(found, metamers, model):
+    assert found.reflectances.min() >= -1e-9
+    assert found.reflectances.max() <= 1 + 1e-9
+    tight = tuple(dataclasses.replace(part, low=0.1, high=0.6) for part in metamers.materials)
+    narrow = design(dataclasses.replace(metamers, materials=tight), model).reflectances
+    assert narrow.min() >= 0.1 - 1e-9
+    assert narrow.max() <= 0.6 + 1e-9
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_bounded_minima_are_minima(sensor, model, seed):
+    """Karush, Kuhn and Tucker: no slope where the bounds leave room, and only outward slopes at them."""
+    problem = equations(at_random(sensor, np.random.default_rng(seed)), model)
+    x = solve(problem)
+    assert ((x >= problem.low) & (x <= problem.high)).all()
+    slope = problem.matrix.T @ (problem.matrix @ x - problem.values)
+    slack = 1e-7 * np.abs(problem.matrix.T @ problem.values).max()
+    low, high = x <= problem.low + 1e-12, x >= problem.high - 1e-12
+    assert np.abs(slope[~low & ~high]).max(initial=0) < slack
+    assert slope[low].min(initial=0) > -slack
+    assert slope[high].max(initial=0) < slack
+
+
+def at_random(sensor, draw):
+    """Up to three lights, given, and three materials, to be designed, with wishes that may well contradict."""
+    names = draw.choice(["D65", "A", "FL2", "FL11", "LED-RGB1", "HP1"], draw.integers(1, 4), replace=False)
+    lights = tuple(Part(str(name), illuminant(sensor, str(name))) for name in names)
+    materials = tuple(Part(f"m{row}", None) for row in range(draw.integers(1, 4)))
+    wishes = [
+        Wish(material.name, light.name, **({"free": "x"} if draw.random() < 0.3 else {"rgb": draw.random(3)}))
+        for material in materials
+        for light in lights
+    ]
+    weights = {"smoothness": float(draw.choice([0, 1e-3])), "model_error": float(draw.choice([0, 0.1, 1]))}
+    return Palette(sensor, lights, materials, tuple(wishes), {"x": (BLACK, np.ones(3))}, **weights)
+
+
+def test_without_bounds_it_is_the_pseudo_inverse():
+    """Of several minima the shortest."""
+    draw = np.random.default_rng(1)
+    rows, values, wide = draw.random((4, 9)), draw.random(4), np.full(9, np.inf)
+    x = solve(Equations(rows, values, -wide, wide))
+    np.testing.assert_allclose(x, np.linalg.pinv(rows) @ values, atol=1e-12)
+
+
+def test_what_has_nothing_in_common_is_solved_apart():
+    """As it is when solved at once, whatever the order of rows and columns."""
+    draw = np.random.default_rng(2)
+    first, second = draw.random((5, 4)), draw.random((6, 3))
+    matrix = np.zeros((11, 8))  # the last column has no equation
+    matrix[:5, :4], matrix[5:, 4:7] = first, second
+    rows, columns = draw.permutation(11), draw.permutation(8)
+    values, low, high = draw.random(11), np.full(8, 0.1), np.full(8, 0.6)
+    found = solve(Equations(matrix[np.ix_(rows, columns)], values[rows], low, high))
+    expected = [
+        lsq_linear(block, part, (0.1, 0.6), method="bvls").x
+        for block, part in ((first, values[:5]), (second, values[5:]))
+    ]
+    np.testing.assert_allclose(found, np.append(np.concatenate(expected), 0.1)[columns], atol=1e-9)
+
+
+def test_a_free_colour_costs_less_than_any_other(metamers, model, found):
+    """Fixed at what it took nothing changes; fixed elsewhere all gets worse."""
+    problem = equations(metamers, model)
+    place, free = unknowns(metamers).free("coat"), found.free["coat"]
+    least = cost(problem, solve(problem))
+    for shift, more in ((0.0, 1 + 1e-3), (0.05, np.inf)):
+        at = free + shift
+        low, high = problem.low.copy(), problem.high.copy()
+        low[place], high[place] = at - 1e-9, at + 1e-9
+        fixed = cost(problem, solve(dataclasses.replace(problem, low=low, high=high)))
+        assert least * (1 - 1e-6) <= fixed <= least * more + 1e-12
+    assert fixed > 1.5 * least
+
+
+def test_a_free_colour_follows_the_wishes(metamers, model, found):
+    other = (*metamers.wishes[:3], dataclasses.replace(metamers.wishes[3], rgb=np.array([0.2, 0.19, 0.1])))
+    moved = design(dataclasses.replace(metamers, wishes=other), model).free["coat"]
+    assert np.abs(moved - found.free["coat"]).max() > 0.02
+
+
+def test_a_free_colour_keeps_to_its_range(metamers, model):
+    low, high = np.array([0.05, 0.2, 0.1]), np.array([0.2, 0.3, 0.15])
+    free = design(dataclasses.replace(metamers, free={"coat": (low, high)}), model).free["coat"]
+    assert ((free >= low - 1e-9) & (free <= high + 1e-9)).all()
+
+
+def test_a_metameric_black_is_black_under_one_light_alone(metamers, model):
+    smoke = Part("smoke", None, -np.inf, np.inf)
+    grey = np.array([0.2, 0.2, 0.2])
+    wishes = (Wish("smoke", "day", rgb=grey), Wish("smoke", "lamp", rgb=BLACK))
+    palette = dataclasses.replace(metamers, materials=(smoke,), wishes=wishes, free={})
+    found = design(palette, model)
+    np.testing.assert_allclose(matrix(found).obtained[0], [grey, BLACK], atol=1e-3)
+    assert found.reflectances.min() < 0  # there is no other way
+
+
+def test_a_colour_stays_when_asked_to(metamers, model):
+    wishes = (Wish("firm", "day", free="own"), Wish("firm", "lamp", free="own"))
+    palette = dataclasses.replace(
+        metamers,
+        materials=(Part("firm", None),),
+        wishes=wishes,
+        free={"own": (np.full(3, 0.1), np.ones(3))},
+    )
+    assert matrix(design(palette, model)).missed.max() < 0.1
+
+
+def test_lights_are_designed_like_materials(metamers, model):
+    """The colours of two paints under a lamp ask for a light like it, and get one."""
+    paints = Part("red", np.linspace(0, 1, 81) ** 2), Part("blue", np.linspace(1, 0, 81) ** 2)
+    power, screen = illuminant(metamers.sensor, "A"), screen_matrix(metamers.sensor)
+    palette = dataclasses.replace(
+        metamers,
+        lights=(Part("odd", None, 0.0, np.inf),),
+        materials=paints,
+        wishes=tuple(Wish(part.name, "odd", rgb=screen @ (power * part.samples)) for part in paints),
+        free={},
+    )
+    found = design(palette, model)
+    assert matrix(found).missed.max() < 0.1
+    assert found.powers.min() >= 0
+
+
+@pytest.mark.parametrize(
+    ("weight", "measure"),
+    [
+        ("smoothness", lambda found: np.abs(np.diff(found.reflectances, 2)).sum()),
+        ("model_error", lambda found: matrix(found).model_error.sum()),
+    ],
+)
+def test_weights_buy_what_they_are_for(metamers, model, weight, measure):
+    low, high = (design(dataclasses.replace(metamers, **{weight: w}), model) for w in (0.003, 0.3))
+    assert measure(high) < measure(low)
+
+
+def test_given_spectra_are_left_alone(metamers, found):
+    np.testing.assert_array_equal(found.powers, [part.samples for part in metamers.lights])
+
+
+def test_a_colour_of_which_nothing_is_given_is_refused(metamers, model):
+    lights = (Part("day", None, 0.0, np.inf), metamers.lights[1])
+    with pytest.raises(PaletteError, match="fox under day, both of which are to be designed; give one"):
+        design(dataclasses.replace(metamers, lights=lights), model)
+
+
+def test_colours_are_those_of_whole_spectra(found):
+    screen = screen_matrix(found.palette.sensor)
+    for row, reflectance in enumerate(found.reflectances):
+        for column, power in enumerate(found.powers):
+            np.testing.assert_allclose(
+                matrix(found).obtained[row, column], screen @ (power * reflectance), atol=1e-12
+            )

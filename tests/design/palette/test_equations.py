@@ -1,0 +1,102 @@
+"""The stacked equations say what the criteria say, row by row."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from uplift.design.palette.colours import screen_matrix
+from uplift.design.palette.equations import SPACING, equations, unknowns
+from uplift.design.palette.palette import Part, Wish
+
+
+@pytest.fixture
+def guess(metamers):
+    return np.random.default_rng(5).random(unknowns(metamers).count)
+
+
+def residuals(palette, model, x):
+    problem = equations(palette, model)
+    return problem.matrix @ x - problem.values
+
+
+def only(palette, **weights):
+    """A palette with the criteria named, and no others."""
+    return dataclasses.replace(palette, **{"smoothness": 0.0, "model_error": 0.0} | weights)
+
+
+def test_colours_are_missed_by_what_spectra_say(metamers, model, guess):
+    where, screen = unknowns(metamers), screen_matrix(metamers.sensor)
+    found = []
+    for wish in metamers.wishes:
+        power = metamers.light(wish.light).samples
+        wanted = guess[where.free("coat")] if wish.free else wish.rgb
+        found.append(screen @ (guess[where.material(wish.material)] * power) - wanted)
+    expected = np.concatenate(found) / np.sqrt(3)
+    np.testing.assert_allclose(residuals(only(metamers), model, guess), expected, atol=1e-12)
+
+
+def test_weights_multiply_their_wish_alone(metamers, model, guess):
+    heavy = dataclasses.replace(metamers.wishes[2], weight=7.0)
+    palette = only(metamers, wishes=(*metamers.wishes[:2], heavy, metamers.wishes[3]))
+    ratio = residuals(palette, model, guess) / residuals(only(metamers), model, guess)
+    np.testing.assert_allclose(ratio, [*[1] * 6, *[7] * 3, *[1] * 3])
+
+
+def test_wishes_without_weight_are_left_out(metamers, model):
+    idle = tuple(dataclasses.replace(wish, weight=0.0) for wish in metamers.wishes)
+    assert len(equations(only(metamers, wishes=idle), model).values) == 0
+
+
+def test_smoothness_is_the_second_difference_over_10_nm(metamers, model, guess):
+    palette = only(metamers, wishes=(), smoothness=2.0)
+    where, step = unknowns(metamers), 5.0
+    expected = [
+        -np.diff(guess[where.material(name)], 2) * 2.0 * (SPACING / step) ** 2 / np.sqrt(79 * 6)
+        for name in ("fox", "moss")
+    ]
+    np.testing.assert_allclose(residuals(palette, model, guess), np.concatenate(expected), atol=1e-12)
+
+
+def test_straight_spectra_are_perfectly_smooth(metamers, model):
+    x = np.tile(np.linspace(0, 1, 81), 3)[: unknowns(metamers).count]
+    x[unknowns(metamers).material("fox")] = np.linspace(0, 1, 81)
+    x[unknowns(metamers).material("moss")] = 0.3
+    np.testing.assert_allclose(residuals(only(metamers, wishes=(), smoothness=1.0), model, x), 0, atol=1e-12)
+
+
+def test_the_model_s_error_is_that_of_its_colours(metamers, model, guess):
+    """For a designed light on a given paint too."""
+    paint = Part("paint", np.linspace(0.1, 0.9, 81))
+    palette = only(
+        metamers, lights=(*metamers.lights, Part("odd", None)), materials=(*metamers.materials, paint)
+    )
+    palette = dataclasses.replace(palette, model_error=3.0, wishes=())
+    where, screen = unknowns(palette), screen_matrix(palette.sensor)
+    x = np.random.default_rng(5).random(where.count)
+    expected = []
+    for material in palette.materials:
+        for light in palette.lights:
+            surface, power = material.samples, light.samples
+            if (surface is None) == (power is None):
+                continue
+            surface = x[where.material(material.name)] if surface is None else surface
+            power = x[where.light(light.name)] if power is None else power
+            seen = model.rgb(model.light(power) * model.reflectance(surface))
+            expected.append(3.0 / np.sqrt(3) * (screen @ (power * surface) - seen))
+    np.testing.assert_allclose(residuals(palette, model, x), np.concatenate(expected), atol=1e-10)
+
+
+def test_a_free_colour_may_be_tied_to_a_given_material(metamers, model, guess):
+    """A wish of which all is given still says what the free colour is."""
+    paint = Part("paint", np.full(81, 0.5))
+    palette = only(
+        metamers,
+        materials=(*metamers.materials, paint),
+        wishes=(Wish("paint", "day", free="coat"),),
+    )
+    seen = screen_matrix(palette.sensor) @ (0.5 * palette.light("day").samples)
+    expected = (seen - guess[unknowns(palette).free("coat")]) / np.sqrt(3)
+    np.testing.assert_allclose(residuals(palette, model, guess), expected, atol=1e-12)

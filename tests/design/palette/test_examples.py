@@ -1,0 +1,81 @@
+"""The examples of docs/palette.md do what they are there for."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from tests.conftest import ROOT
+from uplift.design.palette import design, matrix, misses, read_palette
+from uplift.design.palette.matrix import difference
+from uplift.design.palette.palette import Apart
+
+FOLDER = ROOT / "docs" / "palette"
+EXAMPLES = sorted(path.stem for path in FOLDER.glob("*.toml"))
+
+
+@pytest.fixture(scope="module")
+def examples(model):
+    return {name: design(read_palette(FOLDER / f"{name}.toml"), model) for name in EXAMPLES}
+
+
+def apart(found, first, second, light):
+    return difference(found, matrix(found), Apart((first, second), light, 0))
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_every_wish_is_fulfilled(examples, name):
+    assert misses(examples[name]) == ()
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_page_shows_it(name):
+    page = (ROOT / "docs" / "palette.md").read_text(encoding="utf-8")
+    assert f"uplift palette docs/palette/{name}.toml" in page
+    assert f"](palette/{name}-matrix.png)" in page
+
+
+def test_the_page_s_python_runs():
+    page = (ROOT / "docs" / "palette.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    exec(compile(code, "palette.md", "exec"), {})
+
+
+def test_the_page_s_impossible_soot_is_missed(model, tmp_path):
+    page = (ROOT / "docs" / "palette.md").read_text(encoding="utf-8")
+    text = next(text for text in re.findall(r"```toml\n(.*?)```", page, re.DOTALL) if "soot" in text)
+    (tmp_path / "soot.toml").write_text(text, encoding="utf-8")
+    told = [str(miss) for miss in misses(design(read_palette(tmp_path / "soot.toml"), model))]
+    assert [line[: line.index("; relax")] for line in told] == re.findall(
+        r"^missed: (.*?); relax", page, re.M
+    )
+
+
+def test_metamers_split_under_the_second_light(examples):
+    found = examples["metamers"]
+    assert apart(found, "fox", "moss", "day") <= 0.1
+    assert apart(found, "fox", "moss", "lamp") >= found.palette.apart[0].delta_e
+
+
+def test_the_smoke_vanishes(examples):
+    colours = matrix(examples["vanish"])
+    np.testing.assert_allclose(colours.obtained[1, 1], 0, atol=1e-3)
+    assert colours.obtained[1, 0].min() > 0.1
+    assert colours.obtained[0, 1].max() > 0.1
+
+
+def test_the_figure_vanishes_on_its_ground(examples):
+    found = examples["light"]
+    assert apart(found, "figure", "ground", "day") > 20
+    assert apart(found, "figure", "ground", "veil") < 0.5
+    assert found.powers.min() >= 0
+
+
+def test_one_colour_stays_and_the_other_does_not(examples):
+    found = examples["constant"]
+    firm, fickle = matrix(found).obtained
+    assert np.abs(firm[0] - firm[1]).max() < 0.003
+    assert np.abs(fickle[0] - fickle[1]).max() > 0.1
+    assert apart(found, "firm", "fickle", "day") < 0.5

@@ -1,0 +1,78 @@
+"""The factor model: spans, white, products, and colours far nearer than RGB's."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.conftest import ATLASES
+from uplift.atlas import on_grid, read_atlas
+from uplift.colorimetry import delta_e
+from uplift.common.errors import OptionError
+from uplift.design.palette import standard_model
+from uplift.design.palette.colours import exposure, screen_matrix
+from uplift.design.palette.lights import illuminant
+
+
+@pytest.fixture(scope="module")
+def measured(sensor):
+    """Reflectances that the model was not made from."""
+    return on_grid(read_atlas(ATLASES / "cie2017.txt", ATLASES / "macbeth.txt"), sensor.wavelengths)
+
+
+def test_the_projection_undoes_the_basis(model):
+    np.testing.assert_allclose(model.projection @ model.basis, np.eye(7), atol=1e-9)
+
+
+def test_sharpening_loses_nothing_of_the_span(model):
+    """The principal basis comes back from the sharpened one, and every spectrum of it."""
+    principal = model.basis @ model.transform
+    assert np.linalg.matrix_rank(model.transform) == model.count
+    back = model.spectra(model.reflectance(principal.T)).T
+    np.testing.assert_allclose(back, principal, atol=1e-9 * np.abs(principal).max())
+
+
+def test_white_changes_nothing(model):
+    coefficients = np.array([0.1, 0.9, 0.3, 0.5, 0.2, 0.8, 0.4])
+    white = model.reflectance(np.ones(len(model.wavelengths)))
+    np.testing.assert_allclose(model.product(white, coefficients), coefficients, atol=1e-12)
+
+
+def test_colours_of_spectra_in_the_span_are_exact(model, sensor):
+    spectrum = model.spectra([0.1, 0.9, 0.3, 0.5, 0.2, 0.8, 0.4])
+    np.testing.assert_allclose(
+        model.rgb(model.reflectance(spectrum)), screen_matrix(sensor) @ spectrum, atol=1e-9
+    )
+
+
+def test_mixed_lights_have_mixed_coefficients(model, sensor):
+    first, second = illuminant(sensor, "A"), illuminant(sensor, "FL11")
+    mixed = 0.3 * model.light(first) + 0.7 * model.light(second)
+    np.testing.assert_allclose(model.light(0.3 * first + 0.7 * second), mixed, atol=1e-12)
+
+
+@pytest.mark.parametrize("light", ["D65", "A", "FL2", "LED-B3", "HP1"])
+def test_two_bounces_are_five_times_nearer_than_by_rgb(model, sensor, measured, light):
+    power, screen = illuminant(sensor, light), screen_matrix(sensor)
+    first, second = measured[:-1], measured[1:]
+    full = (power * first * second) @ screen.T
+    seen = model.rgb(model.product(model.light(power), model.reflectance(first), model.reflectance(second)))
+    rgb = (screen @ power) * sensor.rgb(first) * sensor.rgb(second)
+    gain = exposure(sensor, full)[:, None]
+    errors = [delta_e.colours_apart(sensor, gain * found, gain * full).mean() for found in (seen, rgb)]
+    assert errors[0] * 5 < errors[1]
+
+
+def test_the_flat_power_has_luminance_1(sensor):
+    rgb = screen_matrix(sensor) @ np.ones(81)
+    assert sensor.xyz(rgb)[1] == pytest.approx(1)
+
+
+def test_the_build_illuminant_is_white_on_the_screen(sensor):
+    np.testing.assert_allclose(screen_matrix(sensor) @ illuminant(sensor, "D65"), 1, atol=1e-12)
+
+
+@pytest.mark.parametrize("count", [0, 2, 13])
+def test_counts_out_of_range_are_refused(sensor, count):
+    with pytest.raises(OptionError, match=f"{count} coefficients; take 3 to 12"):
+        standard_model(sensor, count)

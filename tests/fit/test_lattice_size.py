@@ -1,0 +1,61 @@
+"""How many lattice points an atlas needs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.conftest import MACBETH
+from uplift import fit
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import spectra_apart
+from uplift.fit.lattice_size import DIMS, lattice_error, roomiest
+from uplift.lattice import Lattice
+from uplift.models import Moments, reflectance
+from uplift.models.minimum_norm import forward
+
+
+@pytest.fixture(scope="module")
+def stage(sensor):
+    """Problem, lights and the entries of the ColorChecker."""
+    model = Moments(9)
+    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    spectra = uplift.atlas.on_grid(uplift.read_atlas(MACBETH), sensor.wavelengths)
+    spectra = spectra[sensor.holds(sensor.rgb(spectra))]
+    lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3")]
+    entries = fit.fit_entries(model, ahead, spectra, sensor.rgb(spectra), lights, lights[1], 1e-6)
+    return fit.Problem(model, ahead, Lattice(observer.axis_nodes("srgb", 32))), lights, entries
+
+
+def test_what_the_trial_says_is_what_the_cube_does(stage, sensor, macbeth_cube):
+    """The fixture's cube has dim 32: asked for its corners' mixture at the entries, pins aside."""
+    problem, lights, entries = stage
+    trial = lattice_error(problem, sensor.wavelengths, lights, entries)
+    data = macbeth_cube.data
+    corners, weights = data.lattice.corners(entries.rgb)
+    spectra = reflectance(data.model, data.coefficients[corners.ravel()], sensor.wavelengths)
+    answered = (weights[..., None] * spectra.reshape(*corners.shape, -1)).sum(axis=1)
+    own = reflectance(data.model, data.atlas.coefficients, sensor.wavelengths)
+    plain = np.max([spectra_apart(lit, answered, own) for lit in lights], axis=0)
+    np.testing.assert_allclose(trial, plain, atol=1e-3)
+
+
+def test_the_smallest_with_room_is_chosen(stage, sensor):
+    problem, lights, entries = stage
+    spacing, dim, lost = roomiest(
+        problem, sensor.wavelengths, lights, entries, observer.axis_nodes, ("srgb", "linear"), 0.5
+    )
+    assert lost == 0
+    assert dim in DIMS
+    smaller = [size for size in DIMS if size < dim]
+    for size in smaller[-1:]:
+        for axis in ("srgb", "linear"):
+            lattice = Lattice(observer.axis_nodes(axis, size))
+            trial = fit.Problem(problem.model, problem.forward, lattice)
+            assert lattice_error(trial, sensor.wavelengths, lights, entries).max() > 0.5
+    assert spacing in ("srgb", "linear")
+
+
+def test_without_an_atlas_the_smallest_will_do():
+    assert uplift.build(dim="auto").data.lattice.dim == DIMS[0]

@@ -1,0 +1,67 @@
+"""Every realisable colour is fitted; every other is named, and has the nearest that is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import uplift
+from uplift.colorimetry import observer
+from uplift.colorimetry.solid import solid
+from uplift.fit import Problem, unrealisable
+from uplift.lattice import Lattice, Status
+from uplift.lookup import answers
+from uplift.models import Moments, reflectance
+from uplift.models.minimum_norm import forward
+
+SPACES = ("P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
+DIM = 17
+
+
+@pytest.mark.parametrize("space", SPACES)
+@pytest.mark.parametrize(("model", "count"), [("moments", 9), ("moments", 17), ("sigmoid", 3)])
+def test_all_that_is_realisable_is_fitted(space, model, count):
+    data = uplift.build(dim=DIM, space=space, model=model, coefficients=count).data
+    possible = solid(data.sensor.matrix).holds(data.lattice.points)
+    assert Status.UNFITTED not in data.status
+    rgb = data.sensor.rgb(reflectance(data.model, data.coefficients, data.sensor.wavelengths))
+    distance = np.abs(rgb - data.lattice.points).max(axis=1)
+    assert (~possible).sum() > 100
+    assert distance[possible].max() <= data.threshold
+    named = data.status == Status.UNREALISABLE
+    np.testing.assert_array_equal(named, ~possible & (distance > data.threshold))
+
+
+def test_the_nearest_has_the_hue_and_the_luminance(sensor):
+    wide = observer.sensor("ITU-R BT.2020")
+    lattice = Lattice(observer.axis_nodes("srgb", 9))
+    beyond = unrealisable(lattice, wide, 1e-4)
+    target, nearest = lattice.target(beyond.points), beyond.nearest
+    luminance = wide.xyz(target)[:, 1:2]
+    np.testing.assert_allclose(wide.xyz(nearest)[:, 1:2], luminance, atol=1e-12)
+    share = (nearest - luminance) / (target - luminance)
+    np.testing.assert_allclose(share, share[:, :1].repeat(3, axis=1), rtol=1e-6)
+    outside = solid(wide.matrix).outside(nearest)
+    assert outside.max() < 0
+    assert outside.min() > -1e-3
+    assert unrealisable(lattice, sensor, 1e-4).points.size == 0  # all of sRGB is realisable
+
+
+def test_goals_are_the_targets_or_the_nearest():
+    wide = observer.sensor("ITU-R BT.2020")
+    model, lattice = Moments(9), Lattice(observer.axis_nodes("srgb", 5))
+    beyond = unrealisable(lattice, wide, 1e-4)
+    problem = Problem(model, forward(model, wide.wavelengths, wide.matrix), lattice, beyond=beyond)
+    points = np.arange(lattice.size)[::-1]
+    expected = lattice.points.copy()
+    expected[beyond.points] = beyond.nearest
+    np.testing.assert_array_equal(problem.goal(points), expected[::-1])
+
+
+def test_a_query_says_what_no_reflectance_has():
+    cube = uplift.build(dim=5, space="ITU-R BT.2020")
+    asked = np.array([[0.0, 1, 0], [0.5, 0.5, 0.5], [0.05, 0.9, 0.05], [0.4, 0.7, 0.4]])
+    found = list(answers(cube, asked))
+    expected = solid(cube.data.sensor.matrix).holds(asked)
+    assert [answer.realisable for answer in found] == expected.tolist()
+    assert expected.tolist() == [False, True, False, True]

@@ -1,0 +1,46 @@
+"""The reader of palettes, and their design, against spoilt specs."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+
+import numpy as np
+
+from tests.fuzz.mutate import NUMBERS, Random, mutated
+from tests.fuzz.target import ROOT, Target
+from uplift.colorimetry import observer
+from uplift.design.palette import FactorModel, design, matrix, read_palette, standard_model
+
+SEEDS = tuple(
+    path.read_bytes().replace(b"../../atlases", bytes(ROOT / "atlases"))
+    for path in sorted((ROOT / "docs" / "palette").glob("*.toml"))
+)
+WORDS = (
+    b"lights", b"materials", b"colours", b"free", b"apart", b"design", b"bounds", b"illuminant", b"planck",
+    b"luminance", b"atlas", b"entry", b"rgb", b"cube", b"weight", b"low", b"high", b"smoothness", b"model-error",
+    b"coefficients", b"delta-e", b"day", b"lamp", b"true", b"false", b"#808080", b"[0.5, 0.2, 0.1]", b"D65",
+    b"FL11", b"[", b"]", b"{", b"}", b"[[", b"=", b",", b'"', b"'", b"\n", b"\0", b"\xff", b"#", b"[" * 100_000,
+    b"a." * 2000, *NUMBERS,
+)  # fmt: skip
+
+
+@functools.cache
+def _model(count: int) -> FactorModel:
+    return standard_model(observer.sensor(), count)
+
+
+def _write(random: Random, path: Path) -> None:
+    path.write_bytes(mutated(SEEDS[random.integers(len(SEEDS))], random, WORDS))
+
+
+def _use(path: Path) -> None:
+    """Raises `UpliftError` where it cannot be read, ValueError where what is designed are no colours."""
+    palette = read_palette(path)
+    found = design(palette, _model(palette.count))
+    matrix(found)
+    if not (np.isfinite(found.powers).all() and np.isfinite(found.reflectances).all()):
+        raise ValueError("spectra that are no numbers")
+
+
+TARGET = Target("palette", _write, _use)

@@ -1,0 +1,64 @@
+"""The readers of a scene to plan, and of a plan, against spoilt TOML and JSON."""
+
+from __future__ import annotations
+
+import functools
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+from tests.fuzz.mutate import NUMBERS, Random, mutated
+from tests.fuzz.target import ROOT, Target
+from uplift.io.scene_colours import file_digest
+from uplift.pipeline.options import Options
+from uplift.scene.plan import read_brief, read_plan
+from uplift.scene.plan.plan_file import FORMAT
+
+ATLAS, TEXTURE = ROOT / "atlases" / "macbeth.txt", ROOT / "docs" / "plan" / "page.png"
+BRIEF = f"""# a kitchen
+textures = ["{TEXTURE}", "{TEXTURE.parent}/*.png"]
+atlases = "{ATLAS}"
+lights = ["D65", "FL11"]
+tolerance = 0.5
+quantile = 0.9
+""".encode()
+WORDS = (
+    b"textures", b"atlases", b"lights", b"tolerance", b"quantile", b"encoding", b"space", b"illuminant", b"observer",
+    b"format", b"scene", b"build", b"cells", b"path", b"digest", b"dim", b"axis", b"coefficients", b"D65", b"sRGB",
+    b"..", b"/", b"*", b"**", b"[", b"]", b"{", b"}", b"[[", b"=", b":", b",", b'"', b"'", b'"""', b"\\", b"\\u0000",
+    b"true", b"null", b"\n", b"\0", b"\xff", b"#", b"[" * 100_000, b'{"a":' * 20_000, b"a." * 2000, *NUMBERS,
+)  # fmt: skip
+
+
+@functools.cache
+def _plan() -> bytes:
+    """A file as `uplift plan` writes it, of what its reader reads."""
+    texture, atlas = ([{"path": str(path), "digest": file_digest(path)}] for path in (TEXTURE, ATLAS))
+    said = {
+        "format": FORMAT,
+        "scene": {"encoding": "auto", "textures": texture, "atlases": atlas},
+        "build": asdict(Options(dim=8)),
+        "cells": "sparse",
+    }
+    return json.dumps(said, indent=40).encode()  # mostly blank, so that not every change spoils it
+
+
+def _write_brief(random: Random, path: Path) -> None:
+    path.write_bytes(mutated(BRIEF, random, WORDS))
+
+
+def _write_plan(random: Random, path: Path) -> None:
+    path.write_bytes(mutated(_plan(), random, WORDS))
+
+
+def _use_brief(path: Path) -> None:
+    """What was read is looked at no further: a plan takes half a minute."""
+    read_brief(path).seen_under()
+
+
+def _use_plan(path: Path) -> None:
+    read_plan(path)
+
+
+BRIEFS = Target("scene to plan", _write_brief, _use_brief)
+PLANS = Target("plan", _write_plan, _use_plan)

@@ -1,0 +1,133 @@
+"""The C header, as a compiler sees it: it answers as Python does."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from uplift.common.errors import UpliftWarning
+from uplift.io.export import c_header, write_c
+from uplift.io.export.c_header import _identifier
+from uplift.lookup import Cube, load
+
+WAVELENGTHS = [300.0, 455.0, 551.5, 700.0, 900.0]
+WITHIN = 1e-6
+"""Reflectance: Python mixes coefficients in the precision that they are stored in, C in double."""
+C = ("cc", "-std=c99")
+CPP = ("c++", "-std=c++11", "-x", "c++")
+
+PROGRAM = r"""
+#include <stdio.h>
+#include "asked.h"
+
+int main(void)
+{
+    double rgb[3], coefficients[ASKED_COEFFICIENTS], multipliers[ASKED_COEFFICIENTS];
+    while (fread(rgb, sizeof rgb, 1, stdin) == 1) {
+        double wavelengths[] = {300.0, 455.0, 551.5, 700.0, 900.0}, found[5];
+        int k, valid;
+        asked_fetch(rgb, coefficients);
+        valid = asked_multipliers(coefficients, multipliers);
+        for (k = 0; k < 5; ++k) found[k] = valid ? asked_evaluate(multipliers, wavelengths[k]) : -1;
+        fwrite(found, sizeof found, 1, stdout);
+    }
+    return 0;
+}
+"""
+
+
+@pytest.fixture
+def answers(tmp_path):
+    """Reflectances (n, 5) that a program with a cube's header has of linear RGB (n, 3)."""
+
+    def answers(data, rgb, compiler=C):
+        if shutil.which(compiler[0]) is None:
+            pytest.skip(f"needs a compiler, {compiler[0]}")
+        write_c(data, tmp_path / "asked.h", force=True)
+        (tmp_path / "main.c").write_text(PROGRAM)
+        strict = ("-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O1")
+        subprocess.run([*compiler, *strict, "main.c", "-o", "main", "-lm"], cwd=tmp_path, check=True)
+        done = subprocess.run([tmp_path / "main"], input=rgb.tobytes(), capture_output=True, check=True)
+        return np.frombuffer(done.stdout).reshape(-1, len(WAVELENGTHS))
+
+    return answers
+
+
+def colours(data):
+    """10,000 linear RGB: anywhere, on the faces and corners of the cube, at entries and around them."""
+    rng = np.random.default_rng(10)
+    rgb = rng.random((10_000, 3))
+    rgb[:1000] = np.round(rgb[:1000])
+    rgb[1000:2000, 1] = np.round(rgb[1000:2000, 1])
+    if len(data.atlas.rgb):
+        around = np.tile(data.atlas.rgb, (200, 1))[:4000]
+        spread = np.repeat([0, 1e-3, 0.02, 0.1], len(around) // 4 + 1)[: len(around), None]
+        rgb[2000 : 2000 + len(around)] = np.clip(around + spread * rng.normal(size=around.shape), 0, 1)
+    return rgb
+
+
+@pytest.mark.parametrize("name", ["moments-8-macbeth", "moments-8", "sigmoid-8-macbeth"])
+def test_ten_thousand_colours_are_answered_as_python_answers_them(repository, answers, name):
+    cube = load(repository / "cubes" / f"{name}.uplift")
+    rgb = colours(cube.data)
+    found = answers(cube.data, rgb)
+    np.testing.assert_allclose(found, cube.reflectance(rgb, WAVELENGTHS, mode="moments"), rtol=0, atol=WITHIN)
+
+
+def test_another_mode_or_no_entries_would_be_seen(small_cube, plain_cube, answers):
+    rgb = colours(small_cube.data)
+    found = answers(small_cube.data, rgb)
+    assert np.abs(found - small_cube.reflectance(rgb, WAVELENGTHS)).max() > 1e-3
+    assert np.abs(found - plain_cube.reflectance(rgb, WAVELENGTHS, mode="moments")).max() > 1e-3
+
+
+def test_it_is_cpp_too(small_cube, answers):
+    rgb = colours(small_cube.data)[:5000]
+    expected = small_cube.reflectance(rgb, WAVELENGTHS, mode="moments")
+    np.testing.assert_allclose(answers(small_cube.data, rgb, CPP), expected, rtol=0, atol=WITHIN)
+
+
+def test_coefficients_in_double_precision(small_cube, answers):
+    cube = Cube(replace(small_cube.data, coefficients=small_cube.data.coefficients.astype(float)))
+    rgb = colours(cube.data)[:3000]
+    expected = cube.reflectance(rgb, WAVELENGTHS, mode="moments")
+    np.testing.assert_allclose(answers(cube.data, rgb), expected, rtol=0, atol=1e-9)
+
+
+def test_other_phases_and_counts(answers, warped_cube):
+    rgb = colours(warped_cube.data)
+    expected = warped_cube.reflectance(rgb, WAVELENGTHS, mode="moments")
+    np.testing.assert_allclose(answers(warped_cube.data, rgb), expected, rtol=0, atol=WITHIN)
+
+
+def test_what_lies_outside_is_clipped_and_nan_is_nothing(small_cube, answers):
+    odd = np.array([[2, -1, 0.5], [np.nan, 0.2, np.inf]])
+    plain = np.array([[1, 0, 0.5], [0, 0.2, 1]])
+    expected = small_cube.reflectance(plain, WAVELENGTHS, mode="moments")
+    np.testing.assert_allclose(answers(small_cube.data, odd), expected, rtol=0, atol=WITHIN)
+
+
+def test_names_in_a_cube_stay_comments(small_cube, answers):
+    sensor = replace(small_cube.data.sensor, space="*/ #error äöü\n /*", illuminant="*//*")
+    found = answers(replace(small_cube.data, sensor=sensor), np.full((1, 3), 0.5))
+    np.testing.assert_allclose(
+        found, small_cube.reflectance([[0.5] * 3], WAVELENGTHS, "moments"), atol=WITHIN
+    )
+
+
+@pytest.mark.parametrize(
+    ("stem", "name"),
+    [("macbeth-32", "macbeth_32"), ("32", "cube_32"), ("a.b c", "a_b_c"), ("größe", "gr_e"), ("", "cube")],
+)
+def test_names_are_made_of_the_file_s(stem, name):
+    assert _identifier(stem) == name
+
+
+def test_a_large_header_is_warned_of(tmp_path, plain_cube, monkeypatch):
+    monkeypatch.setattr(c_header, "LARGE", 1000)
+    with pytest.warns(UpliftWarning, match="compilers take long"):
+        write_c(plain_cube.data, tmp_path / "cube.h")

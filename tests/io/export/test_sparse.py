@@ -1,0 +1,48 @@
+"""Cubes of a scene for other tools: what is there, or nothing."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import pytest
+
+from tests.sparse_cubes import dark, robbed
+from uplift.common.errors import ColourError, OptionError
+from uplift.io.export import write_c, write_coeff, write_csv, write_npz
+from uplift.lab.study.sensitivity import study
+
+
+@pytest.fixture
+def data(small_cube):
+    return robbed(small_cube.data, dark(small_cube.data))
+
+
+def test_lines_are_those_of_the_points_there(data, tmp_path):
+    count = int(data.present.sum())
+    assert write_csv(data, tmp_path / "cube.csv") == count
+    lines = csv.DictReader((tmp_path / "cube.csv").read_text(encoding="utf-8").splitlines())
+    found = [[float(line[name]) for name in ("r", "g", "b", "c0")] for line in lines]
+    expected = np.column_stack([data.lattice.points, data.coefficients[:, 0]])[data.present]
+    np.testing.assert_allclose(found, expected, rtol=1e-6)
+
+
+def test_arrays_are_those_of_the_file(data, tmp_path):
+    write_npz(data, tmp_path / "cube.npz")
+    arrays = np.load(tmp_path / "cube.npz")
+    np.testing.assert_array_equal(arrays["points"], np.flatnonzero(data.present))
+    assert len(arrays["multipliers"]) == len(arrays["coefficients"]) == len(arrays["points"])
+    assert np.isfinite(arrays["multipliers"]).all()
+
+
+def test_what_cannot_refuse_a_colour_is_not_made(data, tmp_path, small_cube):
+    with pytest.raises(OptionError, match=r"a header has all colours.*--fill"):
+        write_c(data, tmp_path / "cube.h")
+    with pytest.raises(ColourError, match=r"none of them.*--fill"):
+        write_coeff(data, tmp_path / "cube.coeff", res=2)
+    assert not list(tmp_path.iterdir())
+
+
+def test_nor_studied(data, small_cube):
+    with pytest.raises(OptionError, match="nothing to measure"):
+        study(type(small_cube)(data), None, 0)

@@ -1,0 +1,100 @@
+"""docs/integrate.md: its code runs, and answers as the cube does."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+import pytest
+
+from uplift.io.export import write_c
+from uplift.lookup.interpolate import refined_multipliers
+
+PAGE = (Path(__file__).parents[3] / "docs" / "integrate.md").read_text(encoding="utf-8")
+STORED = "moments-8-macbeth.uplift"
+COLOUR = [0.8, 0.2, 0.1]
+
+
+def code(section, language):
+    """The one block of a section in a language."""
+    (text,) = re.findall(rf"^## {section}\n(.*?)(?=^## |\Z)", PAGE, re.DOTALL | re.MULTILINE)
+    (block,) = re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+    return block
+
+
+@pytest.fixture
+def folder(repository, tmp_path, monkeypatch):
+    """The working folder, with the cube that the page speaks of."""
+    shutil.copy(repository / "cubes" / STORED, tmp_path / "paints.uplift")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_python(folder, small_cube):
+    names = {}
+    exec(compile(code("Python", "python"), "integrate.md", "exec"), names)
+    expected = small_cube.reflectance(names["texels"][2, 3:4], names["hero"], mode="moments")
+    np.testing.assert_allclose(names["reflectance"], expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(("compiler", "language"), [("cc", "c"), ("c++", "c++")])
+def test_c_and_cpp(folder, small_cube, compiler, language):
+    if shutil.which(compiler) is None:
+        pytest.skip(f"needs a compiler, {compiler}")
+    write_c(small_cube.data, folder / "paints.h")
+    (folder / "main.c").write_text(code("C and C\\+\\+", "c"))
+    subprocess.run([compiler, "-x", language, "-O1", "main.c", "-o", "main", "-lm"], check=True)
+    done = subprocess.run(["./main"], capture_output=True, text=True, check=True)
+    wavelengths, found = np.array([line.split() for line in done.stdout.splitlines()], dtype=float).T
+    assert len(wavelengths) == 7
+    expected = small_cube.reflectance(COLOUR, wavelengths, mode="moments")
+    np.testing.assert_allclose(found, expected, atol=2e-6)
+
+
+def test_mitsuba(folder, small_cube):
+    mi = pytest.importorskip("mitsuba")
+    names = {}
+    exec(compile(code("Mitsuba", "python"), "integrate.md", "exec"), names)
+    image = np.array(names["image"])
+    assert image.shape == (64, 64, 3)
+    assert mi.variant() == "scalar_spectral"
+    np.testing.assert_allclose(image[30:34, 30:34].mean(axis=(0, 1)), COLOUR, atol=0.05)
+    np.testing.assert_allclose(image[:4, :4].mean(axis=(0, 1)), 1, atol=0.05)
+
+
+@pytest.fixture
+def shader(folder):
+    """The shader as a file."""
+    (folder / "uplift_reflectance.osl").write_text(code("Blender, OSL", "osl"))
+    return folder / "uplift_reflectance.osl"
+
+
+def test_osl_compiles(shader):
+    if shutil.which("oslc") is None:
+        pytest.skip("needs oslc")
+    subprocess.run(["oslc", "-q", shader], check=True)
+
+
+def test_cycles_renders_it(shader, folder, small_cube):
+    """Four texels at three wavelengths. Blender's module bpy wants packages of its own versions."""
+    python = os.environ.get("BLENDER_PYTHON")
+    if python is None:
+        pytest.skip("needs BLENDER_PYTHON, a Python that has Blender's module bpy")
+    rgb = np.array([[[0.8, 0.2, 0.1], [0.1, 0.1, 0.1]], [[0.9, 0.95, 0.9], [0.05, 0.3, 0.6]]])
+    multipliers = refined_multipliers(small_cube.data, rgb.reshape(-1, 3)).reshape(2, 2, -1)
+    channels = {
+        f"multiplier.{k:02}": np.ascontiguousarray(multipliers[..., k], dtype=np.float32)
+        for k in range(multipliers.shape[-1])
+    }
+    channels["A"] = np.ones((2, 2), dtype=np.float32)
+    OpenEXR.File({"type": OpenEXR.scanlineimage}, channels).write("texture.exr")
+    script = Path(__file__).with_name("in_blender.py")
+    subprocess.run([python, script, shader, "texture.exr", "image.exr"], check=True, capture_output=True)
+    image = OpenEXR.File("image.exr").channels()["RGBA"].pixels[..., :3]
+    expected = small_cube.reflectance(rgb, [610, 550, 460], mode="refined")
+    np.testing.assert_allclose(image[::7, ::7], expected, atol=1e-5)

@@ -1,0 +1,31 @@
+"""The models in Dr.Jit's arithmetic are those of numpy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift.io.mitsuba.spectra import basis, mixed, squash
+from uplift.models import Moments, Phase, Sigmoid, evaluate
+
+WAVELENGTHS = [340.0, 401.5, 555.0, 820.0]
+MODELS = [Moments(9), Moments(3), Moments(17, Phase(400, 700, "vision")), Sigmoid(), Sigmoid(400, 700)]
+
+
+@pytest.mark.parametrize("model", MODELS, ids=str)
+def test_basis_and_squash(mi, model):
+    found = np.array([np.array(part) for part in basis(model, mi.Spectrum(*WAVELENGTHS))]).T
+    np.testing.assert_allclose(found, model.basis(WAVELENGTHS), atol=1e-5)
+    linear = np.array([-300, -0.5, 0.2, 20.0])
+    np.testing.assert_allclose(
+        np.array(squash(model, mi.Spectrum(*linear))), model.squash(linear), rtol=1e-4, atol=1e-6
+    )
+
+
+@pytest.mark.parametrize("model", MODELS, ids=str)
+def test_spectra_are_weighted(mi, model):
+    multipliers = np.random.default_rng(2).normal(size=(3, model.count))
+    weights = [0.5, 0.2, 0.3]
+    found = mixed(model, multipliers.tolist(), weights, mi.Spectrum(*WAVELENGTHS))
+    expected = weights @ evaluate(model, multipliers, WAVELENGTHS)
+    np.testing.assert_allclose(np.array(found), expected, rtol=0, atol=1e-5)

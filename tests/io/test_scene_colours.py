@@ -1,0 +1,274 @@
+"""Cubes built for a scene: the same answers to its colours as the whole cube gives, and none to others."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import uplift
+from tests.conftest import ATLASES, MACBETH
+from tests.io.texture.conftest import AT, PHOTO, planes, write_exr
+from tests.sparse_cubes import dark, robbed
+from uplift.common.errors import ColourError, CubeFileError, OptionError, TextureError, UpliftWarning
+from uplift.cube import AtlasTable, digest
+from uplift.io.scene_colours import Images, Stored, touched
+from uplift.lattice import Status
+from uplift.lookup import MODES, Cube, bulk
+from uplift.lookup.nodes import around
+from uplift.pipeline.rebuild import rebuild
+from uplift.report.regression import compare
+
+
+@pytest.fixture(scope="module")
+def scene_cube():
+    """The main job, for the colours of a photograph alone."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        return uplift.build(MACBETH, dim=32, debug=True, scene=PHOTO)
+
+
+@pytest.fixture(scope="module")
+def photo_colours(scene_cube):
+    """(n, 3) linear RGB of the photograph, each once: as Pillow reads it."""
+    codes = np.asarray(Image.open(PHOTO)).reshape(-1, 3)
+    return scene_cube.decode(np.unique(codes, axis=0)[::5])
+
+
+def points_of(cube, *paths, encoding="auto", out_of_gamut="clip"):
+    data = cube.data
+    return Images(paths, encoding, out_of_gamut).points(data.pins, data.sensor, lambda done: None)
+
+
+def test_images_of_another_space_are_remarked_on(small_cube, tmp_path):
+    display_p3 = (0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.329)
+    path = write_exr(tmp_path / "a.exr", planes(np.full((2, 2, 3), 0.5, "f4")), chromaticities=display_p3)
+    with pytest.warns(UpliftWarning, match=r"a\.exr: the image names other primaries; .* taken for sRGB"):
+        points_of(small_cube, path)
+
+
+def test_its_points_are_those_of_the_whole_cube(scene_cube, macbeth_cube):
+    part, whole = scene_cube.data, macbeth_cube.data
+    there = part.present
+    assert 0 < there.sum() < 0.3 * len(there)
+    for name in ("coefficients", "rgb", "distance", "status", "entry", "round", "standard_error"):
+        array = getattr(part, name)
+        np.testing.assert_allclose(array[there], getattr(whole, name)[there], rtol=0, atol=1e-9, err_msg=name)
+        absent = {"status": Status.ABSENT, "entry": -1, "round": -1}.get(name, 0)
+        assert (array[~there] == absent).all(), name
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_its_answers_to_the_scene_are_those_of_the_whole_cube(scene_cube, macbeth_cube, photo_colours, mode):
+    assert scene_cube.holds(photo_colours).all()
+    rgb = photo_colours if mode != "refined" else photo_colours[::10]
+    answers = (cube.reflectance(rgb, AT, mode) for cube in (scene_cube, macbeth_cube))
+    np.testing.assert_allclose(*answers, rtol=0, atol=1e-9)
+
+
+def test_so_are_errors_coefficients_and_bulk_answers(scene_cube, macbeth_cube, photo_colours):
+    for ask in (
+        lambda cube: cube.standard_error(photo_colours),
+        lambda cube: cube.coefficients(photo_colours),
+        lambda cube: bulk.spectra(cube, AT)(photo_colours),
+    ):
+        np.testing.assert_allclose(ask(scene_cube), ask(macbeth_cube), rtol=0, atol=1e-9)
+
+
+def test_what_bulk_answers_need_is_there_for_the_very_pixels(scene_cube, photo_colours):
+    """Rounded to float32 as textures have them, and beside the faces of cells."""
+    pixels = photo_colours.astype(np.float32)
+    assert np.isfinite(bulk.coefficients(scene_cube)(pixels)).all()
+
+
+def outsiders(cube):
+    """Linear RGB (n, 3) that the cube has no points for."""
+    rgb = np.random.default_rng(3).random((500, 3))
+    return rgb[~cube.holds(rgb)]
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        *(lambda cube, rgb, mode=mode: cube.reflectance(rgb, AT, mode) for mode in MODES),
+        lambda cube, rgb: cube.coefficients(rgb),
+        lambda cube, rgb: cube.standard_error(rgb),
+        lambda cube, rgb: cube.reflectance(rgb, AT, threads=2),
+        lambda cube, rgb: bulk.spectra(cube, AT)(rgb),
+        lambda cube, rgb: bulk.coefficients(cube)(rgb),
+    ],
+)
+def test_others_are_refused_by_the_first_of_them(small_cube, ask):
+    cube = Cube(robbed(small_cube.data, dark(small_cube.data)))
+    held, (first, *more) = np.array([0.001, 0.002, 0.003]), outsiders(cube)
+    with pytest.raises(ColourError) as caught:
+        ask(cube, np.array([held, first, *more]))
+    assert ", ".join(f"{value:.6g}" for value in first) in str(caught.value)
+    assert "--scene" in caught.value.remedy
+    assert "--fill" in caught.value.remedy
+    assert np.isfinite(ask(cube, held[None])).all()
+
+
+def test_long_questions_are_answered_from_a_table_all_the_same(small_cube):
+    cube = Cube(robbed(small_cube.data, dark(small_cube.data)))
+    rgb = np.random.default_rng(1).random((2000, 3)) * 0.01
+    expected = small_cube.reflectance(rgb, AT)
+    np.testing.assert_allclose(cube.reflectance(rgb, AT), expected, rtol=0, atol=1e-12)
+    with pytest.raises(ColourError, match="none of them"):
+        cube.reflectance(np.concatenate([rgb, [[1, 1, 1]]]), AT)
+
+
+def asked_in(data, cell, count=400):
+    """Linear RGB (count, 3) in a cell, some on its faces and corners, some at entries in it."""
+    random = np.random.default_rng(cell)
+    share = random.random((count, 3))
+    share[: count // 2] = np.clip(np.round(share[: count // 2] * 1.5 - 0.25, 1), 0, 1 - 1e-12)
+    low = data.lattice.position(np.array(cell))
+    rgb = data.lattice.nodes[low] + share * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])
+    return rgb[(data.lattice.lowest(rgb) == low).all(axis=1)]
+
+
+def missing(data, needs):
+    """How many colours of cells are answered from points that ``needs`` of the cell does not name."""
+    count = 0
+    for cell in np.unique(data.pins.cells[0])[::3]:
+        mask = np.zeros(data.lattice.size, dtype=bool)
+        mask[cell] = True
+        nodes = around(data, asked_in(data, cell))
+        count += int((~needs(mask)[nodes.points] & (nodes.weights > 0)).any(axis=1).sum())
+    return count
+
+
+@pytest.mark.parametrize("name", ["small_cube", "macbeth_cube"])
+def test_every_colour_of_a_cell_has_what_it_needs(request, name):
+    data = request.getfixturevalue(name).data
+    assert missing(data, data.pins.needs) == 0
+    assert (
+        missing(data, data.lattice.corners_of) > 0
+    )  # the cell's corners are not enough: entries ask elsewhere
+
+
+@pytest.mark.parametrize("node", [0, 3, 7])
+def test_entries_on_a_node_have_faces_on_nodes_that_rounding_may_cross(plain_cube, node):
+    data = plain_cube.data
+    one = AtlasTable(
+        ("one",), np.full((1, 3), data.lattice.nodes[node]), np.zeros((1, 9)), np.ones(1), np.ones(1)
+    )
+    data = replace(data, atlas=one)
+    assert data.pins.cells[0].size
+    assert missing(data, data.pins.needs) == 0
+
+
+def test_colours_beside_a_face_touch_both_cells(small_cube):
+    lattice = small_cube.data.lattice
+    node = lattice.nodes[3]
+    beside = touched(lattice, np.array([[node - 1e-8, 0.3, 0.3]]))
+    assert {tuple(position) for position in lattice.position(beside)} == {
+        (red, *lattice.lowest(np.array([0.3, 0.3]))) for red in (2, 3)
+    }
+    assert len(touched(lattice, np.array([[node + 1e-3, 0.3, 0.3]]))) == 1
+
+
+def test_several_images_are_all_seen(plain_cube, tmp_path):
+    dark = write_exr(tmp_path / "a.exr", planes(np.full((4, 4, 3), 0.01, np.float32)))
+    light = write_exr(tmp_path / "b.exr", planes(np.full((4, 4, 3), 0.9, np.float32)))
+    both = points_of(plain_cube, dark, light)
+    np.testing.assert_array_equal(both, points_of(plain_cube, dark) | points_of(plain_cube, light))
+    assert both.sum() == 16
+
+
+def test_images_are_decoded_by_their_kind_or_as_told(plain_cube, tmp_path):
+    codes = np.full((2, 2, 3), 128, np.uint8)
+    Image.fromarray(codes).save(tmp_path / "grey.png")
+    for encoding, value in (("auto", plain_cube.decode(128)), ("linear", 128 / 255)):
+        points = points_of(plain_cube, tmp_path / "grey.png", encoding=encoding)
+        corners, _ = plain_cube.data.lattice.corners(np.full((1, 3), value))
+        np.testing.assert_array_equal(np.flatnonzero(points), np.sort(corners[0]))
+
+
+def test_what_is_no_colour_is_clamped_as_in_textures(plain_cube, tmp_path):
+    strange = np.array([[[np.nan, 2, -1], [0, 1, 0]]], np.float32)
+    path = write_exr(tmp_path / "strange.exr", planes(strange))
+    expected = write_exr(tmp_path / "clamped.exr", planes(np.array([[[0, 1, 0]] * 2], np.float32)))
+    np.testing.assert_array_equal(points_of(plain_cube, path), points_of(plain_cube, expected))
+
+
+def test_colours_outside_are_moved_as_in_textures(plain_cube, tmp_path):
+    path = write_exr(tmp_path / "bright.exr", planes(np.array([[[4, 2, 1]] * 2], np.float32)))
+    expected = write_exr(tmp_path / "scaled.exr", planes(np.array([[[1, 0.5, 0.25]] * 2], np.float32)))
+    scaled = points_of(plain_cube, path, out_of_gamut="scale")
+    np.testing.assert_array_equal(scaled, points_of(plain_cube, expected))
+    assert (scaled != points_of(plain_cube, path)).any()
+    with pytest.raises(ColourError, match=r"\(4, 2, 1\) lies outside"):
+        points_of(plain_cube, path, out_of_gamut="error")
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "match"),
+    [
+        (lambda path: None, TextureError, "no such file"),
+        (lambda path: path.write_text("no image"), TextureError, "image.exr"),
+        (
+            lambda path: write_exr(path, {"Z": np.ones((2, 2), np.float32)}),
+            TextureError,
+            "holds no colour but Z",
+        ),
+    ],
+)
+def test_bad_images_are_refused(plain_cube, tmp_path, make, error, match):
+    make(tmp_path / "image.exr")
+    with pytest.raises(error, match=match):
+        points_of(plain_cube, tmp_path / "image.exr")
+
+
+def test_a_scene_of_no_images_is_refused():
+    with pytest.raises(OptionError, match="a scene without images"):
+        uplift.build(scene=[], dim=4)
+
+
+def test_an_unknown_encoding_is_refused(plain_cube):
+    with pytest.raises(OptionError, match="unknown encoding 'log'"):
+        points_of(plain_cube, PHOTO, encoding="log")
+    with pytest.raises(OptionError, match="unknown way out of gamut 'squash'"):
+        points_of(plain_cube, PHOTO, out_of_gamut="squash")
+
+
+def test_in_a_wide_space_colours_come_back_where_they_can(tmp_path):
+    rgb = np.random.default_rng(2).random((8, 8, 3)).astype(np.float32)
+    path = write_exr(tmp_path / "wide.exr", planes(rgb))
+    cube = uplift.build(scene=[path], dim=8, space="ITU-R BT.2020")
+    data, asked = cube.data, rgb.reshape(-1, 3).astype(float)
+    assert data.counts()["unfitted"] == 0
+    assert data.counts()["unrealisable"] > 0
+    corners, _ = data.lattice.corners(asked)
+    possible = ~(data.status[corners] == Status.UNREALISABLE).any(axis=1)
+    back = data.sensor.rgb(cube.reflectance(asked))
+    assert possible.sum() > 10
+    np.testing.assert_allclose(back[possible], asked[possible], rtol=0, atol=data.threshold)
+
+
+def test_it_is_made_again_without_its_images(scene_cube):
+    again = rebuild(scene_cube, "photo.uplift", [ATLASES])
+    assert digest(again.data) == digest(scene_cube.data)
+    assert compare("photo.uplift", scene_cube.data, again.data).failures == ()
+    assert again.data.provenance["scene"][0]["name"] == PHOTO.name
+
+
+def test_a_point_that_is_missing_is_found(scene_cube):
+    data = scene_cube.data
+    fewer = robbed(data, data.present & (np.arange(data.lattice.size) != np.flatnonzero(data.present)[-1]))
+    failures = compare("photo.uplift", data, fewer).failures
+    assert {"spectra_max", "status"} <= set(failures)
+
+
+def test_points_of_another_lattice_are_refused(scene_cube, plain_cube):
+    with pytest.raises(OptionError, match="those of dim 32"):
+        Stored(scene_cube.data).points(plain_cube.data.pins, plain_cube.data.sensor, lambda done: None)
+
+
+def test_a_filled_cube_cannot_be_made_again(scene_cube):
+    with pytest.raises(CubeFileError, match="is filled from another cube"):
+        rebuild(scene_cube.filled([1, 1, 0]), "photo.uplift", [ATLASES])

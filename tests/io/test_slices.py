@@ -1,0 +1,197 @@
+"""The OpenEXR slices, read back."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+import pytest
+
+from tests.cube.hand_made import hand_made
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.common.errors import OutputError
+from uplift.cube import digest, write
+from uplift.io.slices import write_slices
+
+
+def parts(path: Path) -> list[OpenEXR.Part]:
+    return list(OpenEXR.File(str(path), separate_channels=True).parts)
+
+
+@pytest.fixture
+def written(tmp_path):
+    data, path = hand_made(), tmp_path / "slices.exr"
+    write_slices(data, path)
+    return data, parts(path)
+
+
+def test_a_part_per_blue_node(written):
+    data, slices = written
+    assert [part.name() for part in slices] == [
+        f"blue {i:02} ({value:.4f})" for i, value in enumerate(data.lattice.nodes)
+    ]
+    assert all((part.width(), part.height()) == (4, 4) for part in slices)
+
+
+def test_every_channel_of_every_point(written):
+    data, slices = written
+    dim = data.lattice.dim
+    for red, green, blue in product(range(dim), repeat=3):
+        point = (red * dim + green) * dim + blue
+        expected = {
+            **{
+                f"{layer}{letter}": data.rgb[point, i]
+                for i, letter in enumerate("RGB")
+                for layer in ("", "lattice.")
+            },
+            **{f"target.{letter}": data.lattice.points[point, i] for i, letter in enumerate("RGB")},
+            **{f"coefficient.{i:02}": data.coefficients[point, i] for i in range(3)},
+            **{name: getattr(data, name)[point] for name in ("distance", "status", "entry", "round")},
+            "standardError": data.standard_error[point],
+        }
+        channels = slices[blue].channels
+        assert set(channels) == {*expected, "deltaE2000"}
+        for name, value in expected.items():
+            assert channels[name].pixels.dtype == np.float32
+            assert channels[name].pixels[dim - 1 - green, red] == np.float32(value), name
+
+
+def test_red_rises_to_the_right_and_green_upwards(written):
+    data, slices = written
+    for blue, part in enumerate(slices):
+        pixels = {letter: part.channels[f"target.{letter}"].pixels for letter in "RGB"}
+        assert (np.diff(pixels["R"], axis=1) > 0).all()
+        assert (np.diff(pixels["G"], axis=0) < 0).all()
+        assert (pixels["B"] == np.float32(data.lattice.nodes[blue])).all()
+
+
+def test_colour_difference_of_the_point_that_is_off(written):
+    data, slices = written
+    light = data.sensor.light
+    black, grey = (lab(data.sensor.xyz(np.full(3, value)), light.white) for value in (0.0, 0.25))
+    found = slices[0].channels["deltaE2000"].pixels
+    assert found[3, 0] == pytest.approx(float(delta_e_2000(black, grey)), rel=1e-6)
+    assert found[3, 0] > 40
+    assert np.delete(found.ravel(), 12).max() < 1
+
+
+def test_headers_say_which_cube(written):
+    data, slices = written
+    for blue, part in enumerate(slices):
+        header = part.header
+        assert header["uplift.cube"] == digest(data)
+        assert header["uplift.dim"] == 4
+        assert header["uplift.blueIndex"] == blue
+        assert header["uplift.blueValue"] == np.float32(data.lattice.nodes[blue])
+        assert json.loads(header["uplift.model"]) == data.model.describe()
+        assert (header["uplift.space"], header["uplift.illuminant"]) == ("sRGB", "D65")
+        assert header["uplift.threshold"] == np.float32(1e-4)
+        assert header["uplift.status"].startswith("0 atlas primary, 1 atlas corner, 2 regular")
+        assert "green upwards" in header["comments"]
+
+
+def test_chromaticities_are_those_of_the_space(written):
+    _, slices = written
+    srgb = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)
+    np.testing.assert_allclose(slices[0].header["chromaticities"], srgb, atol=2e-4)
+
+
+def test_no_round_without_debug_information(tmp_path):
+    write_slices(hand_made(round=None), tmp_path / "plain.exr")
+    assert all("round" not in part.channels for part in parts(tmp_path / "plain.exr"))
+
+
+def test_large_and_negative_whole_numbers_stay_exact(tmp_path):
+    entry = np.full(64, 9_999, dtype=np.int32)
+    entry[1] = -1
+    write_slices(hand_made(entry=entry), tmp_path / "many.exr")
+    first, second, *_ = parts(tmp_path / "many.exr")
+    assert (first.channels["entry"].pixels == 9_999).all()
+    assert second.channels["entry"].pixels[3, 0] == -1
+
+
+def test_what_float32_cannot_hold_is_the_largest_it_can(tmp_path):
+    coefficients = np.zeros((64, 3))
+    coefficients[0] = 1e300, -1e300, 1.0
+    write_slices(hand_made(coefficients=coefficients), tmp_path / "large.exr")
+    channels = parts(tmp_path / "large.exr")[0].channels
+    largest = np.finfo(np.float32).max
+    found = [channels[f"coefficient.{i:02}"].pixels[3, 0] for i in range(3)]
+    assert found == [largest, -largest, 1.0]
+    assert all(np.isfinite(channel.pixels).all() for channel in channels.values())
+
+
+def test_nan_is_refused(tmp_path):
+    with pytest.raises(OutputError, match=r"channel 'coefficient\.00' holds NaN"):
+        write_slices(hand_made(coefficients=np.full((64, 3), np.nan)), tmp_path / "nan.exr")
+    assert not list(tmp_path.iterdir())
+
+
+def test_same_cube_same_bytes(tmp_path):
+    write_slices(hand_made(), tmp_path / "first.exr")
+    time.sleep(1.1)  # so that a time stamp would show
+    write_slices(hand_made(), tmp_path / "second.exr")
+    assert (tmp_path / "first.exr").read_bytes() == (tmp_path / "second.exr").read_bytes()
+
+
+def test_an_existing_file_is_replaced_by_force_alone(tmp_path):
+    path = tmp_path / "old.exr"
+    path.write_text("old")
+    with pytest.raises(OutputError, match="exists already"):
+        write_slices(hand_made(), path)
+    assert path.read_text() == "old"
+    write_slices(hand_made(), path, force=True)
+    assert len(parts(path)) == 4
+
+
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [("slices.png", "slices are OpenEXR"), ("slices", "slices are OpenEXR"), ("no/slices.exr", "no folder")],
+)
+def test_names_that_cannot_be(tmp_path, name, problem):
+    with pytest.raises(OutputError, match=problem):
+        write_slices(hand_made(), tmp_path / name)
+
+
+def test_a_folder_without_permission(tmp_path, monkeypatch):
+    monkeypatch.setattr("os.access", lambda *_: False)  # root may write anywhere
+    with pytest.raises(OutputError, match="no permission"):
+        write_slices(hand_made(), tmp_path / "slices.exr")
+
+
+def test_a_full_disk_leaves_nothing(tmp_path, monkeypatch):
+    full = Path("/dev/full")
+    if not full.exists():
+        pytest.skip("no /dev/full here")
+    opened = Path.open
+    monkeypatch.setattr(Path, "open", lambda path, mode="r": opened(full if mode == "wb" else path, mode))
+    with pytest.raises(OutputError, match="No space left"):
+        write_slices(hand_made(2), tmp_path / "slices.exr")
+    assert not list(tmp_path.iterdir())
+
+
+def test_writing_images_takes_nothing_of_the_fit(tmp_path):
+    write(hand_made(), tmp_path / "small.uplift")
+    script = (
+        "import sys; from uplift.cube import read, write_sheet, write_slices\n"
+        "early = {'OpenEXR', 'matplotlib'} & set(sys.modules)\n"
+        "data = read('small.uplift'); write_slices(data, 'a.exr'); write_sheet(data, 'a.png')\n"
+        "print(early, {'jax', 'colour', 'uplift.fit'} & set(sys.modules))"
+    )
+    found = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert found.stdout == "set() set()\n", found.stderr
+
+
+def test_a_cube_as_it_is_built(small_cube, tmp_path):
+    data = small_cube.data
+    write_slices(data, tmp_path / "real.exr")
+    slices = parts(tmp_path / "real.exr")
+    found = np.stack([part.channels["distance"].pixels for part in slices])
+    assert found.max() == data.distance.max()
+    assert max(part.channels["deltaE2000"].pixels.max() for part in slices) < 0.1

@@ -1,0 +1,304 @@
+"""Images of all kinds: decoded as their type has it, everything else passed through, nothing lost unsaid."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import OpenEXR
+import pytest
+from PIL import Image
+
+from tests.io.texture.conftest import AT, channels, held, planes, small_tiles, write_exr
+from uplift.colorimetry.gamut import contained
+from uplift.common.errors import ColourError, OptionError, TextureError
+from uplift.io import texture
+
+SIZE = (12, 17)
+
+
+@pytest.fixture
+def codes():
+    return np.random.default_rng(1).integers(0, 256, (*SIZE, 4), dtype=np.uint8)
+
+
+@pytest.fixture
+def made(spectral, tmp_path):
+    """Convert an image and say what the texture holds."""
+
+    def made(source, uplifter=spectral):
+        result = texture.convert(uplifter, source, tmp_path / "made.exr", force=True)
+        return result, channels(tmp_path / "made.exr")
+
+    return made
+
+
+def rgb_of(found):
+    return np.stack([found[letter] for letter in "RGB"], axis=-1)
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.tif", "interlaced.png", "palette.png"])
+def test_8_bit_images_are_decoded(name, codes, made, small_cube, tmp_path):
+    image = Image.fromarray(codes[..., :3])
+    if name == "palette.png":
+        image = image.quantize(16)
+    image.save(tmp_path / name)
+    expected = small_cube.decode(np.asarray(image.convert("RGB"), dtype=float))
+    _, found = made(tmp_path / name)
+    np.testing.assert_allclose(rgb_of(found), expected, rtol=0, atol=1e-7)
+
+
+def test_a_jpeg_is_what_pillow_reads(codes, made, small_cube, tmp_path):
+    smooth = Image.fromarray(codes[..., :3]).resize((64, 64), Image.Resampling.BICUBIC)
+    smooth.save(tmp_path / "a.jpg", quality=95)
+    _, found = made(tmp_path / "a.jpg")
+    expected = np.asarray(Image.open(tmp_path / "a.jpg"), dtype=float)
+    assert (
+        np.abs(small_cube.encode(rgb_of(found)) - expected).max() <= 1
+    )  # of 255: decoders round differently
+
+
+def test_grey_and_alpha(codes, made, small_cube, tmp_path):
+    Image.fromarray(codes[..., [0, 3]], "LA").save(tmp_path / "grey.png")
+    _, found = made(tmp_path / "grey.png")
+    grey = small_cube.decode(codes[..., 0].astype(float))
+    np.testing.assert_allclose(rgb_of(found), np.stack([grey] * 3, axis=-1), rtol=0, atol=1e-7)
+    assert found["A"].dtype == np.float16
+    np.testing.assert_array_equal(np.rint(found["A"] * 255.0), codes[..., 3])
+    assert "Y" not in found
+
+
+def test_colours_are_not_multiplied_by_alpha(codes, made, small_cube, tmp_path):
+    Image.fromarray(codes).save(tmp_path / "a.png")
+    _, found = made(tmp_path / "a.png")
+    expected = small_cube.decode(codes[..., :3].astype(float))
+    np.testing.assert_allclose(rgb_of(found), expected, rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("suffix", ["png", "tif"])
+def test_16_bits_stay_16_bits(suffix, made, tmp_path):
+    """Against the curve of the standard, for every code of a ramp finer than 8 bits."""
+    import OpenImageIO
+
+    codes = np.arange(0, 65536, 129, dtype=np.uint16)[:504].reshape(21, 24)
+    rgba = np.stack([codes, codes[::-1], codes[:, ::-1], codes], axis=-1)
+    image = OpenImageIO.ImageOutput.create(suffix)
+    spec = OpenImageIO.ImageSpec(24, 21, 4, "uint16")
+    spec.attribute("oiio:UnassociatedAlpha", 1)
+    assert image.open(str(tmp_path / f"a.{suffix}"), spec)
+    assert image.write_image(np.ascontiguousarray(rgba))
+    image.close()
+    _, found = made(tmp_path / f"a.{suffix}")
+    share = rgba[..., :3] / 65535
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    assert np.abs(rgb_of(found) - linear).max() < 8e-6  # half a code
+    np.testing.assert_array_equal(np.rint(found["A"] * 65535.0), rgba[..., 3])
+
+
+def test_floats_are_linear_and_the_encoding_can_be_told(colours, made, small_cube, spectral, tmp_path):
+    Image.fromarray(colours[..., 0]).save(tmp_path / "float.tif")
+    _, found = made(tmp_path / "float.tif")
+    np.testing.assert_array_equal(found["R"], colours[..., 0])
+    encoded = texture.prepare(small_cube, texture.Moments(), encoding="encoded", threads=1)
+    _, found = made(tmp_path / "float.tif", encoded)
+    np.testing.assert_allclose(found["R"], small_cube.decode(255.0 * colours[..., 0]), rtol=0, atol=1e-6)
+    Image.fromarray((colours * 255).astype(np.uint8)).save(tmp_path / "linear.png")
+    linear = texture.prepare(small_cube, texture.Moments(), encoding="linear", threads=1)
+    _, found = made(tmp_path / "linear.png", linear)
+    np.testing.assert_allclose(rgb_of(found), (colours * 255).astype(np.uint8) / 255, rtol=0, atol=1e-7)
+
+
+def test_what_is_no_colour_is_clamped_counted_and_nothing_else_is_touched(colours, made, spectral, tmp_path):
+    bad = colours.copy()
+    bad[1, 1] = np.nan
+    bad[2, 2] = (np.inf, 0.5, -np.inf)
+    bad[3, 3] = (-0.25, 0.5, 2)
+    bad[4, 4, 0] = -1e-3
+    result, found = made(write_exr(tmp_path / "bad.exr", planes(bad)))
+    assert result.counts == texture.Counts(pixels=600, outside=2, not_finite=2, farthest=1)
+    assert result.remarks == (
+        "2 of 600 pixels lie outside [0, 1]: clamped, a component by up to 1",
+        "2 of 600 pixels are not finite: NaN is taken for 0, infinity clamped",
+    )
+    good = np.clip(np.nan_to_num(bad, nan=0, posinf=1, neginf=0), 0, 1)
+    assert good[1, 1].tolist() == [0, 0, 0]
+    assert good[2, 2].tolist() == [1, 0.5, 0]
+    np.testing.assert_array_equal(rgb_of(found), good)
+    spectra = np.stack([found[name] for name in spectral.channels], axis=-1)
+    np.testing.assert_allclose(spectra, spectral.cube.reflectance(good, AT), atol=1e-6)
+    result, _ = made(write_exr(tmp_path / "good.exr", planes(good)))
+    assert result.remarks == ()
+
+
+@pytest.mark.parametrize(
+    ("way", "told"),
+    [
+        ("scale", "scaled"),
+        ("desaturate", "desaturated"),
+        ("desaturate-oklab", "desaturated in Oklab"),
+    ],
+)
+def test_pixels_outside_are_moved_as_asked(way, told, colours, made, spectral, tmp_path):
+    bad = colours.copy()
+    bad[3, :5] = np.array([[-0.25, 0.5, 2], [8, 4, 1], [0.2, 0.6, -0.1], [-1, -1, -1], [7, 7, 7]])
+    bad[4, 4] = (np.inf, 5, np.nan)
+    source = write_exr(tmp_path / "bad.exr", planes(bad))
+    result, found = made(source, replace(spectral, out_of_gamut=way))
+    bad[4, 4] = (1, 1, 0)
+    moved = contained(bad, spectral.cube.data.sensor, way)
+    np.testing.assert_array_equal(rgb_of(found), moved.rgb)
+    assert result.counts == texture.Counts(600, outside=5, not_finite=1, farthest=moved.farthest)
+    assert result.remarks[0] == (
+        f"5 of 600 pixels lie outside [0, 1]: {told}, a component by up to {moved.farthest:.3g}"
+    )
+
+
+@pytest.mark.parametrize("bad", [1.5, -0.5, np.nan])
+def test_pixels_outside_can_be_an_error(bad, colours, spectral, tmp_path):
+    strict = replace(spectral, out_of_gamut="error")
+    good = write_exr(tmp_path / "good.exr", planes(colours))
+    texture.convert(strict, good, tmp_path / "out.exr")
+    rgb = colours.copy()
+    rgb[3, 3, 0] = bad
+    source = write_exr(tmp_path / "bad.exr", planes(rgb))
+    with pytest.raises(
+        ColourError, match=r"outside \[0, 1\]; use --out-of-gamut clip, or another way"
+    ) as caught:
+        texture.convert(strict, source, tmp_path / "bad-out.exr")
+    assert str(caught.value).startswith(f"{source}: linear RGB ({bad:g}, ")
+    assert not (tmp_path / "bad-out.exr").exists()
+
+
+def test_encodings_end_at_one(colours, spectral, tmp_path):
+    Image.fromarray(colours[..., 0]).save(tmp_path / "float.tif")
+    scaled = replace(spectral, encoding="encoded", out_of_gamut="scale")
+    with pytest.raises(OptionError, match="encoded floats end at 0 and 1"):
+        texture.convert(scaled, tmp_path / "float.tif", tmp_path / "out.exr")
+
+
+def other_planes(shape):
+    """Alpha, a depth with NaN and infinity, and object numbers."""
+    rng = np.random.default_rng(3)
+    depth = rng.normal(0, 1e6, shape).astype(np.float32)
+    depth[0, :3] = (np.nan, np.inf, -np.inf)
+    return {
+        "A": rng.random(shape).astype(np.float16),
+        "Z": depth,
+        "id": rng.integers(0, 1 << 24, shape, dtype=np.uint32, endpoint=True),
+    }
+
+
+@pytest.mark.parametrize("kind", [OpenEXR.scanlineimage, OpenEXR.tiledimage])
+@pytest.mark.parametrize("band", [1, 1 << 25])
+def test_several_parts_tiles_windows_and_other_channels(kind, band, spectral, tmp_path, monkeypatch):
+    monkeypatch.setattr("uplift.io.texture.source.BAND", band)
+    shape = (70, 45)
+    rgb = np.random.default_rng(2).random((*shape, 3)).astype(np.float16)
+    others = other_planes(shape)
+    tiles = {"tiles": small_tiles()} if kind == OpenEXR.tiledimage else {}
+    header = {
+        "type": kind,
+        "dataWindow": ((5, -7), (5 + shape[1] - 1, -7 + shape[0] - 1)),
+        "displayWindow": ((0, 0), (99, 79)),
+        "pixelAspectRatio": 2.0,
+        **tiles,
+    }
+    parts = [
+        OpenEXR.Part({**header}, {**planes(rgb), **others}, "left"),
+        OpenEXR.Part({**header}, {"deep.Z": others["Z"]}, "depth"),
+        OpenEXR.Part(
+            {**header}, {f"view.{name}": plane for name, plane in planes(rgb[::-1]).items()}, "right"
+        ),
+    ]
+    OpenEXR.File(parts).write(str(tmp_path / "in.exr"))
+    result = texture.convert(spectral, tmp_path / "in.exr", tmp_path / "out.exr")
+    assert result.counts.pixels == 2 * rgb.size // 3
+    written = OpenEXR.File(str(tmp_path / "out.exr"), separate_channels=True).parts
+    assert [part.name() for part in written] == ["left", "depth", "right"]
+    for part in written:
+        assert [corner.tolist() for corner in part.header["dataWindow"]] == [[5, -7], [49, 62]]
+        assert [corner.tolist() for corner in part.header["displayWindow"]] == [[0, 0], [99, 79]]
+        assert part.header["pixelAspectRatio"] == 2
+    for name, plane in others.items():
+        pixels = written[0].channels[name].pixels
+        assert pixels.dtype == plane.dtype
+        np.testing.assert_array_equal(pixels, plane)
+    np.testing.assert_array_equal(written[1].channels["deep.Z"].pixels, others["Z"])
+    assert set(written[1].channels) == {"deep.Z"}
+    for place, asked in ((0, rgb), (2, rgb[::-1])):
+        found = held(tmp_path / "out.exr", spectral.channels, place)
+        np.testing.assert_allclose(found, spectral.cube.reflectance(asked, AT), rtol=0, atol=1e-6)
+
+
+def test_numbers_that_would_not_pass_through_are_refused(colours, spectral, tmp_path):
+    whole = {**planes(colours), "id": np.full(colours.shape[:2], (1 << 24) + 1, dtype=np.uint32)}
+    source = write_exr(tmp_path / "in.exr", whole)
+    with pytest.raises(TextureError, match="channel 'id' holds whole numbers beyond 16777216"):
+        texture.convert(spectral, source, tmp_path / "out.exr")
+    assert not (tmp_path / "out.exr").exists()
+
+
+def test_bands_do_not_show_and_are_bounded(spectral, colours, tmp_path, monkeypatch):
+    source = write_exr(tmp_path / "in.exr", planes(np.tile(colours, (5, 1, 1))))
+    texture.convert(spectral, source, tmp_path / "whole.exr")
+    monkeypatch.setattr("uplift.io.texture.source.BAND", 1)
+    monkeypatch.setattr("uplift.io.texture.conversion.BAND", 1)
+    asked, told = [], []
+
+    def sample(rgb):
+        asked.append(rgb.shape)
+        return spectral.sample(rgb)
+
+    bands = replace(spectral, sample=sample)
+    texture.convert(bands, source, tmp_path / "bands.exr", watch=lambda *rows: told.append(rows))
+    assert (tmp_path / "bands.exr").read_bytes() == (tmp_path / "whole.exr").read_bytes()
+    assert asked == [(16, 30, 3)] * 6 + [(4, 30, 3)]
+    assert told[-1] == (100, 100)
+    assert [done for done, _ in told] == sorted({done for done, _ in told})
+
+
+def test_an_image_of_another_space_is_remarked_on(colours, made, tmp_path):
+    acescg = (0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767)
+    srgb = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)
+    result, _ = made(write_exr(tmp_path / "a.exr", planes(colours), chromaticities=acescg))
+    assert result.remarks == ("the image names other primaries; its colours are taken for sRGB",)
+    result, _ = made(write_exr(tmp_path / "b.exr", planes(colours), chromaticities=srgb))
+    assert result.remarks == ()
+
+
+def layers(*names):
+    return {f"{name}.{letter}": np.zeros((4, 5), np.float32) for name in names for letter in "RGB"}
+
+
+@pytest.mark.parametrize(
+    ("held", "problem"),
+    [
+        ({"Z": np.zeros((4, 5), np.float32)}, "holds no colour but Z; colour is in R, G and B, or in Y"),
+        (
+            layers("diffuse", "coat"),
+            "has several layers of colour: coat, diffuse; make each a part, or a file",
+        ),
+        ({letter: np.zeros((4, 5), np.uint32) for letter in "RGB"}, "has colours of type uint"),
+    ],
+)
+def test_images_without_one_colour(held, problem, spectral, tmp_path):
+    source = write_exr(tmp_path / "in.exr", held)
+    with pytest.raises(TextureError) as caught:
+        texture.convert(spectral, source, tmp_path / "out.exr")
+    assert problem in str(caught.value)
+    assert str(caught.value).startswith(str(source))
+
+
+def test_files_that_are_no_images(spectral, colours, tmp_path):
+    (tmp_path / "text.png").write_text("no image")
+    Image.fromarray((colours * 255).astype(np.uint8)).save(tmp_path / "a.bmp")
+    problems = {
+        "none.png": "no such file",
+        ".": "no such file",
+        "text.png": "text.png",
+        "a.bmp": "is a bmp image",
+    }
+    for name, problem in problems.items():
+        with pytest.raises(TextureError, match=problem):
+            texture.convert(spectral, tmp_path / name, tmp_path / "out.exr")
+    assert not (tmp_path / "out.exr").exists()

@@ -1,0 +1,73 @@
+"""Small tasks, and charts of few methods."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift.atlas import read_atlas
+from uplift.lab.chart.method import Family, Method, Ready
+from uplift.lab.chart.table import Chart, Row, State
+from uplift.lab.chart.task import LIGHTS, Effort, task
+
+FACTS = dict.fromkeys(("machine", "versions", "commit", "colours", "spectra", "effort"), "stated")
+HASTE = Effort(answering=0.05, runs=3, lap=0.001, batch=64, builds=1)
+ERRORS = (
+    "round_trip",
+    *LIGHTS,
+    "lights",
+    "rms",
+    *(f"own_{light}" for light in LIGHTS),
+    "own_lights",
+    "own_rms",
+)
+
+
+@pytest.fixture(scope="session")
+def small_task(repository):
+    """Sixteen colours, the edges, and the ColorChecker; no time to lose."""
+    return task({"macbeth": read_atlas(repository / "atlases" / "macbeth.txt")}, 16, HASTE)
+
+
+@pytest.fixture(scope="session")
+def greys():
+    """A family to put methods into."""
+    return Family("Greys", "a test", "#123456", ())
+
+
+@pytest.fixture
+def method_of():
+    """A method that answers with a function of RGB and wavelengths."""
+
+    def method_of(uplift, **fields):
+        return Method("test", "Test", lambda task: Ready(uplift, 8), **fields)
+
+    return method_of
+
+
+@pytest.fixture
+def row_of():
+    """A measured row with one error for everything."""
+
+    def row_of(name, time, error, **fields):
+        numbers = {f"{key}_{kind}": error for key in ERRORS for kind in ("mean", "p99", "max")}
+        numbers |= {"time_ns": time, "batch_ns": time, "single_ns": 10 * time, "bytes": 1e4, "build_s": 1.0}
+        numbers |= {"batch_colours": 64, "round_trip_colours": 16, "unseen_spectra": 12, "own_spectra": 12}
+        texts = dict.fromkeys(("label", "title"), name) | dict.fromkeys(
+            ("mode", "ask", "note", "why", "build"), ""
+        )
+        plain = {"family": "Mallett 2019", "source": "a test", "state": State.MEASURED, "numbers": numbers}
+        return Row(**({"method": name} | texts | plain | fields))
+
+    return row_of
+
+
+@pytest.fixture
+def chart_of():
+    """A chart of rows."""
+    return lambda *rows: Chart(FACTS, rows)
+
+
+@pytest.fixture(scope="session")
+def rng():
+    return np.random.default_rng(0)

@@ -1,0 +1,118 @@
+"""Other people's methods answer as their own code does, and ours come in all kinds."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+import pytest
+from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999, XYZ_to_sd_Otsu2018
+
+from uplift.colorimetry import observer
+from uplift.common.errors import OptionError
+from uplift.lab.chart import methods
+from uplift.lab.chart.measure import measure_one
+from uplift.lab.chart.method import Family
+from uplift.lab.chart.methods import FAMILIES, chosen
+from uplift.lab.chart.methods.macadam1935 import boxes
+from uplift.lab.chart.table import State
+from uplift.lab.chart.task import edges
+from uplift.lookup import MODES
+
+
+def ready(name, task):
+    (found,) = chosen((name,))
+    return found[1].prepare(task)
+
+
+@pytest.fixture(scope="module")
+def colours():
+    return np.concatenate([np.random.default_rng(4).random((20, 3)), np.eye(3), [[0, 0, 0], [1, 1, 1]]])
+
+
+def test_names_are_unique_and_the_usual_are_fewer_than_all():
+    names = [method.name for _, method in chosen(("*",))]
+    assert len(set(names)) == len(names) > 400
+    usual, quick = chosen(), chosen(quick=True)
+    assert 80 < len(usual) < 150
+    assert 8 <= len(quick) <= 12
+    published = {family.name for family, method in usual if not method.build}
+    assert published == {
+        "Jakob 2019", "MacAdam 1935", "Mallett 2019", "Meng 2015", "Mitsuba 3", "Otsu 2018", "Smits 1999",
+    }  # fmt: skip
+    assert len({family.colour for family in FAMILIES}) == len(FAMILIES)
+
+
+def test_ours_come_in_every_model_size_mode_and_type():
+    names = {method.name for _, method in chosen(("moments*", "sigmoid*"))}
+    models = ("sigmoid", *(f"moments{count}" for count in (3, 5, 9, 13, 17)))
+    for model in models:
+        for dim in (8, 16, 32, 64):
+            for atlas in ("", "-atlas"):
+                for mode in MODES:
+                    assert {f"{model}-{dim}{atlas}-{mode}", f"{model}-{dim}{atlas}-{mode}-float32"} <= names
+
+
+def test_methods_are_chosen_by_pattern():
+    assert [method.name for _, method in chosen(("mallett2019", "sm*"))] == ["mallett2019", "smits1999"]
+    with pytest.raises(OptionError, match=r"no method is called 'malet'; name some as .*'mallett2019'"):
+        chosen(("mallett2019", "malet"))
+
+
+def test_a_method_is_added_by_one_file(tmp_path, monkeypatch):
+    (tmp_path / "test2026.py").write_text(
+        "from uplift.lab.chart.method import Family\nFAMILIES = (Family('Test 2026', 'a test', '#000000', ()),)\n"
+    )
+    monkeypatch.setattr(methods, "__path__", [*methods.__path__, str(tmp_path)])
+    names = [family.name for family in methods.found()]
+    monkeypatch.delitem(sys.modules, f"{methods.__name__}.test2026")
+    assert set(names) - {family.name for family in FAMILIES} == {"Test 2026"}
+
+
+def test_smits_and_mallett_are_colour_science_s(small_task, colours):
+    at = small_task.sensor.wavelengths
+    for name, theirs in (("smits1999", RGB_to_sd_Smits1999), ("mallett2019", RGB_to_sd_Mallett2019)):
+        expected = [np.interp(at, sd.wavelengths, sd.values) for sd in map(theirs, colours)]
+        np.testing.assert_allclose(ready(name, small_task).uplift(colours, at), expected, atol=1e-12)
+
+
+@pytest.mark.filterwarnings("ignore::colour.utilities.ColourRuntimeWarning")
+def test_otsu_is_colour_science_s(small_task, colours):
+    cmfs, light = observer.aligned(small_task.sensor, 380, 730, 10)
+    sd = XYZ_to_sd_Otsu2018(small_task.sensor.xyz(colours[0]), cmfs, light)
+    found = ready("otsu2018", small_task).uplift(colours[:1], sd.wavelengths)
+    np.testing.assert_allclose(found[0], sd.values, atol=1e-12)
+
+
+def test_boxes_have_one_height_two_edges_and_the_colour(small_task):
+    sensor, rgb = small_task.sensor, np.concatenate([np.random.default_rng(5).random((300, 3)), edges()])
+    found = boxes(sensor)(rgb, sensor.wavelengths)
+    missed = np.abs(sensor.rgb(found) - rgb).max(axis=1)
+    assert (missed < 1e-6).mean() > 0.99
+    assert missed.max() < 0.05
+    height = found.max(axis=1, keepdims=True)
+    between = (found > 1e-9) & (found < height - 1e-9)
+    assert between.sum(axis=1).max() <= 2
+    assert (found[(rgb == 0).all(axis=1)] == 0).all()
+    np.testing.assert_allclose(found[(rgb == 1).all(axis=1)], 1, atol=1e-6)
+
+
+def test_jakob_s_fit_has_the_colour(small_task):
+    rgb = np.array([[0.5, 0.4, 0.3]])
+    found = ready("jakob2019-direct", small_task).uplift(rgb, small_task.sensor.wavelengths)
+    np.testing.assert_allclose(small_task.sensor.rgb(found), rgb, atol=2e-3)
+
+
+def test_mitsuba_is_looked_up_or_said_to_be_missing(small_task, monkeypatch):
+    (found,) = chosen(("mitsuba3-table",))
+    row = measure_one(*found, small_task)
+    assert row.state in (State.MEASURED, State.MISSING)
+    if row.state == State.MEASURED:
+        assert row.numbers["bytes"] > 9e6
+    monkeypatch.setitem(sys.modules, "mitsuba", None)
+    row = measure_one(*found, small_task)
+    assert (row.state, row.why) == (State.MISSING, "Mitsuba is not installed: pip install 'uplift[peers]'")
+
+
+def test_families_have_a_source():
+    assert all(isinstance(family, Family) and family.source for family in FAMILIES)

@@ -1,0 +1,57 @@
+"""The picture and the page: what is measured and nothing else, and no need of a network."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import matplotlib.image
+import pytest
+
+from uplift.lab.chart.page import page
+from uplift.lab.chart.panels import PANELS
+from uplift.lab.chart.picture import write_pictures
+from uplift.lab.chart.table import State
+from uplift.viz.markup import Markup
+
+HOSTILE = "</script><b>x</b>"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("chart")
+
+
+def test_a_marker_in_every_panel_for_what_is_measured(row_of, chart_of, folder):
+    numbers = {key: value for key, value in row_of("one", 1, 1).numbers.items() if key != "batch_ns"}
+    chart = chart_of(
+        row_of("Mallett 2019", 80, 0.4),
+        row_of("alone", 1e6, 0.1, numbers=numbers | {"time_ns": 1e6}),
+        row_of("9 · 32³", 900, 0.02, build="uplift build", mode="refined", family="of another version"),
+        row_of("wrong", 1, 1e-9, state=State.BROKEN),
+    )
+    text = write_pictures(chart, folder / "chart.png", folder / "chart.svg")
+    assert (folder / "chart.svg").read_text(encoding="utf-8") == text
+    assert matplotlib.image.imread(folder / "chart.png").shape[:2] == (2150, 1320)
+    markers = re.findall(r'id="marker-(\d+)-(\d+)"', text)
+    assert sorted(markers) == sorted((str(panel), row) for panel in range(len(PANELS)) for row in "012")
+    assert text.count('id="whisker-') == 2 * 3
+    assert "Mallett 2019" in text
+    assert "wrong" not in text
+
+
+def test_the_page_needs_nothing_else_and_cannot_be_broken_by_names(row_of, chart_of):
+    rows = row_of(HOSTILE, 80, 0.4), row_of("wrong", 1, 1, state=State.BROKEN, why=HOSTILE, numbers={})
+    text = page(chart_of(*rows), Markup("<svg></svg>"))
+    assert HOSTILE not in text
+    assert not re.search(r'(?:src|href|url)\s*[=(]\s*["\']?(?:https?:)?//', text)
+    (data,) = re.findall(r'<script type="application/json" id="rows">(.*?)</script>', text, re.DOTALL)
+    first, second = json.loads(data)
+    assert first["title"] == HOSTILE
+    assert ["held", "10 kB"] in first["lines"]
+    assert second["lines"] == []
+
+
+def test_the_same_chart_gives_the_same_page(row_of, chart_of):
+    chart = chart_of(row_of("one", 80, 0.4))
+    assert page(chart, Markup("")) == page(chart, Markup(""))

@@ -1,0 +1,52 @@
+"""The questions: the same every time, and no answer among them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift.atlas import Entry, Spectra, merge, on_grid, read_atlas
+from uplift.common.errors import AtlasError, OptionError
+from uplift.lab.chart.task import edges, task
+
+
+def shipped(repository, *names):
+    return {name: read_atlas(repository / "atlases" / f"{name}.txt") for name in names}
+
+
+def test_of_each_atlas_every_second_entry_builds_and_the_others_are_asked_for(repository):
+    # vs has an odd number of entries: counted through, macbeth would begin with its second.
+    atlases = shipped(repository, "vs", "macbeth")
+    found = task(atlases, 16)
+    names = [entry.name for spectra in atlases.values() for entry in spectra.entries[::2]]
+    assert list(found.kept.names) == names
+    rows = {tuple(row) for row in found.own.round(12)}
+    assert not rows & {tuple(row) for row in found.unseen.round(12)}
+    every = on_grid(merge(atlases.values()), found.sensor.wavelengths)
+    assert len(found.own) + len(found.unseen) == found.sensor.holds(found.sensor.rgb(every)).sum()
+
+
+def test_the_questions_are_the_same_every_time(small_task, repository):
+    again = task(shipped(repository, "macbeth"), 16)
+    for name in ("rgb", "own", "unseen"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(small_task, name))
+
+
+def test_edges_hold_every_corner_and_grey_once():
+    found = edges()
+    assert len(np.unique(found, axis=0)) == len(found)
+    assert (
+        ((found == 0) | (found == 1) | (found == found[:, :1]).all(axis=1, keepdims=True)).any(axis=1).all()
+    )
+    corners = found[((found == 0) | (found == 1)).all(axis=1)]
+    assert len(corners) == 8
+    assert (np.ptp(found, axis=1) == 0).sum() == 9
+
+
+def test_too_few_colours_and_entries_are_refused(repository):
+    with pytest.raises(OptionError, match="15 colours say nothing; ask for 16 or more"):
+        task(shipped(repository, "macbeth"), 15)
+    at = np.arange(380.0, 781.0, 10.0)
+    two = Spectra(tuple(Entry(name, at, np.full(len(at), 0.5)) for name in ("one", "other")))
+    with pytest.raises(AtlasError, match="1 of the entries to ask for lie within sRGB"):
+        task({"two": two}, 16)

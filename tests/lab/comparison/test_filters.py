@@ -1,0 +1,44 @@
+"""The search for filters finds the best of what it tries."""
+
+from __future__ import annotations
+
+import pytest
+
+from uplift.lab.comparison.filters import NONE, tune
+from uplift.lab.comparison.measure import judge
+from uplift.scene.representations.filters import COARSE, candidates
+from uplift.scene.representations.point import filtered, point
+
+
+@pytest.fixture(scope="module")
+def tuned(checker):
+    return {
+        (one.lights, one.kind): one for one in tune(checker, COARSE, ("tent", "lanczos", "mitchell"), (16,))
+    }
+
+
+@pytest.mark.parametrize("lights", ["smooth", "spiky"])
+@pytest.mark.parametrize("kind", ["tent", "lanczos"])
+def test_none_that_was_tried_is_better(checker, tuned, lights, kind):
+    (part,) = [part for part in checker.sets if part.name == lights]
+    means = {one: judge(filtered(16, one), checker, part).mean for one in candidates(kind, COARSE)}
+    best = tuned[lights, kind]
+    assert best.low_pass == min(means, key=means.__getitem__)
+    assert best.statistics.mean == pytest.approx(min(means.values()), rel=1e-9)
+
+
+def test_without_a_filter_it_is_point_sampling(checker, tuned):
+    for part in checker.sets:
+        assert tuned[part.name, NONE].statistics == judge(point(16), checker, part)
+        assert tuned[part.name, NONE].told == ""
+
+
+def test_filters_save_point_sampling_under_spiky_lights(tuned):
+    for kind in ("mitchell", "lanczos"):
+        assert tuned["spiky", kind].statistics.mean < 0.3 * tuned["spiky", NONE].statistics.mean
+
+
+def test_parameters_are_told(tuned):
+    assert tuned["spiky", "lanczos"].told.startswith("extent ")
+    assert "τ" in tuned["spiky", "lanczos"].told
+    assert tuned["spiky", "tent"].told.count(",") == 0

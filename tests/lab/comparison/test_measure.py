@@ -1,0 +1,99 @@
+"""Errors are those of the products, and the harness finds none where there is none."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.conftest import MACBETH
+from tests.lab.comparison.conftest import EFFORT
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.common.errors import AtlasError, UnknownNameError, UpliftError
+from uplift.lab.comparison.measure import compare, judge
+from uplift.lab.comparison.scene import FEW, scene
+from uplift.lab.comparison.statistics import HEADINGS, statistics
+from uplift.scene.representations.dense import observed
+from uplift.scene.representations.point import point
+from uplift.scene.representations.samples import Samples
+
+
+def test_the_dense_data_itself_has_no_error(checker):
+    dense = Samples("dense", "dense", np.eye(401), observed())
+    for part in checker.sets:
+        assert max(judge(dense, checker, part)) < 1e-9
+
+
+def test_errors_are_those_of_one_product_after_another(checker):
+    part, samples, apart = checker.sets[1], point(16), []
+    for power in part.powers:
+        white = power @ observed()
+        for surface in checker.surfaces:
+            product = samples.product(samples.light(power[None]), samples.surface(surface[None]))
+            pair = (lab(samples.xyz(product)[0], white), lab((power * surface) @ observed(), white))
+            apart.append(float(delta_e_2000(*pair)))
+    assert tuple(judge(samples, checker, part)) == pytest.approx(tuple(statistics(apart)), rel=1e-9)
+
+
+def test_what_is_no_number_is_refused(checker):
+    broken = Samples("broken", "broken", np.full((401, 3), np.nan), np.eye(3))
+    with pytest.raises(UpliftError, match="broken answers what is no number under smooth lights"):
+        compare(checker, [broken], EFFORT)
+
+
+def test_rows_are_ranked_within_their_sets(checker, found):
+    assert list(found.sets) == ["smooth", "spiky"]
+    for name in found.sets:
+        means = [row.statistics.mean for row in found.of(name)]
+        assert means == sorted(means)
+        assert len(means) == 8
+    assert "24 surfaces" in found.facts["products"]
+    assert all(row.ns.median > 0 and row.ns.runs == EFFORT.runs for row in found.rows)
+
+
+def test_lights_are_as_bright_as_one_another(checker):
+    np.testing.assert_allclose(checker.powers @ observed()[:, 1], 1)
+
+
+def test_spikes_count_where_they_are_stored(found):
+    (row,) = [row for row in found.of("spiky") if row.name == "RE16"]
+    assert row.floats == 16
+    assert 16 + 2 * 2 < row.light_floats < 16 + 2 * 10
+    (row,) = [row for row in found.of("spiky") if row.name == "TM9"]
+    assert (row.floats, row.light_floats) == (9, 81)
+
+
+def test_the_thesis_s_findings_come_out_on_the_colorchecker(found):
+    smooth, spiky = (
+        {row.name: row.statistics.mean for row in found.of(name)} for name in ("smooth", "spiky")
+    )
+    assert all(smooth[f"{family}32"] < 1 for family in ("PS", "RS", "RE"))
+    assert spiky["PS16"] > 10 * smooth["PS16"]
+    assert max(spiky["CS15"], spiky["RE16"]) < spiky["RS16"] < spiky["PS32"] < spiky["PS16"]
+
+
+def test_statistics_are_numpy_s():
+    errors = np.random.default_rng(9).gamma(2.0, size=(4, 50))
+    expected = [errors.mean(), errors.std(), *np.quantile(errors, (0.5, 0.025, 0.25, 0.75, 0.975))]
+    np.testing.assert_allclose(tuple(statistics(errors)), expected)
+    assert len(HEADINGS) == len(expected)
+
+
+def test_named_lights_are_a_set_of_their_own():
+    atlases = {"macbeth": uplift.read_atlas(MACBETH)}
+    (part,) = scene(atlases, ["HP1", "LED-B3", "HP1"]).sets
+    assert part.title == "given lights (HP1, LED-B3)"
+    with pytest.raises(UnknownNameError, match="did you mean"):
+        scene(atlases, ["F2"])
+    with pytest.raises(AtlasError, match="no entries to compare with"):
+        scene({"none": uplift.Spectra()})
+
+
+def test_a_thin_scene_keeps_surfaces_from_end_to_end(checker):
+    assert checker.thinned(FEW).names == checker.names
+    few = checker.thinned(5)
+    assert len(few.names) == len(few.surfaces) == 5
+    assert (few.names[0], few.names[-1]) == (checker.names[0], checker.names[-1])
+    assert math.isclose(few.surfaces[1, 0], checker.surfaces[checker.names.index(few.names[1]), 0])

@@ -1,0 +1,120 @@
+"""The Lipschitz constant of a cube: never exceeded, and attained."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import uplift
+from uplift.lab.study.steepness import _cuts, norms, steepness
+from uplift.lattice import CORNERS
+from uplift.lookup.interpolate import lattice_spectra
+
+RNG = np.random.default_rng(6)
+
+
+@pytest.fixture(scope="module")
+def steep(small_cube):
+    return steepness(small_cube.data)
+
+
+def quotient(first, second, before, after):
+    """rms change of spectra (n, N) per unit of change of colours (n, 3)."""
+    return np.sqrt(((after - before) ** 2).mean(axis=1)) / np.linalg.norm(second - first, axis=1)
+
+
+def test_no_two_colours_are_steeper(small_cube, steep):
+    first = RNG.random((3000, 3))
+    for size in (1.0, 1e-2, 1e-5):
+        second = np.clip(first + size * RNG.normal(size=first.shape), 0, 1)
+        found = quotient(first, second, small_cube.reflectance(first), small_cube.reflectance(second))
+        assert found.max() <= steep.largest * (1 + 1e-6)
+        assert found.max() > 0.1 * steep.largest or size == 1.0
+
+
+def test_the_steepest_cell_is_as_steep_as_that(small_cube, steep):
+    data = small_cube.data
+    nodes = data.lattice.nodes
+    low = np.array(np.unravel_index(steep.cells.argmax(), steep.cells.shape))
+    inward = 1 - 2 * CORNERS
+    corners = nodes[low + CORNERS]
+    sides = nodes[low + 1] - nodes[low]
+    ways = RNG.normal(size=(400, 3))
+    ways = np.concatenate([np.abs(ways), np.eye(3)])
+    best = 0.0
+    for corner, sign in zip(corners, inward, strict=True):
+        for mirror in ((1, 1, 1), (1, 1, -1), (1, -1, 1), (-1, 1, 1)):
+            step = 1e-4 * sides.min() * ways * mirror
+            start = corner + sign * 1e-3 * sides
+            before = lattice_spectra(data, start[None], data.sensor.wavelengths)
+            after = lattice_spectra(data, start + step, data.sensor.wavelengths)
+            best = max(best, quotient(start, start + step, before, after).max())
+    assert best == pytest.approx(steep.cells.max(), rel=0.01)
+
+
+def test_a_box_is_as_steep_as_stated(small_cube, steep):
+    """Between its steepest entry and all corners that the lattice cuts its box into, in all directions."""
+    data = small_cube.data
+    entry = steep.boxes.argmax()
+    low, high = (face[entry] for face in data.pins.faces)
+    middle = data.atlas.rgb[entry]
+    cuts = [_cuts(data.lattice.nodes, low[axis], high[axis]) for axis in range(3)]
+    corners = np.stack(np.meshgrid(*cuts, indexing="ij"), axis=-1).reshape(-1, 1, 3)
+    beside = corners + 1e-3 * (high - low) * RNG.normal(size=(len(corners), 200, 3))
+    first = (middle + 0.5 * (beside - middle)).reshape(-1, 3)
+    second = first + 1e-5 * (high - low).min() * RNG.normal(size=first.shape)
+    found = quotient(first, second, small_cube.reflectance(first), small_cube.reflectance(second))
+    assert 0.9 * steep.boxes[entry] < found.max() <= steep.boxes[entry] * (1 + 1e-4)
+
+
+def test_codes_count_along_the_curve_of_the_space(plain_cube):
+    """A cell between codes is as steep per code as its two ends tell, the curve being steepest above."""
+    data = plain_cube.data
+    steep = steepness(data)
+    slope = np.diff(data.sensor.decoding)
+    ratio = steep.codes / steep.cells
+    assert ratio.min() >= slope.min() * (1 - 1e-9)
+    assert ratio.max() <= slope.max() * (1 + 1e-9)
+    assert ratio[-1, -1, -1] == pytest.approx(slope[-1], rel=1e-6)
+    assert steep.boxes.size == 0
+    assert steep.largest == steep.cells.max()
+
+
+def test_norms_are_those_of_the_jacobian():
+    columns = RNG.normal(size=(5, 3, 20))
+    expected = [np.linalg.norm(one, 2) / np.sqrt(20) for one in columns]
+    np.testing.assert_allclose(norms(columns), expected)
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_a_face_is_the_same_from_both_of_its_cells(small_cube, axis):
+    data = small_cube.data
+    low = RNG.integers(0, data.lattice.dim - 2, (200, 3))
+    fraction = RNG.random((200, 3))
+    spectra = uplift.models.reflectance(data.model, data.coefficients, data.sensor.wavelengths)
+
+    def answer(low, fraction):
+        points, weights = data.lattice.around(low, fraction)
+        return np.einsum("nk,nkw->nw", weights, spectra[points])
+
+    below, above = fraction.copy(), fraction.copy()
+    below[:, axis], above[:, axis] = 1, 0
+    np.testing.assert_allclose(
+        answer(low, below), answer(low + np.eye(3, dtype=int)[axis], above), atol=1e-15
+    )
+
+
+def test_the_face_of_a_box_is_the_same_from_both_sides(small_cube, steep):
+    """What the entry's answer becomes at its face is what the lattice has there."""
+    data = small_cube.data
+    low, high = data.pins.faces
+    entry = np.flatnonzero(data.atlas.reach)
+    middle = data.atlas.rgb[entry]
+    for way in (1, -1):
+        face = np.where(way > 0, high[entry], low[entry])
+        inside = middle + 0.4 * (face - middle)
+        inside[:, 0] = face[:, 0] - way * 1e-9
+        outside = inside.copy()
+        outside[:, 0] = np.clip(face[:, 0] + way * 1e-9, 0, 1)
+        moved = np.abs(small_cube.reflectance(outside) - small_cube.reflectance(inside)).max()
+        assert moved <= 2e-9 * steep.largest * np.sqrt(81)

@@ -1,0 +1,33 @@
+"""The atlases that are hard on purpose: always the same, and as hard as they are called."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import rgb_lab
+from uplift.lab.study.synthetic_atlases import MADE, crowded, noisy, spiky
+
+
+def values(atlas):
+    return np.array([entry.values for entry in atlas.entries])
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_they_are_always_the_same(name):
+    first, second = MADE[name](), MADE[name]()
+    np.testing.assert_array_equal(values(first), values(second))
+    assert first.names == second.names
+
+
+def test_they_are_what_they_are_called(sensor):
+    lab = rgb_lab(sensor, sensor.rgb(values(crowded())))
+    apart = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))
+    assert np.median(apart.min(axis=1)) < 1
+    assert (np.abs(np.diff(values(spiky()), axis=1)).max(axis=1) > 0.2).all()
+    rough = np.diff(values(noisy()), n=2, axis=1).std()
+    assert rough == pytest.approx(0.05 * 6**0.5, rel=0.1)
+    assert values(noisy()).min() < 0
+    assert values(noisy()).max() > 1
+    assert all(entry.wavelengths.shape == observer.grid().shape for entry in noisy().entries)

@@ -1,0 +1,34 @@
+"""Boxes around entries: none overlap, and of one colour only the first has one."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from uplift.lattice import Lattice
+from uplift.lattice.box_widths import FARTHEST, reach
+
+LATTICE = Lattice(np.linspace(0, 1, 9) ** 2)
+colours = arrays(float, st.tuples(st.integers(0, 12), st.just(3)), elements=st.floats(0, 1))
+
+
+@given(colours)
+def test_no_two_boxes_overlap(rgb):
+    reaches, steps = reach(LATTICE, rgb), LATTICE.steps_along(rgb)
+    assert ((reaches >= 0) & (reaches <= FARTHEST)).all()
+    for first in range(len(rgb)):
+        for second in range(first):
+            if reaches[first] and reaches[second]:
+                apart = np.abs(steps[first] - steps[second]).max()
+                assert reaches[first] + reaches[second] <= apart + 1e-12
+
+
+def test_of_one_colour_only_the_first_is_kept():
+    rgb = np.array([[0.2, 0.2, 0.2], [0.2, 0.2, 0.2], [0.9, 0.9, 0.9], [0.2, 0.2, 0.2]])
+    assert reach(LATTICE, rgb).tolist() == [FARTHEST, 0, FARTHEST, 0]
+
+
+def test_a_lone_entry_reaches_a_whole_step():
+    assert reach(LATTICE, np.array([[0.3, 0.4, 0.5]])).tolist() == [FARTHEST]

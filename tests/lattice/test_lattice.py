@@ -1,0 +1,68 @@
+"""The lattice: numbering, cells, weights, neighbours."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from uplift.common.errors import OptionError
+from uplift.lattice import Lattice, Status
+
+UNEVEN = Lattice(np.array([0.0, 0.01, 0.2, 0.7, 1.0]))
+colours = arrays(float, (7, 3), elements=st.floats(0, 1))
+
+
+def test_points_count_with_blue_fastest():
+    np.testing.assert_array_equal(UNEVEN.points[1], [0, 0, 0.01])
+    np.testing.assert_array_equal(UNEVEN.points[5], [0, 0.01, 0])
+    np.testing.assert_array_equal(UNEVEN.points[25], [0.01, 0, 0])
+    assert len(UNEVEN.points) == UNEVEN.size == 125
+
+
+def test_index_and_position_undo_each_other():
+    every = np.arange(UNEVEN.size)
+    np.testing.assert_array_equal(UNEVEN.index(UNEVEN.position(every)), every)
+
+
+@given(colours)
+def test_weights_are_a_partition_of_unity_and_reproduce_the_colour(rgb):
+    points, weights = UNEVEN.corners(rgb)
+    assert (weights >= 0).all()
+    np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-14)
+    np.testing.assert_allclose((weights[:, :, None] * UNEVEN.points[points]).sum(axis=1), rgb, atol=1e-14)
+
+
+def test_a_node_has_all_the_weight():
+    points, weights = UNEVEN.corners(UNEVEN.points)
+    owners = points[np.arange(UNEVEN.size), weights.argmax(axis=1)]
+    np.testing.assert_array_equal(owners, np.arange(UNEVEN.size))
+    np.testing.assert_array_equal(weights.max(axis=1), 1)
+
+
+def test_neighbours_are_those_within_one_step():
+    around, inside = UNEVEN.neighbours(np.arange(UNEVEN.size))
+    position = UNEVEN.position(np.arange(UNEVEN.size))
+    apart = np.abs(position[:, None] - position[None]).max(axis=-1)
+    for point in range(UNEVEN.size):
+        assert set(around[point, inside[point]]) == set(np.flatnonzero(apart[point] == 1))
+
+
+@pytest.mark.parametrize("nodes", [[0.0], [0.0, 0.0], [1.0, 0.0], [[0.0, 1.0]], [0.0, np.nan]])
+def test_nodes_must_increase(nodes):
+    with pytest.raises(OptionError, match="at least 2 increasing nodes"):
+        Lattice(np.array(nodes))
+
+
+def test_statuses_read_as_words():
+    assert [status.label for status in Status] == [
+        "atlas primary",
+        "atlas corner",
+        "regular",
+        "improved",
+        "unfitted",
+        "unrealisable",
+        "absent",
+    ]

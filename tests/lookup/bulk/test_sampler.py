@@ -1,0 +1,156 @@
+"""Bulk answers: those of numpy, whatever the shape, the size and the number of threads."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.cube.hand_made import hand_made
+from uplift.common.errors import ColourError, OptionError
+from uplift.lattice import Lattice
+from uplift.lookup import Cube, bulk
+
+AT = np.linspace(380, 780, 9)
+CUBES = ["macbeth_cube", "small_cube", "plain_cube", "small_sigmoid_cube"]
+
+
+@pytest.fixture(params=CUBES)
+def cube(request):
+    return request.getfixturevalue(request.param)
+
+
+@pytest.fixture(scope="module")
+def sample(small_cube):
+    return bulk.spectra(small_cube, AT)
+
+
+def colours(data, count=3000):
+    """Random ones, all nodes, and colours in, around and on the faces of the boxes of entries."""
+    rng = np.random.default_rng(5)
+    low, high = data.pins.faces
+    boxes = [
+        data.atlas.rgb,
+        low,
+        high,
+        *(low + share * (high - low) for share in rng.random((20, len(low), 3))),
+        *(np.where(rng.random(low.shape) < 0.5, low, middle) for middle in [data.atlas.rgb] * 5),
+        *(data.atlas.rgb + rng.normal(0, 1e-9, low.shape) for _ in range(3)),
+    ]
+    return np.clip(np.concatenate([rng.random((count, 3)), data.lattice.points[::7], *boxes]), 0, 1)
+
+
+def test_spectra_are_those_of_numpy(cube):
+    rgb = colours(cube.data)
+    found = bulk.spectra(cube, AT)(rgb)
+    assert found.dtype == np.float32
+    assert found.min() >= 0
+    assert found.max() <= 1
+    np.testing.assert_allclose(found, cube.reflectance(rgb, AT), rtol=0, atol=1e-6)
+
+
+def test_coefficients_are_those_of_numpy(cube):
+    rgb = colours(cube.data)
+    expected = cube.coefficients(rgb)
+    # A sigmoid's coefficients run into hundreds, and are steep in the colour.
+    np.testing.assert_allclose(
+        bulk.coefficients(cube)(rgb), expected, rtol=0, atol=2e-6 * np.abs(expected).max()
+    )
+
+
+def test_an_entry_gets_its_own_spectrum(small_cube):
+    data = small_cube.data
+    own = data.model.squash(data.model.from_storage(data.atlas.coefficients) @ data.model.basis(AT).T)
+    np.testing.assert_allclose(bulk.spectra(small_cube, AT)(data.atlas.rgb), own, rtol=0, atol=1e-6)
+
+
+def test_nodes_closer_than_bins_are_told_apart():
+    data = hand_made(lattice=Lattice(np.array([0.0, 1e-5, 2e-5, 1.0])))
+    rng = np.random.default_rng(1)
+    rgb = np.concatenate([rng.random((500, 3)), 3e-5 * rng.random((500, 3)), data.lattice.points])
+    found = bulk.coefficients(Cube(data))(rgb)
+    np.testing.assert_allclose(found, Cube(data).coefficients(rgb), rtol=0, atol=1e-5)
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (5,), (2, 3), (2, 0), (0,), (4, 1, 2)])
+def test_answers_keep_the_shape_of_the_question(sample, shape):
+    rgb = np.random.default_rng(0).random((*shape, 3))
+    assert sample(rgb).shape == (*shape, 9)
+
+
+def test_chunks_and_threads_do_not_show(small_cube, monkeypatch):
+    rgb = colours(small_cube.data)
+    whole = bulk.spectra(small_cube, AT, threads=1)(rgb)
+    monkeypatch.setattr("uplift.lookup.bulk.sampler.CHUNKS", (256, 64))
+    for threads in (1, 2, 5):
+        again = bulk.spectra(small_cube, AT, threads=threads)(rgb)
+        np.testing.assert_allclose(again, whole, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("kind", [np.float16, np.float32, np.longdouble, list])
+def test_other_kinds_of_numbers_are_taken(sample, kind):
+    exact = np.array([[0.5, 0.25, 0.125], [1, 0, 1]])
+    rgb = exact.tolist() if kind is list else exact.astype(kind)
+    np.testing.assert_array_equal(sample(rgb), sample(exact))
+
+
+def test_views_are_taken_and_left_alone(sample):
+    image = np.random.default_rng(0).random((8, 9, 4)).astype(np.float32)
+    before = image.copy()
+    view = image[::2, ::-1, :3]
+    np.testing.assert_array_equal(sample(view), sample(np.ascontiguousarray(view)))
+    np.testing.assert_array_equal(image, before)
+
+
+@pytest.mark.parametrize(
+    "rgb", [(np.nan, 0, 0), (0, np.inf, 0), (-0.001, 0, 0), (0, 1.001, 0), 0.5, (0.5, 0.5), "red", None, []]
+)
+def test_what_is_no_colour_is_refused(sample, small_cube, rgb):
+    with pytest.raises(ColourError) as caught:
+        sample(rgb)
+    with pytest.raises(ColourError) as expected:
+        small_cube.reflectance(rgb)
+    assert str(caught.value) == str(expected.value)
+
+
+def test_one_bad_colour_in_a_later_chunk_is_quoted(sample):
+    rgb = np.full((70_000, 3), 0.5)
+    rgb[69_000] = (0.5, 1.25, 0)
+    with pytest.raises(ColourError, match=r"linear RGB \(0\.5, 1\.25, 0\) lies outside"):
+        sample(rgb)
+
+
+def test_rounding_takes_no_colour_out_of_the_space(sample):
+    for base in ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (1.0, 0.5, 0.0)):
+        for bit in (1e-12, -1e-12):
+            np.testing.assert_allclose(sample(np.array(base) + bit), sample(base), rtol=0, atol=1e-6)
+
+
+def test_the_default_wavelengths_are_the_sensor_s(small_cube):
+    rgb = [0.2, 0.3, 0.4]
+    expected = small_cube.reflectance(rgb)
+    np.testing.assert_allclose(bulk.spectra(small_cube)(rgb), expected, rtol=0, atol=1e-6)
+
+
+def test_memory_is_that_of_the_tables(small_cube):
+    size = small_cube.data.lattice.size
+    most = 4 * size * (len(AT) + 8) + 4 * (4096 + 1) + 23 * 1000
+    assert 4 * size * len(AT) < bulk.spectra(small_cube, AT).nbytes < most
+
+
+def test_bad_wavelengths_and_threads_are_refused(small_cube):
+    with pytest.raises(OptionError, match="wavelengths must be"):
+        bulk.spectra(small_cube, [0])
+    for threads in (0, -1, 1.5, None, True):
+        with pytest.raises(OptionError, match="no number of threads"):
+            bulk.spectra(small_cube, AT, threads=threads)
+        with pytest.raises(OptionError, match="no number of threads"):
+            bulk.coefficients(small_cube, threads=threads)
+
+
+def test_misses_are_the_fitting_distances_around(small_cube):
+    data = small_cube.data
+    found = bulk.misses(small_cube)
+    clear = ~np.isin(np.arange(data.lattice.size), data.pins.cells[0])  # of boxes of entries
+    expected = data.distance[clear]
+    np.testing.assert_allclose(found(data.lattice.points[clear])[:, 0], expected, rtol=0, atol=1e-7)
+    np.testing.assert_allclose(found(data.atlas.rgb), 0, atol=1e-7)

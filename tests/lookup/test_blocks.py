@@ -1,0 +1,78 @@
+"""Long questions: blocks, tables, threads and types change nothing but the time and the room."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift.common.errors import OptionError
+from uplift.lookup import MODES
+from uplift.lookup.blocks import BLOCK, blockwise
+from uplift.lookup.node_table import TABULATED
+
+AT = [450.0, 550.0, 650.0]
+
+
+def random_colours(count, seed=0):
+    return np.random.default_rng(seed).random((count, 3))
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_threads_do_not_show(small_cube, mode):
+    rgb = random_colours(2 * BLOCK + 5)
+    alone = small_cube.reflectance(rgb, AT, mode)
+    np.testing.assert_array_equal(small_cube.reflectance(rgb, AT, mode, threads=3), alone)
+
+
+def test_threads_do_not_show_in_coefficients(small_cube):
+    rgb = random_colours(2 * BLOCK + 5)
+    np.testing.assert_array_equal(small_cube.coefficients(rgb, threads=2), small_cube.coefficients(rgb))
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("count", [3, 1000])
+def test_float32_is_the_same_to_float32(small_cube, mode, count):
+    rgb = random_colours(count)
+    found = small_cube.reflectance(rgb, AT, mode, dtype=np.float32)
+    assert found.dtype == np.float32
+    assert found.min() >= 0
+    assert found.max() <= 1
+    np.testing.assert_allclose(found, small_cube.reflectance(rgb, AT, mode), rtol=0, atol=1e-6)
+
+
+def test_float32_coefficients(small_sigmoid_cube):
+    rgb = random_colours(10)
+    found = small_sigmoid_cube.coefficients(rgb, dtype="float32")
+    np.testing.assert_array_equal(found, small_sigmoid_cube.coefficients(rgb).astype(np.float32))
+
+
+@pytest.mark.parametrize("mode", TABULATED)
+def test_a_table_of_all_points_gives_the_same(small_cube, monkeypatch, mode):
+    entries = small_cube.data.atlas.rgb
+    rgb = np.concatenate([random_colours(600), entries, entries + 1e-3])
+    assert len(rgb) >= small_cube.data.lattice.size
+    from_table = small_cube.reflectance(rgb, AT, mode)
+    monkeypatch.setattr("uplift.lookup.cube.MOST_BYTES", 0)
+    np.testing.assert_allclose(small_cube.reflectance(rgb, AT, mode), from_table, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("dtype", [np.float16, int, "complex128", "paint", object, 3])
+def test_other_types_are_refused(small_cube, dtype):
+    with pytest.raises(OptionError, match="answers are float64 or float32, not"):
+        small_cube.reflectance([0.5, 0.5, 0.5], dtype=dtype)
+    with pytest.raises(OptionError, match="answers are float64 or float32, not"):
+        small_cube.coefficients([0.5, 0.5, 0.5], dtype=dtype)
+
+
+@pytest.mark.parametrize("threads", [0, -1, 1.0, "2", None, True])
+def test_no_number_of_threads_is_refused(small_cube, threads):
+    with pytest.raises(OptionError, match="is no number of threads; use 1 or more"):
+        small_cube.reflectance([0.5, 0.5, 0.5], threads=threads)
+
+
+def test_what_goes_wrong_in_a_thread_comes_out():
+    def fail(rows):
+        raise ArithmeticError(len(rows))
+
+    with pytest.raises(ArithmeticError, match="4"):
+        blockwise(fail, np.zeros((8, 3)), 1, threads=2, block=4)

@@ -1,0 +1,145 @@
+"""What a query says about a colour."""
+
+from __future__ import annotations
+
+import colour
+import numpy as np
+import pytest
+
+from uplift.common.errors import ColourError, OptionError
+from uplift.lattice import Status
+from uplift.lookup import MODES, answers
+from uplift.lookup.blocks import BLOCK
+
+D65_WAVELENGTHS = colour.SpectralShape(380, 780, 5)
+
+
+def ask(cube, *rgb, **options):
+    return list(answers(cube, np.array(rgb, dtype=float), **options))
+
+
+def xyz(cube, reflectance):
+    """XYZ by colour-science's own integration, the perfect reflector at Y = 1."""
+    cmfs = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(D65_WAVELENGTHS)
+    light = colour.SDS_ILLUMINANTS["D65"].copy().align(D65_WAVELENGTHS)
+    sd = colour.SpectralDistribution(reflectance, D65_WAVELENGTHS.wavelengths)
+    return colour.sd_to_XYZ(sd, cmfs, light, method="Integration") / 100
+
+
+def test_cells_are_counted_along_the_axes(small_cube):
+    nodes = small_cube.data.lattice.nodes
+    inside = (nodes[:-1] + nodes[1:]) / 2
+    found = ask(small_cube, (inside[2], inside[0], inside[6]), (0, 0, 0), (1, 1, 1), (nodes[3], 1, 0))
+    assert [answer.cell for answer in found] == [(2, 0, 6), (0, 0, 0), (6, 6, 6), (3, 6, 0)]
+
+
+def test_statuses_are_those_of_the_cell_s_corners(small_cube):
+    data = small_cube.data
+    grid = data.status.reshape(8, 8, 8)
+    rgb = np.random.default_rng(5).random((100, 3))
+    seen = set()
+    for answer in answers(small_cube, rgb):
+        r, g, b = answer.cell
+        expected = sorted(set(grid[r : r + 2, g : g + 2, b : b + 2].ravel().tolist()))
+        assert [int(status) for status in answer.statuses] == expected
+        seen |= set(answer.statuses)
+    assert {Status.ATLAS_PRIMARY, Status.ATLAS_CORNER, Status.REGULAR} <= seen
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_the_reflectance_is_that_of_the_cube(small_cube, mode):
+    rgb = np.random.default_rng(6).random((20, 3))
+    at = np.array([410.0, 555.5, 690.0])
+    for row, answer in enumerate(answers(small_cube, rgb, at, mode)):
+        np.testing.assert_array_equal(answer.rgb, rgb[row])
+        np.testing.assert_array_equal(answer.wavelengths, at)
+        expected = small_cube.reflectance(rgb[row], at, mode)
+        np.testing.assert_allclose(answer.reflectance, expected, rtol=0, atol=1e-12)
+
+
+def test_every_entry_is_found_at_its_own_colour(small_cube):
+    atlas = small_cube.data.atlas
+    assert [answer.entry for answer in answers(small_cube, atlas.rgb)] == list(atlas.names)
+
+
+def test_every_entry_is_found_at_its_nearest_codes(small_cube):
+    atlas = small_cube.data.atlas
+    nearest = small_cube.decode(np.round(small_cube.encode(atlas.rgb)))
+    assert [answer.entry for answer in answers(small_cube, nearest)] == list(atlas.names)
+
+
+@pytest.mark.parametrize("channel", range(3))
+@pytest.mark.parametrize("by", [-2, 2])
+def test_no_entry_is_found_two_codes_away(small_cube, channel, by):
+    codes = np.round(small_cube.encode(small_cube.data.atlas.rgb))
+    codes[:, channel] += by
+    inside = ((codes >= 0) & (codes <= 255)).all(axis=1)
+    assert inside.sum() > 15
+    found = answers(small_cube, small_cube.decode(codes[inside]))
+    assert {answer.entry for answer in found} == {None}
+
+
+def test_without_an_atlas_no_entry_is_found(small_sigmoid_cube):
+    assert ask(small_sigmoid_cube, (0.5, 0.5, 0.5))[0].entry is None
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_the_round_trip_is_what_colour_science_integrates(small_cube, mode):
+    rgb = np.random.default_rng(7).random((6, 3))
+    for answer in answers(small_cube, rgb, mode=mode):
+        back = small_cube.data.sensor.xyz_to_rgb @ xyz(small_cube, answer.reflectance)
+        np.testing.assert_allclose(answer.round_trip, back, rtol=0, atol=1e-12)
+
+
+def test_the_round_trip_is_srgb(small_cube):
+    # colour-science rounds the matrix of sRGB to four digits, as the standard prints it.
+    (answer,) = ask(small_cube, (0.6, 0.3, 0.1))
+    white = colour.CCS_ILLUMINANTS["CIE 1931 2 Degree Standard Observer"]["D65"]
+    back = colour.XYZ_to_sRGB(xyz(small_cube, answer.reflectance), white, apply_cctf_encoding=False)
+    np.testing.assert_allclose(answer.round_trip, back, rtol=0, atol=5e-4)
+
+
+def test_the_colour_difference_is_that_of_colour_science(small_cube):
+    # Moments, as their round trips miss by something to be seen.
+    rgb = np.random.default_rng(8).random((40, 3))
+    white = xyz(small_cube, np.ones(81))
+    xy = colour.XYZ_to_xy(white)
+    seen = []
+    for answer in answers(small_cube, rgb, mode="moments"):
+        asked = colour.XYZ_to_Lab(np.linalg.solve(small_cube.data.sensor.xyz_to_rgb, answer.rgb), xy)
+        given = colour.XYZ_to_Lab(xyz(small_cube, answer.reflectance), xy)
+        expected = colour.delta_E(asked, given, method="CIE 2000")
+        assert answer.delta_e_2000 == pytest.approx(expected, abs=1e-9)
+        seen.append(expected)
+    assert max(seen) > 0.01
+
+
+def test_answers_come_in_order_across_blocks(small_cube):
+    rgb = np.random.default_rng(9).random((BLOCK + 3, 3))
+    found = list(answers(small_cube, rgb, [500.0]))
+    np.testing.assert_array_equal([answer.rgb for answer in found], rgb)
+    expected = small_cube.reflectance(rgb[-3:], [500.0])
+    np.testing.assert_allclose([answer.reflectance for answer in found[-3:]], expected, rtol=0, atol=1e-12)
+
+
+def test_no_question_no_answer(small_cube):
+    assert list(answers(small_cube, np.zeros((0, 3)))) == []
+
+
+def test_rounding_takes_no_colour_out_of_the_space(small_cube):
+    for answer in ask(small_cube, np.full(3, 1 + 1e-12), np.full(3, -1e-12)):
+        assert answer.delta_e_2000 < 0.01
+        assert all(0 <= step < 7 for step in answer.cell)
+
+
+def test_bad_questions_are_refused(small_cube):
+    with pytest.raises(ColourError, match=r"lies outside \[0, 1\]"):
+        ask(small_cube, (0.5, 0.5, 1.5))
+    with pytest.raises(OptionError, match="unknown mode"):
+        ask(small_cube, (0.5, 0.5, 0.5), mode="exact")
+
+
+@pytest.mark.parametrize("wavelengths", [[], [0], [np.nan], "red", [[400, 500], [600, 700]]])
+def test_bad_wavelengths_are_refused(small_cube, wavelengths):
+    with pytest.raises(OptionError, match="wavelengths must be a list of positive numbers in nm"):
+        ask(small_cube, (0.5, 0.5, 0.5), wavelengths=wavelengths)

@@ -1,0 +1,239 @@
+"""The main job, and what it must show: the ColorChecker at several sizes, both models, with and without it."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+from threadpoolctl import threadpool_info, threadpool_limits
+
+import uplift
+from tests.conftest import MACBETH
+from uplift.atlas import Entry, Spectra, on_grid, read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import colours_apart, spectra_apart
+from uplift.common.errors import OptionError, UnknownNameError, UpliftWarning
+from uplift.cube import digest
+from uplift.lattice import Status
+from uplift.models import reflectance
+
+GRID = observer.grid()
+
+
+def quietly(*args, **options):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        return uplift.build(*args, **options)
+
+
+def fresh_distance(cube):
+    """max |target − RGB| of every point, from the stored coefficients alone."""
+    data = cube.data
+    spectra = data.model.squash(data.model.from_storage(data.coefficients) @ data.model.basis(GRID).T)
+    return np.abs(data.sensor.rgb(spectra) - data.lattice.points).max(axis=1)
+
+
+def delta_e(cube, rgb, mode):
+    sensor = cube.data.sensor
+    back = sensor.rgb(cube.reflectance(rgb, mode=mode))
+    return colours_apart(sensor, rgb, back)
+
+
+def test_every_point_of_the_macbeth_cube_is_fitted_corners_included(macbeth_cube):
+    assert fresh_distance(macbeth_cube).max() <= 1e-4
+    assert macbeth_cube.data.distance.max() <= 1e-4
+    assert Status.UNFITTED not in macbeth_cube.data.status
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"atlas": MACBETH, "dim": 16},
+        {"atlas": MACBETH, "dim": 64},
+        {"atlas": None, "dim": 32},
+        {"atlas": None, "dim": 16},
+        {"atlas": None, "dim": 64},
+        {"atlas": MACBETH, "dim": 16, "model": "sigmoid"},
+        {"atlas": MACBETH, "dim": 32, "model": "sigmoid"},
+        {"atlas": MACBETH, "dim": 64, "model": "sigmoid"},
+        {"atlas": None, "dim": 32, "model": "sigmoid"},
+        {"atlas": MACBETH, "dim": 16, "coefficients": 3},
+        {"atlas": MACBETH, "dim": 16, "coefficients": 17},
+        {"atlas": MACBETH, "dim": 16, "warp": "vision"},
+        {"atlas": MACBETH, "dim": 16, "axis": "linear"},
+    ],
+    ids=lambda options: "-".join(
+        str(value if name != "atlas" else "macbeth" if value else "none") for name, value in options.items()
+    ),
+)
+def test_every_point_is_fitted_whatever_the_size_model_and_atlas(options):
+    cube = quietly(options.pop("atlas"), **options)
+    assert fresh_distance(cube).max() <= 1e-4
+    assert Status.UNFITTED not in cube.data.status
+
+
+@pytest.mark.parametrize(
+    ("mode", "mean", "most"), [("spectra", 1e-4, 0.05), ("moments", 0.02, np.inf), ("refined", 1e-3, 0.05)]
+)
+def test_20000_random_colours_come_back(macbeth_cube, mode, mean, most):
+    apart = delta_e(macbeth_cube, np.random.default_rng(20000).random((20000, 3)), mode)
+    assert apart.mean() <= mean
+    assert apart.max() <= most
+
+
+def test_entries_asked_at_their_own_colour_get_their_measurement_back(macbeth_cube):
+    atlas = macbeth_cube.data.atlas
+    spectra = read_atlas(MACBETH)
+    measured = on_grid(spectra, GRID)[[spectra.names.index(name) for name in atlas.names]]
+    found = macbeth_cube.reflectance(atlas.rgb)
+    assert delta_e(macbeth_cube, atlas.rgb, "spectra").max() <= 0.01
+    assert np.sqrt(((found - measured) ** 2).mean(axis=1)).mean() <= 0.02
+
+
+def test_the_atlas_makes_the_difference_under_other_lights(macbeth_cube):
+    """Macbeth colours under A: far closer to the measurements than a cube that has not seen them."""
+    atlas = macbeth_cube.data.atlas
+    spectra = read_atlas(MACBETH)
+    measured = on_grid(spectra, GRID)[[spectra.names.index(name) for name in atlas.names]]
+    light = observer.light("A")
+    with_atlas, without = (
+        spectra_apart(light, cube.reflectance(atlas.rgb), measured).mean()
+        for cube in (macbeth_cube, uplift.load())
+    )
+    assert with_atlas < 0.2 * without
+
+
+def test_every_seeded_point_names_its_entry_and_no_other_does(macbeth_cube):
+    data = macbeth_cube.data
+    seeded = np.isin(data.status, [Status.ATLAS_PRIMARY, Status.ATLAS_CORNER])
+    np.testing.assert_array_equal(seeded, data.entry >= 0)
+    assert np.bincount(data.entry[data.status == Status.ATLAS_PRIMARY]).tolist() == [1] * 23
+
+
+def test_what_is_left_out_is_named_and_recorded():
+    with pytest.warns(UpliftWarning, match=r"entry 'cyan' is left out: .* outside sRGB"):
+        cube = uplift.build(MACBETH, dim=8)
+    assert "cyan" not in cube.data.atlas.names
+    assert cube.data.provenance["left_out"] == ["cyan"]
+    assert cube.data.provenance["atlases"][0]["name"] == "macbeth.txt"
+
+
+def greys(**levels):
+    return Spectra(tuple(Entry(name, GRID, np.full(81, grey)) for name, grey in levels.items()))
+
+
+def test_crowded_entries_are_named_and_yet_exact():
+    with pytest.warns(UpliftWarning, match=r"entry '\w+' is crowded.*--dim auto"):
+        cube = uplift.build(greys(one=0.2, other=0.24), dim=4)
+    assert cube.data.atlas.names == ("one", "other")
+    for level in (0.2, 0.24):
+        np.testing.assert_allclose(cube.reflectance([level] * 3), level, atol=1e-4)
+
+
+def test_two_entries_of_one_colour_are_named_and_the_first_is_answered():
+    bumpy = np.full(81, 0.4) + 0.2 * np.sin(np.arange(81) / 3)
+    colour = observer.sensor().rgb(bumpy)
+    twins = Spectra((Entry("first", GRID, bumpy), Entry("second", GRID, bumpy)))
+    with pytest.warns(
+        UpliftWarning, match="entry 'second' is left out: an earlier entry has the same colour"
+    ):
+        cube = uplift.build(twins, dim=4)
+    own = reflectance(cube.data.model, cube.data.atlas.coefficients[:1], GRID)
+    np.testing.assert_allclose(cube.reflectance(colour), own[0], atol=1e-5)
+
+
+def test_dim_auto_is_recorded_as_what_it_chose():
+    cube = uplift.build(greys(one=0.2, other=0.24), dim="auto")
+    options = cube.data.provenance["options"]
+    assert options["dim"] == cube.data.lattice.dim
+    np.testing.assert_array_equal(
+        observer.axis_nodes(options["axis"], options["dim"]), cube.data.lattice.nodes
+    )
+
+
+def test_the_perfect_reflector_is_a_welcome_entry():
+    white = Spectra((Entry("white", GRID, np.ones(81)),))
+    cube = uplift.build(white, dim=3)
+    assert cube.data.atlas.names == ("white",)
+    np.testing.assert_allclose(cube.reflectance([1, 1, 1]), 1, atol=1e-4)
+
+
+@pytest.fixture(scope="session")
+def in_order():
+    return quietly(MACBETH, dim=5).data
+
+
+@settings(max_examples=3, phases=[Phase.generate])
+@given(order=st.permutations(range(24)))
+def test_the_order_of_the_atlas_sets_the_order_of_its_table_and_nothing_else(in_order, order):
+    """The bytes of every point are the same, but that it names its entry by its row; the table's to rounding."""
+    spectra = read_atlas(MACBETH)
+    shuffled = quietly(Spectra(tuple(spectra.entries[row] for row in order)), dim=5).data
+    for name in ("coefficients", "rgb", "distance", "status", "standard_error"):
+        assert getattr(shuffled, name).tobytes() == getattr(in_order, name).tobytes()
+    row = [shuffled.atlas.names.index(name) for name in in_order.atlas.names]
+    for name in ("rgb", "coefficients", "reach", "error"):
+        np.testing.assert_allclose(
+            getattr(shuffled.atlas, name)[row], getattr(in_order.atlas, name), rtol=1e-12, atol=1e-13
+        )
+    np.testing.assert_array_equal(np.append(row, -1)[in_order.entry], shuffled.entry)
+
+
+def test_batches_do_not_show(monkeypatch):
+    """In a wide space too, where some points go on for long."""
+    options = {"dim": 7, "space": "ITU-R BT.2020"}
+    as_it_is = quietly(MACBETH, **options).data
+    monkeypatch.setattr("uplift.fit.batch.HOST", (1024, 64))
+    assert digest(quietly(MACBETH, **options).data) == digest(as_it_is)
+
+
+def test_threads_do_not_show():
+    """An atlas so large that BLAS shares its kriging out."""
+    spectra = read_atlas(MACBETH.with_name("cie2017.txt"), MACBETH.with_name("babelcolor.txt"))
+    digests = set()
+    for threads in (1, 4):
+        with threadpool_limits(threads, user_api="blas"):
+            digests.add(digest(quietly(spectra, dim=3).data))
+            assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {
+                threads
+            }
+    assert len(digests) == 1
+
+
+def test_the_same_input_gives_the_same_bytes(tmp_path):
+    for name in ("a", "b"):
+        quietly(MACBETH, dim=5, debug=True).save(tmp_path / name)
+    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "message"),
+    [
+        ({"dim": 1}, OptionError, "dim 1 has no cells; use --dim 2 or more"),
+        ({"dim": 10**400}, OptionError, r"needs about 1e\+291 GB"),
+        ({"dim": 100000}, OptionError, r"needs about \d.*GB.*; use --dim \d+ or less"),
+        ({"threshold": 0}, OptionError, "threshold of 0"),
+        ({"threshold": float("nan")}, OptionError, "threshold of nan"),
+        ({"coefficients": 2}, OptionError, "3 to 17"),
+        ({"model": "moment"}, UnknownNameError, "unknown model 'moment'; did you mean 'moments'"),
+        ({"axis": "sqrt"}, UnknownNameError, "axis spacing"),
+        ({"space": "sRGBB"}, UnknownNameError, "'sRGB'"),
+        ({"illuminant": "D56"}, UnknownNameError, "'D65'"),
+        ({"lights": ("D65", "FL111")}, UnknownNameError, "'FL11'"),
+        ({"warp": "visions"}, OptionError, "unknown warp"),
+    ],
+)
+def test_bad_options_are_refused(options, error, message):
+    with pytest.raises(error, match=message):
+        uplift.build(**options)
+
+
+def test_a_build_outside_srgb_names_the_colours_that_no_reflectance_has():
+    cube = uplift.build(dim=3, space="ProPhoto RGB", illuminant="D50")
+    counts = cube.data.counts()
+    assert counts["unrealisable"] > 0
+    assert counts["unfitted"] == 0
+    assert (fresh_distance(cube) > 1e-4).sum() == counts["unrealisable"]

@@ -1,0 +1,54 @@
+"""A scene so small that a plan for it takes seconds: few colours, few candidates, coarse lattices."""
+
+from __future__ import annotations
+
+import shutil
+import warnings
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.conftest import MACBETH
+from tests.io.texture.conftest import planes, write_exr
+from uplift.scene import plan
+from uplift.scene.representations.point import point
+from uplift.scene.representations.riemann import riemann
+
+SMALL = plan.Effort(coefficients=(5, 9), dims=(3, 5), reference=7, predicting=60, confirming=90)
+LIGHTS = ("D65", "FL11")
+
+
+def painted():
+    """(16, 16, 3) linear RGB: shades of four paints."""
+    rng = np.random.default_rng(3)
+    paints = np.array([[0.5, 0.2, 0.1], [0.1, 0.3, 0.2], [0.2, 0.2, 0.5], [0.6, 0.6, 0.5]])
+    shades = rng.uniform(0.3, 1, (16, 16, 1)) * paints[rng.integers(0, 4, (16, 16))]
+    return shades.astype(np.float32)
+
+
+@pytest.fixture(scope="session")
+def kitchen(tmp_path_factory):
+    """The scene file, in a folder with all that it names."""
+    folder = tmp_path_factory.mktemp("kitchen")
+    write_exr(folder / "wood.exr", planes(painted()))
+    shutil.copy(MACBETH, folder)
+    path = folder / "kitchen.toml"
+    path.write_text(
+        'textures = "wood.exr"\natlases = ["macbeth.txt"]\nlights = ["D65", "FL11"]\ntolerance = 4\n',
+        encoding="utf-8",
+    )
+    return path
+
+
+@pytest.fixture(scope="session")
+def planned(kitchen):
+    """The plan, and the steps that it took."""
+    steps = []
+    with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        patch.setattr(
+            "uplift.scene.plan.representation.representations",
+            lambda lights, surfaces: [riemann(8), point(32)],
+        )
+        return plan.plan(plan.read_brief(kitchen), SMALL, steps.append), steps

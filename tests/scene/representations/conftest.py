@@ -1,0 +1,33 @@
+"""Spectra that representations hold."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.lab.comparison_scenes import colorchecker
+from uplift.lab.comparison.scene import Scene
+from uplift.scene.representations.registry import representations
+
+
+@pytest.fixture(scope="session")
+def checker() -> Scene:
+    return colorchecker()
+
+
+@pytest.fixture(scope="session")
+def every(checker):
+    """Every representation, by name."""
+    return {one.name: one for one in representations(checker.powers, checker.surfaces)}
+
+
+@pytest.fixture
+def lit(checker):
+    """A function of a light's name: its powers (24, 401), once for every patch."""
+
+    def lit(name):
+        part = next(part for part in checker.sets if name in part.lights)
+        power = part.powers[part.lights.index(name)]
+        return np.tile(power, (len(checker.surfaces), 1))
+
+    return lit

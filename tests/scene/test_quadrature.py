@@ -1,0 +1,147 @@
+"""Gaussian quadrature for sampled weights: known rules, a plain oracle, exactness, orders that do not exist."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.polynomial import legendre
+
+from uplift.common.errors import OptionError
+from uplift.scene.quadrature import Rule, Undefined, gauss, interpolatory
+
+POINTS = np.arange(380.0, 771.0)
+BELL = np.exp(-(((POINTS - 560) / 40) ** 2))
+OPPONENT = (POINTS - 545) * BELL
+"""Of both signs."""
+
+
+def _rule(points: np.ndarray, masses: np.ndarray, order: int) -> Rule:
+    found = gauss(points, masses, order)
+    assert isinstance(found, Rule), found
+    return found
+
+
+def _moment_error(rule: Rule, points: np.ndarray, masses: np.ndarray, degree: int) -> float:
+    """Largest error over Legendre polynomials up to ``degree``, against the masses' own size."""
+    middle, half = (points[0] + points[-1]) / 2, (points[-1] - points[0]) / 2
+    exact = masses @ legendre.legvander((points - middle) / half, degree)
+    found = rule.weights @ legendre.legvander((rule.nodes - middle) / half, degree)
+    return float(np.abs(found - exact).max() / np.abs(masses).sum())
+
+
+@pytest.mark.parametrize("order", [1, 2, 5, 16, 40])
+def test_of_a_legendre_rule_as_masses_comes_the_smaller_legendre_rule(order: int) -> None:
+    points, masses = legendre.leggauss(100)
+    nodes, weights = legendre.leggauss(order)
+    rule = _rule(points, masses, order)
+    np.testing.assert_allclose(rule.nodes, nodes, atol=1e-12)
+    np.testing.assert_allclose(rule.weights, weights, atol=1e-11)
+
+
+@pytest.mark.parametrize("order", [1, 3, 8, 20])
+def test_is_exact_up_to_degree_2n_minus_1_and_no_further(order: int) -> None:
+    rule = _rule(POINTS, BELL, order)
+    assert len(rule) == order
+    assert (rule.weights > 0).all()
+    assert _moment_error(rule, POINTS, BELL, 2 * order - 1) < 1e-12
+    if order <= 8:
+        assert _moment_error(rule, POINTS, BELL, 2 * order) > 1e-9
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_masses_of_both_signs_are_as_exact(order: int) -> None:
+    rule = _rule(POINTS, OPPONENT, order)
+    assert rule.weights.min() < 0 < rule.weights.max()
+    assert _moment_error(rule, POINTS, OPPONENT, 2 * order - 1) < 1e-11
+
+
+def _exact_nodes(points: list[int], masses: list[int], order: int) -> np.ndarray:
+    """Roots of the orthogonal polynomial from its moments, in fractions: slow, and without rounding."""
+    moments = [
+        sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True)) for k in range(2 * order)
+    ]
+    rows = [[moments[i + j] for j in range(order)] + [-moments[i + order]] for i in range(order)]
+    for i in range(order):
+        pivot = next(k for k in range(i, order) if rows[k][i])
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        rows[i] = [value / rows[i][i] for value in rows[i]]
+        for k in range(order):
+            if k != i:
+                rows[k] = [a - rows[k][i] * b for a, b in zip(rows[k], rows[i], strict=True)]
+    return np.roots([1.0, *(float(row[-1]) for row in reversed(rows))])
+
+
+@given(
+    st.lists(st.integers(-9, 9), min_size=6, max_size=12).filter(lambda m: sum(map(bool, m)) > 4),
+    st.integers(1, 4),
+)
+def test_agrees_with_fractions_wherever_the_order_exists(masses: list[int], order: int) -> None:
+    points = list(range(len(masses)))
+    found = gauss(points, masses, order)
+    if isinstance(found, Undefined):
+        return
+    expected = np.sort_complex(_exact_nodes(points, masses, order))
+    gap = np.diff(found.nodes).min() if order > 1 else 1.0
+    if gap > 1e-2:  # where two nodes nearly meet, np.roots is the worse of the two
+        np.testing.assert_allclose(found.nodes, expected, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("masses", "order", "reason"),
+    [
+        ([1, 0, -1], 1, "no polynomial"),
+        ([1, 1, -1], 1, "a node lies at -1.0, outside 0 to 2"),
+        ([1, -4, 1], 2, "not real"),
+        ([-4, -12, 12, -2], 2, "coincide"),
+    ],
+)
+def test_says_why_an_order_is_undefined(masses: list[int], order: int, reason: str) -> None:
+    found = gauss(range(len(masses)), masses, order)
+    assert isinstance(found, Undefined)
+    assert found.order == order
+    assert reason in found.reason
+
+
+def test_an_order_past_an_undefined_one_exists() -> None:
+    rule = _rule(np.array([0, 1, 2, 3]), np.array([1, 1, -1, -1]), 2)
+    assert isinstance(gauss([0, 1, 2, 3], [1, 1, -1, -1], 1), Undefined)
+    np.testing.assert_allclose(rule.nodes, 1.5 + np.array([-1, 1]) * np.sqrt(1.75), atol=1e-12)
+
+
+@pytest.mark.parametrize("nodes", [[560.0], [631.4, 490.9, 557.7], np.linspace(400, 700, 12)])
+def test_given_nodes_are_exact_below_their_number(nodes: list[float]) -> None:
+    rule = interpolatory(nodes, POINTS, BELL)
+    np.testing.assert_array_equal(rule.nodes, np.sort(nodes))
+    assert _moment_error(rule, POINTS, BELL, len(nodes) - 1) < 1e-12
+
+
+def test_scale_and_shift_go_with_the_points_and_masses() -> None:
+    rule, moved = _rule(POINTS, OPPONENT, 4), _rule(POINTS * 1e-9 - 1, OPPONENT * 1e6, 4)
+    np.testing.assert_allclose(moved.nodes, rule.nodes * 1e-9 - 1, rtol=1e-12)
+    np.testing.assert_allclose(moved.weights, rule.weights * 1e6, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("points", "masses", "order"),
+    [
+        ([1, 2, 3], [1, 1], 1),
+        ([1, 3, 2], [1, 1, 1], 1),
+        ([1, 2, 3], [0, 0, 0], 1),
+        ([1, 2, 3], [1, np.nan, 1], 1),
+        ([1, 2, 3], [1, 1, 1], 0),
+        ([1, 2, 3], [1, 0, 1], 3),
+        ([], [], 1),
+    ],
+)
+def test_refuses_what_is_no_weight(points: list[float], masses: list[float], order: int) -> None:
+    with pytest.raises(OptionError, match="; "):
+        gauss(points, masses, order)
+
+
+def test_refuses_nodes_that_coincide() -> None:
+    with pytest.raises(OptionError, match="coincide"):
+        interpolatory([500, 500], POINTS, BELL)

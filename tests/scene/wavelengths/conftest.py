@@ -1,0 +1,27 @@
+"""Settings that many tests share: the ColorChecker under smooth and under spiky lights."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.conftest import MACBETH
+from uplift import read_atlas
+from uplift.atlas import on_grid
+from uplift.common.arrays import Array
+from uplift.scene.wavelengths import Setting, grid, set_up
+
+
+@pytest.fixture(scope="session")
+def checker() -> Array:
+    """(24, 391) the ColorChecker at 380–770 nm."""
+    return on_grid(read_atlas(MACBETH), grid())
+
+
+@pytest.fixture(scope="session")
+def smooth(checker: Array) -> Setting:
+    return set_up(checker, ["A", "D65"])
+
+
+@pytest.fixture(scope="session")
+def spiky(checker: Array) -> Setting:
+    return set_up(checker, ["FL2", "FL11"])

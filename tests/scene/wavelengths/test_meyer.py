@@ -1,0 +1,154 @@
+"""Meyer 1988: every figure that the paper prints, derived anew."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks.wavelengths.printed import CHANNELS, rows
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
+from uplift.scene.quadrature import Undefined
+from uplift.scene.wavelengths import Setting, grid, judge, set_up
+from uplift.scene.wavelengths.experiments import error, trials, triangle
+from uplift.scene.wavelengths.meyer import allocations, four, functions, meyer, rules, sampling
+from uplift.scene.wavelengths.opponent import Opponent, cones, opponent, plain
+
+
+def _matrix(space: str) -> Array:
+    own = [row for row in rows("matrices") if row["space"] == space]
+    return np.array([[float(row[key]) for key in "XYZ"] for row in own])
+
+
+@pytest.fixture(scope="module")
+def cmfs() -> Array:
+    return observer.matching_functions(observer.DEFAULT_OBSERVER, 380, 770, 1)
+
+
+@pytest.fixture(scope="module")
+def found(cmfs: Array) -> Opponent:
+    return opponent(grid(), cmfs)
+
+
+@pytest.fixture(scope="module")
+def setting_c(checker: Array) -> Setting:
+    return set_up(checker, ["C"])
+
+
+def test_the_matrices_come_out_as_printed(cmfs: Array, found: Opponent) -> None:
+    np.testing.assert_allclose(cones(grid(), cmfs).matrix, _matrix("SML"), atol=1.5e-4)
+    np.testing.assert_allclose(found.space.matrix, _matrix("AC1C2"), atol=1.5e-4)
+
+
+def test_the_eigenvalues_come_out_as_printed(found: Opponent) -> None:
+    printed = [float(row["eigenvalue"]) for row in rows("matrices") if row["eigenvalue"]]
+    np.testing.assert_allclose(found.eigenvalues, printed, rtol=3e-3)
+
+
+def test_cones_alone_lie_at_the_confusion_points(cmfs: Array) -> None:
+    alone = np.linalg.inv(cones(grid(), cmfs).matrix)
+    chromaticities = (alone / alone.sum(axis=0))[:2].T
+    np.testing.assert_allclose(chromaticities, [[0.171, -0.003], [1.14, -0.14], [0.735, 0.265]], atol=1e-12)
+
+
+def test_opponent_channels_are_uncorrelated(cmfs: Array, found: Opponent) -> None:
+    """The rotation alone is Karhunen–Loève; scaling each channel keeps them orthogonal."""
+    seen = cmfs @ found.space.matrix.T
+    gram = seen.T @ seen
+    assert np.abs(gram - np.diag(np.diag(gram))).max() < 1e-9 * gram.max()
+
+
+def test_tables_1a_and_1b(cmfs: Array, found: Opponent) -> None:
+    ours = rules(found.space, grid(), cmfs)
+    printed = rows("table1")
+    pairs, undefined = [], []
+    for channel, orders in zip(CHANNELS, ours, strict=True):
+        for order, rule in orders.items():
+            own = [row for row in printed if (row["channel"], row["order"]) == (channel, str(order))]
+            if isinstance(rule, Undefined):
+                undefined.append((channel, order))
+                assert not own
+                continue
+            nodes = [float(row["wavelength"]) for row in own]
+            np.testing.assert_allclose(rule.nodes, nodes, atol=0.101, err_msg=f"{channel}, order {order}")
+            pairs += [(w, float(row["weight"])) for w, row in zip(rule.weights, own, strict=True)]
+    assert undefined == [("C1", n) for n in (1, 3, 5, 7, 9)] + [("C2", n) for n in (4, 5, 6, 8)]
+    weights, as_printed = np.array(pairs).T
+    factor = weights @ as_printed / (weights @ weights)
+    np.testing.assert_allclose(factor * weights, as_printed, atol=4e-4)
+
+
+def test_table_2(cmfs: Array, found: Opponent, setting_c: Setting) -> None:
+    ours = rules(found.space, grid(), cmfs)
+    shared = four(ours, functions(found.space, grid(), cmfs))
+    stated = [row for row in rows("table2") if row["row"] == "2"]
+    nodes = np.concatenate([rule.nodes for rule in shared])
+    weights = np.concatenate([rule.weights for rule in shared])
+    np.testing.assert_allclose(nodes, [float(row["wavelength"]) for row in stated], atol=0.101)
+    printed = np.array([float(row["weight"]) for row in stated])
+    np.testing.assert_allclose(weights * (printed[0] / weights[0]), printed, atol=2e-4)
+    # Our ColorChecker is another measurement than the paper's.
+    for way, row in ((shared, "2"), ((ours[0][3], ours[1][2], ours[2][1]), "1")):
+        expected = next(float(r["error"]) for r in rows("table2") if r["row"] == row)
+        assert error(setting_c, found.space, way) == pytest.approx(expected, rel=0.03)
+
+
+def test_figure_6_the_opponent_space_needs_the_fewest(
+    cmfs: Array, found: Opponent, setting_c: Setting
+) -> None:
+    """Averaged over all allocations of a total, as the paper does."""
+    spaces = (found.space, cones(grid(), cmfs), plain())
+    curves = [dict(zip(*trials(setting_c, space).by_total, strict=True)) for space in spaces]
+    for total in range(4, 31):
+        assert curves[0][total] < min(curves[1][total], curves[2][total]), total
+
+
+def test_figure_7_a_before_c2_and_all_channels_before_one(found: Opponent, setting_c: Setting) -> None:
+    tried = trials(setting_c, found.space)
+    parts = triangle(tried)
+    middle = np.abs(parts.corners.mean(axis=1) - 1 / 3).max(axis=1) < 0.2
+    assert parts.errors[middle].mean() < parts.errors[~middle].mean()
+    most = tried.counts.argmax(axis=1)
+    assert tried.errors[most == 0].mean() < min(tried.errors[most == channel].mean() for channel in (1, 2))
+
+
+def test_small_triangles_hold_their_trials(found: Opponent, setting_c: Setting) -> None:
+    tried = trials(setting_c, found.space)
+    parts = triangle(tried, cuts=4)
+    np.testing.assert_allclose(parts.corners.sum(axis=2), 1)
+    assert parts.corners.min() >= 0
+    for corners, stated in zip(parts.corners, parts.errors, strict=True):
+        inside = np.linalg.solve(corners.T, tried.shares.T).min(axis=0)
+        within, touching = tried.errors[inside > 1e-6], tried.errors[inside > -1e-6]
+        assert touching.min() <= stated <= touching.max()
+        if len(within) == len(touching):
+            assert stated == pytest.approx(within.mean())
+
+
+def test_weights_of_every_order_add_up_to_the_same() -> None:
+    """So a slip in the reference would show."""
+    printed = rows("table1")
+    for channel, total in zip(CHANNELS, (1.05638, -0.14184, 0.54640), strict=True):
+        for order in {row["order"] for row in printed if row["channel"] == channel}:
+            own = [
+                float(row["weight"]) for row in printed if (row["channel"], row["order"]) == (channel, order)
+            ]
+            assert sum(own) == pytest.approx(total, abs=2.1e-5), (channel, order)
+
+
+@pytest.mark.parametrize("count", [4, 5, 12])
+def test_meyer_is_the_best_allocation(smooth: Setting, count: int, found: Opponent, cmfs: Array) -> None:
+    chosen = meyer(smooth, count)
+    assert len(chosen) == count
+    np.testing.assert_allclose((chosen.powers @ chosen.to_xyz)[:, 1], 1, rtol=1e-12)
+    reached = judge(smooth, chosen).mean
+    for way in allocations(rules(found.space, grid(), cmfs), count):
+        assert sum(map(len, way)) == count
+        assert judge(smooth, sampling(smooth, found.space, way).balanced()).mean >= reached
+
+
+@pytest.mark.parametrize("count", [1, 3, 31])
+def test_meyer_says_when_it_has_no_such_set(smooth: Setting, count: int) -> None:
+    with pytest.raises(OptionError, match="4 to 30"):
+        meyer(smooth, count)

@@ -1,0 +1,205 @@
+"""The contact sheet: what lies where, in which colour."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations, product
+
+import colour
+import numpy as np
+import OpenEXR
+import pytest
+from matplotlib.image import imread
+
+from tests.cube.hand_made import hand_made
+from uplift.colorimetry.srgb import decode, encode
+from uplift.common.errors import OutputError
+from uplift.lattice import Status
+from uplift.viz.sheet import write_sheet
+from uplift.viz.sheet.panels import LOUD, RAMP, STATUS, panels
+from uplift.viz.sheet.sheet import BACKGROUND, GAP, Layout, compose
+
+COLOUR, DISTANCE, STATE, ERROR, ROUND = range(5)
+
+
+def pixel(data, image, panel, position):
+    """The middle of the square of the lattice point at ``position`` (red, green, blue)."""
+    layout = Layout(data.lattice.dim, 5)
+    red, green, blue = position
+    x, y = layout.tile(panel, blue)
+    half = layout.scale // 2
+    row = y + (layout.dim - 1 - green) * layout.scale + half
+    return image[row, x + red * layout.scale + half]
+
+
+def test_every_point_is_where_it_belongs():
+    data = hand_made()
+    image = compose(data).image
+    shown = panels(data)
+    for position in product(range(4), repeat=3):
+        point = data.lattice.index(np.array(position))
+        for number, panel in enumerate(shown):
+            np.testing.assert_array_equal(
+                pixel(data, image, number, position), panel.colours[point].astype(np.float32)
+            )
+
+
+def test_colours_mean_what_the_keys_say():
+    data = hand_made()
+    image = compose(data).image
+    np.testing.assert_array_equal(pixel(data, image, COLOUR, (3, 1, 2)), data.rgb[3 * 16 + 1 * 4 + 2])
+    np.testing.assert_array_equal(pixel(data, image, DISTANCE, (0, 0, 0)), LOUD[0].astype(np.float32))
+    for blue in range(4):
+        np.testing.assert_array_equal(pixel(data, image, STATE, (0, 0, blue)), STATUS[blue].astype("f4"))
+    np.testing.assert_array_equal(pixel(data, image, ROUND, (0, 0, 0)), LOUD[0].astype(np.float32))
+    np.testing.assert_array_equal(pixel(data, image, ROUND, (0, 0, 1)), RAMP[0].astype(np.float32))
+
+
+@pytest.mark.parametrize(
+    ("distance", "colour"),
+    [
+        (0.0, RAMP[0]),
+        (1e-7, RAMP[0]),
+        (10**-5.5, RAMP[2]),
+        (1e-4, RAMP[-1]),
+        (1.1e-4, LOUD[0]),
+        (9.0, LOUD[0]),
+    ],
+)
+def test_distance_is_logarithmic_up_to_the_threshold(distance, colour):
+    panel = panels(hand_made(distance=np.full(64, distance)))[DISTANCE]
+    np.testing.assert_allclose(panel.colours, np.broadcast_to(colour, (64, 3)), atol=1e-9)
+
+
+def test_keys_count_the_points():
+    data = hand_made()
+    keys = [[key.text for key in panel.keys] for panel in panels(data)]
+    over = int((data.distance > data.threshold).sum())
+    assert keys[DISTANCE][1] == f"over the threshold: {over} point{'s' * (over != 1)}; largest distance 0.25"
+    assert keys[STATE] == [
+        f"{status.label}: {data.counts()[status.label]}" for status in Status if status < Status.ABSENT
+    ]
+    assert keys[ERROR] == [f"0 to {data.standard_error.max():.2g} ΔE00 under A"]
+    assert keys[ROUND] == ["0 to 3", "fitted in no round: 13 points"]
+
+
+def test_every_status_has_a_colour_of_its_own():
+    assert len({tuple(colour) for colour in STATUS}) == len(STATUS) == Status.ABSENT
+
+
+def test_a_cube_that_no_round_fitted():
+    panel = panels(hand_made(round=np.full(64, -1, dtype=np.int16)))[ROUND]
+    assert (panel.colours == LOUD).all()
+
+
+def test_no_round_without_debug_information_and_no_error_without_an_atlas():
+    data = hand_made(round=None, standard_error=None)
+    sheet = compose(data)
+    assert sheet.image.shape[1::-1] == Layout(4, 3).size
+    assert not {"Round", "Standard error"} & {label.text for label in sheet.labels}
+
+
+@pytest.mark.parametrize("dim", [2, 3, 5, 16, 23, 37, 46, 64])
+@pytest.mark.parametrize("count", [3, 4, 5])
+def test_layout(dim, count):
+    layout = Layout(dim, count)
+    width, height = layout.size
+    assert 900 < width < 3000
+    assert layout.columns * layout.rows >= dim
+    covered = np.zeros((height, width), dtype=int)
+    for panel, blue in product(range(count), range(dim)):
+        x, y = layout.tile(panel, blue)
+        covered[y : y + layout.pitch, x : x + layout.pitch] += 1
+    side = dim * layout.scale
+    assert covered.max() == 1
+    assert covered.sum() == count * dim * layout.pitch**2
+    assert layout.pitch - side == GAP
+
+
+def test_text_lies_inside():
+    sheet = compose(hand_made())
+    height, width = sheet.image.shape[:2]
+    for label in sheet.labels:
+        assert 0 < label.x < width - len(label.text) * label.size * 0.6
+        assert label.size < label.y < height - label.size
+
+
+def test_exr_is_flat_linear_rgb(tmp_path):
+    data = hand_made()
+    write_sheet(data, tmp_path / "sheet.exr")
+    file = OpenEXR.File(str(tmp_path / "sheet.exr"))
+    image = file.channels()["RGB"].pixels
+    assert len(file.parts) == 1
+    assert file.header()["uplift.dim"] == 4
+    assert image.dtype == np.float32
+    for position in ((0, 0, 0), (3, 1, 2), (1, 3, 0)):
+        expected = data.rgb[data.lattice.index(np.array(position))]
+        np.testing.assert_array_equal(pixel(data, image, COLOUR, position), expected)
+    assert (image[0] == np.float32(BACKGROUND)).all()
+
+
+def test_text_is_written(tmp_path):
+    data = hand_made()
+    write_sheet(data, tmp_path / "sheet.exr")
+    lettered = OpenEXR.File(str(tmp_path / "sheet.exr")).channels()["RGB"].pixels
+    sheet = compose(data)
+    for label in sheet.labels:
+        row, left = round(label.y), round(label.x)
+        area = np.s_[row - 6 : row + 6, left : left + 20]
+        assert (lettered[area] > sheet.image[area]).any(), label.text
+
+
+def test_png_is_the_same_in_srgb(tmp_path):
+    data = hand_made()
+    write_sheet(data, tmp_path / "sheet.png")
+    image = imread(tmp_path / "sheet.png")
+    assert image.shape[1::-1] == Layout(4, 5).size
+    for position in ((0, 0, 0), (3, 1, 2), (1, 3, 0)):
+        expected = encode(data.rgb[data.lattice.index(np.array(position))])
+        np.testing.assert_allclose(pixel(data, image[..., :3], COLOUR, position), expected, atol=0.51 / 255)
+
+
+@pytest.mark.parametrize("name", ["sheet.exr", "sheet.png"])
+def test_same_cube_same_bytes(tmp_path, name):
+    write_sheet(hand_made(), tmp_path / name)
+    first = (tmp_path / name).read_bytes()
+    write_sheet(hand_made(), tmp_path / name, force=True)
+    assert (tmp_path / name).read_bytes() == first
+
+
+def test_a_cube_far_outside_the_screen(tmp_path):
+    data = hand_made()
+    write_sheet(replace(data, rgb=data.rgb * 4 - 1), tmp_path / "wide.png")
+    assert np.isfinite(imread(tmp_path / "wide.png")).all()
+
+
+@pytest.mark.parametrize("name", ["sheet.jpg", "sheet", "sheet.exr.gz"])
+def test_other_formats_are_refused(tmp_path, name):
+    with pytest.raises(OutputError, match=r"\.exr or \.png"):
+        write_sheet(hand_made(), tmp_path / name)
+
+
+@pytest.mark.parametrize("name", ["sheet.EXR", "sheet.PNG"])
+def test_an_existing_file_is_replaced_by_force_alone(tmp_path, name):
+    path = tmp_path / name
+    path.write_text("old")
+    with pytest.raises(OutputError, match="exists already"):
+        write_sheet(hand_made(), path)
+    assert path.read_text() == "old"
+    write_sheet(hand_made(), path, force=True)
+    assert path.stat().st_size > 1000
+
+
+def test_srgb_curve_is_that_of_the_sensor():
+    codes = np.arange(256) / 255
+    np.testing.assert_allclose(decode(codes), hand_made().sensor.decoding, atol=1e-6)
+    np.testing.assert_allclose(encode(decode(codes)), codes, atol=1e-6)
+
+
+@pytest.mark.parametrize("deficiency", ["Protanomaly", "Deuteranomaly", "Tritanomaly"])
+@pytest.mark.filterwarnings("ignore::colour.utilities.ColourUsageWarning")
+def test_statuses_stay_apart_for_colour_blind_eyes(deficiency):
+    seen = np.clip(STATUS @ colour.blindness.matrix_cvd_Machado2009(deficiency, 1.0).T, 0, 1)
+    labs = colour.XYZ_to_Lab(colour.RGB_to_XYZ(seen, "sRGB"))
+    for one, other in combinations(labs, 2):
+        assert colour.difference.delta_E_CIE2000(one, other) >= 16

@@ -1,0 +1,1 @@
+"""Colour: sensors, illuminants, sRGB, ΔE, gamut mapping, and the object-colour solid."""

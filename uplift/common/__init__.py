@@ -1,0 +1,1 @@
+"""What every layer needs: array types, errors, atomic writing of files, threads of linear algebra."""

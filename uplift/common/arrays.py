@@ -1,0 +1,16 @@
+"""Array types that signatures use, and the type of paths."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+Values = NDArray[Any]
+"""float64 or float32."""
+StrPath = str | os.PathLike[str]

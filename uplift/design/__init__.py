@@ -1,0 +1,1 @@
+"""Designing spectra: palettes of lights and materials, and pigment mixing."""

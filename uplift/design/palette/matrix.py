@@ -1,0 +1,78 @@
+"""The palette matrix: for every material under every light the colour wanted, obtained, and by the factor model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from uplift.colorimetry.delta_e import colours_apart
+from uplift.common.arrays import Array
+from uplift.design.palette.colours import screen_matrix
+from uplift.design.palette.design import Design
+from uplift.design.palette.palette import Apart, Wish
+
+
+@dataclass(frozen=True, eq=False)
+class Matrix:
+    """Linear RGB as on a screen, M materials by L lights.
+
+    Parameters
+    ----------
+    wanted : (M, L, 3), NaN where nothing is.
+    obtained, factor : (M, L, 3) by full spectra, by the factor model.
+    missed : (M, L) ΔE00 from wanted to obtained, NaN where nothing is wanted.
+    model_error : (M, L) ΔE00 from full spectra to the factor model.
+    whites : (L, 3) the perfect reflector under each light.
+    """
+
+    wanted: Array
+    obtained: Array
+    factor: Array
+    missed: Array
+    model_error: Array
+    whites: Array
+
+
+def matrix(design: Design) -> Matrix:
+    """All colours of a design. ΔE00 are those of colours on a screen, against its white."""
+    palette, model = design.palette, design.model
+    screen = screen_matrix(palette.sensor)
+    obtained = (design.reflectances[:, None] * design.powers) @ screen.T
+    factor = model.rgb(
+        model.product(model.reflectance(design.reflectances)[:, None], model.light(design.powers))
+    )
+    wanted = np.full_like(obtained, np.nan)
+    for wish in palette.wishes:
+        wanted[place(design, wish)] = wanted_colour(design, wish)
+    return Matrix(
+        wanted,
+        obtained,
+        factor,
+        colours_apart(palette.sensor, wanted, obtained),
+        colours_apart(palette.sensor, obtained, factor),
+        design.powers @ screen.T,
+    )
+
+
+def wanted_colour(design: Design, wish: Wish) -> Array:
+    """(3,) linear RGB that a wish came to mean."""
+    if wish.rgb is not None:
+        return wish.rgb
+    assert wish.free is not None
+    return design.free[wish.free]
+
+
+def place(design: Design, wish: Wish) -> tuple[int, int]:
+    """Row and column of a wish."""
+    rows = [part.name for part in design.palette.materials]
+    columns = [part.name for part in design.palette.lights]
+    return rows.index(wish.material), columns.index(wish.light)
+
+
+def difference(design: Design, colours: Matrix, apart: Apart) -> float:
+    """ΔE00 between two materials under a light."""
+    first, second = (
+        colours.obtained[place(design, Wish(material, apart.light))] for material in apart.materials
+    )
+    return float(colours_apart(design.palette.sensor, first, second))

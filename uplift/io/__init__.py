@@ -1,0 +1,1 @@
+"""Formats of other tools: textures, EXR slices, exports, Mitsuba."""

@@ -1,0 +1,10 @@
+"""Cubes for other tools, one format a file. What each keeps of a cube its docstring tells."""
+
+from __future__ import annotations
+
+from uplift.io.export.c_header import write_c
+from uplift.io.export.coeff import write_coeff
+from uplift.io.export.csv_points import write_csv
+from uplift.io.export.npz import write_npz
+
+__all__ = ["write_c", "write_coeff", "write_csv", "write_npz"]

@@ -1,0 +1,63 @@
+"""The lattice points of a cube as text, a line each."""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Iterator
+from itertools import chain
+
+import numpy as np
+
+from uplift.common.arrays import Indices
+from uplift.common.files import replacing
+from uplift.cube import CubeData
+from uplift.lattice import Status
+
+BLOCK = 1 << 12
+"""Points made into text at a time."""
+
+
+def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
+    """Write a line for every lattice point that is present under a line of names, and say how many they are.
+
+    Columns: target and lattice RGB, linear; fitting distance; status; the atlas entry that the point is based on,
+    if any; round and standard error, of cubes that have them; the coefficients. Raises `OutputError`.
+    """
+    with (
+        replacing(path, force=force) as temporary,
+        temporary.open("w", encoding="utf-8", newline="") as file,
+    ):
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(_names(data))
+        points = np.flatnonzero(data.present)
+        for first in range(0, len(points), BLOCK):
+            writer.writerows(_rows(data, points[first : first + BLOCK]))
+    return len(points)
+
+
+def _names(data: CubeData) -> list[str]:
+    optional = [name for name in ("round", "standard_error") if getattr(data, name) is not None]
+    return [
+        *("r", "g", "b", "lattice_r", "lattice_g", "lattice_b", "distance", "status", "entry"),
+        *optional,
+        *(f"c{order}" for order in range(data.model.count)),
+    ]
+
+
+def _rows(data: CubeData, block: Indices) -> Iterator[list[object]]:
+    entries = [*data.atlas.names, ""]
+    optional = [
+        array[block, None].tolist() for array in (data.round, data.standard_error) if array is not None
+    ]
+    columns = zip(
+        data.lattice.points[block].tolist(),
+        data.rgb[block].tolist(),
+        data.distance[block, None].tolist(),
+        ([Status(status).label] for status in data.status[block]),
+        ([entries[entry]] for entry in data.entry[block]),
+        *optional,
+        data.coefficients[block].tolist(),
+        strict=True,
+    )
+    return (list(chain.from_iterable(row)) for row in columns)

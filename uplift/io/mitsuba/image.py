@@ -1,0 +1,135 @@
+"""An image as a texture of Mitsuba: multipliers of every texel, evaluated at the wavelengths of a ray."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
+from uplift.io.mitsuba.spectra import mixed
+from uplift.lookup import Cube
+from uplift.lookup.blocks import blockwise
+from uplift.lookup.interpolate import refined_multipliers
+from uplift.lookup.validation import colours
+from uplift.models import Model, evaluate
+
+MEAN_OVER = np.arange(380.0, 781.0, 25.0)
+"""nm. Mitsuba asks for a texture's mean to choose between lobes: it need not be exact."""
+THREADS = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """Multipliers (h, w, C), float32, of the model's spectra; ``mean`` reflectance of them all."""
+
+    model: Model
+    multipliers: NDArray[np.float32]
+    mean: float
+
+    @staticmethod
+    def of(cube: Cube, rgb: Array) -> Image:
+        """Uplift linear RGB (h, w, 3) to their very colours. Raises `ColourError` for what lies outside [0, 1]."""
+        data, model = cube.data, cube.data.model
+        refined = partial(refined_multipliers, data)
+        asked = colours(rgb, data.sensor)
+        multipliers = blockwise(refined, asked, model.count, dtype=np.float32, threads=THREADS)
+        means = blockwise(
+            lambda rows: evaluate(model, rows, MEAN_OVER).mean(axis=1, keepdims=True), multipliers, 1
+        )
+        return Image(model, multipliers, float(means.mean()))
+
+
+def decoded(cube: Cube, bitmap: Any) -> Array:
+    """Linear RGB (h, w, 3) of a `mitsuba.Bitmap`: what is encoded is decoded as the cube's space has it."""
+    import mitsuba
+
+    plain = bitmap.convert(pixel_format=mitsuba.Bitmap.PixelFormat.RGB)
+    values = np.array(plain)
+    if values.dtype.kind == "u":
+        values = values / np.iinfo(values.dtype).max
+    return cube.decode(255 * values) if bitmap.srgb_gamma() else values.astype(float)
+
+
+@cache
+def _texture(variant: str) -> type:
+    """The class, made anew for each variant: its base is the variant's."""
+    import drjit as dr
+    import mitsuba as mi
+
+    wraps = {"repeat": dr.WrapMode.Repeat, "mirror": dr.WrapMode.Mirror, "clamp": dr.WrapMode.Clamp}
+
+    class UpliftTexture(mi.Texture):  # type: ignore[misc]
+        """``filter_type`` bilinear blends the spectra of four texels: their colours blend as the image's do."""
+
+        def __init__(self, props: Any, image: Image) -> None:
+            super().__init__(props)
+            self.image = image
+            self.nearest = _choice(props, "filter_type", ("bilinear", "nearest")) == "nearest"
+            self.wrap = _choice(props, "wrap_mode", tuple(wraps))
+            self.to_uv = mi.Transform3f(np.array(_uv_transform(props), dtype=np.float32))
+            self.texels = mi.Texture2f(
+                mi.TensorXf(image.multipliers),
+                filter_mode=dr.FilterMode.Nearest if self.nearest else dr.FilterMode.Linear,
+                wrap_mode=wraps[self.wrap],
+            )
+
+        def eval(self, si: Any, active: Any = True) -> Any:
+            uv = self.to_uv @ si.uv
+            texels, weights = self._nearest(uv, active) if self.nearest else self._around(uv, active)
+            return mixed(self.image.model, texels, weights, si.wavelengths)
+
+        def _nearest(self, uv: Any, active: Any) -> tuple[Any, Any]:
+            return (self.texels.eval(uv, active),), (1.0,)
+
+        def _around(self, uv: Any, active: Any) -> tuple[Any, Any]:
+            """The four texels around, and their weights."""
+            height, width = self.image.multipliers.shape[:2]
+            x, y = uv.x * width - 0.5, uv.y * height - 0.5
+            x, y = x - dr.floor(x), y - dr.floor(y)
+            weights = ((1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y)
+            return self.texels.eval_fetch(uv, active), weights
+
+        def mean(self) -> Any:
+            return mi.Float(self.image.mean)
+
+        def is_spatially_varying(self) -> bool:
+            return True
+
+        def resolution(self) -> Any:
+            height, width = self.image.multipliers.shape[:2]
+            return mi.ScalarVector2i(width, height)
+
+        def to_string(self) -> str:
+            height, width, count = self.image.multipliers.shape
+            return f"UpliftTexture[{width} × {height}, {self.image.model.name}, {count} multipliers, {self.wrap}]"
+
+    return UpliftTexture
+
+
+def texture() -> Any:
+    """The texture class of the current variant."""
+    import mitsuba
+
+    return _texture(mitsuba.variant())
+
+
+def _choice(props: Any, name: str, choices: tuple[str, ...]) -> str:
+    """Raises `OptionError`. The first is the default."""
+    chosen = str(props.get(name, choices[0]))
+    if chosen not in choices:
+        raise OptionError(f"unknown {name} '{chosen}'", remedy=f"use one of {', '.join(choices)}")
+    return chosen
+
+
+def _uv_transform(props: Any) -> Array:
+    """(3, 3), of which Mitsuba may give (4, 4)."""
+    if "to_uv" not in props:
+        return np.eye(3)
+    matrix = np.array(props["to_uv"].matrix, dtype=float)
+    kept = [0, 1, len(matrix) - 1]
+    return matrix[np.ix_(kept, kept)]

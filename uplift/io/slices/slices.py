@@ -1,0 +1,83 @@
+"""A cube as OpenEXR: every number of every lattice point, a part per blue slice."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.colorimetry.delta_e import colours_apart
+from uplift.common.errors import OutputError
+from uplift.common.files import check_output
+from uplift.cube.data import CubeData
+from uplift.io.slices import exr
+from uplift.io.slices.blue_slices import planes
+
+READING = (
+    "A blue slice of a spectral uplifting cube. A pixel is a lattice point: red rises to the right, green "
+    "upwards (the top row has the highest). R, G, B and lattice: what the stored spectrum evaluates to; target: "
+    "the lattice point itself, both linear. distance: largest difference of the two. entry and round: -1 for none. "
+    "Absent points, of a cube built for a scene, hold nothing but their status."
+)
+"""The ``comments`` attribute of every part."""
+
+
+def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Write one OpenEXR file with a part ``blue 07 (0.1234)`` for every node of the blue axis.
+
+    Pixel x is the red index; row y is green index dim − 1 − y, so that green rises upwards. Channels, all
+    32-bit float: ``R``, ``G``, ``B`` and ``lattice.*`` (lattice RGB), ``target.*``, ``distance``,
+    ``deltaE2000`` (target to lattice RGB under the build illuminant), ``status``, ``entry`` and ``round``
+    (−1 for none; ``round`` only with debug information), ``standardError`` (where an atlas tells) and
+    ``coefficient.00`` onwards.
+
+    Raises
+    ------
+    OutputError : the path is no ``.exr``, exists already (without ``force``) or cannot be written.
+    """
+    check_slices(path, force=force)
+    exr.write_parts(_parts(data), path, force=force)
+
+
+def check_slices(path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Raises `OutputError` where `write_slices` would: asks before long work."""
+    if Path(path).suffix.lower() != ".exr":
+        raise OutputError("slices are OpenEXR", path=path, remedy="name the file .exr, or make a sheet")
+    check_output(path, force=force)
+
+
+def channels(data: CubeData) -> dict[str, NDArray[Any]]:
+    """Everything a slice shows: values (n,) per lattice point by channel name."""
+    target = data.lattice.points
+    found: dict[str, NDArray[Any]] = {
+        **_rgb("", data.rgb),
+        **_rgb("lattice.", data.rgb),
+        **_rgb("target.", target),
+        "distance": data.distance,
+        "deltaE2000": np.where(data.present, colours_apart(data.sensor, target, data.rgb), 0),
+        "status": data.status,
+        "entry": data.entry,
+    }
+    if data.round is not None:
+        found["round"] = data.round
+    if data.standard_error is not None:
+        found["standardError"] = data.standard_error
+    return found | {f"coefficient.{i:02}": column for i, column in enumerate(data.coefficients.T)}
+
+
+def _parts(data: CubeData) -> Iterator[Any]:
+    common = {**exr.attributes(data), "comments": READING}
+    slices = {name: planes(values, data.lattice.dim) for name, values in channels(data).items()}
+    digits = len(str(data.lattice.dim - 1))
+    for blue, value in enumerate(map(float, data.lattice.nodes)):
+        header = {**common, "uplift.blueIndex": blue, "uplift.blueValue": value}
+        name = f"blue {blue:0{max(digits, 2)}} ({value:.4f})"
+        yield exr.part(name, header, {channel: stack[blue] for channel, stack in slices.items()})
+
+
+def _rgb(layer: str, rgb: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    return {f"{layer}{letter}": rgb[:, i] for i, letter in enumerate("RGB")}

@@ -1,0 +1,1 @@
+"""Measurements about methods: studies, the chart of speed against accuracy, comparisons."""

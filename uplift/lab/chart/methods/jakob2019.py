@@ -1,0 +1,62 @@
+"""Sigmoids of a quadratic, as colour-science fits them: Jakob & Hanika 2019, A low-dimensional function space."""
+
+from __future__ import annotations
+
+from uplift.colorimetry.observer import aligned, colour_science
+from uplift.common.arrays import Array
+from uplift.lab.chart.method import Claims, Family, Method, Ready, held, one_by_one, stopwatch
+from uplift.lab.chart.task import Task
+from uplift.models.sigmoid import published
+
+SIZE = 5
+"""Of the table, 3 × 5³ points: colour-science fits it in Python, in half a minute. Published tables have 64."""
+
+
+def prepare_direct(task: Task) -> Ready:
+    convert = colour_science().recovery.XYZ_to_sd_Jakob2019
+    cmfs, light = aligned(task.sensor)
+
+    def spectrum(rgb: Array) -> tuple[Array, Array]:
+        found = convert(task.sensor.xyz(rgb), cmfs, light)
+        return found.wavelengths, found.values
+
+    return Ready(one_by_one(spectrum), held((cmfs.values, light.values)))
+
+
+def prepare_table(task: Task) -> Ready:
+    colour = colour_science()
+    table = colour.recovery.LUT3D_Jakob2019()
+    space = colour.RGB_COLOURSPACES[task.sensor.space]
+    _, seconds = stopwatch(
+        lambda: table.generate(space, *aligned(task.sensor), SIZE, print_callable=lambda *_: None)
+    )
+
+    def uplift(rgb: Array, wavelengths: Array) -> Array:
+        return published(table.RGB_to_coefficients(rgb), wavelengths)
+
+    return Ready(uplift, table.coefficients.nbytes, seconds)
+
+
+FAMILIES = (
+    Family(
+        "Jakob 2019",
+        "Jakob & Hanika, A low-dimensional function space for efficient spectral upsampling, CGF 38(2), 2019",
+        "#d1495b",
+        (
+            Method(
+                "jakob2019-direct",
+                "Jakob 2019, direct",
+                prepare_direct,
+                Claims(round_trip=0.1),
+                batch=False,
+                note="colour-science, which stops at ΔE76 0.024",
+            ),
+            Method(
+                "jakob2019-table",
+                f"Jakob 2019, table of {SIZE}",
+                prepare_table,
+                note=f"colour-science, 3 × {SIZE}³ points; for a table of 64 see Mitsuba's",
+            ),
+        ),
+    ),
+)

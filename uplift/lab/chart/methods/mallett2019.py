@@ -1,0 +1,42 @@
+"""Three smooth spectra, one for each primary of sRGB: Mallett & Yuksel 2019, Spectral primary decomposition.
+
+The table is colour-science's; a spectrum is a product of matrices.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from uplift.colorimetry.observer import colour_science
+from uplift.common.arrays import Array
+from uplift.lab.chart.method import Claims, Family, Method, Ready
+from uplift.lab.chart.task import Task
+
+
+def prepare(task: Task) -> Ready:
+    primaries = colour_science().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
+    values = np.ascontiguousarray(primaries.values.T)
+
+    def uplift(rgb: Array, wavelengths: Array) -> Array:
+        return rgb @ np.stack([np.interp(wavelengths, primaries.wavelengths, row) for row in values])
+
+    return Ready(uplift, values.nbytes)
+
+
+FAMILIES = (
+    Family(
+        "Mallett 2019",
+        "Mallett & Yuksel, Spectral primary decomposition for rendering with sRGB reflectance, EGSR 2019",
+        "#8e44ad",
+        (
+            Method(
+                "mallett2019",
+                "Mallett 2019",
+                prepare,
+                Claims(round_trip=0.01, most=1 + 1e-6),
+                quick=True,
+                note="the table of colour-science, one product of matrices",
+            ),
+        ),
+    ),
+)

@@ -1,0 +1,127 @@
+"""Half of an atlas as constraint, the other half asked: what a cube makes of materials that it has not seen."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from uplift.atlas import Spectra, resample
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import spectra_apart
+from uplift.common.arrays import Array, Indices
+from uplift.common.errors import AtlasError, UpliftWarning
+from uplift.lookup import Cube
+from uplift.pipeline import build
+from uplift.report.calibration import Calibration, calibration
+
+LIGHTS = ("A", "FL2", "FL7", "FL11", "LED-B3", "LED-RGB1", "HP1")
+FEWEST = 8
+"""Entries within the space that can be halved."""
+
+
+@dataclass(frozen=True, eq=False)
+class Errors:
+    """Answers against measurements of n colours: rms (n,) over wavelength, ΔE00 (n, L) under L lights."""
+
+    rms: Array
+    delta_e: Array
+
+    def means(self) -> Array:
+        """(1 + L,) mean rms, then mean ΔE00 under each light."""
+        return np.concatenate([[self.rms.mean()], self.delta_e.mean(axis=0)])
+
+
+@dataclass(frozen=True, eq=False)
+class Split:
+    """One way to halve an atlas. ``errors`` by what answered; ``stated`` (n,) standard errors, if the cube has any.
+
+    ``real`` (n,) is what the stated errors are about: ΔE00 under the cube's reference light.
+    """
+
+    errors: dict[str, Errors]
+    real: Array
+    stated: Array | None
+
+
+def judge(answered: Array, measured: Array, lights: Sequence[str] = LIGHTS) -> Errors:
+    """Errors of reflectances (n, N), on the grid of every sensor, against measurements (n, N)."""
+    rms = np.sqrt(((answered - measured) ** 2).mean(axis=1))
+    return Errors(
+        rms, np.stack([spectra_apart(observer.light(name), answered, measured) for name in lights], axis=1)
+    )
+
+
+def halves(
+    spectra: Spectra,
+    splits: int = 3,
+    watch: Callable[[int, int], None] = lambda done, total: None,
+    **options: Any,
+) -> tuple[Split, ...]:
+    """Halve an atlas ``splits`` times, build a cube from one half with ``options``, ask it for the other.
+
+    Beside the cube answer one of the same options without an atlas, and the sigmoid's. ``watch`` hears how many
+    cubes are built, and of how many.
+
+    Raises
+    ------
+    AtlasError : too few entries within the space.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        others = {
+            "without an atlas": build(**options),
+            "sigmoid": build(**{**options, "model": "sigmoid"}),
+        }
+        watch(2, 2 + splits)
+        inside = _inside(spectra, others["sigmoid"])
+        found = []
+        for number in range(splits):
+            order = np.random.default_rng(number).permutation(len(inside))
+            kept, asked = np.array_split(order, 2)
+            cube = build(_some(spectra, inside[kept]), **options)
+            found.append(_ask({"half the atlas": cube, **others}, _some(spectra, inside[asked])))
+            watch(3 + number, 2 + splits)
+    return tuple(found)
+
+
+def _ask(cubes: dict[str, Cube], asked: Spectra) -> Split:
+    cube = cubes["half the atlas"]
+    sensor = cube.data.sensor
+    measured = resample(asked, sensor.wavelengths).values
+    rgb = np.clip(sensor.rgb(measured), 0, 1)
+    answers = {name: other.reflectance(rgb) for name, other in cubes.items()}
+    light = observer.light(cube.data.reference, sensor.observer)
+    return Split(
+        {name: judge(answered, measured) for name, answered in answers.items()},
+        spectra_apart(light, answers["half the atlas"], measured),
+        cube.standard_error(rgb),
+    )
+
+
+def _inside(spectra: Spectra, cube: Cube) -> Indices:
+    """Rows of the entries that the cube's space holds."""
+    sensor = cube.data.sensor
+    rows = np.flatnonzero(sensor.holds(sensor.rgb(resample(spectra, sensor.wavelengths).values)))
+    if len(rows) < FEWEST:
+        raise AtlasError(
+            f"{len(rows)} entries lie within {sensor.space}, too few to halve",
+            remedy=f"give an atlas of {FEWEST} or more",
+        )
+    return rows
+
+
+def _some(spectra: Spectra, rows: Indices) -> Spectra:
+    return Spectra(tuple(spectra.entries[row] for row in rows))
+
+
+def stated_errors(splits: Sequence[Split]) -> Calibration | None:
+    """Of all splits together. None where the cubes state no errors."""
+    parts = [(split.real, split.stated) for split in splits if split.stated is not None]
+    if not parts:
+        return None
+    real, stated = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return calibration(real, stated)

@@ -1,0 +1,119 @@
+"""How answers move with what they rest on: the colour asked, and the measurements behind the cube."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from uplift.atlas import Spectra
+from uplift.colorimetry import observer
+from uplift.common.errors import OptionError
+from uplift.lab.study.input_noise import Move, moves
+from uplift.lab.study.locality import Change, before, left_out, noisy, reversed_entry
+from uplift.lab.study.steepness import Steepness, steepness
+from uplift.lookup import Cube
+
+LIGHT = "FL11"
+"""The light that differences are stated under: three narrow bands, hard on spectra that are not the same."""
+DRAWS = 3
+
+Watch = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivity:
+    """Of a cube; the changes of its atlas are none for a cube without."""
+
+    cube: Cube
+    moves: list[Move]
+    steepness: Steepness
+    noise: list[Change]
+    wrong: list[Change]
+    left_out: list[Change]
+
+    @property
+    def steepest(self) -> tuple[float, float, float]:
+        """Linear RGB of the lowest corner of the steepest cell."""
+        cells = self.steepness.cells
+        red, green, blue = (
+            float(self.cube.data.lattice.nodes[place])
+            for place in np.unravel_index(int(cells.argmax()), cells.shape)
+        )
+        return red, green, blue
+
+    def record(self) -> dict[str, Any]:
+        """For JSON."""
+        steep, boxes = self.steepness, self.steepness.boxes
+        return {
+            "moves": [asdict(move) for move in self.moves],
+            "lipschitz": {
+                "largest": steep.largest,
+                "median_cell": float(np.median(steep.cells)),
+                "largest_per_code": float(steep.codes.max()),
+                "median_per_code": float(np.median(steep.codes)),
+                "steepest_cell": self.steepest,
+                "steepest_wavelength": float(self.cube.data.sensor.wavelengths[steep.waves.argmax()]),
+                "largest_box": float(boxes.max()) if boxes.size else None,
+            },
+            "changes": [changed(change) for change in (*self.noise, *self.wrong, *self.left_out)],
+        }
+
+
+def changed(change: Change) -> dict[str, Any]:
+    """A change in figures; the radii are those of points that moved by half a ΔE00."""
+    known = bool(change.rgb_apart.size)
+    return {
+        "change": change.what,
+        "moved": change.moved,
+        "rgb_radius": change.radius(change.rgb_apart) if known else None,
+        "lab_radius": change.radius(change.lab_apart) if known else None,
+        "delta_e_mean": float(change.delta_e.mean()),
+        "delta_e_most": float(change.delta_e.max()),
+        "rms_mean": float(change.rms.mean()),
+        "rms_most": float(change.rms.max()),
+    }
+
+
+def study(
+    cube: Cube,
+    atlas: Spectra | None,
+    most: int,
+    watch: Watch = lambda done, total: None,
+) -> Sensitivity:
+    """Move queries, bound how steep the cube is, and change its ``atlas``: up to ``most`` entries, one at a time.
+
+    ``watch`` hears how many of how many builds are done.
+
+    Raises
+    ------
+    OptionError : a negative number of entries.
+    """
+    if most < 0:
+        raise OptionError(f"{most} entries cannot be left out", remedy="use 0 or more")
+    light = observer.light(LIGHT, cube.data.sensor.observer)
+    if cube.data.complete is not None:
+        problem = (
+            "the cube was built for the colours of a scene, and between its cells there is nothing to measure"
+        )
+        raise OptionError(problem, remedy="build it without --scene")
+    asked, steep = moves(cube, light), steepness(cube.data)
+    if atlas is None or not most:
+        return Sensitivity(cube, asked, steep, [], [], [])
+    options = dict(cube.data.provenance["options"])
+    base = before(atlas, light, **options | {"lights": tuple(options["lights"])})
+    names = base.data.atlas.names[:most]
+    jobs = [
+        *(partial(noisy, base, seed) for seed in range(DRAWS)),
+        *(partial(reversed_entry, base, name) for name in names),
+        *(partial(left_out, base, name) for name in names),
+    ]
+    done = []
+    for number, job in enumerate(jobs, 1):
+        done.append(job())
+        watch(number, len(jobs))
+    wrong = DRAWS + len(names)
+    return Sensitivity(cube, asked, steep, done[:DRAWS], done[DRAWS:wrong], done[wrong:])

@@ -1,0 +1,182 @@
+"""Where the fit fails: one build after another over dims, models, spaces, thresholds and atlases, each judged."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+
+from uplift import fit
+from uplift.atlas import Spectra
+from uplift.colorimetry import observer
+from uplift.colorimetry.solid import solid
+from uplift.common.arrays import Array
+from uplift.common.errors import UpliftWarning
+from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS, Pointwise, grow_pointwise
+from uplift.lattice import Lattice, Status
+from uplift.models import Moments, Sigmoid
+from uplift.pipeline import build
+
+OURS = "uplift"
+SOLVERS = (OURS, IN_MOMENTS, IN_MULTIPLIERS)
+NO_ATLAS = "none"
+
+
+@dataclass(frozen=True, order=True)
+class Setting:
+    """One build. ``solver`` is `OURS`, or what the thesis's least squares solve in."""
+
+    model: str = Moments.name
+    coefficients: int = 9
+    dim: int = 17
+    space: str = "sRGB"
+    threshold: float = 1e-4
+    atlas: str = NO_ATLAS
+    solver: str = OURS
+
+    @property
+    def technique(self) -> str:
+        """'sigmoid', or 'moments 9' by its coefficients."""
+        return self.model if self.model == Sigmoid.name else f"{self.model} {self.coefficients}"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a build.
+
+    Parameters
+    ----------
+    points, realisable : lattice points, and those of a colour that some reflectance has.
+    unfitted : realisable points further from their colour than the threshold.
+    stand_ins : unrealisable points whose nearest realisable colour was missed by more than the threshold.
+    rounds : of growth, after the first.
+    calls : points that improvement steps were tried on, step by step; of scipy, starts beyond the first of a point.
+    worst : the largest distance of a realisable point, max |linear RGB|; ``r``, ``g``, ``b`` its colour.
+    seconds : wall time; with what is compiled for the first time.
+    """
+
+    setting: Setting
+    points: int
+    realisable: int
+    unfitted: int
+    stand_ins: int
+    rounds: int
+    calls: int
+    worst: float
+    r: float
+    g: float
+    b: float
+    seconds: float = field(compare=False)
+
+    @property
+    def success(self) -> float:
+        """Share of the realisable points that are fitted."""
+        return 1 - self.unfitted / self.realisable
+
+    def record(self) -> dict[str, Any]:
+        """Flat, for JSON and CSV."""
+        rest = asdict(self)
+        return rest.pop("setting") | {"success": self.success} | rest
+
+
+Watch = Callable[[int, int], None]
+
+
+def study(
+    settings: Iterable[Setting],
+    atlases: Mapping[str, Spectra],
+    watch: Watch = lambda done, total: None,
+) -> list[Outcome]:
+    """Run every setting; ``watch`` hears how many of how many are done.
+
+    In the order of models, so that what JAX compiles for one is all used before the next.
+
+    Raises
+    ------
+    UpliftError : an atlas that is not there, before any work; a setting that cannot be built.
+    """
+    ordered = sorted(set(settings))
+    for setting in ordered:
+        if setting.atlas not in (NO_ATLAS, *atlases):
+            raise observer.suggest(setting.atlas, (NO_ATLAS, *atlases), "atlas")
+    outcomes = []
+    for number, setting in enumerate(ordered, 1):
+        outcomes.append(run(setting, atlases))
+        watch(number, len(ordered))
+    return outcomes
+
+
+def run(setting: Setting, atlases: Mapping[str, Spectra]) -> Outcome:
+    """Build, and judge by what is stored. Raises `UpliftError` for what cannot be built."""
+    return _ours(setting, atlases) if setting.solver == OURS else _pointwise(setting)
+
+
+def _ours(setting: Setting, atlases: Mapping[str, Spectra]) -> Outcome:
+    rounds = 0
+
+    def watch(done: object) -> None:
+        nonlocal rounds
+        rounds = done.number if isinstance(done, fit.Round) else rounds
+
+    begin = time.perf_counter()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        data = build(
+            atlases[setting.atlas] if setting.atlas != NO_ATLAS else None,
+            watch=watch,
+            dim=setting.dim,
+            model=setting.model,
+            coefficients=setting.coefficients,
+            space=setting.space,
+            threshold=setting.threshold,
+        ).data
+    seconds = time.perf_counter() - begin
+    unrealisable = ~solid(data.sensor.matrix).holds(data.lattice.points)
+    calls = sum(step["tried"] for step in data.provenance["improvements"])
+    missed = int((unrealisable & (data.status == Status.UNFITTED)).sum())
+    return _judge(setting, data.lattice.points, ~unrealisable, data.distance, missed, rounds, calls, seconds)
+
+
+def _pointwise(setting: Setting) -> Outcome:
+    sensor = observer.sensor(setting.space)
+    lattice = Lattice(observer.axis_nodes("srgb", setting.dim))
+    begin = time.perf_counter()
+    task = Pointwise(Moments(setting.coefficients), sensor, setting.solver)
+    grown = grow_pointwise(task, lattice, setting.threshold)
+    seconds = time.perf_counter() - begin
+    realisable = solid(sensor.matrix).holds(lattice.points)
+    calls = grown.starts - lattice.size
+    return _judge(setting, lattice.points, realisable, grown.distance, 0, grown.rounds, calls, seconds)
+
+
+def _judge(
+    setting: Setting,
+    points: Array,
+    realisable: Any,
+    distance: Any,
+    stand_ins: int,
+    rounds: int,
+    calls: int,
+    seconds: float,
+) -> Outcome:
+    off = np.where(realisable, distance, -1)
+    worst = int(off.argmax())
+    r, g, b = (float(value) for value in points[worst])
+    return Outcome(
+        setting,
+        points=len(points),
+        realisable=int(realisable.sum()),
+        unfitted=int((off > setting.threshold).sum()),
+        stand_ins=stand_ins,
+        rounds=rounds,
+        calls=calls,
+        worst=float(off[worst]),
+        r=r,
+        g=g,
+        b=b,
+        seconds=seconds,
+    )

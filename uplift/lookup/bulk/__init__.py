@@ -1,0 +1,15 @@
+"""Millions of colours: a cube made ready once for textures, then asked through JAX, on CPU or accelerator.
+
+    from uplift import bulk
+
+    sample = bulk.spectra(cube, range(400, 701, 20))
+    sample(image)  # (h, w, 3) -> (h, w, 16) float32
+
+For a few thousand colours `uplift.Cube` answers sooner: here something is compiled first.
+"""
+
+from __future__ import annotations
+
+from uplift.lookup.bulk.sampler import Sampler, coefficients, misses, spectra
+
+__all__ = ["Sampler", "coefficients", "misses", "spectra"]

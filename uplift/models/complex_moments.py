@@ -1,0 +1,62 @@
+"""The dual of complex moments, those of a signal on the whole circle (docs/mathematics.md, 4).
+
+Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded signals for spectral
+rendering", ACM TOG 38(4); Markoff 1896 for the duality between bounded and unbounded moment problems.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.common.arrays import Array
+
+Complex = NDArray[np.complex128]
+
+
+def dual(moments: Complex) -> tuple[Complex, NDArray[np.bool_]]:
+    """Multipliers (n, C) of moments (n, C), the zeroth real, and where (n,) they can be trusted.
+
+    Inside, the order comes first, so that all arithmetic runs along contiguous spectra.
+    """
+    orders = np.ascontiguousarray(moments.T)
+    with np.errstate(all="ignore"):
+        # The dual knows the zeroth moment only up to whole numbers.
+        bounded = (orders[0].real >= 0) & (orders[0].real <= 1)
+        h = _exponential_moments(orders)
+        column = h / 2
+        column[0] = h[0].real
+        q, scale, positive = levinson(column)
+        n = np.stack([(h[: k + 1] * q[k::-1]).sum(axis=0) for k in range(len(h))])
+        mirror = q.conj() / (1j * scale)
+        multipliers = np.stack([(n[lag:] * mirror[: len(n) - lag]).sum(axis=0) for lag in range(len(n))])
+        multipliers[0] = multipliers[0].real
+    return multipliers.T, bounded & positive & np.isfinite(multipliers).all(axis=0)
+
+
+def _exponential_moments(moments: Complex) -> Complex:
+    h = np.empty_like(moments)
+    h[0] = np.exp(1j * np.pi * (moments[0].real - 0.5))
+    scaled = 2j * np.pi * np.arange(len(moments))[:, None] * moments
+    for order in range(1, len(moments)):
+        h[order] = (scaled[order:0:-1] * h[:order]).sum(axis=0) / order
+    return h
+
+
+def levinson(column: Complex) -> tuple[Complex, Array, NDArray[np.bool_]]:
+    """Solve T q = e₀ for Hermitian Toeplitz T with first ``column`` (C, n); also say where T is positive.
+
+    Durbin's form of Levinson's recursion: a solution of order k, padded, and its own mirror image make up one
+    of order k + 1. It comes as (C, n) with q_0 taken out, and 1 / q_0 (n,), which saves a division a number.
+    """
+    solution = np.zeros_like(column)
+    solution[0] = 1
+    scale = column[0].real.copy()
+    positive = scale > 0
+    for order in range(1, len(column)):
+        reflection = (column[order:0:-1] * solution[:order]).sum(axis=0) / scale
+        mirror = solution[order - 1 :: -1].conj()
+        solution[1 : order + 1] -= reflection * mirror
+        scale *= 1 - (reflection.real**2 + reflection.imag**2)
+        positive &= scale > 0
+    return solution, scale, positive

@@ -1,0 +1,84 @@
+"""The step of least change: of all steps that reach a colour, the one that changes the spectrum least.
+
+docs/mathematics.md, 5: Δp = M⁻¹Jᵀ (J M⁻¹Jᵀ + μ tr I)⁻¹ (t − r). Written to the array API: the fit runs it on JAX, the
+refined lookup on numpy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.common.arrays import Array
+from uplift.models.matmul import product
+from uplift.models.model import Model
+
+
+class Forward(NamedTuple):
+    """From multipliers to RGB: arrays alone, so that JAX passes it through as it is."""
+
+    basis: Any
+    """(N, C) linear part of the model."""
+    sensor: Any
+    """(3, N) spectrum to RGB."""
+    root: Any
+    """(C, C) R, with R Rᵀ = M⁻¹."""
+    products: Any
+    """(N, 3·C) sensor × basis R, the constant part of the Jacobian by R⁻¹ p."""
+
+
+def forward(
+    model: Model, wavelengths: ArrayLike, sensor: Array, inverse_metric: Array | None = None
+) -> Forward:
+    """The forward model; without a metric, the model's own smoothness."""
+    basis = model.basis(wavelengths)
+    root = np.linalg.cholesky(np.diag(1 / model.roughness()) if inverse_metric is None else inverse_metric)
+    products = sensor.T[:, :, None] * (basis @ root)[:, None, :]
+    return Forward(basis, sensor, root, products.reshape(len(basis), -1))
+
+
+def reached(model: Model, forward: Forward, multipliers: Any) -> Any:
+    """Linear RGB (n, 3) of multipliers (n, C)."""
+    return product(model.squash(product(multipliers, forward.basis.T)), forward.sensor.T)
+
+
+def residual(model: Model, forward: Forward, multipliers: Any, target: Any) -> Any:
+    """Target minus RGB, (n, 3), of multipliers (n, C)."""
+    return target - reached(model, forward, multipliers)
+
+
+def step(model: Model, forward: Forward, multipliers: Any, residual: Any, damping: Any) -> Any:
+    """Change of multipliers (n, C) that takes residual (n, 3) away to first order; damping (n,) is μ."""
+    slope = model.slope(product(multipliers, forward.basis.T))
+    jacobian = product(slope, forward.products).reshape(-1, 3, forward.basis.shape[1])
+    gram = jacobian @ jacobian.mT
+    lower = [[gram[:, a, b] for b in range(a + 1)] for a in range(3)]
+    y = solve_3x3(lower, damping * (lower[0][0] + lower[1][1] + lower[2][2]), residual.T)
+    y = jacobian.__array_namespace__().stack(y, axis=-1)
+    return product((y[:, None, :] @ jacobian)[:, 0, :], forward.root.T)
+
+
+def solve_3x3(matrix: Sequence[Sequence[Any]], shift: Any, right: Any) -> tuple[Any, Any, Any]:
+    """Solve (A + shift I) y = b for symmetric positive A, by L D Lᵀ: all numbers are arrays (n,), side by side.
+
+    ``matrix`` is the lower half of A, row by row. A pivot that rounding took to zero or below is held at a
+    millionth of an ulp of the trace: the step then is long, never NaN, and the caller's check of the residual
+    turns it down.
+    """
+    (a00,), (a10, a11), (a20, a21, a22) = matrix
+    xp = a00.__array_namespace__()
+    floor = 1e-22 * (a00 + a11 + a22) + 1e-300
+    d0 = xp.maximum(a00 + shift, floor)
+    l10, l20 = a10 / d0, a20 / d0
+    d1 = xp.maximum(a11 + shift - l10 * a10, floor)
+    l21 = (a21 - l20 * a10) / d1
+    d2 = xp.maximum(a22 + shift - l20 * a20 - l21 * l21 * d1, floor)
+    z0 = right[0]
+    z1 = right[1] - l10 * z0
+    z2 = right[2] - l20 * z0 - l21 * z1
+    y2 = z2 / d2
+    y1 = z1 / d1 - l21 * y2
+    return z0 / d0 - l10 * y1 - l20 * y2, y1, y2

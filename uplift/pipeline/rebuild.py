@@ -1,0 +1,43 @@
+"""A cube made again from what it recorded of its making."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable
+
+from uplift.common.arrays import StrPath
+from uplift.common.errors import CubeFileError, OptionError, UnknownNameError, UpliftWarning
+from uplift.io.scene_colours import Stored
+from uplift.lookup import Cube
+from uplift.pipeline import build
+from uplift.pipeline.build_cube import Watch
+from uplift.pipeline.provenance import recorded_atlas, untold
+
+
+def rebuild(
+    stored: Cube, path: StrPath, folders: Iterable[StrPath] = (), *, watch: Watch = lambda done: None
+) -> Cube:
+    """The cube that this version makes from the options recorded in ``stored``, read from ``path``.
+
+    Its atlases are looked for as `recorded_atlas` does; of a scene the stored points tell all.
+
+    Raises
+    ------
+    CubeFileError : the cube does not say how it was made, or an atlas is not to be found.
+    """
+    try:
+        options = dict(stored.data.provenance["options"])
+        options["lights"] = tuple(options["lights"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise untold(path) from error
+    if "filled" in stored.data.provenance:
+        raise CubeFileError("is filled from another cube", path=path, remedy="check it as it was before")
+    atlas = recorded_atlas(stored.data, path, folders)
+    scene = Stored(stored.data) if "scene" in stored.data.provenance else None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)  # the first build has said it all
+        try:
+            return build(atlas, scene=scene, watch=watch, **options)
+        except (TypeError, OptionError, UnknownNameError) as error:
+            problem = f"was made with options unknown here ({error})"
+            raise CubeFileError(problem, path=path, remedy="build it anew") from error

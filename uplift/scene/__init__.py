@@ -1,0 +1,1 @@
+"""What a scene needs: the smallest cube, the fewest wavelengths, the cheapest representation."""

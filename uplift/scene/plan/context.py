@@ -1,0 +1,121 @@
+"""What candidates are measured on: the scene's own colours and materials, and the best that a cube makes of them."""
+
+from __future__ import annotations
+
+import contextlib
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from uplift.atlas import Spectra, read_atlas, resample
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array
+from uplift.common.errors import UpliftWarning
+from uplift.lookup import Cube
+from uplift.pipeline import build
+from uplift.scene.plan.colours import Colours, Pixels, Some, colours
+from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, Error, Group, Question
+from uplift.scene.plan.scene_file import Brief
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What is tried, the least first, and how many colours it is tried on.
+
+    ``reference`` is the dim of the cube that is taken for the truth, with the last of the ``coefficients``;
+    ``predicting`` and ``confirming`` pixels choose, and judge what was chosen.
+    """
+
+    coefficients: tuple[int, ...] = (3, 5, 7, 9, 11, 13, 15, 17)
+    dims: tuple[int, ...] = (8, 12, 16, 24, 32, 48, 64, 96)
+    reference: int = 128
+    predicting: int = 3000
+    confirming: int = 8000
+
+
+@dataclass(frozen=True)
+class Step:
+    """What is being done, and how many of how many such things are."""
+
+    what: str
+    done: int = 0
+    total: int = 1
+
+
+Watch = Callable[[Step], None]
+
+
+@contextlib.contextmanager
+def silent() -> Iterator[None]:
+    """The build that counts says what is to be said of atlas and textures."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        yield
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """A scene ready to measure on; ``bench`` makes it.
+
+    ``reflectances`` (E, N) and ``materials`` (E, 3) are those of the atlas's entries within the space, and their RGB.
+    """
+
+    brief: Brief
+    effort: Effort
+    sensor: Sensor
+    atlas: Spectra | None
+    reflectances: Array
+    materials: Array
+    colours: Colours
+    watch: Watch
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """What all cubes of the scene share; entries hold under its lights, and under the one they are built for."""
+        brief = self.brief
+        return {
+            "space": brief.space,
+            "illuminant": brief.illuminant,
+            "observer": brief.observer,
+            "lights": tuple(dict.fromkeys((self.sensor.illuminant, *brief.lights))),
+        }
+
+    def cube(self, rgb: Array, **options: Any) -> Cube:
+        """A cube for linear RGB (n, 3) alone."""
+        with silent():
+            return build(self.atlas, scene=Some(rgb), **{**self.options, **options})
+
+    def question(self, drawn: Pixels) -> tuple[Question, Error]:
+        """Pixels of the textures, as the best cube has them, and the atlas's materials, as measured.
+
+        And the error of that cube, which only the materials have.
+        """
+        brief, effort = self.brief, self.effort
+        asked = np.concatenate([drawn.rgb, self.materials])
+        best = self.cube(asked, dim=effort.reference, coefficients=effort.coefficients[-1])
+        answered = best.reflectance(asked)
+        groups = [Group(TEXTURES, drawn.rgb, answered[: len(drawn.rgb)], drawn.share)]
+        if count := len(self.materials):
+            groups.append(Group(MATERIALS, self.materials, self.reflectances, np.full(count, 1 / count)))
+        found = Question(tuple(groups), brief.seen_under(), brief.quantile)
+        return found, found.error(answered)
+
+
+def bench(brief: Brief, effort: Effort, watch: Watch) -> Bench:
+    """Reads atlases and textures. Raises `AtlasError`, `TextureError`, `PlanFileError`."""
+    sensor = brief.sensor()
+    atlas = read_atlas(*brief.atlases) if brief.atlases else None
+    measured = resample(atlas or Spectra(), sensor.wavelengths).values
+    rgb = sensor.rgb(measured)
+    held = sensor.holds(rgb)
+
+    def reading(done: int, total: int) -> None:
+        watch(Step("reading textures", done, total))
+
+    wanted = effort.predicting, effort.confirming
+    with silent():
+        found = colours(brief.textures, sensor, brief.encoding, wanted, reading)
+    return Bench(brief, effort, sensor, atlas, measured[held], np.clip(rgb[held], 0, 1), found, watch)

@@ -1,0 +1,143 @@
+"""The whole order of a plan: coefficients, lattice, wavelengths, storage, cells; then the whole chain, judged anew."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry.observer import DEFAULT_OBSERVER
+from uplift.common.errors import PlanFileError
+from uplift.scene.plan import lattice_choice
+from uplift.scene.plan.context import Bench, Effort, Step, Watch, bench
+from uplift.scene.plan.decision import Decision
+from uplift.scene.plan.evaluation import Error, Question
+from uplift.scene.plan.final_build import Built, built
+from uplift.scene.plan.previews import Sight, sights
+from uplift.scene.plan.representation import representation
+from uplift.scene.plan.scene_file import Brief
+from uplift.scene.plan.storage import Storage, storage
+from uplift.scene.plan.wavelengths import wavelengths
+from uplift.scene.wavelengths import Sampling
+from uplift.viz.format import error_told
+
+SHARES = {"coefficients": 0.4, "lattice": 0.55, "wavelengths": 0.9, "storage": 1.0, "representation": 0.9}
+"""Of the tolerance, that the chain may have used up after each decision. What one leaves, the next may use.
+
+Errors of different origin add up about as their squares do, so that these give wavelengths, which each ray pays for,
+the most: 0.4, 0.38, 0.71 and 0.44 of the tolerance to each by itself. A representation takes the place of wavelengths.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """What to build, store and render at, and what that costs.
+
+    Parameters
+    ----------
+    decisions : in the order they were taken.
+    options : of `uplift.build`.
+    sampling : wavelengths to render at, the lights there, and weights to sum with.
+    built : the cube as it was built in the end.
+    predicted : the error by the pixels that chose; ``confirmed`` that of other pixels, by what was built.
+    expected : ΔE00 under A that measurements of such colours may differ by from any answer; None where nobody knows.
+    sights : colours of the textures as they would be seen, from the plan and from the best cube.
+    """
+
+    brief: Brief
+    decisions: tuple[Decision, ...]
+    options: Mapping[str, Any]
+    sampling: Sampling
+    storage: Storage
+    built: Built
+    predicted: Error
+    confirmed: Error
+    expected: float | None
+    sights: tuple[Sight, ...]
+
+    @property
+    def chain(self) -> tuple[Decision, ...]:
+        """Those that build upon one another; a representation stands beside the wavelengths."""
+        return tuple(each for each in self.decisions if each.key != "representation")
+
+    @property
+    def within(self) -> bool:
+        """Whether what was confirmed is within the tolerance."""
+        return self.confirmed.quantile <= self.brief.tolerance
+
+
+def plan(brief: Brief, effort: Effort | None = None, watch: Watch = lambda step: None) -> Plan:
+    """The least that will do.
+
+    Raises
+    ------
+    PlanFileError : a tolerance that nothing measured comes within; tells the best.
+    AtlasError, TextureError : what cannot be read.
+    """
+    found = bench(brief, effort or Effort(), watch)
+    watch(Step("the best cube there is"))
+    question, best = found.question(found.colours.predicting)
+    _check_reachable(brief, best)
+    limits = {key: share * brief.tolerance for key, share in SHARES.items()}
+
+    coefficients = lattice_choice.coefficients(found, question, limits["coefficients"])
+    count = int(coefficients.trial.choice["coefficients"])
+    lattice = lattice_choice.lattice(found, question, limits["lattice"], count)
+    options = {**found.options, **coefficients.trial.choice, **lattice.trial.choice}
+    cube = found.cube(question.rgb, **options)
+    fewest, sampling = wavelengths(found, question, limits["wavelengths"], cube)
+    pixel = storage(found, question, limits["storage"], cube, sampling)
+    held = Storage(pixel.trial.choice["as"], pixel.trial.choice["depth"])
+
+    decisions = [coefficients, lattice, fewest, pixel]
+    if brief.observer == DEFAULT_OBSERVER:  # the only one that representations know
+        decisions.append(representation(found, question, limits["representation"], cube))
+
+    watch(Step("building it"))
+    made = built(found, options)
+    watch(Step("confirming"))
+    confirmed, shown = _confirmed(found, made, options, sampling, held)
+    return Plan(
+        brief=brief,
+        decisions=tuple(decisions),
+        options=options,
+        sampling=sampling,
+        storage=held,
+        built=made,
+        predicted=pixel.trial.error,
+        confirmed=confirmed,
+        sights=shown,
+        expected=_expected(made, question),
+    )
+
+
+def _check_reachable(brief: Brief, best: Error) -> None:
+    if best.quantile > brief.tolerance:
+        worst = best.worst
+        raise PlanFileError(
+            f"no cube comes within ΔE00 {brief.tolerance:g}: the best measured has {error_told(best.quantile)}, "
+            f"of {worst.group} under {worst.light}",
+            path=brief.path,
+            remedy=f"set tolerance = {np.ceil(best.quantile * 110) / 100:g} or more",
+        )
+
+
+def _confirmed(
+    found: Bench, made: Built, options: Mapping[str, Any], sampling: Sampling, held: Storage
+) -> tuple[Error, tuple[Sight, ...]]:
+    """By other pixels, and more of them, asked of the cube that was built."""
+    question, _ = found.question(found.colours.confirming)
+    answered = [held.read_back(made.cube, question.groups[0].rgb, sampling.wavelengths)]
+    if len(found.materials):  # the textures may not have their colours, and the cube no points for them
+        cube = found.cube(found.materials, **options)
+        answered.append(held.read_back(cube, found.materials, sampling.wavelengths))
+    xyz = sampling.xyz(np.concatenate(answered))
+    return question.seen(xyz), sights(question, xyz, found.brief.observer)
+
+
+def _expected(made: Built, question: Question) -> float | None:
+    textures = question.groups[0]
+    errors = made.cube.standard_error(textures.rgb)
+    return None if errors is None else float(errors @ textures.weights)

@@ -1,0 +1,86 @@
+"""How a renderer may hold spectra that does not take the plan's wavelengths: the cheapest representation."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import Light
+from uplift.common.arrays import Array
+from uplift.common.errors import UpliftError
+from uplift.lookup import Cube
+from uplift.scene.plan.context import Bench, Step
+from uplift.scene.plan.decision import Decision, Trial, decide
+from uplift.scene.plan.evaluation import WRONG, Question
+from uplift.scene.representations.dense import STEP, observed, wavelengths
+from uplift.scene.representations.registry import representations
+from uplift.scene.representations.representation import Representation
+
+COLOURS = 200
+"""Of the textures, and as many materials, that representations are judged by."""
+
+
+@dataclass(frozen=True, eq=False)
+class Dense:
+    """A question on the dense grid that representations are made from.
+
+    ``powers`` (L, 401) of the lights, ``surfaces`` (n, 401) that the cube answers with.
+    """
+
+    question: Question
+    powers: Array
+    surfaces: Array
+
+    def trial(self, representation: Representation, typed: str) -> Trial:
+        """What products of every light with every surface look like."""
+        held = representation.surface(self.surfaces)
+        floats = float(representation.floats(held).mean())
+        of_light = float(representation.floats(representation.light(self.powers)).mean())
+        error = self.question.seen([self._seen(representation, power, held) for power in self.powers])
+        told = f"{floats:.4g} floats a surface, {of_light:.4g} a light"
+        choice = {"representation": representation.name, "family": representation.family}
+        return Trial(representation.name, floats + of_light / 1000, told, typed, choice, error)
+
+    def _seen(self, representation: Representation, power: Array, held: Any) -> Array:
+        light = representation.light(np.broadcast_to(power, (len(self.surfaces), len(power))))
+        try:
+            return representation.xyz(representation.product(light, held))
+        except UpliftError:
+            return np.full((len(self.surfaces), 3), WRONG)
+
+
+def representation(bench: Bench, question: Question, limit: float, cube: Cube) -> Decision:
+    """By the numbers that a surface takes, then by those of a light; of the sizes that 'uplift compare' compares."""
+    dense = _dense(bench, question, cube)
+    brief = bench.brief
+    words = [word for atlas in brief.atlases for word in ("--atlas", str(atlas))]
+    words += [word for light in brief.lights for word in ("--light", light)]
+    typed = shlex.join(["uplift", "compare", *words, "--target", f"{limit:.3g}"])
+
+    def trials() -> Iterator[Trial]:
+        every = representations(dense.powers, dense.surfaces)
+        made = []
+        for done, each in enumerate(every):
+            bench.watch(Step(f"representation {each.name}", done, len(every)))
+            made.append(dense.trial(each, typed))
+        yield from sorted(made, key=lambda trial: trial.cost)
+
+    return decide("representation", "A representation instead", "floats a surface", limit, trials())
+
+
+def _dense(bench: Bench, question: Question, cube: Cube) -> Dense:
+    few, nm = question.thinned(COLOURS), wavelengths()
+    powers = np.stack([observer.power(light.name, step=STEP) for light in few.lights])
+    powers = powers / (powers @ observed()[:, 1:2])
+    finer = [
+        np.stack([np.interp(nm, bench.sensor.wavelengths, row) for row in each.wanted]) for each in few.groups
+    ]
+    groups = tuple(replace(each, wanted=wanted) for each, wanted in zip(few.groups, finer, strict=True))
+    named = zip(few.lights, powers, strict=True)
+    lights = tuple(Light(light.name, (power[:, None] * observed()).T) for light, power in named)
+    return Dense(Question(groups, lights, few.share), powers, cube.reflectance(few.rgb, nm))

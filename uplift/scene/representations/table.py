@@ -1,0 +1,31 @@
+"""Lights as renderers hold them beside compact reflectances: the 5 nm table, at which surfaces are evaluated."""
+
+from __future__ import annotations
+
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array
+from uplift.models.model import Model, reflectance
+from uplift.scene.representations.dense import TABLE, hats, observed
+from uplift.scene.representations.samples import stored
+
+
+class Tabled:
+    """What models of reflectance share: only ``surface`` is compact, lights and products are (n, 81).
+
+    A product evaluates the model at the 81 wavelengths of the light. It is not made a model again: no renderer does,
+    and the sigmoid could not hold it.
+    """
+
+    model: Model
+
+    def light(self, power: Array) -> Array:
+        return power[:, ::TABLE]
+
+    def product(self, light: Array, surface: Array) -> Array:
+        return light * reflectance(self.model, surface, observer.grid())
+
+    def xyz(self, light: Array) -> Array:
+        return light @ (hats(observer.grid()) @ observed())
+
+    def floats(self, code: Array) -> Array:
+        return stored(code)

@@ -1,0 +1,102 @@
+"""So many wavelengths, or as few as a target allows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from uplift.colorimetry import observer
+from uplift.common.errors import OptionError
+from uplift.scene.wavelengths.meyer import meyer
+from uplift.scene.wavelengths.optimise import at, even, optimised
+from uplift.scene.wavelengths.sampling import MEASURES, Errors, Sampling, judge
+from uplift.scene.wavelengths.setup import Setting
+from uplift.scene.wavelengths.uniform import bins, uniform
+
+METHODS: Mapping[str, Callable[[Setting, int], Sampling]] = {
+    "optimised": optimised,
+    "meyer": meyer,
+    "uniform": uniform,
+    "bins": bins,
+    "fitted": even,
+}
+GIVEN = "given"
+"""The method where the wavelengths are given."""
+MOST = 40
+"""More wavelengths than that are no saving: tables have 40 at 10 nm."""
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """What was chosen, by which method, and its errors (K, M) over the materials and lights."""
+
+    method: str
+    sampling: Sampling
+    errors: Errors
+
+
+def choose(
+    setting: Setting,
+    *,
+    count: int | None = None,
+    target: float | None = None,
+    measure: str = "max",
+    method: str = "optimised",
+) -> Choice:
+    """``count`` wavelengths, or the fewest whose ``measure`` of ΔE00 is at most ``target``.
+
+    One set of wavelengths and of weights serves all lights of the setting, so that their radiances may be added;
+    each light has its own powers, which hold what its spectrum does between the wavelengths.
+
+    Parameters
+    ----------
+    measure : what the target is about: one of `MEASURES`, over all materials under all lights.
+    method : one of `METHODS`.
+
+    Raises
+    ------
+    OptionError : neither or both of count and target, one out of range, or a target that is out of reach.
+    UnknownNameError : a method or measure that does not exist.
+    """
+    if method not in METHODS:
+        raise observer.suggest(method, METHODS, "method")
+    if measure not in MEASURES:
+        raise observer.suggest(measure, MEASURES, "measure")
+    if count is not None and target is None:
+        return _fixed(setting, method, _checked(count))
+    if target is not None and count is None:
+        return _fewest(setting, method, target, measure)
+    raise OptionError("either a count or a target says how many", remedy="give one of the two")
+
+
+def weigh(setting: Setting, wavelengths: ArrayLike) -> Choice:
+    """The best weights and powers for wavelengths that are given. Raises `OptionError`."""
+    sampling = at(setting, wavelengths).ordered()
+    return Choice(GIVEN, sampling, judge(setting, sampling))
+
+
+def _fixed(setting: Setting, method: str, count: int) -> Choice:
+    sampling = METHODS[method](setting, count).ordered()
+    return Choice(method, sampling, judge(setting, sampling))
+
+
+def _fewest(setting: Setting, method: str, target: float, measure: str) -> Choice:
+    if not target > 0:
+        raise OptionError(f"target {target:g} is not above 0", remedy="give a tolerated ΔE00, such as 1")
+    for count in range(1, MOST + 1):
+        choice = _fixed(setting, method, count)
+        reached = getattr(choice.errors, measure)
+        if reached <= target:
+            return choice
+    raise OptionError(
+        f"{MOST} wavelengths by method '{method}' leave a {measure} of ΔE00 {reached:.3g}",
+        remedy=f"give a target above {target:g}, or another method",
+    )
+
+
+def _checked(count: int) -> int:
+    if not 1 <= count <= MOST:
+        raise OptionError(f"count {count} is not within 1 to {MOST}", remedy="give a number of that range")
+    return count

@@ -1,0 +1,7 @@
+"""The contact sheet of a cube: every slice of constant blue on one PNG."""
+
+from __future__ import annotations
+
+from uplift.viz.sheet.write_sheet import check_sheet, write_sheet
+
+__all__ = ["check_sheet", "write_sheet"]

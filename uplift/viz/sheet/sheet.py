@@ -1,0 +1,175 @@
+"""The contact sheet of a cube, composed in numpy: a panel per quantity, in it a tile per blue slice."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.common.arrays import Array
+from uplift.cube.data import CubeData
+from uplift.io.slices.blue_slices import planes
+from uplift.viz.sheet.panels import BACKGROUND, Key, Panel, panels
+
+PANEL = 640
+"""Pixels that a panel is about wide, so that a sheet is one to two thousand."""
+GAP = 3
+ACROSS = {3: 3, 4: 2, 5: 3}
+"""Panels side by side, by how many there are."""
+LINES = 3
+"""Of keys, under every panel."""
+
+
+class Label(NamedTuple):
+    """Text that starts at pixel x and is centred on pixel y, ``size`` pixels high."""
+
+    x: float
+    y: float
+    text: str
+    size: float
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """Linear RGB (height, width, 3), and the text that belongs on it."""
+
+    image: NDArray[np.float32]
+    labels: tuple[Label, ...]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where everything lies, in pixels from the top left, for ``panels`` panels of ``dim`` tiles."""
+
+    dim: int
+    panels: int
+
+    @property
+    def columns(self) -> int:
+        return math.ceil(math.sqrt(self.dim))
+
+    @property
+    def rows(self) -> int:
+        return math.ceil(self.dim / self.columns)
+
+    @property
+    def scale(self) -> int:
+        """Pixels along each side of a lattice point."""
+        return max(1, round(PANEL / (self.columns * self.dim)))
+
+    @property
+    def pitch(self) -> int:
+        """From tile to tile."""
+        return self.dim * self.scale + GAP
+
+    @property
+    def panel(self) -> tuple[int, int]:
+        """Width and height of a panel's tiles."""
+        return self.columns * self.pitch - GAP, self.rows * self.pitch - GAP
+
+    @property
+    def em(self) -> int:
+        """Height of the text; all spaces around it are multiples."""
+        return max(13, self.panel[0] // 48)
+
+    @property
+    def across(self) -> int:
+        return ACROSS[self.panels]
+
+    @property
+    def block(self) -> tuple[int, int]:
+        """From panel to panel: title, tiles, keys and the space between."""
+        return self.panel[0] + 3 * self.em, self.panel[1] + (5 + 2 * LINES) * self.em
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the sheet."""
+        down = math.ceil(self.panels / self.across)
+        return self.across * self.block[0] + self.em, down * self.block[1] + 4 * self.em
+
+    def origin(self, panel: int) -> tuple[int, int]:
+        """Top left pixel of a panel's tiles."""
+        row, column = divmod(panel, self.across)
+        return 2 * self.em + column * self.block[0], 7 * self.em + row * self.block[1]
+
+    def tile(self, panel: int, blue: int) -> tuple[int, int]:
+        """Top left pixel of a tile; blue rises in reading order."""
+        row, column = divmod(blue, self.columns)
+        x, y = self.origin(panel)
+        return x + column * self.pitch, y + row * self.pitch
+
+
+def compose(data: CubeData) -> Sheet:
+    """The sheet: every lattice point a square of ``Layout.scale`` pixels, laid as `planes` lays it."""
+    shown = panels(data)
+    layout = Layout(data.lattice.dim, len(shown))
+    width, height = layout.size
+    image = np.full((height, width, 3), BACKGROUND, dtype=np.float32)
+    labels = [_heading(data, layout)]
+    for number, panel in enumerate(shown):
+        _paint_tiles(image, layout, number, panel)
+        _paint_keys(image, layout, number, panel.keys)
+        labels += _captions(layout, number, panel)
+    return Sheet(image, tuple(labels))
+
+
+def _paint_tiles(image: NDArray[np.float32], layout: Layout, number: int, panel: Panel) -> None:
+    for blue, plane in enumerate(planes(panel.colours, layout.dim)):
+        large = plane.repeat(layout.scale, axis=0).repeat(layout.scale, axis=1)
+        _paint(image, layout.tile(number, blue), large)
+
+
+def _paint_keys(image: NDArray[np.float32], layout: Layout, number: int, keys: tuple[Key, ...]) -> None:
+    for key, place in zip(keys, _key_places(layout, number), strict=False):
+        width = _swatch(layout, key)
+        across = key.colours[np.arange(width) * len(key.colours) // width]
+        _paint(image, place, np.broadcast_to(across, (layout.em, width, 3)))
+
+
+def _paint(image: NDArray[np.float32], at: tuple[int, int], patch: Array) -> None:
+    x, y = at
+    height, width = patch.shape[:2]
+    image[y : y + height, x : x + width] = patch
+
+
+def _key_places(layout: Layout, number: int) -> Iterator[tuple[int, int]]:
+    """Top left pixels of keys, down the left half under a panel, then down the right half."""
+    x, y = layout.origin(number)
+    width, height = layout.panel
+    for place in range(2 * LINES):
+        half, line = divmod(place, LINES)
+        yield x + half * width // 2, y + height + (1 + 2 * line) * layout.em
+
+
+def _swatch(layout: Layout, key: Key) -> int:
+    """Pixels that a key's swatch is wide: a square, or a strip for a ramp."""
+    return layout.em if len(key.colours) == 1 else 6 * layout.em
+
+
+def _captions(layout: Layout, number: int, panel: Panel) -> Iterator[Label]:
+    em = layout.em
+    x, y = layout.origin(number)
+    yield Label(x, y - em, panel.title, 1.2 * em)
+    for key, (left, top) in zip(panel.keys, _key_places(layout, number), strict=False):
+        yield Label(left + _swatch(layout, key) + 0.6 * em, top + em / 2, key.text, em)
+
+
+def _heading(data: CubeData, layout: Layout) -> Label:
+    model, sensor = data.model, data.sensor
+    facts = (
+        f"{_of(data)}{data.lattice.dim}³ points",
+        f"{model.name}, {model.count} coefficients",
+        f"{sensor.space} under {sensor.illuminant}",
+        f"{len(data.atlas.names)} atlas entries",
+        f"threshold {data.threshold:g}",
+    )
+    return Label(2 * layout.em, 2.75 * layout.em, "  ·  ".join(facts), 1.4 * layout.em)
+
+
+def _of(data: CubeData) -> str:
+    """How many points there are, where some are absent."""
+    return "" if data.complete is None else f"{np.count_nonzero(data.present):,} of "
