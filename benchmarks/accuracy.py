@@ -10,7 +10,7 @@ import numpy as np
 import uplift
 from benchmarks.page import table, write
 from benchmarks.timing import ROOT
-from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.lookup import MODES, Cube
 
 LIGHTS = ("D65", "A", "FL2", "FL7", "FL11", "LED-B3", "HP1")
@@ -67,7 +67,7 @@ def _round_trips(cubes: dict[str, Cube]) -> str:
         cells = [name]
         for mode in MODES:
             back = sensor.rgb(cube.reflectance(RANDOM, mode=mode))
-            apart = colours_apart(sensor, RANDOM, back)
+            apart = delta_e_rgb(sensor, RANDOM, back)
             cells.append(f"{apart.mean():.1e} / {apart.max():.1e}")
         rows.append(cells)
     return table(

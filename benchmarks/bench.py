@@ -10,7 +10,7 @@ import click
 from benchmarks.page import write
 from benchmarks.processes import time_processes
 from benchmarks.timing import ROOT
-from uplift.lab.timing import circumstances
+from uplift.lab.timing import environment
 
 INTRODUCTION = r"""# Performance
 
@@ -90,7 +90,7 @@ def main(runs: int) -> None:
     page = write("performance", INTRODUCTION.format(runs=runs), sections)
     (ROOT / "docs" / "performance.json").write_text(
         json.dumps(
-            circumstances() | {key: [asdict(row) for row in rows] for key, rows in numbers.items()}, indent=1
+            environment() | {key: [asdict(row) for row in rows] for key, rows in numbers.items()}, indent=1
         )
         + "\n"
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from benchmarks.page import table
 from uplift.lab.chart.panels import PANELS
 from uplift.lab.chart.table import Chart, Row, State
-from uplift.viz.format import build_told, error_told, size_told, time_told
+from uplift.viz.format import format_build_time, format_error, format_size, format_time
 
 ERRORS = ("round_trip", "A", "FL2", "FL7", "FL11", "LED-B3", "rms", "own_lights")
 
@@ -61,15 +61,15 @@ def undrawn(chart: Chart) -> str:
 
 def _cells(row: Row) -> list[str]:
     numbers = row.numbers
-    trip = " / ".join(error_told(numbers[f"round_trip_{kind}"]) for kind in ("mean", "p99", "max"))
+    trip = " / ".join(format_error(numbers[f"round_trip_{kind}"]) for kind in ("mean", "p99", "max"))
     return [
         row.title,
         _spread(row, "batch"),
         _spread(row, "single"),
-        size_told(numbers["bytes"]),
-        build_told(numbers.get("build_s")),
+        format_size(numbers["bytes"]),
+        format_build_time(numbers.get("build_s")),
         trip,
-        *(error_told(numbers[f"{key}_mean"]) for key in ERRORS[1:]),
+        *(format_error(numbers[f"{key}_mean"]) for key in ERRORS[1:]),
         f"{numbers['round_trip_colours']:,.0f}",
         f"{numbers['unseen_spectra']:,.0f}",
         row.note,
@@ -79,5 +79,5 @@ def _cells(row: Row) -> list[str]:
 def _spread(row: Row, kind: str) -> str:
     if f"{kind}_ns" not in row.numbers:
         return ""
-    median, least, most = (time_told(row.numbers[f"{kind}_ns{end}"]) for end in ("", "_least", "_most"))
+    median, least, most = (format_time(row.numbers[f"{kind}_ns{end}"]) for end in ("", "_least", "_most"))
     return f"{median} ({least}–{most})"

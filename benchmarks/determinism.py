@@ -23,8 +23,8 @@ import click
 
 import uplift
 from benchmarks.timing import ROOT
-from uplift.atlas import Spectra
-from uplift.lab.timing import circumstances
+from uplift.atlas import Atlas
+from uplift.lab.timing import environment
 from uplift.report.regression import LIMITS, compare
 
 Row = dict[str, Any]
@@ -106,7 +106,7 @@ def main(into: str | None, batch: tuple[int, int] | None) -> None:
 
 def _tables(same: list[Row], apart: list[Row], worst: dict[str, float]) -> list[dict[str, object]]:
     """For docs/stability.md, as `benchmarks.stability` has it."""
-    facts = circumstances()
+    facts = environment()
     return [
         {
             "title": "The same bytes",
@@ -155,14 +155,14 @@ def _build(folder: Path, batch: tuple[int, int] | None) -> None:
 
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     if batch:
-        batches.HOST = batch
+        batches.CPU_BATCH_ROWS = batch
     for number, options in enumerate(CASES.values()):
         chosen = {key: value for key, value in options.items() if key != "atlas"}
         cube = uplift.build(_atlas(options["atlas"]), **chosen)
         cube.save(folder / f"{number}.uplift")
 
 
-def _atlas(names: object) -> Spectra:
+def _atlas(names: object) -> Atlas:
     """Atlases as one; names that several have are told apart."""
     entries = []
     for name in names:
@@ -170,7 +170,7 @@ def _atlas(names: object) -> Spectra:
             dataclasses.replace(entry, name=f"{name} {entry.name}")
             for entry in uplift.read_atlas(ROOT / "atlases" / f"{name}.txt").entries
         ]
-    return Spectra(tuple(entries))
+    return Atlas(tuple(entries))
 
 
 def _run(setting: Setting, folder: Path) -> Path:

@@ -15,11 +15,11 @@ from uplift import fit
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.common.threads import one_blas_thread
+from uplift.common.threads import single_threaded_blas
 from uplift.lab.timing import Spread, spread
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, Sigmoid, reflectance
-from uplift.models.minimum_norm import forward
+from uplift.models.minimum_norm import forward_map
 from uplift.pipeline.options import Options
 
 MODELS = (Sigmoid(), *(Moments(count) for count in (3, 5, 9, 13, 17)))
@@ -88,11 +88,11 @@ def time_fit(model: Model, dim: int, runs: int) -> FitTiming:
     )
 
 
-@one_blas_thread()
+@single_threaded_blas()
 def _once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float], float]:
     """CPU seconds of each phase of a whole fit as a build has it, and the worst stored point by our own evaluation."""
     sensor, lattice = observer.sensor(), Lattice(observer.axis_nodes("srgb", dim))
-    problem = fit.Problem(model, forward(model, sensor.wavelengths, sensor.matrix), lattice)
+    problem = fit.Problem(model, forward_map(model, sensor.wavelengths, sensor.matrix), lattice)
     lights = [observer.light(name) for name in Options.lights]
     rgb = sensor.rgb(measured)
     marks: dict[str, float] = {}
@@ -111,7 +111,7 @@ def _once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float], fl
     )
     seeds = fit.seed(lattice, rgb)
     mark("entries")
-    prior = fit.learn(problem, sensor, entries, observer.light("A"))
+    prior = fit.fit_prior(problem, sensor, entries, observer.light("A"))
     mark("prior")
     fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, watch)
     mark("storing")

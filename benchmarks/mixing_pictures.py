@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.colorimetry.srgb import shown
+from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.design.mixing import coats
 from uplift.design.mixing.mixers import mixers
@@ -74,4 +74,4 @@ def _coats(cube: Cube) -> list[Strip]:
 
 
 def _strip(cube: Cube, title: str, rgb: Array) -> Strip:
-    return Strip(title, shown(rgb, cube.data.sensor) / 255)
+    return Strip(title, to_display_codes(rgb, cube.data.sensor) / 255)

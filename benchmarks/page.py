@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from benchmarks.timing import ROOT
-from uplift.lab.timing import circumstances
+from uplift.lab.timing import environment
 
 
 def write(
     name: str, introduction: str, sections: Iterable[str], where: Mapping[str, str] | None = None
 ) -> str:
     """Write docs/``name``.md and return it; ``where`` it was measured is by default here and now."""
-    facts = "\n".join(f"- {key}: {value}" for key, value in (where or circumstances()).items())
+    facts = "\n".join(f"- {key}: {value}" for key, value in (where or environment()).items())
     page = "\n".join([introduction, facts, *sections])
     (ROOT / "docs" / f"{name}.md").write_text(page, encoding="utf-8")
     return page

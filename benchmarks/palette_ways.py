@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.timing import ROOT
 from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.design.palette import FactorModel, LinearModel
@@ -38,7 +38,7 @@ class Ways:
         power, met = self.powers[light], self.met[bounces]
         full = (power * met.prod(axis=1)) @ screen_matrix(self.sensor).T
         gain = exposure(self.sensor, full)[:, None]
-        return colours_apart(self.sensor, gain * full, gain * product(power, met))
+        return delta_e_rgb(self.sensor, gain * full, gain * product(power, met))
 
 
 def ways(sensor: Sensor) -> Ways:

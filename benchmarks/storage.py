@@ -23,7 +23,7 @@ from uplift.fit.grow import grow
 from uplift.fit.store import LOSS
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, Sigmoid, evaluate
-from uplift.models.minimum_norm import forward
+from uplift.models.minimum_norm import forward_map
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ProPhoto RGB")
 MODELS: tuple[Model, ...] = (*(Moments(count) for count in (3, 5, 9, 13, 17)), Sigmoid())
@@ -91,7 +91,7 @@ def _rows() -> Iterator[list[str]]:
 def _problem(model: Model, sensor: Sensor) -> fit.Problem:
     lattice = Lattice(observer.axis_nodes("srgb", DIM))
     beyond = fit.unrealisable(lattice, sensor, THRESHOLD / 2)
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     return fit.Problem(model, ahead, lattice, THRESHOLD, beyond)
 
 
@@ -101,7 +101,7 @@ def _fitted(problem: fit.Problem, sensor: Sensor) -> tuple[Array, Array]:
     entries = fit.fit_entries(
         problem.model, problem.forward, nothing, np.empty((0, 3)), [sensor.light], light, problem.tolerance
     )
-    prior = fit.learn(problem, sensor, entries, light)
+    prior = fit.fit_prior(problem, sensor, entries, light)
     grown = grow(problem, lambda points: prior(problem.goal(points)), lambda done: None)
     return problem.model.to_storage(grown.multipliers), grown.distance
 

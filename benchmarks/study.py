@@ -92,7 +92,7 @@ def main() -> None:
     print(write("moments", INTRODUCTION, sections))
 
 
-def _warped(atlases: dict[str, uplift.Spectra], found: Study) -> dict[str, Study]:
+def _warped(atlases: dict[str, uplift.Atlas], found: Study) -> dict[str, Study]:
     """The study up to 9 floats with other warps."""
     studies = {}
     for name, warp in warps.made(found.measured).items():

@@ -48,7 +48,7 @@ def test_the_contracts_hold_for_a_copy(doctored):
 @pytest.mark.parametrize(
     ("module", "line", "contract"),
     [
-        ("uplift/lookup/cube.py", "from uplift import bulk", "Data flows one way"),
+        ("uplift/lookup/cube.py", "from uplift.io import texture", "Data flows one way"),
         ("uplift/lookup/cube.py", "import jax", "A lookup starts in the time that numpy takes"),
         (
             "uplift/cube/file.py",
@@ -56,9 +56,9 @@ def test_the_contracts_hold_for_a_copy(doctored):
             "A lookup starts in the time that numpy takes",
         ),
         ("uplift/models/sigmoid.py", "import colour", "One place reads colour-science's tables"),
-        ("uplift/pipeline.py", "import click", "Only the command line knows click and rich"),
-        ("uplift/lattice.py", "import uplift.pipeline.build_cube", "Data flows one way"),
-        ("uplift/errors.py", "from uplift import sensor", "Data flows one way"),
+        ("uplift/pipeline/build_cube.py", "import click", "Only the command line knows click and rich"),
+        ("uplift/lattice/lattice.py", "import uplift.pipeline.build_cube", "Data flows one way"),
+        ("uplift/common/errors.py", "from uplift.colorimetry import sensor", "Data flows one way"),
         ("uplift/report/summary.py", "import uplift_cli.output.console", "Data flows one way"),
     ],
 )

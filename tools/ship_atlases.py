@@ -15,7 +15,7 @@ from colour.characterisation import read_training_data_rawtoaces_v1
 from colour.quality import SDS_TCS, SDS_VS
 from colour.quality.cfi2017 import load_TCS_CIE2017
 
-from uplift.atlas import Entry, Header, Spectra, write_atlas
+from uplift.atlas import Atlas, Entry, Header, write_atlas
 
 FOLDER = Path(__file__).parents[1] / "atlases"
 LICENCE = "BSD-3-Clause (https://opensource.org/licenses/BSD-3-Clause), as part of colour-science"
@@ -25,7 +25,7 @@ GRID = colour.SpectralShape(380, 780, 5)
 
 
 @dataclass(frozen=True)
-class Atlas:
+class AtlasFile:
     """A file to write."""
 
     file: str
@@ -35,7 +35,7 @@ class Atlas:
 
     def write(self, folder: Path) -> None:
         header = Header(self.content, self.copyright, LICENCE)
-        write_atlas(Spectra(tuple(self.entries())), folder / self.file, header)
+        write_atlas(Atlas(tuple(self.entries())), folder / self.file, header)
 
 
 def checker(key: str, prefix: str, description: str) -> Iterable[Entry]:
@@ -77,32 +77,34 @@ def training_patches() -> Iterable[Entry]:
 
 
 ATLASES = (
-    Atlas(
+    AtlasFile(
         "macbeth.txt",
         "24 patches of the Macbeth ColorChecker, measured by Ohta (1997)",
         lambda: checker("ColorChecker N Ohta", "", '"{}" patch of the Macbeth ColorChecker'),
     ),
-    Atlas(
+    AtlasFile(
         "babelcolor.txt",
         "24 patches of the ColorChecker Classic, average of 30 charts by BabelColor (2012)",
         lambda: checker("BabelColor Average", "BabelColor ", '"{}" patch, average of 30 ColorChecker charts'),
         BABELCOLOR + COPYRIGHT,
     ),
-    Atlas(
+    AtlasFile(
         "pmc.txt",
         "30 patches of the preferred memory colour chart, Luo (2024)",
         lambda: checker("PMC", "PMC ", '"{}" patch of the preferred memory colour chart'),
     ),
-    Atlas(
+    AtlasFile(
         "tcs.txt", "14 test colour samples of the CIE colour rendering index (CIE 13.3-1995)", test_colours
     ),
-    Atlas("vs.txt", "15 saturated samples of the NIST Colour Quality Scale 9.0, Ohno (2013)", vivid_samples),
-    Atlas(
+    AtlasFile(
+        "vs.txt", "15 saturated samples of the NIST Colour Quality Scale 9.0, Ohno (2013)", vivid_samples
+    ),
+    AtlasFile(
         "cie2017.txt",
         "99 samples of the CIE 2017 colour fidelity index (CIE 224:2017)",
         evaluation_samples,
     ),
-    Atlas(
+    AtlasFile(
         "rawtoaces.txt",
         "190 patches that RAW to ACES 1.0 trains camera transforms on, Dyer et al. (2017)",
         training_patches,

@@ -17,14 +17,14 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from uplift.atlas import Spectra, read_atlas, write_atlas
+    from uplift.atlas import Atlas, read_atlas, write_atlas
     from uplift.common.errors import UpliftError, UpliftWarning
     from uplift.lookup import Cube, load
     from uplift.pipeline import build
 
 __all__ = [
+    "Atlas",
     "Cube",
-    "Spectra",
     "UpliftError",
     "UpliftWarning",
     "build",
@@ -35,7 +35,7 @@ __all__ = [
 
 _HOMES = {
     "Cube": "uplift.lookup",
-    "Spectra": "uplift.atlas",
+    "Atlas": "uplift.atlas",
     "UpliftError": "uplift.common.errors",
     "UpliftWarning": "uplift.common.errors",
     "build": "uplift.pipeline",

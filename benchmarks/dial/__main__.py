@@ -23,7 +23,7 @@ from uplift.design.palette import Design, design, read_palette, standard_model
 from uplift.design.palette.relight_viewer.cutaway import cutaway
 from uplift.design.palette.relight_viewer.page import page
 from uplift.design.palette.relight_viewer.relighting import Relighting, relighting
-from uplift.lab.timing import Spread, circumstances, spread
+from uplift.lab.timing import Spread, environment, spread
 
 FOLDER = ROOT / "docs" / "palette-dial"
 TASKS = ((5, 512), (7, 512), (9, 512), (7, 1024))
@@ -76,7 +76,7 @@ def main() -> None:
         tab.window(*WINDOW)
         _show(tab, Path(folder) / "page.html")
         rows = [_row(tab, Path(folder) / "page.html", *task) for task in TASKS]
-        where = circumstances() | _browser(tab)
+        where = environment() | _browser(tab)
     head = [
         "coefficients",
         "pixels",

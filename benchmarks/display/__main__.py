@@ -13,7 +13,7 @@ from benchmarks.display.picture import WAYS, draw
 from benchmarks.display.spaces import ACESCG, SPACES, desaturated, hollow
 from benchmarks.page import table, write
 from benchmarks.timing import ROOT
-from uplift.colorimetry.gamut import SRGB, contained
+from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.common.arrays import Array
 from uplift.lab.timing import timed
 
@@ -35,7 +35,7 @@ def main() -> None:
 
 
 def _ways(found: Chips) -> str:
-    rows = [[way, *_judged(found, contained(found.rgb, SRGB, way).rgb), _cost(way)] for way in WAYS]
+    rows = [[way, *_judged(found, map_to_gamut(found.rgb, SRGB, way).rgb), _cost(way)] for way in WAYS]
     words = (
         f"{len(found.hues):,} chips of the Munsell book that lie outside sRGB. *Hue*: ΔE00 from what is shown to the "
         "nearest colour that the renotation gives the chip's hue, as light as what is shown: what a way does to "
@@ -48,7 +48,7 @@ def _ways(found: Chips) -> str:
 
 def _families(found: Chips) -> str:
     families = np.array([hue.lstrip("0123456789.") for hue in found.hues])
-    off = {way: found.off_hue(contained(found.rgb, SRGB, way).rgb) for way in WAYS}
+    off = {way: found.off_hue(map_to_gamut(found.rgb, SRGB, way).rgb) for way in WAYS}
     rows = [
         [name, str((families == name).sum()), *(f"{off[way][families == name].mean():.2f}" for way in WAYS)]
         for name in FAMILIES
@@ -102,8 +102,8 @@ def _most(values: Array) -> float:
 def _cost(way: str) -> str:
     rgb = np.random.default_rng(0).normal(0.5, 1, (3 * TIMED, 3))
     rgb = rgb[((rgb < 0) | (rgb > 1)).any(axis=1)][:TIMED]
-    contained(rgb, SRGB, way)
-    _, cpu = timed(lambda: contained(rgb, SRGB, way), RUNS)
+    map_to_gamut(rgb, SRGB, way)
+    _, cpu = timed(lambda: map_to_gamut(rgb, SRGB, way), RUNS)
     return f"{cpu.scaled(1e9 / TIMED):.0f}"
 
 

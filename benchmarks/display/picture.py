@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.colorimetry.gamut import CHOICES, SRGB, Primaries, contained, conversion
+from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, conversion, map_to_gamut
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
 from uplift.viz.figure import new_figure, write_png
 
 REC_2020 = Primaries((0.708, 0.292), (0.170, 0.797), (0.131, 0.046), (0.3127, 0.3290))
-WAYS = tuple(way for way in CHOICES if way != "error")
+WAYS = tuple(way for way in METHODS if way != "error")
 RADIUS = 43
 """Pixels."""
 HUES = (
@@ -37,7 +37,7 @@ def draw(path: Path) -> None:
     for column, way in enumerate(WAYS):
         grid[0, column].set_title(way, fontsize=17, pad=8)
         for axes, image in zip(grid[:, column], rows, strict=True):
-            axes.imshow(encode(contained(image, SRGB, way).rgb), interpolation="antialiased")
+            axes.imshow(encode(map_to_gamut(image, SRGB, way).rgb), interpolation="antialiased")
             axes.set_axis_off()
     write_png(figure, path, force=True)
 

@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.fidelity.materials import SENSOR, Materials, ahead, entries, large, materials
 from benchmarks.fidelity.start import solved
 from benchmarks.page import table
-from uplift.colorimetry.delta_e import rgb_lab
+from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array
 from uplift.fit.kriging import LENGTH, krige
 from uplift.fit.smooth import smooth
@@ -36,7 +36,7 @@ def _lengths() -> str:
         without = judge(solved(model, plain, some.rgb), some.measured).means()
         cells = [name, str(count)]
         for length in LENGTHS:
-            _, left_out = krige(rgb_lab(SENSOR, some.rgb), own - plain, length)
+            _, left_out = krige(rgb_to_lab(SENSOR, some.rgb), own - plain, length)
             ratio = judge(solved(model, plain + left_out, some.rgb), some.measured).means() / without
             cells.append(f"{ratio[1:].mean():.3f} / {ratio[1:].max():.2f}")
         rows.append(cells)
@@ -90,17 +90,17 @@ def _ratio(answered: Array, without: Array, measured: Array) -> Array:
 
 
 def _chosen(known: Array, values: Array, asked: Array, roughness: Array) -> tuple[Array, None]:
-    found, _ = krige(rgb_lab(SENSOR, known), values)
-    return found(rgb_lab(SENSOR, asked)), None
+    found, _ = krige(rgb_to_lab(SENSOR, known), values)
+    return found(rgb_to_lab(SENSOR, asked)), None
 
 
 def _chosen_in_metric(known: Array, values: Array, asked: Array, roughness: Array) -> tuple[Array, Array]:
-    found, left_out = krige(rgb_lab(SENSOR, known), values)
-    return found(rgb_lab(SENSOR, asked)), _covariance(values - left_out, roughness)
+    found, left_out = krige(rgb_to_lab(SENSOR, known), values)
+    return found(rgb_to_lab(SENSOR, asked)), _covariance(values - left_out, roughness)
 
 
 def _nearest(known: Array, values: Array, asked: Array, roughness: Array) -> tuple[Array, None]:
-    apart = np.linalg.norm(rgb_lab(SENSOR, known)[None] - rgb_lab(SENSOR, asked)[:, None], axis=-1)
+    apart = np.linalg.norm(rgb_to_lab(SENSOR, known)[None] - rgb_to_lab(SENSOR, asked)[:, None], axis=-1)
     return values[apart.argmin(axis=1)], None
 
 
@@ -155,8 +155,8 @@ def _whole_deviations(kept: Materials, asked: Materials) -> Array:
     model = Moments(9)
     plain = smooth(model, ahead(model))
     before, after = (solved(model, plain(part.rgb), part.rgb) for part in (kept, asked))
-    found, _ = krige(rgb_lab(SENSOR, kept.rgb), kept.measured - before)
-    return np.asarray(after + found(rgb_lab(SENSOR, asked.rgb)))
+    found, _ = krige(rgb_to_lab(SENSOR, kept.rgb), kept.measured - before)
+    return np.asarray(after + found(rgb_to_lab(SENSOR, asked.rgb)))
 
 
 def _whole_trend(kept: Materials, asked: Materials) -> Array:

@@ -44,9 +44,9 @@ def sections() -> list[str]:
     ]
 
 
-def _auto(model: Moments, found: fit.Entries, lights: list[Light], within: float) -> str:
+def _auto(model: Moments, found: fit.FittedEntries, lights: list[Light], within: float) -> str:
     problem = fit.Problem(model, ahead(model), Lattice(observer.axis_nodes("srgb", 2)))
-    axis, dim, lost = fit.roomiest(
+    axis, dim, lost = fit.choose_lattice(
         problem, SENSOR.wavelengths, lights, found, observer.axis_nodes, AXES, within
     )
     return f"{within:g}: {dim}³ {axis}" + (f", {lost} over" if lost else "")

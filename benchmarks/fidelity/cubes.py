@@ -25,7 +25,7 @@ from benchmarks.fidelity.materials import (
 from benchmarks.page import table
 from uplift import fit
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.arrays import Array
 from uplift.lab.study.held_out import Split, halves, judge
 from uplift.lattice import Lattice
@@ -158,7 +158,7 @@ def _across(known: str, asked: str) -> Split:
     cube, some = build(known), materials(asked)
     answered = cube.reflectance(some.rgb)
     light = observer.light(cube.data.reference)
-    return Split({}, spectra_apart(light, answered, some.measured), cube.standard_error(some.rgb))
+    return Split({}, delta_e_spectra(light, answered, some.measured), cube.standard_error(some.rgb))
 
 
 def _root(errors: Array) -> float:
@@ -174,7 +174,7 @@ def _seeds() -> str:
         found = entries(model, some.take(kept))
         lattice = Lattice(observer.axis_nodes("srgb", DIM))
         problem = fit.Problem(model, ahead(model), lattice)
-        prior = fit.learn(problem, SENSOR, found, observer.light("A"))
+        prior = fit.fit_prior(problem, SENSOR, found, observer.light("A"))
         seeds = fit.seed(lattice, found.rgb)
         nobody = fit.Seeds(seeds.points[:0], seeds.entry[:0], seeds.primary[:0], ())
         for label, chosen in {"their entries, the default": seeds, "the prior": nobody}.items():

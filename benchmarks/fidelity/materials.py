@@ -12,12 +12,12 @@ import numpy as np
 import uplift
 from benchmarks.timing import ROOT
 from uplift import fit
-from uplift.atlas import Spectra, read_atlas, resample
+from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.lab.study.held_out import LIGHTS, judge
 from uplift.models import Model
-from uplift.models.minimum_norm import Forward, forward
+from uplift.models.minimum_norm import ForwardMap, forward_map
 
 CHOSEN_ON = ("rawtoaces", "babelcolor", "pmc", "tcs", "vs")
 """Atlases that choices are made on."""
@@ -40,7 +40,7 @@ class Materials:
 
 
 @cache
-def spectra(name: str) -> Spectra:
+def spectra(name: str) -> Atlas:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         return read_atlas(MUNSELL if name == "munsell" else ROOT / "atlases" / f"{name}.txt")
@@ -61,8 +61,8 @@ def large() -> tuple[str, ...]:
 
 
 @cache
-def ahead(model: Model) -> Forward:
-    return forward(model, SENSOR.wavelengths, SENSOR.matrix)
+def ahead(model: Model) -> ForwardMap:
+    return forward_map(model, SENSOR.wavelengths, SENSOR.matrix)
 
 
 def entries(
@@ -70,7 +70,7 @@ def entries(
     some: Materials,
     lights: Sequence[str] = uplift.pipeline.options.Options.lights,
     weights: fit.Weights = fit.objective.BALANCED,
-) -> fit.Entries:
+) -> fit.FittedEntries:
     shine = [observer.light(name) for name in lights]
     return fit.fit_entries(model, ahead(model), some.measured, some.rgb, shine, shine[1], 1e-6, weights)
 

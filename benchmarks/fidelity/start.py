@@ -11,7 +11,7 @@ from uplift.fit.smooth import BRIGHTENING, GREY, smooth
 from uplift.fit.solve import solve
 from uplift.lab.study.held_out import judge
 from uplift.models import Model, Moments, Phase, Sigmoid
-from uplift.models.minimum_norm import forward
+from uplift.models.minimum_norm import forward_map
 
 NINE = Moments(9)
 DARK = np.array(
@@ -35,7 +35,7 @@ def sections() -> list[str]:
 
 def solved(model: Model, start: Array, rgb: Array, metric: Array | None = None) -> Array:
     """Spectra (n, N) of linear RGB (n, 3) by steps of least change from ``start`` (n, C)."""
-    map_ahead = forward(model, SENSOR.wavelengths, SENSOR.matrix, metric)
+    map_ahead = forward_map(model, SENSOR.wavelengths, SENSOR.matrix, metric)
     found = solve(model, map_ahead, start, rgb, tolerance=1e-7, passes=24)
     return np.asarray(model.squash(found.multipliers @ map_ahead.basis.T))
 
@@ -102,7 +102,7 @@ def _models(name: str) -> str:
     ]
     rows = []
     for label, model, metric in choices:
-        start = smooth(model, forward(model, SENSOR.wavelengths, SENSOR.matrix, metric))(some.rgb)
+        start = smooth(model, forward_map(model, SENSOR.wavelengths, SENSOR.matrix, metric))(some.rgb)
         rows.append(row(label, solved(model, start, some.rgb, metric), some))
     judged = ", which no choice was made on" if name in JUDGED_ON or name == "munsell" else ""
     return table(

@@ -9,7 +9,7 @@ from benchmarks.peers.row import Peer, judge_multipliers, model_of
 from uplift import fit
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.models.minimum_norm import forward
+from uplift.models.minimum_norm import forward_map
 
 DIMS = (16, 32)
 MODELS = (("sigmoid", 3), ("moments", 3), ("moments", 5), ("moments", 9), ("moments", 17))
@@ -22,14 +22,14 @@ def ours(runs: int) -> list[Peer]:
 
 def _lattice(name: str, count: int, dim: int, runs: int) -> Peer:
     model, sensor, lattice = model_of(name, count), task.sensor(), task.lattice(dim)
-    problem = fit.Problem(model, forward(model, sensor.wavelengths, sensor.matrix), lattice)
+    problem = fit.Problem(model, forward_map(model, sensor.wavelengths, sensor.matrix), lattice)
     reference = observer.light("A")
     rgb, measured = np.empty((0, 3)), np.empty((0, len(sensor.wavelengths)))
     none = fit.fit_entries(model, problem.forward, measured, rgb, [reference], reference, problem.tolerance)
     seeds = fit.seed(lattice, rgb)
 
     def whole() -> Array:
-        prior = fit.learn(problem, sensor, none, reference)
+        prior = fit.fit_prior(problem, sensor, none, reference)
         return fit.fit_lattice(problem, seeds, none.multipliers, prior).coefficients
 
     whole()  # compiles

@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.render.chart import Layout
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.observer import sensor
-from uplift.colorimetry.srgb import shown
+from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.viz.figure import new_figure, write_png
 
@@ -40,7 +40,9 @@ def draw(
             axes, image = grid[row, column], images[light, way].copy()
             for place in layout.patches(round(INSET * layout.patch)):
                 image[place] = images[light, truth][place]
-            axes.imshow(shown(_binned(image) @ to_screen, SRGB).astype(np.uint8), interpolation="nearest")
+            axes.imshow(
+                to_display_codes(_binned(image) @ to_screen, SRGB).astype(np.uint8), interpolation="nearest"
+            )
             axes.set_xticks([])
             axes.set_yticks([])
             axes.spines[:].set_visible(False)

@@ -10,7 +10,7 @@ from benchmarks.representations.closed import Closed
 from benchmarks.representations.thesis import Printed
 from uplift.lab.comparison.filters import NONE, Tuned
 from uplift.lab.comparison.measure import Comparison
-from uplift.viz.format import time_told
+from uplift.viz.format import format_time
 
 WIDTH = 118
 TEXT = """# Which representation of spectra does a scene need?
@@ -103,7 +103,7 @@ def introduction(
     numbers |= {f"thesis_{lights}_{name}": f"{one.mean:.3g}" for (lights, name), one in thesis.items()}
     numbers |= {f"closed_{one.lights}_{one.name}": f"{one.closed.mean:.3g}" for one in readings}
     numbers |= {f"high_{row.lights}_{row.name}": f"{row.statistics.q97_5:.2g}" for row in found.rows}
-    numbers |= {f"ns_{row.name}": time_told(row.ns.median) for row in found.of("spiky")}
+    numbers |= {f"ns_{row.name}": format_time(row.ns.median) for row in found.of("spiky")}
     numbers |= {kind: _change(kind, tuned) for kind in ("mitchell", "lanczos")}
     surfaces = found.facts["products"].split()[0]
     return "\n\n".join(map(_wrapped, TEXT.format(surfaces=surfaces, **numbers).split("\n\n"))) + "\n"

@@ -12,7 +12,7 @@ from uplift.lab.comparison.measure import Comparison, Row
 from uplift.lab.comparison.recommend import cheapest
 from uplift.lab.comparison.statistics import HEADINGS, Statistics
 from uplift.lab.comparison.style import heading
-from uplift.viz.format import error_told, time_told
+from uplift.viz.format import format_error, format_time
 
 TARGETS = (2.0, 1.0, 0.5)
 TABLE = 81
@@ -58,7 +58,7 @@ def ranked(found: Comparison, name: str, thesis: Thesis) -> str:
         printed = thesis.get((name, row.name))
         told = [f"{printed.mean:.3f}", f"{printed.q97_5:.3f}"] if printed else ["", ""] if number else []
         shown = f"**{row.name}**" if row.statistics.mean < 1 else row.name
-        cost = [f"{row.floats:.3g}", f"{row.light_floats:.3g}", time_told(row.ns.median)]
+        cost = [f"{row.floats:.3g}", f"{row.light_floats:.3g}", format_time(row.ns.median)]
         rows.append([shown, *_statistics(row.statistics), *told, *cost])
     beside = f" *Thesis* is its table {number}, on other surfaces." if number else ""
     return table(
@@ -124,4 +124,4 @@ def _change(mean: float, bare: float) -> str:
 
 
 def _statistics(found: Statistics) -> list[str]:
-    return [error_told(value) for value in found]
+    return [format_error(value) for value in found]

@@ -17,7 +17,7 @@ from uplift.lab.study.stability import NO_ATLAS, study
 from uplift.lab.study.stability_design import Axes, design, grids
 from uplift.lab.study.stability_plots import plot_map
 from uplift.lab.study.synthetic_atlases import MADE
-from uplift.lab.timing import circumstances
+from uplift.lab.timing import environment
 from uplift.pipeline.provenance import recorded_atlas
 
 FOLDER = ROOT / "docs" / "stability"
@@ -45,7 +45,7 @@ def _map() -> None:
 
 
 def _sensitivity() -> None:
-    figures: dict[str, Any] = {"circumstances": circumstances(), "cubes": {}}
+    figures: dict[str, Any] = {"circumstances": environment(), "cubes": {}}
     for name in CUBES:
         path = ROOT / "cubes" / f"{name}.uplift"
         cube = uplift.load(path)

@@ -11,13 +11,13 @@ import OpenEXR
 
 from benchmarks.page import table
 from benchmarks.textures.pictures import Picture, colour, pictures
-from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.io import texture
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
 
-FORMS: tuple[tuple[str, texture.Form, str], ...] = (
+FORMS: tuple[tuple[str, texture.PixelEncoding, str], ...] = (
     ("spectrum, half", texture.Spectrum(), "half"),
     ("spectrum, float", texture.Spectrum(), "float"),
     ("moments, half", texture.Moments(), "half"),
@@ -45,10 +45,10 @@ def _forms(cube: Cube, found: list[Picture], target: Path) -> str:
         cells = [f"{picture.path.name} ({picture.package})", f"{linear.size // 3:,}"]
         for (_, form, _), uplifter in zip(FORMS, ready, strict=True):
             texture.convert(uplifter, picture.path, target, force=True)
-            apart = colours_apart(cube.data.sensor, linear, _rgb(cube, form, uplifter.channels, target))
+            apart = delta_e_rgb(cube.data.sensor, linear, _rgb(cube, form, uplifter.channels, target))
             cells.append(f"{apart.mean():.4f} / {apart.max():.3f}")
             if isinstance(form, texture.Spectrum):
-                theirs = colours_apart(cube.data.sensor, linear, _theirs(target))
+                theirs = delta_e_rgb(cube.data.sensor, linear, _theirs(target))
                 cells.append(f"{theirs.mean():.4f}")
         rows.append(cells)
     head = ["image", "pixels"]
@@ -65,7 +65,7 @@ def _forms(cube: Cube, found: list[Picture], target: Path) -> str:
     )
 
 
-def _rgb(cube: Cube, form: texture.Form, names: tuple[str, ...], path: Path) -> Array:
+def _rgb(cube: Cube, form: texture.PixelEncoding, names: tuple[str, ...], path: Path) -> Array:
     sensor, model = cube.data.sensor, cube.data.model
     channels = OpenEXR.File(str(path), separate_channels=True).channels()
     shape = channels["R"].pixels.shape
@@ -99,7 +99,7 @@ def _grids(cube: Cube, found: list[Picture], target: Path) -> str:
         means, worst = [], 0.0
         for picture in found:
             texture.convert(uplifter, picture.path, target, force=True)
-            apart = colours_apart(cube.data.sensor, np.clip(picture.linear(), 0, 1), _theirs(target))
+            apart = delta_e_rgb(cube.data.sensor, np.clip(picture.linear(), 0, 1), _theirs(target))
             means.append(apart.mean())
             worst = max(worst, apart.max())
         name = f"{first}:{last}:{step}" + (", the default" if (first, last, step) == GRIDS[0] else "")

@@ -14,7 +14,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.sensor import Light
-from uplift.colorimetry.srgb import shown
+from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.io import texture
 from uplift.lookup import Cube
@@ -65,6 +65,6 @@ def _apart(light: Light, first: Array, second: Array) -> float:
 
 
 def _show(axes: Any, linear: Array, title: str) -> None:
-    axes.imshow(shown(linear, SRGB).astype(np.uint8))
+    axes.imshow(to_display_codes(linear, SRGB).astype(np.uint8))
     axes.set_title(title, fontsize=9, loc="left")
     axes.set_axis_off()

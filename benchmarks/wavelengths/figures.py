@@ -11,7 +11,7 @@ from benchmarks.wavelengths.methods import COUNTS, Comparison
 from uplift.scene.wavelengths import METHODS
 from uplift.scene.wavelengths.experiments import Trials, triangle
 from uplift.viz.charts import GREY, INK, STYLE
-from uplift.viz.figure import new_figure, plain, write_png
+from uplift.viz.figure import new_figure, style_axes, write_png
 
 COLOURS = ("#20509a", "#d1495b", "#2e8b57", "#c98a1b", "#7fa3d9")
 CORNERS = np.array([[0.5, np.sqrt(0.75)], [0.0, 0.0], [1.0, 0.0]])
@@ -35,7 +35,7 @@ def figure_6(spaces: Sequence[Trials], path: Path) -> None:
         axes.set(xlabel="wavelengths", ylabel="mean ΔE76", yscale="log")
         axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.legend(frameon=False, ncols=2)
-        plain(axes)
+        style_axes(axes)
         write_png(figure, path, force=True)
 
 
@@ -85,7 +85,7 @@ def methods(comparisons: Sequence[Comparison], path: Path) -> None:
             axes.set(xlabel="wavelengths", yscale="log")
             axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
             axes.set_title(", ".join(comparison.lights), loc="left", fontsize=9, color=INK)
-            plain(axes)
+            style_axes(axes)
         panels[0].set_ylabel("mean ΔE00, unseen materials")
         figure.legend(
             *panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=5, frameon=False

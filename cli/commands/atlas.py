@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from uplift.atlas import Spectra
+    from uplift.atlas import Atlas
 
 
 @click.command("atlas")
@@ -62,7 +62,7 @@ def command(
     PRINTERS[style](list_entries(spectra, sensor(space, illuminant, observer or DEFAULT_OBSERVER)))
 
 
-def _convert(spectra: Spectra, path: str, force: bool) -> None:
+def _convert(spectra: Atlas, path: str, force: bool) -> None:
     from uplift.atlas import write_atlas
     from uplift.common.files import check_output
 

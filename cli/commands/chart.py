@@ -100,13 +100,13 @@ def command(
 
 def _recommend(source: str | None, wish: Wish) -> None:
     from uplift.lab.chart.recommend import recommend, shipped
-    from uplift.viz.format import error_told, size_told, time_told
+    from uplift.viz.format import format_error, format_size, format_time
 
     row = recommend(_read(source) if source is not None else shipped(), wish)
     numbers = row.numbers
     click.echo(
-        f"{row.title}: {time_told(numbers['time_ns'])} per RGB, mean ΔE00 {error_told(numbers[wish.error])} "
-        f"{wish.about}, {size_told(numbers['bytes'])}\n  {row.build}\n  {row.ask}"
+        f"{row.title}: {format_time(numbers['time_ns'])} per RGB, mean ΔE00 {format_error(numbers[wish.error])} "
+        f"{wish.about}, {format_size(numbers['bytes'])}\n  {row.build}\n  {row.ask}"
     )
 
 
@@ -152,7 +152,7 @@ def _tell(found: Chart, folder: Path) -> None:
 
     from uplift.lab.chart.panels import PANELS
     from uplift.lab.chart.table import State
-    from uplift.viz.format import size_told
+    from uplift.viz.format import format_size
 
     table = Table(box=box.SIMPLE_HEAD, caption="Pareto fronts, from the quickest to the nearest")
     for heading in ("", "method"):
@@ -167,7 +167,7 @@ def _tell(found: Chart, folder: Path) -> None:
                 title,
                 row.method,
                 *panel.told(row),
-                size_told(row.numbers["bytes"]),
+                format_size(row.numbers["bytes"]),
                 end_section=row is front[-1],
             )
     console().print(table)

@@ -56,7 +56,7 @@ def command(cube: str, out: str | None, to: str | None, res: int | None, fill: b
 
     path = check_output(out, force=force)
     options = {} if res is None else {"res": res}
-    asked = load(cube).filled() if fill else load(cube)
+    asked = load(cube).fill_missing() if fill else load(cube)
     click.echo(f"{path}: {WRITERS[to](asked.data, path, force=force, **options)}")
 
 

@@ -151,7 +151,7 @@ def _check_usage(
     if over is not None and swatches is not None:
         raise click.UsageError("--swatches shows a mixture by itself, without --over.")
     if output is not None and not output.lower().endswith(".exr"):
-        raise OutputError("painted images are OpenEXR", path=output, remedy="name the file .exr")
+        raise OutputError("painted images are OpenEXR", path=output, hint="name the file .exr")
 
 
 def _medium(thickness: float | None, surface: Surface, constants: str) -> Medium:

@@ -25,9 +25,9 @@ from ..params.primaries import parse_primaries
 from ..params.wavelengths import parse_wavelengths
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.gamut import Contained
+    from uplift.colorimetry.gamut import GamutMapped
     from uplift.common.arrays import Array
-    from uplift.lookup import Answer, Cube
+    from uplift.lookup import Cube, QueryResult
 
 NEGATIVE = re.compile(r"-\.?\d")
 
@@ -91,9 +91,9 @@ def command(
       uplift query --primaries P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
       echo 0.5,0.5,0.5 | uplift query - --format json
     """
-    from uplift.colorimetry.gamut import contained, conversion
+    from uplift.colorimetry.gamut import conversion, map_to_gamut
     from uplift.common.files import check_output
-    from uplift.lookup import answers, load
+    from uplift.lookup import load, query
 
     if plot_path is not None:
         check_output(plot_path, force=force)
@@ -102,22 +102,22 @@ def command(
     rgb = _colours(colour, input_path, cube, codes=codes, bounded=bounded)
     if primaries is not None:
         rgb = rgb @ conversion(parse_primaries(primaries), cube.data.sensor).T
-    moved = contained(rgb, cube.data.sensor, way)
+    moved = map_to_gamut(rgb, cube.data.sensor, way)
     _tell(moved, way)
     if fill:
         cube = _filled(cube, moved.rgb)
-    found: Iterable[Answer] = answers(
+    found: Iterable[QueryResult] = query(
         cube, moved.rgb, parse_wavelengths(wavelengths), mode, asked=moved.asked
     )
     if plot_path is not None:
-        from uplift.viz.spectra import plot_answers
+        from uplift.viz.spectra import plot_spectra
 
         found = list(found)
-        plot_answers(cube, found, plot_path, force=force)
+        plot_spectra(cube, found, plot_path, force=force)
     WRITERS[style](cube, found, bool(colour) and colour != ("-",))
 
 
-def _tell(moved: Contained, way: str) -> None:
+def _tell(moved: GamutMapped, way: str) -> None:
     """Colours that were moved are said: how many, and how far."""
     if moved.count:
         told = (
@@ -133,7 +133,7 @@ def _filled(cube: Cube, rgb: Array) -> Cube:
     if outside:
         told = f"{outside} of {len(rgb)} colours are none of the cube's scene: filled from the package's own cube"
         warnings.warn(told, UpliftWarning, stacklevel=1)
-    return cube.filled(rgb)
+    return cube.fill_missing(rgb)
 
 
 def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: bool, bounded: bool) -> Array:
@@ -153,4 +153,4 @@ def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: boo
                 file, "standard input" if path == "-" else path, cube, codes=codes, bounded=bounded
             )
     except OSError as error:
-        raise ColourError(f"{path}: {error.strerror}", remedy="name a CSV file of colours") from error
+        raise ColourError(f"{path}: {error.strerror}", hint="name a CSV file of colours") from error

@@ -11,7 +11,7 @@ from ..output.console import json_text
 from ..params.options import atlas_folders_option, force_option, format_option
 
 if TYPE_CHECKING:
-    from uplift.atlas import Spectra
+    from uplift.atlas import Atlas
     from uplift.lookup import Cube
     from uplift.report.assessment import Assessment
 
@@ -96,7 +96,7 @@ def _check_apart(path: Path, cube: str) -> None:
     from uplift.common.errors import OutputError
 
     if path.exists() and Path(cube).exists() and path.samefile(cube):
-        raise OutputError("is the cube itself", path=path, remedy="name another file with -o")
+        raise OutputError("is the cube itself", path=path, hint="name another file with -o")
 
 
 def _assess(
@@ -109,7 +109,7 @@ def _assess(
     return assess(cube, Path(path).name, Path(path).stat().st_size, spectra, lights or LIGHTS)
 
 
-def _measured(cube: Cube, path: str, atlases: tuple[str, ...], folders: tuple[str, ...]) -> Spectra | None:
+def _measured(cube: Cube, path: str, atlases: tuple[str, ...], folders: tuple[str, ...]) -> Atlas | None:
     from uplift.atlas import read_atlas
     from uplift.pipeline.provenance import recorded_atlas
 
@@ -118,9 +118,9 @@ def _measured(cube: Cube, path: str, atlases: tuple[str, ...], folders: tuple[st
 
 def _text(found: Assessment, style: str, worst: int) -> str:
     if style == "json":
-        from uplift.report.json_export import numbers
+        from uplift.report.json_export import to_json
 
-        return json_text(numbers(found)) + "\n"
+        return json_text(to_json(found)) + "\n"
     from uplift.report.page import page
 
     return page(found, worst)
@@ -128,12 +128,12 @@ def _text(found: Assessment, style: str, worst: int) -> str:
 
 def _told(found: Assessment) -> str:
     """The report in a line."""
-    from uplift.viz.markup import counted
+    from uplift.viz.markup import pluralise
 
-    parts = [f"{counted(found.failures.missed, 'point')} over the threshold"]
+    parts = [f"{pluralise(found.failures.missed, 'point')} over the threshold"]
     if found.entries is not None:
         entries = found.entries
-        parts.append(counted(len(entries.names), "entry", "entries"))
+        parts.append(pluralise(len(entries.names), "entry", "entries"))
         parts.append(
             f"ΔE00 mean {entries.delta_e.mean():.2f}, worst {entries.worst[0]:.2f} ('{entries.names[0]}')"
         )
@@ -143,5 +143,5 @@ def _told(found: Assessment) -> str:
             f"under {found.data.reference} {judged.real:.2f}, {judged.stated:.2f} stated (root mean squares)"
         )
     if found.crowding is not None:
-        parts.append(counted(len(found.crowding.entries.names), "crowded entry", "crowded entries"))
+        parts.append(pluralise(len(found.crowding.entries.names), "crowded entry", "crowded entries"))
     return ", ".join(parts)

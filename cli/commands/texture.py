@@ -24,7 +24,7 @@ from ..params.wavelengths import parse_wavelengths
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.io.texture import Conversion, Failure, Form, Job
+    from uplift.io.texture import Conversion, Failure, Job, PixelEncoding
 
 
 @click.command("texture")
@@ -95,10 +95,10 @@ def command(
     count = processes or min(cores, len(pairs))
     form = _form(kind, parse_wavelengths(wavelengths))
     cube = None if cube_path is None else os.path.abspath(cube_path)
-    recipe = texture.Recipe(cube, form, depth, encoding, max(cores // count, 1), fill, way)
+    recipe = texture.TextureSettings(cube, form, depth, encoding, max(cores // count, 1), fill, way)
     jobs = [texture.Job(recipe, source.absolute(), made.absolute(), force) for source, made in pairs]
-    todo = texture.left(jobs, resume=resume)
-    texture.ready(recipe)  # what is wrong with the options is said once
+    todo = texture.pending(jobs, resume=resume)
+    texture.uplifter_for(recipe)  # what is wrong with the options is said once
     begin = time.perf_counter()
     if scheduler is None and len(jobs) == 1:
         found: list[Conversion | Failure] = [_alone(job) for job in todo]
@@ -118,14 +118,14 @@ def command(
         raise failures[0].error
 
 
-def _form(kind: str, wavelengths: Array | None) -> Form:
+def _form(kind: str, wavelengths: Array | None) -> PixelEncoding:
     from uplift.common.errors import OptionError
     from uplift.io import texture
 
     if kind == texture.Spectrum.name:
         return texture.Spectrum(None if wavelengths is None else tuple(wavelengths.tolist()))
     if wavelengths is not None:
-        raise OptionError(f"{kind} have no wavelengths", remedy="leave out --wavelengths, or --as")
+        raise OptionError(f"{kind} have no wavelengths", hint="leave out --wavelengths, or --as")
     return texture.FORMS[kind]()
 
 
@@ -135,7 +135,7 @@ def _alone(job: Job) -> Conversion:
 
     with counting("rows") as watch:
         return texture.convert(
-            texture.ready(job.recipe), job.source, job.target, force=job.force, watch=watch
+            texture.uplifter_for(job.recipe), job.source, job.target, force=job.force, watch=watch
         )
 
 

@@ -13,7 +13,7 @@ from ..params.study_atlases import SHIPPED, read_each
 from ..params.wavelengths import parse_wavelengths
 
 if TYPE_CHECKING:
-    from uplift.atlas import Spectra
+    from uplift.atlas import Atlas
 
 ONE_OF_THREE = "Of --count, --target and --at give one. See 'uplift wavelengths --help'."
 
@@ -93,7 +93,7 @@ def command(
         check_output(plot_path, force=force)
     seen_by = observer or DEFAULT_OBSERVER
     camera = sensor(space, illuminant, seen_by)
-    spectra: Spectra = merge(read_each(files).values())
+    spectra: Atlas = merge(read_each(files).values())
     setting = wavelengths.set_up(
         on_grid(spectra, wavelengths.grid()), lights or ("D65",), observer_name=seen_by
     )

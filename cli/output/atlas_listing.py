@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from uplift.atlas import Spectra
+    from uplift.atlas import Atlas
     from uplift.colorimetry.sensor import Sensor
 
 
@@ -28,23 +28,23 @@ class Row:
 class Listing:
     """An atlas seen under one sensor."""
 
-    spectra: Spectra
+    spectra: Atlas
     sensor: Sensor
     rows: tuple[Row, ...]
 
 
-def list_entries(spectra: Spectra, sensor: Sensor) -> Listing:
+def list_entries(spectra: Atlas, sensor: Sensor) -> Listing:
     """Colours of all entries under a sensor, clipped as a cube would have them."""
     from uplift.atlas import resample
     from uplift.colorimetry.gamut import SRGB
     from uplift.colorimetry.observer import sensor as make_sensor
-    from uplift.colorimetry.srgb import shown
+    from uplift.colorimetry.srgb import to_display_codes
 
     resampled = resample(spectra, sensor.wavelengths)
     display = make_sensor("sRGB", sensor.illuminant, sensor.observer)
     clips = {clip.name: (str(clip),) for clip in resampled.clips}
     colours = sensor.rgb(resampled.values).tolist()
-    codes = shown(display.rgb(resampled.values), SRGB).astype(int).tolist()
+    codes = to_display_codes(display.rgb(resampled.values), SRGB).astype(int).tolist()
     rows = [
         Row(
             entry.name,

@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 def print_comparison(found: Comparison) -> None:
     """A table for each set of lights, ranked."""
     from uplift.lab.comparison.statistics import HEADINGS
-    from uplift.viz.format import time_told
+    from uplift.viz.format import format_time
 
     for name, title in found.sets.items():
         table = _table(
             f"ΔE00 under {title}", ("representation",), (*HEADINGS, "floats", "of a light", "product")
         )
         for row in found.of(name):
-            cost = (f"{row.floats:.1f}", f"{row.light_floats:.1f}", time_told(row.ns.median))
+            cost = (f"{row.floats:.1f}", f"{row.light_floats:.1f}", format_time(row.ns.median))
             table.add_row(row.name, *_told(row.statistics), *cost)
         console().print(table)
 
@@ -48,17 +48,17 @@ def print_filters(tuned: tuple[Tuned, ...]) -> None:
 def print_advice(found: Comparison, target: float) -> None:
     """The cheapest representation under each set of lights."""
     from uplift.lab.comparison.recommend import cheapest, nearest
-    from uplift.viz.format import error_told, time_told
+    from uplift.viz.format import format_error, format_time
 
     for name, title in found.sets.items():
         row = cheapest(found, name, target)
         if row is None:
             best = nearest(found, name)
-            told = f"none; the nearest, {best.name}, has {error_told(best.statistics.q97_5)}"
+            told = f"none; the nearest, {best.name}, has {format_error(best.statistics.q97_5)}"
         else:
             told = (
-                f"{row.name} ({row.family}): 97.5 % within {error_told(row.statistics.q97_5)}, {row.floats:.4g} floats "
-                f"a surface, {row.light_floats:.4g} a light, {time_told(row.ns.median)} a product"
+                f"{row.name} ({row.family}): 97.5 % within {format_error(row.statistics.q97_5)}, {row.floats:.4g} floats "
+                f"a surface, {row.light_floats:.4g} a light, {format_time(row.ns.median)} a product"
             )
         click.echo(f"{title}: {told}")
 

@@ -58,7 +58,7 @@ def mixed_on(
     """The mixture, and ``steps`` on the way through its ingredients; a mixture that was moved inside is said."""
     import numpy as np
 
-    from uplift.colorimetry.gamut import contained
+    from uplift.colorimetry.gamut import map_to_gamut
     from uplift.design.mixing.recipes import mixed, ramp
 
     sensor = shelf.cube.data.sensor
@@ -66,7 +66,7 @@ def mixed_on(
     amounts = np.concatenate([parts[None], ramp(parts, steps)])
     spectra = mixed(kind, given(ingredients), amounts, medium, shelf.spectrum(ground or "white"))
     count = len(sensor.wavelengths)
-    moved = contained(sensor.rgb(spectra[:, :count]), sensor, way)
+    moved = map_to_gamut(sensor.rgb(spectra[:, :count]), sensor, way)
     if moved.outside[0]:
         warnings.warn(f"the mixture lies outside [0, 1]: moved inside ({way})", UpliftWarning, stacklevel=1)
     return Mixture(
@@ -117,10 +117,10 @@ def _ramp(cube: Cube, mixture: Mixture) -> dict[str, str]:
 
 def draw(cube: Cube, mixture: Mixture, path: str, *, force: bool) -> None:
     """The mixture, and below it the way from the first to the last, as a PNG. Raises `OutputError`."""
-    from uplift.colorimetry.srgb import shown
+    from uplift.colorimetry.srgb import to_display_codes
     from uplift.viz.swatches import Strip, plot_strips
 
-    codes = shown(mixture.rgb, cube.data.sensor) / 255
+    codes = to_display_codes(mixture.rgb, cube.data.sensor) / 255
     strips = [Strip(f"{mixture.kind}: {mixture.told}", codes[:1])]
     if len(mixture.names) > 1:
         strips.append(Strip(f"from {mixture.names[0]} to {mixture.names[-1]}", codes[1:]))

@@ -43,9 +43,9 @@ def read_picture(
     from uplift.design.palette.relight_viewer.picture_file import read_weights
 
     if image is None and labels:
-        raise OptionError("--label without --image", remedy="name the image that has these colours")
+        raise OptionError("--label without --image", hint="name the image that has these colours")
     if image is not None and html is None:
-        raise OptionError("--image without --html", remedy="name the page that shall show it")
+        raise OptionError("--image without --html", hint="name the page that shall show it")
     if image is None:
         return None
     return read_weights(image, [part.name for part in palette.materials], _told(labels))
@@ -59,9 +59,9 @@ def _told(labels: tuple[str, ...]) -> dict[str, str] | None:
     for label in labels:
         name, sign, colour = label.partition("=")
         if not sign:
-            raise OptionError(f"label '{label}' has no colour", remedy="write it as NAME=#rrggbb")
+            raise OptionError(f"label '{label}' has no colour", hint="write it as NAME=#rrggbb")
         if name in told:
-            raise OptionError(f"two colours for '{name}'", remedy="give one")
+            raise OptionError(f"two colours for '{name}'", hint="give one")
         told[name] = colour
     return told or None
 

@@ -11,7 +11,7 @@ import click
 
 if TYPE_CHECKING:
     from uplift.fit import Round, Storing
-    from uplift.io.scene_colours import Reading
+    from uplift.io.scene_colours import ReadProgress
     from uplift.pipeline.build_cube import Watch
     from uplift.scene.plan import Step
 
@@ -40,15 +40,15 @@ def waiting(text: str) -> Iterator[None]:
         yield
 
 
-def _say(done: Round | Storing | Reading) -> None:
+def _say(done: Round | Storing | ReadProgress) -> None:
     click.echo(_told(done), err=True)
 
 
-def _told(done: Round | Storing | Reading) -> str:
+def _told(done: Round | Storing | ReadProgress) -> str:
     from uplift.fit import Storing
-    from uplift.io.scene_colours import Reading
+    from uplift.io.scene_colours import ReadProgress
 
-    if isinstance(done, Reading):
+    if isinstance(done, ReadProgress):
         return f"scene: read {done.read} of {done.total} images"
     if isinstance(done, Storing):
         return f"stored {done.stored} of {done.total}"
@@ -70,11 +70,11 @@ def _bar() -> Iterator[Watch]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("build", total=None, told="atlas")
 
-        def watch(done: Round | Storing | Reading) -> None:
+        def watch(done: Round | Storing | ReadProgress) -> None:
             from uplift.fit import Storing
-            from uplift.io.scene_colours import Reading
+            from uplift.io.scene_colours import ReadProgress
 
-            if isinstance(done, Reading):
+            if isinstance(done, ReadProgress):
                 progress.update(task, total=done.total, completed=done.read, told=_told(done))
                 return
             reached = done.total + done.stored if isinstance(done, Storing) else done.fitted

@@ -13,13 +13,13 @@ from .console import console, json_text
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.lookup import Answer, Cube
+    from uplift.lookup import Cube, QueryResult
 
 BLOCKS = "▁▂▃▄▅▆▇█"
-Writer = Callable[["Cube", Iterable["Answer"], bool], None]
+Writer = Callable[["Cube", Iterable["QueryResult"], bool], None]
 
 
-def as_json(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
+def as_json(cube: Cube, answers: Iterable[QueryResult], single: bool) -> None:
     """One object for one colour asked on the command line, an array otherwise."""
     if single:
         click.echo(json_text(_object(cube, next(iter(answers))), indent=None))
@@ -31,7 +31,7 @@ def as_json(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
     click.echo("\n]")
 
 
-def _object(cube: Cube, answer: Answer) -> dict[str, Any]:
+def _object(cube: Cube, answer: QueryResult) -> dict[str, Any]:
     return {
         "rgb": answer.rgb.tolist(),
         "asked": answer.asked.tolist(),
@@ -47,7 +47,7 @@ def _object(cube: Cube, answer: Answer) -> dict[str, Any]:
     }
 
 
-def as_csv(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
+def as_csv(cube: Cube, answers: Iterable[QueryResult], single: bool) -> None:
     """A row a colour: r, g, b, ΔE00 of the round trip, standard error, entry, reflectance at each wavelength."""
     writer = csv.writer(sys.stdout, lineterminator="\n")
     for number, answer in enumerate(answers):
@@ -59,7 +59,7 @@ def as_csv(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
         writer.writerow([*numbers, answer.entry or "", *answer.reflectance.tolist()])
 
 
-def as_table(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
+def as_table(cube: Cube, answers: Iterable[QueryResult], single: bool) -> None:
     """A sheet for one colour, a line each for several."""
     if single:
         _sheet(cube, next(iter(answers)))
@@ -67,7 +67,7 @@ def as_table(cube: Cube, answers: Iterable[Answer], single: bool) -> None:
         _lines(cube, answers)
 
 
-def _sheet(cube: Cube, answer: Answer) -> None:
+def _sheet(cube: Cube, answer: QueryResult) -> None:
     data = cube.data
     patch = click.style("        ", bg=shown_codes(cube, answer.rgb))
     facts = {
@@ -90,17 +90,17 @@ def _sheet(cube: Cube, answer: Answer) -> None:
     columns(answer.wavelengths, answer.reflectance)
 
 
-def _moved(cube: Cube, answer: Answer) -> dict[str, str]:
+def _moved(cube: Cube, answer: QueryResult) -> dict[str, str]:
     """What was asked, where it lay outside [0, 1]."""
-    from uplift.colorimetry.delta_e import colours_apart
+    from uplift.colorimetry.delta_e import delta_e_rgb
 
     if (answer.asked == answer.rgb).all():
         return {}
-    apart = float(colours_apart(cube.data.sensor, answer.asked, answer.rgb))
+    apart = float(delta_e_rgb(cube.data.sensor, answer.asked, answer.rgb))
     return {"asked": f"{triple(answer.asked)}  outside [0, 1], moved by ΔE00 {apart:.2g}"}
 
 
-def _expected(cube: Cube, answer: Answer) -> str:
+def _expected(cube: Cube, answer: QueryResult) -> str:
     if answer.standard_error is None:
         return "no telling: too few atlas entries"
     return f"may differ by ΔE00 {answer.standard_error:.2g} ({cube.data.reference}; standard error)"
@@ -117,7 +117,7 @@ def columns(wavelengths: Array, reflectance: Array) -> None:
         click.echo("  ".join(cells[line::height]))
 
 
-def _lines(cube: Cube, answers: Iterable[Answer]) -> None:
+def _lines(cube: Cube, answers: Iterable[QueryResult]) -> None:
     from rich.table import Table
     from rich.text import Text
 
@@ -144,9 +144,9 @@ def _codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:
 
 def shown_codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:
     """What the terminal's screen shows it as."""
-    from uplift.colorimetry.srgb import shown
+    from uplift.colorimetry.srgb import to_display_codes
 
-    red, green, blue = (int(code) for code in shown(rgb, cube.data.sensor))
+    red, green, blue = (int(code) for code in to_display_codes(rgb, cube.data.sensor))
     return red, green, blue
 
 

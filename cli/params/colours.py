@@ -35,7 +35,7 @@ def from_table(file: IO[str], name: str, cube: Cube, *, codes: bool, bounded: bo
     """
     colours = {line: _parse(row, f"{name}:{line}: ") for line, row in _rows(file, name)}
     if not colours:
-        raise ColourError(f"{name}: no colours in it", remedy="give lines of r,g,b or of hex colours")
+        raise ColourError(f"{name}: no colours in it", hint="give lines of r,g,b or of hex colours")
     for line, (is_hex, numbers) in colours.items():
         _check_range(numbers, name, line, codes=is_hex or codes, bounded=bounded)
     return _linear(list(colours.values()), cube, codes=codes)
@@ -46,17 +46,17 @@ def _check_range(numbers: tuple[float, ...], name: str, line: int, *, codes: boo
     values = "(" + ", ".join(f"{number:g}" for number in numbers) + ")"
     if codes:
         if not all(0 <= number <= 255 for number in numbers):
-            remedy = "leave out --8bit for linear floats"
-            raise ColourError(f"{values} lies outside 0 to 255", path=name, line=line, remedy=remedy)
+            hint = "leave out --8bit for linear floats"
+            raise ColourError(f"{values} lies outside 0 to 255", path=name, line=line, hint=hint)
         return
     if bounded:
         from uplift.colorimetry.sensor import SLACK
 
         if not all(-SLACK <= number <= 1 + SLACK for number in numbers):
-            remedy = "move it with --out-of-gamut, or use --8bit for codes"
-            raise ColourError(f"{values} lies outside [0, 1]", path=name, line=line, remedy=remedy)
+            hint = "move it with --out-of-gamut, or use --8bit for codes"
+            raise ColourError(f"{values} lies outside [0, 1]", path=name, line=line, hint=hint)
     elif not all(map(math.isfinite, numbers)):
-        raise ColourError(f"{values} is not finite", path=name, line=line, remedy=REMEDY)
+        raise ColourError(f"{values} is not finite", path=name, line=line, hint=REMEDY)
 
 
 def _rows(file: IO[str], name: str) -> Iterable[tuple[int, list[str]]]:
@@ -67,9 +67,9 @@ def _rows(file: IO[str], name: str) -> Iterable[tuple[int, list[str]]]:
             if row and not (line == 1 and _is_header(row)):
                 yield line, row
     except UnicodeDecodeError as error:
-        raise ColourError(f"{name}: is not text", remedy="give a CSV file of colours") from error
+        raise ColourError(f"{name}: is not text", hint="give a CSV file of colours") from error
     except csv.Error as error:
-        raise ColourError(str(error), path=name, line=line, remedy="give a CSV file of colours") from error
+        raise ColourError(str(error), path=name, line=line, hint="give a CSV file of colours") from error
 
 
 def _is_header(row: list[str]) -> bool:
@@ -83,7 +83,7 @@ def _parse(parts: Sequence[str], place: str) -> tuple[bool, tuple[float, ...]]:
         return True, tuple(int(digits[i : i + 2], 16) for i in (0, 2, 4))
     numbers = [_number(part) for part in parts[:3]]
     if len(numbers) < 3 or None in numbers or (not place and len(parts) > 3):
-        raise ColourError(f"{place}'{' '.join(parts)[:SHOWN]}' is no colour", remedy=REMEDY)
+        raise ColourError(f"{place}'{' '.join(parts)[:SHOWN]}' is no colour", hint=REMEDY)
     return False, tuple(number for number in numbers if number is not None)
 
 

@@ -20,15 +20,15 @@ def frames(sources: Sequence[str], target: str) -> list[tuple[Path, Path]]:
     alone = len(sources) == 1 and found == [sources[0]]
     if alone and not folder.is_dir() and not target.endswith(os.sep):
         if folder.suffix.lower() != ".exr":
-            raise OutputError("textures are OpenEXR", path=target, remedy="name the file .exr, or a folder")
+            raise OutputError("textures are OpenEXR", path=target, hint="name the file .exr, or a folder")
         return [(Path(found[0]), folder)]
     if folder.suffix.lower() == ".exr" and not folder.is_dir():
-        raise OutputError(f"is one file, for {len(found)} images", path=target, remedy="name a folder")
+        raise OutputError(f"is one file, for {len(found)} images", path=target, hint="name a folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         problem = f"is no folder, and {len(found)} images need one"
-        raise OutputError(problem, path=target, remedy="name a folder") from error
+        raise OutputError(problem, path=target, hint="name a folder") from error
     return [(Path(path), folder / f"{Path(path).stem}.exr") for path in found]
 
 
@@ -44,5 +44,5 @@ def _expanded(source: str) -> list[str]:
         return [source]
     found = sorted(glob.glob(source))
     if not found:
-        raise TextureError(f"no file is named like '{source}'", remedy="check the pattern")
+        raise TextureError(f"no file is named like '{source}'", hint="check the pattern")
     return found

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from .colours import from_arguments
 
 if TYPE_CHECKING:
-    from uplift.atlas import Spectra
+    from uplift.atlas import Atlas
     from uplift.common.arrays import Array
     from uplift.design.mixing.recipes import Ingredients
     from uplift.lookup import Cube
@@ -36,7 +36,7 @@ class Shelf:
     """Where colours and names get their spectra at ``wavelengths`` (N,) from: a cube, and measured atlases."""
 
     cube: Cube
-    atlas: Spectra
+    atlas: Atlas
     wavelengths: Array
 
     def ingredients(self, words: Sequence[str]) -> list[Ingredient]:
@@ -47,7 +47,7 @@ class Shelf:
         """(N,) of a colour, 'white', 'black' or an entry. Raises `ColourError`."""
         import numpy as np
 
-        from uplift.atlas import Spectra as Atlas
+        from uplift.atlas import Atlas as Atlas
         from uplift.atlas import on_grid
 
         if text in self.cube.data.atlas.names:
@@ -79,7 +79,7 @@ class Shelf:
         try:
             return from_arguments([text], self.cube, codes=False)[0]
         except ColourError as error:
-            raise ColourError(f"{error.problem} and no entry", remedy=REMEDY) from error
+            raise ColourError(f"{error.problem} and no entry", hint=REMEDY) from error
 
     def _uplifted(self, rgb: Array) -> Array:
         return self.cube.reflectance(rgb, self.wavelengths)
@@ -89,10 +89,10 @@ def shelf_of(cube: Cube, atlases: tuple[str, ...], asked: Array) -> Shelf:
     """Spectra at the cube's wavelengths, which colours are told from, and at those asked for."""
     import numpy as np
 
-    from uplift.atlas import Spectra, read_atlas
+    from uplift.atlas import Atlas, read_atlas
 
     at = np.concatenate([cube.data.sensor.wavelengths, asked])
-    return Shelf(cube, read_atlas(*atlases) if atlases else Spectra(), at)
+    return Shelf(cube, read_atlas(*atlases) if atlases else Atlas(), at)
 
 
 def given(ingredients: list[Ingredient], count: int | None = None) -> Ingredients:
@@ -115,5 +115,5 @@ def _number(text: str, word: str) -> float:
     except ValueError:
         parts = 0.0
     if not 0 < parts < float("inf"):
-        raise OptionError(f"'{word}' has parts that are no number above 0", remedy="write '2:#1f3a93'")
+        raise OptionError(f"'{word}' has parts that are no number above 0", hint="write '2:#1f3a93'")
     return parts

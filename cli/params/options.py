@@ -23,7 +23,7 @@ def fill_option() -> Decorator:
 
 
 def out_of_gamut_option(default: str = "error", what: str = "linear RGB") -> Decorator:
-    """Names of `uplift.colorimetry.gamut.CHOICES`, which is not imported for them."""
+    """Names of `uplift.colorimetry.gamut.METHODS`, which is not imported for them."""
     return click.option(
         "--out-of-gamut",
         "way",

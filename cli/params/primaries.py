@@ -27,5 +27,5 @@ def parse_primaries(text: str) -> Primaries:
         numbers = [float(word) for word in re.split(r"[,;\s]+", text.strip())]
     except ValueError as error:
         problem = f"primaries '{text}' are not clear"
-        raise OptionError(problem, remedy="name a space, or x,y of red, green, blue and white") from error
+        raise OptionError(problem, hint="name a space, or x,y of red, green, blue and white") from error
     return Primaries.of(numbers)

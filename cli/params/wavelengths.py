@@ -32,5 +32,5 @@ def _unclear(text: str) -> Exception:
     from uplift.common.errors import OptionError
 
     return OptionError(
-        f"wavelengths '{text}' are not clear", remedy="write START:END:STEP or a list, in nm: 380:780:5"
+        f"wavelengths '{text}' are not clear", hint="write START:END:STEP or a list, in nm: 380:780:5"
     )

@@ -265,7 +265,7 @@ def test_faults_name_file_line_entry_and_remedy(save, damage, line, message):
     with pytest.raises(AtlasError) as caught:
         read_atlas(path)
     assert str(caught.value).startswith(f"{path}:{line}: entry 'grey': {message}")
-    assert caught.value.remedy
+    assert caught.value.hint
     assert "\n" not in str(caught.value)
 
 

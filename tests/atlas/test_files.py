@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from tests.atlas.atlas_texts import PLAIN
-from uplift.atlas import Entry, Header, Spectra, read_atlas, write_atlas
+from uplift.atlas import Atlas, Entry, Header, read_atlas, write_atlas
 from uplift.common.errors import AtlasError, OutputError
 
-GREY = Spectra((Entry("grey", np.array([400.0, 700.0]), np.array([0.5, 0.25])),))
+GREY = Atlas((Entry("grey", np.array([400.0, 700.0]), np.array([0.5, 0.25])),))
 
 
 @pytest.mark.parametrize(
@@ -145,7 +145,7 @@ def test_places_that_cannot_be_written(tmp_path):
 
 def test_nothing_to_write(tmp_path):
     with pytest.raises(OutputError, match="no entries to write"):
-        write_atlas(Spectra(), tmp_path / "out.txt")
+        write_atlas(Atlas(), tmp_path / "out.txt")
 
 
 def test_importing_costs_neither_scipy_nor_colour_nor_jax():

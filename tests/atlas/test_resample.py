@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uplift.atlas import Entry, Spectra, on_grid, resample
+from uplift.atlas import Atlas, Entry, on_grid, resample
 from uplift.common.errors import AtlasError, UpliftWarning
 
 GRID = np.arange(380.0, 785.0, 5.0)
@@ -17,7 +17,7 @@ UNIT = st.lists(st.floats(0.0, 1.0), min_size=9, max_size=9)
 
 
 def spectra(*rows, wavelengths=(400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.0)):
-    return Spectra(tuple(Entry(f"e{i}", np.array(wavelengths), np.array(row)) for i, row in enumerate(rows)))
+    return Atlas(tuple(Entry(f"e{i}", np.array(wavelengths), np.array(row)) for i, row in enumerate(rows)))
 
 
 def test_samples_on_the_grid_are_kept():
@@ -46,7 +46,7 @@ def test_no_overshoot(row):
 
 
 def test_no_entries():
-    assert on_grid(Spectra(), GRID).shape == (0, 81)
+    assert on_grid(Atlas(), GRID).shape == (0, 81)
 
 
 def test_one_warning_for_each_entry_that_is_clipped():
@@ -104,4 +104,4 @@ def test_one_name_twice_from_python():
     (entry,) = spectra([0.5] * 7).entries
     other = Entry("e0", entry.wavelengths, entry.values)
     with pytest.raises(AtlasError, match=r"^entry 'e0': the name is taken; rename or remove one of the two$"):
-        Spectra((entry, other))
+        Atlas((entry, other))

@@ -9,7 +9,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uplift.atlas import Entry, Spectra, read_atlas, write_atlas
+from uplift.atlas import Atlas, Entry, read_atlas, write_atlas
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_categories=["Cc", "Zl", "Zp"]), min_size=1, max_size=20)
 TEXTS = st.text('ab" :{}-', max_size=12).map(lambda text: " ".join(text.split()))
@@ -35,7 +35,7 @@ def atlases(draw, one_sampling):
         wavelengths = shared if one_sampling else draw(samplings())
         values = draw(st.lists(REFLECTANCES, min_size=len(wavelengths), max_size=len(wavelengths)))
         entries.append(Entry(name, wavelengths, np.array(values), *(draw(TEXTS) for _ in range(5))))
-    return Spectra(tuple(entries))
+    return Atlas(tuple(entries))
 
 
 def reread(spectra, name):
@@ -73,6 +73,6 @@ def test_csv(spectra):
 def test_order_changes_nothing_but_the_order(spectra, random):
     entries = list(spectra.entries)
     random.shuffle(entries)
-    found = reread(Spectra(tuple(entries)), "atlas.txt")
+    found = reread(Atlas(tuple(entries)), "atlas.txt")
     values = {entry.name: entry.values.tolist() for entry in found.entries}
     assert values == {entry.name: entry.values.tolist() for entry in spectra.entries}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.atlas import Entry, Spectra, read_atlas, write_atlas
+from uplift.atlas import Atlas, Entry, read_atlas, write_atlas
 from uplift.common.errors import AtlasError, OutputError, UpliftWarning
 
 WIDE = "name,400,550,700\nred,0.1,0.2,0.9\nblue,0.8,0.3,0.05\n"
@@ -126,6 +126,6 @@ def test_a_table_has_one_sampling(tmp_path):
     with pytest.raises(
         OutputError, match="entries 'a' and 'b' are sampled at different wavelengths; write atlas text"
     ):
-        write_atlas(Spectra(entries), tmp_path / "out.csv")
-    write_atlas(Spectra(entries), tmp_path / "out.txt")
+        write_atlas(Atlas(entries), tmp_path / "out.csv")
+    write_atlas(Atlas(entries), tmp_path / "out.txt")
     assert len(read_atlas(tmp_path / "out.txt")) == 2

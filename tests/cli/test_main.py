@@ -61,7 +61,7 @@ def test_wrong_usage_is_click_s_error_with_code_2(run, args):
 
 def test_errors_of_the_library_are_one_line_with_code_2(monkeypatch, run):
     def fail(path):
-        raise UpliftError("is bad", path="x", line=3, remedy="make it good")
+        raise UpliftError("is bad", path="x", line=3, hint="make it good")
 
     monkeypatch.setattr("uplift.lookup.load", fail)
     result = run("info", "x", code=2)

@@ -30,7 +30,7 @@ def test_the_json_is_all_that_a_renderer_needs(choose, macbeth):
     atlas = read_atlas(macbeth)
     for light in ("D65", "FL11"):
         seen = on_grid(atlas, nm) * answer["powers"][light] @ weights
-        power = observer.power(light, 380, 770, 1)
+        power = observer.illuminant_spd(light, 380, 770, 1)
         cmfs = observer.matching_functions(observer.DEFAULT_OBSERVER, 380, 770, 1)
         lit = (cmfs * power[:, None] / (cmfs[:, 1] @ power)).T
         exact = on_grid(atlas, np.arange(380.0, 771.0)) @ lit.T

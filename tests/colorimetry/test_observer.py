@@ -82,8 +82,10 @@ def test_unknown_names_are_met_with_near_ones(ask, kind, near):
 def test_samples_at_1_nm_hold_those_at_5():
     fine, coarse = observer.matching_functions(step=1.0), observer.matching_functions()
     np.testing.assert_allclose(fine[::5], coarse, atol=1e-12)
-    assert observer.power("FL11", 380.0, 770.0, 1.0).shape == (391,)
-    np.testing.assert_allclose(observer.power("FL11", step=1.0)[::5], observer.power("FL11"), atol=1e-9)
+    assert observer.illuminant_spd("FL11", 380.0, 770.0, 1.0).shape == (391,)
+    np.testing.assert_allclose(
+        observer.illuminant_spd("FL11", step=1.0)[::5], observer.illuminant_spd("FL11"), atol=1e-9
+    )
 
 
 def test_primaries_are_those_of_the_space():

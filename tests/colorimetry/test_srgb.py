@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.gamut import SRGB, contained
-from uplift.colorimetry.srgb import decode, encode, shown
+from uplift.colorimetry.gamut import SRGB, map_to_gamut
+from uplift.colorimetry.srgb import decode, encode, to_display_codes
 
 
 def test_the_curve_is_the_standard_s_and_leads_back():
@@ -19,8 +19,10 @@ def test_the_curve_is_the_standard_s_and_leads_back():
 
 def test_srgb_is_shown_as_it_is(small_cube):
     codes = np.random.default_rng(0).integers(0, 256, (500, 3))
-    np.testing.assert_array_equal(shown(decode(codes / 255), SRGB), codes)
-    of_cube = shown(small_cube.decode(codes), small_cube.data.sensor)  # its white is that of D65 at 5 nm
+    np.testing.assert_array_equal(to_display_codes(decode(codes / 255), SRGB), codes)
+    of_cube = to_display_codes(
+        small_cube.decode(codes), small_cube.data.sensor
+    )  # its white is that of D65 at 5 nm
     assert np.abs(of_cube - codes).max() <= 1
     assert (of_cube == codes).mean() > 0.98
 
@@ -31,8 +33,8 @@ def test_other_spaces_are_shown_as_they_look(space, illuminant):
     own, screen = (observer.sensor(name, illuminant) for name in (space, "sRGB"))
     rgb = 0.3 + 0.3 * np.random.default_rng(1).random((200, 3))  # pale enough for sRGB
     expected = 255 * encode(own.xyz(rgb) @ screen.xyz_to_rgb.T)
-    assert np.abs(shown(rgb, own) - expected).max() < 0.6
-    np.testing.assert_array_equal(shown([1, 1, 1], own), [255, 255, 255])
+    assert np.abs(to_display_codes(rgb, own) - expected).max() < 0.6
+    np.testing.assert_array_equal(to_display_codes([1, 1, 1], own), [255, 255, 255])
 
 
 def test_what_no_screen_shows_keeps_its_luminance():
@@ -40,9 +42,9 @@ def test_what_no_screen_shows_keeps_its_luminance():
     red = np.array([0.6, 0, 0])
     linear = wide.xyz(red) @ np.linalg.inv(SRGB.rgb_to_xyz).T
     assert linear.min() < -0.01
-    codes = shown(red, wide)
+    codes = to_display_codes(red, wide)
     light = decode(codes / 255) @ SRGB.rgb_to_xyz[1]
     assert light == pytest.approx(wide.xyz(red)[1], abs=2e-3)
     clipped = decode(np.rint(255 * encode(linear)) / 255) @ SRGB.rgb_to_xyz[1]
     assert abs(clipped - wide.xyz(red)[1]) > 5e-3
-    np.testing.assert_array_equal(codes, np.rint(255 * encode(contained(linear, SRGB, "desaturate").rgb)))
+    np.testing.assert_array_equal(codes, np.rint(255 * encode(map_to_gamut(linear, SRGB, "desaturate").rgb)))

@@ -14,18 +14,18 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from uplift.common.errors import OutputError
-from uplift.common.files import check_output, replacing
+from uplift.common.files import atomic_write, check_output
 
 AS_ROOT = os.name == "nt" or not hasattr(os, "geteuid") or os.geteuid() == 0
 
 
 def write(path, text, **options):
-    with replacing(path, **options) as temporary:
+    with atomic_write(path, **options) as temporary:
         temporary.write_text(text)
 
 
 def fail(path, error):
-    with replacing(path, force=True) as temporary:
+    with atomic_write(path, force=True) as temporary:
         temporary.write_text("half")
         raise error
 
@@ -37,7 +37,7 @@ def test_a_new_file_takes_its_place_and_nothing_else(tmp_path):
 
 
 def test_nothing_bears_the_name_before_the_block_ends(tmp_path):
-    with replacing(tmp_path / "new") as temporary:
+    with atomic_write(tmp_path / "new") as temporary:
         temporary.write_text("half")
         assert temporary.parent == tmp_path
         assert not (tmp_path / "new").exists()
@@ -62,7 +62,7 @@ def test_an_exception_leaves_no_new_file(tmp_path):
 def test_a_full_disk_is_told_with_path_and_comfort(tmp_path):
     path = tmp_path / "old"
     path.write_text("old")
-    with pytest.raises(OutputError) as caught, replacing(path, force=True):
+    with pytest.raises(OutputError) as caught, atomic_write(path, force=True):
         raise OSError(errno.ENOSPC, "No space left on device")
     assert str(caught.value) == f"{path}: cannot be written: No space left on device; the old file is intact"
     assert os.listdir(tmp_path) == ["old"]

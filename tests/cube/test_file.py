@@ -37,14 +37,14 @@ def content(path):
 
 
 def refused(path):
-    """The message with which a file is refused: one line, path first, a remedy last."""
+    """The message with which a file is refused: one line, path first, a hint last."""
     with pytest.raises(CubeFileError) as caught:
         read(path)
     message = str(caught.value)
     assert message.startswith(f"{path}: ")
     assert "\n" not in message
-    assert caught.value.remedy
-    assert message.endswith(f"; {caught.value.remedy}")
+    assert caught.value.hint
+    assert message.endswith(f"; {caught.value.hint}")
     return message
 
 

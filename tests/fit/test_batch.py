@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from uplift import build, load
-from uplift.fit.batch import HOST, batches
+from uplift.fit.batch import CPU_BATCH_ROWS, batches
 
-LARGE, SMALL = HOST
+LARGE, SMALL = CPU_BATCH_ROWS
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.fit.entries import fit_entries
 from uplift.fit.objective import BALANCED, Weights, objective, shape_rows
 from uplift.models import Moments, Sigmoid
-from uplift.models.minimum_norm import forward
+from uplift.models.minimum_norm import forward_map
 
 LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3")
 
@@ -25,7 +25,7 @@ def measured(sensor):
 
 def fitted(sensor, measured, lights=LIGHTS, weights=BALANCED):
     model = Moments(9)
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     shine = [observer.light(name) for name in lights]
     found = fit_entries(model, ahead, measured, sensor.rgb(measured), shine, shine[0], 1e-6, weights)
     return model.squash(found.multipliers @ ahead.basis.T)
@@ -94,7 +94,7 @@ def test_weighed_rows_sum_to_a_mean_square():
 
 def test_the_error_is_what_the_model_loses(sensor, measured):
     model = Moments(9)
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     light = observer.light("A")
     found = fit_entries(model, ahead, measured, sensor.rgb(measured), [light], light, 1e-6)
     spectra = model.squash(found.multipliers @ ahead.basis.T)
@@ -104,7 +104,7 @@ def test_the_error_is_what_the_model_loses(sensor, measured):
 
 def test_no_atlas_no_entries(sensor):
     model = Moments(9)
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     light = observer.light("D65")
     none = fit_entries(model, ahead, np.zeros((0, 81)), np.zeros((0, 3)), [light], light, 1e-6)
     assert none.multipliers.shape == (0, 9)

@@ -10,12 +10,12 @@ from hypothesis.extra.numpy import arrays
 
 from uplift.colorimetry import observer
 from uplift.fit import Prior, Problem, fit_lattice, seed
-from uplift.fit.grow import NEVER, grow
+from uplift.fit.grow import NOT_FITTED, grow
 from uplift.fit.improve import improve
 from uplift.fit.smooth import smooth
 from uplift.lattice import Lattice, Status
 from uplift.models import Moments, Sigmoid, reflectance
-from uplift.models.minimum_norm import forward, residual
+from uplift.models.minimum_norm import forward_map, residual
 
 MODEL = Moments(9)
 LATTICE = Lattice(observer.axis_nodes("srgb", 7))
@@ -23,7 +23,7 @@ NOBODY = np.zeros((0, 3))
 
 
 def ahead_of(model, sensor):
-    return forward(model, sensor.wavelengths, sensor.matrix)
+    return forward_map(model, sensor.wavelengths, sensor.matrix)
 
 
 def fitted(model, sensor, lattice, rgb=NOBODY):
@@ -69,7 +69,7 @@ def test_points_that_fail_from_their_start_are_taken_from_their_neighbours(senso
         Problem(MODEL, ahead_of(MODEL, sensor), LATTICE), lambda points: start[points], rounds.append
     )
     steps = np.abs(LATTICE.position(np.arange(LATTICE.size)) - LATTICE.position(np.array(middle))).max(axis=1)
-    fitted = grown.round != NEVER
+    fitted = grown.round != NOT_FITTED
     assert fitted.sum() > 300
     assert (grown.round[fitted & (steps > 0)] >= steps[fitted & (steps > 0)]).sum() > 300
     assert [done.number for done in rounds] == list(range(len(rounds)))

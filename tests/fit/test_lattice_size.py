@@ -9,18 +9,18 @@ import uplift
 from tests.conftest import MACBETH
 from uplift import fit
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import spectra_apart
-from uplift.fit.lattice_size import DIMS, lattice_error, roomiest
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.fit.lattice_size import DIMS, choose_lattice, lattice_error
 from uplift.lattice import Lattice
 from uplift.models import Moments, reflectance
-from uplift.models.minimum_norm import forward
+from uplift.models.minimum_norm import forward_map
 
 
 @pytest.fixture(scope="module")
 def stage(sensor):
     """Problem, lights and the entries of the ColorChecker."""
     model = Moments(9)
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     spectra = uplift.atlas.on_grid(uplift.read_atlas(MACBETH), sensor.wavelengths)
     spectra = spectra[sensor.holds(sensor.rgb(spectra))]
     lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3")]
@@ -37,13 +37,13 @@ def test_what_the_trial_says_is_what_the_cube_does(stage, sensor, macbeth_cube):
     spectra = reflectance(data.model, data.coefficients[corners.ravel()], sensor.wavelengths)
     answered = (weights[..., None] * spectra.reshape(*corners.shape, -1)).sum(axis=1)
     own = reflectance(data.model, data.atlas.coefficients, sensor.wavelengths)
-    plain = np.max([spectra_apart(lit, answered, own) for lit in lights], axis=0)
+    plain = np.max([delta_e_spectra(lit, answered, own) for lit in lights], axis=0)
     np.testing.assert_allclose(trial, plain, atol=1e-3)
 
 
 def test_the_smallest_with_room_is_chosen(stage, sensor):
     problem, lights, entries = stage
-    spacing, dim, lost = roomiest(
+    spacing, dim, lost = choose_lattice(
         problem, sensor.wavelengths, lights, entries, observer.axis_nodes, ("srgb", "linear"), 0.5
     )
     assert lost == 0

@@ -9,11 +9,11 @@ from tests.conftest import ATLASES
 from uplift import fit
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.fit.prior import FEWEST
 from uplift.lattice import Lattice
 from uplift.models import Moments
-from uplift.models.minimum_norm import forward
+from uplift.models.minimum_norm import forward_map
 
 LIGHT = observer.light("A")
 SPLITS = 6
@@ -23,7 +23,7 @@ SPLITS = 6
 def problem(sensor):
     model = Moments(9)
     return fit.Problem(
-        model, forward(model, sensor.wavelengths, sensor.matrix), Lattice(np.array([0.0, 1.0]))
+        model, forward_map(model, sensor.wavelengths, sensor.matrix), Lattice(np.array([0.0, 1.0]))
     )
 
 
@@ -34,7 +34,7 @@ def entries_of(problem, sensor, measured):
 
 
 def some(entries, rows):
-    return fit.Entries(
+    return fit.FittedEntries(
         *(getattr(entries, name)[rows] for name in ("rgb", "measured", "multipliers", "error"))
     )
 
@@ -48,7 +48,7 @@ def materials(problem, sensor):
 
 def test_at_an_entry_the_start_is_nearly_its_own_spectrum(problem, sensor, materials):
     few = some(materials, np.arange(0, 160, 20))
-    prior = fit.learn(problem, sensor, few, LIGHT)
+    prior = fit.fit_prior(problem, sensor, few, LIGHT)
     apart = np.abs(
         problem.model.squash(prior(few.rgb) @ problem.forward.basis.T)
         - problem.model.squash(few.multipliers @ problem.forward.basis.T)
@@ -58,14 +58,14 @@ def test_at_an_entry_the_start_is_nearly_its_own_spectrum(problem, sensor, mater
 
 def test_far_from_all_entries_the_start_is_the_smooth_one(problem, sensor, materials):
     dark = materials.rgb.max(axis=1) < 0.2
-    prior = fit.learn(problem, sensor, some(materials, dark), LIGHT)
+    prior = fit.fit_prior(problem, sensor, some(materials, dark), LIGHT)
     white = np.ones((1, 3))
     np.testing.assert_allclose(prior(white), prior.smooth(white), atol=0.05)
 
 
 def test_too_few_entries_tell_nothing_of_errors(problem, sensor, materials):
     for count, tells in ((0, False), (1, False), (FEWEST - 1, False), (FEWEST, True)):
-        prior = fit.learn(problem, sensor, some(materials, np.arange(count)), LIGHT)
+        prior = fit.fit_prior(problem, sensor, some(materials, np.arange(count)), LIGHT)
         errors = prior.standard_error(np.full((1, 3), 0.3))
         assert (errors is not None) == tells
 
@@ -80,11 +80,11 @@ def test_held_out_entries_miss_by_what_is_stated(problem, sensor, materials):
     for _ in range(SPLITS):
         order = rng.permutation(len(materials.rgb))
         half = len(order) // 2
-        prior = fit.learn(problem, sensor, some(materials, order[:half]), LIGHT)
+        prior = fit.fit_prior(problem, sensor, some(materials, order[:half]), LIGHT)
         asked = some(materials, order[half:])
         found = problem.solve(asked.rgb, prior(asked.rgb), 16).multipliers
         spectra = problem.model.squash(found @ problem.forward.basis.T)
-        missed.append(spectra_apart(LIGHT, spectra, asked.measured))
+        missed.append(delta_e_spectra(LIGHT, spectra, asked.measured))
         stated.append(prior.standard_error(asked.rgb))
     missed, stated = np.concatenate(missed), np.concatenate(stated)
     assert 0.8 < np.sqrt((missed**2).mean() / (stated**2).mean()) < 1.25

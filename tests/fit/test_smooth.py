@@ -8,7 +8,7 @@ import pytest
 from uplift.fit.smooth import smooth
 from uplift.fit.solve import solve
 from uplift.models import Moments, Sigmoid
-from uplift.models.minimum_norm import forward, residual
+from uplift.models.minimum_norm import forward_map, residual
 
 DARK = np.array(
     [
@@ -24,7 +24,7 @@ DARK = np.array(
 
 @pytest.fixture(scope="module")
 def ahead(sensor):
-    return forward(Moments(9), sensor.wavelengths, sensor.matrix)
+    return forward_map(Moments(9), sensor.wavelengths, sensor.matrix)
 
 
 def test_the_start_is_nearly_the_colour(ahead):
@@ -49,7 +49,7 @@ def test_a_dark_saturated_colour_stays_dark_where_the_eye_is_blind(ahead):
 @pytest.mark.parametrize("model", [Moments(3), Sigmoid()], ids=lambda m: m.name)
 def test_three_coefficients_leave_no_choice_and_start_from_a_grey(model, sensor):
     rgb = np.array([[0.2, 0.5, 0.1], [0, 0, 0], [1, 1, 1]])
-    start = smooth(model, forward(model, sensor.wavelengths, sensor.matrix))(rgb)
+    start = smooth(model, forward_map(model, sensor.wavelengths, sensor.matrix))(rgb)
     spectra = model.squash(start @ model.basis(sensor.wavelengths).T)
     assert np.ptp(spectra, axis=1).max() < 1e-12
     assert (np.diff(spectra[[1, 0, 2], 0]) > 0).all()

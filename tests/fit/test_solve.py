@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from uplift.fit.batch import HOST
+from uplift.fit.batch import CPU_BATCH_ROWS
 from uplift.fit.solve import solve
 from uplift.models import Moments, Sigmoid
-from uplift.models.minimum_norm import forward, residual
+from uplift.models.minimum_norm import forward_map, residual
 
 RNG = np.random.default_rng(2)
 TARGETS = RNG.uniform(0.05, 0.95, (40, 3))
@@ -17,7 +17,7 @@ TARGETS = RNG.uniform(0.05, 0.95, (40, 3))
 
 @pytest.mark.parametrize("model", [Moments(9), Sigmoid()], ids=["moments", "sigmoid"])
 def test_it_reaches_what_scipy_reaches(model, sensor):
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     found = solve(model, ahead, np.zeros((40, model.count)), TARGETS, tolerance=1e-9, passes=40)
     for target, distance in zip(TARGETS, found.distance, strict=True):
         oracle = least_squares(
@@ -29,7 +29,7 @@ def test_it_reaches_what_scipy_reaches(model, sensor):
 def test_three_unknowns_have_one_answer(sensor):
     """With as many unknowns as colours the spectrum is scipy's own, not only the colour."""
     model = Sigmoid()
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     found = solve(model, ahead, np.zeros((40, 3)), TARGETS, tolerance=1e-12, passes=40)
     for target, multipliers in zip(TARGETS[:8], found.multipliers, strict=False):
         oracle = least_squares(
@@ -44,7 +44,7 @@ def test_three_unknowns_have_one_answer(sensor):
 
 def test_the_distance_is_that_of_the_multipliers(sensor):
     model = Moments(5)
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     found = solve(model, ahead, np.zeros((40, 5)), TARGETS, tolerance=1e-3, passes=1)
     expected = np.abs(residual(model, ahead, found.multipliers, TARGETS)).max(axis=1)
     np.testing.assert_allclose(found.distance, expected, atol=1e-12)
@@ -53,7 +53,7 @@ def test_the_distance_is_that_of_the_multipliers(sensor):
 def test_no_point_ends_further_than_it_began(sensor):
     """Unrealisable targets: distance is data, and no step makes it worse."""
     model = Moments(9)
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     wild = RNG.uniform(-1, 2, (50, 3))
     start = RNG.normal(size=(50, 9))
     before = (residual(model, ahead, start, wild) ** 2).sum(axis=1)
@@ -67,8 +67,8 @@ def test_no_point_ends_further_than_it_began(sensor):
 def test_the_batch_does_not_matter(sensor):
     """Alone, among others, or in another size of batch: the same answer."""
     model = Moments(9)
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
-    many = np.resize(TARGETS, (HOST[0] + 5, 3))
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
+    many = np.resize(TARGETS, (CPU_BATCH_ROWS[0] + 5, 3))
     crowd = solve(model, ahead, np.zeros((len(many), 9)), many, tolerance=1e-8, passes=8)
     alone = solve(model, ahead, np.zeros((1, 9)), TARGETS[3:4], tolerance=1e-8, passes=8)
     np.testing.assert_allclose(crowd.multipliers[3], alone.multipliers[0], rtol=1e-9)
@@ -77,7 +77,7 @@ def test_the_batch_does_not_matter(sensor):
 
 def test_nothing_to_solve_is_nothing():
     model = Sigmoid()
-    ahead = forward(model, np.arange(380.0, 781, 5), np.ones((3, 81)) / 81)
+    ahead = forward_map(model, np.arange(380.0, 781, 5), np.ones((3, 81)) / 81)
     assert (
         len(solve(model, ahead, np.zeros((0, 3)), np.zeros((0, 3)), tolerance=1e-6, passes=1).distance) == 0
     )
@@ -86,6 +86,6 @@ def test_nothing_to_solve_is_nothing():
 def test_the_start_is_not_touched(sensor):
     model = Sigmoid()
     start = np.zeros((40, 3))
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     solve(model, ahead, start, TARGETS, tolerance=1e-6, passes=1)
     assert not start.any()

@@ -13,7 +13,7 @@ from uplift.colorimetry import observer
 from uplift.fit.store import LOSS, store
 from uplift.lattice import Lattice
 from uplift.models import Moments
-from uplift.models.minimum_norm import forward
+from uplift.models.minimum_norm import forward_map
 
 DIM = 9
 
@@ -21,7 +21,7 @@ DIM = 9
 @pytest.fixture(scope="module")
 def problem():
     sensor, model = observer.sensor(), Moments(9)
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     return fit.Problem(model, ahead, Lattice(observer.axis_nodes("srgb", DIM)))
 
 

@@ -10,9 +10,9 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
 from uplift.fit import Problem, unrealisable
 from uplift.lattice import Lattice, Status
-from uplift.lookup import answers
+from uplift.lookup import query
 from uplift.models import Moments, reflectance
-from uplift.models.minimum_norm import forward
+from uplift.models.minimum_norm import forward_map
 
 SPACES = ("P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 DIM = 17
@@ -51,7 +51,7 @@ def test_goals_are_the_targets_or_the_nearest():
     wide = observer.sensor("ITU-R BT.2020")
     model, lattice = Moments(9), Lattice(observer.axis_nodes("srgb", 5))
     beyond = unrealisable(lattice, wide, 1e-4)
-    problem = Problem(model, forward(model, wide.wavelengths, wide.matrix), lattice, beyond=beyond)
+    problem = Problem(model, forward_map(model, wide.wavelengths, wide.matrix), lattice, beyond=beyond)
     points = np.arange(lattice.size)[::-1]
     expected = lattice.points.copy()
     expected[beyond.points] = beyond.nearest
@@ -61,7 +61,7 @@ def test_goals_are_the_targets_or_the_nearest():
 def test_a_query_says_what_no_reflectance_has():
     cube = uplift.build(dim=5, space="ITU-R BT.2020")
     asked = np.array([[0.0, 1, 0], [0.5, 0.5, 0.5], [0.05, 0.9, 0.05], [0.4, 0.7, 0.4]])
-    found = list(answers(cube, asked))
+    found = list(query(cube, asked))
     expected = solid(cube.data.sensor.matrix).holds(asked)
     assert [answer.realisable for answer in found] == expected.tolist()
     assert expected.tolist() == [False, True, False, True]

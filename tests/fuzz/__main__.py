@@ -12,7 +12,7 @@ import click
 from tests.fuzz.attack import Tally
 from tests.fuzz.known_findings import FOUND
 from tests.fuzz.run import KEPT, TARGETS, WRITERS, add, read, write
-from uplift.lab.timing import circumstances
+from uplift.lab.timing import environment
 
 BLOCK = 5000
 """Inputs that a process tries before another takes over: what leaks shows, and is gone."""
@@ -50,7 +50,7 @@ def main(inputs: int, kills: int, seed: int, processes: int, output: str) -> Non
 
 def _tables(tallies: list[Tally], seed: int) -> list[dict[str, object]]:
     """For docs/stability.md, as `benchmarks.stability` has it."""
-    facts = circumstances()
+    facts = environment()
     return [
         {
             "title": "Hostile input, killed writers, full disks",

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from uplift.common.errors import UpliftError
-from uplift.lookup import MODES, answers, load
+from uplift.lookup import MODES, load, query
 from uplift.report.summary import summary
 
 RGB = np.array([[0.2, 0.3, 0.4], [0, 0, 0], [1, 1, 1], [0.5, 0.5, 0.5], [0.9, 0.0, 0.1]])
@@ -25,7 +25,7 @@ def use(path: Path) -> None:
     expected = cube.standard_error(RGB)
     if expected is not None and not np.isfinite(expected).all():
         raise ValueError("standard errors without end")
-    if not all(np.isfinite(answer.round_trip).all() for answer in answers(cube, RGB)):
+    if not all(np.isfinite(answer.round_trip).all() for answer in query(cube, RGB)):
         raise ValueError("round trips without end")
     json.dumps(summary(cube.data), allow_nan=False)
     again = path.with_suffix(".again")

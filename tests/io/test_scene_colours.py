@@ -15,7 +15,7 @@ from tests.io.texture.conftest import AT, PHOTO, planes, write_exr
 from tests.sparse_cubes import dark, robbed
 from uplift.common.errors import ColourError, CubeFileError, OptionError, TextureError, UpliftWarning
 from uplift.cube import AtlasTable, digest
-from uplift.io.scene_colours import Images, Stored, touched
+from uplift.io.scene_colours import Images, StoredScene, cells_touched
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube, bulk
 from uplift.lookup.nodes import around
@@ -107,8 +107,8 @@ def test_others_are_refused_by_the_first_of_them(small_cube, ask):
     with pytest.raises(ColourError) as caught:
         ask(cube, np.array([held, first, *more]))
     assert ", ".join(f"{value:.6g}" for value in first) in str(caught.value)
-    assert "--scene" in caught.value.remedy
-    assert "--fill" in caught.value.remedy
+    assert "--scene" in caught.value.hint
+    assert "--fill" in caught.value.hint
     assert np.isfinite(ask(cube, held[None])).all()
 
 
@@ -165,11 +165,11 @@ def test_entries_on_a_node_have_faces_on_nodes_that_rounding_may_cross(plain_cub
 def test_colours_beside_a_face_touch_both_cells(small_cube):
     lattice = small_cube.data.lattice
     node = lattice.nodes[3]
-    beside = touched(lattice, np.array([[node - 1e-8, 0.3, 0.3]]))
+    beside = cells_touched(lattice, np.array([[node - 1e-8, 0.3, 0.3]]))
     assert {tuple(position) for position in lattice.position(beside)} == {
         (red, *lattice.lowest(np.array([0.3, 0.3]))) for red in (2, 3)
     }
-    assert len(touched(lattice, np.array([[node + 1e-3, 0.3, 0.3]]))) == 1
+    assert len(cells_touched(lattice, np.array([[node + 1e-3, 0.3, 0.3]]))) == 1
 
 
 def test_several_images_are_all_seen(plain_cube, tmp_path):
@@ -266,9 +266,9 @@ def test_a_point_that_is_missing_is_found(scene_cube):
 
 def test_points_of_another_lattice_are_refused(scene_cube, plain_cube):
     with pytest.raises(OptionError, match="those of dim 32"):
-        Stored(scene_cube.data).points(plain_cube.data.pins, plain_cube.data.sensor, lambda done: None)
+        StoredScene(scene_cube.data).points(plain_cube.data.pins, plain_cube.data.sensor, lambda done: None)
 
 
 def test_a_filled_cube_cannot_be_made_again(scene_cube):
     with pytest.raises(CubeFileError, match="is filled from another cube"):
-        rebuild(scene_cube.filled([1, 1, 0]), "photo.uplift", [ATLASES])
+        rebuild(scene_cube.fill_missing([1, 1, 0]), "photo.uplift", [ATLASES])

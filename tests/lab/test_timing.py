@@ -23,7 +23,7 @@ def test_every_run_is_timed():
 
 
 def test_circumstances_name_machine_versions_and_commit():
-    found = timing.circumstances()
+    found = timing.environment()
     assert "cores" in found["machine"]
     assert "numpy" in found["versions"]
     assert found["commit"]

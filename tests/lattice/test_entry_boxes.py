@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from uplift.lattice import Lattice
-from uplift.lattice.box_widths import reach
-from uplift.lattice.entry_boxes import Pins
+from uplift.lattice.box_widths import half_widths
+from uplift.lattice.entry_boxes import EntryBoxes
 
 LATTICE = Lattice(np.linspace(0, 1, 7) ** 2)
 unit = st.floats(0, 1)
@@ -19,7 +19,7 @@ asked = arrays(float, st.tuples(st.integers(1, 30), st.just(3)), elements=unit)
 
 
 def pins(rgb):
-    return Pins(LATTICE, rgb, reach(LATTICE, rgb))
+    return EntryBoxes(LATTICE, rgb, half_widths(LATTICE, rgb))
 
 
 @given(colours, asked)

@@ -26,7 +26,7 @@ def sparse(whole):
 
 
 def test_colours_come_back_and_what_was_there_stays(whole, sparse):
-    full = sparse.filled()
+    full = sparse.fill_missing()
     data, there = full.data, sparse.data.present
     assert data.present.all()
     assert data.distance.max() <= data.threshold
@@ -37,40 +37,40 @@ def test_colours_come_back_and_what_was_there_stays(whole, sparse):
 
 def test_the_spectra_are_those_of_the_package_s_own_cube(plain_cube):
     """At lattice points, of the same model; single precision takes its share."""
-    own, full = uplift.load(), Cube(robbed(plain_cube.data, dark(plain_cube.data))).filled()
+    own, full = uplift.load(), Cube(robbed(plain_cube.data, dark(plain_cube.data))).fill_missing()
     points = full.data.lattice.points[~dark(plain_cube.data)]
     np.testing.assert_allclose(full.reflectance(points), own.reflectance(points, mode="refined"), atol=1e-5)
 
 
 def test_only_what_the_colours_lack_is_filled(sparse):
     asked = RGB[~sparse.holds(RGB)][:1]
-    some = sparse.filled(asked)
+    some = sparse.fill_missing(asked)
     assert some.holds(asked).all()
     assert 0 < some.data.present.sum() - sparse.data.present.sum() <= 8
     for mode in MODES:
         np.testing.assert_allclose(
-            some.reflectance(asked, mode=mode), sparse.filled().reflectance(asked, mode=mode), atol=1e-6
+            some.reflectance(asked, mode=mode), sparse.fill_missing().reflectance(asked, mode=mode), atol=1e-6
         )
 
 
 def test_errors_at_filled_points_are_the_largest_of_the_cube(small_cube):
     sparse = Cube(robbed(small_cube.data, dark(small_cube.data)))
-    assert sparse.filled().standard_error([1, 1, 1]) == pytest.approx(sparse.data.standard_error.max())
+    assert sparse.fill_missing().standard_error([1, 1, 1]) == pytest.approx(sparse.data.standard_error.max())
 
 
 def test_a_whole_cube_has_nothing_to_fill(small_cube):
-    assert small_cube.filled() is small_cube
-    assert small_cube.filled(RGB) is small_cube
+    assert small_cube.fill_missing() is small_cube
+    assert small_cube.fill_missing(RGB) is small_cube
 
 
 def test_other_colours_are_refused(plain_cube):
     wide = replace(plain_cube.data, sensor=replace(plain_cube.data.sensor, space="ITU-R BT.2020"))
     with pytest.raises(ColourError, match=r"BT.2020 under D65.* cannot be filled from one in sRGB under D65"):
-        Cube(robbed(wide, dark(wide))).filled()
+        Cube(robbed(wide, dark(wide))).fill_missing()
 
 
 def test_another_cube_may_be_named_and_may_lack_the_colour_too(plain_cube, small_cube):
     sparse = Cube(robbed(plain_cube.data, dark(plain_cube.data)))
-    assert sparse.filled([1, 1, 1], small_cube).holds([1, 1, 1])
+    assert sparse.fill_missing([1, 1, 1], small_cube).holds([1, 1, 1])
     with pytest.raises(ColourError, match="none of them"):
-        sparse.filled([1, 1, 1], sparse)
+        sparse.fill_missing([1, 1, 1], sparse)

@@ -8,14 +8,14 @@ import pytest
 
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import Status
-from uplift.lookup import MODES, answers
+from uplift.lookup import MODES, query
 from uplift.lookup.blocks import BLOCK
 
 D65_WAVELENGTHS = colour.SpectralShape(380, 780, 5)
 
 
 def ask(cube, *rgb, **options):
-    return list(answers(cube, np.array(rgb, dtype=float), **options))
+    return list(query(cube, np.array(rgb, dtype=float), **options))
 
 
 def xyz(cube, reflectance):
@@ -38,7 +38,7 @@ def test_statuses_are_those_of_the_cell_s_corners(small_cube):
     grid = data.status.reshape(8, 8, 8)
     rgb = np.random.default_rng(5).random((100, 3))
     seen = set()
-    for answer in answers(small_cube, rgb):
+    for answer in query(small_cube, rgb):
         r, g, b = answer.cell
         expected = sorted(set(grid[r : r + 2, g : g + 2, b : b + 2].ravel().tolist()))
         assert [int(status) for status in answer.statuses] == expected
@@ -50,7 +50,7 @@ def test_statuses_are_those_of_the_cell_s_corners(small_cube):
 def test_the_reflectance_is_that_of_the_cube(small_cube, mode):
     rgb = np.random.default_rng(6).random((20, 3))
     at = np.array([410.0, 555.5, 690.0])
-    for row, answer in enumerate(answers(small_cube, rgb, at, mode)):
+    for row, answer in enumerate(query(small_cube, rgb, at, mode)):
         np.testing.assert_array_equal(answer.rgb, rgb[row])
         np.testing.assert_array_equal(answer.wavelengths, at)
         expected = small_cube.reflectance(rgb[row], at, mode)
@@ -59,13 +59,13 @@ def test_the_reflectance_is_that_of_the_cube(small_cube, mode):
 
 def test_every_entry_is_found_at_its_own_colour(small_cube):
     atlas = small_cube.data.atlas
-    assert [answer.entry for answer in answers(small_cube, atlas.rgb)] == list(atlas.names)
+    assert [answer.entry for answer in query(small_cube, atlas.rgb)] == list(atlas.names)
 
 
 def test_every_entry_is_found_at_its_nearest_codes(small_cube):
     atlas = small_cube.data.atlas
     nearest = small_cube.decode(np.round(small_cube.encode(atlas.rgb)))
-    assert [answer.entry for answer in answers(small_cube, nearest)] == list(atlas.names)
+    assert [answer.entry for answer in query(small_cube, nearest)] == list(atlas.names)
 
 
 @pytest.mark.parametrize("channel", range(3))
@@ -75,7 +75,7 @@ def test_no_entry_is_found_two_codes_away(small_cube, channel, by):
     codes[:, channel] += by
     inside = ((codes >= 0) & (codes <= 255)).all(axis=1)
     assert inside.sum() > 15
-    found = answers(small_cube, small_cube.decode(codes[inside]))
+    found = query(small_cube, small_cube.decode(codes[inside]))
     assert {answer.entry for answer in found} == {None}
 
 
@@ -86,7 +86,7 @@ def test_without_an_atlas_no_entry_is_found(small_sigmoid_cube):
 @pytest.mark.parametrize("mode", MODES)
 def test_the_round_trip_is_what_colour_science_integrates(small_cube, mode):
     rgb = np.random.default_rng(7).random((6, 3))
-    for answer in answers(small_cube, rgb, mode=mode):
+    for answer in query(small_cube, rgb, mode=mode):
         back = small_cube.data.sensor.xyz_to_rgb @ xyz(small_cube, answer.reflectance)
         np.testing.assert_allclose(answer.round_trip, back, rtol=0, atol=1e-12)
 
@@ -105,7 +105,7 @@ def test_the_colour_difference_is_that_of_colour_science(small_cube):
     white = xyz(small_cube, np.ones(81))
     xy = colour.XYZ_to_xy(white)
     seen = []
-    for answer in answers(small_cube, rgb, mode="moments"):
+    for answer in query(small_cube, rgb, mode="moments"):
         asked = colour.XYZ_to_Lab(np.linalg.solve(small_cube.data.sensor.xyz_to_rgb, answer.rgb), xy)
         given = colour.XYZ_to_Lab(xyz(small_cube, answer.reflectance), xy)
         expected = colour.delta_E(asked, given, method="CIE 2000")
@@ -116,14 +116,14 @@ def test_the_colour_difference_is_that_of_colour_science(small_cube):
 
 def test_answers_come_in_order_across_blocks(small_cube):
     rgb = np.random.default_rng(9).random((BLOCK + 3, 3))
-    found = list(answers(small_cube, rgb, [500.0]))
+    found = list(query(small_cube, rgb, [500.0]))
     np.testing.assert_array_equal([answer.rgb for answer in found], rgb)
     expected = small_cube.reflectance(rgb[-3:], [500.0])
     np.testing.assert_allclose([answer.reflectance for answer in found[-3:]], expected, rtol=0, atol=1e-12)
 
 
 def test_no_question_no_answer(small_cube):
-    assert list(answers(small_cube, np.zeros((0, 3)))) == []
+    assert list(query(small_cube, np.zeros((0, 3)))) == []
 
 
 def test_rounding_takes_no_colour_out_of_the_space(small_cube):

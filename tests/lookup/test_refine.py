@@ -15,7 +15,7 @@ MODELS = [Sigmoid(), Moments(9)]
 @pytest.fixture(params=MODELS, ids=lambda model: model.name)
 def setting(request, sensor):
     """A model, its forward map, and 40 spectra of it."""
-    ahead = minimum_norm.forward(request.param, sensor.wavelengths, sensor.matrix)
+    ahead = minimum_norm.forward_map(request.param, sensor.wavelengths, sensor.matrix)
     return (
         request.param,
         ahead,
@@ -28,14 +28,14 @@ def test_it_takes_the_fits_step(setting):
     off, damping = 0.1 * RNG.normal(size=(40, 3)), RNG.random(40)
     found = refine.step(model, ahead, ahead.basis @ multipliers.T, off.T, damping).T
     np.testing.assert_allclose(
-        found, minimum_norm.step(model, ahead, multipliers, off, damping), rtol=1e-8, atol=1e-12
+        found, minimum_norm.minimum_norm_step(model, ahead, multipliers, off, damping), rtol=1e-8, atol=1e-12
     )
 
 
 def test_what_it_follows_is_what_evaluation_finds(setting, monkeypatch):
     """The distance is a sum of changes; slices of a few columns do not show."""
     model, ahead, multipliers = setting
-    goal = minimum_norm.reached(model, ahead, 0.7 * multipliers).T
+    goal = minimum_norm.forward_rgb(model, ahead, 0.7 * multipliers).T
     monkeypatch.setattr(refine, "COLUMNS", 7)
     moved = multipliers.T.copy()
     distance = refine._descend(model, ahead, moved, goal)

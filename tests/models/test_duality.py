@@ -28,7 +28,7 @@ def test_moments_are_the_integrals_they_are_named_after():
     for j, moment in enumerate(moments):
 
         def integrand(phi, j=j):
-            x = (duality.cosines(np.array([phi]), 4) @ multipliers[0])[0]
+            x = (duality.cosine_basis(np.array([phi]), 4) @ multipliers[0])[0]
             return (0.5 + np.arctan(x) / np.pi) * np.cos(j * phi) / np.pi
 
         assert moment == pytest.approx(quad(integrand, -np.pi, 0, epsabs=1e-13)[0], abs=1e-12)
@@ -48,7 +48,7 @@ def test_near_boxes_take_more_nodes_and_are_as_exact():
     moments = duality.moments_from_multipliers(multipliers)[0]
 
     def zeroth(phi):
-        x = (duality.cosines(np.array([phi]), 3) @ multipliers[0])[0]
+        x = (duality.cosine_basis(np.array([phi]), 3) @ multipliers[0])[0]
         return (0.5 + np.arctan(x) / np.pi) / np.pi
 
     expected = quad(zeroth, -np.pi, 0, epsabs=1e-14, limit=500)[0]
@@ -60,7 +60,7 @@ def test_black_and_white_are_taken_in_from_the_boundary():
     moments[1, 0] = 1
     multipliers = duality.multipliers_from_moments(moments)
     assert np.isfinite(multipliers).all()
-    reflectance = 0.5 + np.arctan(multipliers @ duality.cosines(np.linspace(-np.pi, 0, 9), 9).T) / np.pi
+    reflectance = 0.5 + np.arctan(multipliers @ duality.cosine_basis(np.linspace(-np.pi, 0, 9), 9).T) / np.pi
     np.testing.assert_allclose(reflectance, np.repeat([[0], [1]], 9, axis=1), atol=1e-4)
 
 

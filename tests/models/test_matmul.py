@@ -6,7 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from uplift.models.matmul import ALONE, across, product
+from uplift.models.matmul import ALONE, matmul_columns, matmul_rows
 
 
 @pytest.mark.parametrize(
@@ -16,16 +16,16 @@ def test_slices_do_not_show(count, shape):
     rng = np.random.default_rng(count)
     rows, matrix = rng.normal(size=(count, shape[0])), rng.normal(size=shape)
     for one, other in ((rows, matrix), (rows.copy("F"), matrix.copy("F"))):
-        np.testing.assert_allclose(product(one, other), rows @ matrix, rtol=1e-12, atol=1e-12)
-        np.testing.assert_allclose(across(other.T, one.T), (rows @ matrix).T, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(matmul_rows(one, other), rows @ matrix, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(matmul_columns(other.T, one.T), (rows @ matrix).T, rtol=1e-12, atol=1e-12)
 
 
 def test_columns_may_be_some_of_more():
     matrix, columns = np.arange(6.0).reshape(2, 3), np.arange(30.0).reshape(3, 10)
-    np.testing.assert_allclose(across(matrix, columns[:, 3:7]), (matrix @ columns)[:, 3:7])
+    np.testing.assert_allclose(matmul_columns(matrix, columns[:, 3:7]), (matrix @ columns)[:, 3:7])
 
 
 def test_jax_arrays_are_taken():
-    found = product(jnp.ones((5, 3)), jnp.ones((3, 2)))
+    found = matmul_rows(jnp.ones((5, 3)), jnp.ones((3, 2)))
     assert isinstance(found, jnp.ndarray)
     assert (found == 3).all()

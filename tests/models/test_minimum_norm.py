@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from uplift.models import Moments
-from uplift.models.minimum_norm import forward, residual, solve_3x3, step
+from uplift.models.minimum_norm import forward_map, minimum_norm_step, residual, solve_3x3
 
 MODEL = Moments(9)
 RNG = np.random.default_rng(8)
@@ -26,9 +26,9 @@ def numeric_jacobian(ahead, multipliers, target):
 
 def test_the_step_takes_the_residual_away_with_the_least_change(sensor):
     """Δp = M⁻¹Jᵀ(J M⁻¹Jᵀ)⁻¹ r, J by differences and the rest by a dense solver."""
-    ahead = forward(MODEL, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
     off = residual(MODEL, ahead, POINTS, TARGETS)
-    found = step(MODEL, ahead, POINTS, off, np.zeros(len(POINTS)))
+    found = minimum_norm_step(MODEL, ahead, POINTS, off, np.zeros(len(POINTS)))
     for p, t, r, dp in zip(POINTS, TARGETS, off, found, strict=True):
         jacobian = numeric_jacobian(ahead, p, t)
         weighted = (ahead.root @ ahead.root.T) @ jacobian.T
@@ -38,9 +38,9 @@ def test_the_step_takes_the_residual_away_with_the_least_change(sensor):
 
 
 def test_of_all_steps_to_the_colour_it_is_the_smallest_in_the_metric(sensor):
-    ahead = forward(MODEL, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
     off = residual(MODEL, ahead, POINTS, TARGETS)
-    found = step(MODEL, ahead, POINTS, off, np.zeros(len(POINTS)))
+    found = minimum_norm_step(MODEL, ahead, POINTS, off, np.zeros(len(POINTS)))
     metric = np.linalg.inv(ahead.root @ ahead.root.T)
     for p, t, dp in zip(POINTS, TARGETS, found, strict=True):
         jacobian = numeric_jacobian(ahead, p, t)
@@ -49,18 +49,20 @@ def test_of_all_steps_to_the_colour_it_is_the_smallest_in_the_metric(sensor):
 
 
 def test_damping_shortens_the_step(sensor):
-    ahead = forward(MODEL, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
     off = residual(MODEL, ahead, POINTS, TARGETS)
-    free, damped = (step(MODEL, ahead, POINTS, off, np.full(len(POINTS), mu)) for mu in (0.0, 1.0))
+    free, damped = (
+        minimum_norm_step(MODEL, ahead, POINTS, off, np.full(len(POINTS), mu)) for mu in (0.0, 1.0)
+    )
     assert (np.linalg.norm(damped, axis=1) < np.linalg.norm(free, axis=1)).all()
 
 
 def test_jax_and_numpy_take_the_same_step(sensor):
-    ahead = forward(MODEL, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
     off = residual(MODEL, ahead, POINTS, TARGETS)
-    here = step(MODEL, ahead, POINTS, off, np.full(len(POINTS), 1e-2))
+    here = minimum_norm_step(MODEL, ahead, POINTS, off, np.full(len(POINTS), 1e-2))
     with jax.enable_x64(True):
-        there = step(
+        there = minimum_norm_step(
             MODEL, jax.device_put(ahead), *map(jnp.asarray, (POINTS, off, np.full(len(POINTS), 1e-2)))
         )
         np.testing.assert_allclose(np.asarray(there), here, rtol=1e-8)

@@ -53,5 +53,5 @@ def test_boxes_come_back_through_the_dual():
     stored = duality.moments_from_multipliers(multipliers)
     again = duality.multipliers_from_moments(stored)
     phase = np.linspace(-np.pi, 0, 41)
-    spectra = [0.5 + np.arctan(p @ duality.cosines(phase, 9).T) / np.pi for p in (multipliers, again)]
+    spectra = [0.5 + np.arctan(p @ duality.cosine_basis(phase, 9).T) / np.pi for p in (multipliers, again)]
     assert np.abs(spectra[0] - spectra[1]).max() < 1e-3

@@ -12,9 +12,9 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 import uplift
 from tests.conftest import MACBETH
-from uplift.atlas import Entry, Spectra, on_grid, read_atlas
+from uplift.atlas import Atlas, Entry, on_grid, read_atlas
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import colours_apart, spectra_apart
+from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
 from uplift.common.errors import OptionError, UnknownNameError, UpliftWarning
 from uplift.cube import digest
 from uplift.lattice import Status
@@ -39,7 +39,7 @@ def fresh_distance(cube):
 def delta_e(cube, rgb, mode):
     sensor = cube.data.sensor
     back = sensor.rgb(cube.reflectance(rgb, mode=mode))
-    return colours_apart(sensor, rgb, back)
+    return delta_e_rgb(sensor, rgb, back)
 
 
 def test_every_point_of_the_macbeth_cube_is_fitted_corners_included(macbeth_cube):
@@ -100,7 +100,7 @@ def test_the_atlas_makes_the_difference_under_other_lights(macbeth_cube):
     measured = on_grid(spectra, GRID)[[spectra.names.index(name) for name in atlas.names]]
     light = observer.light("A")
     with_atlas, without = (
-        spectra_apart(light, cube.reflectance(atlas.rgb), measured).mean()
+        delta_e_spectra(light, cube.reflectance(atlas.rgb), measured).mean()
         for cube in (macbeth_cube, uplift.load())
     )
     assert with_atlas < 0.2 * without
@@ -122,7 +122,7 @@ def test_what_is_left_out_is_named_and_recorded():
 
 
 def greys(**levels):
-    return Spectra(tuple(Entry(name, GRID, np.full(81, grey)) for name, grey in levels.items()))
+    return Atlas(tuple(Entry(name, GRID, np.full(81, grey)) for name, grey in levels.items()))
 
 
 def test_crowded_entries_are_named_and_yet_exact():
@@ -136,7 +136,7 @@ def test_crowded_entries_are_named_and_yet_exact():
 def test_two_entries_of_one_colour_are_named_and_the_first_is_answered():
     bumpy = np.full(81, 0.4) + 0.2 * np.sin(np.arange(81) / 3)
     colour = observer.sensor().rgb(bumpy)
-    twins = Spectra((Entry("first", GRID, bumpy), Entry("second", GRID, bumpy)))
+    twins = Atlas((Entry("first", GRID, bumpy), Entry("second", GRID, bumpy)))
     with pytest.warns(
         UpliftWarning, match="entry 'second' is left out: an earlier entry has the same colour"
     ):
@@ -155,7 +155,7 @@ def test_dim_auto_is_recorded_as_what_it_chose():
 
 
 def test_the_perfect_reflector_is_a_welcome_entry():
-    white = Spectra((Entry("white", GRID, np.ones(81)),))
+    white = Atlas((Entry("white", GRID, np.ones(81)),))
     cube = uplift.build(white, dim=3)
     assert cube.data.atlas.names == ("white",)
     np.testing.assert_allclose(cube.reflectance([1, 1, 1]), 1, atol=1e-4)
@@ -171,7 +171,7 @@ def in_order():
 def test_the_order_of_the_atlas_sets_the_order_of_its_table_and_nothing_else(in_order, order):
     """The bytes of every point are the same, but that it names its entry by its row; the table's to rounding."""
     spectra = read_atlas(MACBETH)
-    shuffled = quietly(Spectra(tuple(spectra.entries[row] for row in order)), dim=5).data
+    shuffled = quietly(Atlas(tuple(spectra.entries[row] for row in order)), dim=5).data
     for name in ("coefficients", "rgb", "distance", "status", "standard_error"):
         assert getattr(shuffled, name).tobytes() == getattr(in_order, name).tobytes()
     row = [shuffled.atlas.names.index(name) for name in in_order.atlas.names]
@@ -186,7 +186,7 @@ def test_batches_do_not_show(monkeypatch):
     """In a wide space too, where some points go on for long."""
     options = {"dim": 7, "space": "ITU-R BT.2020"}
     as_it_is = quietly(MACBETH, **options).data
-    monkeypatch.setattr("uplift.fit.batch.HOST", (1024, 64))
+    monkeypatch.setattr("uplift.fit.batch.CPU_BATCH_ROWS", (1024, 64))
     assert digest(quietly(MACBETH, **options).data) == digest(as_it_is)
 
 

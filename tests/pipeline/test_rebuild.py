@@ -41,13 +41,13 @@ def with_option(cube, **options):
 
 
 def refused(cube, path, folders=()):
-    """The message with which a rebuilding is refused: one line, the cube first, a remedy last."""
+    """The message with which a rebuilding is refused: one line, the cube first, a hint last."""
     with pytest.raises(CubeFileError) as caught:
         rebuild(cube, path, folders)
     message = str(caught.value)
     assert message.startswith(f"{path}: ")
     assert "\n" not in message
-    assert caught.value.remedy
+    assert caught.value.hint
     return message
 
 

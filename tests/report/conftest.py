@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import uplift
-from uplift.atlas import Entry, Spectra, read_atlas
+from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.cube import AtlasTable
 from uplift.lattice import Status
 from uplift.lookup import Cube
@@ -64,4 +64,4 @@ def hostile():
     """An atlas whose names are HTML, two entries, one of them outside sRGB."""
     at = np.arange(380.0, 781.0, 5.0)
     laser = np.where(abs(at - 520) < 12, 1.0, 0.0)
-    return Spectra((Entry(HOSTILE, at, np.full(81, 0.4)), Entry("laser" + HOSTILE, at, laser)))
+    return Atlas((Entry(HOSTILE, at, np.full(81, 0.4)), Entry("laser" + HOSTILE, at, laser)))

@@ -11,7 +11,7 @@ import pytest
 
 import uplift
 from uplift.atlas import on_grid
-from uplift.colorimetry.display_sensors import LIGHTS, hex_codes, viewings
+from uplift.colorimetry.display_sensors import LIGHTS, display_sensors, hex_codes
 from uplift.colorimetry.observer import light
 from uplift.common.errors import UnknownNameError
 from uplift.cube import AtlasTable
@@ -21,7 +21,7 @@ from uplift.report.assessment import assess
 from uplift.report.calibration import Calibration, calibration
 from uplift.report.crowding import crowding
 from uplift.report.failures import NAMED, failures
-from uplift.report.fidelity import about_other, about_own, about_stored, entries
+from uplift.report.fidelity import entries, from_other_atlas, from_own_atlas, from_stored_entries
 from uplift.report.round_trip import COLOURS, round_trips
 from uplift.report.smoothness import smoothness
 from uplift.viz.histogram import histogram, linear_edges, log_edges
@@ -113,7 +113,7 @@ def test_entries_of_another_atlas_have_nothing_stored(small_cube, repository):
     assert {getattr(found.entries, name) for name in own} == {None}
     assert sorted((*found.entries.names, *found.outside)) == sorted(other.names)
     name = found.entries.names[0]
-    (measured,) = on_grid(uplift.Spectra((other.entries[other.names.index(name)],)), small_cube.wavelengths())
+    (measured,) = on_grid(uplift.Atlas((other.entries[other.names.index(name)],)), small_cube.wavelengths())
     assert found.entries.rgb[0] == pytest.approx(small_cube.data.sensor.rgb(measured), abs=1e-12)
     assert found.entries.delta_e[0, 1] == pytest.approx(
         delta_e(found.entries.answered[0], measured, "A"), abs=1e-6
@@ -123,7 +123,7 @@ def test_entries_of_another_atlas_have_nothing_stored(small_cube, repository):
 def test_the_cube_s_own_atlas_is_known_by_its_content(judged, small_cube, macbeth):
     assert judged.own
     assert judged.outside == ("cyan",)
-    assert about_own(small_cube.data, macbeth).names == about_other(small_cube.data, macbeth).names
+    assert from_own_atlas(small_cube.data, macbeth).names == from_other_atlas(small_cube.data, macbeth).names
 
 
 def test_no_atlas_no_entries(small_sigmoid_cube):
@@ -168,8 +168,8 @@ def test_smoothness_by_loops(model):
 
 
 def test_crowding_by_brute_force(crowded_cube):
-    data, lights = crowded_cube.data, viewings(("A",), crowded_cube.data.sensor.observer)
-    found = crowding(data, entries(crowded_cube, about_stored(data), lights))
+    data, lights = crowded_cube.data, display_sensors(("A",), crowded_cube.data.sensor.observer)
+    found = crowding(data, entries(crowded_cube, from_stored_entries(data), lights))
     nodes, names = data.lattice.nodes, data.atlas.names
     steps = np.interp(data.atlas.rgb, nodes, np.arange(len(nodes)))
     expected = {}
@@ -223,7 +223,7 @@ def test_standard_errors_against_colours_unseen(small_cube, repository):
     found = assess(small_cube, "small.uplift", 1, other, ("D65",))
     squares, stated, one, two = [], [], 0, 0
     for entry in other.entries:
-        (measured,) = on_grid(uplift.Spectra((entry,)), small_cube.wavelengths())
+        (measured,) = on_grid(uplift.Atlas((entry,)), small_cube.wavelengths())
         rgb = small_cube.data.sensor.rgb(measured)
         if rgb.min() < 0 or rgb.max() > 1:
             continue
@@ -300,7 +300,7 @@ def test_edges_hold_any_values(value):
 
 
 def test_each_light_once_and_white_is_white_under_all():
-    lights = viewings((*LIGHTS, "d65", "A"), colour.MSDS_CMFS["cie_2_1931"].name)
+    lights = display_sensors((*LIGHTS, "d65", "A"), colour.MSDS_CMFS["cie_2_1931"].name)
     assert [seen.illuminant for seen in lights] == list(LIGHTS)
     for seen in lights:
         assert hex_codes(seen.rgb(np.ones((1, 81)))) == ["#ffffff"]

@@ -15,11 +15,11 @@ from tests.report.conftest import HOSTILE
 from uplift.atlas import read_atlas
 from uplift.lookup import MODES, Cube
 from uplift.report.assessment import assess
-from uplift.report.json_export import numbers
+from uplift.report.json_export import to_json
 from uplift.report.page import page
 from uplift.viz.charts import histogram_chart, spectra_chart
 from uplift.viz.histogram import histogram, log_edges
-from uplift.viz.markup import EMPTY, Markup, decade, element, power
+from uplift.viz.markup import EMPTY, Markup, element, format_power_of_ten, format_scientific
 
 
 class Reader(HTMLParser):
@@ -157,7 +157,7 @@ def test_the_crowded_are_listed(crowded_cube, macbeth, hostile):
         shown = found.crowding.entries
         pairs = [f"{value:.2f}" for value in (shown.worst[0], shown.worst_lattice[0])]
         assert list(worst[0]) == pairs
-        assert numbers(found)["crowding"]["against"] == wanted
+        assert to_json(found)["crowding"]["against"] == wanted
 
 
 def test_the_lost_are_named(lossy_cube):
@@ -166,7 +166,7 @@ def test_the_lost_are_named(lossy_cube):
     assert "Lost, as an earlier entry has the same colour: über (that of grey)." in read.text
     assert "2 entries crowd" in read.text
     assert "; 1 lost" in read.text
-    told = json.loads(json.dumps(numbers(found), allow_nan=False))["crowding"]
+    told = json.loads(json.dumps(to_json(found), allow_nan=False))["crowding"]
     assert told["lost"] == [{"name": "über", "same_colour": "grey"}]
     assert {entry["name"]: entry["reach"] for entry in told["entries"]} == {"grey": 0.5, "über": 0}
 
@@ -181,7 +181,7 @@ def test_stated_errors_stand_beside_real_ones(small_cube, repository):
     assert f"{judged.within_one:.0%} of the entries lie within one standard error" in text
     assert f"mean {found.standard_error.mean:.2f}, ΔE00 under A" in text
     assert re.search(r">stated</th><th[^>]*>real</th></tr>", html)
-    told = numbers(found)
+    told = to_json(found)
     assert told["standard_error"]["calibration"]["within_two"] == judged.within_two
     ends = re.findall(
         r'data-value="([^"]*)"><span>[\d.]+</span></td><td class="number" data-value="([^"]*)">[^/]*/span></td></tr>',
@@ -199,8 +199,8 @@ def test_a_cube_that_states_no_errors_says_why(plain_cube, lossy_cube, macbeth):
         text = Reader(page(found, worst=0)).text
         assert "The cube states none: " in text
         assert why in text
-        assert numbers(found)["standard_error"]["delta_e_2000"] is None
-        assert {entry["standard_error"] for entry in numbers(found)["entries"]} <= {None}
+        assert to_json(found)["standard_error"]["delta_e_2000"] is None
+        assert {entry["standard_error"] for entry in to_json(found)["entries"]} <= {None}
         assert "stated" not in text
 
 
@@ -211,7 +211,7 @@ def test_nobody_crowds(macbeth_cube, macbeth):
 
 
 def test_numbers_are_those_of_the_assessment_and_json(judged):
-    found = json.loads(json.dumps(numbers(judged), allow_nan=False))
+    found = json.loads(json.dumps(to_json(judged), allow_nan=False))
     assert found["cube"] == "small.uplift"
     assert found["lights"] == ["D65", "A", "FL11"]
     assert [entry["name"] for entry in found["entries"]] == list(judged.entries.names)
@@ -231,7 +231,7 @@ def test_numbers_are_those_of_the_assessment_and_json(judged):
 
 
 def test_numbers_without_entries_and_with_failures(spoilt):
-    found = json.loads(json.dumps(numbers(assess(spoilt, "spoilt.uplift", 1, None, ("A",))), allow_nan=False))
+    found = json.loads(json.dumps(to_json(assess(spoilt, "spoilt.uplift", 1, None, ("A",))), allow_nan=False))
     assert (found["entries"], found["delta_e_2000"]) == ([], {})
     assert [point["distance"] for point in found["failures"]["worst"]] == pytest.approx([0.02, 0.01])
 
@@ -253,11 +253,11 @@ def test_markup_escapes_all_but_markup():
     ],
 )
 def test_numbers_as_the_page_writes_them(value, text):
-    assert power(value) == text
+    assert format_scientific(value) == text
 
 
 def test_decades():
-    assert (decade(1e-9), decade(1.0)) == ("10⁻⁹", "10⁰")
+    assert (format_power_of_ten(1e-9), format_power_of_ten(1.0)) == ("10⁻⁹", "10⁰")
 
 
 def test_charts_stand_alone():

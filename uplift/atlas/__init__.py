@@ -1,4 +1,4 @@
-"""Measured reflectances: text formats → `Spectra`, and back."""
+"""Measured reflectances: text formats → `Atlas`, and back."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 import warnings
 
 from uplift.atlas import art, art_write, table
-from uplift.atlas.atlas import Entry, Header, Skipped, Source, Spectra, merge
+from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source, merge
 from uplift.atlas.distributions import from_distributions
 from uplift.atlas.document import read_document
 from uplift.atlas.resample import Clip, Resampled, on_grid, resample
@@ -15,13 +15,13 @@ from uplift.common.errors import OutputError, UpliftWarning
 from uplift.common.files import write_text
 
 __all__ = [
+    "Atlas",
     "Clip",
     "Entry",
     "Header",
     "Resampled",
-    "Skipped",
+    "SkippedEntry",
     "Source",
-    "Spectra",
     "from_distributions",
     "merge",
     "on_grid",
@@ -31,14 +31,14 @@ __all__ = [
 ]
 
 
-def read_atlas(*paths: StrPath) -> Spectra:
+def read_atlas(*paths: StrPath) -> Atlas:
     """Read atlas files, text or CSV as their content shows, into one atlas.
 
     An `UpliftWarning` names every entry that was skipped, and every table that was read as percent.
 
     Raises
     ------
-    AtlasError : with path, line, entry and remedy.
+    AtlasError : with path, line, entry and hint.
     """
     spectra = merge(_read(path) for path in paths)
     for skipped in spectra.skipped:
@@ -46,7 +46,7 @@ def read_atlas(*paths: StrPath) -> Spectra:
     return spectra
 
 
-def write_atlas(spectra: Spectra, path: StrPath, header: Header | None = None) -> None:
+def write_atlas(spectra: Atlas, path: StrPath, header: Header | None = None) -> None:
     """Write an atlas at once, replacing ``path``: as CSV where it ends in ``.csv``, as text otherwise.
 
     ``header`` is by default what the sources said of themselves; a CSV has no room for it.
@@ -56,18 +56,18 @@ def write_atlas(spectra: Spectra, path: StrPath, header: Header | None = None) -
     OutputError : nothing to write, a place that cannot be written, or a table of different samplings.
     """
     if not spectra.entries:
-        raise OutputError("no entries to write", path=path, remedy="name an atlas that holds reflectances")
+        raise OutputError("no entries to write", path=path, hint="name an atlas that holds reflectances")
     is_table = os.fspath(path).lower().endswith(".csv")
     text = table.text(spectra) if is_table else art_write.text(spectra, header or _joined(spectra))
     write_text(text, path, force=True)
 
 
-def _read(path: StrPath) -> Spectra:
+def _read(path: StrPath) -> Atlas:
     document = read_document(path)
     return art.read(document) if art.claims(document) else table.read(document)
 
 
-def _joined(spectra: Spectra) -> Header:
+def _joined(spectra: Atlas) -> Header:
     """The headers of all sources, each statement once."""
     headers = [source.header for source in spectra.sources]
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from uplift.atlas.art_fields import NOT_STATED, Block, Fields, Line, fold, key_of, parse_fields, split
 from uplift.atlas.art_samples import SampleText, enclosed, pairs, plain
-from uplift.atlas.atlas import Entry, Header, Skipped, Source, Spectra
+from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source
 from uplift.atlas.checks import Array
-from uplift.atlas.document import Document, Place, nanometres, number, shown
+from uplift.atlas.document import Document, SourceLocation, nanometres, number, truncate
 
 MAGIC = "ART measurement archive"
 REFLECTANCE = "reflectance spectrum"
@@ -43,27 +43,27 @@ def claims(document: Document) -> bool:
     return fold(first).startswith(fold(MAGIC)) or any(key_of(line) == "entry id" for line in document.lines)
 
 
-def read(document: Document) -> Spectra:
+def read(document: Document) -> Atlas:
     """All reflectances of an archive; other kinds of entries are skipped, with the reason.
 
     Raises
     ------
-    AtlasError : anything that is not as the format says, with line, entry and remedy.
+    AtlasError : anything that is not as the format says, with line, entry and hint.
     """
     preamble, blocks = split(document)
-    header = _header(preamble, Place(document.path))
+    header = _header(preamble, SourceLocation(document.path))
     found = [_entry(block) for block in blocks]
     if not found:
-        remedy = "add entries, each beginning with a line 'Entry ID: …'"
-        raise Place(document.path, len(document.lines)).error("the archive has no entry", remedy)
-    return Spectra(
+        hint = "add entries, each beginning with a line 'Entry ID: …'"
+        raise SourceLocation(document.path, len(document.lines)).error("the archive has no entry", hint)
+    return Atlas(
         tuple(item for item in found if isinstance(item, Entry)),
-        tuple(item for item in found if isinstance(item, Skipped)),
+        tuple(item for item in found if isinstance(item, SkippedEntry)),
         (Source(document.name, document.digest, header),),
     )
 
 
-def _header(lines: list[Line], place: Place) -> Header:
+def _header(lines: list[Line], place: SourceLocation) -> Header:
     if lines and fold(lines[0][1]).startswith(fold(MAGIC)):
         _check_version(lines[0], place)
         lines = lines[1:]
@@ -73,19 +73,19 @@ def _header(lines: list[Line], place: Place) -> Header:
     return Header(*("" if text == NOT_STATED else text for text in stated))
 
 
-def _check_version(line: Line, place: Place) -> None:
+def _check_version(line: Line, place: SourceLocation) -> None:
     number, text = line
     version = text.split()[-1]
     if not version.startswith("1."):
-        problem = f"archive version '{shown(version)}' is not known"
+        problem = f"archive version '{truncate(version)}' is not known"
         raise place.at(number).error(problem, "write the archive as version 1.0, 1.1 or 1.2")
 
 
-def _entry(block: Block) -> Entry | Skipped:
+def _entry(block: Block) -> Entry | SkippedEntry:
     samples = enclosed(block.samples, block.place)
     reason = _why_skipped(block)
     if reason:
-        return Skipped(block.name, reason, block.place.path, block.place.line)
+        return SkippedEntry(block.name, reason, block.place.path, block.place.line)
     block.fields.check_known(FIELDS)
     wavelengths, values = _sampled(block.sampling, samples)
     return Entry(
@@ -109,7 +109,7 @@ def _why_skipped(block: Block) -> str:
         return f"its type is '{kind}', not '{REFLECTANCE}'"
     if fold(kind) != REFLECTANCE:
         known = ", ".join(f"'{name}'" for name in (REFLECTANCE, *OTHER_TYPES[:4]))
-        raise place.error(f"unknown type '{shown(kind)}'", f"the types are {known}")
+        raise place.error(f"unknown type '{truncate(kind)}'", f"the types are {known}")
     return "it is fluorescent (bispectral): no plain reflectance" if _is_fluorescent(block) else ""
 
 
@@ -118,7 +118,7 @@ def _is_fluorescent(block: Block) -> bool:
         return bool(block.sampling.text("Reflectance start"))
     answer, place = block.fields.required("Fluorescence data")
     if fold(answer) not in ("yes", "no"):
-        raise place.error(f"'Fluorescence data' is '{shown(answer)}'", "write 'yes' or 'no'")
+        raise place.error(f"'Fluorescence data' is '{truncate(answer)}'", "write 'yes' or 'no'")
     return fold(answer) == "yes"
 
 
@@ -126,7 +126,7 @@ def _sampled(sampling: Fields, samples: SampleText) -> tuple[Array, Array]:
     """Wavelengths (N,) nm and reflectances (N,) in units of 1."""
     kind, place = sampling.required("Type")
     if fold(kind) not in SAMPLINGS:
-        raise place.error(f"unknown sampling type '{shown(kind)}'", "write 'regular' or 'point sampled'")
+        raise place.error(f"unknown sampling type '{truncate(kind)}'", "write 'regular' or 'point sampled'")
     sampling.check_known(SAMPLINGS[fold(kind)])
     scale = _scale(sampling)
     read: Callable[[Fields, SampleText], tuple[Array, Array]] = (

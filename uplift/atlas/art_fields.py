@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from uplift.atlas.document import Document, Place, shown
+from uplift.atlas.document import Document, SourceLocation, truncate
 
 Line = tuple[int, str]
 """Number, counted from 1, and text."""
@@ -21,13 +21,13 @@ class Fields:
     """``key : value`` lines of one section; keys compare without case and spacing."""
 
     values: dict[str, Line]
-    place: Place
+    place: SourceLocation
 
     def text(self, key: str) -> str:
         """A value that may be missing."""
         return self.values.get(fold(key), (0, ""))[1]
 
-    def required(self, key: str) -> tuple[str, Place]:
+    def required(self, key: str) -> tuple[str, SourceLocation]:
         """A value that must be there, and where. Raises `AtlasError`."""
         line, value = self.values.get(fold(key), (0, ""))
         if not value:
@@ -39,15 +39,15 @@ class Fields:
         known = tuple(known)
         for key, (line, _) in self.values.items():
             if key not in map(fold, known):
-                remedy = "the fields are " + ", ".join(f"'{name}'" for name in known)
-                raise self.place.at(line).error(f"unknown field '{shown(key)}'", remedy)
+                hint = "the fields are " + ", ".join(f"'{name}'" for name in known)
+                raise self.place.at(line).error(f"unknown field '{truncate(key)}'", hint)
 
 
 @dataclass(frozen=True)
 class Block:
     """One entry: its name, its two sections of fields, and the lines of its sample list."""
 
-    place: Place
+    place: SourceLocation
     name: str
     fields: Fields
     sampling: Fields
@@ -79,15 +79,15 @@ def spoken(lines: Iterable[Line]) -> list[Line]:
     return [(number, text.strip()) for number, text in lines if not _is_rule(text)]
 
 
-def parse_fields(lines: Iterable[Line], place: Place) -> Fields:
+def parse_fields(lines: Iterable[Line], place: SourceLocation) -> Fields:
     """Lines of a section as fields. Raises `AtlasError` for a line without a colon and for a second value."""
     values: dict[str, Line] = {}
     for number, text in spoken(lines):
         key, colon, value = text.partition(":")
         if not colon:
-            raise place.at(number).error(f"unexpected text '{shown(text)}'", "write 'key : value'")
+            raise place.at(number).error(f"unexpected text '{truncate(text)}'", "write 'key : value'")
         if fold(key) in values:
-            raise place.at(number).error(f"the field '{shown(key)}' stands twice", "remove one of the two")
+            raise place.at(number).error(f"the field '{truncate(key)}' stands twice", "remove one of the two")
         values[fold(key)] = number, value.strip()
     return Fields(values, place)
 
@@ -100,7 +100,7 @@ def _is_rule(text: str) -> bool:
 def _block(lines: list[Line], path: str) -> Block:
     number, text = lines[0]
     name = text.partition(":")[2].strip()
-    place = Place(path, number, name or None)
+    place = SourceLocation(path, number, name or None)
     sampling = _find(lines, "Sampling information", place)
     samples = _find(lines, "ASCII sample data", place)
     return Block(
@@ -112,7 +112,7 @@ def _block(lines: list[Line], path: str) -> Block:
     )
 
 
-def _find(lines: list[Line], title: str, place: Place) -> int:
+def _find(lines: list[Line], title: str, place: SourceLocation) -> int:
     for i, (_, text) in enumerate(lines):
         if len(text) < 200 and fold(text) == fold(title):
             return i

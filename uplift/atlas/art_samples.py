@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from uplift.atlas.art_fields import TRUNCATED, Line, spoken
-from uplift.atlas.document import Place, number
+from uplift.atlas.document import SourceLocation, number
 
 PLAIN = "write the samples as numbers with commas between, in one pair of braces"
 PAIRS = "write the samples as {{wavelength, value}, {wavelength, value}, …}"
@@ -16,10 +16,10 @@ class SampleText:
     """What stands between the outer braces, and where it begins."""
 
     text: str
-    place: Place
+    place: SourceLocation
 
 
-def enclosed(lines: list[Line], place: Place) -> SampleText:
+def enclosed(lines: list[Line], place: SourceLocation) -> SampleText:
     """The text between the braces that open on the first spoken line. Raises `AtlasError`."""
     opening = spoken(lines)[:1]
     if not opening or not opening[0][1].startswith("{"):
@@ -56,14 +56,14 @@ def pairs(samples: SampleText) -> list[list[float]]:
     return found
 
 
-def _pair(opening: str, inside: str, place: Place) -> list[float]:
+def _pair(opening: str, inside: str, place: SourceLocation) -> list[float]:
     numbers = _numbers(inside, place) if opening.strip(", \t\n") == "{" else []
     if len(numbers) != 2:
         raise place.error("samples that are not in pairs", PAIRS)
     return numbers
 
 
-def _closing(lines: list[Line], first: int, place: Place) -> int:
+def _closing(lines: list[Line], first: int, place: SourceLocation) -> int:
     depth = 0
     for i, (_, text) in enumerate(lines[first:], start=first):
         depth += text.count("{") - text.count("}")
@@ -72,7 +72,7 @@ def _closing(lines: list[Line], first: int, place: Place) -> int:
     raise place.error("the sample list is not closed by '}'", TRUNCATED)
 
 
-def _numbers(text: str, place: Place) -> list[float]:
+def _numbers(text: str, place: SourceLocation) -> list[float]:
     numbers = []
     for token in text.split(","):
         lead = len(token) - len(token.lstrip())

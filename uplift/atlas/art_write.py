@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from uplift.atlas.art_fields import NOT_STATED
-from uplift.atlas.atlas import Entry, Header, Spectra
+from uplift.atlas.atlas import Atlas, Entry, Header
 from uplift.atlas.checks import Array
 
 
-def text(spectra: Spectra, header: Header) -> str:
+def text(spectra: Atlas, header: Header) -> str:
     """The archive as text: version 1.1, or 1.2 where an entry has an additional description."""
     version = "1.2" if any(entry.additional for entry in spectra.entries) else "1.1"
     lines = [f"ART measurement archive version {version}", ""]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas.checks import Array, check_name, check_spectrum
-from uplift.atlas.document import Place
+from uplift.atlas.document import SourceLocation
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +19,7 @@ class Entry:
 
     Parameters
     ----------
-    name : unique within its `Spectra`.
+    name : unique within its `Atlas`.
     wavelengths : (N,) nm, positive, ascending, covering at least 400–700 nm.
     values : (N,) reflectance in units of 1, as measured: slightly below 0 or above 1 is allowed.
     description, additional, device, measured_by, date : what the archive says about the measurement.
@@ -27,7 +27,7 @@ class Entry:
 
     Raises
     ------
-    AtlasError : with path, line, name and remedy.
+    AtlasError : with path, line, name and hint.
     """
 
     name: str
@@ -42,7 +42,7 @@ class Entry:
     line: int | None = None
 
     def __post_init__(self) -> None:
-        place = Place(self.path, self.line, self.name)
+        place = SourceLocation(self.path, self.line, self.name)
         check_name(self.name, place)
         for key in ("wavelengths", "values"):
             object.__setattr__(self, key, _samples(getattr(self, key), key, place))
@@ -56,7 +56,7 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Skipped:
+class SkippedEntry:
     """An entry that a cube of plain reflectances cannot hold, and why."""
 
     name: str
@@ -87,7 +87,7 @@ class Source:
 
 
 @dataclass(frozen=True)
-class Spectra:
+class Atlas:
     """An atlas: entries in the order they were read, and what was left out.
 
     Raises
@@ -96,7 +96,7 @@ class Spectra:
     """
 
     entries: tuple[Entry, ...] = ()
-    skipped: tuple[Skipped, ...] = ()
+    skipped: tuple[SkippedEntry, ...] = ()
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
@@ -114,18 +114,18 @@ class Spectra:
         return tuple(entry.name for entry in self.entries)
 
 
-def merge(parts: Iterable[Spectra]) -> Spectra:
+def merge(parts: Iterable[Atlas]) -> Atlas:
     """Several atlases as one, in order. Raises `AtlasError` where two entries share a name."""
     parts = tuple(parts)
     chain = itertools.chain.from_iterable
-    return Spectra(
+    return Atlas(
         tuple(chain(part.entries for part in parts)),
         tuple(chain(part.skipped for part in parts)),
         tuple(chain(part.sources for part in parts)),
     )
 
 
-def _samples(samples: ArrayLike, key: str, place: Place) -> Array:
+def _samples(samples: ArrayLike, key: str, place: SourceLocation) -> Array:
     """A copy that nobody can change."""
     try:
         array = np.array(samples, dtype=np.float64)
@@ -137,5 +137,5 @@ def _samples(samples: ArrayLike, key: str, place: Place) -> Array:
 
 def _duplicate(first: Entry, second: Entry) -> Exception:
     where = "" if first.path is None else f": first used at {first.path}:{first.line}"
-    place = Place(second.path, second.line, second.name)
+    place = SourceLocation(second.path, second.line, second.name)
     return place.error(f"the name is taken{where}", "rename or remove one of the two")

@@ -1,4 +1,4 @@
-"""Spectral distributions that a Python program already has → `Spectra`, whatever their class."""
+"""Spectral distributions that a Python program already has → `Atlas`, whatever their class."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import art_write
-from uplift.atlas.atlas import Entry, Header, Source, Spectra
-from uplift.atlas.document import Place
+from uplift.atlas.atlas import Atlas, Entry, Header, Source
+from uplift.atlas.document import SourceLocation
 
 FORMS = (
     "pass a mapping of names to distributions with .wavelengths and .values, "
@@ -18,7 +18,7 @@ FORMS = (
 )
 
 
-def from_distributions(distributions: Any) -> Spectra:
+def from_distributions(distributions: Any) -> Atlas:
     """An atlas from colour-science's distributions, or from anything of the same shape.
 
     Parameters
@@ -32,8 +32,8 @@ def from_distributions(distributions: Any) -> Spectra:
     AtlasError : no such object, or no reflectance in units of 1.
     """
     entries = tuple(Entry(name, wavelengths, values) for name, wavelengths, values in _named(distributions))
-    digest = hashlib.sha256(art_write.text(Spectra(entries), Header()).encode()).hexdigest()
-    return Spectra(entries, sources=(Source("distributions", digest),))
+    digest = hashlib.sha256(art_write.text(Atlas(entries), Header()).encode()).hexdigest()
+    return Atlas(entries, sources=(Source("distributions", digest),))
 
 
 def _named(distributions: Any) -> Iterator[tuple[str, Any, Any]]:
@@ -53,7 +53,7 @@ def _sampled(distribution: Any, name: str) -> tuple[Any, Any]:
         return distribution.wavelengths, distribution.values
     except AttributeError:
         problem = f"'{type(distribution).__name__}' is no spectral distribution"
-        raise Place(entry=name).error(problem, FORMS) from None
+        raise SourceLocation(entry=name).error(problem, FORMS) from None
 
 
 def _columns(distributions: Any) -> Iterator[tuple[str, Any, Any]]:
@@ -61,6 +61,6 @@ def _columns(distributions: Any) -> Iterator[tuple[str, Any, Any]]:
     names = [str(label) for label in distributions.labels]
     if np.ndim(values) != 2 or np.shape(values)[1] != len(names):
         problem = f"values of shape {np.shape(values)} for {len(names)} labels"
-        raise Place().error(problem, "give values (N, E), a column per label")
+        raise SourceLocation().error(problem, "give values (N, E), a column per label")
     for name, column in zip(names, np.transpose(values), strict=True):
         yield name, wavelengths, column

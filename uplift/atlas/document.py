@@ -17,25 +17,25 @@ SHOWN = 40
 
 
 @dataclass(frozen=True)
-class Place:
+class SourceLocation:
     """Where something stands, as far as it is known (``line`` counts from 1)."""
 
     path: str | None = None
     line: int | None = None
     entry: str | None = None
 
-    def at(self, line: int) -> Place:
+    def at(self, line: int) -> SourceLocation:
         """Another line of the same entry."""
         return dataclasses.replace(self, line=line)
 
-    def after(self, text: str) -> Place:
+    def after(self, text: str) -> SourceLocation:
         """Where one stands having read ``text``."""
         return self.at((self.line or 1) + text.count("\n")) if "\n" in text else self
 
-    def error(self, problem: str, remedy: str) -> AtlasError:
+    def error(self, problem: str, hint: str) -> AtlasError:
         """The error to raise for a problem here."""
-        entry = None if self.entry is None else shown(self.entry)
-        return AtlasError(problem, path=self.path, line=self.line, entry=entry, remedy=remedy)
+        entry = None if self.entry is None else truncate(self.entry)
+        return AtlasError(problem, path=self.path, line=self.line, entry=entry, hint=hint)
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def read_document(path: StrPath) -> Document:
     ------
     AtlasError : the file is missing, unreadable, empty or binary.
     """
-    place = Place(os.fspath(path))
+    place = SourceLocation(os.fspath(path))
     data = _bytes(place)
     text = _text(data, place)
     if not text.strip():
@@ -72,7 +72,7 @@ def read_document(path: StrPath) -> Document:
     return Document(os.fspath(path), text, hashlib.sha256(data).hexdigest())
 
 
-def _bytes(place: Place) -> bytes:
+def _bytes(place: SourceLocation) -> bytes:
     try:
         return Path(place.path or "").read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
@@ -81,7 +81,7 @@ def _bytes(place: Place) -> bytes:
         ) from None
 
 
-def _text(data: bytes, place: Place) -> str:
+def _text(data: bytes, place: SourceLocation) -> str:
     if b"\0" in data:
         line = data[: data.index(b"\0")].count(b"\n") + 1
         raise place.at(line).error("binary data (a NUL byte), no text", "save the atlas as UTF-8 text")
@@ -92,24 +92,24 @@ def _text(data: bytes, place: Place) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def number(token: str, place: Place, what: str) -> float:
+def number(token: str, place: SourceLocation, what: str) -> float:
     """A number as data files write it; ``what`` names it in the error. Raises `AtlasError`."""
     try:
         if "_" in token:  # Python reads 1_000, no measuring device writes it
             raise ValueError
         return float(token)
     except ValueError:
-        problem = f"{what} '{shown(token)}' is not a number"
+        problem = f"{what} '{truncate(token)}' is not a number"
         raise place.error(problem, "write a plain number such as 0.125") from None
 
 
-def shown(text: str) -> str:
+def truncate(text: str) -> str:
     """Text as a message quotes it: one line, not too long."""
     text = " ".join(text.replace("\0", " ").split())
     return text if len(text) <= SHOWN else text[:SHOWN] + "…"
 
 
-def nanometres(token: str, place: Place, what: str) -> float:
+def nanometres(token: str, place: SourceLocation, what: str) -> float:
     """A number followed by ``nm`` or by nothing. Raises `AtlasError`."""
     return number(without_unit(token), place, what)
 

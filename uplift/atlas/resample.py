@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas.atlas import Entry, Spectra
+from uplift.atlas.atlas import Atlas, Entry
 from uplift.atlas.checks import Array
 from uplift.common.errors import UpliftWarning
 
@@ -36,7 +36,7 @@ class Resampled:
     clips: tuple[Clip, ...]
 
 
-def on_grid(spectra: Spectra, wavelengths: ArrayLike) -> Array:
+def on_grid(spectra: Atlas, wavelengths: ArrayLike) -> Array:
     """Reflectances of all entries (E, N) at wavelengths (N,) nm, within [0, 1].
 
     Shape-preserving cubic (PCHIP, so no overshoot) inside the measured range, held flat outside it. An
@@ -48,7 +48,7 @@ def on_grid(spectra: Spectra, wavelengths: ArrayLike) -> Array:
     return resampled.values
 
 
-def resample(spectra: Spectra, wavelengths: ArrayLike) -> Resampled:
+def resample(spectra: Atlas, wavelengths: ArrayLike) -> Resampled:
     """What `on_grid` gives, with the clipping as data in place of warnings."""
     grid = np.asarray(wavelengths, dtype=np.float64)
     raw = np.array([_interpolate(entry, grid) for entry in spectra.entries]).reshape(-1, len(grid))

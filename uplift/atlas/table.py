@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uplift.atlas.atlas import Entry, Source, Spectra
+from uplift.atlas.atlas import Atlas, Entry, Source
 from uplift.atlas.checks import HIGHEST, SLACK, VISIBLE
-from uplift.atlas.document import Document, Place, nanometres, number, without_unit
+from uplift.atlas.document import Document, SourceLocation, nanometres, number, without_unit
 from uplift.common.errors import OutputError, UpliftWarning
 
 DELIMITERS = ",;\t"
@@ -31,15 +31,15 @@ class Cell(NamedTuple):
 Row = tuple[Cell, ...]
 
 
-def read(document: Document) -> Spectra:
+def read(document: Document) -> Atlas:
     """All samples of a table; values in percent are recognised and scaled, with an `UpliftWarning`.
 
     Raises
     ------
-    AtlasError : no table of reflectances, or a cell that is no number, with line, entry and remedy.
+    AtlasError : no table of reflectances, or a cell that is no number, with line, entry and hint.
     """
-    header, *samples = _oriented(_rows(document), Place(document.path))
-    place = Place(document.path, header[0].line)
+    header, *samples = _oriented(_rows(document), SourceLocation(document.path))
+    place = SourceLocation(document.path, header[0].line)
     wavelengths = [nanometres(cell.text, place.at(cell.line), "wavelength") for cell in header[1:]]
     values = [_values(row, document.path) for row in samples]
     scale = _scale(samples, values, document.path)
@@ -49,10 +49,10 @@ def read(document: Document) -> Spectra:
         )
         for row, line in zip(samples, values, strict=True)
     ]
-    return Spectra(tuple(entries), sources=(Source(document.name, document.digest),))
+    return Atlas(tuple(entries), sources=(Source(document.name, document.digest),))
 
 
-def text(spectra: Spectra) -> str:
+def text(spectra: Atlas) -> str:
     """A row per sample; wavelengths and values are read back to the last bit.
 
     Raises
@@ -63,9 +63,7 @@ def text(spectra: Spectra) -> str:
     for entry in spectra.entries:
         if not np.array_equal(entry.wavelengths, first.wavelengths):
             problem = f"entries '{first.name}' and '{entry.name}' are sampled at different wavelengths"
-            raise OutputError(
-                problem, remedy="write atlas text, which keeps each sampling, or separate tables"
-            )
+            raise OutputError(problem, hint="write atlas text, which keeps each sampling, or separate tables")
     out = io.StringIO()
     writer = csv.writer(out, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
     writer.writerow(["name", *first.wavelengths.tolist()])
@@ -75,7 +73,7 @@ def text(spectra: Spectra) -> str:
 
 def _rows(document: Document) -> list[Row]:
     """Rows that are not blank, all of one width."""
-    place = Place(document.path)
+    place = SourceLocation(document.path)
     delimiter = _delimiter(document)
     try:
         rows = list(_split(document, delimiter))
@@ -120,7 +118,7 @@ def _delimiter(document: Document) -> str:
     return max(DELIMITERS, key=numbers)
 
 
-def _oriented(rows: list[Row], place: Place) -> list[Row]:
+def _oriented(rows: list[Row], place: SourceLocation) -> list[Row]:
     """The table turned so that the wavelengths are its first row."""
     columns = list(zip(*rows, strict=True))
     tables = [table for table in (rows, columns) if _numeric(table[0][1:])]
@@ -151,7 +149,7 @@ def _is_number(text: str) -> bool:
 
 def _values(row: Row, path: str) -> list[float]:
     name, *cells = row
-    return [number(cell.text, Place(path, cell.line, name.text), "value") for cell in cells]
+    return [number(cell.text, SourceLocation(path, cell.line, name.text), "value") for cell in cells]
 
 
 def _scale(samples: list[Row], values: list[list[float]], path: str) -> float:

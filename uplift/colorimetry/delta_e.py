@@ -22,7 +22,7 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
     return np.asarray(compressed @ OPPONENTS.T - [16, 0, 0])
 
 
-def lab_slope(xyz: ArrayLike, white: ArrayLike) -> Array:
+def lab_jacobian(xyz: ArrayLike, white: ArrayLike) -> Array:
     """Derivative (…, 3, 3) of L*a*b* by XYZ (…, 3); the last axis is XYZ."""
     white = np.asarray(white, dtype=float)
     t = np.asarray(xyz, dtype=float) / white
@@ -32,7 +32,7 @@ def lab_slope(xyz: ArrayLike, white: ArrayLike) -> Array:
     return OPPONENTS * (1 / (3 * root**2 * white))[..., None, :]
 
 
-def rgb_lab(sensor: Sensor, rgb: ArrayLike) -> Array:
+def rgb_to_lab(sensor: Sensor, rgb: ArrayLike) -> Array:
     """CIE L*a*b* (…, 3) of linear RGB (…, 3) under the build illuminant."""
     return lab(sensor.xyz(rgb), sensor.light.white)
 
@@ -72,15 +72,15 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     return np.sqrt(np.maximum(delta_l**2 + delta_c**2 + delta_h**2 + rotation * delta_c * delta_h, 0))
 
 
-def spectra_apart(light: Light, first: ArrayLike, second: ArrayLike) -> Array:
+def delta_e_spectra(light: Light, first: ArrayLike, second: ArrayLike) -> Array:
     """ΔE00 (…) of reflectances (…, N) seen under a light."""
     seen = (np.asarray(spectra, dtype=float) @ light.xyz.T for spectra in (first, second))
     return delta_e_2000(*(lab(xyz, light.white) for xyz in seen))
 
 
-def colours_apart(sensor: Sensor, first: ArrayLike, second: ArrayLike) -> Array:
+def delta_e_rgb(sensor: Sensor, first: ArrayLike, second: ArrayLike) -> Array:
     """ΔE00 (…) of linear RGB (…, 3) of the sensor's space, under its illuminant."""
-    return delta_e_2000(rgb_lab(sensor, first), rgb_lab(sensor, second))
+    return delta_e_2000(rgb_to_lab(sensor, first), rgb_to_lab(sensor, second))
 
 
 def _weight_7(chroma: Array) -> Array:

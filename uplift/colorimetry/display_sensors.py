@@ -9,14 +9,14 @@ import numpy as np
 from uplift.colorimetry.gamut import SRGB, Gamut
 from uplift.colorimetry.observer import sensor
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.srgb import shown
+from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 
 LIGHTS = ("D65", "A", "FL2", "FL7", "FL11", "LED-B3")
 """Daylight and tungsten; a cheap, a broadband and a three-band fluorescent lamp; a white LED."""
 
 
-def viewings(names: Sequence[str], observer: str) -> tuple[Sensor, ...]:
+def display_sensors(names: Sequence[str], observer: str) -> tuple[Sensor, ...]:
     """An sRGB sensor under each light, each light once: its white is taken to the screen's by Bradford.
 
     Raises `UnknownNameError`.
@@ -27,4 +27,4 @@ def viewings(names: Sequence[str], observer: str) -> tuple[Sensor, ...]:
 
 def hex_codes(rgb: Array, gamut: Gamut = SRGB) -> list[str]:
     """``#rrggbb`` of linear RGB (n, 3); what the screen cannot show has less chroma there."""
-    return ["#" + bytes(code).hex() for code in shown(rgb, gamut).astype(np.uint8)]
+    return ["#" + bytes(code).hex() for code in to_display_codes(rgb, gamut).astype(np.uint8)]

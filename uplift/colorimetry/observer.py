@@ -62,7 +62,7 @@ def sensor(space: str = "sRGB", illuminant: str = "D65", observer: str = DEFAULT
         observer=_look_up(colour.MSDS_CMFS, observer, "observer").name,
         wavelengths=grid(),
         cmfs=matching_functions(observer),
-        power=power(illuminant),
+        power=illuminant_spd(illuminant),
         xyz_to_rgb=matrix / (matrix @ lit.white)[:, None],
         decoding=np.asarray(rgb_space.cctf_decoding(np.arange(256) / 255), dtype=float),
     )
@@ -77,7 +77,7 @@ def primaries(space: str) -> Primaries:
 def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:
     """An illuminant to look under, on the grid of every sensor. Raises `UnknownNameError`."""
     colour = colour_science()
-    weights = matching_functions(observer) * power(illuminant)[:, None]
+    weights = matching_functions(observer) * illuminant_spd(illuminant)[:, None]
     return Light(
         _look_up(colour.SDS_ILLUMINANTS, illuminant, "illuminant").name, (weights / weights[:, 1].sum()).T
     )
@@ -106,7 +106,7 @@ def suggest(name: str, known: Iterable[str], kind: str) -> UnknownNameError:
     by_folded = {entry.casefold(): entry for entry in known}
     near = difflib.get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.4) or list(by_folded)[:6]
     choices = ", ".join(f"'{by_folded[entry]}'" for entry in near)
-    return UnknownNameError(f"unknown {kind} '{name}'", remedy=f"did you mean {choices}?")
+    return UnknownNameError(f"unknown {kind} '{name}'", hint=f"did you mean {choices}?")
 
 
 def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:
@@ -123,7 +123,7 @@ def matching_functions(
     return _samples(colour_science().MSDS_CMFS, observer, "observer", (start, end, step))
 
 
-def power(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
+def illuminant_spd(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
     """(N,) relative spectral power from ``start`` to ``end`` nm. Raises `UnknownNameError`."""
     return _samples(colour_science().SDS_ILLUMINANTS, illuminant, "illuminant", (start, end, step))
 

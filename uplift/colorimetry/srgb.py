@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry.gamut import SRGB, Gamut, contained, conversion
+from uplift.colorimetry.gamut import SRGB, Gamut, conversion, map_to_gamut
 from uplift.common.arrays import Array
 
 SHOWN = "desaturate"
@@ -26,7 +26,7 @@ def encode(linear: ArrayLike) -> Array:
     return np.where(inside <= 0.0031308, inside * 12.92, 1.055 * inside ** (1 / 2.4) - 0.055)
 
 
-def shown(rgb: ArrayLike, gamut: Gamut) -> Array:
+def to_display_codes(rgb: ArrayLike, gamut: Gamut) -> Array:
     """8-bit codes (…, 3), as whole numbers, of linear RGB (…, 3) of a gamut, on a screen that white is white on."""
-    linear = contained(np.asarray(rgb, dtype=float) @ conversion(gamut, SRGB).T, SRGB, SHOWN).rgb
+    linear = map_to_gamut(np.asarray(rgb, dtype=float) @ conversion(gamut, SRGB).T, SRGB, SHOWN).rgb
     return np.rint(255 * encode(linear))

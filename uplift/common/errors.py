@@ -6,13 +6,13 @@ import os
 
 
 class UpliftError(Exception):
-    """Bad input. ``str()`` is one line: the place, the problem, the remedy.
+    """Bad input. ``str()`` is one line: the place, the problem, the hint.
 
     Parameters
     ----------
     problem : what is wrong, without a full stop.
     path, line, entry : where, as far as it is known (``line`` counts from 1).
-    remedy : what the user can do.
+    hint : what the user can do.
     """
 
     def __init__(
@@ -22,10 +22,10 @@ class UpliftError(Exception):
         path: str | os.PathLike[str] | None = None,
         line: int | None = None,
         entry: str | None = None,
-        remedy: str = "",
+        hint: str = "",
     ) -> None:
         self.problem, self.path, self.line = problem, path, line
-        self.entry, self.remedy = entry, remedy
+        self.entry, self.hint = entry, hint
         super().__init__(str(self))
 
     def __str__(self) -> str:
@@ -36,7 +36,7 @@ class UpliftError(Exception):
         if self.entry is not None:
             where.append(f"entry '{self.entry}'")
         text = ": ".join([*where, self.problem])
-        return f"{text}; {self.remedy}" if self.remedy else text
+        return f"{text}; {self.hint}" if self.hint else text
 
 
 class AtlasError(UpliftError):

@@ -30,19 +30,19 @@ def check_output(path: str | os.PathLike[str], *, force: bool = False) -> Path:
         raise OutputError(
             "stands for standard output, which takes no files",
             path=path,
-            remedy="name a file, or give the whole path of one that is called so",
+            hint="name a file, or give the whole path of one that is called so",
         )
     path = Path(path)
     mode = _mode(path)
     if mode is not None and not stat.S_ISREG(mode):
-        raise OutputError("is no regular file", path=path, remedy="name a file to write to")
+        raise OutputError("is no regular file", path=path, hint="name a file to write to")
     if mode is not None and not force:
-        raise OutputError("exists already", path=path, remedy="use --force to replace it, or another name")
+        raise OutputError("exists already", path=path, hint="use --force to replace it, or another name")
     folder = path.resolve().parent
     if not folder.is_dir():
-        raise OutputError(f"there is no folder {folder}", path=path, remedy="make it first")
+        raise OutputError(f"there is no folder {folder}", path=path, hint="make it first")
     if not os.access(folder, os.W_OK):
-        raise OutputError(f"no permission to write in {folder}", path=path, remedy="choose another place")
+        raise OutputError(f"no permission to write in {folder}", path=path, hint="choose another place")
     return path
 
 
@@ -53,7 +53,7 @@ def _mode(path: Path) -> int | None:
     except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, ValueError) as error:  # too long a name, a NUL in it, links in a circle
-        raise OutputError(f"cannot be written: {error}", path=path, remedy="choose another name") from error
+        raise OutputError(f"cannot be written: {error}", path=path, hint="choose another name") from error
 
 
 def check_folder(path: str | os.PathLike[str], names: Iterable[str], *, force: bool = False) -> Path:
@@ -63,7 +63,7 @@ def check_folder(path: str | os.PathLike[str], names: Iterable[str], *, force: b
         folder.mkdir(exist_ok=True)
     except OSError as error:
         raise OutputError(
-            f"cannot be made: {error.strerror}", path=folder, remedy="name a folder to write to"
+            f"cannot be made: {error.strerror}", path=folder, hint="name a folder to write to"
         ) from error
     for name in names:
         check_output(folder / name, force=force)
@@ -72,12 +72,12 @@ def check_folder(path: str | os.PathLike[str], names: Iterable[str], *, force: b
 
 def write_text(text: str, path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Write text as it is, atomically. Raises `OutputError`."""
-    with replacing(path, force=force) as temporary:
+    with atomic_write(path, force=force) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
 @contextlib.contextmanager
-def replacing(path: str | os.PathLike[str], *, force: bool = False) -> Iterator[Path]:
+def atomic_write(path: str | os.PathLike[str], *, force: bool = False) -> Iterator[Path]:
     """A temporary path in the same folder; renamed to ``path`` if the block ends well, removed if not.
 
     Of several at once to one path the last to end has it, whole. A link is kept, what it leads to replaced. What
@@ -143,5 +143,5 @@ def _settle(temporary: Path) -> None:
 
 def _cannot_write(path: Path, error: OSError) -> OutputError:
     return OutputError(
-        f"cannot be written: {error.strerror or error}", path=path, remedy="the old file is intact"
+        f"cannot be written: {error.strerror or error}", path=path, hint="the old file is intact"
     )

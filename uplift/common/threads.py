@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def one_blas_thread() -> Iterator[None]:
+def single_threaded_blas() -> Iterator[None]:
     """Also the same bytes whatever the threads: sums that BLAS shares out are rounded by how many there are.
 
     Threads of XLA stay: they share out rows, not sums.

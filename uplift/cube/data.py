@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.lattice import Lattice, Status
-from uplift.lattice.entry_boxes import Pins
+from uplift.lattice.entry_boxes import EntryBoxes
 from uplift.models import Model
 
 
@@ -72,9 +72,9 @@ class CubeData:
     provenance: Mapping[str, Any]
 
     @cached_property
-    def pins(self) -> Pins:
+    def pins(self) -> EntryBoxes:
         """The entries as extra nodes of the lattice."""
-        return Pins(self.lattice, self.atlas.rgb, self.atlas.reach)
+        return EntryBoxes(self.lattice, self.atlas.rgb, self.atlas.reach)
 
     @cached_property
     def present(self) -> Mask:

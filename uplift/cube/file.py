@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.errors import CubeFileError, UpliftError
-from uplift.common.files import replacing
+from uplift.common.files import atomic_write
 from uplift.cube import sparse
 from uplift.cube.checks import ATLAS_ARRAYS, POINT_TYPES, SENSOR_ARRAYS, check
 from uplift.cube.data import AtlasTable, CubeData
@@ -37,7 +37,7 @@ def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) 
 
     tensors, metadata = contents(data)
     metadata["digest"] = _digest(tensors, metadata)
-    with replacing(path, force=force) as temporary:
+    with atomic_write(path, force=force) as temporary:
         # Its own way to a file has a temporary one too, which nobody would remove if this process were killed.
         temporary.write_bytes(save(tensors, metadata={KEY: _json(metadata)}))
 
@@ -52,7 +52,7 @@ def read(path: str | os.PathLike[str]) -> CubeData:
         raise CubeFileError(
             f"is a cube of format version {metadata.get('version')}, this uplift reads version {VERSION}",
             path=path,
-            remedy="rebuild it, or use the uplift that wrote it",
+            hint="rebuild it, or use the uplift that wrote it",
         )
     digest = metadata.pop("digest", None)
     if digest != _digest(tensors, metadata):
@@ -87,7 +87,7 @@ def _load(path: Path) -> tuple[Tensors, dict[str, Any]]:
     from safetensors import SafetensorError, safe_open
 
     if not os.path.isfile(path):  # False for impossible names too, where Path.is_file raises
-        raise CubeFileError("no such file", path=path, remedy="'uplift build' makes cubes")
+        raise CubeFileError("no such file", path=path, hint="'uplift build' makes cubes")
     try:
         with safe_open(path, framework="numpy") as file:
             metadata = json.loads((file.metadata() or {}).get(KEY, "{}"), parse_constant=_no_number)
@@ -104,7 +104,7 @@ def _no_number(text: str) -> None:
 
 
 def _broken(path: Path, problem: str) -> CubeFileError:
-    return CubeFileError(problem, path=path, remedy="rebuild it with 'uplift build'")
+    return CubeFileError(problem, path=path, hint="rebuild it with 'uplift build'")
 
 
 def _json(metadata: Mapping[str, Any]) -> str:

@@ -9,24 +9,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices
-from uplift.fit.entries import Entries, fit_entries
-from uplift.fit.grow import NEVER, grow
+from uplift.fit.entries import FittedEntries, fit_entries
+from uplift.fit.grow import NOT_FITTED, grow
 from uplift.fit.improve import Improvement, improve
-from uplift.fit.lattice_size import DIMS, roomiest
+from uplift.fit.lattice_size import DIMS, choose_lattice
 from uplift.fit.objective import Weights
-from uplift.fit.prior import Prior, learn
+from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem
 from uplift.fit.progress import Round, Storing, Watch
 from uplift.fit.seed import Seeds, seed
 from uplift.fit.store import store
 from uplift.fit.unrealisable import Unrealisable, unrealisable
 from uplift.lattice import Status
-from uplift.lattice.box_widths import reach
+from uplift.lattice.box_widths import half_widths
 
 __all__ = [
     "DIMS",
-    "Entries",
     "Fit",
+    "FittedEntries",
     "Improvement",
     "Prior",
     "Problem",
@@ -36,11 +36,11 @@ __all__ = [
     "Unrealisable",
     "Watch",
     "Weights",
+    "choose_lattice",
     "fit_entries",
     "fit_lattice",
-    "learn",
-    "reach",
-    "roomiest",
+    "fit_prior",
+    "half_widths",
     "seed",
     "unrealisable",
 ]
@@ -83,7 +83,7 @@ def fit_lattice(
     stored = store(problem, grown.multipliers, grown.distance, watch)
     status = np.full(problem.lattice.size, Status.REGULAR, dtype=np.uint8)
     status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
-    status[grown.round == NEVER] = Status.IMPROVED
+    status[grown.round == NOT_FITTED] = Status.IMPROVED
     beyond = problem.beyond.points
     status[beyond] = Status.UNREALISABLE
     status[stored.distance > problem.threshold] = Status.UNFITTED

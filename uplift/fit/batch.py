@@ -14,7 +14,7 @@ from uplift.common.arrays import Indices
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
 
-HOST, ACCELERATOR = (2048, 64), (1 << 17, 4096)
+CPU_BATCH_ROWS, ACCELERATOR_BATCH_ROWS = (2048, 64), (1 << 17, 4096)
 """Rows of a batch on each device: what the cache of a core holds or keeps a GPU busy, and a size for small rounds."""
 
 
@@ -24,7 +24,10 @@ def batches(rows: Indices, smaller: int = 4) -> Iterator[tuple[Indices, Indices]
     Parts are of the larger size as long as they fill it; the rest is too, or up to so many of the ``smaller`` size.
     """
     devices = len(jax.devices())
-    large, small = (devices * size for size in (HOST if jax.default_backend() == "cpu" else ACCELERATOR))
+    large, small = (
+        devices * size
+        for size in (CPU_BATCH_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_BATCH_ROWS)
+    )
     whole = len(rows) // large * large
     size = large if len(rows) - whole > smaller * small else small
     for first, last, width in ((0, whole, large), (whole, len(rows), size)):
@@ -33,12 +36,12 @@ def batches(rows: Indices, smaller: int = 4) -> Iterator[tuple[Indices, Indices]
             yield part, np.concatenate([part, np.full(width - len(part), part[-1])])
 
 
-def put(array: Array) -> Any:
+def shard(array: Array) -> Any:
     """An array whose rows are a batch, shared out over the devices."""
     return _place(array, "rows") if len(jax.devices()) > 1 else array
 
 
-def put_all(constants: Any) -> Any:
+def replicate(constants: Any) -> Any:
     """Constants of a computation, on every device."""
     return _place(constants)
 

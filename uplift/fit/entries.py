@@ -7,19 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.fit.objective import BALANCED, Weights, objective
 from uplift.fit.solve import solve
 from uplift.models import Model
-from uplift.models.minimum_norm import Forward
+from uplift.models.minimum_norm import ForwardMap
 
 PASSES = 32
 
 
 @dataclass(frozen=True, eq=False)
-class Entries:
+class FittedEntries:
     """Atlas entries as spectra of the model.
 
     Parameters
@@ -37,14 +37,14 @@ class Entries:
 
 def fit_entries(
     model: Model,
-    forward: Forward,
+    forward: ForwardMap,
     measured: Array,
     rgb: Array,
     lights: Sequence[Light],
     reference: Light,
     tolerance: float,
     weights: Weights = BALANCED,
-) -> Entries:
+) -> FittedEntries:
     """Fit measured reflectances (E, N) on the sensor's wavelengths.
 
     ``rgb`` (E, 3) is met to ``tolerance``; the spectrum and its colours under ``lights`` as well as they can be.
@@ -62,4 +62,4 @@ def fit_entries(
         start[row] = found.x
     multipliers = solve(model, forward, start, rgb, tolerance=tolerance, passes=PASSES).multipliers
     spectra = np.asarray(model.squash(multipliers @ forward.basis.T))
-    return Entries(rgb, measured, multipliers, spectra_apart(reference, spectra, measured))
+    return FittedEntries(rgb, measured, multipliers, delta_e_spectra(reference, spectra, measured))

@@ -18,7 +18,7 @@ from uplift.fit.progress import Round, Watch
 from uplift.lattice import Lattice
 
 PASSES = 24
-NEVER = -1
+NOT_FITTED = -1
 """The round of a point that no round has fitted."""
 BLOCK = 1 << 15
 """Points worked on at a time."""
@@ -49,7 +49,7 @@ def grow(problem: Problem, start: Start, watch: Watch) -> Growth:
     growth = Growth(
         np.zeros((lattice.size, problem.model.count)),
         np.full(lattice.size, np.inf),
-        np.full(lattice.size, NEVER, dtype=np.int16),
+        np.full(lattice.size, NOT_FITTED, dtype=np.int16),
     )
     fitted = 0
     for first in range(0, len(wanted), BLOCK):
@@ -58,7 +58,7 @@ def grow(problem: Problem, start: Start, watch: Watch) -> Growth:
         watch(Round(0, len(points), fitted, len(wanted)))
     number, fresh = 1, np.flatnonzero(growth.round == 0)
     while fresh.size:
-        waiting = wanted[growth.round[wanted] == NEVER]
+        waiting = wanted[growth.round[wanted] == NOT_FITTED]
         points, means = _frontier(lattice, waiting, fresh, growth)
         if not points.size:
             break
@@ -82,7 +82,7 @@ def _try(problem: Problem, growth: Growth, points: Indices, start: Array, number
 
 def _frontier(lattice: Lattice, waiting: Indices, fresh: Indices, growth: Growth) -> tuple[Indices, Array]:
     """The waiting neighbours of freshly fitted points, and the mean of their own fitted neighbours."""
-    multipliers, fitted, new = growth.multipliers, growth.round != NEVER, _mask(lattice, fresh)
+    multipliers, fitted, new = growth.multipliers, growth.round != NOT_FITTED, _mask(lattice, fresh)
     points = [waiting[:0]]
     means = [np.zeros((0, multipliers.shape[1]))]
     for first in range(0, len(waiting), BLOCK):

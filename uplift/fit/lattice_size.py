@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
-from uplift.fit.entries import Entries
+from uplift.fit.entries import FittedEntries
 from uplift.fit.problem import Problem
 from uplift.fit.seed import seed
 from uplift.lattice import Lattice
@@ -21,7 +21,9 @@ DIMS = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128)
 PASSES = 32
 
 
-def lattice_error(problem: Problem, wavelengths: Array, lights: Sequence[Light], entries: Entries) -> Array:
+def lattice_error(
+    problem: Problem, wavelengths: Array, lights: Sequence[Light], entries: FittedEntries
+) -> Array:
     """ΔE00 (E,), the largest under ``lights``, between each entry's spectrum and the lattice's at its colour.
 
     Solves the corners of the entries' voxels alone, as a whole fit would.
@@ -35,14 +37,14 @@ def lattice_error(problem: Problem, wavelengths: Array, lights: Sequence[Light],
     place = order[np.searchsorted(seeds.points, corners, sorter=order)]
     answered = sum(weights[:, corner, None] * spectra[place[:, corner]] for corner in range(8))
     own = evaluate(problem.model, entries.multipliers, wavelengths)
-    return np.max([spectra_apart(light, answered, own) for light in lights], axis=0)
+    return np.max([delta_e_spectra(light, answered, own) for light in lights], axis=0)
 
 
-def roomiest(
+def choose_lattice(
     problem: Problem,
     wavelengths: Array,
     lights: Sequence[Light],
-    entries: Entries,
+    entries: FittedEntries,
     nodes: Callable[[str, int], Array],
     spacings: Iterable[str],
     within: float,

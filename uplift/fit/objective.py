@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import lab, lab_slope
+from uplift.colorimetry.delta_e import lab, lab_jacobian
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.models import Model
@@ -61,7 +61,7 @@ class Objective:
         """(R + 3 L + C, C) derivative of the residuals, whatever was measured."""
         x = self.basis @ multipliers
         change = self.model.slope(x)[:, None] * self.basis
-        opponents = lab_slope(self.lights @ self.model.squash(x), self.whites)
+        opponents = lab_jacobian(self.lights @ self.model.squash(x), self.whites)
         colours = (opponents @ (self.lights @ change)).reshape(-1, len(multipliers))
         return np.concatenate(
             [self.rows @ change, self.weight * colours, FLATNESS * np.eye(len(multipliers))]

@@ -7,10 +7,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.delta_e import rgb_lab, spectra_apart
+from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
-from uplift.fit.entries import Entries
+from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import Kriging, Uncertainty, krige, uncertainty
 from uplift.fit.problem import Problem
 from uplift.fit.smooth import TABLE, Smooth, smooth
@@ -38,14 +38,14 @@ class Prior:
     def __call__(self, rgb: Array) -> Array:
         """Multipliers (n, C) to start from at linear RGB (n, 3); at an entry's colour, the entry's own."""
         start = self.smooth(rgb)
-        return start if self.kriging is None else start + self.kriging(rgb_lab(self.sensor, rgb))
+        return start if self.kriging is None else start + self.kriging(rgb_to_lab(self.sensor, rgb))
 
     def standard_error(self, rgb: Array) -> Array | None:
         """ΔE00 (n,) by which answers at linear RGB (n, 3) miss measurements, as a root mean square.
 
         None where there are too few entries to learn it from.
         """
-        return None if self.uncertainty is None else self.uncertainty(rgb_lab(self.sensor, rgb))
+        return None if self.uncertainty is None else self.uncertainty(rgb_to_lab(self.sensor, rgb))
 
     def standard_errors(self, problem: Problem) -> NDArray[np.float32] | None:
         """`standard_error` (n,) of the points of a problem, block by block; 0 of points not wanted."""
@@ -59,18 +59,18 @@ class Prior:
         return errors
 
 
-def learn(problem: Problem, sensor: Sensor, entries: Entries, light: Light) -> Prior:
+def fit_prior(problem: Problem, sensor: Sensor, entries: FittedEntries, light: Light) -> Prior:
     """Learn from the atlas; errors are ΔE00 under ``light``. Sums round alike in whatever order the entries come."""
     plain = smooth(problem.model, problem.forward, beyond=unrealisable(TABLE, sensor, MARGIN))
     if not len(entries.rgb):
         return Prior(sensor, plain)
     order = np.lexsort(entries.rgb.T)
-    entries = Entries(*(getattr(entries, key.name)[order] for key in fields(Entries)))
-    places = rgb_lab(sensor, entries.rgb)
+    entries = FittedEntries(*(getattr(entries, key.name)[order] for key in fields(FittedEntries)))
+    places = rgb_to_lab(sensor, entries.rgb)
     kriging, without = krige(places, entries.multipliers - plain(entries.rgb))
     if len(entries.rgb) < FEWEST:
         return Prior(sensor, plain, kriging)
     left_out = problem.solve(entries.rgb, plain(entries.rgb) + without, PASSES).multipliers
     spectra = evaluate(problem.model, left_out, sensor.wavelengths)
-    missed = spectra_apart(light, spectra, entries.measured)
+    missed = delta_e_spectra(light, spectra, entries.measured)
     return Prior(sensor, plain, kriging, uncertainty(places, missed, entries.error))

@@ -12,7 +12,7 @@ from uplift.fit.solve import Solution, solve
 from uplift.fit.unrealisable import NONE, Unrealisable
 from uplift.lattice import Lattice
 from uplift.models import Model
-from uplift.models.minimum_norm import Forward
+from uplift.models.minimum_norm import ForwardMap
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,7 @@ class Problem:
     """
 
     model: Model
-    forward: Forward
+    forward: ForwardMap
     lattice: Lattice
     threshold: float = 1e-4
     beyond: Unrealisable = NONE

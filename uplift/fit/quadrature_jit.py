@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.fit.batch import batches, put, put_all
+from uplift.fit.batch import batches, replicate, shard
 from uplift.models.arctan import arctan
 from uplift.models.duality import quadrature
 
@@ -15,15 +15,15 @@ MOST_NODES = 256
 """Rules of more nodes, which few spectra need, are not worth compiling."""
 
 
-def compiled(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
+def quadrature_jit(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     """`uplift.models.duality.quadrature`, several times quicker."""
     if len(analysis) > MOST_NODES + 1:
         return quadrature(multipliers, synthesis, analysis)
     moments = np.empty((len(multipliers), analysis.shape[1]))
     with jax.enable_x64(True):
-        rule = put_all((synthesis, analysis))
+        rule = replicate((synthesis, analysis))
         for rows, padded in batches(np.arange(len(multipliers))):
-            moments[rows] = np.asarray(_weighted(put(multipliers[padded]), *rule))[: len(rows)]
+            moments[rows] = np.asarray(_weighted(shard(multipliers[padded]), *rule))[: len(rows)]
     return moments
 
 

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.fit.quadrature_jit import compiled
+from uplift.fit.quadrature_jit import quadrature_jit
 from uplift.fit.solve import solve
 from uplift.fit.unrealisable import NONE, Unrealisable
-from uplift.lattice import Lattice, mix
+from uplift.lattice import Lattice, weighted_sum
 from uplift.models import Model
-from uplift.models.minimum_norm import Forward
+from uplift.models.minimum_norm import ForwardMap
 
 BRIGHTENING = 0.5
 """Power of max(x) that a colour is divided by: 0 leaves it as it is, 1 makes it as bright as can be."""
@@ -45,13 +45,13 @@ class Smooth:
         if self.coefficients is None:
             return _grey(self.model, rgb, self.grey)
         factor = np.maximum(rgb.max(axis=1), DARKEST)[:, None] ** self.brightening
-        bright = mix(self.coefficients, *self.table.corners(np.minimum(rgb / factor, 1)))
+        bright = weighted_sum(self.coefficients, *self.table.corners(np.minimum(rgb / factor, 1)))
         return self.model.from_storage(factor * bright)
 
 
 def smooth(
     model: Model,
-    forward: Forward,
+    forward: ForwardMap,
     brightening: float = BRIGHTENING,
     grey: float = GREY,
     beyond: Unrealisable = NONE,
@@ -65,7 +65,7 @@ def smooth(
     goal = TABLE.points.copy()
     goal[beyond.points] = beyond.nearest
     found = solve(model, forward, _grey(model, goal, grey), goal, tolerance=1e-5, passes=8)
-    return Smooth(model, TABLE, model.to_storage(found.multipliers, compiled), brightening, grey)
+    return Smooth(model, TABLE, model.to_storage(found.multipliers, quadrature_jit), brightening, grey)
 
 
 def _grey(model: Model, rgb: Array, power: float) -> Array:

@@ -13,10 +13,10 @@ import jax.numpy as jnp
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.fit.batch import batches, put, put_all
+from uplift.fit.batch import batches, replicate, shard
 from uplift.models import Model
-from uplift.models.minimum_norm import Forward, residual, step
-from uplift.models.roots import STEEPEST
+from uplift.models.minimum_norm import ForwardMap, minimum_norm_step, residual
+from uplift.models.roots import MAX_MULTIPLIER
 
 STEPS, MORE_STEPS = 2, 8
 """Damped steps a pass: of many points most have arrived after two; of few it costs more to ask than to go on."""
@@ -46,7 +46,7 @@ class Solution(NamedTuple):
 
 
 def solve(
-    model: Model, forward: Forward, start: Array, target: Array, *, tolerance: float, passes: int
+    model: Model, forward: ForwardMap, start: Array, target: Array, *, tolerance: float, passes: int
 ) -> Solution:
     """Move multipliers ``start`` (n, C) to linear RGB ``target`` (n, 3), to ``tolerance`` where it can be had.
 
@@ -58,12 +58,12 @@ def solve(
     stale = np.zeros(len(start), dtype=np.int64)
     left = np.arange(len(start))
     with jax.enable_x64(True):
-        constants = put_all(forward)
+        constants = replicate(forward)
         for _ in range(passes):
             before = distance[left]
             steps = MORE_STEPS if len(left) <= FEW else STEPS
             for rows, padded in batches(left, SMALLER):
-                batch = (put(array[padded]) for array in (multipliers, damping, target))
+                batch = (shard(array[padded]) for array in (multipliers, damping, target))
                 found = _advance(model, constants, *batch, tolerance, steps)
                 for whole, part in zip((multipliers, damping, distance), found, strict=True):
                     whole[rows] = np.asarray(part)[: len(rows)]
@@ -77,7 +77,7 @@ def solve(
 @partial(jax.jit, static_argnums=0)
 def _advance(
     model: Model,
-    forward: Forward,
+    forward: ForwardMap,
     multipliers: jax.Array,
     damping: jax.Array,
     target: jax.Array,
@@ -88,9 +88,11 @@ def _advance(
 
     def damped_step(state: State) -> State:
         count, here, damping, off = state
-        there = here + step(model, forward, here, off, damping)
+        there = here + minimum_norm_step(model, forward, here, off, damping)
         off_there = residual(model, forward, there, target)
-        better = ((off_there**2).sum(axis=1) < (off**2).sum(axis=1)) & (abs(there).max(axis=1) <= STEEPEST)
+        better = ((off_there**2).sum(axis=1) < (off**2).sum(axis=1)) & (
+            abs(there).max(axis=1) <= MAX_MULTIPLIER
+        )
         active = abs(off).max(axis=1) > tolerance
         move = (better & active)[:, None]
         damping = jnp.where(better, damping / 4, damping * 4)

@@ -12,36 +12,36 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from uplift.colorimetry.gamut import check_way
+from uplift.colorimetry.gamut import check_method
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.cube import CubeData
 from uplift.io.texture.colours import check_encoding, decoder
-from uplift.io.texture.part_layout import coloured
-from uplift.io.texture.source import opened
+from uplift.io.texture.part_layout import colour_channels_by_part
+from uplift.io.texture.source import open_image
 from uplift.lattice import CORNERS, Lattice
-from uplift.lattice.entry_boxes import MARGIN, Pins
+from uplift.lattice.entry_boxes import MARGIN, EntryBoxes
 
 BLOCK = 1 << 16
 """Pixels looked at at a time."""
 
 
 @dataclass(frozen=True)
-class Reading:
+class ReadProgress:
     """Images of a scene read so far, and in all."""
 
     read: int
     total: int
 
 
-Watch = Callable[[Reading], None]
+Watch = Callable[[ReadProgress], None]
 
 
 class Scene(Protocol):
     """What `uplift.build` asks of a scene."""
 
-    def points(self, pins: Pins, sensor: Sensor, watch: Watch) -> Mask:
+    def points(self, pins: EntryBoxes, sensor: Sensor, watch: Watch) -> Mask:
         """Which points (dim³,) of the lattice, with entries as pins, its colours need."""
         ...
 
@@ -58,21 +58,21 @@ class Images:
     encoding: str = "auto"
     out_of_gamut: str = "clip"
 
-    def points(self, pins: Pins, sensor: Sensor, watch: Watch) -> Mask:
+    def points(self, pins: EntryBoxes, sensor: Sensor, watch: Watch) -> Mask:
         """Raises `OptionError`, `TextureError`, and `ColourError` for colours outside [0, 1] that are an error.
 
         An `UpliftWarning` names images that say they are of another space.
         """
         check_encoding(self.encoding)
-        check_way(self.out_of_gamut)
+        check_method(self.out_of_gamut)
         cells = np.zeros(pins.lattice.size, dtype=bool)
         for done, path in enumerate(self.paths):
-            watch(Reading(done, len(self.paths)))
+            watch(ReadProgress(done, len(self.paths)))
             for rgb in self.colours(path, sensor):
-                cells[touched(pins.lattice, rgb)] = True
+                cells[cells_touched(pins.lattice, rgb)] = True
         if not cells.any():
             raise OptionError(
-                "a scene without images has no colours", remedy="name one, or build without a scene"
+                "a scene without images has no colours", hint="name one, or build without a scene"
             )
         return pins.needs(cells)
 
@@ -82,10 +82,10 @@ class Images:
 
     def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
         """Linear RGB (n, 3) in [0, 1] of an image, block by block."""
-        with opened(path) as image:
+        with open_image(path) as image:
             for remark in image.remarks(sensor):
                 warnings.warn(f"{path}: {remark}", UpliftWarning, stacklevel=5)
-            for part, places in coloured(image):
+            for part, places in colour_channels_by_part(image):
                 if places is None:
                     continue
                 decode = decoder(sensor, part, self.encoding, self.out_of_gamut)
@@ -96,12 +96,12 @@ class Images:
 
 
 @dataclass(frozen=True, eq=False)
-class Stored:
+class StoredScene:
     """The very points of a cube that was built for a scene: no image is needed to make it again."""
 
     data: CubeData
 
-    def points(self, pins: Pins, sensor: Sensor, watch: Watch) -> Mask:
+    def points(self, pins: EntryBoxes, sensor: Sensor, watch: Watch) -> Mask:
         """Raises `OptionError`."""
         if self.data.lattice.dim != pins.lattice.dim:
             raise OptionError(f"the scene's points are those of dim {self.data.lattice.dim}")
@@ -111,17 +111,17 @@ class Stored:
         return list(self.data.provenance["scene"])
 
 
-Given = Scene | str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
+SceneLike = Scene | str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 
 
-def scene_of(given: Given) -> Scene:
+def as_scene(given: SceneLike) -> Scene:
     """Images by their paths, or a scene as it is."""
     if isinstance(given, str | os.PathLike):
         return Images((Path(given),))
     return Images(tuple(map(Path, given))) if isinstance(given, Sequence) else given
 
 
-def touched(lattice: Lattice, rgb: Array) -> Array:
+def cells_touched(lattice: Lattice, rgb: Array) -> Array:
     """Numbers of the cells that linear RGB (n, 3) lie in, or on the face of: rounding decides which."""
     low, high = lattice.lowest(rgb - MARGIN), lattice.lowest(rgb + MARGIN)
     between = (low != high).any(axis=1)

@@ -50,7 +50,7 @@ def timed(function: Callable[[], object], runs: int) -> tuple[Spread, Spread]:
     return spread(wall), spread(cpu)
 
 
-def circumstances() -> dict[str, str]:
+def environment() -> dict[str, str]:
     """Machine, versions and commit."""
     cpu = next(
         (line.split(":")[1].strip() for line in _lines("/proc/cpuinfo") if line.startswith("model name")),

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from uplift.lattice.lattice import CORNERS, Lattice, Status, mix
+from uplift.lattice.lattice import CORNERS, Lattice, Status, weighted_sum
 
-__all__ = ["CORNERS", "Lattice", "Status", "mix"]
+__all__ = ["CORNERS", "Lattice", "Status", "weighted_sum"]

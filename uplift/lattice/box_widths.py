@@ -13,7 +13,7 @@ SAME = 1e-6
 """Steps at which two entries have the same colour, so that only one of them can be answered."""
 
 
-def reach(lattice: Lattice, rgb: Array) -> Array:
+def half_widths(lattice: Lattice, rgb: Array) -> Array:
     """Lattice steps (E,) to the faces of the box around each entry of linear RGB (E, 3).
 
     Half the way to the nearest other entry at the most, so that no two boxes overlap; 0 for an entry whose

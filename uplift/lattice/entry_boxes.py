@@ -25,7 +25,7 @@ MARGIN = 1e-6
 """Linear RGB by which rounding, to float32 too, may take a colour across the face of a cell."""
 
 
-class Pinned(NamedTuple):
+class BoxHits(NamedTuple):
     """Colours in boxes, k of those asked."""
 
     rows: Indices
@@ -39,7 +39,7 @@ class Pinned(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Pins:
+class EntryBoxes:
     """Entries at linear RGB (E, 3) whose boxes reach so many lattice steps (E,)."""
 
     lattice: Lattice
@@ -91,11 +91,11 @@ class Pins:
                 found[box] = True
         return self.lattice.corners_of(found.ravel())
 
-    def __call__(self, rgb: Array) -> Pinned:
+    def __call__(self, rgb: Array) -> BoxHits:
         """Those of linear RGB (n, 3) that lie in a box."""
         return self.within(rgb, self.lattice.index(self.lattice.cell(rgb)[0]))
 
-    def within(self, rgb: Array, cell: Indices) -> Pinned:
+    def within(self, rgb: Array, cell: Indices) -> BoxHits:
         """The same, for who knows the numbers (n,) of their cells."""
         rows, entry = self._boxes(rgb, cell)
         middle = self.rgb[entry]
@@ -105,7 +105,7 @@ class Pins:
         share = np.divide(np.abs(ray), room, out=np.zeros_like(ray), where=ray != 0).max(axis=1)
         away, moved = rgb[rows], share > 0
         away[moved] = np.clip(middle[moved] + ray[moved] / share[moved, None], 0, 1)
-        return Pinned(rows, entry, share, away)
+        return BoxHits(rows, entry, share, away)
 
     def _boxes(self, rgb: Array, cell: Indices) -> tuple[Indices, Indices]:
         """Which (k,) of linear RGB (n, 3) lie in a box, and the entries (k,) of those."""

@@ -41,7 +41,7 @@ class Lattice:
     def __post_init__(self) -> None:
         axis = self.nodes.ndim == 1 and len(self.nodes) >= 2 and bool(np.isfinite(self.nodes).all())
         if not axis or not (np.diff(self.nodes) > 0).all():
-            raise OptionError("a lattice needs at least 2 increasing nodes", remedy="use --dim 2 or more")
+            raise OptionError("a lattice needs at least 2 increasing nodes", hint="use --dim 2 or more")
 
     @property
     def dim(self) -> int:
@@ -130,7 +130,7 @@ class Lattice:
         return self.index(np.clip(position, 0, self.dim - 1)), inside
 
 
-def mix(values: Values, points: Indices, weights: Array) -> Values:
+def weighted_sum(values: Values, points: Indices, weights: Array) -> Values:
     """Rows (n, K) of values (m, K), weighted: points and weights (n, 8)."""
     # Indices are known to be good: "clip" spares the check, and the copy that it would need.
     corners = values.take(points, axis=0, mode="clip")

@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from uplift.lookup.cube import Cube, load
 from uplift.lookup.interpolate import MODES
-from uplift.lookup.query import Answer, answers
+from uplift.lookup.query import QueryResult, query
 
-__all__ = ["MODES", "Answer", "Cube", "answers", "load"]
+__all__ = ["MODES", "Cube", "QueryResult", "load", "query"]

@@ -15,7 +15,7 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError, OptionError
 from uplift.cube import CubeData, read, write
 from uplift.lookup.blocks import Function, blockwise
-from uplift.lookup.fill import filled, lacking
+from uplift.lookup.fill import fill_missing, missing_points
 from uplift.lookup.interpolate import MODES, coefficients, standard_error
 from uplift.lookup.node_table import TABULATED, tabulate
 from uplift.lookup.nodes import holds
@@ -73,7 +73,7 @@ class Cube:
         OptionError : an unknown mode, wavelengths that are not positive numbers, another dtype, no threads.
         """
         if mode not in MODES:
-            raise OptionError(f"unknown mode '{mode}'", remedy=f"use one of {', '.join(MODES)}")
+            raise OptionError(f"unknown mode '{mode}'", hint=f"use one of {', '.join(MODES)}")
         at, kind, count = self.wavelengths(wavelengths), float_type(dtype), thread_count(threads)
         asked = colours(rgb, self.data.sensor)
         function: Function
@@ -93,18 +93,20 @@ class Cube:
         asked = colours(rgb, self.data.sensor)
         return holds(self.data, asked.reshape(-1, 3)).reshape(asked.shape[:-1])
 
-    def filled(self, rgb: ArrayLike | None = None, other: Cube | None = None, *, threads: int = 1) -> Cube:
+    def fill_missing(
+        self, rgb: ArrayLike | None = None, other: Cube | None = None, *, threads: int = 1
+    ) -> Cube:
         """A cube of a scene with what linear RGB (…, 3), by default all colours, lack, from another cube.
 
         ``other``, by default the package's own, gives its spectra at the absent lattice points, in this cube's
         model and exact in colour. Raises `ColourError`, also where the cubes are not of the same RGB.
         """
         asked = None if rgb is None else colours(rgb, self.data.sensor).reshape(-1, 3)
-        points = lacking(self.data, asked)
+        points = missing_points(self.data, asked)
         if not points.size:
             return self
         return Cube(
-            filled(self.data, points, (load() if other is None else other).data, thread_count(threads))
+            fill_missing(self.data, points, (load() if other is None else other).data, thread_count(threads))
         )
 
     def standard_error(self, rgb: ArrayLike) -> Array | None:
@@ -128,7 +130,7 @@ class Cube:
         """
         array = floats(codes, "8-bit codes are numbers")
         if not ((array >= 0) & (array <= 255)).all():
-            raise ColourError("8-bit codes run from 0 to 255", remedy="leave out --8bit for linear floats")
+            raise ColourError("8-bit codes run from 0 to 255", hint="leave out --8bit for linear floats")
         return self.data.sensor.decode(array)
 
     def encode(self, rgb: ArrayLike) -> Array:

@@ -16,14 +16,14 @@ from uplift.lattice import Status
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined
 from uplift.lookup.nodes import cells
-from uplift.lookup.refine import towards
+from uplift.lookup.refine import refine_to_rgb
 from uplift.models import reflectance
 
 FINITE = 1e-6
 """Nearest to 0 and 1 that a reflectance is taken for where multipliers are sought."""
 
 
-def lacking(data: CubeData, rgb: Array | None = None) -> Indices:
+def missing_points(data: CubeData, rgb: Array | None = None) -> Indices:
     """Numbers of the absent points that linear RGB (n, 3) need; of all of them without."""
     absent = ~data.present
     if rgb is not None:
@@ -33,7 +33,7 @@ def lacking(data: CubeData, rgb: Array | None = None) -> Indices:
     return np.flatnonzero(absent)
 
 
-def filled(data: CubeData, points: Indices, other: CubeData, threads: int = 1) -> CubeData:
+def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int = 1) -> CubeData:
     """The cube with absent ``points`` (k,) as ``other`` answers at their colours.
 
     Nobody knows how far those are from measurements: they get the largest standard error that the cube has.
@@ -65,7 +65,7 @@ def _as_other(data: CubeData, other: CubeData, rgb: Array) -> Array:
     spectra = refined(other, rgb, data.sensor.wavelengths)
     linear = data.model.unsquash(np.clip(spectra, FINITE, 1 - FINITE))
     start = np.linalg.lstsq(data.model.basis(data.sensor.wavelengths), linear.T, rcond=None)[0].T
-    return towards(data, np.ascontiguousarray(start), rgb)
+    return refine_to_rgb(data, np.ascontiguousarray(start), rgb)
 
 
 def _require_same(mine: Sensor, its: Sensor) -> None:
@@ -73,5 +73,5 @@ def _require_same(mine: Sensor, its: Sensor) -> None:
     if names[0] != names[1]:
         raise ColourError(
             f"a cube in {names[0]} cannot be filled from one in {names[1]}",
-            remedy="build it with the image in --scene, or without --scene",
+            hint="build it with the image in --scene, or without --scene",
         )

@@ -17,9 +17,9 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
-from uplift.lattice import mix
+from uplift.lattice import weighted_sum
 from uplift.lookup.nodes import around
-from uplift.lookup.refine import towards
+from uplift.lookup.refine import refine_to_rgb
 from uplift.models import evaluate, reflectance
 
 
@@ -56,7 +56,7 @@ def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) at linear RGB (n, 3) as the weighted spectra of the corners alone, entries aside."""
     points, weights = data.lattice.corners(rgb)
     used, place = np.unique(points, return_inverse=True)
-    return mix(
+    return weighted_sum(
         reflectance(data.model, data.coefficients[used], wavelengths), place.reshape(points.shape), weights
     )
 
@@ -73,7 +73,7 @@ def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
     """Multipliers (n, C) that start at the interpolated coefficients and evaluate to ``rgb`` (n, 3)."""
-    return towards(data, data.model.from_storage(coefficients(data, rgb)), rgb)
+    return refine_to_rgb(data, data.model.from_storage(coefficients(data, rgb)), rgb)
 
 
 Mode = Callable[[CubeData, Array, Array], Array]

@@ -15,7 +15,7 @@ from uplift.models import reflectance
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class NodeTable:
     """Numbers (dim³, K) of the lattice points, NaN where absent, and (E, K) of the atlas entries; float64 or 32."""
 
     data: CubeData
@@ -23,7 +23,7 @@ class Table:
     atlas: Values
 
     @classmethod
-    def of_points(cls, data: CubeData, points: Values, atlas: Values) -> Table:
+    def of_points(cls, data: CubeData, points: Values, atlas: Values) -> NodeTable:
         """From numbers (m, K) of the points that are present."""
         if data.complete is None:
             return cls(data, points, atlas)
@@ -40,7 +40,9 @@ class Table:
         return around(self.data, rgb).nearest(self.lattice, self.atlas)
 
 
-def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1) -> Table:
+def tabulate(
+    data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1
+) -> NodeTable:
     """Reflectances of all nodes at wavelengths (N,) nm; takes dim³ × N numbers."""
 
     def spectra(coefficients: Array) -> Values:
@@ -52,8 +54,10 @@ def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, 
             threads,
         )
 
-    return Table.of_points(data, spectra(data.coefficients[data.present]), spectra(data.atlas.coefficients))
+    return NodeTable.of_points(
+        data, spectra(data.coefficients[data.present]), spectra(data.atlas.coefficients)
+    )
 
 
-TABULATED = {"spectra": Table.spectra, "nearest": Table.nearest}
+TABULATED = {"spectra": NodeTable.spectra, "nearest": NodeTable.nearest}
 """Modes that a table serves."""

@@ -13,8 +13,8 @@ import numpy as np
 from uplift.common.arrays import Array, Indices, Mask, Values
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData
-from uplift.lattice import mix
-from uplift.lattice.entry_boxes import Pinned
+from uplift.lattice import weighted_sum
+from uplift.lattice.entry_boxes import BoxHits
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,9 +35,9 @@ class Nodes:
     entry: Indices
     share: Array
 
-    def mix(self, lattice: Values, atlas: Values) -> Values:
+    def weighted_sum(self, lattice: Values, atlas: Values) -> Values:
         """(n, K) of what lattice points (dim³, K) and entries (E, K) carry, in the type that they have."""
-        found = mix(lattice, self.points, self.weights)
+        found = weighted_sum(lattice, self.points, self.weights)
         share = self.share.astype(found.dtype)[:, None]
         found[self.rows] = share * found[self.rows] + (1 - share) * atlas[self.entry]
         return found
@@ -81,11 +81,11 @@ def require(held: Mask, rgb: Array) -> None:
         values = ", ".join(f"{value:.6g}" for value in rgb[int(held.argmin())])
         raise ColourError(
             f"the cube was built for the colours of a scene, and linear RGB ({values}) is none of them",
-            remedy="build it with the image in --scene, or use --fill (in Python: cube.filled())",
+            hint="build it with the image in --scene, or use --fill (in Python: cube.fill_missing())",
         )
 
 
-def _asked(data: CubeData, rgb: Array) -> tuple[Indices, Array, Pinned]:
+def _asked(data: CubeData, rgb: Array) -> tuple[Indices, Array, BoxHits]:
     """Lowest corner (n, 3) and fraction (n, 3) of the cells that the lattice is asked in, and what lies in boxes."""
     lattice = data.lattice
     low, fraction = lattice.cell(rgb)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.cube import CubeData
@@ -21,7 +21,7 @@ HALF_A_CODE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class QueryResult:
     """One colour: linear RGB (3,), its reflectance (N,) at wavelengths (N,) nm, and its round trip.
 
     ``asked`` is what ``rgb`` was before it was moved into [0, 1], if it was (`uplift.colorimetry.gamut`);
@@ -44,13 +44,13 @@ class Answer:
     realisable: bool
 
 
-def answers(
+def query(
     cube: Cube,
     rgb: Array,
     wavelengths: ArrayLike | None = None,
     mode: str = "spectra",
     asked: Array | None = None,
-) -> Iterator[Answer]:
+) -> Iterator[QueryResult]:
     """Answers for linear RGB (n, 3), in order, as they are made. Raises as `Cube.reflectance`.
 
     ``asked`` (n, 3) is what they were before they were moved into [0, 1], if any were.
@@ -61,18 +61,18 @@ def answers(
         yield from _block(cube, rgb[block], (rgb if asked is None else asked)[block], at, mode)
 
 
-def _block(cube: Cube, rgb: Array, asked: Array, at: Array, mode: str) -> Iterator[Answer]:
+def _block(cube: Cube, rgb: Array, asked: Array, at: Array, mode: str) -> Iterator[QueryResult]:
     sensor, lattice = cube.data.sensor, cube.data.lattice
     count = len(sensor.wavelengths)
     both = cube.reflectance(rgb, np.concatenate([sensor.wavelengths, at]), mode)
     back = sensor.rgb(both[:, :count])
-    apart = colours_apart(sensor, rgb, back)
+    apart = delta_e_rgb(sensor, rgb, back)
     errors = cube.standard_error(rgb)
     cells, _ = lattice.cell(rgb)
     corners, _ = lattice.corners(rgb)
     possible = _realisable(cube.data, rgb, corners)
     for row, cell in enumerate(cells):
-        yield Answer(
+        yield QueryResult(
             rgb=rgb[row],
             asked=asked[row],
             wavelengths=at,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from uplift.colorimetry.gamut import refuse, triples
+from uplift.colorimetry.gamut import as_rgb, raise_out_of_gamut
 from uplift.colorimetry.sensor import SLACK, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError, UpliftError
@@ -17,7 +17,7 @@ TYPES = (np.dtype(np.float64), np.dtype(np.float32))
 
 def colours(rgb: ArrayLike, sensor: Sensor) -> Array:
     """Linear RGB (…, 3), clipped where rounding took it outside [0, 1]. Raises `ColourError`."""
-    return within(triples(rgb), sensor)
+    return within(as_rgb(rgb), sensor)
 
 
 def within(rgb: NDArray[Any], sensor: Sensor) -> Array:
@@ -25,7 +25,7 @@ def within(rgb: NDArray[Any], sensor: Sensor) -> Array:
     array = np.asarray(rgb, dtype=float)
     # Much quicker than asking for each; NaN fails both comparisons.
     if array.size and not (array.min() >= -SLACK and array.max() <= 1 + SLACK):
-        refuse(array[~sensor.holds(array)])
+        raise_out_of_gamut(array[~sensor.holds(array)])
     return np.clip(array, 0, 1)
 
 
@@ -49,7 +49,7 @@ def float_type(dtype: DTypeLike) -> np.dtype[Any]:
 def thread_count(threads: int) -> int:
     """A whole number from 1. Raises `OptionError` for anything else."""
     if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
-        raise OptionError(f"{threads!r} is no number of threads", remedy="use 1 or more")
+        raise OptionError(f"{threads!r} is no number of threads", hint="use 1 or more")
     return int(threads)
 
 

@@ -31,14 +31,14 @@ _ROWS = 1 << 12
 _INWARD = (1e-10, 1e-8, 1e-6, 1e-4)
 
 
-def cosines(phase: Array, count: int) -> Array:
+def cosine_basis(phase: Array, count: int) -> Array:
     """(N, C) table of 1, 2 cos φ, …, 2 cos mφ: the linear part of the spectrum."""
     table = 2 * np.cos(phase[:, None] * np.arange(count))
     table[:, 0] = 1
     return table
 
 
-def waves(phase: Array, count: int) -> Complex:
+def fourier_basis(phase: Array, count: int) -> Complex:
     """(N, C) table of 1, 2 exp(iφ), …, 2 exp(imφ): its real part with complex multipliers is the linear part."""
     table = 2 * np.exp(1j * phase[:, None] * np.arange(count))
     table[:, 0] = 1
@@ -83,7 +83,7 @@ def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
     """Multipliers (n, C) of the bounded maximum-entropy spectra with moments (n, C), real or complex alike.
 
     Complex moments are (1/2π) ∫ g(φ) exp(−ijφ) dφ, the zeroth real; g = ½ + arctan(Re Σ p_l w_l) / π with
-    w the `waves`. Real ones are those of an even g.
+    w the `fourier_basis`. Real ones are those of an even g.
 
     Moments so near the boundary of the moment space that the recursion breaks down are blended with
     those of a grey, by 1e−10 at first and 1e−4 at the most.
@@ -116,7 +116,7 @@ def _by_blocks(dual: Any, moments: RealOrComplex) -> tuple[RealOrComplex, NDArra
 
 def _trapezoid(nodes: int, count: int) -> tuple[Array, Array]:
     """Samples of the linear part (C, K + 1) and weights (K + 1, C) that take spectra there to moments."""
-    table = cosines(np.linspace(-np.pi, 0, nodes + 1), count)
+    table = cosine_basis(np.linspace(-np.pi, 0, nodes + 1), count)
     weights = np.full(nodes + 1, 1 / nodes)
     weights[[0, -1]] /= 2
     return table.T, _analysis(table, weights)
@@ -124,7 +124,7 @@ def _trapezoid(nodes: int, count: int) -> tuple[Array, Array]:
 
 def _midpoints(nodes: int, count: int) -> tuple[Array, Array]:
     """The same, (C, K) and (K, C), for the middles between the nodes."""
-    table = cosines(-np.pi * (np.arange(nodes) + 0.5) / nodes, count)
+    table = cosine_basis(-np.pi * (np.arange(nodes) + 0.5) / nodes, count)
     return table.T, _analysis(table, np.full(nodes, 1 / nodes))
 
 

@@ -14,12 +14,12 @@ ALONE = 1 << 17
 """Multiplications that OpenBLAS starts no thread for; it begins at twice as many."""
 
 
-def product(rows: Any, matrix: Any) -> Any:
+def matmul_rows(rows: Any, matrix: Any) -> Any:
     """``rows`` (n, K) @ ``matrix`` (K, N), for numpy and JAX arrays."""
     return _by_slices(rows, matrix) if rows.__array_namespace__() is np else rows @ matrix
 
 
-def across(matrix: Any, columns: Any) -> Any:
+def matmul_columns(matrix: Any, columns: Any) -> Any:
     """``matrix`` (M, K) @ ``columns`` (K, n), for numpy and JAX arrays."""
     return _by_columns(matrix, columns) if columns.__array_namespace__() is np else matrix @ columns
 

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
-from uplift.models.matmul import product
+from uplift.models.matmul import matmul_rows
 from uplift.models.model import Model
 
 
-class Forward(NamedTuple):
+class ForwardMap(NamedTuple):
     """From multipliers to RGB: arrays alone, so that JAX passes it through as it is."""
 
     basis: Any
@@ -30,35 +30,37 @@ class Forward(NamedTuple):
     """(N, 3·C) sensor × basis R, the constant part of the Jacobian by R⁻¹ p."""
 
 
-def forward(
+def forward_map(
     model: Model, wavelengths: ArrayLike, sensor: Array, inverse_metric: Array | None = None
-) -> Forward:
+) -> ForwardMap:
     """The forward model; without a metric, the model's own smoothness."""
     basis = model.basis(wavelengths)
     root = np.linalg.cholesky(np.diag(1 / model.roughness()) if inverse_metric is None else inverse_metric)
     products = sensor.T[:, :, None] * (basis @ root)[:, None, :]
-    return Forward(basis, sensor, root, products.reshape(len(basis), -1))
+    return ForwardMap(basis, sensor, root, products.reshape(len(basis), -1))
 
 
-def reached(model: Model, forward: Forward, multipliers: Any) -> Any:
+def forward_rgb(model: Model, forward_map: ForwardMap, multipliers: Any) -> Any:
     """Linear RGB (n, 3) of multipliers (n, C)."""
-    return product(model.squash(product(multipliers, forward.basis.T)), forward.sensor.T)
+    return matmul_rows(model.squash(matmul_rows(multipliers, forward_map.basis.T)), forward_map.sensor.T)
 
 
-def residual(model: Model, forward: Forward, multipliers: Any, target: Any) -> Any:
+def residual(model: Model, forward_map: ForwardMap, multipliers: Any, target: Any) -> Any:
     """Target minus RGB, (n, 3), of multipliers (n, C)."""
-    return target - reached(model, forward, multipliers)
+    return target - forward_rgb(model, forward_map, multipliers)
 
 
-def step(model: Model, forward: Forward, multipliers: Any, residual: Any, damping: Any) -> Any:
+def minimum_norm_step(
+    model: Model, forward_map: ForwardMap, multipliers: Any, residual: Any, damping: Any
+) -> Any:
     """Change of multipliers (n, C) that takes residual (n, 3) away to first order; damping (n,) is μ."""
-    slope = model.slope(product(multipliers, forward.basis.T))
-    jacobian = product(slope, forward.products).reshape(-1, 3, forward.basis.shape[1])
+    slope = model.slope(matmul_rows(multipliers, forward_map.basis.T))
+    jacobian = matmul_rows(slope, forward_map.products).reshape(-1, 3, forward_map.basis.shape[1])
     gram = jacobian @ jacobian.mT
     lower = [[gram[:, a, b] for b in range(a + 1)] for a in range(3)]
     y = solve_3x3(lower, damping * (lower[0][0] + lower[1][1] + lower[2][2]), residual.T)
     y = jacobian.__array_namespace__().stack(y, axis=-1)
-    return product((y[:, None, :] @ jacobian)[:, 0, :], forward.root.T)
+    return matmul_rows((y[:, None, :] @ jacobian)[:, 0, :], forward_map.root.T)
 
 
 def solve_3x3(matrix: Sequence[Sequence[Any]], shift: Any, right: Any) -> tuple[Any, Any, Any]:

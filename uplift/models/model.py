@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
 from uplift.models.duality import Quadrature, quadrature
-from uplift.models.matmul import product
+from uplift.models.matmul import matmul_rows
 
 
 class Model(Protocol):
@@ -75,4 +75,4 @@ def reflectance(model: Model, coefficients: ArrayLike, wavelengths: ArrayLike) -
 
 def evaluate(model: Model, multipliers: Array, wavelengths: ArrayLike) -> Array:
     """Reflectance (n, N) at wavelengths (N,) nm of multipliers (n, C)."""
-    return np.asarray(model.squash(product(multipliers, model.basis(wavelengths).T)))
+    return np.asarray(model.squash(matmul_rows(multipliers, model.basis(wavelengths).T)))

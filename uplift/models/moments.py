@@ -36,11 +36,11 @@ class Moments:
         if not FEWEST <= self.count <= MOST:
             raise OptionError(
                 f"{self.count} coefficients are out of range",
-                remedy=f"the moments model takes {FEWEST} to {MOST} (moments + 1)",
+                hint=f"the moments model takes {FEWEST} to {MOST} (moments + 1)",
             )
 
     def basis(self, wavelengths: ArrayLike) -> Array:
-        return duality.cosines(self.phase(wavelengths), self.count)
+        return duality.cosine_basis(self.phase(wavelengths), self.count)
 
     def squash(self, x: Any) -> Any:
         return 0.5 + arctan(x) / np.pi

@@ -38,7 +38,7 @@ class Phase:
 
     def __post_init__(self) -> None:
         if self.warp not in WARPS:
-            raise OptionError(f"unknown warp '{self.warp}'", remedy=f"use one of {', '.join(WARPS)}")
+            raise OptionError(f"unknown warp '{self.warp}'", hint=f"use one of {', '.join(WARPS)}")
         if not 0 < self.start < self.end < np.inf:
             raise OptionError(f"a phase cannot run from {self.start} to {self.end} nm")
 

@@ -14,7 +14,7 @@ from uplift.common.arrays import Array
 
 Complex = NDArray[np.complex128]
 
-STEEPEST = 1e9
+MAX_MULTIPLIER = 1e9
 """Multipliers beyond are held here: the spectra are the same to a billionth, and roots stay off the unit circle."""
 LEAST_LEAD = 1e-14
 """A leading coefficient this small against the largest is rounding, and is held there: its roots are far away."""
@@ -22,7 +22,9 @@ LEAST_LEAD = 1e-14
 
 def moments_by_roots(multipliers: Array) -> Array:
     """Moments (n, C) of the spectra with multipliers (n, C)."""
-    held = multipliers * (STEEPEST / np.maximum(np.abs(multipliers).max(axis=1, keepdims=True), STEEPEST))
+    held = multipliers * (
+        MAX_MULTIPLIER / np.maximum(np.abs(multipliers).max(axis=1, keepdims=True), MAX_MULTIPLIER)
+    )
     series = 2 * held.astype(complex)
     series[:, 0] = held[:, 0] - 1j
     largest = np.abs(series).max(axis=1)

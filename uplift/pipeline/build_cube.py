@@ -12,19 +12,19 @@ from typing import Any
 import numpy as np
 
 from uplift import fit
-from uplift.atlas import Spectra, on_grid, read_atlas
+from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
-from uplift.common.threads import one_blas_thread
+from uplift.common.threads import single_threaded_blas
 from uplift.cube import AtlasTable, CubeData
-from uplift.io.scene_colours import Given, Reading, Scene, scene_of
+from uplift.io.scene_colours import ReadProgress, Scene, SceneLike, as_scene
 from uplift.lattice import Lattice
-from uplift.lattice.entry_boxes import Pins
+from uplift.lattice.entry_boxes import EntryBoxes
 from uplift.lookup import Cube
 from uplift.models import Model
-from uplift.models.minimum_norm import Forward, forward
+from uplift.models.minimum_norm import ForwardMap, forward_map
 from uplift.pipeline.options import AUTO, AXES, Options, check_size
 
 NAMED = 6
@@ -33,13 +33,17 @@ NAMED = 6
 REFERENCE = "A"
 """The light that standard errors are stated under."""
 
-Watch = Callable[[fit.Round | fit.Storing | Reading], None]
-Atlas = Spectra | str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
+Watch = Callable[[fit.Round | fit.Storing | ReadProgress], None]
+AtlasLike = Atlas | str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
 
 
-@one_blas_thread()
+@single_threaded_blas()
 def build(
-    atlas: Atlas = None, *, scene: Given | None = None, watch: Watch = lambda done: None, **options: Any
+    atlas: AtlasLike = None,
+    *,
+    scene: SceneLike | None = None,
+    watch: Watch = lambda done: None,
+    **options: Any,
 ) -> Cube:
     """Build a cube, constrained by measured spectra if any are given.
 
@@ -47,7 +51,7 @@ def build(
     ----------
     atlas : spectra, or the file or files that hold them; None for a cube without constraints.
     scene : images, or a `uplift.io.scene_colours.Scene`, for whose colours alone there shall be points; None for all colours.
-    watch : called now and then with a `uplift.fit.Round`, `uplift.fit.Storing` or `uplift.io.scene_colours.Reading`.
+    watch : called now and then with a `uplift.fit.Round`, `uplift.fit.Storing` or `uplift.io.scene_colours.ReadProgress`.
     options : the fields of `Options`, by name.
 
     Raises
@@ -66,33 +70,40 @@ def build(
     lights = [observer.light(name, chosen.observer) for name in chosen.lights]
     reference = observer.light(REFERENCE, chosen.observer)
 
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     entries = fit.fit_entries(model, ahead, measured, rgb, lights, reference, chosen.threshold / 100)
     axis, dim = _room(chosen, model, ahead, sensor, lights, entries)
     check_size(replace(chosen, dim=dim))
     lattice = Lattice(observer.axis_nodes(axis, dim))
-    reach = fit.reach(lattice, rgb)
-    seen = None if scene is None else scene_of(scene)
-    wanted = None if seen is None else np.flatnonzero(seen.points(Pins(lattice, rgb, reach), sensor, watch))
+    reach = fit.half_widths(lattice, rgb)
+    seen = None if scene is None else as_scene(scene)
+    wanted = (
+        None if seen is None else np.flatnonzero(seen.points(EntryBoxes(lattice, rgb, reach), sensor, watch))
+    )
     beyond = fit.unrealisable(lattice, sensor, chosen.threshold / 2, wanted)
     problem = fit.Problem(model, ahead, lattice, chosen.threshold, beyond, wanted)
     seeds = fit.seed(lattice, rgb)
     table = AtlasTable(names, rgb, model.to_storage(entries.multipliers), reach, entries.error)
     _warn_of_crowding(seeds, table)
-    prior = fit.learn(problem, sensor, entries, reference)
+    prior = fit.fit_prior(problem, sensor, entries, reference)
     fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, watch)
     provenance = _provenance(replace(chosen, axis=axis, dim=dim), spectra, names, seen, fitted)
     return Cube(_cube_data(problem, sensor, fitted, prior, table, provenance, debug=chosen.debug))
 
 
 def _room(
-    chosen: Options, model: Model, ahead: Forward, sensor: Sensor, lights: list[Light], entries: fit.Entries
+    chosen: Options,
+    model: Model,
+    ahead: ForwardMap,
+    sensor: Sensor,
+    lights: list[Light],
+    entries: fit.FittedEntries,
 ) -> tuple[str, int]:
     """Axis and dim as asked for or, if so asked, the smallest that has room for the atlas."""
     if chosen.dim != AUTO:
         return chosen.axis, chosen.dim
     problem = fit.Problem(model, ahead, Lattice(observer.axis_nodes(chosen.axis, 2)), chosen.threshold)
-    axis, dim, lost = fit.roomiest(
+    axis, dim, lost = fit.choose_lattice(
         problem, sensor.wavelengths, lights, entries, observer.axis_nodes, AXES, chosen.within
     )
     if lost:
@@ -131,15 +142,15 @@ def _cube_data(
     )
 
 
-def _read(atlas: Atlas) -> Spectra:
-    if isinstance(atlas, Spectra):
+def _read(atlas: AtlasLike) -> Atlas:
+    if isinstance(atlas, Atlas):
         return atlas
     if atlas is None:
-        return Spectra()
+        return Atlas()
     return read_atlas(atlas) if isinstance(atlas, str | os.PathLike) else read_atlas(*atlas)
 
 
-def _in_gamut(spectra: Spectra, sensor: Sensor) -> tuple[tuple[str, ...], Array, Array]:
+def _in_gamut(spectra: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Array, Array]:
     """Names, linear RGB (E, 3) and reflectances (E, N) of the entries within the space; the rest is named."""
     measured = on_grid(spectra, sensor.wavelengths)
     rgb = sensor.rgb(measured)
@@ -177,7 +188,7 @@ def _warn(message: str) -> None:
 
 
 def _provenance(
-    options: Options, spectra: Spectra, names: tuple[str, ...], scene: Scene | None, fitted: fit.Fit
+    options: Options, spectra: Atlas, names: tuple[str, ...], scene: Scene | None, fitted: fit.Fit
 ) -> dict[str, Any]:
     """How the cube was made, in JSON values."""
     return {

@@ -54,18 +54,18 @@ PROCESS = 500_000_000
 def check_size(options: Options) -> None:
     """Raises `OptionError` for a lattice too small to be one, or too large for this machine's memory."""
     if not isinstance(options.dim, int):
-        raise OptionError(f"'{options.dim}' is no dim", remedy="use a number, or auto")
+        raise OptionError(f"'{options.dim}' is no dim", hint="use a number, or auto")
     if options.dim < 2:
-        raise OptionError(f"a lattice of dim {options.dim} has no cells", remedy="use --dim 2 or more")
+        raise OptionError(f"a lattice of dim {options.dim} has no cells", hint="use --dim 2 or more")
     if not 0 < options.threshold <= 0.1:
-        raise OptionError(f"a threshold of {options.threshold:g} makes no sense", remedy="use 1e-6 to 0.1")
+        raise OptionError(f"a threshold of {options.threshold:g} makes no sense", hint="use 1e-6 to 0.1")
     count = options.spectrum_model().count
     need, have = PROCESS + options.dim**3 * _point(count), _memory()
     if need > have:
         largest = int(max((have - PROCESS) / _point(count), 8) ** (1 / 3))
         raise OptionError(
             f"dim {options.dim} needs about {_gigabytes(need)} of memory, this machine has {_gigabytes(have)}",
-            remedy=f"use --dim {largest} or less",
+            hint=f"use --dim {largest} or less",
         )
 
 

@@ -6,14 +6,14 @@ import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from uplift.atlas import Spectra, read_atlas
+from uplift.atlas import Atlas, read_atlas
 from uplift.atlas.document import read_document
 from uplift.common.arrays import StrPath
 from uplift.common.errors import CubeFileError, UpliftWarning
 from uplift.cube import CubeData
 
 
-def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = ()) -> Spectra | None:
+def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = ()) -> Atlas | None:
     """The atlas that the cube read from ``path`` was built from; None where it was built without.
 
     Its files are looked for by name and digest in ``folders``, beside the cube, in the working folder, and
@@ -26,13 +26,13 @@ def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = (
     try:
         sources = [(str(source["name"]), str(source["digest"])) for source in data.provenance["atlases"]]
     except (KeyError, TypeError) as error:
-        raise untold(path) from error
+        raise missing_provenance(path) from error
     return _read_all(path, sources, _places(path, folders))
 
 
-def untold(path: StrPath) -> CubeFileError:
+def missing_provenance(path: StrPath) -> CubeFileError:
     """The error for a cube that did not record its making."""
-    return CubeFileError("does not say how it was made", path=path, remedy="build it anew")
+    return CubeFileError("does not say how it was made", path=path, hint="build it anew")
 
 
 def _places(path: StrPath, folders: Iterable[StrPath]) -> list[Path]:
@@ -40,7 +40,7 @@ def _places(path: StrPath, folders: Iterable[StrPath]) -> list[Path]:
     return [place for root in roots for place in (root, root / "atlases", root.parent / "atlases")]
 
 
-def _read_all(path: StrPath, sources: Sequence[tuple[str, str]], places: Sequence[Path]) -> Spectra | None:
+def _read_all(path: StrPath, sources: Sequence[tuple[str, str]], places: Sequence[Path]) -> Atlas | None:
     if not sources:
         return None
     with warnings.catch_warnings():
@@ -56,4 +56,4 @@ def _find(path: StrPath, name: str, digest: str, places: Sequence[Path]) -> Path
     problem = f"its atlas '{name}' " + (
         f"has changed ({candidates[0]})" if candidates else "is not to be found"
     )
-    raise CubeFileError(problem, path=path, remedy="name the folder with --atlas-dir, or build the cube anew")
+    raise CubeFileError(problem, path=path, hint="name the folder with --atlas-dir, or build the cube anew")

@@ -7,11 +7,11 @@ from collections.abc import Iterable
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import CubeFileError, OptionError, UnknownNameError, UpliftWarning
-from uplift.io.scene_colours import Stored
+from uplift.io.scene_colours import StoredScene
 from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.pipeline.build_cube import Watch
-from uplift.pipeline.provenance import recorded_atlas, untold
+from uplift.pipeline.provenance import missing_provenance, recorded_atlas
 
 
 def rebuild(
@@ -29,15 +29,15 @@ def rebuild(
         options = dict(stored.data.provenance["options"])
         options["lights"] = tuple(options["lights"])
     except (KeyError, TypeError, ValueError) as error:
-        raise untold(path) from error
+        raise missing_provenance(path) from error
     if "filled" in stored.data.provenance:
-        raise CubeFileError("is filled from another cube", path=path, remedy="check it as it was before")
+        raise CubeFileError("is filled from another cube", path=path, hint="check it as it was before")
     atlas = recorded_atlas(stored.data, path, folders)
-    scene = Stored(stored.data) if "scene" in stored.data.provenance else None
+    scene = StoredScene(stored.data) if "scene" in stored.data.provenance else None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)  # the first build has said it all
         try:
             return build(atlas, scene=scene, watch=watch, **options)
         except (TypeError, OptionError, UnknownNameError) as error:
             problem = f"was made with options unknown here ({error})"
-            raise CubeFileError(problem, path=path, remedy="build it anew") from error
+            raise CubeFileError(problem, path=path, hint="build it anew") from error

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Spectra
-from uplift.colorimetry.display_sensors import LIGHTS, viewings
+from uplift.atlas import Atlas
+from uplift.colorimetry.display_sensors import LIGHTS, display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
@@ -17,7 +17,14 @@ from uplift.lookup import Cube
 from uplift.report.calibration import Calibration, calibration
 from uplift.report.crowding import Crowding, crowding
 from uplift.report.failures import Failures, failures
-from uplift.report.fidelity import Entries, Question, about_other, about_own, about_stored, entries
+from uplift.report.fidelity import (
+    EntryErrors,
+    EntryQuery,
+    entries,
+    from_other_atlas,
+    from_own_atlas,
+    from_stored_entries,
+)
 from uplift.report.round_trip import round_trips
 from uplift.report.smoothness import smoothness
 from uplift.report.summary import summary
@@ -64,7 +71,7 @@ class Assessment:
     lights: tuple[Sensor, ...]
     sources: tuple[str, ...]
     own: bool
-    entries: Entries | None
+    entries: EntryErrors | None
     delta_e: dict[str, Histogram]
     outside: tuple[str, ...]
     absent: tuple[str, ...]
@@ -73,7 +80,7 @@ class Assessment:
 
 
 def assess(
-    cube: Cube, name: str, size: int, spectra: Spectra | None, lights: Sequence[str] = LIGHTS
+    cube: Cube, name: str, size: int, spectra: Atlas | None, lights: Sequence[str] = LIGHTS
 ) -> Assessment:
     """Judge a cube by its own lattice, and by measured spectra if there are any.
 
@@ -81,7 +88,7 @@ def assess(
     has not seen. Raises `UnknownNameError` for a light that the tables do not hold.
     """
     data = cube.data
-    seen = viewings(lights, data.sensor.observer)
+    seen = display_sensors(lights, data.sensor.observer)
     own = spectra is not None and _built_from(data, spectra)
     question = _question(cube, spectra, own)
     found = None if question is None or not question.names else entries(cube, question, seen)
@@ -110,27 +117,27 @@ def assess(
     )
 
 
-def _built_from(data: CubeData, spectra: Spectra) -> bool:
+def _built_from(data: CubeData, spectra: Atlas) -> bool:
     """Whether the cube says that it was built from these very files."""
     recorded = {str(source.get("digest")) for source in data.provenance.get("atlases", ())}
     given = {source.digest for source in spectra.sources}
     return bool(given) and given <= recorded
 
 
-def _question(cube: Cube, spectra: Spectra | None, own: bool) -> Question | None:
+def _question(cube: Cube, spectra: Atlas | None, own: bool) -> EntryQuery | None:
     if spectra is None or not spectra.entries:
         return None
-    return (about_own(cube.data, spectra) if own else about_other(cube.data, spectra)).to(cube)
+    return (from_own_atlas(cube.data, spectra) if own else from_other_atlas(cube.data, spectra)).to(cube)
 
 
-def _crowding(cube: Cube, measured: Entries | None, lights: tuple[Sensor, ...]) -> Crowding | None:
-    stored = about_stored(cube.data).to(cube)
+def _crowding(cube: Cube, measured: EntryErrors | None, lights: tuple[Sensor, ...]) -> Crowding | None:
+    stored = from_stored_entries(cube.data).to(cube)
     if not stored.names:
         return None
     return crowding(cube.data, entries(cube, stored, lights) if measured is None else measured)
 
 
-def _by_light(found: Entries, lights: tuple[Sensor, ...]) -> dict[str, Array]:
+def _by_light(found: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Array]:
     return {seen.illuminant: found.delta_e[:, column] for column, seen in enumerate(lights)}
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
-from uplift.report.fidelity import Entries
+from uplift.report.fidelity import EntryErrors
 
 CLOSE = 1 + 1e-9
 """Lattice steps within which another entry crowds; two in a voxel are never farther apart."""
@@ -25,13 +25,13 @@ class Crowding:
     lost : entries that no colour is answered with, and for each the entry of the same colour that is.
     """
 
-    entries: Entries
+    entries: EntryErrors
     nearest: tuple[str, ...]
     apart: Array
     lost: tuple[tuple[str, str], ...]
 
 
-def crowding(data: CubeData, entries: Entries) -> Crowding:
+def crowding(data: CubeData, entries: EntryErrors) -> Crowding:
     """Who stands within a lattice step of whom; ``entries`` are some or all of the cube's own."""
     assert entries.worst_lattice is not None
     names = data.atlas.names

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas import Spectra, resample
-from uplift.colorimetry.delta_e import spectra_apart
+from uplift.atlas import Atlas, resample
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices
@@ -20,7 +20,7 @@ from uplift.models import reflectance
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
+class EntryQuery:
     """Colours to ask a cube for, and the spectra that would be the best answers.
 
     Parameters
@@ -40,18 +40,18 @@ class Question:
     outside: tuple[str, ...] = ()
     absent: tuple[str, ...] = ()
 
-    def to(self, cube: Cube) -> Question:
+    def to(self, cube: Cube) -> EntryQuery:
         """The part of it that a cube can answer: all, but for sparse cubes."""
         held = cube.holds(self.rgb)
         names = [
             tuple(name for name, kept in zip(self.names, held, strict=True) if kept == w) for w in (1, 0)
         ]
         rows = None if self.rows is None else self.rows[held]
-        return Question(names[0], self.rgb[held], self.wanted[held], rows, self.outside, names[1])
+        return EntryQuery(names[0], self.rgb[held], self.wanted[held], rows, self.outside, names[1])
 
 
 @dataclass(frozen=True, eq=False)
-class Entries:
+class EntryErrors:
     """E entries asked at their own RGB, worst first: by the largest ΔE00 under any of L lights.
 
     Parameters
@@ -97,7 +97,7 @@ class Entries:
         """(E,) the same of the lattice by itself."""
         return None if self.delta_e_lattice is None else self.delta_e_lattice.max(axis=1)
 
-    def take(self, rows: ArrayLike) -> Entries:
+    def take(self, rows: ArrayLike) -> EntryErrors:
         """The entries of rows (k,), in that order."""
         order = np.asarray(rows, dtype=np.int64)
         changed: dict[str, Any] = {
@@ -108,19 +108,19 @@ class Entries:
         return replace(self, names=tuple(self.names[row] for row in order), **changed)
 
 
-def about_own(data: CubeData, spectra: Spectra) -> Question:
+def from_own_atlas(data: CubeData, spectra: Atlas) -> EntryQuery:
     """The entries that the cube is constrained by, with their measured spectra."""
     measured = resample(spectra, data.sensor.wavelengths).values
     place = {name: row for row, name in enumerate(data.atlas.names)}
     kept = [row for row, name in enumerate(spectra.names) if name in place]
     rows = np.array([place[spectra.names[row]] for row in kept], dtype=np.int64)
     outside = tuple(name for name in spectra.names if name not in place)
-    return Question(
+    return EntryQuery(
         tuple(spectra.names[row] for row in kept), data.atlas.rgb[rows], measured[kept], rows, outside
     )
 
 
-def about_other(data: CubeData, spectra: Spectra) -> Question:
+def from_other_atlas(data: CubeData, spectra: Atlas) -> EntryQuery:
     """Entries that the cube was not built from, those that its space holds."""
     measured = resample(spectra, data.sensor.wavelengths).values
     rgb = data.sensor.rgb(measured)
@@ -129,28 +129,28 @@ def about_other(data: CubeData, spectra: Spectra) -> Question:
         tuple(name for name, held in zip(spectra.names, inside, strict=True) if held == wanted)
         for wanted in (True, False)
     ]
-    return Question(names[0], np.clip(rgb[inside], 0, 1), measured[inside], None, names[1])
+    return EntryQuery(names[0], np.clip(rgb[inside], 0, 1), measured[inside], None, names[1])
 
 
-def about_stored(data: CubeData) -> Question:
+def from_stored_entries(data: CubeData) -> EntryQuery:
     """The cube's own entries where nobody has the measurements: their stored spectra stand in."""
     atlas = data.atlas
     spectra = reflectance(data.model, atlas.coefficients, data.sensor.wavelengths)
-    return Question(atlas.names, atlas.rgb, spectra, np.arange(len(atlas.names)))
+    return EntryQuery(atlas.names, atlas.rgb, spectra, np.arange(len(atlas.names)))
 
 
-def entries(cube: Cube, question: Question, lights: tuple[Sensor, ...]) -> Entries:
+def entries(cube: Cube, question: EntryQuery, lights: tuple[Sensor, ...]) -> EntryErrors:
     """The errors of a cube, asked in its default mode. ``question`` has one entry at least."""
     data, wanted = cube.data, question.wanted
     answered = cube.reflectance(question.rgb)
-    found = Entries(
+    found = EntryErrors(
         names=question.names,
         rgb=question.rgb,
         wanted=wanted,
         answered=answered,
         delta_e=_under(lights, answered, wanted),
         rms=_rms(answered, wanted),
-        real=spectra_apart(light(data.reference, data.sensor.observer), answered, wanted),
+        real=delta_e_spectra(light(data.reference, data.sensor.observer), answered, wanted),
         stated=cube.standard_error(question.rgb),
         cells=data.lattice.cell(question.rgb)[0],
     )
@@ -159,7 +159,7 @@ def entries(cube: Cube, question: Question, lights: tuple[Sensor, ...]) -> Entri
     return found.take(np.lexsort((-found.rms, -found.worst)))
 
 
-def _own(cube: Cube, found: Entries, rows: Indices, lights: tuple[Sensor, ...]) -> Entries:
+def _own(cube: Cube, found: EntryErrors, rows: Indices, lights: tuple[Sensor, ...]) -> EntryErrors:
     """What can be said of those entries alone that lie in rows (E,) of the cube's atlas table."""
     data = cube.data
     lattice = lattice_spectra(data, found.rgb, data.sensor.wavelengths)
@@ -177,7 +177,7 @@ def _own(cube: Cube, found: Entries, rows: Indices, lights: tuple[Sensor, ...]) 
 
 
 def _under(lights: tuple[Sensor, ...], first: Array, second: Array) -> Array:
-    return np.stack([spectra_apart(seen.light, first, second) for seen in lights], axis=1)
+    return np.stack([delta_e_spectra(seen.light, first, second) for seen in lights], axis=1)
 
 
 def _rms(first: Array, second: Array) -> Array:

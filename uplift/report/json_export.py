@@ -12,12 +12,12 @@ import numpy as np
 from uplift.colorimetry.display_sensors import hex_codes
 from uplift.colorimetry.sensor import Sensor
 from uplift.report.assessment import Assessment
-from uplift.report.fidelity import Entries
+from uplift.report.fidelity import EntryErrors
 from uplift.report.round_trip import SEED
 from uplift.viz.histogram import Histogram
 
 
-def numbers(found: Assessment) -> dict[str, Any]:
+def to_json(found: Assessment) -> dict[str, Any]:
     """Plain values; what is not finite is None, so that every JSON reader takes it."""
     return _plain(
         {
@@ -97,7 +97,7 @@ def _histogram(part: Histogram) -> dict[str, Any]:
     }
 
 
-def _entries(found: Entries, lights: tuple[Sensor, ...]) -> list[dict[str, Any]]:
+def _entries(found: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, Any]]:
     names = [seen.illuminant for seen in lights]
 
     def by_light(values: Any) -> dict[str, Any] | None:
@@ -129,7 +129,7 @@ def _entries(found: Entries, lights: tuple[Sensor, ...]) -> list[dict[str, Any]]
     ]
 
 
-def swatches(found: Entries, seen: Sensor) -> list[tuple[str, ...]]:
+def swatches(found: EntryErrors, seen: Sensor) -> list[tuple[str, ...]]:
     """``#rrggbb`` of every entry under a light: as wanted, as answered, and by the lattice alone if it is own."""
     parts = [part for part in (found.wanted, found.answered, found.lattice) if part is not None]
     return list(zip(*(hex_codes(seen.rgb(part)) for part in parts), strict=True))

@@ -9,7 +9,7 @@ from uplift.report.page_crowding import crowding_section, crowding_told
 from uplift.report.page_entries import entries_section
 from uplift.report.page_lattice import distributions_section, failures_section
 from uplift.report.page_standard_error import mean_told, standard_error_section, standard_error_told
-from uplift.viz.markup import Markup, counted, element, joined, power
+from uplift.viz.markup import Markup, element, format_scientific, joined, pluralise
 
 
 def page(found: Assessment, worst: int) -> str:
@@ -58,11 +58,11 @@ def _verdicts(found: Assessment) -> Markup:
     cards = [
         _verdict(
             f"{missed:,} over the threshold" if missed else "Every point fitted",
-            f"{counted(found.facts['points'], 'lattice point')}, worst distance {power(found.distance.largest)}",
+            f"{pluralise(found.facts['points'], 'lattice point')}, worst distance {format_scientific(found.distance.largest)}",
             bad=missed > 0,
         ),
         _verdict(
-            f"ΔE00 ≤ {power(exact.largest)}",
+            f"ΔE00 ≤ {format_scientific(exact.largest)}",
             "between a colour asked and the colour that comes back, in mode spectra",
             bad=exact.largest > 1,
         ),
@@ -74,7 +74,7 @@ def _verdicts(found: Assessment) -> Markup:
             _verdict(
                 f"Worst ΔE00 {errors.worst[0]:.2f}",
                 f"{errors.names[0]} under {light}; mean {errors.delta_e.mean():.2f} over "
-                f"{counted(len(errors.names), 'entry', 'entries')} and {counted(len(found.lights), 'light')}",
+                f"{pluralise(len(errors.names), 'entry', 'entries')} and {pluralise(len(found.lights), 'light')}",
             )
         )
     if found.crowding is not None:

@@ -14,7 +14,7 @@ from uplift.report.page_parts import (
     swatches_of,
     table,
 )
-from uplift.viz.markup import Markup, counted, element, joined
+from uplift.viz.markup import Markup, element, joined, pluralise
 
 
 def crowding_section(found: Assessment) -> Markup | None:
@@ -34,7 +34,7 @@ def crowding_told(found: Assessment, crowding: Crowding) -> tuple[str, str]:
     dim, count = found.data.lattice.dim, len(crowding.entries.names)
     if not count:
         return "No entry crowds", f"none has another within a lattice step at dim {dim}"
-    title = f"{counted(count, 'entry', 'entries')} crowd" + ("s" if count == 1 else "")
+    title = f"{pluralise(count, 'entry', 'entries')} crowd" + ("s" if count == 1 else "")
     lost = f"; {len(crowding.lost):,} lost" if crowding.lost else ""
     return title, f"of {len(found.data.atlas.names):,}, within a lattice step of another at dim {dim}{lost}"
 

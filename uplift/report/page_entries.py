@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from uplift.report.assessment import Assessment
-from uplift.report.fidelity import Entries
+from uplift.report.fidelity import EntryErrors
 from uplift.report.page_parts import (
     BAD,
     SEEN,
@@ -22,7 +22,7 @@ from uplift.report.page_parts import (
     table,
 )
 from uplift.report.page_spectra import small_multiples
-from uplift.viz.markup import Markup, counted, element, joined, number
+from uplift.viz.markup import Markup, element, joined, number, pluralise
 
 
 def entries_section(found: Assessment, worst: int) -> Markup:
@@ -50,7 +50,7 @@ def entries_section(found: Assessment, worst: int) -> Markup:
     )
 
 
-def _note_on_entries(found: Assessment, entries: Entries) -> Markup:
+def _note_on_entries(found: Assessment, entries: EntryErrors) -> Markup:
     text = (
         "Swatches: measured on the left, answered on the right; what sRGB cannot show is less saturated there. "
         f"ΔE00 above {SEEN:g} is bold, above {BAD:g} orange. "
@@ -81,7 +81,7 @@ def _why_none(found: Assessment) -> str:
 
 def _about(found: Assessment) -> str:
     assert found.entries is not None
-    count, files = counted(len(found.entries.names), "entry", "entries"), ", ".join(found.sources)
+    count, files = pluralise(len(found.entries.names), "entry", "entries"), ", ".join(found.sources)
     if found.own:
         return f"The {count} of {files} that the cube was built from, each asked at its own RGB, worst first."
     return f"{count} of {files}, which the cube was not built from, each asked at its own RGB, worst first."
@@ -99,7 +99,7 @@ def _absent(found: Assessment) -> Markup | None:
     return element("p", f"Not asked, as the cube has no points for them: {', '.join(found.absent)}.")
 
 
-def _by_light(found: Assessment, entries: Entries) -> Markup:
+def _by_light(found: Assessment, entries: EntryErrors) -> Markup:
     lines = []
     for column, (light, part) in enumerate(found.delta_e.items()):
         worst = int(entries.delta_e[:, column].argmax())
@@ -122,7 +122,7 @@ def _shown(delta_e: float) -> Markup:
     return element("span", f"{delta_e:.3f}", class_=severity(delta_e))
 
 
-def _note_on_light(found: Assessment, entries: Entries) -> Markup | None:
+def _note_on_light(found: Assessment, entries: EntryErrors) -> Markup | None:
     if entries.delta_e_lattice is None:
         return None
     lost = ", unless it is lost" if found.crowding is not None and found.crowding.lost else ""
@@ -134,7 +134,7 @@ def _note_on_light(found: Assessment, entries: Entries) -> Markup | None:
     return note(text)
 
 
-def _table(found: Assessment, entries: Entries, shown: Swatches) -> Markup:
+def _table(found: Assessment, entries: EntryErrors, shown: Swatches) -> Markup:
     headings = [
         element("th", "entry"),
         *error_headings(found.lights, "measured"),
@@ -151,7 +151,7 @@ def _table(found: Assessment, entries: Entries, shown: Swatches) -> Markup:
     return table(headings, lines, "sortable")
 
 
-def _further_headings(found: Assessment, entries: Entries) -> list[Markup]:
+def _further_headings(found: Assessment, entries: EntryErrors) -> list[Markup]:
     """Of own entries, what their surroundings are like; of others, how far the error was foreseen."""
     if entries.lattice is not None:
         return [
@@ -167,7 +167,7 @@ def _further_headings(found: Assessment, entries: Entries) -> list[Markup]:
     return []
 
 
-def _further_cells(entries: Entries, row: int) -> list[Markup]:
+def _further_cells(entries: EntryErrors, row: int) -> list[Markup]:
     if entries.worst_lattice is not None:
         return [difference(float(entries.worst_lattice[row])), reach_cell(entries, row)]
     if entries.stated is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from uplift.colorimetry.display_sensors import hex_codes
 from uplift.report.assessment import Assessment
 from uplift.report.page_parts import charts, figure, note, right, swatch, table
-from uplift.viz.markup import Markup, counted, element, joined, number, power, triple
+from uplift.viz.markup import Markup, element, format_rgb, format_scientific, joined, number, pluralise
 
 
 def failures_section(found: Assessment) -> Markup:
@@ -13,7 +13,7 @@ def failures_section(found: Assessment) -> Markup:
     failed, data = found.failures, found.data
     limit, points = f"{data.threshold:g}", found.facts["points"]
     if failed.missed:
-        told = f"{counted(failed.missed, 'lattice point')} of {points:,} over the threshold of {limit}."
+        told = f"{pluralise(failed.missed, 'lattice point')} of {points:,} over the threshold of {limit}."
         first = element("p", told, class_="bad")
     else:
         first = element("p", f"Nothing failed: all {points:,} points evaluate to their RGB within {limit}.")
@@ -49,9 +49,9 @@ def _missed(found: Assessment) -> Markup | None:
     lines = [
         [
             swatch(*codes),
-            triple(target[row]),
-            triple(data.rgb[point]),
-            number(power(float(data.distance[point]))),
+            format_rgb(target[row]),
+            format_rgb(data.rgb[point]),
+            number(format_scientific(float(data.distance[point]))),
         ]
         for row, (point, codes) in enumerate(zip(points, pairs, strict=True))
     ]
@@ -118,7 +118,7 @@ def _whence(found: Assessment) -> str:
 
 def _aside(found: Assessment) -> Markup:
     """What the charts of the lattice need to be read."""
-    first, second = (triple(rgb) for rgb in found.steepest)
+    first, second = (format_rgb(rgb) for rgb in found.steepest)
     return element(
         "div",
         f"The dashed line is the threshold, {found.data.threshold:g}. Neighbours are points next to each other along "

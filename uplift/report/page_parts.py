@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.report.fidelity import Entries
+from uplift.report.fidelity import EntryErrors
 from uplift.report.json_export import swatches
 from uplift.viz.charts import histogram_chart
 from uplift.viz.histogram import Histogram
-from uplift.viz.markup import Markup, element, joined, number, power, rows, triple
+from uplift.viz.markup import Markup, element, format_rgb, format_scientific, joined, number, rows
 
 SEEN, BAD = 1.0, 3.0
 """ΔE00 that one sees side by side, and that nobody overlooks."""
@@ -52,7 +52,7 @@ def figure(
 ) -> Markup:
     """A histogram under its title and the few numbers that say most."""
     named = ("mean", part.mean), ("median", part.median), ("95 %", part.p95), ("max", part.largest)
-    stated = (element("span", element("small", name), power(value)) for name, value in named)
+    stated = (element("span", element("small", name), format_scientific(value)) for name, value in named)
     caption = element("figcaption", element("b", title), element("div", *stated, class_="stats"))
     return element("figure", caption, histogram_chart(part, label, top=top, limit=limit))
 
@@ -62,7 +62,7 @@ def charts(figures: list[Markup]) -> Markup:
     return element("div", *figures, class_="charts")
 
 
-def swatches_of(found: Entries, lights: Sequence[Sensor]) -> Swatches:
+def swatches_of(found: EntryErrors, lights: Sequence[Sensor]) -> Swatches:
     """Swatches under each light."""
     return [swatches(found, seen) for seen in lights]
 
@@ -75,7 +75,7 @@ def error_headings(lights: Sequence[Sensor], wanted: str) -> Iterator[Markup]:
     yield right("rms", f"rms over wavelength to the {wanted} spectrum")
 
 
-def error_cells(found: Entries, row: int, shown: Swatches, *, lattice: bool = False) -> Iterator[Markup]:
+def error_cells(found: EntryErrors, row: int, shown: Swatches, *, lattice: bool = False) -> Iterator[Markup]:
     """The errors of one entry: the worst, under each light with its swatches, and rms.
 
     With ``lattice``, which own entries have, those of the lattice by itself stand below, and the cells sort by them.
@@ -92,9 +92,9 @@ def error_cells(found: Entries, row: int, shown: Swatches, *, lattice: bool = Fa
     yield _cell("{:.4f}", float(found.rms[row]), rms)
 
 
-def name_cell(found: Entries, row: int) -> Markup:
+def name_cell(found: EntryErrors, row: int) -> Markup:
     """An entry by name and linear RGB."""
-    return element("td", found.names[row], element("small", triple(found.rgb[row])), class_="name")
+    return element("td", found.names[row], element("small", format_rgb(found.rgb[row])), class_="name")
 
 
 def reach_heading() -> Markup:
@@ -104,7 +104,7 @@ def reach_heading() -> Markup:
     )
 
 
-def reach_cell(found: Entries, row: int) -> Markup:
+def reach_cell(found: EntryErrors, row: int) -> Markup:
     """How far an own entry is felt, in lattice steps and in 8-bit codes."""
     assert found.reach is not None
     assert found.codes is not None

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from uplift.report.assessment import Assessment
-from uplift.report.fidelity import Entries
+from uplift.report.fidelity import EntryErrors
 from uplift.report.page_parts import Swatches, severity, swatch
 from uplift.viz.charts import ACCENT, BAND, INK, spectra_chart
-from uplift.viz.markup import Markup, element, joined, triple
+from uplift.viz.markup import Markup, element, format_rgb, joined
 
 
-def small_multiples(found: Assessment, entries: Entries, shown: Swatches, worst: int) -> Markup:
+def small_multiples(found: Assessment, entries: EntryErrors, shown: Swatches, worst: int) -> Markup:
     """The first ``worst`` entries, each under every light and as spectra."""
     figures = (_figure(found, entries, row, shown) for row in range(min(worst, len(entries.names))))
     return joined([_key(entries), element("div", *figures, class_="grid")])
 
 
-def _figure(found: Assessment, entries: Entries, row: int, shown: Swatches) -> Markup:
+def _figure(found: Assessment, entries: EntryErrors, row: int, shown: Swatches) -> Markup:
     lattice = None if entries.lattice is None else entries.lattice[row]
     strips = [
         element(
@@ -26,7 +26,7 @@ def _figure(found: Assessment, entries: Entries, row: int, shown: Swatches) -> M
         )
         for column, (seen, value) in enumerate(zip(found.lights, entries.delta_e[row].tolist(), strict=True))
     ]
-    name = element("b", entries.names[row], title=triple(entries.rgb[row]))
+    name = element("b", entries.names[row], title=format_rgb(entries.rgb[row]))
     return element(
         "figure",
         element("figcaption", name, element("small", f"rms {entries.rms[row]:.4f}")),
@@ -35,7 +35,7 @@ def _figure(found: Assessment, entries: Entries, row: int, shown: Swatches) -> M
     )
 
 
-def _key(entries: Entries) -> Markup:
+def _key(entries: EntryErrors) -> Markup:
     lines: list[tuple[str, str, float, str | None]] = [
         ("measured", BAND, 5, None),
         ("answered", ACCENT, 1.8, None),

@@ -6,7 +6,7 @@ from uplift.report.assessment import Assessment
 from uplift.report.calibration import Calibration
 from uplift.report.page_parts import charts, figure, note
 from uplift.viz.histogram import Histogram
-from uplift.viz.markup import Markup, counted, element, joined
+from uplift.viz.markup import Markup, element, joined, pluralise
 
 VERDICTS = {
     0: "Its standard errors hold.",
@@ -39,14 +39,14 @@ def _why_none(found: Assessment) -> str:
     if not found.data.atlas.names:
         why = "it was built without an atlas, so nothing tells how far measurements lie from its answers"
     else:
-        count = counted(len(found.data.atlas.names), "entry", "entries")
+        count = pluralise(len(found.data.atlas.names), "entry", "entries")
         why = f"its {count} are too few to learn from how far measurements lie from its answers"
     return f"The cube states none: {why}."
 
 
 def _calibration(found: Assessment, judged: Calibration) -> Markup:
     """Real errors against stated ones, in words."""
-    light, count = found.data.reference, counted(judged.count, "entry", "entries")
+    light, count = found.data.reference, pluralise(judged.count, "entry", "entries")
     return joined(
         [
             element("h3", "Does it hold?"),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Mask
@@ -48,7 +48,7 @@ class Comparison:
 def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
     """Compare all points but the unsettled. Raises `CubeFileError` where the two have no points in common."""
     if not np.array_equal(stored.lattice.nodes, rebuilt.lattice.nodes):
-        raise CubeFileError("has another lattice than its options say", path=path, remedy="build it anew")
+        raise CubeFileError("has another lattice than its options say", path=path, hint="build it anew")
     settled = _settled(stored) & (stored.present | rebuilt.present)
     first, second = (
         reflectance(data.model, data.coefficients[settled], data.sensor.wavelengths)
@@ -78,4 +78,4 @@ def _counts(data: CubeData, settled: Mask) -> dict[str, int]:
 
 
 def _largest_delta_e(name: str, observer: str, first: Array, second: Array) -> float:
-    return float(spectra_apart(light(name, observer), first, second).max())
+    return float(delta_e_spectra(light(name, observer), first, second).max())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lookup import MODES, Cube
@@ -19,7 +19,7 @@ def round_trips(cube: Cube) -> dict[str, Array]:
     asked, sensor = _random(cube.data), cube.data.sensor
     asked = asked[cube.holds(asked)]
     return {
-        mode: colours_apart(sensor, asked, sensor.rgb(cube.reflectance(asked, mode=mode))) for mode in MODES
+        mode: delta_e_rgb(sensor, asked, sensor.rgb(cube.reflectance(asked, mode=mode))) for mode in MODES
     }
 
 

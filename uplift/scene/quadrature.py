@@ -72,7 +72,7 @@ def gauss(points: ArrayLike, masses: ArrayLike, order: int) -> Rule | Undefined:
     points, masses = _checked(points, masses)
     used = masses != 0
     if not 1 <= order <= used.sum():
-        raise OptionError(f"no rule of order {order}", remedy=f"ask for 1 to {used.sum()}")
+        raise OptionError(f"no rule of order {order}", hint=f"ask for 1 to {used.sum()}")
     x, masses = _to_unit(points, points)[used], masses[used]
     basis = _orthonormal(x, np.abs(masses), order)
     signed = basis * np.sign(masses)[:, None]
@@ -92,7 +92,7 @@ def interpolatory(nodes: ArrayLike, points: ArrayLike, masses: ArrayLike) -> Rul
     points, masses = _checked(points, masses)
     nodes = np.sort(np.asarray(nodes, dtype=float))
     if np.any(np.diff(nodes) == 0):
-        raise OptionError("two nodes coincide", remedy="name each node once")
+        raise OptionError("two nodes coincide", hint="name each node once")
     degree = len(nodes) - 1
     values = chebyshev.chebvander(_to_unit(nodes, points), degree)
     moments = masses @ chebyshev.chebvander(_to_unit(points, points), degree)
@@ -121,11 +121,9 @@ def _solve(gram: Array, position: Array, total: float, points: Array) -> Rule | 
 def _checked(points: ArrayLike, masses: ArrayLike) -> tuple[Array, Array]:
     points, masses = (np.array(values, dtype=float) for values in (points, masses))
     if points.ndim != 1 or points.shape != masses.shape or not np.all(np.diff(points) > 0):
-        raise OptionError("points and masses do not match", remedy="give ascending points and one mass each")
+        raise OptionError("points and masses do not match", hint="give ascending points and one mass each")
     if not (np.isfinite(points).all() and np.isfinite(masses).all() and masses.any()):
-        raise OptionError(
-            "the masses are nothing, or not all numbers", remedy="give finite masses, not all 0"
-        )
+        raise OptionError("the masses are nothing, or not all numbers", hint="give finite masses, not all 0")
     return points, masses
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from uplift.common.arrays import Array
 from uplift.viz.histogram import Histogram
-from uplift.viz.markup import Markup, decade
+from uplift.viz.markup import Markup, format_power_of_ten
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -60,7 +60,7 @@ def histogram_chart(
         axes.set(xlabel=label, ylim=(0, 1.06 * high))
         if part.logarithmic:
             axes.set_xscale("log")
-            axes.xaxis.set_major_formatter(lambda value, _: decade(value))
+            axes.xaxis.set_major_formatter(lambda value, _: format_power_of_ten(value))
         if limit is not None:
             axes.axvline(limit, color=INK, linewidth=0.8, linestyle=(0, (3, 2)))
         else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import Any, Literal
 
-from uplift.common.files import replacing
+from uplift.common.files import atomic_write
 
 
 def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Any:
@@ -15,18 +15,18 @@ def new_figure(width: float, height: float, layout: Literal["constrained"] | Non
     return Figure(figsize=(width, height), layout=layout)
 
 
-def plain(axes: Any) -> None:
+def style_axes(axes: Any) -> None:
     """Take the frame away and put a grid behind the lines."""
     axes.grid(color="0.9")
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def spectral(axes: Any) -> None:
+def style_spectrum_axes(axes: Any) -> None:
     """Axes of reflectance over wavelength."""
     axes.set(xlabel="wavelength / nm", ylabel="reflectance", ylim=(-0.02, 1.02))
     axes.margins(x=0.01)
-    plain(axes)
+    style_axes(axes)
 
 
 def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -34,5 +34,5 @@ def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False)
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     # Without a name here matplotlib writes its own and its version.
-    with replacing(path, force=force) as temporary:
+    with atomic_write(path, force=force) as temporary:
         FigureCanvasAgg(figure).print_png(temporary, metadata={"Software": "uplift"})

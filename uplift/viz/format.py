@@ -6,24 +6,24 @@ TIMES = ((1e9, "s"), (1e6, "ms"), (1e3, "µs"), (1.0, "ns"))
 SIZES = ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"), (1.0, "B"))
 
 
-def time_told(ns: float) -> str:
+def format_time(ns: float) -> str:
     """70 ns, 4.2 µs, 1 s."""
     return _told(ns, TIMES)
 
 
-def size_told(size: float) -> str:
+def format_size(size: float) -> str:
     """560 B, 18.9 MB."""
     return _told(size, SIZES)
 
 
-def error_told(error: float) -> str:
+def format_error(error: float) -> str:
     """Three digits; nobody sees what is below 1e-4."""
     return "< 0.0001" if error < 1e-4 else f"{error:.4f}" if error < 0.01 else f"{error:.3g}"
 
 
-def build_told(seconds: float | None) -> str:
+def format_build_time(seconds: float | None) -> str:
     """4.1 s; 'nothing' where there is nothing to build, '' where others did."""
-    return "" if seconds is None else time_told(seconds * 1e9) if seconds else "nothing"
+    return "" if seconds is None else format_time(seconds * 1e9) if seconds else "nothing"
 
 
 def _told(value: float, units: tuple[tuple[float, str], ...]) -> str:

@@ -50,7 +50,7 @@ def number(value: str, **attributes: str | int | None) -> Markup:
     return element("td", value, **{"class_": "number", **attributes})
 
 
-def power(value: float) -> str:
+def format_scientific(value: float) -> str:
     """1.6 × 10⁻⁵, unbroken; from a hundredth on plainly, 0.0271."""
     if not math.isfinite(value):
         return "not finite"
@@ -60,7 +60,7 @@ def power(value: float) -> str:
     return f"{digits}\u00a0×\u00a0{_ten(int(exponent))}"
 
 
-def decade(value: float) -> str:
+def format_power_of_ten(value: float) -> str:
     """A power of ten, as an axis has it."""
     return _ten(round(math.log10(value)))
 
@@ -69,11 +69,11 @@ def _ten(exponent: int) -> str:
     return f"10{str(exponent).translate(SUPERSCRIPT)}"
 
 
-def triple(rgb: Iterable[float]) -> str:
+def format_rgb(rgb: Iterable[float]) -> str:
     """Linear RGB as it is written in a line."""
     return ", ".join(f"{value:.4f}" for value in rgb)
 
 
-def counted(count: int, what: str, several: str | None = None) -> str:
+def pluralise(count: int, what: str, several: str | None = None) -> str:
     """``1 point``, ``2,000 points``."""
     return f"{count:,} {what if count == 1 else several or what + 's'}"

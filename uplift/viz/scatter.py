@@ -42,7 +42,7 @@ def set_up(axes: Any, title: str, across: str) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def stairs(front: Array, right: float) -> Array:
+def pareto_steps(front: Array, right: float) -> Array:
     """A Pareto front (k, 2), from the left, as a staircase up to ``right``: who stands above it is beaten in both
     respects."""
     x = np.append(front[:, 0].repeat(2)[1:], right)

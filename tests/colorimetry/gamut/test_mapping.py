@@ -8,10 +8,10 @@ import pytest
 from scipy.optimize import brentq
 
 from tests.colorimetry.gamut.conftest import GAMUTS
-from uplift.colorimetry.gamut import CHOICES, SRGB, contained, mapping
+from uplift.colorimetry.gamut import METHODS, SRGB, map_to_gamut, mapping
 from uplift.colorimetry.gamut.oklab import oklab, responses, roots
 
-MOVERS = [way for way in CHOICES if way != "error"]
+MOVERS = [way for way in METHODS if way != "error"]
 
 
 def luminance(rgb, gamut):
@@ -43,24 +43,24 @@ def lit(rgb, gamut):
 
 @pytest.mark.parametrize("way", MOVERS)
 def test_all_end_inside_where_they_stay(way, gamut, outside):
-    found = contained(outside, gamut, way).rgb
+    found = map_to_gamut(outside, gamut, way).rgb
     assert found.min() >= 0
     assert found.max() <= 1
     assert np.isfinite(found).all()
-    np.testing.assert_array_equal(contained(found, gamut, way).rgb, found)
+    np.testing.assert_array_equal(map_to_gamut(found, gamut, way).rgb, found)
 
 
 @pytest.mark.parametrize("way", MOVERS)
 def test_colours_inside_stay_to_the_bit(way, gamut):
     rgb = np.random.default_rng(1).random((500, 3))
     rgb[:8] = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1]), axis=-1).reshape(8, 3)
-    np.testing.assert_array_equal(contained(rgb, gamut, way).rgb, rgb)
+    np.testing.assert_array_equal(map_to_gamut(rgb, gamut, way).rgb, rgb)
 
 
 @pytest.mark.parametrize("way", ["desaturate", "scale"])
 def test_the_dominant_wavelength_stays(way, gamut, outside):
     before = lit(outside, gamut)
-    off, nearer = off_the_line(before, contained(before, gamut, way).rgb, gamut)
+    off, nearer = off_the_line(before, map_to_gamut(before, gamut, way).rgb, gamut)
     assert off.max() < 1e-9
     assert nearer.all()
 
@@ -68,7 +68,7 @@ def test_the_dominant_wavelength_stays(way, gamut, outside):
 @pytest.mark.parametrize("way", ["clip", "desaturate-oklab"])
 def test_the_others_leave_the_line(way, gamut, outside):
     before = lit(outside, gamut)
-    after = contained(before, gamut, way).rgb
+    after = map_to_gamut(before, gamut, way).rgb
     kept = after.any(axis=1)
     off, _ = off_the_line(before[kept], after[kept], gamut)
     assert off.max() > 1e-2
@@ -76,34 +76,34 @@ def test_the_others_leave_the_line(way, gamut, outside):
 
 def test_the_dominant_wavelength_is_colour_science_s(outside):
     before = lit(outside, SRGB)[:12]
-    after = contained(before, SRGB, "desaturate").rgb
+    after = map_to_gamut(before, SRGB, "desaturate").rgb
     white = chromaticity(np.ones(3), SRGB)
     theirs = [colour.dominant_wavelength(chromaticity(rgb, SRGB), white)[0] for rgb in (before, after)]
     np.testing.assert_allclose(*theirs, rtol=0, atol=1e-6)
 
 
 def test_desaturating_keeps_luminance(gamut, outside):
-    found = luminance(contained(outside, gamut, "desaturate").rgb, gamut)
+    found = luminance(map_to_gamut(outside, gamut, "desaturate").rgb, gamut)
     np.testing.assert_allclose(found, np.clip(luminance(outside, gamut), 0, 1), rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("way", ["clip", "scale", "desaturate-oklab"])
 def test_the_others_do_not(way, outside):
-    found = luminance(contained(outside, SRGB, way).rgb, SRGB)
+    found = luminance(map_to_gamut(outside, SRGB, way).rgb, SRGB)
     assert np.abs(found - np.clip(luminance(outside, SRGB), 0, 1)).max() > 0.1
 
 
 def test_no_more_saturation_goes_than_must(gamut, outside):
-    found = contained(outside, gamut, "desaturate").rgb
+    found = map_to_gamut(outside, gamut, "desaturate").rgb
     assert np.minimum(found.min(axis=1), 1 - found.max(axis=1)).max() < 1e-12
 
 
 def test_scaling_keeps_the_chromaticity_of_what_is_too_bright(gamut):
     bright = np.random.default_rng(2).random((200, 3)) * 9 + 0.01
     bright[:, 0] += 1
-    found = contained(bright, gamut, "scale").rgb
+    found = map_to_gamut(bright, gamut, "scale").rgb
     np.testing.assert_allclose(found, bright / bright.max(axis=1, keepdims=True), rtol=1e-14)
-    apart = chromaticity(contained(bright, gamut, "clip").rgb, gamut) - chromaticity(bright, gamut)
+    apart = chromaticity(map_to_gamut(bright, gamut, "clip").rgb, gamut) - chromaticity(bright, gamut)
     assert np.abs(apart).max() > 0.05
 
 
@@ -111,13 +111,15 @@ def test_scaling_keeps_the_luminance_of_what_is_only_too_saturated(gamut):
     rng = np.random.default_rng(3)
     rgb = 0.3 * rng.random((200, 3)) + [0.1, 0.1, -0.4]
     np.testing.assert_allclose(
-        luminance(contained(rgb, gamut, "scale").rgb, gamut), np.maximum(luminance(rgb, gamut), 0), atol=1e-12
+        luminance(map_to_gamut(rgb, gamut, "scale").rgb, gamut),
+        np.maximum(luminance(rgb, gamut), 0),
+        atol=1e-12,
     )
 
 
 def test_oklab_keeps_hue_and_lightness(gamut, outside):
     before = oklab(outside, gamut)
-    after = oklab(contained(outside, gamut, "desaturate-oklab").rgb, gamut)
+    after = oklab(map_to_gamut(outside, gamut, "desaturate-oklab").rgb, gamut)
     np.testing.assert_allclose(after[:, 0], np.clip(before[:, 0], 0, 1), rtol=0, atol=3e-3)
     seen = (np.hypot(*after[:, 1:].T) > 0.02) & (before[:, 0] > 0) & (before[:, 0] < 1)
     turn = np.arctan2(after[:, 2], after[:, 1]) - np.arctan2(before[:, 2], before[:, 1])
@@ -130,7 +132,7 @@ def test_dominant_wavelengths_do_not_keep_oklab_s_hue(outside):
     """Else the two ways would be one."""
     blue = np.array([[-0.2, 0, 1.0]])
     hues = [
-        np.degrees(np.arctan2(*oklab(contained(blue, SRGB, way).rgb, SRGB)[0, :0:-1]))
+        np.degrees(np.arctan2(*oklab(map_to_gamut(blue, SRGB, way).rgb, SRGB)[0, :0:-1]))
         for way in ("desaturate", "desaturate-oklab")
     ]
     assert abs(hues[0] - hues[1]) > 5
@@ -139,9 +141,9 @@ def test_dominant_wavelengths_do_not_keep_oklab_s_hue(outside):
 @pytest.mark.parametrize("way", ["desaturate", "desaturate-oklab"])
 def test_white_and_black_are_where_the_light_ends(way, gamut):
     grey = np.array([[1.0001] * 3, [7.0] * 3, [-0.0001] * 3, [-7.0] * 3])
-    np.testing.assert_allclose(contained(grey, gamut, way).rgb, [[1] * 3] * 2 + [[0] * 3] * 2, atol=1e-6)
+    np.testing.assert_allclose(map_to_gamut(grey, gamut, way).rgb, [[1] * 3] * 2 + [[0] * 3] * 2, atol=1e-6)
     bright = np.array([[9.0, 8.0, 2.0]])
-    np.testing.assert_allclose(contained(bright, gamut, way).rgb, 1, rtol=0, atol=2e-3)
+    np.testing.assert_allclose(map_to_gamut(bright, gamut, way).rgb, 1, rtol=0, atol=2e-3)
 
 
 def surface(count):
@@ -157,7 +159,7 @@ def leap(gamut, way, rgb, step):
     """The largest change of a component for random steps."""
     rng = np.random.default_rng(4)
     there = rgb + step * rng.normal(0, 1, rgb.shape)
-    return np.abs(contained(there, gamut, way).rgb - contained(rgb, gamut, way).rgb).max()
+    return np.abs(map_to_gamut(there, gamut, way).rgb - map_to_gamut(rgb, gamut, way).rgb).max()
 
 
 @pytest.mark.parametrize("way", MOVERS)
@@ -175,7 +177,7 @@ def test_without_nearly_oklab_would_leap(monkeypatch):
 def test_the_thesis_s_own_procedure_finds_the_same_chromaticity(gamut):
     """6.2.3: in coordinates of which R, G and B are shares of their sum, white being (⅓, ⅓), b = 0 is met."""
     rgb = np.array([[0.6, 0.35, -0.2], [0.2, 0.5, -0.05], [0.3, 0.31, -0.4]])
-    found = contained(rgb, gamut, "scale").rgb
+    found = map_to_gamut(rgb, gamut, "scale").rgb
     for before, after in zip(rgb, found, strict=True):
         x, y = before[:2] / before.sum()
         slope = (y - 1 / 3) / (x - 1 / 3)
@@ -219,5 +221,5 @@ def _largest(room):
 def test_one_colour_at_a_time(way, gamut, outside):
     some = outside[:: len(outside) // 80]
     np.testing.assert_allclose(
-        contained(some, gamut, way).rgb, [plain(rgb, gamut, way) for rgb in some], rtol=0, atol=1e-6
+        map_to_gamut(some, gamut, way).rgb, [plain(rgb, gamut, way) for rgb in some], rtol=0, atol=1e-6
     )

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import PaletteError
 from uplift.design.palette import Palette, design, matrix
 from uplift.design.palette.colours import screen_matrix
@@ -35,7 +35,7 @@ def test_metamers_match_by_day_and_part_under_the_lamp_as_asked(found, metamers)
     asked = metamers.wishes[2].rgb, metamers.wishes[3].rgb
     day, lamp = (difference(found, colours, Apart(("fox", "moss"), light, 0)) for light in ("day", "lamp"))
     assert day <= 0.1
-    assert lamp >= colours_apart(metamers.sensor, *asked) - 0.01 > 15
+    assert lamp >= delta_e_rgb(metamers.sensor, *asked) - 0.01 > 15
     assert colours.model_error.max() < 0.5
 
 

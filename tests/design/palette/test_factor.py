@@ -59,7 +59,7 @@ def test_two_bounces_are_five_times_nearer_than_by_rgb(model, sensor, measured, 
     seen = model.rgb(model.product(model.light(power), model.reflectance(first), model.reflectance(second)))
     rgb = (screen @ power) * sensor.rgb(first) * sensor.rgb(second)
     gain = exposure(sensor, full)[:, None]
-    errors = [delta_e.colours_apart(sensor, gain * found, gain * full).mean() for found in (seen, rgb)]
+    errors = [delta_e.delta_e_rgb(sensor, gain * found, gain * full).mean() for found in (seen, rgb)]
     assert errors[0] * 5 < errors[1]
 
 

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from tests.io.texture.conftest import AT, channels, held, planes, small_tiles, write_exr
-from uplift.colorimetry.gamut import contained
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.common.errors import ColourError, OptionError, TextureError
 from uplift.io import texture
 
@@ -145,7 +145,7 @@ def test_pixels_outside_are_moved_as_asked(way, told, colours, made, spectral, t
     source = write_exr(tmp_path / "bad.exr", planes(bad))
     result, found = made(source, replace(spectral, out_of_gamut=way))
     bad[4, 4] = (1, 1, 0)
-    moved = contained(bad, spectral.cube.data.sensor, way)
+    moved = map_to_gamut(bad, spectral.cube.data.sensor, way)
     np.testing.assert_array_equal(rgb_of(found), moved.rgb)
     assert result.counts == texture.Counts(600, outside=5, not_finite=1, farthest=moved.farthest)
     assert result.remarks[0] == (

@@ -12,7 +12,7 @@ import pytest
 
 from tests.io.texture.conftest import AT, PHOTO, channels, held, planes, write_exr
 from uplift import models
-from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import OptionError
 from uplift.io import texture
 
@@ -49,7 +49,7 @@ def test_a_spectral_image_is_the_photograph_to_the_reader_of_colour_science(
     assert found.min() >= 0
     assert found.max() <= 1
     rgb, _ = components_to_sRGB_Fichet2021({"T": (at, found.astype(float))})
-    assert colours_apart(small_cube.data.sensor, linear, rgb).mean() < most
+    assert delta_e_rgb(small_cube.data.sensor, linear, rgb).mean() < most
     expected = small_cube.reflectance(linear)
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6 if depth == "float" else 3e-4)
 
@@ -83,7 +83,7 @@ def test_multipliers_evaluate_to_the_very_colour(cube, photo, tmp_path, request)
     sensor = cube.data.sensor
     back = sensor.rgb(evaluated(tmp_path / "out.exr", "multiplier")(sensor.wavelengths))
     assert np.median(np.abs(back - photo[1])) < 1e-6
-    assert colours_apart(sensor, back, photo[1]).mean() < 5e-3
+    assert delta_e_rgb(sensor, back, photo[1]).mean() < 5e-3
 
 
 def test_moments_are_those_of_the_cube(small_cube, colours, tmp_path):

@@ -19,7 +19,7 @@ CUBE = "moments-8-macbeth.uplift"
 
 @pytest.fixture
 def recipe(repository):
-    return texture.Recipe(str(repository / "cubes" / CUBE), texture.Moments(), None, "auto", 1)
+    return texture.TextureSettings(str(repository / "cubes" / CUBE), texture.Moments(), None, "auto", 1)
 
 
 @pytest.fixture
@@ -81,22 +81,22 @@ def test_dask_is_asked_for_where_it_is_missing(monkeypatch):
 def test_what_is_there_newer_and_whole_is_left_out(jobs, recipe):
     run(jobs[0])
     target = jobs[0].target
-    assert texture.left([jobs[0]], resume=True) == []
+    assert texture.pending([jobs[0]], resume=True) == []
     with pytest.raises(OutputError, match="exists already"):
-        texture.left([jobs[0]])
+        texture.pending([jobs[0]])
     forced = [replace(jobs[0], force=True)]
-    assert texture.left(forced, resume=True) == []
-    assert texture.left(forced) == forced
+    assert texture.pending(forced, resume=True) == []
+    assert texture.pending(forced) == forced
 
     data = target.read_bytes()
     target.write_bytes(data[:-100])
-    assert texture.left(forced, resume=True) == forced
+    assert texture.pending(forced, resume=True) == forced
     target.write_bytes(data)
-    assert texture.left(forced, resume=True) == []
+    assert texture.pending(forced, resume=True) == []
 
     later = target.stat().st_mtime + 10
     os.utime(jobs[0].source, (later, later))
-    assert texture.left(forced, resume=True) == forced
+    assert texture.pending(forced, resume=True) == forced
 
 
 def test_textures_made_otherwise_are_not_left_out(jobs, recipe):
@@ -108,13 +108,13 @@ def test_textures_made_otherwise_are_not_left_out(jobs, recipe):
         {"cube": None},
     ):
         other = replace(jobs[0], recipe=replace(recipe, **change), force=True)
-        assert texture.left([other], resume=True) == [other]
+        assert texture.pending([other], resume=True) == [other]
 
 
 def test_two_images_of_one_name_are_refused(jobs):
     twice = [jobs[0], replace(jobs[2], target=jobs[0].target)]
     with pytest.raises(TextureError, match="would both become"):
-        texture.left(twice)
+        texture.pending(twice)
 
 
 def test_what_has_not_begun_is_given_up(jobs):

@@ -77,8 +77,8 @@ def test_whole_files_are_told_from_others(kind, tmp_path):
     parts = [OpenEXR.Part({**header}, {"Z": plane}, "a"), OpenEXR.Part({**header}, {"Z": plane}, "b")]
     OpenEXR.File(parts).write(str(tmp_path / "whole.exr"))
     data = (tmp_path / "whole.exr").read_bytes()
-    assert writer.is_whole(tmp_path / "whole.exr")
+    assert writer.is_complete(tmp_path / "whole.exr")
     for share in (0, 0.01, 0.3, 0.6, 0.99):
         (tmp_path / "cut.exr").write_bytes(data[: int(share * len(data))])
-        assert not writer.is_whole(tmp_path / "cut.exr"), share
-    assert not writer.is_whole(tmp_path / "none.exr")
+        assert not writer.is_complete(tmp_path / "cut.exr"), share
+    assert not writer.is_complete(tmp_path / "none.exr")

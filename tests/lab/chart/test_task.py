@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.atlas import Entry, Spectra, merge, on_grid, read_atlas
+from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
 from uplift.common.errors import AtlasError, OptionError
 from uplift.lab.chart.task import edges, task
 
@@ -47,6 +47,6 @@ def test_too_few_colours_and_entries_are_refused(repository):
     with pytest.raises(OptionError, match="15 colours say nothing; ask for 16 or more"):
         task(shipped(repository, "macbeth"), 15)
     at = np.arange(380.0, 781.0, 10.0)
-    two = Spectra(tuple(Entry(name, at, np.full(len(at), 0.5)) for name in ("one", "other")))
+    two = Atlas(tuple(Entry(name, at, np.full(len(at), 0.5)) for name in ("one", "other")))
     with pytest.raises(AtlasError, match="1 of the entries to ask for lie within sRGB"):
         task({"two": two}, 16)

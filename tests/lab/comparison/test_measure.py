@@ -88,7 +88,7 @@ def test_named_lights_are_a_set_of_their_own():
     with pytest.raises(UnknownNameError, match="did you mean"):
         scene(atlases, ["F2"])
     with pytest.raises(AtlasError, match="no entries to compare with"):
-        scene({"none": uplift.Spectra()})
+        scene({"none": uplift.Atlas()})
 
 
 def test_a_thin_scene_keeps_surfaces_from_end_to_end(checker):

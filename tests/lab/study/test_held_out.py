@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.atlas import Entry, Spectra
+from uplift.atlas import Atlas, Entry
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.lab.study.held_out import LIGHTS, Errors, Split, halves, judge, stated_errors
 
 GRID = observer.grid()
@@ -18,7 +18,7 @@ def family():
     """Two dozen spectra of one family, ripples that a smooth spectrum does not have, and colours close together."""
     levels = np.linspace(0.3, 0.6, 24)
     ripple = np.cos((GRID - 380) / 400 * 6 * np.pi)
-    return Spectra(tuple(Entry(f"{level:.3f}", GRID, level * (1 + 0.3 * ripple)) for level in levels))
+    return Atlas(tuple(Entry(f"{level:.3f}", GRID, level * (1 + 0.3 * ripple)) for level in levels))
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def test_errors_are_what_they_are_called():
     for row in range(3):
         assert errors.rms[row] == pytest.approx(np.sqrt(np.mean((answered[row] - measured[row]) ** 2)))
         for column, name in enumerate(("A", "FL11")):
-            apart = spectra_apart(observer.light(name), answered[row], measured[row])
+            apart = delta_e_spectra(observer.light(name), answered[row], measured[row])
             assert errors.delta_e[row, column] == pytest.approx(apart)
     assert errors.means() == pytest.approx([errors.rms.mean(), *errors.delta_e.mean(axis=0)])
 

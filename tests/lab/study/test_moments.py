@@ -9,7 +9,7 @@ import pytest
 
 import uplift
 from benchmarks.study_tables import STORED, read_thesis, within
-from uplift.atlas import Spectra, read_atlas
+from uplift.atlas import Atlas, read_atlas
 from uplift.common.errors import AtlasError, OptionError
 from uplift.lab.study.moments import EVERY, LIMIT, MEASURES, study
 from uplift.lab.study.technique import TECHNIQUES
@@ -130,7 +130,7 @@ def test_the_most_moments_work(repository):
 
 
 def test_nothing_to_study_is_refused():
-    for atlases in ({}, {"empty": Spectra()}):
+    for atlases in ({}, {"empty": Atlas()}):
         with pytest.raises(AtlasError, match="no entries to study; name an atlas"):
             study(atlases)
 

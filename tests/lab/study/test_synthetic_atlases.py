@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import rgb_lab
+from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.lab.study.synthetic_atlases import MADE, crowded, noisy, spiky
 
 
@@ -22,7 +22,7 @@ def test_they_are_always_the_same(name):
 
 
 def test_they_are_what_they_are_called(sensor):
-    lab = rgb_lab(sensor, sensor.rgb(values(crowded())))
+    lab = rgb_to_lab(sensor, sensor.rgb(values(crowded())))
     apart = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))
     assert np.median(apart.min(axis=1)) < 1
     assert (np.abs(np.diff(values(spiky()), axis=1)).max(axis=1) > 0.2).all()

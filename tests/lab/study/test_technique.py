@@ -60,7 +60,7 @@ def test_a_reconstruction_has_the_complex_moments_it_was_made_from(technique, co
     """By the trapezoid rule on the circle itself, which converges faster than any power."""
     moments = technique.moments(bumps(20, fine_grid()), fine_grid(), count)
     circle = -np.pi + 2 * np.pi * np.arange(1 << 14) / (1 << 14)
-    waves = duality.waves(circle, count + 1)
+    waves = duality.fourier_basis(circle, count + 1)
     reflectance = 0.5 + np.arctan((duality.multipliers_from_moments(moments) @ waves.T).real) / np.pi
     again = reflectance @ np.exp(-1j * circle[:, None] * np.arange(count + 1)) / len(circle)
     np.testing.assert_allclose(again, moments, rtol=0, atol=1e-10)

@@ -149,7 +149,7 @@ def test_bad_wavelengths_and_threads_are_refused(small_cube):
 
 def test_misses_are_the_fitting_distances_around(small_cube):
     data = small_cube.data
-    found = bulk.misses(small_cube)
+    found = bulk.max_rgb_error(small_cube)
     clear = ~np.isin(np.arange(data.lattice.size), data.pins.cells[0])  # of boxes of entries
     expected = data.distance[clear]
     np.testing.assert_allclose(found(data.lattice.points[clear])[:, 0], expected, rtol=0, atol=1e-7)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.scene.plan.decision import Trial, decide
 from uplift.scene.plan.evaluation import WRONG, Error, Group, Part, Question
 from uplift.scene.plan.previews import sights
@@ -42,7 +42,7 @@ def test_errors_are_those_of_a_slow_oracle(question):
     assert len(error.parts) == 4
     for part in error.parts:
         group = next(each for each in question.groups if each.name == part.group)
-        apart = spectra_apart(observer.light(part.light), group.wanted, answered[rows[part.group]])
+        apart = delta_e_spectra(observer.light(part.light), group.wanted, answered[rows[part.group]])
         assert part.quantile == pytest.approx(counted(apart, group.weights, 0.8), rel=1e-9)
         assert part.mean == pytest.approx(np.average(apart, weights=group.weights), rel=1e-9)
         assert part.largest == pytest.approx(apart.max(), rel=1e-9)

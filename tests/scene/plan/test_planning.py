@@ -85,9 +85,9 @@ def test_a_tolerance_out_of_reach_is_refused_with_the_best_measured(kitchen):
         PlanFileError, match=r"no cube comes within ΔE00 0.01: the best measured has "
     ) as caught:
         plan.plan(brief, replace(SMALL, coefficients=(5,)))
-    remedy = caught.value.remedy
+    hint = caught.value.hint
     assert "of materials under FL11" in str(caught.value)
-    assert float(remedy.removeprefix("set tolerance = ").removesuffix(" or more")) > 0.1
+    assert float(hint.removeprefix("set tolerance = ").removesuffix(" or more")) > 0.1
 
 
 def test_what_was_built_is_what_the_file_builds(planned, kitchen, tmp_path):

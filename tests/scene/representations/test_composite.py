@@ -41,7 +41,7 @@ def test_the_smooth_part_is_the_largest_that_is_nowhere_too_steep(table, thresho
 
 
 def test_the_lines_of_mercury_are_spikes_and_daylight_has_none():
-    lines, none = (split(observer.power(name, step=1.0)[None], 0.3)[1] for name in ("FL2", "C"))
+    lines, none = (split(observer.illuminant_spd(name, step=1.0)[None], 0.3)[1] for name in ("FL2", "C"))
     assert observer.grid()[lines.places].tolist() == [405, 435, 545]
     assert none.places.size == 0
 

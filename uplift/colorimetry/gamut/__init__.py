@@ -7,18 +7,25 @@ contained([[1.4, 0.2, -0.1]], SRGB, "desaturate").rgb
 
 from __future__ import annotations
 
-from uplift.colorimetry.gamut.apply import CHOICES, Contained, check_way, contained, refuse, triples
+from uplift.colorimetry.gamut.apply import (
+    METHODS,
+    GamutMapped,
+    as_rgb,
+    check_method,
+    map_to_gamut,
+    raise_out_of_gamut,
+)
 from uplift.colorimetry.gamut.boundary import SRGB, Gamut, Primaries, conversion
 
 __all__ = [
-    "CHOICES",
+    "METHODS",
     "SRGB",
-    "Contained",
     "Gamut",
+    "GamutMapped",
     "Primaries",
-    "check_way",
-    "contained",
+    "as_rgb",
+    "check_method",
     "conversion",
-    "refuse",
-    "triples",
+    "map_to_gamut",
+    "raise_out_of_gamut",
 ]

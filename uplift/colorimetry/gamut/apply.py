@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.gamut.boundary import Gamut
-from uplift.colorimetry.gamut.mapping import WAYS
+from uplift.colorimetry.gamut.mapping import MAPPINGS
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError, OptionError
 
-CHOICES = ("error", *WAYS)
+METHODS = ("error", *MAPPINGS)
 """Names of ``--out-of-gamut``."""
 LARGEST = 1e300
 """Colours beyond are scaled down to this, so that no sum of three overflows."""
@@ -23,7 +23,7 @@ BLOCK = 1 << 13
 
 
 @dataclass(frozen=True, eq=False)
-class Contained:
+class GamutMapped:
     """Linear RGB (…, 3) as ``asked`` for, and as it is inside [0, 1]; which (…,) of it was ``outside``."""
 
     asked: Values
@@ -41,39 +41,39 @@ class Contained:
         return float(np.abs(self.asked[self.outside] - self.rgb[self.outside]).max(initial=0))
 
 
-def contained(rgb: ArrayLike, gamut: Gamut, way: str = "error") -> Contained:
+def map_to_gamut(rgb: ArrayLike, gamut: Gamut, way: str = "error") -> GamutMapped:
     """Linear RGB (…, 3) with what lies outside [0, 1] brought inside; all else stays, to the bit.
 
     Parameters
     ----------
     rgb : float32 stays float32. Rounding takes nothing outside (`uplift.colorimetry.sensor.SLACK`).
     gamut : the display that RGB are of: a cube's sensor, `Primaries`, or `SRGB`.
-    way : one of `CHOICES`.
+    way : one of `METHODS`.
 
     Raises
     ------
     ColourError : colours that are not finite; with ``error`` all that lie outside.
     OptionError : an unknown way.
     """
-    check_way(way)
-    asked = triples(rgb)
+    check_method(way)
+    asked = as_rgb(rgb)
     outside = np.asarray(~((asked >= -SLACK) & (asked <= 1 + SLACK)).all(axis=-1))  # NaN is
     inside = np.clip(asked, 0, 1)
     if outside.any():
         rows = asked[outside].astype(float)
         if way == "error":
-            refuse(rows)
+            raise_out_of_gamut(rows)
         inside[outside] = np.clip(_moved(rows, gamut, way), 0, 1)  # rounding
-    return Contained(asked, inside, outside)
+    return GamutMapped(asked, inside, outside)
 
 
-def check_way(way: str) -> None:
+def check_method(way: str) -> None:
     """Raises `OptionError` for an unknown one."""
-    if way not in CHOICES:
-        raise OptionError(f"unknown way out of gamut '{way}'", remedy=f"use one of {', '.join(CHOICES)}")
+    if way not in METHODS:
+        raise OptionError(f"unknown way out of gamut '{way}'", hint=f"use one of {', '.join(METHODS)}")
 
 
-def triples(rgb: ArrayLike) -> Values:
+def as_rgb(rgb: ArrayLike) -> Values:
     """``rgb`` (…, 3) as float32, if that is what it is, or float64. Raises `ColourError` for other shapes."""
     single = isinstance(rgb, np.ndarray) and rgb.dtype == np.float32
     try:
@@ -85,11 +85,11 @@ def triples(rgb: ArrayLike) -> Values:
     return array
 
 
-def refuse(outside: Array) -> NoReturn:
+def raise_out_of_gamut(outside: Array) -> NoReturn:
     """Raises `ColourError`, quoting the first of linear RGB (n, 3)."""
     raise ColourError(
         f"linear RGB {_quoted(outside[0])} lies outside [0, 1]",
-        remedy="reflectances reach no further; move it with --out-of-gamut, or use --8bit for codes",
+        hint="reflectances reach no further; move it with --out-of-gamut, or use --8bit for codes",
     )
 
 
@@ -97,10 +97,10 @@ def _moved(rgb: Array, gamut: Gamut, way: str) -> Array:
     finite = np.isfinite(rgb).all(axis=1)
     if not finite.all():
         first = rgb[int(finite.argmin())]
-        raise ColourError(f"linear RGB {_quoted(first)} is not finite", remedy="mend what made it")
+        raise ColourError(f"linear RGB {_quoted(first)} is not finite", hint="mend what made it")
     rgb = rgb * np.minimum(1, LARGEST / np.abs(rgb).max(axis=1, keepdims=True))
     blocks = (rgb[first : first + BLOCK] for first in range(0, len(rgb), BLOCK))
-    return np.concatenate([WAYS[way](block, gamut) for block in blocks])
+    return np.concatenate([MAPPINGS[way](block, gamut) for block in blocks])
 
 
 def _quoted(rgb: Array) -> str:

@@ -51,7 +51,7 @@ class Primaries:
         if not spans or not np.isfinite(columns).all() or not (self.lengths > 0).all():
             raise OptionError(
                 f"({self}) are the primaries and white of no display",
-                remedy="name x,y of red, green, blue and white: the white lies within the triangle of the others",
+                hint="name x,y of red, green, blue and white: the white lies within the triangle of the others",
             )
 
     @classmethod
@@ -60,7 +60,7 @@ class Primaries:
         if len(numbers) != 8:
             raise OptionError(
                 f"primaries and white are eight numbers, not {len(numbers)}",
-                remedy="name x,y of red, green, blue and white",
+                hint="name x,y of red, green, blue and white",
             )
         pairs = [(float(x), float(y)) for x, y in zip(numbers[::2], numbers[1::2], strict=True)]
         return cls(*pairs)

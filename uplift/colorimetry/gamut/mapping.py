@@ -65,7 +65,7 @@ def desaturate_oklab(rgb: Array, gamut: Gamut) -> Array:
     return desaturate((back @ _cubed(grey + inner * chroma)).T, gamut)
 
 
-WAYS: dict[str, Way] = {
+MAPPINGS: dict[str, Way] = {
     "clip": clip,
     "scale": scale,
     "desaturate": desaturate,

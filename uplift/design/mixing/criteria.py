@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import colours_apart, rgb_lab
+from uplift.colorimetry.delta_e import delta_e_rgb, rgb_to_lab
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.design.mixing.mixers import Mixer
@@ -58,13 +58,13 @@ class Verdict:
 def judge(mixer: Mixer, sensor: Sensor, colours: Array) -> tuple[Verdict, ...]:
     """One verdict a criterion; the first five by linear RGB ``colours`` (n, 3), none of them grey."""
     shades, tints = (_with(mixer, colours, other) for other in (BLACK, WHITE))
-    lightness = rgb_lab(sensor, colours)[:, None, 0]
+    lightness = rgb_to_lab(sensor, colours)[:, None, 0]
     values = (
-        float(colours_apart(sensor, colours, _itself(mixer, colours)).max()),
+        float(delta_e_rgb(sensor, colours, _itself(mixer, colours)).max()),
         float(np.linalg.norm(_uv(sensor, shades) - _uv(sensor, colours)[:, None], axis=-1).max()),
-        float((rgb_lab(sensor, shades)[..., 0] - lightness).max()),
+        float((rgb_to_lab(sensor, shades)[..., 0] - lightness).max()),
         float(_turn(sensor, tints, colours[:, None]).max()),
-        float((lightness - rgb_lab(sensor, tints)[..., 0]).max()),
+        float((lightness - rgb_to_lab(sensor, tints)[..., 0]).max()),
         max(_chroma(sensor, _half(mixer, *pair)) for pair in COMPLEMENTS),
         _not_green(mixer.mix(np.stack([BLUE, YELLOW]), 2 * SHARES)),
     )
@@ -100,7 +100,7 @@ def _turn(sensor: Sensor, rgb: Array, other: Array) -> Array:
 
 
 def _chroma(sensor: Sensor, rgb: Array) -> float:
-    return float(np.linalg.norm(rgb_lab(sensor, rgb)[..., 1:]))
+    return float(np.linalg.norm(rgb_to_lab(sensor, rgb)[..., 1:]))
 
 
 def _not_green(rgb: Array) -> float:

@@ -29,7 +29,7 @@ def layer(pigment: Pigment, thickness: ArrayLike) -> Layer:
     """Paint of a thickness (…), in units of 1/K and 1/S (10.2). Raises `OptionError` unless finite and not negative."""
     X = np.asarray(thickness, dtype=float)[..., None]
     if not (np.isfinite(X) & (X >= 0)).all():
-        raise OptionError("a layer's thickness is a number from 0 up", remedy="hiding paint has none to give")
+        raise OptionError("a layer's thickness is a number from 0 up", hint="hiding paint has none to give")
     K, S = pigment.absorption, pigment.scattering
     gamma = _gamma(K, S)
     path = 2 * gamma * X

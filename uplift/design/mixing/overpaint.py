@@ -14,17 +14,17 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.gamut import check_way, contained
+from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError
 from uplift.design.mixing.coats import Coat
 from uplift.io.slices import exr
 from uplift.io.texture import Counts, Uplifter
-from uplift.io.texture.colours import MOVED, Floats, check_encoding
+from uplift.io.texture.colours import PAST_TENSE, Floats, check_encoding
 from uplift.io.texture.conversion import Watch
-from uplift.io.texture.part_layout import Plan, plans
-from uplift.io.texture.source import Image, Values, opened
-from uplift.io.texture.writer import Writer, writing
+from uplift.io.texture.part_layout import PartLayout, part_layouts
+from uplift.io.texture.source import Image, Values, open_image
+from uplift.io.texture.writer import Writer, open_writer
 from uplift.lookup import Cube, bulk
 from uplift.lookup.blocks import blockwise
 
@@ -62,11 +62,11 @@ def ready(
 ) -> Brush:
     """A brush; ``recipe``, JSON values, is what the header will say of the coat.
 
-    ``out_of_gamut``, one of `uplift.colorimetry.gamut.CHOICES`, is for pixels outside [0, 1] before and after painting.
+    ``out_of_gamut``, one of `uplift.colorimetry.gamut.METHODS`, is for pixels outside [0, 1] before and after painting.
     Raises `OptionError`.
     """
     check_encoding(encoding)
-    check_way(out_of_gamut)
+    check_method(out_of_gamut)
     header = {
         "chromaticities": exr.chromaticities(cube.data.sensor),
         "uplift.mix": json.dumps(dict(recipe or {})),
@@ -88,21 +88,21 @@ def paint_over(
     Raises `TextureError`, `OutputError`, `OptionError` for encoded floats that should be moved, and `ColourError` for
     colours that a cube of a scene has no points for, or that lie outside [0, 1] where that is an error.
     """
-    with opened(source) as image:
-        planned = plans(brush.uplifter, image)
+    with open_image(source) as image:
+        planned = part_layouts(brush.uplifter, image)
         try:
-            with writing(target, [plan.layout for plan in planned], force=force) as writer:
+            with open_writer(target, [plan.layout for plan in planned], force=force) as writer:
                 found = _write(brush, image, planned, writer, watch)
         except ColourError as error:
-            raise ColourError(error.problem, path=source, remedy=error.remedy) from error
+            raise ColourError(error.problem, path=source, hint=error.hint) from error
         way = brush.uplifter.out_of_gamut
         remarks = [*found.counts.remarks(way), *image.remarks(brush.uplifter.cube.data.sensor)]
     if found.moved:
-        remarks.append(f"{found.moved:,} painted pixels lie outside [0, 1]: {MOVED[way]}")
+        remarks.append(f"{found.moved:,} painted pixels lie outside [0, 1]: {PAST_TENSE[way]}")
     return replace(found, remarks=tuple(remarks))
 
 
-def _write(brush: Brush, image: Image, planned: list[Plan], writer: Writer, watch: Watch) -> Painted:
+def _write(brush: Brush, image: Image, planned: list[PartLayout], writer: Writer, watch: Watch) -> Painted:
     counts, moved, done = Counts(), 0, 0
     total = sum(plan.part.window.height for plan in planned)
     for plan in planned:
@@ -115,7 +115,7 @@ def _write(brush: Brush, image: Image, planned: list[Plan], writer: Writer, watc
     return Painted(counts, moved)
 
 
-def _band(brush: Brush, plan: Plan, band: Values) -> tuple[Values, Painted]:
+def _band(brush: Brush, plan: PartLayout, band: Values) -> tuple[Values, Painted]:
     rest = band[..., plan.rest]
     if plan.part.codes:
         rest = rest / np.float32(plan.part.codes)
@@ -123,7 +123,7 @@ def _band(brush: Brush, plan: Plan, band: Values) -> tuple[Values, Painted]:
         return rest, Painted(Counts(), 0)
     rgb, counts = plan.decoder(band[..., plan.colours])
     uplifter = brush.uplifter
-    seen = contained(brush.over(rgb), uplifter.cube.data.sensor, uplifter.out_of_gamut)
+    seen = map_to_gamut(brush.over(rgb), uplifter.cube.data.sensor, uplifter.out_of_gamut)
     return np.concatenate([seen.rgb, rest], axis=-1), Painted(counts, seen.count)
 
 

@@ -74,16 +74,14 @@ def on_two_grounds(
     R1, R2 = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
     determinant = g2 - g1 + g1 * g2 * (R1 - R2)
     if not (np.abs(g2 - g1) > SLACK).all() or not length(thickness):
-        raise OptionError("K and S need two grounds, and some paint", remedy="measure on black and on white")
+        raise OptionError("K and S need two grounds, and some paint", hint="measure on black and on white")
     R0 = (R1 * g2 - R2 * g1) / determinant
     through = ((1 + R1 * g1) * R2 - (1 + R2 * g2) * R1) / determinant + R0**2
     T = np.sqrt(np.maximum(through, 0))
     if not (T > OPAQUE).all():
-        raise ColourError("hides the ground, or is lighter on the darker", remedy="measure a thinner layer")
+        raise ColourError("hides the ground, or is lighter on the darker", hint="measure a thinner layer")
     if not ((R0 >= -SLACK) & (R0 + T <= 1 + SLACK)).all():
-        raise ColourError(
-            "no paint has these reflectances on these grounds", remedy="check which is on which"
-        )
+        raise ColourError("no paint has these reflectances on these grounds", hint="check which is on which")
     return _of_layer(np.maximum(R0, 0), T, thickness)
 
 

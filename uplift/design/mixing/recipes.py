@@ -51,11 +51,11 @@ def coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium) 
     for pigments that cannot be.
     """
     if kind not in COATS:
-        raise OptionError(f"{kind}s make no coat", remedy=f"use {' or '.join(COATS)}")
+        raise OptionError(f"{kind}s make no coat", hint=f"use {' or '.join(COATS)}")
     _warn_of_dark(ingredients, medium.surface)
     if kind == "dye":
         if any(one is not None for one in ingredients.on_black):
-            raise OptionError("dyes have no colour on black", remedy="give their colour on white alone")
+            raise OptionError("dyes have no colour on black", hint="give their colour on white alone")
         thickness = 1.0 if medium.thickness is None else medium.thickness
         return coats.of_dyes(ingredients.seen, parts, thickness, medium.surface)
     paints = [
@@ -84,11 +84,11 @@ def mixed(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium,
     if kind in COATS:
         return coat(kind, ingredients, parts, medium).over(ground)
     if kind not in KINDS:
-        raise OptionError(f"unknown kind of mixture '{kind}'", remedy=f"use one of {', '.join(KINDS)}")
+        raise OptionError(f"unknown kind of mixture '{kind}'", hint=f"use one of {', '.join(KINDS)}")
     if medium != Medium() or any(one is not None for one in ingredients.on_black):
         raise OptionError(
             f"{kind}s have no thickness, surface, or colour on black",
-            remedy="leave them out: parts of filters are their thickness",
+            hint="leave them out: parts of filters are their thickness",
         )
     mix = filters.stacked if kind == "filter" else additive.lights
     return mix(ingredients.seen, parts)
@@ -100,7 +100,7 @@ def ramp(parts: ArrayLike, steps: int) -> Array:
     (0, 1) where there is only one. Raises `OptionError` for less than two steps.
     """
     if steps < 2:
-        raise OptionError(f"a ramp of {steps} steps", remedy="give 2 or more")
+        raise OptionError(f"a ramp of {steps} steps", hint="give 2 or more")
     ends = np.diag(amounts(parts))
     if len(ends) < 2:
         return np.empty((0, len(ends)))

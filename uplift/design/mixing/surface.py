@@ -58,7 +58,7 @@ class Surface:
     def __post_init__(self) -> None:
         for value in (self.outside, self.inside):
             if not 0 <= value < 1:
-                raise OptionError(f"a surface that reflects {value}", remedy="give numbers from 0 to below 1")
+                raise OptionError(f"a surface that reflects {value}", hint="give numbers from 0 to below 1")
 
     def seen(self, beneath: ArrayLike) -> Array:
         """Reflectance (…) from outside, of what has reflectance (…) ``beneath`` the surface (10.10)."""
@@ -92,5 +92,5 @@ INCIDENT = {"perpendicular": perpendicular, "diffuse": overcast}
 
 def _index(index: float) -> float:
     if not (np.isfinite(index) and index >= 1):
-        raise OptionError(f"index of refraction {index}", remedy="give 1 or more: 1.5 is linseed oil")
+        raise OptionError(f"index of refraction {index}", hint="give 1 or more: 1.5 is linseed oil")
     return index

@@ -13,7 +13,7 @@ def amounts(parts: ArrayLike) -> Array:
     """Parts (…, n) as floats. Raises `OptionError` for negative ones and NaN."""
     array = np.asarray(parts, dtype=float)
     if array.ndim == 0 or not (np.isfinite(array) & (array >= 0)).all():
-        raise OptionError("parts of a mixture are numbers from 0 up", remedy="give one for each colour")
+        raise OptionError("parts of a mixture are numbers from 0 up", hint="give one for each colour")
     return array
 
 
@@ -22,14 +22,14 @@ def shares(parts: ArrayLike) -> Array:
     array = amounts(parts)
     total = array.sum(axis=-1, keepdims=True)
     if not (total > 0).all():
-        raise OptionError("a mixture of no parts", remedy="give some part more than 0")
+        raise OptionError("a mixture of no parts", hint="give some part more than 0")
     return np.asarray(array / total)
 
 
 def length(value: float, what: str = "thickness") -> float:
     """A finite number from 0 up. Raises `OptionError`."""
     if not (np.isfinite(value) and value >= 0):
-        raise OptionError(f"{what} {value} is no number from 0 up", remedy="0 is none, 1 the unit")
+        raise OptionError(f"{what} {value} is no number from 0 up", hint="0 is none, 1 the unit")
     return float(value)
 
 

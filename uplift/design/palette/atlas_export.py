@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 
-from uplift.atlas import Entry, Header, Spectra, write_atlas
+from uplift.atlas import Atlas, Entry, Header, write_atlas
 from uplift.atlas.checks import HIGHEST, LOWEST
 from uplift.common.errors import PaletteError, UpliftWarning
 from uplift.common.files import check_output
@@ -14,7 +14,7 @@ from uplift.design.palette.design import Design
 CONTENT = "Reflectances designed by uplift palette"
 
 
-def designed_atlas(found: Design) -> Spectra:
+def designed_atlas(found: Design) -> Atlas:
     """The designed materials. An `UpliftWarning` names those that no atlas holds: far below 0, or above 1."""
     entries = []
     for part, row in zip(found.palette.materials, found.reflectances, strict=True):
@@ -27,7 +27,7 @@ def designed_atlas(found: Design) -> Spectra:
             continue
         wavelengths = found.palette.sensor.wavelengths
         entries.append(Entry(part.name, wavelengths, row, description=_description(found, part.name)))
-    return Spectra(tuple(entries))
+    return Atlas(tuple(entries))
 
 
 def write_designed(found: Design, path: str | os.PathLike[str], *, force: bool = False) -> int:
@@ -35,7 +35,7 @@ def write_designed(found: Design, path: str | os.PathLike[str], *, force: bool =
     atlas = designed_atlas(found)
     if not atlas.entries:
         raise PaletteError(
-            "no designed material that an atlas can hold", remedy="design one with bounds within [0, 1]"
+            "no designed material that an atlas can hold", hint="design one with bounds within [0, 1]"
         )
     write_atlas(atlas, check_output(path, force=force), Header(content=CONTENT))
     return len(atlas)

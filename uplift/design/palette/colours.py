@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry.delta_e import lab_slope
+from uplift.colorimetry.delta_e import lab_jacobian
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 
@@ -35,5 +35,5 @@ def lab_per_rgb(sensor: Sensor, rgb: ArrayLike) -> Array:
     """Derivative (…, 3, 3) of L*a*b* by linear RGB (…, 3), exposed to mid-grey; the last axis is RGB."""
     rgb = np.asarray(rgb, dtype=float)
     gain = exposure(sensor, rgb)[..., None]
-    slope = lab_slope(sensor.xyz(rgb * gain), sensor.light.white)
+    slope = lab_jacobian(sensor.xyz(rgb * gain), sensor.light.white)
     return slope @ np.linalg.inv(sensor.xyz_to_rgb) * gain[..., None]

@@ -45,7 +45,7 @@ def design(palette: Palette, model: FactorModel) -> Design:
     if wish is not None:
         raise PaletteError(
             f"a colour for {wish}, both of which are to be designed",
-            remedy="give one of them, or leave the colour out",
+            hint="give one of them, or leave the colour out",
         )
     where, found = unknowns(palette), solve(equations(palette, model))
     return Design(

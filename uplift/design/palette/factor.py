@@ -84,9 +84,7 @@ def factor_model(sensor: Sensor, reflectances: Array, lights: Array, count: int 
     while `FactorModel.light` finds the coefficients that tint surfaces as it does. Raises `OptionError`.
     """
     if count not in COUNTS:
-        raise OptionError(
-            f"a factor model of {count} coefficients", remedy=f"take {COUNTS[0]} to {COUNTS[-1]}"
-        )
+        raise OptionError(f"a factor model of {count} coefficients", hint=f"take {COUNTS[0]} to {COUNTS[-1]}")
     ways = bounces(reflectances, lights)
     basis, projection = _principal(sensor, ways, count)
     transform = sharpen(sensor, basis, projection, ways)

@@ -123,9 +123,9 @@ class Fields:
         choices = ", ".join(f"'{one}'" for one in near)
         return self.error(f"unknown {kind} '{name}'", f"did you mean {choices}?" if near else "there is none")
 
-    def error(self, problem: str, remedy: str) -> PaletteError:
+    def error(self, problem: str, hint: str) -> PaletteError:
         place = f"[{self.place}]: " if self.place else ""
-        return PaletteError(place + problem, path=self.path, remedy=remedy)
+        return PaletteError(place + problem, path=self.path, hint=hint)
 
     def _take(self, key: str, default: object) -> Any:
         self.taken.append(key)

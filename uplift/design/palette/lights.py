@@ -25,14 +25,14 @@ def illuminant(sensor: Sensor, name: str) -> Array:
     """(N,) power of an illuminant as colour-science names it. Raises `UnknownNameError`."""
     start, end = sensor.wavelengths[[0, -1]]
     step = sensor.wavelengths[1] - start
-    return scaled(sensor, observer.power(name, float(start), float(end), float(step)))
+    return scaled(sensor, observer.illuminant_spd(name, float(start), float(end), float(step)))
 
 
 def planck(sensor: Sensor, kelvin: float) -> Array:
     """(N,) power of a black body (Bergner, eq. 25). Raises `OptionError`."""
     if not COLDEST <= kelvin <= HOTTEST:
         raise OptionError(
-            f"a black body of {kelvin:g} K", remedy=f"give a temperature of {COLDEST:g} to {HOTTEST:g} K"
+            f"a black body of {kelvin:g} K", hint=f"give a temperature of {COLDEST:g} to {HOTTEST:g} K"
         )
     at = sensor.wavelengths
     reference = 560.0  # where luminance is; keeps the powers near 1

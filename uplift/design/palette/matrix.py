@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.design import Design
@@ -49,8 +49,8 @@ def matrix(design: Design) -> Matrix:
         wanted,
         obtained,
         factor,
-        colours_apart(palette.sensor, wanted, obtained),
-        colours_apart(palette.sensor, obtained, factor),
+        delta_e_rgb(palette.sensor, wanted, obtained),
+        delta_e_rgb(palette.sensor, obtained, factor),
         design.powers @ screen.T,
     )
 
@@ -75,4 +75,4 @@ def difference(design: Design, colours: Matrix, apart: Apart) -> float:
     first, second = (
         colours.obtained[place(design, Wish(material, apart.light))] for material in apart.materials
     )
-    return float(colours_apart(design.palette.sensor, first, second))
+    return float(delta_e_rgb(design.palette.sensor, first, second))

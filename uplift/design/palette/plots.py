@@ -13,7 +13,7 @@ from uplift.design.palette.design import Design
 from uplift.design.palette.matrix import Matrix
 from uplift.design.palette.palette import Part
 from uplift.viz.charts import BAND, GREY, INK
-from uplift.viz.figure import new_figure, plain, write_png
+from uplift.viz.figure import new_figure, style_axes, write_png
 
 CELL, NAMES, TOP = (1.5, 1.0), 1.35, 0.75
 """Inches of a cell, of the column of names, and of the row of lights."""
@@ -101,7 +101,7 @@ def _lines(axes: Any, wavelengths: Array, parts: tuple[Part, ...], samples: Arra
         axes.plot(wavelengths, row, linewidth=1.8, linestyle=dash, label=_short(part.name))
     axes.margins(x=0.01)
     axes.legend(frameon=False, fontsize=8)
-    plain(axes)
+    style_axes(axes)
 
 
 def _fitting(rgb: Array) -> Array:

@@ -12,7 +12,7 @@ import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.common.threads import one_blas_thread
+from uplift.common.threads import single_threaded_blas
 from uplift.design.palette.bounces import Bounces
 from uplift.design.palette.colours import lab_per_rgb, screen_matrix
 
@@ -38,7 +38,7 @@ def sharpen(sensor: Sensor, basis: Array, projection: Array, ways: Bounces) -> A
     free = null_space(white[None])
     task = _task(sensor, basis, projection, ways, free)
     start = _peaks(basis, projection) @ free
-    with one_blas_thread():
+    with single_threaded_blas():
         found = least_squares(
             task.residuals,
             start.ravel(),

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
-from uplift.common.threads import one_blas_thread
+from uplift.common.threads import single_threaded_blas
 from uplift.design.palette.equations import Equations
 
 ENOUGH, MOST_STEPS = 1e-12, 1000
@@ -26,7 +26,7 @@ def solve(problem: Equations) -> Array:
     Parker 1995 in scipy's ``lsq_linear``). What has no equation in common is solved apart.
     """
     found = np.zeros(problem.matrix.shape[1])
-    with one_blas_thread():
+    with single_threaded_blas():
         for rows, columns in _apart(problem.matrix):
             part = Equations(
                 problem.matrix[np.ix_(rows, columns)],

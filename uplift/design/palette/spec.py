@@ -26,7 +26,7 @@ def read_palette(path: str | os.PathLike[str]) -> Palette:
 
     Raises
     ------
-    PaletteError : with the table, the key and a remedy; and whatever atlases, cubes and names raise.
+    PaletteError : with the table, the key and a hint; and whatever atlases, cubes and names raise.
     """
     root = Fields(path, "", _parse(path))
     sensor = observer.sensor()
@@ -56,7 +56,7 @@ def _parse(path: str | os.PathLike[str]) -> dict[str, Any]:
     except (OSError, ValueError, RecursionError) as error:
         # TOML and UTF-8 raise kinds of ValueError, as does a NUL in a path; tables that nest deeply RecursionError.
         reason = getattr(error, "strerror", None) or str(error)
-        raise PaletteError(f"cannot be read: {reason}", path=path, remedy="write a spec in TOML") from None
+        raise PaletteError(f"cannot be read: {reason}", path=path, hint="write a spec in TOML") from None
 
 
 def _parts(fields: Fields, sensor: Sensor, make: Callable[[str, Fields, Sensor], Part]) -> tuple[Part, ...]:

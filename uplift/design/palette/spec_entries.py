@@ -7,7 +7,7 @@ from pathlib import Path
 
 from uplift import lookup
 from uplift.atlas import on_grid, read_atlas
-from uplift.atlas.atlas import Spectra
+from uplift.atlas.atlas import Atlas
 from uplift.colorimetry.sensor import Sensor
 from uplift.design.palette.fields import Fields
 from uplift.design.palette.lights import illuminant, planck
@@ -59,12 +59,12 @@ def _designed(name: str, fields: Fields, bounds: tuple[float, float]) -> Part:
     return Part(name, None, low, high)
 
 
-def _entry(fields: Fields, spectra: Spectra) -> Spectra:
+def _entry(fields: Fields, spectra: Atlas) -> Atlas:
     name = fields.text("entry")
     found = tuple(entry for entry in spectra.entries if entry.name == name)
     if not found:
         raise fields.unknown(name, list(spectra.names), "entry")
-    return Spectra(found)
+    return Atlas(found)
 
 
 def _beside(fields: Fields, key: str) -> Path:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.errors import OptionError, UpliftWarning
-from uplift.common.files import replacing
+from uplift.common.files import atomic_write
 from uplift.cube import CubeData, digest
 from uplift.models import Model, Moments, Sigmoid
 from uplift.models.phase import WARPS
@@ -37,9 +37,9 @@ def write_c(data: CubeData, path: str | os.PathLike[str], *, force: bool = False
     """
     if data.complete is not None:
         problem = "the cube was built for the colours of a scene, and a header has all colours"
-        raise OptionError(problem, remedy="export it with --fill (in Python: cube.filled())")
+        raise OptionError(problem, hint="export it with --fill (in Python: cube.fill_missing())")
     name = _identifier(Path(path).stem)
-    with replacing(path, force=force) as temporary:
+    with atomic_write(path, force=force) as temporary:
         with temporary.open("w", encoding="ascii", newline="\n") as file:
             file.writelines(_parts(data, name))
         size = temporary.stat().st_size

@@ -21,11 +21,11 @@ from numpy.typing import NDArray
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.common.files import replacing
+from uplift.common.files import atomic_write
 from uplift.cube import CubeData
 from uplift.lookup.nodes import around
 from uplift.models import Sigmoid
-from uplift.models.minimum_norm import Forward, forward
+from uplift.models.minimum_norm import ForwardMap, forward_map
 
 MAGIC = b"SPEC"
 RES = 64
@@ -45,8 +45,8 @@ def write_coeff(
     Raises `OutputError`, or `OptionError` for a ``res`` outside 2 to 256.
     """
     if not FEWEST <= res <= MOST:
-        raise OptionError(f"a table of res {res} makes no sense", remedy=f"use {FEWEST} to {MOST}")
-    with replacing(path, force=force) as temporary:
+        raise OptionError(f"a table of res {res} makes no sense", hint=f"use {FEWEST} to {MOST}")
+    with atomic_write(path, force=force) as temporary:
         scale = _scale(res)
         coefficients, worst = _fit(data, scale)
         with temporary.open("wb") as file:
@@ -96,7 +96,7 @@ def _fit(data: CubeData, scale: Array) -> tuple[NDArray[np.float32], float]:
 
     sensor, res = data.sensor, len(scale)
     model = Sigmoid(*sensor.wavelengths[[0, -1]].tolist())
-    ahead = forward(model, sensor.wavelengths, sensor.matrix)
+    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     table = np.empty((3, res, res, res, 3), dtype=np.float32)
     middle, worst = res // 5, 0.0
     grey = np.zeros((3 * res * res, model.count))
@@ -128,7 +128,9 @@ def _per_nanometre(model: Sigmoid, multipliers: Array) -> Array:
     )
 
 
-def _colours(model: Sigmoid, ahead: Forward, wavelengths: Array, coefficients: NDArray[np.float32]) -> Array:
+def _colours(
+    model: Sigmoid, ahead: ForwardMap, wavelengths: Array, coefficients: NDArray[np.float32]
+) -> Array:
     """Linear RGB (n, 3) of coefficients (n, 3) as they are stored."""
     powers = np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
     return np.asarray(model.squash(coefficients.astype(float) @ powers) @ ahead.sensor.T)

@@ -10,7 +10,7 @@ from itertools import chain
 import numpy as np
 
 from uplift.common.arrays import Indices
-from uplift.common.files import replacing
+from uplift.common.files import atomic_write
 from uplift.cube import CubeData
 from uplift.lattice import Status
 
@@ -25,7 +25,7 @@ def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
     if any; round and standard error, of cubes that have them; the coefficients. Raises `OutputError`.
     """
     with (
-        replacing(path, force=force) as temporary,
+        atomic_write(path, force=force) as temporary,
         temporary.open("w", encoding="utf-8", newline="") as file,
     ):
         writer = csv.writer(file, lineterminator="\n")

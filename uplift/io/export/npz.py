@@ -7,7 +7,7 @@ import os
 
 import numpy as np
 
-from uplift.common.files import replacing
+from uplift.common.files import atomic_write
 from uplift.cube import CubeData, contents
 
 
@@ -24,6 +24,6 @@ def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
         "atlas.names": np.array(data.atlas.names, dtype=np.str_),
         "metadata": np.array(json.dumps(metadata, ensure_ascii=False)),
     }
-    with replacing(path, force=force) as temporary, temporary.open("wb") as file:
+    with atomic_write(path, force=force) as temporary, temporary.open("wb") as file:
         np.savez(file, allow_pickle=False, **arrays)
     return len(arrays)

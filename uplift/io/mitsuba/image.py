@@ -122,7 +122,7 @@ def _choice(props: Any, name: str, choices: tuple[str, ...]) -> str:
     """Raises `OptionError`. The first is the default."""
     chosen = str(props.get(name, choices[0]))
     if chosen not in choices:
-        raise OptionError(f"unknown {name} '{chosen}'", remedy=f"use one of {', '.join(choices)}")
+        raise OptionError(f"unknown {name} '{chosen}'", hint=f"use one of {', '.join(choices)}")
     return chosen
 
 

@@ -26,12 +26,12 @@ def register() -> None:
     try:
         import mitsuba
     except ImportError as error:
-        raise OptionError("Mitsuba 3 is not installed", remedy="'pip install mitsuba' brings it") from error
+        raise OptionError("Mitsuba 3 is not installed", hint="'pip install mitsuba' brings it") from error
     variant = mitsuba.variant()
     if variant is None or "spectral" not in variant or "polarized" in variant:
         raise OptionError(
             f"Mitsuba's variant {variant} has no plain spectra",
-            remedy="set scalar_spectral or llvm_ad_spectral",
+            hint="set scalar_spectral or llvm_ad_spectral",
         )
     mitsuba.register_texture("uplift", _plugin)
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.errors import OutputError
-from uplift.common.files import replacing
+from uplift.common.files import atomic_write
 from uplift.cube.data import CubeData
 from uplift.cube.file import digest
 from uplift.lattice import Status
@@ -54,14 +54,14 @@ def write_parts(parts: Iterable[Any], path: str | os.PathLike[str], *, force: bo
     """
     import OpenEXR
 
-    with replacing(path, force=force) as temporary, temporary.open("wb") as file:
+    with atomic_write(path, force=force) as temporary, temporary.open("wb") as file:
         OpenEXR.File(list(parts)).write(file)
 
 
 def _float32(channel: str, plane: NDArray[Any]) -> NDArray[np.float32]:
     """Whole numbers to 2²⁴ and −1 stay exact; what is too large becomes the largest, not infinite."""
     if np.isnan(plane).any():
-        raise OutputError(f"channel '{channel}' holds NaN", remedy="rebuild the cube")
+        raise OutputError(f"channel '{channel}' holds NaN", hint="rebuild the cube")
     return np.ascontiguousarray(np.clip(plane, -LARGEST, LARGEST), dtype=np.float32)
 
 

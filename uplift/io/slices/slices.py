@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import OutputError
 from uplift.common.files import check_output
 from uplift.cube.data import CubeData
@@ -46,7 +46,7 @@ def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = 
 def check_slices(path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Raises `OutputError` where `write_slices` would: asks before long work."""
     if Path(path).suffix.lower() != ".exr":
-        raise OutputError("slices are OpenEXR", path=path, remedy="name the file .exr, or make a sheet")
+        raise OutputError("slices are OpenEXR", path=path, hint="name the file .exr, or make a sheet")
     check_output(path, force=force)
 
 
@@ -58,7 +58,7 @@ def channels(data: CubeData) -> dict[str, NDArray[Any]]:
         **_rgb("lattice.", data.rgb),
         **_rgb("target.", target),
         "distance": data.distance,
-        "deltaE2000": np.where(data.present, colours_apart(data.sensor, target, data.rgb), 0),
+        "deltaE2000": np.where(data.present, delta_e_rgb(data.sensor, target, data.rgb), 0),
         "status": data.status,
         "entry": data.entry,
     }

@@ -10,8 +10,17 @@ from __future__ import annotations
 
 from uplift.io.texture.colours import ENCODINGS, Counts
 from uplift.io.texture.conversion import Conversion, convert
-from uplift.io.texture.pixel_encoding import FORMS, Form, Moments, Multipliers, Spectrum
-from uplift.io.texture.sequence import Failure, Job, Recipe, cluster, convert_all, left, processes, ready
+from uplift.io.texture.pixel_encoding import FORMS, Moments, Multipliers, PixelEncoding, Spectrum
+from uplift.io.texture.sequence import (
+    Failure,
+    Job,
+    TextureSettings,
+    cluster,
+    convert_all,
+    pending,
+    processes,
+    uplifter_for,
+)
 from uplift.io.texture.uplifter import Uplifter, prepare
 
 __all__ = [
@@ -20,18 +29,18 @@ __all__ = [
     "Conversion",
     "Counts",
     "Failure",
-    "Form",
     "Job",
     "Moments",
     "Multipliers",
-    "Recipe",
+    "PixelEncoding",
     "Spectrum",
+    "TextureSettings",
     "Uplifter",
     "cluster",
     "convert",
     "convert_all",
-    "left",
+    "pending",
     "prepare",
     "processes",
-    "ready",
+    "uplifter_for",
 ]

@@ -8,21 +8,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.gamut import contained
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.errors import ColourError, OptionError, TextureError
 from uplift.io.texture.source import Part, Values
 
 Floats = NDArray[np.float32]
 ENCODINGS = ("auto", "linear", "encoded")
-MOVED = {
+PAST_TENSE = {
     "error": "refused",
     "clip": "clamped",
     "scale": "scaled",
     "desaturate": "desaturated",
     "desaturate-oklab": "desaturated in Oklab",
 }
-"""What is said of pixels, by the names of `uplift.colorimetry.gamut.CHOICES`."""
+"""What is said of pixels, by the names of `uplift.colorimetry.gamut.METHODS`."""
 COLOUR_KINDS = {"uint8", "uint16", "half", "float", "double"}
 
 
@@ -51,7 +51,7 @@ class Counts:
     def remarks(self, way: str = "clip") -> tuple[str, ...]:
         """What should be said of them, where ``way`` was what became of those outside."""
         said = {
-            f"lie outside [0, 1]: {MOVED[way]}, a component by up to {self.farthest:.3g}": self.outside,
+            f"lie outside [0, 1]: {PAST_TENSE[way]}, a component by up to {self.farthest:.3g}": self.outside,
             "are not finite: NaN is taken for 0, infinity clamped": self.not_finite,
             "are or border on colours that no reflectance has: their spectra have less chroma": self.missed,
         }
@@ -70,7 +70,7 @@ def colour_channels(part: Part) -> tuple[int, int, int] | None:
     red, green, blue = (part.channels.index(name) for name in names)
     if kinds := {part.kinds[place] for place in (red, green, blue)} - COLOUR_KINDS:
         problem = f"has colours of type {min(kinds)}"
-        raise TextureError(problem, remedy="make them 8-bit, 16-bit, half or float")
+        raise TextureError(problem, hint="make them 8-bit, 16-bit, half or float")
     return red, green, blue
 
 
@@ -81,7 +81,7 @@ def _names(part: Part) -> tuple[str, str, str] | None:
         return "R", "G", "B"
     if len(layers) > 1:
         names = ", ".join(layer[:-1] for layer in layers)
-        raise TextureError(f"has several layers of colour: {names}", remedy="make each a part, or a file")
+        raise TextureError(f"has several layers of colour: {names}", hint="make each a part, or a file")
     if layers:
         return layers[0] + "R", layers[0] + "G", layers[0] + "B"
     luma = "Y" in part.channels and not {"RY", "BY"} & set(part.channels)
@@ -112,9 +112,9 @@ class Decoder:
             clamped = np.clip(np.nan_to_num(colours, nan=0.0, posinf=1.0, neginf=0.0), 0, 1)
             colours = np.where(finite[..., None], colours, clamped)
         try:
-            moved = contained(colours, self.sensor, self.way)
+            moved = map_to_gamut(colours, self.sensor, self.way)
         except ColourError as error:
-            raise ColourError(error.problem, remedy="use --out-of-gamut clip, or another way") from error
+            raise ColourError(error.problem, hint="use --out-of-gamut clip, or another way") from error
         unfit = int((~finite).sum())
         return self.function(moved.rgb), Counts(pixels, moved.count, unfit, farthest=moved.farthest)
 
@@ -122,13 +122,13 @@ class Decoder:
 def check_encoding(encoding: str) -> None:
     """Raises `OptionError` for an unknown one."""
     if encoding not in ENCODINGS:
-        raise OptionError(f"unknown encoding '{encoding}'", remedy=f"use one of {', '.join(ENCODINGS)}")
+        raise OptionError(f"unknown encoding '{encoding}'", hint=f"use one of {', '.join(ENCODINGS)}")
 
 
 def decoder(sensor: Sensor, part: Part, encoding: str, way: str = "clip") -> Decoder:
     """8-bit and 16-bit codes are encoded as the sensor's space has it, all else is linear, unless told otherwise.
 
-    ``way`` is what becomes of what lies outside [0, 1] (`uplift.colorimetry.gamut.CHOICES`). Raises `OptionError` for encoded
+    ``way`` is what becomes of what lies outside [0, 1] (`uplift.colorimetry.gamut.METHODS`). Raises `OptionError` for encoded
     floats that should be moved: encodings end at 0 and 1.
     """
     if part.codes:
@@ -139,6 +139,6 @@ def decoder(sensor: Sensor, part: Part, encoding: str, way: str = "clip") -> Dec
     if encoding == "encoded":
         if way not in ("error", "clip"):
             problem = f"encoded floats end at 0 and 1: there is nothing beyond to {way}"
-            raise OptionError(problem, remedy="use --out-of-gamut clip, or --encoding linear")
+            raise OptionError(problem, hint="use --out-of-gamut clip, or --encoding linear")
         return Decoder(lambda floats: sensor.decode(255 * floats).astype(np.float32), False, sensor, way)
     return Decoder(lambda floats: floats.astype(np.float32, copy=False), False, sensor, way)

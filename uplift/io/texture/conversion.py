@@ -12,10 +12,10 @@ import numpy as np
 
 from uplift.common.errors import ColourError
 from uplift.io.texture.colours import Counts, Floats
-from uplift.io.texture.part_layout import Plan, plans
-from uplift.io.texture.source import Image, Values, opened
+from uplift.io.texture.part_layout import PartLayout, part_layouts
+from uplift.io.texture.source import Image, Values, open_image
 from uplift.io.texture.uplifter import Uplifter
-from uplift.io.texture.writer import Writer, writing
+from uplift.io.texture.writer import Writer, open_writer
 
 BAND = 1 << 27
 """Bytes of a band that is written at once."""
@@ -51,18 +51,20 @@ def convert(
     colours that a cube of a scene has no points for, or that lie outside [0, 1] where that is an error.
     """
     begin = time.perf_counter()
-    with opened(source) as image:
-        planned = plans(uplifter, image)
+    with open_image(source) as image:
+        planned = part_layouts(uplifter, image)
         try:
-            with writing(target, [plan.layout for plan in planned], force=force) as writer:
+            with open_writer(target, [plan.layout for plan in planned], force=force) as writer:
                 counts = _write(uplifter, image, planned, writer, watch)
         except ColourError as error:
-            raise ColourError(error.problem, path=source, remedy=error.remedy) from error
+            raise ColourError(error.problem, path=source, hint=error.hint) from error
     remarks = (*counts.remarks(uplifter.out_of_gamut), *image.remarks(uplifter.cube.data.sensor))
     return Conversion(Path(source), Path(target), counts, remarks, time.perf_counter() - begin)
 
 
-def _write(uplifter: Uplifter, image: Image, planned: list[Plan], writer: Writer, watch: Watch) -> Counts:
+def _write(
+    uplifter: Uplifter, image: Image, planned: list[PartLayout], writer: Writer, watch: Watch
+) -> Counts:
     counts, done = Counts(), 0
     total = sum(plan.part.window.height for plan in planned)
     for plan in planned:
@@ -75,7 +77,7 @@ def _write(uplifter: Uplifter, image: Image, planned: list[Plan], writer: Writer
     return counts
 
 
-def _bands(image: Image, plan: Plan) -> Iterator[tuple[int, Values]]:
+def _bands(image: Image, plan: PartLayout) -> Iterator[tuple[int, Values]]:
     """Bands as they are read, cut so that what is made of them takes `BAND`."""
     row = plan.part.window.width * len(plan.layout.channels) * 4
     step = max(BAND // (row * LINES), 1) * LINES
@@ -84,7 +86,7 @@ def _bands(image: Image, plan: Plan) -> Iterator[tuple[int, Values]]:
             yield first + start, band[start : start + step]
 
 
-def _made(uplifter: Uplifter, plan: Plan, band: Values) -> tuple[Values, Counts]:
+def _made(uplifter: Uplifter, plan: PartLayout, band: Values) -> tuple[Values, Counts]:
     """Channels (k, width, N) of the texture, and what was wrong with the colours."""
     through = band[..., plan.rest]
     if plan.part.codes:

@@ -18,7 +18,7 @@ Places = tuple[int, int, int]
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class PartLayout:
     """A part, the places of its red, green and blue, if it has them, and of the channels that pass through."""
 
     part: Part
@@ -28,39 +28,39 @@ class Plan:
     layout: Layout
 
 
-def plans(uplifter: Uplifter, image: Image) -> list[Plan]:
+def part_layouts(uplifter: Uplifter, image: Image) -> list[PartLayout]:
     """A plan for every part. Raises `TextureError` where there is nothing to uplift, or no way to."""
     try:
-        return [_plan(uplifter, image, *each) for each in coloured(image)]
+        return [_plan(uplifter, image, *each) for each in colour_channels_by_part(image)]
     except TextureError as error:
-        raise TextureError(error.problem, path=image.path, remedy=error.remedy) from error
+        raise TextureError(error.problem, path=image.path, hint=error.hint) from error
 
 
-def coloured(image: Image) -> list[tuple[Part, Places | None]]:
+def colour_channels_by_part(image: Image) -> list[tuple[Part, Places | None]]:
     """Every part and the places of its colour. Raises `TextureError` where there is none, or no telling which."""
     try:
         found = [(part, colour_channels(part)) for part in image.parts]
     except TextureError as error:
-        raise TextureError(error.problem, path=image.path, remedy=error.remedy) from error
+        raise TextureError(error.problem, path=image.path, hint=error.hint) from error
     if not any(places for _, places in found):
         names = ", ".join(dict.fromkeys(name for part in image.parts for name in part.channels))
-        remedy = "colour is in R, G and B, or in Y"
-        raise TextureError(f"holds no colour but {names}", path=image.path, remedy=remedy)
+        hint = "colour is in R, G and B, or in Y"
+        raise TextureError(f"holds no colour but {names}", path=image.path, hint=hint)
     return found
 
 
-def _plan(uplifter: Uplifter, image: Image, part: Part, colours: Places | None) -> Plan:
+def _plan(uplifter: Uplifter, image: Image, part: Part, colours: Places | None) -> PartLayout:
     rest = tuple(index for index in range(len(part.channels)) if colours is None or index not in colours)
     names = tuple(part.channels[index] for index in rest)
     kinds = tuple(_exact(part.kinds[index]) for index in rest)
     if colours is not None:
         made = (*"RGB", *uplifter.channels)
         if taken := set(made) & set(names):
-            remedy = "leave it out: the texture would have two"
-            raise TextureError(f"has a channel '{min(taken)}' beside its colour", remedy=remedy)
+            hint = "leave it out: the texture would have two"
+            raise TextureError(f"has a channel '{min(taken)}' beside its colour", hint=hint)
         names, kinds = (*made, *names), (*(uplifter.depth,) * len(made), *kinds)
     layout = Layout(part.name, part.window, names, kinds, uplifter.header, part.date or _date(image))
-    return Plan(
+    return PartLayout(
         part,
         colours,
         rest,

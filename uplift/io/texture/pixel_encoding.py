@@ -20,7 +20,7 @@ Sample = Callable[[Floats], Floats]
 """From linear RGB (…, 3) in [0, 1] to numbers (…, N)."""
 
 
-class Form(Protocol):
+class PixelEncoding(Protocol):
     """Numbers per pixel, channels that hold them, and what the header says of them."""
 
     @property
@@ -61,7 +61,7 @@ class Spectrum:
         at = cube.wavelengths(self.wavelengths)
         names = tuple("T." + f"{wavelength:.6f}nm".replace(".", ",") for wavelength in at)
         if (np.diff(at) <= 0).any() or len(set(names)) < len(names):
-            raise OptionError("wavelengths of a spectral image ascend", remedy="name each once, in order")
+            raise OptionError("wavelengths of a spectral image ascend", hint="name each once, in order")
         return names
 
     def header(self) -> dict[str, str]:
@@ -85,7 +85,7 @@ class Moments:
         model = cube.data.model
         if not isinstance(model, models.Moments):
             raise OptionError(
-                f"a {model.name} cube has no moments", remedy="use --as multipliers, or a moments cube"
+                f"a {model.name} cube has no moments", hint="use --as multipliers, or a moments cube"
             )
         return _numbered("moment", model.count)
 
@@ -121,7 +121,7 @@ class Multipliers:
         return lambda rgb: blockwise(refined, rgb.astype(float), width, np.float32, threads)
 
 
-FORMS: dict[str, Callable[[], Form]] = {form.name: form for form in (Spectrum, Moments, Multipliers)}
+FORMS: dict[str, Callable[[], PixelEncoding]] = {form.name: form for form in (Spectrum, Moments, Multipliers)}
 """By name, with their defaults."""
 
 

@@ -14,22 +14,22 @@ from pathlib import Path
 from uplift.common.errors import OptionError, TextureError, UpliftError
 from uplift.common.files import check_output
 from uplift.io.texture.conversion import Conversion, convert
-from uplift.io.texture.pixel_encoding import Form
-from uplift.io.texture.source import opened
+from uplift.io.texture.pixel_encoding import PixelEncoding
+from uplift.io.texture.source import open_image
 from uplift.io.texture.uplifter import Uplifter, prepare
-from uplift.io.texture.writer import is_whole
+from uplift.io.texture.writer import is_complete
 from uplift.lookup import load
 
 
 @dataclass(frozen=True)
-class Recipe:
+class TextureSettings:
     """What all images of a sequence are made with: parameters of `load` and of `prepare`, small to send.
 
     ``fill`` is whether colours outside the scene that the cube was built for are filled in (`Cube.filled`).
     """
 
     cube: str | None
-    form: Form
+    form: PixelEncoding
     depth: str | None
     encoding: str
     threads: int
@@ -41,7 +41,7 @@ class Recipe:
 class Job:
     """One image."""
 
-    recipe: Recipe
+    recipe: TextureSettings
     source: Path
     target: Path
     force: bool = False
@@ -56,11 +56,11 @@ class Failure:
 
 
 @lru_cache(maxsize=1)
-def ready(recipe: Recipe) -> Uplifter:
+def uplifter_for(recipe: TextureSettings) -> Uplifter:
     """The uplifter of a recipe, once a process."""
     cube = load(recipe.cube)
     if recipe.fill:
-        cube = cube.filled(threads=recipe.threads)
+        cube = cube.fill_missing(threads=recipe.threads)
     return prepare(
         cube,
         recipe.form,
@@ -74,7 +74,7 @@ def ready(recipe: Recipe) -> Uplifter:
 def run(job: Job) -> Conversion | Failure:
     """What became of a job: one bad image stops no others."""
     try:
-        return convert(ready(job.recipe), job.source, job.target, force=job.force)
+        return convert(uplifter_for(job.recipe), job.source, job.target, force=job.force)
     except UpliftError as error:
         return Failure(job.source, error)
 
@@ -90,7 +90,7 @@ def convert_all(jobs: Iterable[Job], executor: Executor) -> Iterator[Conversion 
             future.cancel()
 
 
-def left(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
+def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
     """Jobs that are still to be done: all, or with ``resume`` those whose textures are not there, whole and newer.
 
     Asks before long work whether what is to be done can be written. Raises `OutputError`, and `TextureError`
@@ -101,7 +101,7 @@ def left(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
         sources = [os.fspath(job.source) for job in jobs if job.target == target]
         if len(sources) > 1:
             raise TextureError(
-                f"{' and '.join(sources)} would both become {target}", remedy="write them to two folders"
+                f"{' and '.join(sources)} would both become {target}", hint="write them to two folders"
             )
     todo = [job for job in jobs if not (resume and _is_made(job))]
     for job in todo:
@@ -116,20 +116,20 @@ def _is_made(job: Job) -> bool:
             return False
     except OSError:
         return False
-    header = ready(job.recipe).header
+    header = uplifter_for(job.recipe).header
     try:
-        with opened(job.target) as image:
+        with open_image(job.target) as image:
             alike = all(image.text(name) == header[name] for name in ("uplift.cube", "uplift.texture"))
     except TextureError:
         return False
-    return alike and is_whole(job.target)
+    return alike and is_complete(job.target)
 
 
 @contextlib.contextmanager
 def processes(count: int) -> Iterator[Executor]:
     """So many processes of this machine; one is this one. Raises `OptionError`."""
     if count < 1:
-        raise OptionError(f"{count} processes cannot work", remedy="use 1 or more")
+        raise OptionError(f"{count} processes cannot work", hint="use 1 or more")
     afresh = multiprocessing.get_context("spawn")  # JAX does not bear being forked
     with ThreadPoolExecutor(1) if count == 1 else ProcessPoolExecutor(count, mp_context=afresh) as pool:
         yield pool
@@ -142,12 +142,12 @@ def cluster(address: str) -> Iterator[Executor]:
         import distributed
     except ImportError as error:
         raise OptionError(
-            "clusters need Dask, which is not installed", remedy="install it: pip install 'uplift[cluster]'"
+            "clusters need Dask, which is not installed", hint="install it: pip install 'uplift[cluster]'"
         ) from error
     try:
         client = distributed.Client(address, timeout="10s")
     except (OSError, ValueError) as error:
         problem = f"no Dask scheduler answers at '{address}'"
-        raise OptionError(problem, remedy="start one: dask scheduler") from error
+        raise OptionError(problem, hint="start one: dask scheduler") from error
     with client:
         yield client.get_executor()

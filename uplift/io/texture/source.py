@@ -114,7 +114,7 @@ class Image:
             numbers = self._read(part, first, end, "uint", index)[..., 0]
             if numbers.max(initial=0) > EXACT:
                 problem = f"channel '{part.channels[index]}' holds whole numbers beyond {EXACT}"
-                raise TextureError(problem, path=self.path, remedy="leave that channel out")
+                raise TextureError(problem, path=self.path, hint="leave that channel out")
             values[..., index] = numbers / WHOLE
         return values
 
@@ -133,27 +133,27 @@ class Image:
             raise TextureError(
                 f"rows {first} to {end - 1} cannot be read: {_tidy(problem)}",
                 path=self.path,
-                remedy="the file is damaged: make it anew",
+                hint="the file is damaged: make it anew",
             )
         return np.asarray(found)
 
 
 @contextlib.contextmanager
-def opened(path: str | os.PathLike[str]) -> Iterator[Image]:
+def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
     """The image in a file. Raises `TextureError` where there is none that can be used."""
     import OpenImageIO
 
     path, wishes = Path(path), OpenImageIO.ImageSpec()
     wishes["oiio:UnassociatedAlpha"] = 1  # colours as they stand, not multiplied by alpha
     if not path.is_file():
-        raise TextureError("there is no such file", path=path, remedy=REMEDY)
+        raise TextureError("there is no such file", path=path, hint=REMEDY)
     handle = OpenImageIO.ImageInput.open(os.fspath(path), wishes)
     if handle is None:
-        raise TextureError(_tidy(OpenImageIO.geterror()), path=path, remedy=REMEDY)
+        raise TextureError(_tidy(OpenImageIO.geterror()), path=path, hint=REMEDY)
     try:
         if handle.format_name() not in FORMATS:
             problem = f"is a {handle.format_name()} image"
-            raise TextureError(problem, path=path, remedy="make it EXR, PNG, JPEG or TIFF")
+            raise TextureError(problem, path=path, hint="make it EXR, PNG, JPEG or TIFF")
         yield Image(path, tuple(_parts(handle, path)), handle)
     finally:
         handle.close()
@@ -170,7 +170,7 @@ def _parts(handle: Any, path: Path) -> Iterator[Part]:
 
 def _part(spec: Any, number: int, path: Path) -> Part:
     if spec.deep or spec.depth > 1:
-        raise TextureError("has depth", path=path, remedy="flatten it: textures have one value a pixel")
+        raise TextureError("has depth", path=path, hint="flatten it: textures have one value a pixel")
     formats = spec.channelformats or (spec.format,) * spec.nchannels
     display = (spec.full_x, spec.full_y, spec.full_width, spec.full_height)
     aspect = spec.get_float_attribute("PixelAspectRatio", 1.0)

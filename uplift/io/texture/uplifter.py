@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from uplift.colorimetry.gamut import check_way
+from uplift.colorimetry.gamut import check_method
 from uplift.common.errors import OptionError
 from uplift.io.slices import exr
 from uplift.io.texture.colours import check_encoding
-from uplift.io.texture.pixel_encoding import Form, Sample, Spectrum
+from uplift.io.texture.pixel_encoding import PixelEncoding, Sample, Spectrum
 from uplift.lattice import Status
 from uplift.lookup import Cube, bulk
 
@@ -41,7 +41,7 @@ class Uplifter:
 
 def prepare(
     cube: Cube,
-    form: Form | None = None,
+    form: PixelEncoding | None = None,
     *,
     depth: str | None = None,
     encoding: str = "auto",
@@ -55,7 +55,7 @@ def prepare(
     form : what textures hold: `Spectrum` (the default), `Moments` or `Multipliers`.
     depth : half or float; by default what the form is exact enough in.
     encoding : ``auto`` takes whole numbers for encoded and floats for linear; ``linear``; ``encoded``.
-    out_of_gamut : what becomes of pixels outside [0, 1]: one of `uplift.colorimetry.gamut.CHOICES`.
+    out_of_gamut : what becomes of pixels outside [0, 1]: one of `uplift.colorimetry.gamut.METHODS`.
     threads : that share a band.
 
     Raises
@@ -67,14 +67,14 @@ def prepare(
     depth = form.depths[0] if depth is None else depth
     if depth not in form.depths:
         problem = f"{form.name} are not exact enough as {depth}"
-        raise OptionError(problem, remedy=f"use {' or '.join(form.depths)}")
+        raise OptionError(problem, hint=f"use {' or '.join(form.depths)}")
     check_encoding(encoding)
-    check_way(out_of_gamut)
+    check_method(out_of_gamut)
     channels = form.channels(cube)
     asked = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
     made = json.dumps({**form.describe(cube), **asked})
     header = {**exr.attributes(cube.data), "uplift.texture": made, **form.header()}
     beyond = (cube.data.status == Status.UNREALISABLE).any()
-    misses = bulk.misses(cube, threads=threads) if beyond else None
+    misses = bulk.max_rgb_error(cube, threads=threads) if beyond else None
     sample = form.sample(cube, threads)
     return Uplifter(cube, depth, encoding, out_of_gamut, channels, header, sample, misses)

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from uplift.common.errors import OutputError, TextureError
-from uplift.common.files import replacing
-from uplift.io.texture.source import Values, Window, opened
+from uplift.common.files import atomic_write
+from uplift.io.texture.source import Values, Window, open_image
 
 
 @dataclass(frozen=True)
@@ -89,11 +89,11 @@ class Writer:
 
 
 @contextlib.contextmanager
-def writing(
+def open_writer(
     path: str | os.PathLike[str], layouts: Sequence[Layout], *, force: bool = False
 ) -> Iterator[Writer]:
     """A writer; the file takes its name when all rows are there. Raises `OutputError`."""
-    with replacing(path, force=force) as temporary:
+    with atomic_write(path, force=force) as temporary:
         writer = Writer(temporary, layouts)
         try:
             yield writer
@@ -102,14 +102,14 @@ def writing(
             raise
         writer.close()
         # Where the last bytes meet a full disk, nothing else tells.
-        if not is_whole(temporary):
-            raise OutputError("was not written whole", path=path, remedy="make room on the disk")
+        if not is_complete(temporary):
+            raise OutputError("was not written whole", path=path, hint="make room on the disk")
 
 
-def is_whole(path: Path) -> bool:
+def is_complete(path: Path) -> bool:
     """Whether the last rows of all parts can be read."""
     try:
-        with opened(path) as image:
+        with open_image(path) as image:
             for part in image.parts:
                 image.last(part)
     except TextureError:

@@ -7,7 +7,7 @@ from typing import Any
 from uplift.lab.chart.methods import FAMILIES
 from uplift.lab.chart.table import Chart
 from uplift.viz.charts import GREY, INK
-from uplift.viz.format import size_told
+from uplift.viz.format import format_size
 
 SHAPES = {"spectra": "o", "moments": "^", "refined": "s", "nearest": "D", "bulk": "P", "": "o"}
 SIZES = (1e3, 1e6, 1e8)
@@ -55,7 +55,9 @@ def legend(axes: Any, chart: Chart) -> None:
     modes = [mode for mode in SHAPES if mode and any(row.mode == mode for row in chart.measured)]
     _key(axes, (0.0, 1.0), "method", [(name, {"color": known.get(name, OTHER)}) for name in families])
     _key(axes, (0.42, 1.0), "mode of ours", [(name, {"marker": SHAPES[name]}) for name in modes])
-    _key(axes, (0.72, 1.0), "bytes held", [(size_told(size), {"markersize": width(size)}) for size in SIZES])
+    _key(
+        axes, (0.72, 1.0), "bytes held", [(format_size(size), {"markersize": width(size)}) for size in SIZES]
+    )
     rest = [("asked one colour a call", alone), ("Pareto front", FRONT), ("mean to 99 % to largest", WHISKER)]
     _key(axes, (0.42, 0.48), None, rest)
 

@@ -8,14 +8,14 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, Uplift
 from uplift.lab.chart.table import Chart, Row, State
 from uplift.lab.chart.task import LIGHTS, Task
 from uplift.lab.chart.timing import batch_times, single_times
 from uplift.lab.study.held_out import judge
-from uplift.lab.timing import circumstances
+from uplift.lab.timing import environment
 
 FAR = 10
 """A mean round trip so many times what is claimed is no slip, it is broken."""
@@ -37,7 +37,7 @@ def measure(
     methods: Iterable[tuple[Family, Method]], task: Task, watch: Watch = lambda done, total: None
 ) -> Chart:
     """Every method at the task, in order. ``watch`` hears how many of how many are done."""
-    methods, rows, begin, where = list(methods), [], time.perf_counter(), circumstances()
+    methods, rows, begin, where = list(methods), [], time.perf_counter(), environment()
     for family, method in methods:
         rows.append(measure_one(family, method, task))
         watch(len(rows), len(methods))
@@ -108,7 +108,7 @@ def _guarded(uplift: Uplift, wavelengths: Array) -> Ask:
 
 def _errors(method: Method, ask: Ask, task: Task) -> dict[str, float]:
     rgb, answered = _answered(method, ask, task, task.rgb)
-    apart = colours_apart(task.sensor, rgb, task.sensor.rgb(answered))
+    apart = delta_e_rgb(task.sensor, rgb, task.sensor.rgb(answered))
     _check_round_trip(apart, method.claims)
     numbers = _summary("round_trip", apart) | {"round_trip_colours": len(rgb)}
     for prefix, name, measured in (("", "unseen", task.unseen), ("own_", "own", task.own)):

@@ -8,7 +8,7 @@ from uplift.lab.chart.table import Chart, Row, State
 from uplift.lab.chart.task import LIGHTS
 from uplift.report.page_parts import note, right, table
 from uplift.viz.document import Told, document, family_boxes, footer
-from uplift.viz.format import build_told, error_told, size_told, time_told
+from uplift.viz.format import format_build_time, format_error, format_size, format_time
 from uplift.viz.markup import Markup, element, number
 
 TITLE = "Spectral upsampling: speed against accuracy"
@@ -75,11 +75,11 @@ def _table(chart: Chart) -> Markup:
 def _cells(row: Row) -> list[Markup]:
     numbers = row.numbers
     shown = [
-        ("time_ns", time_told(numbers["time_ns"])),
-        ("single_ns", time_told(numbers["single_ns"])),
-        ("bytes", size_told(numbers["bytes"])),
-        ("build_s", build_told(numbers.get("build_s"))),
-        *((f"{key}_mean", error_told(numbers[f"{key}_mean"])) for key in ERRORS),
+        ("time_ns", format_time(numbers["time_ns"])),
+        ("single_ns", format_time(numbers["single_ns"])),
+        ("bytes", format_size(numbers["bytes"])),
+        ("build_s", format_build_time(numbers.get("build_s"))),
+        *((f"{key}_mean", format_error(numbers[f"{key}_mean"])) for key in ERRORS),
     ]
     cells = [element("td", row.title, element("small", row.note) if row.note else None, class_="name")]
     return cells + [number(told, data_value=f"{numbers.get(key, -1):.6g}") for key, told in shown]
@@ -106,17 +106,17 @@ def _lines(row: Row) -> list[tuple[str, str]]:
     numbers = row.numbers
     if row.state != State.MEASURED:
         return []
-    lines = [("one colour a call", time_told(numbers["single_ns"]))]
+    lines = [("one colour a call", format_time(numbers["single_ns"]))]
     if "batch_ns" in numbers:
         lines.insert(
-            0, (f"{numbers['batch_colours']:,.0f} at once", f"{time_told(numbers['batch_ns'])} each")
+            0, (f"{numbers['batch_colours']:,.0f} at once", f"{format_time(numbers['batch_ns'])} each")
         )
-    lines.append(("held", size_told(numbers["bytes"])))
+    lines.append(("held", format_size(numbers["bytes"])))
     if "build_s" in numbers:
-        lines.append(("build", build_told(numbers["build_s"])))
+        lines.append(("build", format_build_time(numbers["build_s"])))
     lines.append(("errors", "mean / 99 % / largest"))
     lines += [
-        (name, " / ".join(error_told(numbers[f"{key}_{kind}"]) for kind in ("mean", "p99", "max")))
+        (name, " / ".join(format_error(numbers[f"{key}_{kind}"]) for kind in ("mean", "p99", "max")))
         for key, name in ERRORS.items()
     ]
     lines.append(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from uplift.lab.chart.table import Chart, Row
 from uplift.lab.chart.task import LIGHTS
-from uplift.viz.format import build_told, error_told, time_told
+from uplift.viz.format import format_build_time, format_error, format_time
 
 FLOORS = {"time_ns": 1.0, "build_s": 1e-3}
 """Where the axes of time begin: what has nothing to build stands there."""
@@ -36,8 +36,8 @@ class Panel:
     def told(self, row: Row) -> tuple[str, str]:
         """Time and mean error, to be read."""
         time = row.numbers[self.across]
-        told = build_told(time) if self.across == "build_s" else time_told(time)
-        return told, error_told(row.numbers[f"{self.error}_mean"])
+        told = format_build_time(time) if self.across == "build_s" else format_time(time)
+        return told, format_error(row.numbers[f"{self.error}_mean"])
 
     def reach(self, row: Row) -> tuple[float, float]:
         """The 99 % and the largest error."""

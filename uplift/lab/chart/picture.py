@@ -15,9 +15,9 @@ from uplift.lab.chart.panels import AXES, FLOORS, LEAST, PANELS, Panel
 from uplift.lab.chart.table import Chart, Row
 from uplift.viz.charts import STYLE, svg
 from uplift.viz.figure import new_figure, write_png
-from uplift.viz.format import time_told
+from uplift.viz.format import format_time
 from uplift.viz.markup import Markup
-from uplift.viz.scatter import Name, label, set_up, stairs
+from uplift.viz.scatter import Name, label, pareto_steps, set_up
 
 COLUMNS, PANEL = 2, (6.6, 4.3)
 """Panels side by side, and inches of each."""
@@ -80,8 +80,8 @@ def _set_up(axes: Any, panel: Panel) -> None:
 
 def _time(panel: Panel, value: float) -> str:
     if panel.across == "time_ns":
-        return time_told(value)
-    return time_told(value * 1e9) if value > FLOORS["build_s"] else "nothing\nto build"
+        return format_time(value)
+    return format_time(value * 1e9) if value > FLOORS["build_s"] else "nothing\nto build"
 
 
 def _drawn(panel: Panel, chart: Chart) -> list[tuple[int, Row]]:
@@ -125,7 +125,7 @@ def _draw_row(axes: Any, panel: Panel, row: Row, name: str, *, color: str, ahead
 def _stairs(axes: Any, panel: Panel, chart: Chart) -> Array:
     """The Pareto front (k, 2) as a staircase."""
     points = np.array([panel.point(row) for row in panel.front(chart)]).reshape(-1, 2)
-    return stairs(points, axes.get_xlim()[1])
+    return pareto_steps(points, axes.get_xlim()[1])
 
 
 def _label(axes: Any, panel: Panel, chart: Chart, number: int) -> None:

@@ -10,7 +10,7 @@ from uplift.common.errors import OptionError
 from uplift.lab.chart.panels import NOTABLE
 from uplift.lab.chart.table import Chart, Row, parse_chart
 from uplift.lab.chart.task import LIGHTS
-from uplift.viz.format import error_told, time_told
+from uplift.viz.format import format_error, format_time
 
 BUILD_LIGHT = "D65"
 MEASURED = "measured.csv"
@@ -37,9 +37,9 @@ class Wish:
     def __post_init__(self) -> None:
         limits = [limit for limit in (self.time_ns, self.delta_e) if limit is not None]
         if not limits:
-            raise OptionError("nothing is wished for", remedy="give --time-ns, --delta-e or both")
+            raise OptionError("nothing is wished for", hint="give --time-ns, --delta-e or both")
         if not all(0 < limit < float("inf") for limit in limits):
-            raise OptionError("a limit is no positive number", remedy="give ns, and ΔE00, above 0")
+            raise OptionError("a limit is no positive number", hint="give ns, and ΔE00, above 0")
         if self.light not in (None, BUILD_LIGHT, *LIGHTS):
             raise suggest(str(self.light), (BUILD_LIGHT, *LIGHTS), "light of the chart")
 
@@ -66,7 +66,7 @@ def recommend(chart: Chart, wish: Wish) -> Row:
     """
     cubes = [row for row in chart.measured if row.build and {"time_ns", wish.error} <= row.numbers.keys()]
     if not cubes:
-        raise OptionError("the chart has no cube with such numbers", remedy="measure one with 'uplift chart'")
+        raise OptionError("the chart has no cube with such numbers", hint="measure one with 'uplift chart'")
 
     def time(row: Row) -> float:
         return row.numbers["time_ns"]
@@ -78,8 +78,8 @@ def recommend(chart: Chart, wish: Wish) -> Row:
     if not quick:
         least = min(cubes, key=time)
         raise OptionError(
-            f"no cube answers in {time_told(wish.time_ns or 0)} per RGB",
-            remedy=f"the quickest, {least.method}, takes {time_told(time(least))}",
+            f"no cube answers in {format_time(wish.time_ns or 0)} per RGB",
+            hint=f"the quickest, {least.method}, takes {format_time(time(least))}",
         )
     if wish.delta_e is None:
         least_error = min(map(error, quick))
@@ -89,6 +89,6 @@ def recommend(chart: Chart, wish: Wish) -> Row:
         least = min(quick, key=error)
         raise OptionError(
             f"no cube comes within ΔE00 {wish.delta_e:g} {wish.about}",
-            remedy=f"the nearest, {least.method}, has {error_told(error(least))}",
+            hint=f"the nearest, {least.method}, has {format_error(error(least))}",
         )
     return min(near, key=time)

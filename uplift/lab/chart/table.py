@@ -113,4 +113,4 @@ def _row(line: dict[str, str]) -> Row:
 
 
 def _unreadable(path: str | os.PathLike[str], problem: str) -> ChartFileError:
-    return ChartFileError(problem, path=path, remedy="name the CSV file that 'uplift chart' wrote")
+    return ChartFileError(problem, path=path, hint="name the CSV file that 'uplift chart' wrote")

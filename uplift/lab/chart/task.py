@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from uplift.atlas import Spectra, merge, resample
+from uplift.atlas import Atlas, merge, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
@@ -55,7 +55,7 @@ class Task:
 
     sensor: Sensor
     rgb: Array
-    kept: Spectra
+    kept: Atlas
     own: Array
     unseen: Array
     lights: tuple[Light, ...]
@@ -63,7 +63,7 @@ class Task:
     facts: Mapping[str, str]
 
 
-def task(atlases: Mapping[str, Spectra], colours: int = COLOURS, effort: Effort | None = None) -> Task:
+def task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | None = None) -> Task:
     """Questions from measured spectra: of each atlas every second entry, from the first, builds; the others are asked.
 
     Raises
@@ -72,14 +72,14 @@ def task(atlases: Mapping[str, Spectra], colours: int = COLOURS, effort: Effort 
     AtlasError : too few entries within sRGB to ask for, or two of one name.
     """
     if colours < FEWEST:
-        raise OptionError(f"{colours} colours say nothing", remedy=f"ask for {FEWEST} or more")
+        raise OptionError(f"{colours} colours say nothing", hint=f"ask for {FEWEST} or more")
     sensor = observer.sensor()
     kept, unseen = (_every_second(atlases.values(), start) for start in (0, 1))
     own, asked = (_within(sensor, part) for part in (kept, unseen))
     if min(len(own), len(asked)) < 2:
         raise AtlasError(
             f"{len(asked)} of the entries to ask for lie within sRGB",
-            remedy="give an atlas of 8 or more entries",
+            hint="give an atlas of 8 or more entries",
         )
     rng = np.random.default_rng(SEED)
     rgb = np.concatenate([rng.random((colours, 3)), edges()])
@@ -108,10 +108,10 @@ def edges() -> Array:
     return np.unique(np.concatenate([*lines, np.repeat(along[:, None], 3, axis=1)]), axis=0)
 
 
-def _every_second(atlases: Iterable[Spectra], start: int) -> Spectra:
-    return merge(Spectra(spectra.entries[start::2], (), spectra.sources) for spectra in atlases)
+def _every_second(atlases: Iterable[Atlas], start: int) -> Atlas:
+    return merge(Atlas(spectra.entries[start::2], (), spectra.sources) for spectra in atlases)
 
 
-def _within(sensor: Sensor, spectra: Spectra) -> Array:
+def _within(sensor: Sensor, spectra: Atlas) -> Array:
     values = resample(spectra, sensor.wavelengths).values
     return values[sensor.holds(sensor.rgb(values))]

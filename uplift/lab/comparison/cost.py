@@ -15,8 +15,8 @@ from uplift.lab.chart.legend import STYLE as KEY
 from uplift.lab.comparison.measure import Comparison, Row
 from uplift.lab.comparison.style import colour, families, heading
 from uplift.viz.figure import new_figure
-from uplift.viz.format import time_told
-from uplift.viz.scatter import Name, label, set_up, stairs
+from uplift.viz.format import format_time
+from uplift.viz.scatter import Name, label, pareto_steps, set_up
 
 PANEL, KEY_HEIGHT = (6.0, 4.0), 0.55
 """Inches of a panel, and of the key below all."""
@@ -37,7 +37,7 @@ class Cost:
 
 
 COSTS = (
-    Cost("CPU time of a product", lambda row: row.ns.median, time_told),
+    Cost("CPU time of a product", lambda row: row.ns.median, format_time),
     Cost("floats stored of a surface", lambda row: row.floats, "{:g}".format, (4, 8, 16, 32, 64, 128, 256)),
 )
 
@@ -120,7 +120,7 @@ def _draw_panel(axes: Any, title: str, cost: Cost, rows: Sequence[Row], gids: di
 
 def _stairs(axes: Any, cost: Cost, rows: Sequence[Row]) -> Array:
     points = np.array([_point(row, cost) for row in front(rows, cost)])
-    return stairs(points, axes.get_xlim()[1])
+    return pareto_steps(points, axes.get_xlim()[1])
 
 
 def _label(axes: Any, cost: Cost, rows: Sequence[Row], gids: dict[str, str]) -> None:

@@ -13,7 +13,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
 from uplift.lab.comparison.scene import LightSet, Scene
 from uplift.lab.comparison.statistics import Statistics, statistics
-from uplift.lab.timing import Spread, circumstances, timed
+from uplift.lab.timing import Spread, environment, timed
 from uplift.scene.representations.representation import Representation
 
 Watch = Callable[[int, int], None]
@@ -89,7 +89,7 @@ def compare(
         watch(done, len(representations))
     order = [part.name for part in scene.sets]
     ranked = sorted(rows, key=lambda row: (order.index(row.lights), row.statistics.mean))
-    facts = {**circumstances(), "products": f"{len(scene.names)} surfaces under each light"}
+    facts = {**environment(), "products": f"{len(scene.names)} surfaces under each light"}
     return Comparison(facts, {part.name: part.title for part in scene.sets}, tuple(ranked))
 
 

@@ -11,7 +11,7 @@ from uplift.lab.comparison.statistics import HEADINGS, Statistics
 from uplift.lab.comparison.style import families, heading
 from uplift.report.page_parts import note, right, table
 from uplift.viz.document import Told, document, family_boxes, footer
-from uplift.viz.format import error_told, time_told
+from uplift.viz.format import format_error, format_time
 from uplift.viz.markup import Markup, element, number
 
 TITLE = "Representations of spectra"
@@ -58,13 +58,13 @@ def _ranked(title: str, rows: Sequence[Row]) -> Markup:
 
 def _cells(row: Row) -> list[Markup]:
     floats = [number(f"{value:.1f}", data_value=f"{value:.6g}") for value in (row.floats, row.light_floats)]
-    time = number(time_told(row.ns.median), data_value=f"{row.ns.median:.6g}")
+    time = number(format_time(row.ns.median), data_value=f"{row.ns.median:.6g}")
     name = element("td", row.name, element("small", row.family), class_="name")
     return [name, *_statistics(row.statistics), *floats, time]
 
 
 def _statistics(found: Statistics) -> list[Markup]:
-    return [number(error_told(value), data_value=f"{value:.6g}") for value in found]
+    return [number(format_error(value), data_value=f"{value:.6g}") for value in found]
 
 
 def _filters(name: str, title: str, tuned: Sequence[Tuned]) -> Markup:
@@ -88,10 +88,10 @@ def _told_of(name: str, found: Comparison) -> Told:
     rows = [row for row in found.rows if row.name == name]
     lines = [("floats of a surface", f"{rows[0].floats:.1f}")]
     for row in rows:
-        told = f"{error_told(row.statistics.mean)} / {error_told(row.statistics.q97_5)}"
+        told = f"{format_error(row.statistics.mean)} / {format_error(row.statistics.q97_5)}"
         lines += [
             (f"{row.lights}: ΔE00, mean / 97.5 %", told),
             (f"{row.lights}: floats of a light", f"{row.light_floats:.1f}"),
-            (f"{row.lights}: product", time_told(row.ns.median)),
+            (f"{row.lights}: product", format_time(row.ns.median)),
         ]
     return {"title": name, "family": rows[0].family, "lines": lines}

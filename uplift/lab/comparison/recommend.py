@@ -11,7 +11,7 @@ from uplift.lab.comparison.measure import Comparison, Row
 def check_target(target: float) -> float:
     """The target, if it is one. Raises `OptionError`."""
     if not (math.isfinite(target) and target > 0):
-        raise OptionError(f"a target of {target:g} is none", remedy="give a ΔE00 above 0")
+        raise OptionError(f"a target of {target:g} is none", hint="give a ΔE00 above 0")
     return target
 
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from uplift.atlas import Spectra, merge, on_grid
+from uplift.atlas import Atlas, merge, on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import lab
 from uplift.common.arrays import Array
@@ -68,7 +68,7 @@ class Scene:
         return replace(self, names=tuple(self.names[row] for row in kept), surfaces=self.surfaces[kept])
 
 
-def scene(atlases: Mapping[str, Spectra], lights: Sequence[str] = ()) -> Scene:
+def scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scene:
     """Every entry of the atlases, under ``lights`` or, without any, under the two sets of the thesis.
 
     Raises
@@ -78,12 +78,12 @@ def scene(atlases: Mapping[str, Spectra], lights: Sequence[str] = ()) -> Scene:
     """
     spectra = merge(atlases.values())
     if not spectra.entries:
-        raise AtlasError("no entries to compare with", remedy="name an atlas that holds reflectances")
+        raise AtlasError("no entries to compare with", hint="name an atlas that holds reflectances")
     named = {GIVEN: tuple(dict.fromkeys(lights))} if lights else SETS
     sets = tuple(LightSet(name, members, _powers(members)) for name, members in named.items())
     return Scene(spectra.names, on_grid(spectra, wavelengths()), sets)
 
 
 def _powers(names: Sequence[str]) -> Array:
-    powers = np.stack([observer.power(name, step=STEP) for name in names])
+    powers = np.stack([observer.illuminant_spd(name, step=STEP) for name in names])
     return np.asarray(powers / (powers @ observed()[:, 1:2]))

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Spectra, resample
+from uplift.atlas import Atlas, resample
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.lookup import Cube
@@ -51,12 +51,12 @@ def judge(answered: Array, measured: Array, lights: Sequence[str] = LIGHTS) -> E
     """Errors of reflectances (n, N), on the grid of every sensor, against measurements (n, N)."""
     rms = np.sqrt(((answered - measured) ** 2).mean(axis=1))
     return Errors(
-        rms, np.stack([spectra_apart(observer.light(name), answered, measured) for name in lights], axis=1)
+        rms, np.stack([delta_e_spectra(observer.light(name), answered, measured) for name in lights], axis=1)
     )
 
 
 def halves(
-    spectra: Spectra,
+    spectra: Atlas,
     splits: int = 3,
     watch: Callable[[int, int], None] = lambda done, total: None,
     **options: Any,
@@ -88,7 +88,7 @@ def halves(
     return tuple(found)
 
 
-def _ask(cubes: dict[str, Cube], asked: Spectra) -> Split:
+def _ask(cubes: dict[str, Cube], asked: Atlas) -> Split:
     cube = cubes["half the atlas"]
     sensor = cube.data.sensor
     measured = resample(asked, sensor.wavelengths).values
@@ -97,25 +97,25 @@ def _ask(cubes: dict[str, Cube], asked: Spectra) -> Split:
     light = observer.light(cube.data.reference, sensor.observer)
     return Split(
         {name: judge(answered, measured) for name, answered in answers.items()},
-        spectra_apart(light, answers["half the atlas"], measured),
+        delta_e_spectra(light, answers["half the atlas"], measured),
         cube.standard_error(rgb),
     )
 
 
-def _inside(spectra: Spectra, cube: Cube) -> Indices:
+def _inside(spectra: Atlas, cube: Cube) -> Indices:
     """Rows of the entries that the cube's space holds."""
     sensor = cube.data.sensor
     rows = np.flatnonzero(sensor.holds(sensor.rgb(resample(spectra, sensor.wavelengths).values)))
     if len(rows) < FEWEST:
         raise AtlasError(
             f"{len(rows)} entries lie within {sensor.space}, too few to halve",
-            remedy=f"give an atlas of {FEWEST} or more",
+            hint=f"give an atlas of {FEWEST} or more",
         )
     return rows
 
 
-def _some(spectra: Spectra, rows: Indices) -> Spectra:
-    return Spectra(tuple(spectra.entries[row] for row in rows))
+def _some(spectra: Atlas, rows: Indices) -> Atlas:
+    return Atlas(tuple(spectra.entries[row] for row in rows))
 
 
 def stated_errors(splits: Sequence[Split]) -> Calibration | None:

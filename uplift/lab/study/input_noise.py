@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import spectra_apart
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.lookup import MODES, Cube
@@ -59,7 +59,7 @@ def moves(cube: Cube, light: Light, count: int = COLOURS) -> list[Move]:
 def _move(cube: Cube, light: Light, mode: str, step: str, asked: Array, beside: Array) -> Move:
     before, after = (cube.reflectance(rgb, mode=mode) for rgb in (asked, beside))
     rms = np.sqrt(((after - before) ** 2).mean(axis=1))
-    seen = spectra_apart(light, before, after)
-    own = spectra_apart(cube.data.sensor.light, before, after)
+    seen = delta_e_spectra(light, before, after)
+    own = delta_e_spectra(cube.data.sensor.light, before, after)
     pairs = (float(value) for values in (seen, own) for value in (values.mean(), values.max()))
     return Move(mode, step, float(rms.mean()), float(rms.max()), float(np.abs(after - before).max()), *pairs)

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Entry, Spectra
+from uplift.atlas import Atlas, Entry
 from uplift.atlas.checks import HIGHEST, LOWEST
-from uplift.colorimetry.delta_e import rgb_lab, spectra_apart
+from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
@@ -64,7 +64,7 @@ class Before:
     options: Mapping[str, Any]
 
 
-def before(spectra: Spectra, light: Light, **options: Any) -> Before:
+def before(spectra: Atlas, light: Light, **options: Any) -> Before:
     """Build the cube that changes are compared with; changes are ΔE00 under ``light``. Raises `UpliftError`."""
     data = _build(spectra.entries, options)
     entries = tuple(entry for entry in spectra.entries if entry.name in data.atlas.names)
@@ -106,9 +106,9 @@ def _compare(base: Before, what: str, entries: Sequence[Entry], name: str | None
     points, sensor = base.data.lattice.points, base.data.sensor
     rgb_apart, lab_apart = (
         _nearest(points, places),
-        _nearest(rgb_lab(sensor, points), [rgb_lab(sensor, place) for place in places]),
+        _nearest(rgb_to_lab(sensor, points), [rgb_to_lab(sensor, place) for place in places]),
     )
-    return Change(what, rms, spectra_apart(base.light, base.spectra, after), rgb_apart, lab_apart)
+    return Change(what, rms, delta_e_spectra(base.light, base.spectra, after), rgb_apart, lab_apart)
 
 
 def _nearest(points: Array, places: Sequence[Array]) -> Array:
@@ -121,7 +121,7 @@ def _nearest(points: Array, places: Sequence[Array]) -> Array:
 def _build(entries: Sequence[Entry], options: Mapping[str, Any]) -> CubeData:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
-        return build(Spectra(tuple(entries)), **options).data
+        return build(Atlas(tuple(entries)), **options).data
 
 
 def _lattice(data: CubeData) -> Array:

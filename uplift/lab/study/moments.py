@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.atlas import Spectra, merge, on_grid
+from uplift.atlas import Atlas, merge, on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_2000, lab
 from uplift.colorimetry.sensor import Light
@@ -100,7 +100,7 @@ def fine_grid() -> Array:
 
 
 def study(
-    atlases: Mapping[str, Spectra], most: int = DEFAULT_MOST, watch: Watch = lambda done, total: None
+    atlases: Mapping[str, Atlas], most: int = DEFAULT_MOST, watch: Watch = lambda done, total: None
 ) -> Study:
     """Reduce every entry of the atlases to 0 … ``most`` moments and back, by all four techniques.
 
@@ -113,10 +113,10 @@ def study(
     AtlasError : no entries, or two of one name.
     """
     if not 0 <= most <= LIMIT:
-        raise OptionError(f"{most} moments are out of range", remedy=f"take 0 to {LIMIT}")
+        raise OptionError(f"{most} moments are out of range", hint=f"take 0 to {LIMIT}")
     spectra = merge(atlases.values())
     if not spectra.entries:
-        raise AtlasError("no entries to study", remedy="name an atlas that holds reflectances")
+        raise AtlasError("no entries to study", hint="name an atlas that holds reflectances")
     measured = on_grid(spectra, fine_grid())
     compare = _comparer(measured)
     errors = np.empty((len(TECHNIQUES), most + 1, len(measured), len(MEASURES)))

@@ -13,7 +13,7 @@ import numpy as np
 from uplift.common.arrays import Array
 from uplift.lab.study.moments import Study, fine_grid
 from uplift.lab.study.technique import TECHNIQUES, Technique
-from uplift.viz.figure import new_figure, plain, spectral, write_png
+from uplift.viz.figure import new_figure, style_axes, style_spectrum_axes, write_png
 
 COMPARED = 9
 """Floats that spectra are drawn with, as in the thesis's figures 4.1 and 4.2."""
@@ -89,7 +89,7 @@ def _draw_curves(axes: Any, found: Mapping[Technique, Curve], key: str) -> None:
         )
     axes.set_yscale("log")
     axes.yaxis.set_major_formatter("{x:g}")
-    plain(axes)
+    style_axes(axes)
 
 
 def _plot_spectra(study: Study, rows: Sequence[Iterable[int]], path: Path, *, force: bool) -> None:
@@ -115,7 +115,7 @@ def _draw_entry(axes: Any, study: Study, entry: int) -> None:
         label = f"{'warped' if technique.warped else 'unwarped'}, ΔE76 {apart:.2f}"
         found = technique.reconstruct(kept, fine_grid())[0]
         axes.plot(fine_grid(), found, color=colour, linewidth=1.5, label=label)
-    spectral(axes)
+    style_spectrum_axes(axes)
     # Dark entries fill their panel; the headroom is the legend's.
     axes.set_ylim(0, min(1.02, 1.5 * measured.max() + 0.02))
     title = f"{study.names[entry]} ({study.atlases[entry]}), mirrored, {moments + 1} floats"

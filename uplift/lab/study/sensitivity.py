@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Spectra
+from uplift.atlas import Atlas
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
 from uplift.lab.study.input_noise import Move, moves
@@ -80,7 +80,7 @@ def changed(change: Change) -> dict[str, Any]:
 
 def study(
     cube: Cube,
-    atlas: Spectra | None,
+    atlas: Atlas | None,
     most: int,
     watch: Watch = lambda done, total: None,
 ) -> Sensitivity:
@@ -93,13 +93,13 @@ def study(
     OptionError : a negative number of entries.
     """
     if most < 0:
-        raise OptionError(f"{most} entries cannot be left out", remedy="use 0 or more")
+        raise OptionError(f"{most} entries cannot be left out", hint="use 0 or more")
     light = observer.light(LIGHT, cube.data.sensor.observer)
     if cube.data.complete is not None:
         problem = (
             "the cube was built for the colours of a scene, and between its cells there is nothing to measure"
         )
-        raise OptionError(problem, remedy="build it without --scene")
+        raise OptionError(problem, hint="build it without --scene")
     asked, steep = moves(cube, light), steepness(cube.data)
     if atlas is None or not most:
         return Sensitivity(cube, asked, steep, [], [], [])

@@ -11,7 +11,7 @@ import numpy as np
 from uplift.cube import CubeData
 from uplift.lab.study.locality import MOVED, Change
 from uplift.lab.study.steepness import Steepness
-from uplift.viz.figure import new_figure, plain, write_png
+from uplift.viz.figure import new_figure, style_axes, write_png
 
 Path = str | os.PathLike[str]
 CHANNELS = ("red", "green", "blue")
@@ -46,7 +46,7 @@ def plot_steepness(data: CubeData, found: Steepness, path: Path, *, force: bool 
     panels[3].set(xlabel="wavelength / nm", ylim=(0, None))
     panels[3].set_title("steepest at each wavelength", loc="left", fontsize=10)
     panels[3].margins(x=0.01)
-    plain(panels[3])
+    style_axes(panels[3])
     figure.suptitle(
         "change of reflectance per unit of linear RGB: rms over wavelength on the left; axes in 8-bit codes",
         fontsize=9,
@@ -99,4 +99,4 @@ def _scatter(axes: Any, apart: Sequence[Any], changes: Sequence[Change]) -> None
     )
     axes.yaxis.set_major_formatter("{x:g}")
     axes.set_xlim(0, 1.05 * far)
-    plain(axes)
+    style_axes(axes)

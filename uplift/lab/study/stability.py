@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from uplift import fit
-from uplift.atlas import Spectra
+from uplift.atlas import Atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array
@@ -88,7 +88,7 @@ Watch = Callable[[int, int], None]
 
 def study(
     settings: Iterable[Setting],
-    atlases: Mapping[str, Spectra],
+    atlases: Mapping[str, Atlas],
     watch: Watch = lambda done, total: None,
 ) -> list[Outcome]:
     """Run every setting; ``watch`` hears how many of how many are done.
@@ -110,12 +110,12 @@ def study(
     return outcomes
 
 
-def run(setting: Setting, atlases: Mapping[str, Spectra]) -> Outcome:
+def run(setting: Setting, atlases: Mapping[str, Atlas]) -> Outcome:
     """Build, and judge by what is stored. Raises `UpliftError` for what cannot be built."""
     return _ours(setting, atlases) if setting.solver == OURS else _pointwise(setting)
 
 
-def _ours(setting: Setting, atlases: Mapping[str, Spectra]) -> Outcome:
+def _ours(setting: Setting, atlases: Mapping[str, Atlas]) -> Outcome:
     rounds = 0
 
     def watch(done: object) -> None:

@@ -45,7 +45,7 @@ class Axes:
     def __post_init__(self) -> None:
         for name in ("dims", "coefficients", "spaces", "models", "thresholds", "atlases"):
             if not getattr(self, name):
-                raise OptionError(f"no {name} to study", remedy="give at least one")
+                raise OptionError(f"no {name} to study", hint="give at least one")
 
     @property
     def techniques(self) -> tuple[Setting, ...]:

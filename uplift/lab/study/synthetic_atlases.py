@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from uplift.atlas import Entry, Spectra
+from uplift.atlas import Atlas, Entry
 from uplift.atlas.checks import LOWEST
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
@@ -18,14 +18,14 @@ PEAK = 8.0
 """Half-width (nm) of the peaks of the spiky atlas."""
 
 
-def crowded() -> Spectra:
+def crowded() -> Atlas:
     """One paint mixed over and over: the colours of 120 smooth spectra lie within some ΔE of one another."""
     rng = np.random.default_rng(1)
     slope = np.tanh((observer.grid() - 580) / 60)
     return _named("crowded", [0.3 + 0.15 * slope + _smooth(rng, 0.01) for _ in range(CROWD)])
 
 
-def spiky() -> Spectra:
+def spiky() -> Atlas:
     """Two narrow peaks on black, or two narrow lines on white, as no paint has and no few moments hold."""
     rng, wavelengths = np.random.default_rng(2), observer.grid()
 
@@ -37,7 +37,7 @@ def spiky() -> Spectra:
     return _named("spiky", [one(number % 2 == 0) for number in range(FEW)])
 
 
-def noisy() -> Spectra:
+def noisy() -> Atlas:
     """Smooth spectra, and noise at every wavelength that takes some of them as far out of [0, 1] as readers allow."""
     rng = np.random.default_rng(3)
 
@@ -48,7 +48,7 @@ def noisy() -> Spectra:
     return _named("noisy", [one(level) for level in np.linspace(0.05, 0.95, FEW)])
 
 
-MADE: dict[str, Callable[[], Spectra]] = {"crowded": crowded, "spiky": spiky, "noisy": noisy}
+MADE: dict[str, Callable[[], Atlas]] = {"crowded": crowded, "spiky": spiky, "noisy": noisy}
 
 
 def _smooth(rng: np.random.Generator, amplitude: float) -> Array:
@@ -58,7 +58,7 @@ def _smooth(rng: np.random.Generator, amplitude: float) -> Array:
     return np.asarray(waves @ rng.normal(0, amplitude, 4))
 
 
-def _named(name: str, spectra: list[Array]) -> Spectra:
-    return Spectra(
+def _named(name: str, spectra: list[Array]) -> Atlas:
+    return Atlas(
         tuple(Entry(f"{name} {number}", observer.grid(), row) for number, row in enumerate(spectra, 1))
     )

@@ -62,7 +62,7 @@ class Technique:
         UpliftError : no reflectance has these moments.
         """
         multipliers = duality.multipliers_from_moments(moments)
-        waves = duality.waves(self.phase(wavelengths), moments.shape[1])
+        waves = duality.fourier_basis(self.phase(wavelengths), moments.shape[1])
         return np.asarray(0.5 + np.arctan((multipliers @ waves.T).real) / np.pi)
 
 

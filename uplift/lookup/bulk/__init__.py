@@ -10,6 +10,6 @@ For a few thousand colours `uplift.Cube` answers sooner: here something is compi
 
 from __future__ import annotations
 
-from uplift.lookup.bulk.sampler import Sampler, coefficients, misses, spectra
+from uplift.lookup.bulk.sampler import Sampler, coefficients, max_rgb_error, spectra
 
-__all__ = ["Sampler", "coefficients", "misses", "spectra"]
+__all__ = ["Sampler", "coefficients", "max_rgb_error", "spectra"]

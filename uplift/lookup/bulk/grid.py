@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices
 from uplift.lattice import Lattice
-from uplift.lattice.entry_boxes import Pins
-from uplift.lookup.node_table import Table
+from uplift.lattice.entry_boxes import EntryBoxes
+from uplift.lookup.node_table import NodeTable
 
 BINS = 4096
 """Even bins of [0, 1]; one holds a node at the most, for all but the finest lattices."""
@@ -39,7 +39,7 @@ class Grid(NamedTuple):
     """(2,) least and most of what is carried."""
 
 
-def grid(table: Table) -> Grid:
+def grid(table: NodeTable) -> Grid:
     """The arrays of a table's cube."""
     lattice, pins = table.data.lattice, table.data.pins
     bins, crowd = _bins(lattice)
@@ -66,7 +66,7 @@ def _bins(lattice: Lattice) -> tuple[Places, int]:
     return np.maximum(before, 0).astype(np.int32), int(np.bincount(bins).max())
 
 
-def _candidates(pins: Pins) -> Places:
+def _candidates(pins: EntryBoxes) -> Places:
     cells, entries = pins.cells
     numbers, first, count = np.unique(cells, return_index=True, return_counts=True)
     candidates = np.full((count.max(initial=0), pins.lattice.size), len(pins.rgb), dtype=np.int32)
@@ -76,7 +76,7 @@ def _candidates(pins: Pins) -> Places:
     return candidates
 
 
-def _boxes(pins: Pins) -> Array:
+def _boxes(pins: EntryBoxes) -> Array:
     low, high = pins.faces
     below, above = (
         np.divide(1, room, out=np.zeros_like(room), where=room > 0)

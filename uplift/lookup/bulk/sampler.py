@@ -9,13 +9,13 @@ import jax
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from uplift.colorimetry.gamut import triples
+from uplift.colorimetry.gamut import as_rgb
 from uplift.colorimetry.sensor import Sensor
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.bulk.grid import Grid, grid
 from uplift.lookup.bulk.kernel import answer
-from uplift.lookup.node_table import Table, tabulate
+from uplift.lookup.node_table import NodeTable, tabulate
 from uplift.lookup.nodes import require
 from uplift.lookup.validation import thread_count, within
 
@@ -36,7 +36,7 @@ class Sampler:
     def __call__(self, rgb: ArrayLike) -> Floats:
         """(…, N) of linear RGB (…, 3) in [0, 1]. Raises `ColourError` as `Cube.reflectance` does."""
         width = self.grid.lattice.shape[1]
-        return blockwise(self._chunk, triples(rgb), width, np.float32, self.threads, CHUNKS[0])
+        return blockwise(self._chunk, as_rgb(rgb), width, np.float32, self.threads, CHUNKS[0])
 
     @property
     def nbytes(self) -> int:
@@ -68,16 +68,18 @@ def coefficients(cube: Cube, *, threads: int = 2) -> Sampler:
     """Coefficients (C,) of the cube's model, as `Cube.coefficients` has them, to float32. Raises `OptionError`."""
     data = cube.data
     points, atlas = (c.astype(np.float32) for c in (data.coefficients[data.present], data.atlas.coefficients))
-    return _sampler(Table.of_points(data, points, atlas), thread_count(threads))
+    return _sampler(NodeTable.of_points(data, points, atlas), thread_count(threads))
 
 
-def misses(cube: Cube, *, threads: int = 2) -> Sampler:
+def max_rgb_error(cube: Cube, *, threads: int = 2) -> Sampler:
     """By how much (1,) answers miss their colours, |linear RGB|, at the most: the fitting distances around."""
     data = cube.data
     entries = np.zeros((len(data.atlas.names), 1), np.float32)
-    return _sampler(Table.of_points(data, data.distance[data.present, None], entries), thread_count(threads))
+    return _sampler(
+        NodeTable.of_points(data, data.distance[data.present, None], entries), thread_count(threads)
+    )
 
 
-def _sampler(table: Table, threads: int) -> Sampler:
+def _sampler(table: NodeTable, threads: int) -> Sampler:
     with jax.enable_x64(True):
         return Sampler(table.data.sensor, jax.device_put(grid(table)), threads)

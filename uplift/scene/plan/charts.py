@@ -8,7 +8,7 @@ from uplift.scene.plan.decision import Decision
 from uplift.scene.plan.planning import Plan
 from uplift.viz.charts import ACCENT, GREY, INK, PALE, STYLE, svg
 from uplift.viz.figure import new_figure
-from uplift.viz.format import error_told
+from uplift.viz.format import format_error
 from uplift.viz.markup import Markup
 
 SIZE, WIDE = (4.6, 2.6), (9.6, 2.1)
@@ -80,7 +80,7 @@ def budget_chart(plan: Plan) -> Markup:
             axes.barh(row, error, height=0.55, color=INK if row == len(named) - 1 else ACCENT)
             axes.plot([limit, limit], [row - 0.4, row + 0.4], color=INK, linewidth=1)
             axes.annotate(
-                error_told(error), (error, row), xytext=(4, 0), textcoords="offset points", va="center"
+                format_error(error), (error, row), xytext=(4, 0), textcoords="offset points", va="center"
             )
         axes.set(
             yticks=range(len(named)),

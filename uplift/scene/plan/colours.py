@@ -12,11 +12,11 @@ import numpy as np
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import PlanFileError
-from uplift.io.scene_colours import Images, Reading, touched
-from uplift.io.texture.part_layout import coloured
-from uplift.io.texture.source import opened
+from uplift.io.scene_colours import Images, ReadProgress, cells_touched
+from uplift.io.texture.part_layout import colour_channels_by_part
+from uplift.io.texture.source import open_image
 from uplift.lattice import Lattice
-from uplift.lattice.entry_boxes import Pins
+from uplift.lattice.entry_boxes import EntryBoxes
 
 STEPS = 64
 """Kinds of colours along each channel, of encoded RGB: four 8-bit codes wide."""
@@ -59,7 +59,7 @@ def colours(
     """
     total, scene = sum(map(_pixels, textures)), Images(textures, encoding)
     if not total:
-        raise PlanFileError("the textures have no pixels", remedy="name one that has")
+        raise PlanFileError("the textures have no pixels", hint="name one that has")
     first = wanted[0] / total
     last = first + wanted[1] / total
     rng, kinds = np.random.default_rng(0), np.full((STEPS**3, 3), np.nan)
@@ -78,8 +78,12 @@ def colours(
 
 def _pixels(path: Path) -> int:
     """Pixels of an image that have a colour."""
-    with opened(path) as image:
-        return sum(part.window.width * part.window.height for part, places in coloured(image) if places)
+    with open_image(path) as image:
+        return sum(
+            part.window.width * part.window.height
+            for part, places in colour_channels_by_part(image)
+            if places
+        )
 
 
 def _kind(sensor: Sensor, rgb: Array) -> Any:
@@ -101,7 +105,7 @@ class Some:
 
     rgb: Array
 
-    def points(self, pins: Pins, sensor: Sensor, watch: Callable[[Reading], None]) -> Mask:
+    def points(self, pins: EntryBoxes, sensor: Sensor, watch: Callable[[ReadProgress], None]) -> Mask:
         return pins.needs(cells(pins.lattice, self.rgb))
 
     def describe(self) -> list[dict[str, Any]]:
@@ -111,5 +115,5 @@ class Some:
 def cells(lattice: Lattice, rgb: Array) -> Mask:
     """Which cells (dim³,) linear RGB (n, 3) lie in."""
     found = np.zeros(lattice.size, dtype=bool)
-    found[touched(lattice, rgb)] = True
+    found[cells_touched(lattice, rgb)] = True
     return found

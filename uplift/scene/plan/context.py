@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Spectra, read_atlas, resample
+from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
@@ -66,7 +66,7 @@ class Bench:
     brief: Brief
     effort: Effort
     sensor: Sensor
-    atlas: Spectra | None
+    atlas: Atlas | None
     reflectances: Array
     materials: Array
     colours: Colours
@@ -108,7 +108,7 @@ def bench(brief: Brief, effort: Effort, watch: Watch) -> Bench:
     """Reads atlases and textures. Raises `AtlasError`, `TextureError`, `PlanFileError`."""
     sensor = brief.sensor()
     atlas = read_atlas(*brief.atlases) if brief.atlases else None
-    measured = resample(atlas or Spectra(), sensor.wavelengths).values
+    measured = resample(atlas or Atlas(), sensor.wavelengths).values
     rgb = sensor.rgb(measured)
     held = sensor.holds(rgb)
 

@@ -12,7 +12,7 @@ from uplift.scene.plan.colours import cells
 from uplift.scene.plan.context import Bench, Step
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import Question
-from uplift.viz.format import size_told
+from uplift.viz.format import format_size
 
 SINGLE = 4
 """Bytes of a coefficient."""
@@ -29,7 +29,7 @@ def coefficients(bench: Bench, question: Question, limit: float) -> Decision:
             bench.watch(Step(f"{count} coefficients", done, len(counts)))
             options = {"coefficients": count}
             made = bench.cube(question.rgb, dim=dim, **options)
-            told = f"{size_told(SINGLE * count)} a point"
+            told = f"{format_size(SINGLE * count)} a point"
             error = question.error(made.reflectance(question.rgb))
             yield Trial(str(count), count, told, f"--moments {count - 1}", options, error)
 
@@ -49,7 +49,7 @@ def lattice(bench: Bench, question: Question, limit: float, count: int) -> Decis
             bench.watch(Step(f"dim {dim}, {axis} axis", done, len(sizes)))
             options = {"dim": dim, "axis": axis}
             made = bench.cube(question.rgb, coefficients=count, **options)
-            told = f"{points:,} points, {size_told(SINGLE * count * points)}"
+            told = f"{points:,} points, {format_size(SINGLE * count * points)}"
             error = question.error(made.reflectance(question.rgb))
             latest[axis] = error.quantile
             yield Trial(f"{dim}³, {axis}", points, told, f"--dim {dim} --axis {axis}", options, error)

@@ -11,7 +11,7 @@ from uplift.scene.plan.commands import build_line, spelt_line, texture_line
 from uplift.scene.plan.decision import Decision
 from uplift.scene.plan.planning import Plan
 from uplift.scene.plan.summary import about, percent, rows, unknown, verdict
-from uplift.viz.format import error_told
+from uplift.viz.format import format_error
 from uplift.viz.markup import Markup, element, number
 
 OWN = """
@@ -64,7 +64,10 @@ def _sights(plan: Plan) -> Markup:
     lights = dict.fromkeys(sight.light for sight in plan.sights)
     by_place = {(sight.light, sight.share): sight for sight in plan.sights}
     lines = [
-        [light, *(element("td", swatch(seen.wanted, seen.planned), error_told(seen.delta_e)) for seen in row)]
+        [
+            light,
+            *(element("td", swatch(seen.wanted, seen.planned), format_error(seen.delta_e)) for seen in row),
+        ]
         for light, row in ((light, [by_place[light, share] for share in shares]) for light in lights)
     ]
     headings = ["", *(f"{percent(share)} of the pixels are no worse" for share in shares)]
@@ -90,9 +93,9 @@ def _section(decision: Decision) -> Markup:
         [
             element("td", element("b", trial.name) if place == decision.taken else trial.name, class_="name"),
             trial.told,
-            number(error_told(trial.error.quantile)),
-            number(error_told(trial.error.worst.mean)),
-            number(error_told(trial.error.worst.largest)),
+            number(format_error(trial.error.quantile)),
+            number(format_error(trial.error.worst.mean)),
+            number(format_error(trial.error.worst.largest)),
             f"{trial.error.worst.group}, {trial.error.worst.light}",
         ]
         for place, trial in enumerate(decision.trials)
@@ -111,7 +114,7 @@ def _judged(plan: Plan) -> Markup:
     lines = [
         [one.group, one.light]
         + [
-            number(error_told(value))
+            number(format_error(value))
             for part in (one, other)
             for value in (part.mean, part.quantile, part.largest)
         ]

@@ -120,9 +120,9 @@ def read_plan(path: str | os.PathLike[str]) -> Planned:
         sparse, encoding = said["cells"] == "sparse", str(scene["encoding"])
     except OSError as error:
         problem = f"cannot be read: {error.strerror or error}"
-        raise PlanFileError(problem, path=path, remedy="make it: uplift plan SCENE.toml") from error
+        raise PlanFileError(problem, path=path, hint="make it: uplift plan SCENE.toml") from error
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError, UpliftError) as error:
-        raise PlanFileError("is no plan of this version", path=path, remedy=AGAIN) from error
+        raise PlanFileError("is no plan of this version", path=path, hint=AGAIN) from error
     for file, wanted in (textures | atlases).items():
         _check(path, file, wanted)
     return Planned(path, tuple(textures), tuple(atlases), encoding, sparse, options)
@@ -130,6 +130,6 @@ def read_plan(path: str | os.PathLike[str]) -> Planned:
 
 def _check(path: Path, file: Path, wanted: str) -> None:
     if not os.path.isfile(file):
-        raise PlanFileError(f"there is no file {file}", path=path, remedy=f"bring it back, or {AGAIN}")
+        raise PlanFileError(f"there is no file {file}", path=path, hint=f"bring it back, or {AGAIN}")
     if file_digest(file) != wanted:
-        raise PlanFileError(f"{file} has changed since the plan was measured", path=path, remedy=AGAIN)
+        raise PlanFileError(f"{file} has changed since the plan was measured", path=path, hint=AGAIN)

@@ -21,7 +21,7 @@ from uplift.scene.plan.scene_file import Brief
 from uplift.scene.plan.storage import Storage, storage
 from uplift.scene.plan.wavelengths import wavelengths
 from uplift.scene.wavelengths import Sampling
-from uplift.viz.format import error_told
+from uplift.viz.format import format_error
 
 SHARES = {"coefficients": 0.4, "lattice": 0.55, "wavelengths": 0.9, "storage": 1.0, "representation": 0.9}
 """Of the tolerance, that the chain may have used up after each decision. What one leaves, the next may use.
@@ -117,10 +117,10 @@ def _check_reachable(brief: Brief, best: Error) -> None:
     if best.quantile > brief.tolerance:
         worst = best.worst
         raise PlanFileError(
-            f"no cube comes within ΔE00 {brief.tolerance:g}: the best measured has {error_told(best.quantile)}, "
+            f"no cube comes within ΔE00 {brief.tolerance:g}: the best measured has {format_error(best.quantile)}, "
             f"of {worst.group} under {worst.light}",
             path=brief.path,
-            remedy=f"set tolerance = {np.ceil(best.quantile * 110) / 100:g} or more",
+            hint=f"set tolerance = {np.ceil(best.quantile * 110) / 100:g} or more",
         )
 
 

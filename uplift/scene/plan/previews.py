@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.display_sensors import hex_codes, viewings
+from uplift.colorimetry.display_sensors import display_sensors, hex_codes
 from uplift.common.arrays import Array
 from uplift.scene.plan.evaluation import Question
 
@@ -32,7 +32,7 @@ def sights(question: Question, xyz: Sequence[Array] | Array, observer: str) -> t
     """Of the textures, for half the pixels, for the share that counts, and for all; XYZ (n, 3) under each light."""
     textures = question.groups[0]
     found = []
-    screens = viewings([light.name for light in question.lights], observer)
+    screens = display_sensors([light.name for light in question.lights], observer)
     seen = zip(question.lights, screens, xyz, question.apart(xyz), strict=True)
     for light, screen, planned, apart in seen:
         order = np.argsort(apart[: len(textures.rgb)], kind="stable")

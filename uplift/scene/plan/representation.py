@@ -75,7 +75,7 @@ def representation(bench: Bench, question: Question, limit: float, cube: Cube) -
 
 def _dense(bench: Bench, question: Question, cube: Cube) -> Dense:
     few, nm = question.thinned(COLOURS), wavelengths()
-    powers = np.stack([observer.power(light.name, step=STEP) for light in few.lights])
+    powers = np.stack([observer.illuminant_spd(light.name, step=STEP) for light in few.lights])
     powers = powers / (powers @ observed()[:, 1:2])
     finer = [
         np.stack([np.interp(nm, bench.sensor.wavelengths, row) for row in each.wanted]) for each in few.groups

@@ -56,7 +56,7 @@ class Brief:
 
 
 def read_brief(path: str | os.PathLike[str]) -> Brief:
-    """Raises `PlanFileError` with the line and the remedy."""
+    """Raises `PlanFileError` with the line and the hint."""
     text = _text(Path(path))
     try:
         said = tomllib.loads(text)
@@ -64,10 +64,10 @@ def read_brief(path: str | os.PathLike[str]) -> Brief:
         at = re.search(r"at line (\d+)", str(error))
         line = int(at[1]) if at else max(len(text.splitlines()), 1)  # or at the end of the document
         problem = re.sub(r" \(at .*\)$", "", str(error)).rstrip(".")
-        remedy = f"write lines such as {EXAMPLE}"
-        raise PlanFileError(f"is no TOML: {problem}", path=path, line=line, remedy=remedy) from error
+        hint = f"write lines such as {EXAMPLE}"
+        raise PlanFileError(f"is no TOML: {problem}", path=path, line=line, hint=hint) from error
     except RecursionError as error:
-        raise PlanFileError("nests too deeply", path=path, remedy=f"write lines such as {EXAMPLE}") from error
+        raise PlanFileError("nests too deeply", path=path, hint=f"write lines such as {EXAMPLE}") from error
     return _Reader(Path(path), text, said).brief()
 
 
@@ -76,9 +76,9 @@ def _text(path: Path) -> str:
         return path.read_text(encoding="utf-8")
     except OSError as error:
         problem = f"cannot be read: {error.strerror or error}"
-        raise PlanFileError(problem, path=path, remedy="name a scene file, SCENE.toml") from error
+        raise PlanFileError(problem, path=path, hint="name a scene file, SCENE.toml") from error
     except UnicodeDecodeError as error:
-        raise PlanFileError("is no text", path=path, remedy="write it in UTF-8") from error
+        raise PlanFileError("is no text", path=path, hint="write it in UTF-8") from error
 
 
 @dataclass(frozen=True)
@@ -101,8 +101,8 @@ class _Reader:
         for key in self.said.keys() - readers.keys():
             self._raise(key, observer.suggest(key, readers, "key"))
         if "textures" not in self.said:
-            remedy = f"add a line such as {EXAMPLE}"
-            raise PlanFileError("names no textures, so there are no colours", path=self.path, remedy=remedy)
+            hint = f"add a line such as {EXAMPLE}"
+            raise PlanFileError("names no textures, so there are no colours", path=self.path, hint=hint)
         found = Brief(self.path, **{key: readers[key](key) for key in self.said})
         self._check(found)
         return found
@@ -112,7 +112,7 @@ class _Reader:
         checks: dict[str, Callable[[], Any]] = {
             "encoding": lambda: check_encoding(found.encoding),
             "space": lambda: observer.sensor(found.space),
-            "illuminant": lambda: observer.power(found.illuminant),
+            "illuminant": lambda: observer.illuminant_spd(found.illuminant),
             "observer": lambda: observer.matching_functions(found.observer),
         }
         for key, check in checks.items():
@@ -169,14 +169,12 @@ class _Reader:
             self._fail(key, f"{key} is no name", f'write {key} = "{getattr(Brief, key)}"')
         return str(self.said[key])
 
-    def _fail(self, key: str, problem: str, remedy: str) -> NoReturn:
-        raise PlanFileError(problem, path=self.path, line=self._line(key), remedy=remedy)
+    def _fail(self, key: str, problem: str, hint: str) -> NoReturn:
+        raise PlanFileError(problem, path=self.path, line=self._line(key), hint=hint)
 
     def _raise(self, key: str, error: UpliftError) -> NoReturn:
         """The same error, with its place."""
-        raise PlanFileError(
-            error.problem, path=self.path, line=self._line(key), remedy=error.remedy
-        ) from error
+        raise PlanFileError(error.problem, path=self.path, line=self._line(key), hint=error.hint) from error
 
     def _line(self, key: str) -> int | None:
         """Where a key stands."""

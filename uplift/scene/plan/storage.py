@@ -18,7 +18,7 @@ from uplift.scene.plan.context import Bench, Step
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import Question
 from uplift.scene.wavelengths import Sampling
-from uplift.viz.format import size_told
+from uplift.viz.format import format_size
 
 DEPTHS: dict[str, DTypeLike] = {"half": np.float16, "float": np.float32}
 
@@ -69,13 +69,13 @@ def storage(bench: Bench, question: Question, limit: float, cube: Cube, sampling
             choice: dict[str, Any] = {"as": each.form, "depth": each.depth}
             typed = f"--as {each.form} --depth {each.depth}"
             yield Trial(
-                f"{each.form}, {each.depth}", size, f"{size_told(size)} a pixel", typed, choice, error
+                f"{each.form}, {each.depth}", size, f"{format_size(size)} a pixel", typed, choice, error
             )
 
     return decide("storage", "A texture's pixel", "bytes a pixel", limit, trials())
 
 
-def _form(name: str, wavelengths: Array) -> texture.Form:
+def _form(name: str, wavelengths: Array) -> texture.PixelEncoding:
     if name == texture.Spectrum.name:
         return texture.Spectrum(tuple(wavelengths.tolist()))
     return texture.FORMS[name]()

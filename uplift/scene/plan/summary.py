@@ -8,7 +8,7 @@ from uplift.scene.plan.decision import Decision
 from uplift.scene.plan.evaluation import Error
 from uplift.scene.plan.final_build import Built
 from uplift.scene.plan.planning import Plan
-from uplift.viz.format import error_told, size_told
+from uplift.viz.format import format_error, format_size
 
 
 @dataclass(frozen=True)
@@ -31,15 +31,17 @@ def rows(plan: Plan) -> list[Row]:
 
 def _row(decision: Decision) -> Row:
     trial = decision.trial
-    return Row(decision.title, trial.name, trial.told, trial.typed, error_told(trial.error.quantile))
+    return Row(decision.title, trial.name, trial.told, trial.typed, format_error(trial.error.quantile))
 
 
 def _cells(made: Built, error: str) -> Row:
-    cost = f"{made.points:,} points, {size_told(made.size)}, {made.seconds:.1f} s"
+    cost = f"{made.points:,} points, {format_size(made.size)}, {made.seconds:.1f} s"
     if made.is_sparse:
-        told = f"{cost}; all: {size_told(made.whole)}"
+        told = f"{cost}; all: {format_size(made.whole)}"
         return Row("Cells", "the textures' own", told, "--scene IMAGE", error)
-    told = f"{cost}; the textures' own: {size_told(made.sparse)}, too little saved to answer no other colours"
+    told = (
+        f"{cost}; the textures' own: {format_size(made.sparse)}, too little saved to answer no other colours"
+    )
     return Row("Cells", "all", told, "", error)
 
 
@@ -48,7 +50,7 @@ def verdict(plan: Plan) -> str:
     brief = plan.brief
     end = "" if plan.within else ", which is MORE than is tolerated: plan for a smaller tolerance"
     return (
-        f"ΔE00 {error_told(plan.predicted.quantile)} predicted, {error_told(plan.confirmed.quantile)} confirmed by "
+        f"ΔE00 {format_error(plan.predicted.quantile)} predicted, {format_error(plan.confirmed.quantile)} confirmed by "
         f"other pixels, {brief.tolerance:g} tolerated{end}"
     )
 
@@ -69,7 +71,7 @@ def unknown(plan: Plan) -> str:
     if plan.expected is None:
         return ""
     return (
-        f"RGB do not tell materials: what has such a colour may differ by ΔE00 {error_told(plan.expected)} under A "
+        f"RGB do not tell materials: what has such a colour may differ by ΔE00 {format_error(plan.expected)} under A "
         "from any answer"
     )
 

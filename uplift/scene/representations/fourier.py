@@ -61,7 +61,7 @@ def fourier(count: int) -> Fourier:
     """``count`` real coefficients, an odd number. Raises `OptionError`."""
     if count < 1 or count % 2 == 0:
         raise OptionError(
-            f"{count} Fourier coefficients are no mean with pairs of waves", remedy="take an odd number"
+            f"{count} Fourier coefficients are no mean with pairs of waves", hint="take an odd number"
         )
     phase = 2 * np.pi * (wavelengths() - START) / (END - START)
     return Fourier(count, _waves(phase, count), _waves(2 * np.pi * np.arange(2 * count) / (2 * count), count))

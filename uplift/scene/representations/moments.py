@@ -12,8 +12,8 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.models import Moments
-from uplift.models.duality import cosines
-from uplift.models.matmul import product
+from uplift.models.duality import cosine_basis
+from uplift.models.matmul import matmul_rows
 from uplift.scene.representations.dense import wavelengths
 from uplift.scene.representations.table import Tabled
 
@@ -34,10 +34,10 @@ class TrigonometricMoments(Tabled):
 
     def surface(self, reflectance: Array) -> Array:
         phase = self.model.phase(wavelengths())
-        analysis = cosines(phase, self.model.count) * np.gradient(phase)[:, None] / np.pi
+        analysis = cosine_basis(phase, self.model.count) * np.gradient(phase)[:, None] / np.pi
         analysis[:, 1:] /= 2
         analysis[[0, -1]] /= 2
-        return np.asarray(product(reflectance, analysis))
+        return np.asarray(matmul_rows(reflectance, analysis))
 
 
 def moments(count: int) -> TrigonometricMoments:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.models.matmul import product
+from uplift.models.matmul import matmul_rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,12 +20,12 @@ class Samples:
     weights: Array
 
     def light(self, power: Array) -> Array:
-        return np.asarray(product(power, self.encoder))
+        return np.asarray(matmul_rows(power, self.encoder))
 
     def surface(self, reflectance: Array) -> Array:
-        return np.asarray(product(reflectance, self.encoder))
+        return np.asarray(matmul_rows(reflectance, self.encoder))
 
-    def product(self, light: Array, surface: Array) -> Array:
+    def matmul_rows(self, light: Array, surface: Array) -> Array:
         return light * surface
 
     def xyz(self, light: Array) -> Array:

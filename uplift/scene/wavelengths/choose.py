@@ -68,7 +68,7 @@ def choose(
         return _fixed(setting, method, _checked(count))
     if target is not None and count is None:
         return _fewest(setting, method, target, measure)
-    raise OptionError("either a count or a target says how many", remedy="give one of the two")
+    raise OptionError("either a count or a target says how many", hint="give one of the two")
 
 
 def weigh(setting: Setting, wavelengths: ArrayLike) -> Choice:
@@ -84,7 +84,7 @@ def _fixed(setting: Setting, method: str, count: int) -> Choice:
 
 def _fewest(setting: Setting, method: str, target: float, measure: str) -> Choice:
     if not target > 0:
-        raise OptionError(f"target {target:g} is not above 0", remedy="give a tolerated ΔE00, such as 1")
+        raise OptionError(f"target {target:g} is not above 0", hint="give a tolerated ΔE00, such as 1")
     for count in range(1, MOST + 1):
         choice = _fixed(setting, method, count)
         reached = getattr(choice.errors, measure)
@@ -92,11 +92,11 @@ def _fewest(setting: Setting, method: str, target: float, measure: str) -> Choic
             return choice
     raise OptionError(
         f"{MOST} wavelengths by method '{method}' leave a {measure} of ΔE00 {reached:.3g}",
-        remedy=f"give a target above {target:g}, or another method",
+        hint=f"give a target above {target:g}, or another method",
     )
 
 
 def _checked(count: int) -> int:
     if not 1 <= count <= MOST:
-        raise OptionError(f"count {count} is not within 1 to {MOST}", remedy="give a number of that range")
+        raise OptionError(f"count {count} is not within 1 to {MOST}", hint="give a number of that range")
     return count

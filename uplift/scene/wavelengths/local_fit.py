@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from uplift.common.arrays import Array
-from uplift.common.threads import one_blas_thread
+from uplift.common.threads import single_threaded_blas
 from uplift.scene.wavelengths import metric
 from uplift.scene.wavelengths.sampling import Sampling
 from uplift.scene.wavelengths.setup import Setting
@@ -88,7 +88,7 @@ def _fit(problem: Problem, start: Sampling, held: int) -> Sampling:
     def whole(free: Array) -> Array:
         return np.concatenate([unknowns[:held], free])
 
-    with one_blas_thread():
+    with single_threaded_blas():
         found = least_squares(
             lambda free: problem.residuals(whole(free)),
             unknowns[held:],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_2000, lab_slope
+from uplift.colorimetry.delta_e import delta_e_2000, lab_jacobian
 from uplift.common.arrays import Array
 from uplift.scene.wavelengths.setup import Setting
 
@@ -16,7 +16,9 @@ LEAST = 1e-3
 
 def rows(setting: Setting) -> Array:
     """(K, M, 3, 3) T for every material under every light: |T (XYZ' − XYZ)| is ΔE00 of colours close together."""
-    slope = np.stack([lab_slope(xyz, white) for xyz, white in zip(setting.xyz, setting.whites, strict=True)])
+    slope = np.stack(
+        [lab_jacobian(xyz, white) for xyz, white in zip(setting.xyz, setting.whites, strict=True)]
+    )
     values, vectors = np.linalg.eigh(_form(setting.lab))
     root = np.sqrt(np.maximum(values, LEAST))[..., None] * np.swapaxes(vectors, -1, -2)
     return np.asarray(root @ slope)

@@ -51,7 +51,7 @@ def four(rules: Rules, weights: Array) -> tuple[Rule, Rule, Rule]:
     a, c1, c2 = rules[0][3], rules[1][2], rules[2][1]
     if isinstance(a, Undefined) or isinstance(c1, Undefined) or isinstance(c2, Undefined):
         raise OptionError(
-            "the observer's opponent channels lack these rules", remedy="take another method or observer"
+            "the observer's opponent channels lack these rules", hint="take another method or observer"
         )
     return interpolatory([*c1.nodes, a.nodes[1]], POINTS, weights[0]), c1, c2
 
@@ -83,9 +83,7 @@ def meyer(setting: Setting, count: int) -> Sampling:
     if count == 4:
         ways.append(four(found, functions(space, nm, cmfs)))
     if not ways:
-        raise OptionError(
-            f"Meyer's rules have no set of {count} wavelengths", remedy="give a count of 4 to 30"
-        )
+        raise OptionError(f"Meyer's rules have no set of {count} wavelengths", hint="give a count of 4 to 30")
     return min(
         (sampling(setting, space, way).balanced() for way in ways),
         key=lambda sampling: judge(setting, sampling).mean,

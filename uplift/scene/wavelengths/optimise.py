@@ -42,7 +42,7 @@ def at(setting: Setting, wavelengths: ArrayLike) -> Sampling:
     if nm.ndim != 1 or not len(nm) or np.any(np.diff(nm) <= 0) or not first <= nm[0] <= nm[-1] <= last:
         raise OptionError(
             "the wavelengths are not distinct ones of the spectrum",
-            remedy=f"give each once, from {first:g} to {last:g} nm",
+            hint=f"give each once, from {first:g} to {last:g} nm",
         )
     fitted = problem(_thinned(setting))
     return _scaled(fitted.setting, polish_weights(fitted, uniform.prefiltered(fitted.setting, nm)))

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.gamut import SRGB, contained
+from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
 from uplift.scene.wavelengths import Choice, Setting
 from uplift.scene.wavelengths.setup import read_off
 from uplift.viz.charts import GREY, INK, STYLE
-from uplift.viz.figure import new_figure, plain, write_png
+from uplift.viz.figure import new_figure, style_axes, write_png
 
 WIDTH, PANEL, HEAD = 7.2, 1.55, 0.9
 """Inches: of the picture, of a panel's height, of what is above and below."""
@@ -58,7 +58,7 @@ def _draw_light(axes: Any, setting: Setting, choice: Choice, light: int) -> None
     axes.scatter(sampling.wavelengths, powers, s=26, c=tints, edgecolors=INK, zorder=3, clip_on=False)
     axes.set(ylim=(0, 1.3 * max(powers.max(), np.quantile(power * scale, 0.97))), ylabel="power")
     axes.set_title(sampling.lights[light], loc="left", fontsize=9, color=INK)
-    plain(axes)
+    style_axes(axes)
 
 
 def _draw_weights(axes: Any, setting: Setting, choice: Choice) -> None:
@@ -73,11 +73,11 @@ def _draw_weights(axes: Any, setting: Setting, choice: Choice) -> None:
     )
     axes.set_title("weights, on the matching functions", loc="left", fontsize=9, color=INK)
     axes.legend(frameon=False, ncols=3, loc="upper right")
-    plain(axes)
+    style_axes(axes)
 
 
 def _tints(setting: Setting, wavelengths: Array) -> Array:
     """(n, 3) how the wavelengths look, as far as sRGB can show."""
     xyz = read_off(wavelengths, setting.wavelengths, setting.cmfs.T).T
-    rgb = contained(xyz @ np.linalg.inv(SRGB.rgb_to_xyz).T, SRGB, "scale").rgb + 1e-3
+    rgb = map_to_gamut(xyz @ np.linalg.inv(SRGB.rgb_to_xyz).T, SRGB, "scale").rgb + 1e-3
     return encode(rgb / rgb.max(axis=1, keepdims=True))

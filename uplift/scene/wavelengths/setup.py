@@ -98,12 +98,12 @@ def set_up(
     _check(nm, materials)
     lights = tuple(dict.fromkeys(lights))
     if not lights:
-        raise OptionError("there is no light", remedy="name at least one: D65")
+        raise OptionError("there is no light", hint="name at least one: D65")
     # Tables have steps of whole nanometres; a grid may have any.
     shape = np.floor(nm[0]), np.ceil(nm[-1]), 1.0
     whole = np.arange(shape[0], shape[1] + 0.5)
     cmfs = read_off(nm, whole, observer.matching_functions(observer_name, *shape).T).T
-    powers = read_off(nm, whole, np.stack([observer.power(name, *shape) for name in lights]))
+    powers = read_off(nm, whole, np.stack([observer.illuminant_spd(name, *shape) for name in lights]))
     return Setting(nm, materials, lights, powers / (powers @ cmfs[:, 1])[:, None], cmfs)
 
 
@@ -115,11 +115,11 @@ def read_off(wavelengths: Array, known: Array, curves: Array) -> Array:
 def _check(nm: Array, materials: Array) -> None:
     steps = np.diff(nm)
     if nm.ndim != 1 or len(nm) < 16 or not np.allclose(steps, steps[0], rtol=1e-6) or steps[0] <= 0:
-        raise OptionError("the wavelengths are not evenly spaced", remedy="give a grid such as 380:770:1")
+        raise OptionError("the wavelengths are not evenly spaced", hint="give a grid such as 380:770:1")
     if materials.ndim != 2 or not len(materials) or materials.shape[1] != len(nm):
         raise OptionError(
             f"reflectances of shape {materials.shape} do not fit {len(nm)} wavelengths",
-            remedy="give one row a material, at least one",
+            hint="give one row a material, at least one",
         )
     if not np.isfinite(materials).all() or materials.min() < 0:
-        raise OptionError("a reflectance is negative or no number", remedy="give values from 0 to 1")
+        raise OptionError("a reflectance is negative or no number", hint="give values from 0 to 1")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry.srgb import encode
 from uplift.common.errors import OutputError
-from uplift.common.files import check_output, replacing
+from uplift.common.files import atomic_write, check_output
 from uplift.cube.data import CubeData
 from uplift.io.slices import exr
 from uplift.viz.sheet.sheet import Label, compose
@@ -48,7 +48,7 @@ def write_sheet(data: CubeData, path: str | os.PathLike[str], *, force: bool = F
 def check_sheet(path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Raises `OutputError` where `write_sheet` would: asks before long work."""
     if _suffix(path) not in WRITERS:
-        raise OutputError("a sheet is OpenEXR or PNG", path=path, remedy="name the file .exr or .png")
+        raise OutputError("a sheet is OpenEXR or PNG", path=path, hint="name the file .exr or .png")
     check_output(path, force=force)
 
 
@@ -66,7 +66,7 @@ def _write_png(data: CubeData, image: Image, path: Path, force: bool) -> None:
 
     codes = np.rint(255 * encode(image)).astype(np.uint8)
     # Without a name here matplotlib writes its own and its version.
-    with replacing(path, force=force) as temporary:
+    with atomic_write(path, force=force) as temporary:
         imsave(temporary, codes, format="png", metadata={"Software": "uplift"})
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.colorimetry.delta_e import colours_apart
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.design.palette import design, matrix, read_palette
 
 HAZE, BLOCK, VALVE, PISTON = range(4)
@@ -23,13 +23,13 @@ def colours(model, repository):
 @pytest.mark.parametrize(("kind", "alike"), [("whole", 0.2), ("drawn", 4)])
 def test_an_engine_s_parts_are_alike_by_day_and_part_under_the_lamp(colours, sensor, kind, alike):
     found = colours[kind]
-    assert (colours_apart(sensor, found[BLOCK:, DAY], found[BLOCK, DAY]) < alike).all()
-    assert colours_apart(sensor, found[BLOCK, DAY], found[BLOCK, LAMP]) < alike
+    assert (delta_e_rgb(sensor, found[BLOCK:, DAY], found[BLOCK, DAY]) < alike).all()
+    assert delta_e_rgb(sensor, found[BLOCK, DAY], found[BLOCK, LAMP]) < alike
     for pair in ((BLOCK, VALVE), (BLOCK, PISTON), (VALVE, PISTON)):
-        assert colours_apart(sensor, *found[list(pair), LAMP]) > 5
+        assert delta_e_rgb(sensor, *found[list(pair), LAMP]) > 5
 
 
 @pytest.mark.parametrize("kind", ["whole", "drawn"])
 def test_the_haze_is_gone_by_night(colours, sensor, kind):
-    assert colours_apart(sensor, colours[kind][HAZE, NIGHT], np.zeros(3)) < 1
-    assert colours_apart(sensor, colours[kind][HAZE, DAY], np.zeros(3)) > 30
+    assert delta_e_rgb(sensor, colours[kind][HAZE, NIGHT], np.zeros(3)) < 1
+    assert delta_e_rgb(sensor, colours[kind][HAZE, DAY], np.zeros(3)) > 30

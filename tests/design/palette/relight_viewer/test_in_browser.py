@@ -8,8 +8,8 @@ import json
 import numpy as np
 import pytest
 
-from tests.design.palette.dial.conftest import arbitrary
-from tests.design.palette.dial.seen import apart, box, codes, position, shares, wanted
+from tests.design.palette.relight_viewer.conftest import arbitrary
+from tests.design.palette.relight_viewer.seen import apart, box, codes, position, shares, wanted
 from uplift.design.palette.relight_viewer.page import page
 
 

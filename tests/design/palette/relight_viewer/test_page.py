@@ -12,8 +12,8 @@ import zlib
 import numpy as np
 import pytest
 
-from tests.design.palette.dial.conftest import arbitrary
-from tests.design.palette.dial.seen import codes, wanted
+from tests.design.palette.relight_viewer.conftest import arbitrary
+from tests.design.palette.relight_viewer.seen import codes, wanted
 from uplift.colorimetry.srgb import encode
 from uplift.common.errors import OptionError
 from uplift.design.palette import Palette, design

@@ -9,7 +9,7 @@ from uplift.design.palette.relight_viewer.controls import controls
 from uplift.design.palette.relight_viewer.packing import halves, packed
 from uplift.design.palette.relight_viewer.relighting import Relighting
 from uplift.design.palette.relight_viewer.table import palette_table
-from uplift.viz.markup import Markup, counted, element
+from uplift.viz.markup import Markup, element, pluralise
 
 SCRIPTS = ("unpack.js", "screen.js", "mix.js", "dial.js", "page.js", "find.js")
 """One module in the page, in this order."""
@@ -50,8 +50,8 @@ def _resource(package: str, name: str) -> str:
 
 
 def _lead(shown: Relighting) -> str:
-    materials = counted(len(shown.materials.names), "material")
-    lights = counted(len(shown.lights.names), "light")
+    materials = pluralise(len(shown.materials.names), "material")
+    lights = pluralise(len(shown.lights.names), "light")
     return f"{materials} under any mix of {lights}: move the dial, and the picture is lit anew."
 
 

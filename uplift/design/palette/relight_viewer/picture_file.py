@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from uplift.colorimetry.observer import suggest
 from uplift.common.errors import OptionError, TextureError
 from uplift.io.texture.colours import colour_channels
-from uplift.io.texture.source import Part, Values, opened
+from uplift.io.texture.source import Part, Values, open_image
 
 MOST = 1 << 20
 """Pixels that a page can light in real time."""
@@ -32,17 +32,17 @@ def read_weights(
     Raises `TextureError` for an image that is neither, `OptionError` and `UnknownNameError` for labels.
     """
     codes = _numbered(names) if labels is None else _told(names, labels)
-    with opened(path) as image:
+    with open_image(path) as image:
         part = image.parts[0]
         width, height = part.window.width, part.window.height
         if width * height > MOST:
-            remedy = f"scale it, without smoothing, to at most {MOST:,} pixels"
-            raise TextureError(f"is too large: {width} × {height}", path=path, remedy=remedy)
+            hint = f"scale it, without smoothing, to at most {MOST:,} pixels"
+            raise TextureError(f"is too large: {width} × {height}", path=path, hint=hint)
         values = np.concatenate([band for _, band in image.bands(part)])
     try:
         return _labelled(part, values, codes, len(names)) if part.codes else _channels(part, values, names)
     except TextureError as error:
-        raise TextureError(error.problem, path=path, remedy=error.remedy) from error
+        raise TextureError(error.problem, path=path, hint=error.hint) from error
 
 
 def _numbered(names: Sequence[str]) -> dict[int, int]:
@@ -57,10 +57,10 @@ def _told(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, int]:
         if name not in names:
             raise suggest(name, names, "material")
         if not re.fullmatch("#[0-9a-fA-F]{6}", label):
-            raise OptionError(f"'{label}' is no colour of '{name}'", remedy="write it as #rrggbb")
+            raise OptionError(f"'{label}' is no colour of '{name}'", hint="write it as #rrggbb")
         code = int(label[1:], 16)
         if code in codes:
-            raise OptionError(f"'{label}' stands for two materials", remedy="give each a colour of its own")
+            raise OptionError(f"'{label}' stands for two materials", hint="give each a colour of its own")
         codes[code] = list(names).index(name)
     return codes
 
@@ -68,7 +68,7 @@ def _told(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, int]:
 def _labelled(part: Part, values: Values, codes: Mapping[int, int], count: int) -> Weights:
     places = colour_channels(part)
     if places is None or part.codes != 255:
-        raise TextureError("holds no 8-bit colours", remedy="make it an 8-bit PNG of labels")
+        raise TextureError("holds no 8-bit colours", hint="make it an 8-bit PNG of labels")
     red, green, blue = (values[..., place].astype(np.int32) for place in places)
     found = (red << 16) | (green << 8) | blue
     alpha = values[..., part.channels.index("A")] / 255 if "A" in part.channels else np.ones(found.shape)
@@ -88,21 +88,21 @@ def _check_known(found: NDArray[np.int32], codes: Mapping[int, int]) -> None:
         listed = ", ".join(f"#{code:06x}" for code in often)
         raise TextureError(
             f"{counts[strange].sum():,} pixels have no material: {listed}{', …' if strange.sum() > 4 else ''}",
-            remedy="give each colour to a material with a label, and draw without smoothed edges",
+            hint="give each colour to a material with a label, and draw without smoothed edges",
         )
 
 
 def _channels(part: Part, values: Values, names: Sequence[str]) -> Weights:
     missing = [name for name in names if name not in part.channels]
     if len(missing) == len(names):
-        remedy = f"call its channels like the materials ({', '.join(names)}), or use an 8-bit image of labels"
-        raise TextureError("has no channel called like a material", remedy=remedy)
+        hint = f"call its channels like the materials ({', '.join(names)}), or use an 8-bit image of labels"
+        raise TextureError("has no channel called like a material", hint=hint)
     shown = np.zeros((*values.shape[:2], len(names)), dtype=np.float32)
     for row, name in enumerate(names):
         if name not in missing:
             shown[..., row] = values[..., part.channels.index(name)]
     if not (np.isfinite(shown).all() and shown.min() >= 0):
         raise TextureError(
-            "holds weights that are negative or not finite", remedy="mend them: weights are from 0"
+            "holds weights that are negative or not finite", hint="mend them: weights are from 0"
         )
     return shown

@@ -92,7 +92,7 @@ def relighting(title: str, found: Design, weights: NDArray[np.float32]) -> Relig
     """
     palette, model, colours = found.palette, found.model, matrix(found)
     if len(palette.materials) > MOST:
-        raise OptionError(f"{len(palette.materials)} materials in a picture", remedy=f"show {MOST} at most")
+        raise OptionError(f"{len(palette.materials)} materials in a picture", hint=f"show {MOST} at most")
     lights, materials = (tuple(part.name for part in parts) for parts in (palette.lights, palette.materials))
     return Relighting(
         title=title,

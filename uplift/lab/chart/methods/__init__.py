@@ -31,7 +31,7 @@ def chosen(patterns: tuple[str, ...] = (), *, quick: bool = False) -> list[tuple
         if not any(fnmatchcase(method.name, pattern) for _, method in every):
             some = ", ".join(f"'{family.methods[0].name}'" for family in FAMILIES)
             raise OptionError(
-                f"no method is called '{pattern}'", remedy=f"name some as {some}; '*' stands for any"
+                f"no method is called '{pattern}'", hint=f"name some as {some}; '*' stands for any"
             )
     return [
         (family, method)
