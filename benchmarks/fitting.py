@@ -15,6 +15,7 @@ from uplift import fit
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
+from uplift.common.progress import Progress
 from uplift.common.threads import single_threaded_blas
 from uplift.lab.timing import Spread, spread
 from uplift.lattice import Lattice
@@ -100,8 +101,8 @@ def _once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float], fl
     def mark(phase: str) -> None:
         marks[phase] = time.process_time()
 
-    def watch(done: fit.Round | fit.Storing) -> None:
-        if isinstance(done, fit.Round):
+    def progress(done: Progress) -> None:
+        if done.stage == "fit":
             mark("lattice")
 
     wall = time.perf_counter()
@@ -113,7 +114,7 @@ def _once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float], fl
     mark("entries")
     prior = fit.fit_prior(problem, sensor, entries, observer.light("A"))
     mark("prior")
-    fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, watch)
+    fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, progress)
     mark("storing")
     prior.standard_errors(problem)
     mark("errors")

@@ -43,11 +43,11 @@ def _publish() -> None:
     def compared(part: Scene, label: str) -> Comparison:
         made = representations(part.powers, part.surfaces)
         with click.progressbar(length=len(made), label=label, file=sys.stderr) as bar:
-            return compare(part, made, watch=lambda done, total: bar.update(1))
+            return compare(part, made, progress=lambda done, total: bar.update(1))
 
     found, beyond = compared(asked, "representations"), compared(others, "under other lights")
     with click.progressbar(length=24, label="filters", file=sys.stderr) as bar:
-        tuned = tune(asked, watch=lambda done, total: bar.update(1))
+        tuned = tune(asked, progress=lambda done, total: bar.update(1))
     readings = both(asked)
     folder = check_folder(ROOT / "docs" / "representations", (), force=True)
     for kind in DRAWN:

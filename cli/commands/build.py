@@ -128,7 +128,7 @@ def command(
     from uplift.io.scene_colours import Images
     from uplift.pipeline import build
 
-    from ..output.progress import watching
+    from ..output.progress import build_progress
 
     if encoding != "auto" and not images and plan_path is None:
         raise click.UsageError("--encoding is of --scene images, and there are none.")
@@ -145,8 +145,8 @@ def command(
         make, name = _planned(plan_path, click.get_current_context())
     path = check_output(name if output is None else output, force=force)
     begin = time.perf_counter()
-    with watching(quiet=quiet, verbose=verbose) as watch:
-        cube = make(watch=watch)
+    with build_progress(quiet=quiet, verbose=verbose) as progress:
+        cube = make(progress=progress)
     cube.save(path, force=force)
     if verbose:
         tell_improvements(cube)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..output.console import console
-from ..output.progress import counting
+from ..output.progress import progress_bar
 from ..params.options import force_option
 from ..params.study_atlases import SHIPPED, read_each
 
@@ -130,8 +130,8 @@ def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *,
 
     methods = chosen(patterns, quick=quick)
     asked = task(read_each(files), colours, QUICK if quick else Effort())
-    with counting("methods") as watch:
-        return measure(methods, asked, watch)
+    with progress_bar("methods") as progress:
+        return measure(methods, asked, progress)
 
 
 def _write(found: Chart, folder: Path, *, force: bool) -> None:

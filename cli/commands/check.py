@@ -43,11 +43,11 @@ def command(
     from uplift.pipeline.rebuild import rebuild
     from uplift.report.regression import compare
 
-    from ..output.progress import watching
+    from ..output.progress import build_progress
 
     stored = {Path(file): load(file) for file in files}
-    with watching(quiet=quiet, verbose=verbose) as watch:
-        rebuilt = {path: rebuild(cube, path, folders, watch=watch) for path, cube in stored.items()}
+    with build_progress(quiet=quiet, verbose=verbose) as progress:
+        rebuilt = {path: rebuild(cube, path, folders, progress=progress) for path, cube in stored.items()}
     comparisons = [compare(path, cube.data, rebuilt[path].data) for path, cube in stored.items()]
     if style == "json":
         click.echo(json_text([_object(comparison) for comparison in comparisons]))

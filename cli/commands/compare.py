@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..output.console import json_text
-from ..output.progress import counting
+from ..output.progress import progress_bar
 from ..params.options import force_option, format_option
 from ..params.study_atlases import SHIPPED, read_each
 
@@ -109,9 +109,9 @@ def _measure(
 
     asked = scene(read_each(files), lights)
     asked = asked.thinned() if quick else asked
-    with counting("representations") as watch:
+    with progress_bar("representations") as progress:
         effort = QUICK if quick else Effort()
-        found = compare(asked, representations(asked.powers, asked.surfaces), effort, watch)
+        found = compare(asked, representations(asked.powers, asked.surfaces), effort, progress)
     return found, _tune(asked, quick=quick) if filters else ()
 
 
@@ -119,8 +119,8 @@ def _tune(asked: Scene, *, quick: bool) -> tuple[Tuned, ...]:
     from uplift.lab.comparison.filters import tune
     from uplift.scene.representations.filters import COARSE, FINE
 
-    with counting("filters") as watch:
-        return tune(asked, COARSE if quick else FINE, watch=watch)
+    with progress_bar("filters") as progress:
+        return tune(asked, COARSE if quick else FINE, progress=progress)
 
 
 def _write(found: Comparison, tuned: tuple[Tuned, ...], folder: Path, *, force: bool) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.progress import waiting
+from ..output.progress import spinner
 from ..params.options import fill_option, force_option
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def _coeff(data: CubeData, path: Path, **options: Any) -> str:
     keep_compiled()
     from uplift.io.export import write_coeff
 
-    with waiting("fitting sigmoids"):
+    with spinner("fitting sigmoids"):
         worst = write_coeff(data, path, **options)
     return f"sigmoids for rgb2spec's readers, colours within {worst:.1e}"
 

@@ -9,7 +9,7 @@ import click
 
 from uplift.common.errors import UpliftWarning
 
-from ..output.progress import counting
+from ..output.progress import progress_bar
 from ..params.ingredients import given
 from ..startup import keep_compiled
 
@@ -41,8 +41,8 @@ def paint(brush: Brush, over: str, output: str, *, force: bool) -> None:
     """Paint, and say what should be said."""
     from uplift.design.mixing.overpaint import paint_over
 
-    with counting("rows") as watch:
-        painted = paint_over(brush, over, output, force=force, watch=watch)
+    with progress_bar("rows") as progress:
+        painted = paint_over(brush, over, output, force=force, progress=progress)
     for remark in painted.remarks:
         warnings.warn(f"{over}: {remark}", UpliftWarning, stacklevel=1)
     click.echo(f"{output}: {painted.counts.pixels:,} pixels painted over")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..output.console import console, json_text
-from ..output.progress import stepping
+from ..output.progress import stage_spinner
 from ..params.options import force_option, format_option
 
 if TYPE_CHECKING:
@@ -57,8 +57,8 @@ def command(scene: str, output: str | None, style: str, force: bool) -> None:
     for each in (path, html):
         check_output(each, force=force)
     brief = read_brief(scene)
-    with stepping() as watch:
-        found = plan(brief, watch=watch)
+    with stage_spinner() as progress:
+        found = plan(brief, progress=progress)
     told = numbers(found, path)
     write_text(json_text(told) + "\n", path, force=force)
     write_text(page(found, path), html, force=force)

@@ -68,13 +68,13 @@ def command(
     from uplift.common.files import check_output, write_text
     from uplift.lookup import load
 
-    from ..output.progress import waiting
+    from ..output.progress import spinner
 
     path = _path(output, cube_path, style)
     if path is not None:
         _check_apart(check_output(path, force=force), cube_path)
     cube = load(cube_path)
-    with waiting("asking the cube"):
+    with spinner("asking the cube"):
         found = _assess(cube, cube_path, atlases, folders, lights)
         text = _text(found, style, worst)
     if path is None:

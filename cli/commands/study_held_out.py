@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..output.console import console, json_text
-from ..output.progress import counting
+from ..output.progress import progress_bar
 from ..params.options import format_option
 from ..params.study_atlases import SHIPPED, read_each
 
@@ -48,8 +48,8 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, moments: int, style:
     atlases = read_each(files)
     found: Found = {}
     for name, spectra in atlases.items():
-        with counting(name) as watch:
-            found[name] = halves(spectra, splits, watch, dim=dim, coefficients=moments + 1)
+        with progress_bar(name) as progress:
+            found[name] = halves(spectra, splits, progress, dim=dim, coefficients=moments + 1)
     PRINTERS[style](found)
 
 

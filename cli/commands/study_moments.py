@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..output.console import console, json_text
-from ..output.progress import counting
+from ..output.progress import progress_bar
 from ..params.options import force_option, format_option
 from ..params.study_atlases import SHIPPED, read_each
 
@@ -50,8 +50,8 @@ def moments(files: tuple[str, ...], most: int, output: str | None, style: str, f
     atlases = read_each(files)
     if output is not None:
         check_folder(output, FILES, force=force)
-    with counting("reconstructions") as watch:
-        found = study(atlases, most, watch)
+    with progress_bar("reconstructions") as progress:
+        found = study(atlases, most, progress)
     if output is not None:
         _write(found, Path(output), force=force)
     PRINTERS[style](found)

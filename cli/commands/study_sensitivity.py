@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..output.console import console, json_text
-from ..output.progress import counting
+from ..output.progress import progress_bar
 from ..params.options import atlas_folders_option, force_option, format_option
 
 if TYPE_CHECKING:
@@ -58,8 +58,8 @@ def sensitivity(
     atlas = recorded_atlas(loaded.data, cube, folders) if cube is not None and entries else None
     if output is not None:
         check_folder(output, FILES if atlas else FILES[:2], force=force)
-    with counting("builds") as watch:
-        found = study(loaded, atlas, entries, watch)
+    with progress_bar("builds") as progress:
+        found = study(loaded, atlas, entries, progress)
     if output is not None:
         _write(found, Path(output), force=force)
     PRINTERS[style](found)

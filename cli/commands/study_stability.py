@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..output.console import console, json_text
-from ..output.progress import counting
+from ..output.progress import progress_bar
 from ..params.options import force_option, format_option
 
 if TYPE_CHECKING:
@@ -90,8 +90,8 @@ def stability(
     axes = replace(design.QUICK if quick else design.Axes(), **({"atlases": (NO_ATLAS, *atlases)} | given))
     if output is not None:
         check_folder(output, FILES, force=force)
-    with counting("builds") as watch:
-        found = study(design.design(axes), atlases, watch)
+    with progress_bar("builds") as progress:
+        found = study(design.design(axes), atlases, progress)
     if output is not None:
         _write(axes, found, Path(output), force=force)
     PRINTERS[style](found)

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.progress import counting
+from uplift.common.progress import Progress
+
+from ..output.progress import progress_bar
 from ..params.image_paths import frames
 from ..params.options import (
     cube_option,
@@ -133,19 +135,19 @@ def _alone(job: Job) -> Conversion:
     """One image, here, with a bar over its rows."""
     from uplift.io import texture
 
-    with counting("rows") as watch:
+    with progress_bar("rows") as progress:
         return texture.convert(
-            texture.uplifter_for(job.recipe), job.source, job.target, force=job.force, watch=watch
+            texture.uplifter_for(job.recipe), job.source, job.target, force=job.force, progress=progress
         )
 
 
 def _several(results: Iterable[Conversion | Failure], total: int) -> list[Conversion | Failure]:
     """Images as they are finished, with a bar over them."""
     found = []
-    with counting("images") as watch:
+    with progress_bar("images") as progress:
         for result in results:
             found.append(result)
-            watch(len(found), total)
+            progress(Progress("images", len(found), total))
     return found
 
 

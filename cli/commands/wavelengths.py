@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.progress import waiting
+from ..output.progress import spinner
 from ..output.wavelengths_output import PRINTERS, Found
 from ..params.options import force_option, format_option, sensor_options
 from ..params.study_atlases import SHIPPED, read_each
@@ -97,7 +97,7 @@ def command(
     setting = wavelengths.set_up(
         on_grid(spectra, wavelengths.grid()), lights or ("D65",), observer_name=seen_by
     )
-    with waiting("fitting wavelengths"):
+    with spinner("fitting wavelengths"):
         if given is None:
             choice = wavelengths.choose(
                 setting, count=count, target=target, measure=measure or "max", method=method or "optimised"

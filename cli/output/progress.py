@@ -1,36 +1,34 @@
-"""Progress bars, of a build or of any counted work, a spinner over other waits: on a terminal, and nowhere else."""
+"""Progress on the terminal: a bar, a spinner, or a line per step; silent elsewhere."""
 
 from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import click
 
-if TYPE_CHECKING:
-    from uplift.fit import Round, Storing
-    from uplift.io.scene_colours import ReadProgress
-    from uplift.pipeline.build_cube import Watch
-    from uplift.scene.plan import Step
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+
+STAGES = {"images": "reading images", "fit": "fitting", "store": "storing"}
+"""Descriptions of the stages of a build."""
 
 
 @contextlib.contextmanager
-def watching(*, quiet: bool, verbose: bool) -> Iterator[Watch]:
-    """A watcher for `uplift.build`: silent, a line a round, or a bar, as asked for and as the terminal allows."""
+def build_progress(*, quiet: bool, verbose: bool) -> Iterator[ProgressCallback]:
+    """Yield a callback for `uplift.build`: lines if ``verbose``, a bar on a terminal, silent otherwise."""
     if verbose:
-        yield _say
+        yield _print_line
     elif quiet or not sys.stderr.isatty():
-        yield lambda done: None
+        yield ignore_progress
     else:
-        with _bar() as watch:
-            yield watch
+        with _build_bar() as progress:
+            yield progress
 
 
 @contextlib.contextmanager
-def waiting(text: str) -> Iterator[None]:
-    """A line that says what takes so long."""
+def spinner(text: str) -> Iterator[None]:
+    """Show a spinner with ``text`` while the block runs."""
     if not sys.stderr.isatty():
         yield
         return
@@ -40,71 +38,61 @@ def waiting(text: str) -> Iterator[None]:
         yield
 
 
-def _say(done: Round | Storing | ReadProgress) -> None:
-    click.echo(_told(done), err=True)
-
-
-def _told(done: Round | Storing | ReadProgress) -> str:
-    from uplift.fit import Storing
-    from uplift.io.scene_colours import ReadProgress
-
-    if isinstance(done, ReadProgress):
-        return f"scene: read {done.read} of {done.total} images"
-    if isinstance(done, Storing):
-        return f"stored {done.stored} of {done.total}"
-    return f"round {done.number}: tried {done.tried}, fitted {done.fitted} of {done.total}"
-
-
 @contextlib.contextmanager
-def _bar() -> Iterator[Watch]:
-    """A bar over a build: fitting fills the first half, storing, which takes as long, the second."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (
-        TextColumn("{task.fields[told]}"),
-        BarColumn(bar_width=None),
-        TextColumn("{task.percentage:>3.0f} %"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("build", total=None, told="atlas")
-
-        def watch(done: Round | Storing | ReadProgress) -> None:
-            from uplift.fit import Storing
-            from uplift.io.scene_colours import ReadProgress
-
-            if isinstance(done, ReadProgress):
-                progress.update(task, total=done.total, completed=done.read, told=_told(done))
-                return
-            reached = done.total + done.stored if isinstance(done, Storing) else done.fitted
-            progress.update(task, total=2 * done.total, completed=reached, told=_told(done))
-
-        yield watch
-
-
-@contextlib.contextmanager
-def counting(what: str) -> Iterator[Callable[[int, int], None]]:
-    """A watcher that is told how many of how many are done: a bar on a terminal, silent elsewhere."""
+def progress_bar(title: str) -> Iterator[ProgressCallback]:
+    """Yield a callback that moves a bar titled ``title``."""
     if not sys.stderr.isatty():
-        yield lambda done, total: None
+        yield ignore_progress
         return
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
+    from rich.progress import Progress as Bar
 
-    columns = (TextColumn(what), BarColumn(bar_width=None), MofNCompleteColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(what, total=None)
-        yield lambda done, total: progress.update(task, completed=done, total=total)
+    columns = (TextColumn(title), BarColumn(bar_width=None), MofNCompleteColumn())
+    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(title, total=None)
+        yield lambda event: bar.update(task, completed=event.done, total=event.total)
 
 
 @contextlib.contextmanager
-def stepping() -> Iterator[Callable[[Step], None]]:
-    """A watcher of a plan: a spinner that says what is measured, on a terminal."""
+def stage_spinner() -> Iterator[ProgressCallback]:
+    """Yield a callback that names the current stage beside a spinner."""
     if not sys.stderr.isatty():
-        yield lambda step: None
+        yield ignore_progress
         return
     from rich.console import Console
 
     with Console(stderr=True).status("…") as status:
-        yield lambda step: status.update(f"{step.what} ({step.done + 1} of {step.total}) …")
+        yield lambda event: status.update(f"{event.stage} ({event.done + 1} of {event.total}) …")
+
+
+def _print_line(event: Progress) -> None:
+    detail = f", {event.detail}" if event.detail else ""
+    click.echo(f"{STAGES[event.stage]}: {event.done} of {event.total}{detail}", err=True)
+
+
+@contextlib.contextmanager
+def _build_bar() -> Iterator[ProgressCallback]:
+    """Yield a callback for a bar whose first half is fitting and whose second half is storing."""
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (
+        TextColumn("{task.fields[stage]}"),
+        BarColumn(bar_width=None),
+        TextColumn("{task.percentage:>3.0f} %"),
+        TimeRemainingColumn(),
+    )
+    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("build", total=None, stage="fitting the atlas")
+
+        def progress(event: Progress) -> None:
+            stage = STAGES[event.stage]
+            if event.stage == "images":
+                bar.update(task, total=event.total, completed=event.done, stage=stage)
+                return
+            done = event.done + (event.total if event.stage == "store" else 0)
+            bar.update(task, total=2 * event.total, completed=done, stage=stage)
+
+        yield progress

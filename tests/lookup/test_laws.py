@@ -21,14 +21,14 @@ def test_weights_are_a_partition_of_unity_entries_included(small_cube, rgb):
     assert (nodes.weights >= 0).all()
     assert ((nodes.share >= 0) & (nodes.share <= 1)).all()
     data = small_cube.data
-    ones = nodes.mix(np.ones((data.lattice.size, 1)), np.ones((len(data.atlas.names), 1)))
+    ones = nodes.weighted_sum(np.ones((data.lattice.size, 1)), np.ones((len(data.atlas.names), 1)))
     np.testing.assert_allclose(ones, 1, atol=1e-14)
 
 
 @given(rgb=colours)
 def test_nodes_reproduce_the_colour_entries_included(small_cube, rgb):
     data = small_cube.data
-    found = around(data, rgb).mix(data.lattice.points, data.atlas.rgb)
+    found = around(data, rgb).weighted_sum(data.lattice.points, data.atlas.rgb)
     np.testing.assert_allclose(found, rgb, atol=1e-12)
 
 

@@ -54,7 +54,7 @@ def refused(cube, path, folders=()):
 def test_the_stored_cube_equals_its_rebuilding(small_cube, repository, home):
     path = repository / "cubes" / "moments-8-macbeth.uplift"
     rounds = []
-    again = rebuild(small_cube, path, watch=rounds.append)
+    again = rebuild(small_cube, path, progress=rounds.append)
     assert compare(path, small_cube.data, again.data).failures == ()
     assert rounds
     assert again.data.provenance["options"] == small_cube.data.provenance["options"]
@@ -103,7 +103,7 @@ def test_a_changed_atlas_does_not_hide_the_true_one(tiny_cube, repository, home)
     "options",
     [
         {"kriging": True},
-        {"watch": None},
+        {"progress": None},
         {"atlas": None},
         {"model": "spline"},
         {"illuminant": "D66"},

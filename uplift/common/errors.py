@@ -1,83 +1,157 @@
-"""Everything that can go wrong on purpose: what is the matter, where, and what to do about it."""
+"""Exception hierarchy: every error and warning carries a stable code, a location, the problem and a hint."""
 
 from __future__ import annotations
 
-import os
+from typing import Any
+
+from uplift.common.arrays import StrPath
+
+__all__ = [
+    "AtlasError",
+    "ChartFileError",
+    "ColourError",
+    "CubeFileError",
+    "OptionError",
+    "OutputError",
+    "PaletteError",
+    "PlanFileError",
+    "TextureError",
+    "UnknownNameError",
+    "UpliftError",
+    "UpliftWarning",
+]
 
 
-class UpliftError(Exception):
-    """Bad input. ``str()`` is one line: the place, the problem, the hint.
+class Diagnostic(Exception):
+    """Fields that errors and warnings share.
 
     Parameters
     ----------
-    problem : what is wrong, without a full stop.
-    path, line, entry : where, as far as it is known (``line`` counts from 1).
-    hint : what the user can do.
+    problem : str
+        The constraint and the value received, without a full stop.
+    code : str
+        Stable identifier in kebab case, for programs and tests. Wording may change between versions, codes do not.
+    path : path-like, optional
+        The file concerned.
+    line : int, optional
+        Line in ``path``, counted from 1.
+    entry : str, optional
+        Name of the atlas entry concerned.
+    hint : str, optional
+        How to solve the problem. It names parameters of the library, never options of the command line.
     """
+
+    code = "error"
+    """Used where a call site gives no code."""
 
     def __init__(
         self,
         problem: str,
         *,
-        path: str | os.PathLike[str] | None = None,
+        code: str | None = None,
+        path: StrPath | None = None,
         line: int | None = None,
         entry: str | None = None,
         hint: str = "",
     ) -> None:
         self.problem, self.path, self.line = problem, path, line
         self.entry, self.hint = entry, hint
+        if code is not None:
+            self.code = code
         super().__init__(str(self))
 
-    def __str__(self) -> str:
-        place = "" if self.path is None else os.fspath(self.path)
+    @property
+    def where(self) -> str:
+        """Location as ``path:line: entry 'name'``, as far as it is known; empty if nothing is."""
+        place = "" if self.path is None else str(self.path)
         if self.line is not None:
             place += f":{self.line}"
-        where = [place] if place else []
+        parts = [place] if place else []
         if self.entry is not None:
-            where.append(f"entry '{self.entry}'")
-        text = ": ".join([*where, self.problem])
+            parts.append(f"entry '{self.entry}'")
+        return ": ".join(parts)
+
+    def __str__(self) -> str:
+        """One line: location, problem, hint."""
+        text = f"{self.where}: {self.problem}" if self.where else self.problem
         return f"{text}; {self.hint}" if self.hint else text
 
+    def to_json(self) -> dict[str, Any]:
+        """Plain values for machines.
 
-class AtlasError(UpliftError):
-    """An atlas that cannot be read or used."""
-
-
-class UnknownNameError(UpliftError):
-    """A name that the tables do not hold: illuminant, observer, RGB space, model, atlas entry."""
-
-
-class OptionError(UpliftError):
-    """An option outside its range."""
+        Returns
+        -------
+        dict
+            ``code``, ``where``, ``problem`` and ``hint``, all text.
+        """
+        return {"code": self.code, "where": self.where, "problem": self.problem, "hint": self.hint}
 
 
-class CubeFileError(UpliftError):
-    """A cube file that is missing, broken, of another version, or no cube at all."""
+class UpliftError(Diagnostic):
+    """Base class of all errors that uplift raises on purpose."""
 
 
-class ChartFileError(UpliftError):
-    """A chart's table that is missing, broken, or no such table."""
+class AtlasError(UpliftError, ValueError):
+    """An atlas cannot be read or used."""
+
+    code = "atlas"
 
 
-class PlanFileError(UpliftError):
-    """A scene file or a plan that is missing, broken, out of date, or asks for what cannot be."""
+class UnknownNameError(UpliftError, KeyError):
+    """A name is not in the tables: illuminant, observer, RGB space, model or atlas entry."""
+
+    code = "unknown-name"
 
 
-class PaletteError(UpliftError):
-    """A palette's spec that cannot be read, or asks for what cannot be worked out."""
+class OptionError(UpliftError, ValueError):
+    """An option is outside its range."""
+
+    code = "option"
 
 
-class ColourError(UpliftError):
-    """A colour that cannot be asked for: outside [0, 1], NaN, or unreadable."""
+class CubeFileError(UpliftError, ValueError):
+    """A cube file is missing, damaged, of another version, or not a cube."""
+
+    code = "cube-file"
 
 
-class TextureError(UpliftError):
-    """An image that cannot be read, or holds no colour."""
+class ChartFileError(UpliftError, ValueError):
+    """A chart table is missing, damaged, or not a chart table."""
+
+    code = "chart-file"
 
 
-class OutputError(UpliftError):
-    """An output path that cannot be written, or that exists already."""
+class PlanFileError(UpliftError, ValueError):
+    """A scene file or a plan is missing, invalid, out of date, or cannot be satisfied."""
+
+    code = "plan-file"
 
 
-class UpliftWarning(UserWarning):
-    """Something was left out or changed, named; the rest was done."""
+class PaletteError(UpliftError, ValueError):
+    """A palette specification cannot be read or has no solution."""
+
+    code = "palette"
+
+
+class ColourError(UpliftError, ValueError):
+    """A colour is outside [0, 1], not finite, or unreadable."""
+
+    code = "colour"
+
+
+class TextureError(UpliftError, ValueError):
+    """An image cannot be read or has no colour channels."""
+
+    code = "texture"
+
+
+class OutputError(UpliftError, OSError):
+    """An output path cannot be written, or exists already."""
+
+    code = "output"
+
+
+class UpliftWarning(Diagnostic, UserWarning):
+    """Something was skipped or changed; the rest was done."""
+
+    code = "warning"

@@ -98,6 +98,8 @@ def atomic_write(path: str | os.PathLike[str], *, force: bool = False) -> Iterat
         yield temporary
         _settle(temporary)
         os.replace(temporary, target)
+    except OutputError:
+        raise
     except OSError as error:
         raise _cannot_write(path, error) from error
     finally:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices
+from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.fit.entries import FittedEntries, fit_entries
 from uplift.fit.grow import NOT_FITTED, grow
 from uplift.fit.improve import Improvement, improve
@@ -16,7 +17,6 @@ from uplift.fit.lattice_size import DIMS, choose_lattice
 from uplift.fit.objective import Weights
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem
-from uplift.fit.progress import Round, Storing, Watch
 from uplift.fit.seed import Seeds, seed
 from uplift.fit.store import store
 from uplift.fit.unrealisable import Unrealisable, unrealisable
@@ -30,11 +30,8 @@ __all__ = [
     "Improvement",
     "Prior",
     "Problem",
-    "Round",
     "Seeds",
-    "Storing",
     "Unrealisable",
-    "Watch",
     "Weights",
     "choose_lattice",
     "fit_entries",
@@ -62,7 +59,7 @@ class Fit:
 
 
 def fit_lattice(
-    problem: Problem, seeds: Seeds, entries: Array, prior: Prior, watch: Watch = lambda done: None
+    problem: Problem, seeds: Seeds, entries: Array, prior: Prior, progress: ProgressCallback = ignore_progress
 ) -> Fit:
     """Fit every point of the problem: seeds from the multipliers (E, C) of their entries, others from the prior.
 
@@ -78,9 +75,9 @@ def fit_lattice(
         found[seeded] = entries[entry[points[seeded]]]
         return found
 
-    grown = grow(problem, start, watch)
+    grown = grow(problem, start, progress)
     improvements = improve(problem, grown.multipliers, grown.distance)
-    stored = store(problem, grown.multipliers, grown.distance, watch)
+    stored = store(problem, grown.multipliers, grown.distance, progress)
     status = np.full(problem.lattice.size, Status.REGULAR, dtype=np.uint8)
     status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
     status[grown.round == NOT_FITTED] = Status.IMPROVED

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.progress import Progress, ProgressCallback
 from uplift.fit.problem import Problem
-from uplift.fit.progress import Round, Watch
 from uplift.lattice import Lattice
 
 PASSES = 24
@@ -40,7 +40,7 @@ Start = Callable[[Indices], Array]
 """Multipliers (k, C) that points (k,) start from."""
 
 
-def grow(problem: Problem, start: Start, watch: Watch) -> Growth:
+def grow(problem: Problem, start: Start, progress: ProgressCallback) -> Growth:
     """Fit all points of the problem, each from its start.
 
     A point that fails is tried again whenever another of its neighbours has been fitted.
@@ -55,7 +55,7 @@ def grow(problem: Problem, start: Start, watch: Watch) -> Growth:
     for first in range(0, len(wanted), BLOCK):
         points = wanted[first : first + BLOCK]
         fitted += len(_try(problem, growth, points, start(points), 0))
-        watch(Round(0, len(points), fitted, len(wanted)))
+        progress(_round(0, len(points), fitted, len(wanted)))
     number, fresh = 1, np.flatnonzero(growth.round == 0)
     while fresh.size:
         waiting = wanted[growth.round[wanted] == NOT_FITTED]
@@ -64,9 +64,13 @@ def grow(problem: Problem, start: Start, watch: Watch) -> Growth:
             break
         fresh = _try(problem, growth, points, means, number)
         fitted += len(fresh)
-        watch(Round(number, len(points), fitted, len(wanted)))
+        progress(_round(number, len(points), fitted, len(wanted)))
         number += 1
     return growth
+
+
+def _round(number: int, tried: int, fitted: int, total: int) -> Progress:
+    return Progress("fit", fitted, total, step=number, detail=f"round {number}: {tried} tried")
 
 
 def _try(problem: Problem, growth: Growth, points: Indices, start: Array, number: int) -> Indices:

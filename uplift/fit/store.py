@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices
+from uplift.common.progress import Progress, ProgressCallback
 from uplift.fit.batch import batches, replicate, shard
 from uplift.fit.problem import Problem
-from uplift.fit.progress import Storing, Watch
 from uplift.fit.quadrature_jit import quadrature_jit
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_rgb
@@ -34,7 +34,7 @@ class StoredPoints(NamedTuple):
     distance: NDArray[np.float32]
 
 
-def store(problem: Problem, multipliers: Array, distance: Array, watch: Watch) -> StoredPoints:
+def store(problem: Problem, multipliers: Array, distance: Array, progress: ProgressCallback) -> StoredPoints:
     """The multipliers (n, C) of the points as coefficients, which are as far (n,) from their goals.
 
     float32, if that is as good for every point, or float64 for all. The multipliers give their place: large
@@ -51,7 +51,7 @@ def store(problem: Problem, multipliers: Array, distance: Array, watch: Watch) -
             kind = DOUBLE
             for _, again in _blocks(points[:done]):
                 _evaluate(problem, stored, again, kind)
-        watch(Storing(done, len(points)))
+        progress(Progress("store", done, len(points)))
     return stored._replace(coefficients=stored.coefficients.astype(kind, copy=False))
 
 

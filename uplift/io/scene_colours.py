@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
@@ -16,6 +16,7 @@ from uplift.colorimetry.gamut import check_method
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError, UpliftWarning
+from uplift.common.progress import Progress, ProgressCallback
 from uplift.cube import CubeData
 from uplift.io.texture.colours import check_encoding, decoder
 from uplift.io.texture.part_layout import colour_channels_by_part
@@ -27,21 +28,10 @@ BLOCK = 1 << 16
 """Pixels looked at at a time."""
 
 
-@dataclass(frozen=True)
-class ReadProgress:
-    """Images of a scene read so far, and in all."""
-
-    read: int
-    total: int
-
-
-Watch = Callable[[ReadProgress], None]
-
-
 class Scene(Protocol):
     """What `uplift.build` asks of a scene."""
 
-    def points(self, pins: EntryBoxes, sensor: Sensor, watch: Watch) -> Mask:
+    def points(self, pins: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
         """Which points (dim³,) of the lattice, with entries as pins, its colours need."""
         ...
 
@@ -58,7 +48,7 @@ class Images:
     encoding: str = "auto"
     out_of_gamut: str = "clip"
 
-    def points(self, pins: EntryBoxes, sensor: Sensor, watch: Watch) -> Mask:
+    def points(self, pins: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
         """Raises `OptionError`, `TextureError`, and `ColourError` for colours outside [0, 1] that are an error.
 
         An `UpliftWarning` names images that say they are of another space.
@@ -67,7 +57,7 @@ class Images:
         check_method(self.out_of_gamut)
         cells = np.zeros(pins.lattice.size, dtype=bool)
         for done, path in enumerate(self.paths):
-            watch(ReadProgress(done, len(self.paths)))
+            progress(Progress("images", done, len(self.paths)))
             for rgb in self.colours(path, sensor):
                 cells[cells_touched(pins.lattice, rgb)] = True
         if not cells.any():
@@ -101,7 +91,7 @@ class StoredScene:
 
     data: CubeData
 
-    def points(self, pins: EntryBoxes, sensor: Sensor, watch: Watch) -> Mask:
+    def points(self, pins: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
         """Raises `OptionError`."""
         if self.data.lattice.dim != pins.lattice.dim:
             raise OptionError(f"the scene's points are those of dim {self.data.lattice.dim}")

@@ -25,13 +25,13 @@ from uplift.models import evaluate, reflectance
 
 def coefficients(data: CubeData, rgb: Array) -> Array:
     """Coefficients (n, C) at linear RGB (n, 3) in [0, 1]: those of the nodes around, weighted."""
-    return around(data, rgb).mix(data.coefficients, data.atlas.coefficients)
+    return around(data, rgb).weighted_sum(data.coefficients, data.atlas.coefficients)
 
 
 def standard_error(data: CubeData, rgb: Array) -> Array:
     """ΔE00 (n, 1) by which answers are expected to miss measurements, of a cube that can tell."""
     lattice = np.asarray(data.standard_error, dtype=float)
-    return around(data, rgb).mix(lattice[:, None], data.atlas.error[:, None])
+    return around(data, rgb).weighted_sum(lattice[:, None], data.atlas.error[:, None])
 
 
 def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
@@ -39,7 +39,7 @@ def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     nodes = around(data, rgb)
     points, point = np.unique(nodes.points, return_inverse=True)
     entries, entry = np.unique(nodes.entry, return_inverse=True)
-    return replace(nodes, points=point.reshape(nodes.points.shape), entry=entry).mix(
+    return replace(nodes, points=point.reshape(nodes.points.shape), entry=entry).weighted_sum(
         reflectance(data.model, data.coefficients[points], wavelengths),
         reflectance(data.model, data.atlas.coefficients[entries], wavelengths),
     )

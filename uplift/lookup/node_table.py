@@ -33,7 +33,7 @@ class NodeTable:
 
     def spectra(self, rgb: Array) -> Values:
         """Reflectance (n, N) in [0, 1] at linear RGB (n, 3), in mode ``spectra``."""
-        return np.clip(around(self.data, rgb).mix(self.lattice, self.atlas), 0, 1)
+        return np.clip(around(self.data, rgb).weighted_sum(self.lattice, self.atlas), 0, 1)
 
     def nearest(self, rgb: Array) -> Values:
         """The same in mode ``nearest``."""

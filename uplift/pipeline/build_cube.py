@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
@@ -17,9 +17,10 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
+from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.threads import single_threaded_blas
 from uplift.cube import AtlasTable, CubeData
-from uplift.io.scene_colours import ReadProgress, Scene, SceneLike, as_scene
+from uplift.io.scene_colours import Scene, SceneLike, as_scene
 from uplift.lattice import Lattice
 from uplift.lattice.entry_boxes import EntryBoxes
 from uplift.lookup import Cube
@@ -33,7 +34,6 @@ NAMED = 6
 REFERENCE = "A"
 """The light that standard errors are stated under."""
 
-Watch = Callable[[fit.Round | fit.Storing | ReadProgress], None]
 AtlasLike = Atlas | str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
 
 
@@ -42,7 +42,7 @@ def build(
     atlas: AtlasLike = None,
     *,
     scene: SceneLike | None = None,
-    watch: Watch = lambda done: None,
+    progress: ProgressCallback = ignore_progress,
     **options: Any,
 ) -> Cube:
     """Build a cube, constrained by measured spectra if any are given.
@@ -51,7 +51,7 @@ def build(
     ----------
     atlas : spectra, or the file or files that hold them; None for a cube without constraints.
     scene : images, or a `uplift.io.scene_colours.Scene`, for whose colours alone there shall be points; None for all colours.
-    watch : called now and then with a `uplift.fit.Round`, `uplift.fit.Storing` or `uplift.io.scene_colours.ReadProgress`.
+    progress : called with a `Progress` now and then, in stages "images", "fit" and "store".
     options : the fields of `Options`, by name.
 
     Raises
@@ -78,7 +78,9 @@ def build(
     reach = fit.half_widths(lattice, rgb)
     seen = None if scene is None else as_scene(scene)
     wanted = (
-        None if seen is None else np.flatnonzero(seen.points(EntryBoxes(lattice, rgb, reach), sensor, watch))
+        None
+        if seen is None
+        else np.flatnonzero(seen.points(EntryBoxes(lattice, rgb, reach), sensor, progress))
     )
     beyond = fit.unrealisable(lattice, sensor, chosen.threshold / 2, wanted)
     problem = fit.Problem(model, ahead, lattice, chosen.threshold, beyond, wanted)
@@ -86,7 +88,7 @@ def build(
     table = AtlasTable(names, rgb, model.to_storage(entries.multipliers), reach, entries.error)
     _warn_of_crowding(seeds, table)
     prior = fit.fit_prior(problem, sensor, entries, reference)
-    fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, watch)
+    fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, progress)
     provenance = _provenance(replace(chosen, axis=axis, dim=dim), spectra, names, seen, fitted)
     return Cube(_cube_data(problem, sensor, fitted, prior, table, provenance, debug=chosen.debug))
 

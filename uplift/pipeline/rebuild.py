@@ -7,15 +7,19 @@ from collections.abc import Iterable
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import CubeFileError, OptionError, UnknownNameError, UpliftWarning
+from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.io.scene_colours import StoredScene
 from uplift.lookup import Cube
 from uplift.pipeline import build
-from uplift.pipeline.build_cube import Watch
 from uplift.pipeline.provenance import missing_provenance, recorded_atlas
 
 
 def rebuild(
-    stored: Cube, path: StrPath, folders: Iterable[StrPath] = (), *, watch: Watch = lambda done: None
+    stored: Cube,
+    path: StrPath,
+    folders: Iterable[StrPath] = (),
+    *,
+    progress: ProgressCallback = ignore_progress,
 ) -> Cube:
     """The cube that this version makes from the options recorded in ``stored``, read from ``path``.
 
@@ -37,7 +41,7 @@ def rebuild(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)  # the first build has said it all
         try:
-            return build(atlas, scene=scene, watch=watch, **options)
+            return build(atlas, scene=scene, progress=progress, **options)
         except (TypeError, OptionError, UnknownNameError) as error:
             problem = f"was made with options unknown here ({error})"
             raise CubeFileError(problem, path=path, hint="build it anew") from error

@@ -250,7 +250,7 @@ def test_bands_do_not_show_and_are_bounded(spectral, colours, tmp_path, monkeypa
         return spectral.sample(rgb)
 
     bands = replace(spectral, sample=sample)
-    texture.convert(bands, source, tmp_path / "bands.exr", watch=lambda *rows: told.append(rows))
+    texture.convert(bands, source, tmp_path / "bands.exr", progress=lambda *rows: told.append(rows))
     assert (tmp_path / "bands.exr").read_bytes() == (tmp_path / "whole.exr").read_bytes()
     assert asked == [(16, 30, 3)] * 6 + [(4, 30, 3)]
     assert told[-1] == (100, 100)

@@ -65,7 +65,7 @@ def test_an_interruption_leaves_nothing(spectral, source, tmp_path):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        texture.convert(spectral, source, tmp_path / "out.exr", watch=stop)
+        texture.convert(spectral, source, tmp_path / "out.exr", progress=stop)
     assert [path.name for path in tmp_path.iterdir()] == ["in.exr"]
 
 

@@ -18,7 +18,7 @@ def here(home, kitchen, planned, monkeypatch):
     """A working folder with the scene, where plans are as they were measured once."""
     shutil.copytree(kitchen.parent, home, dirs_exist_ok=True)
 
-    def plan(brief, watch):
+    def plan(brief, progress):
         return replace(planned[0], brief=brief)
 
     monkeypatch.setattr("uplift.scene.plan.plan", plan)

@@ -17,11 +17,11 @@ import numpy as np
 from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.design.mixing.coats import Coat
 from uplift.io.slices import exr
 from uplift.io.texture import Counts, Uplifter
 from uplift.io.texture.colours import PAST_TENSE, Floats, check_encoding
-from uplift.io.texture.conversion import Watch
 from uplift.io.texture.part_layout import PartLayout, part_layouts
 from uplift.io.texture.source import Image, Values, open_image
 from uplift.io.texture.writer import Writer, open_writer
@@ -81,7 +81,7 @@ def paint_over(
     target: str | os.PathLike[str],
     *,
     force: bool = False,
-    watch: Watch = lambda done, total: None,
+    progress: ProgressCallback = ignore_progress,
 ) -> Painted:
     """Write a painted image as OpenEXR, atomically.
 
@@ -92,7 +92,7 @@ def paint_over(
         planned = part_layouts(brush.uplifter, image)
         try:
             with open_writer(target, [plan.layout for plan in planned], force=force) as writer:
-                found = _write(brush, image, planned, writer, watch)
+                found = _write(brush, image, planned, writer, progress)
         except ColourError as error:
             raise ColourError(error.problem, path=source, hint=error.hint) from error
         way = brush.uplifter.out_of_gamut
@@ -102,7 +102,9 @@ def paint_over(
     return replace(found, remarks=tuple(remarks))
 
 
-def _write(brush: Brush, image: Image, planned: list[PartLayout], writer: Writer, watch: Watch) -> Painted:
+def _write(
+    brush: Brush, image: Image, planned: list[PartLayout], writer: Writer, progress: ProgressCallback
+) -> Painted:
     counts, moved, done = Counts(), 0, 0
     total = sum(plan.part.window.height for plan in planned)
     for plan in planned:
@@ -111,7 +113,7 @@ def _write(brush: Brush, image: Image, planned: list[PartLayout], writer: Writer
             values, found = _band(brush, plan, band)
             writer.rows(first, values)
             counts, moved, done = counts + found.counts, moved + found.moved, done + len(band)
-            watch(done, total)
+            progress(Progress("rows", done, total))
     return Painted(counts, moved)
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from uplift.common.errors import ColourError
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.texture.colours import Counts, Floats
 from uplift.io.texture.part_layout import PartLayout, part_layouts
 from uplift.io.texture.source import Image, Values, open_image
@@ -22,7 +23,6 @@ BAND = 1 << 27
 LINES = 16
 """Rows that OpenEXR compresses together."""
 
-Watch = Callable[[int, int], None]
 """Told rows done, and rows in all."""
 
 
@@ -43,7 +43,7 @@ def convert(
     target: str | os.PathLike[str],
     *,
     force: bool = False,
-    watch: Watch = lambda done, total: None,
+    progress: ProgressCallback = ignore_progress,
 ) -> Conversion:
     """Write the texture of an image, atomically.
 
@@ -55,7 +55,7 @@ def convert(
         planned = part_layouts(uplifter, image)
         try:
             with open_writer(target, [plan.layout for plan in planned], force=force) as writer:
-                counts = _write(uplifter, image, planned, writer, watch)
+                counts = _write(uplifter, image, planned, writer, progress)
         except ColourError as error:
             raise ColourError(error.problem, path=source, hint=error.hint) from error
     remarks = (*counts.remarks(uplifter.out_of_gamut), *image.remarks(uplifter.cube.data.sensor))
@@ -63,7 +63,7 @@ def convert(
 
 
 def _write(
-    uplifter: Uplifter, image: Image, planned: list[PartLayout], writer: Writer, watch: Watch
+    uplifter: Uplifter, image: Image, planned: list[PartLayout], writer: Writer, progress: ProgressCallback
 ) -> Counts:
     counts, done = Counts(), 0
     total = sum(plan.part.window.height for plan in planned)
@@ -73,7 +73,7 @@ def _write(
             values, found = _made(uplifter, plan, band)
             writer.rows(first, values)
             counts, done = counts + found, done + len(band)
-            watch(done, total)
+            progress(Progress("rows", done, total))
     return counts
 
 

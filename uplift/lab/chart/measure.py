@@ -10,6 +10,7 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, Uplift
 from uplift.lab.chart.table import Chart, Row, State
 from uplift.lab.chart.task import LIGHTS, Task
@@ -26,7 +27,6 @@ FEW, SAME = 50, 1e-5
 """Of many colours those that are asked once more, and the reflectance by which rounding may change them."""
 
 Ask = Callable[[Array], Array]
-Watch = Callable[[int, int], None]
 
 
 class BrokenError(Exception):
@@ -34,13 +34,13 @@ class BrokenError(Exception):
 
 
 def measure(
-    methods: Iterable[tuple[Family, Method]], task: Task, watch: Watch = lambda done, total: None
+    methods: Iterable[tuple[Family, Method]], task: Task, progress: ProgressCallback = ignore_progress
 ) -> Chart:
-    """Every method at the task, in order. ``watch`` hears how many of how many are done."""
+    """Every method at the task, in order. ``progress`` hears how many of how many are done."""
     methods, rows, begin, where = list(methods), [], time.perf_counter(), environment()
     for family, method in methods:
         rows.append(measure_one(family, method, task))
-        watch(len(rows), len(methods))
+        progress(Progress("methods", len(rows), len(methods)))
     effort = task.effort
     told = (
         f"CPU time of all threads, {effort.batch:,} colours at once, spectra at {len(task.sensor.wavelengths)} "

@@ -13,7 +13,8 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.arrays import Array
-from uplift.lab.comparison.measure import Watch, judge
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.lab.comparison.measure import judge
 from uplift.lab.comparison.scene import LightSet, Scene
 from uplift.lab.comparison.statistics import Statistics
 from uplift.scene.representations.dense import TABLE
@@ -49,7 +50,7 @@ def tune(
     every: int = FINE,
     kinds: Sequence[str] = tuple(KINDS),
     counts: Sequence[int] = COUNTS,
-    watch: Watch = lambda done, total: None,
+    progress: ProgressCallback = ignore_progress,
 ) -> tuple[Tuned, ...]:
     """Without a filter, then the best of each kind, for each count of samples and each set of lights.
 
@@ -65,7 +66,7 @@ def tune(
         for part, low_pass in zip(scene.sets, _best(candidates(kind, every), count, scene), strict=True):
             best = judge(filtered(count, low_pass), scene, part)
             found.append(Tuned(kind, count, part.name, low_pass, best))
-        watch(done, len(tasks))
+        progress(Progress("filters", done, len(tasks)))
     return tuple(found)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,12 +11,11 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.comparison.scene import LightSet, Scene
 from uplift.lab.comparison.statistics import Statistics, statistics
 from uplift.lab.timing import Spread, environment, timed
 from uplift.scene.representations.representation import Representation
-
-Watch = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
@@ -69,9 +68,9 @@ def compare(
     scene: Scene,
     representations: Sequence[Representation],
     effort: Effort | None = None,
-    watch: Watch = lambda done, total: None,
+    progress: ProgressCallback = ignore_progress,
 ) -> Comparison:
-    """Every representation, under every set of lights. ``watch`` hears how many of how many are done.
+    """Every representation, under every set of lights. ``progress`` hears how many of how many are done.
 
     Raises
     ------
@@ -86,7 +85,7 @@ def compare(
             _row(representation, surfaces, part, scene, reference, ns)
             for part, reference, ns in zip(scene.sets, references, times, strict=True)
         ]
-        watch(done, len(representations))
+        progress(Progress("representations", done, len(representations)))
     order = [part.name for part in scene.sets]
     ranked = sorted(rows, key=lambda row: (order.index(row.lights), row.statistics.mean))
     facts = {**environment(), "products": f"{len(scene.names)} surfaces under each light"}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +14,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.report.calibration import Calibration, calibration
@@ -58,12 +59,12 @@ def judge(answered: Array, measured: Array, lights: Sequence[str] = LIGHTS) -> E
 def halves(
     spectra: Atlas,
     splits: int = 3,
-    watch: Callable[[int, int], None] = lambda done, total: None,
+    progress: ProgressCallback = ignore_progress,
     **options: Any,
 ) -> tuple[Split, ...]:
     """Halve an atlas ``splits`` times, build a cube from one half with ``options``, ask it for the other.
 
-    Beside the cube answer one of the same options without an atlas, and the sigmoid's. ``watch`` hears how many
+    Beside the cube answer one of the same options without an atlas, and the sigmoid's. ``progress`` hears how many
     cubes are built, and of how many.
 
     Raises
@@ -76,7 +77,7 @@ def halves(
             "without an atlas": build(**options),
             "sigmoid": build(**{**options, "model": "sigmoid"}),
         }
-        watch(2, 2 + splits)
+        progress(Progress("builds", 2, 2 + splits))
         inside = _inside(spectra, others["sigmoid"])
         found = []
         for number in range(splits):
@@ -84,7 +85,7 @@ def halves(
             kept, asked = np.array_split(order, 2)
             cube = build(_some(spectra, inside[kept]), **options)
             found.append(_ask({"half the atlas": cube, **others}, _some(spectra, inside[asked])))
-            watch(3 + number, 2 + splits)
+            progress(Progress("builds", 3 + number, 2 + splits))
     return tuple(found)
 
 

@@ -18,6 +18,7 @@ from uplift.colorimetry.delta_e import delta_e_1976, delta_e_2000, lab
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.study.technique import TECHNIQUES, Technique
 
 DEFAULT_MOST, LIMIT = 15, 32
@@ -29,8 +30,6 @@ EVERY = "all"
 """The name of all atlases together."""
 STEP = 1.0
 """nm between the samples that moments are taken from."""
-
-Watch = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,11 +99,11 @@ def fine_grid() -> Array:
 
 
 def study(
-    atlases: Mapping[str, Atlas], most: int = DEFAULT_MOST, watch: Watch = lambda done, total: None
+    atlases: Mapping[str, Atlas], most: int = DEFAULT_MOST, progress: ProgressCallback = ignore_progress
 ) -> Study:
     """Reduce every entry of the atlases to 0 … ``most`` moments and back, by all four techniques.
 
-    ``watch`` hears how many of how many reconstructions are done. An `UpliftWarning` names every entry that
+    ``progress`` hears how many of how many reconstructions are done. An `UpliftWarning` names every entry that
     had to be clipped to [0, 1].
 
     Raises
@@ -125,7 +124,7 @@ def study(
         for count in range(most + 1):
             found = technique.reconstruct(moments[:, : count + 1], observer.grid())
             errors[row, count] = compare(found)
-            watch(row * (most + 1) + count + 1, len(TECHNIQUES) * (most + 1))
+            progress(Progress("reconstructions", row * (most + 1) + count + 1, len(TECHNIQUES) * (most + 1)))
     homes = [name for name, atlas in atlases.items() for _ in atlas.entries]
     return Study(spectra.names, tuple(homes), measured, errors)
 

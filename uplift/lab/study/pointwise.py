@@ -7,7 +7,6 @@ unknowns of a fitted neighbour. The thesis solves in moments c; the same in mult
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,6 +15,7 @@ import numpy as np
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lattice import Lattice
 from uplift.models import Model
 
@@ -113,11 +113,11 @@ class Grown:
 
 
 def grow_pointwise(
-    task: Pointwise, lattice: Lattice, threshold: float, watch: Callable[[int], None] = lambda fitted: None
+    task: Pointwise, lattice: Lattice, threshold: float, progress: ProgressCallback = ignore_progress
 ) -> Grown:
     """Fit the lattice from its middle; each fitted point lends its unknowns to neighbours that are not.
 
-    ``watch`` hears how many points are fitted.
+    ``progress`` hears how many points are fitted.
     """
     target = lattice.points
     unknowns = np.tile(task.grey, (lattice.size, 1))
@@ -144,7 +144,7 @@ def grow_pointwise(
         for point in around[0][inside[0]].tolist():
             if distance[point] > threshold:
                 attempt(point, unknowns[source], int(rounds[source]) + 1)
-        watch(int((distance <= threshold).sum()))
+        progress(Progress("fit", int((distance <= threshold).sum()), lattice.size))
     for point in np.flatnonzero(np.isinf(distance)).tolist():  # no fitted neighbour ever reached these
         attempt(point, task.grey, 0)
     return Grown(distance, starts, int(rounds.max()))

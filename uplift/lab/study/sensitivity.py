@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import partial
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 from uplift.atlas import Atlas
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.study.input_noise import Move, moves
 from uplift.lab.study.locality import Change, before, left_out, noisy, reversed_entry
 from uplift.lab.study.steepness import Steepness, steepness
@@ -20,8 +20,6 @@ from uplift.lookup import Cube
 LIGHT = "FL11"
 """The light that differences are stated under: three narrow bands, hard on spectra that are not the same."""
 DRAWS = 3
-
-Watch = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,11 +80,11 @@ def study(
     cube: Cube,
     atlas: Atlas | None,
     most: int,
-    watch: Watch = lambda done, total: None,
+    progress: ProgressCallback = ignore_progress,
 ) -> Sensitivity:
     """Move queries, bound how steep the cube is, and change its ``atlas``: up to ``most`` entries, one at a time.
 
-    ``watch`` hears how many of how many builds are done.
+    ``progress`` hears how many of how many builds are done.
 
     Raises
     ------
@@ -114,6 +112,6 @@ def study(
     done = []
     for number, job in enumerate(jobs, 1):
         done.append(job())
-        watch(number, len(jobs))
+        progress(Progress("builds", number, len(jobs)))
     wrong = DRAWS + len(names)
     return Sensitivity(cube, asked, steep, done[:DRAWS], done[DRAWS:wrong], done[wrong:])

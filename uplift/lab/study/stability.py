@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
 
-from uplift import fit
 from uplift.atlas import Atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS, Pointwise, grow_pointwise
 from uplift.lattice import Lattice, Status
 from uplift.models import Moments, Sigmoid
@@ -83,15 +83,12 @@ class Outcome:
         return rest.pop("setting") | {"success": self.success} | rest
 
 
-Watch = Callable[[int, int], None]
-
-
 def study(
     settings: Iterable[Setting],
     atlases: Mapping[str, Atlas],
-    watch: Watch = lambda done, total: None,
+    progress: ProgressCallback = ignore_progress,
 ) -> list[Outcome]:
-    """Run every setting; ``watch`` hears how many of how many are done.
+    """Run every setting; ``progress`` hears how many of how many are done.
 
     In the order of models, so that what JAX compiles for one is all used before the next.
 
@@ -106,7 +103,7 @@ def study(
     outcomes = []
     for number, setting in enumerate(ordered, 1):
         outcomes.append(run(setting, atlases))
-        watch(number, len(ordered))
+        progress(Progress("builds", number, len(ordered)))
     return outcomes
 
 
@@ -118,16 +115,16 @@ def run(setting: Setting, atlases: Mapping[str, Atlas]) -> Outcome:
 def _ours(setting: Setting, atlases: Mapping[str, Atlas]) -> Outcome:
     rounds = 0
 
-    def watch(done: object) -> None:
+    def progress(done: Progress) -> None:
         nonlocal rounds
-        rounds = done.number if isinstance(done, fit.Round) else rounds
+        rounds = max(rounds, done.step)
 
     begin = time.perf_counter()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         data = build(
             atlases[setting.atlas] if setting.atlas != NO_ATLAS else None,
-            watch=watch,
+            progress=progress,
             dim=setting.dim,
             model=setting.model,
             coefficients=setting.coefficients,

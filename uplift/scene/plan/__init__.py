@@ -8,9 +8,9 @@ found.confirmed.quantile, found.options, found.sampling.wavelengths
 
 from __future__ import annotations
 
-from uplift.scene.plan.context import Effort, Step
+from uplift.scene.plan.context import Effort
 from uplift.scene.plan.plan_file import Planned, numbers, read_plan
 from uplift.scene.plan.planning import Plan, plan
 from uplift.scene.plan.scene_file import Brief, read_brief
 
-__all__ = ["Brief", "Effort", "Plan", "Planned", "Step", "numbers", "plan", "read_brief", "read_plan"]
+__all__ = ["Brief", "Effort", "Plan", "Planned", "numbers", "plan", "read_brief", "read_plan"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,8 @@ import numpy as np
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import PlanFileError
-from uplift.io.scene_colours import Images, ReadProgress, cells_touched
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.io.scene_colours import Images, cells_touched
 from uplift.io.texture.part_layout import colour_channels_by_part
 from uplift.io.texture.source import open_image
 from uplift.lattice import Lattice
@@ -21,7 +21,6 @@ from uplift.lattice.entry_boxes import EntryBoxes
 STEPS = 64
 """Kinds of colours along each channel, of encoded RGB: four 8-bit codes wide."""
 
-Watch = Callable[[int, int], None]
 """Told how many of how many are done."""
 
 
@@ -51,7 +50,7 @@ def colours(
     sensor: Sensor,
     encoding: str,
     wanted: tuple[int, int],
-    watch: Watch = lambda done, total: None,
+    progress: ProgressCallback = ignore_progress,
 ) -> Colours:
     """About so many pixels as are ``wanted`` to predict and to confirm, of all pixels alike; the same each time.
 
@@ -65,7 +64,7 @@ def colours(
     rng, kinds = np.random.default_rng(0), np.full((STEPS**3, 3), np.nan)
     drawn: tuple[list[Array], list[Array]] = [], []
     for done, path in enumerate(textures):
-        watch(done, len(textures))
+        progress(Progress("textures", done, len(textures)))
         for rgb in scene.colours(path, sensor):
             kinds[_kind(sensor, rgb)] = rgb
             lot = rng.random(len(rgb))
@@ -105,7 +104,7 @@ class Some:
 
     rgb: Array
 
-    def points(self, pins: EntryBoxes, sensor: Sensor, watch: Callable[[ReadProgress], None]) -> Mask:
+    def points(self, pins: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
         return pins.needs(cells(pins.lattice, self.rgb))
 
     def describe(self) -> list[dict[str, Any]]:

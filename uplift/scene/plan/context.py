@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +14,7 @@ from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
+from uplift.common.progress import ProgressCallback
 from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.scene.plan.colours import Colours, Pixels, Some, colours
@@ -34,18 +35,6 @@ class Effort:
     reference: int = 128
     predicting: int = 3000
     confirming: int = 8000
-
-
-@dataclass(frozen=True)
-class Step:
-    """What is being done, and how many of how many such things are."""
-
-    what: str
-    done: int = 0
-    total: int = 1
-
-
-Watch = Callable[[Step], None]
 
 
 @contextlib.contextmanager
@@ -70,7 +59,7 @@ class Bench:
     reflectances: Array
     materials: Array
     colours: Colours
-    watch: Watch
+    progress: ProgressCallback
 
     @property
     def options(self) -> dict[str, Any]:
@@ -104,7 +93,7 @@ class Bench:
         return found, found.error(answered)
 
 
-def bench(brief: Brief, effort: Effort, watch: Watch) -> Bench:
+def bench(brief: Brief, effort: Effort, progress: ProgressCallback) -> Bench:
     """Reads atlases and textures. Raises `AtlasError`, `TextureError`, `PlanFileError`."""
     sensor = brief.sensor()
     atlas = read_atlas(*brief.atlases) if brief.atlases else None
@@ -112,10 +101,7 @@ def bench(brief: Brief, effort: Effort, watch: Watch) -> Bench:
     rgb = sensor.rgb(measured)
     held = sensor.holds(rgb)
 
-    def reading(done: int, total: int) -> None:
-        watch(Step("reading textures", done, total))
-
     wanted = effort.predicting, effort.confirming
     with silent():
-        found = colours(brief.textures, sensor, brief.encoding, wanted, reading)
-    return Bench(brief, effort, sensor, atlas, measured[held], np.clip(rgb[held], 0, 1), found, watch)
+        found = colours(brief.textures, sensor, brief.encoding, wanted, progress)
+    return Bench(brief, effort, sensor, atlas, measured[held], np.clip(rgb[held], 0, 1), found, progress)

@@ -6,10 +6,11 @@ from collections.abc import Iterator
 from itertools import product
 
 from uplift.colorimetry import observer
+from uplift.common.progress import Progress
 from uplift.lattice import Lattice
 from uplift.pipeline.options import AXES
 from uplift.scene.plan.colours import cells
-from uplift.scene.plan.context import Bench, Step
+from uplift.scene.plan.context import Bench
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import Question
 from uplift.viz.format import format_size
@@ -26,7 +27,7 @@ def coefficients(bench: Bench, question: Question, limit: float) -> Decision:
 
     def trials() -> Iterator[Trial]:
         for done, count in enumerate(counts):
-            bench.watch(Step(f"{count} coefficients", done, len(counts)))
+            bench.progress(Progress(f"{count} coefficients", done, len(counts)))
             options = {"coefficients": count}
             made = bench.cube(question.rgb, dim=dim, **options)
             told = f"{format_size(SINGLE * count)} a point"
@@ -46,7 +47,7 @@ def lattice(bench: Bench, question: Question, limit: float, count: int) -> Decis
         for done, (points, dim, axis) in enumerate(sizes):
             if latest.get(axis, 0) > BEHIND * min(latest.values(), default=1):
                 continue
-            bench.watch(Step(f"dim {dim}, {axis} axis", done, len(sizes)))
+            bench.progress(Progress(f"dim {dim}, {axis} axis", done, len(sizes)))
             options = {"dim": dim, "axis": axis}
             made = bench.cube(question.rgb, coefficients=count, **options)
             told = f"{points:,} points, {format_size(SINGLE * count * points)}"

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from uplift.common.errors import PlanFileError, UpliftError
+from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.io.scene_colours import Images, file_digest
 from uplift.lookup import Cube
 from uplift.pipeline import build
-from uplift.pipeline.build_cube import Watch
 from uplift.pipeline.options import Options
 from uplift.scene.plan.commands import build_line, spelt_line, texture_line
 from uplift.scene.plan.decision import Decision, Trial
@@ -97,10 +97,10 @@ class Planned:
     sparse: bool
     options: dict[str, Any]
 
-    def build(self, *, debug: bool = False, watch: Watch = lambda done: None) -> Cube:
+    def build(self, *, debug: bool = False, progress: ProgressCallback = ignore_progress) -> Cube:
         """Raises and warns as `uplift.build` does."""
         scene = Images(self.textures, self.encoding) if self.sparse else None
-        return build(self.atlases or None, scene=scene, watch=watch, debug=debug, **self.options)
+        return build(self.atlases or None, scene=scene, progress=progress, debug=debug, **self.options)
 
 
 def read_plan(path: str | os.PathLike[str]) -> Planned:

@@ -10,8 +10,9 @@ import numpy as np
 
 from uplift.colorimetry.observer import DEFAULT_OBSERVER
 from uplift.common.errors import PlanFileError
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.scene.plan import lattice_choice
-from uplift.scene.plan.context import Bench, Effort, Step, Watch, bench
+from uplift.scene.plan.context import Bench, Effort, bench
 from uplift.scene.plan.decision import Decision
 from uplift.scene.plan.evaluation import Error, Question
 from uplift.scene.plan.final_build import Built, built
@@ -68,7 +69,7 @@ class Plan:
         return self.confirmed.quantile <= self.brief.tolerance
 
 
-def plan(brief: Brief, effort: Effort | None = None, watch: Watch = lambda step: None) -> Plan:
+def plan(brief: Brief, effort: Effort | None = None, progress: ProgressCallback = ignore_progress) -> Plan:
     """The least that will do.
 
     Raises
@@ -76,8 +77,8 @@ def plan(brief: Brief, effort: Effort | None = None, watch: Watch = lambda step:
     PlanFileError : a tolerance that nothing measured comes within; tells the best.
     AtlasError, TextureError : what cannot be read.
     """
-    found = bench(brief, effort or Effort(), watch)
-    watch(Step("the best cube there is"))
+    found = bench(brief, effort or Effort(), progress)
+    progress(Progress("the best cube there is", 0, 1))
     question, best = found.question(found.colours.predicting)
     _check_reachable(brief, best)
     limits = {key: share * brief.tolerance for key, share in SHARES.items()}
@@ -95,9 +96,9 @@ def plan(brief: Brief, effort: Effort | None = None, watch: Watch = lambda step:
     if brief.observer == DEFAULT_OBSERVER:  # the only one that representations know
         decisions.append(representation(found, question, limits["representation"], cube))
 
-    watch(Step("building it"))
+    progress(Progress("building it", 0, 1))
     made = built(found, options)
-    watch(Step("confirming"))
+    progress(Progress("confirming", 0, 1))
     confirmed, shown = _confirmed(found, made, options, sampling, held)
     return Plan(
         brief=brief,

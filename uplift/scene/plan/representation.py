@@ -13,8 +13,9 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
+from uplift.common.progress import Progress
 from uplift.lookup import Cube
-from uplift.scene.plan.context import Bench, Step
+from uplift.scene.plan.context import Bench
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import WRONG, Question
 from uplift.scene.representations.dense import STEP, observed, wavelengths
@@ -66,7 +67,7 @@ def representation(bench: Bench, question: Question, limit: float, cube: Cube) -
         every = representations(dense.powers, dense.surfaces)
         made = []
         for done, each in enumerate(every):
-            bench.watch(Step(f"representation {each.name}", done, len(every)))
+            bench.progress(Progress(f"representation {each.name}", done, len(every)))
             made.append(dense.trial(each, typed))
         yield from sorted(made, key=lambda trial: trial.cost)
 

@@ -11,10 +11,11 @@ from numpy.typing import DTypeLike
 
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
+from uplift.common.progress import Progress
 from uplift.io import texture
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
-from uplift.scene.plan.context import Bench, Step
+from uplift.scene.plan.context import Bench
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import Question
 from uplift.scene.wavelengths import Sampling
@@ -63,7 +64,7 @@ def storage(bench: Bench, question: Question, limit: float, cube: Cube, sampling
 
     def trials() -> Iterator[Trial]:
         for done, each in enumerate(order):
-            bench.watch(Step(f"{each.form} as {each.depth}", done, len(order)))
+            bench.progress(Progress(f"{each.form} as {each.depth}", done, len(order)))
             error = question.seen(sampling.xyz(each.read_back(cube, question.rgb, at)))
             size = each.size(cube, at)
             choice: dict[str, Any] = {"as": each.form, "depth": each.depth}

@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from uplift.common.progress import Progress
 from uplift.lookup import Cube
-from uplift.scene.plan.context import Bench, Step
+from uplift.scene.plan.context import Bench
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import Question
 from uplift.scene.wavelengths import Sampling, Setting, choose, set_up
@@ -28,7 +29,7 @@ def wavelengths(bench: Bench, question: Question, limit: float, cube: Cube) -> t
 
     def trials() -> Iterator[Trial]:
         for count in COUNTS:
-            bench.watch(Step(f"{count} wavelengths", len(tried), len(COUNTS) + 1))
+            bench.progress(Progress(f"{count} wavelengths", len(tried), len(COUNTS) + 1))
             tried.append(_chosen(setting, count))
             yield _trial(question, cube, tried[-1])
         tried.append(Sampling(setting.wavelengths, setting.cmfs, setting.lights, setting.powers))

@@ -25,7 +25,7 @@ class Samples:
     def surface(self, reflectance: Array) -> Array:
         return np.asarray(matmul_rows(reflectance, self.encoder))
 
-    def matmul_rows(self, light: Array, surface: Array) -> Array:
+    def product(self, light: Array, surface: Array) -> Array:
         return light * surface
 
     def xyz(self, light: Array) -> Array:
