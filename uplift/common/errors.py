@@ -22,7 +22,7 @@ __all__ = [
 ]
 
 
-class Diagnostic(Exception):
+class Diagnostic(Exception):  # noqa: N818
     """Fields that errors and warnings share.
 
     Parameters

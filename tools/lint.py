@@ -1,0 +1,132 @@
+"""Check prose and docstrings: banned words (tools/banned_words.txt) and numpydoc sections of the public API.
+
+Examples
+--------
+    python tools/lint.py words                 # every file that git tracks
+    python tools/lint.py words uplift/atlas    # one folder
+    python tools/lint.py docstrings uplift.atlas
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import io
+import re
+import subprocess
+import sys
+import tokenize
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+WORDS = ROOT / "tools" / "banned_words.txt"
+REQUIRED = {"GL08", "SS01", "PR01", "PR02", "PR10", "RT01"}
+"""numpydoc's codes: docstring, summary, parameters documented, none unknown, spacing, returns documented."""
+
+
+DIALECT = {"told", "asked", "seen", "heard", "mended", "anew", "beside", "said"}
+"""Words that no identifier contains."""
+
+
+def patterns() -> list[tuple[re.Pattern[str], str]]:
+    """Return the banned expressions, each with the advice to show."""
+    pairs = []
+    for line in WORDS.read_text(encoding="utf-8").splitlines():
+        if line and not line.startswith("#"):
+            expression, _, advice = line.partition("  ")
+            pairs.append((re.compile(rf"\b(?:{expression})\b", re.IGNORECASE), advice.strip()))
+    return pairs
+
+
+def tracked(where: list[str]) -> list[Path]:
+    """Return the Python and Markdown files that git tracks under ``where``."""
+    listed = subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *where],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.split()
+    return [ROOT / name for name in listed if name.endswith((".py", ".md", ".j2")) and (ROOT / name).is_file()]
+
+
+def prose(path: Path) -> Iterator[tuple[int, str]]:
+    """Yield the lines of prose of a file with their numbers: strings and comments of code, text of pages."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".py":
+        for token in tokenize.generate_tokens(io.StringIO(text).readline):
+            kind = tokenize.tok_name[token.type]
+            if kind == "NAME" and set(token.string.lower().strip("_").split("_")) & DIALECT:
+                yield token.start[0], token.string.replace("_", " ")
+            elif kind in ("STRING", "COMMENT", "FSTRING_MIDDLE"):
+                for offset, line in enumerate(token.string.splitlines()):
+                    yield token.start[0] + offset, re.sub(r"\{[^{}]*\}|`[^`]*`", " ", line)
+        return
+    fenced = False
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.lstrip().startswith("```"):
+            fenced = not fenced
+        elif not fenced:
+            yield number, re.sub(r"`[^`]*`|\]\([^)]*\)|\{[{%].*?[%}]\}", " ", line)
+
+
+def check_words(where: list[str]) -> list[str]:
+    """Return a line for every banned expression."""
+    banned = patterns()
+    skipped = {Path(__file__), WORDS}
+    return [
+        f"{path.relative_to(ROOT)}:{number}: '{match.group()}': {advice}"
+        for path in tracked(where)
+        if path not in skipped
+        for number, line in prose(path)
+        for pattern, advice in banned
+        for match in pattern.finditer(line)
+    ]
+
+
+def public(package: str) -> Iterator[str]:
+    """Yield the dotted names of what a package exports, and the public methods of its classes."""
+    module = importlib.import_module(package)
+    for name in getattr(module, "__all__", ()):
+        found = getattr(module, name)
+        if inspect.isclass(found) or inspect.isfunction(found):
+            yield f"{found.__module__}.{found.__qualname__}"
+        if inspect.isclass(found):
+            for key, value in vars(found).items():
+                if not key.startswith("_") and (inspect.isfunction(value) or isinstance(value, property | classmethod)):
+                    yield f"{found.__module__}.{found.__qualname__}.{key}"
+
+
+def check_docstrings(packages: list[str]) -> list[str]:
+    """Return a line for every public name whose docstring misses a section."""
+    from numpydoc.validate import validate
+
+    lines = []
+    for package in packages:
+        for name in dict.fromkeys(public(package)):
+            errors = [(code, text) for code, text in validate(name)["errors"] if code in REQUIRED]
+            lines += [f"{name}: {code} {text}" for code, text in errors]
+    return lines
+
+
+def packages_of(root: Path) -> list[str]:
+    """Return the dotted names of all packages of the library."""
+    found = sorted(path.parent.relative_to(root) for path in (root / "uplift").rglob("__init__.py"))
+    return [".".join(path.parts) for path in found]
+
+
+def main(arguments: list[str]) -> int:
+    """Run the checks named on the command line, all of them by default."""
+    kind, rest = (arguments[0], arguments[1:]) if arguments else ("all", [])
+    lines = []
+    if kind in ("words", "all"):
+        lines += check_words(rest or ["."])
+    if kind in ("docstrings", "all"):
+        lines += check_docstrings(rest or packages_of(ROOT))
+    print("\n".join(lines) if lines else "no findings")
+    return bool(lines)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
