@@ -13,7 +13,7 @@ uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
 uplift mix --dye 1:'#d03060' 3:'#f0c000' --index 1.5 --thickness 2
 uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
 uplift mix --light '#ff0000' 0.5:'#00ff00'
-uplift mix '#c8342a/#401008' --thickness 0.4 --over painting.exr -o painted.exr
+uplift mix '#c8342a/#401008' --thickness 0.4 --over overpaint.exr -o painted.exr
 ```
 
 The theories are those that K. Fishkin collected (*Applying Color Science to Computer Graphics*, Berkeley 1983,
@@ -42,11 +42,11 @@ over images:
 - `--over` lays a coat over a painting, pixel by pixel: EXR, PNG, JPEG or TIFF in, EXR out. In Python:
 
 ```python
-from uplift.mixing import coats, painting
+from uplift.design.mixing import coats, overpaint
 
 paint = coats.palette([coats.paint(cube.reflectance(red))])
-brush = painting.ready(cube, coats.of_paints(paint, [1], thickness=0.5))
-painting.paint_over(brush, "painting.exr", "painted.exr")
+brush = overpaint.ready(cube, coats.of_paints(paint, [1], thickness=0.5))
+overpaint.paint_over(brush, "painting.exr", "painted.exr")
 ```
 
 ## Ramps

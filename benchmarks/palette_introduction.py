@@ -126,7 +126,7 @@ a block of rows of M x ≈ y, with its weight (3.2–3.3 there):
 
 A designed light has the same rows with its materials. Without bounds the pseudo-inverse gives the minimum, and of
 several the shortest; with bounds active sets do (scipy's `lsq_linear`, BVLS). The problem is convex, so either way it
-is the global minimum; bounds are kept to the bit. (`uplift/palette/equations.py`, `solve.py`)
+is the global minimum; bounds are kept to the bit. (`uplift/design/palette/equations.py`, `solve.py`)
 
 ## The factor model
 
@@ -150,9 +150,9 @@ functions, *sharpened* so that the coefficients of a product of spectra are near
 ```python
 import numpy as np
 
-from uplift import observer
-from uplift.palette import standard_model
-from uplift.palette.lights import illuminant
+from uplift.colorimetry import observer
+from uplift.design.palette import standard_model
+from uplift.design.palette.lights import illuminant
 
 sensor = observer.sensor()
 model = standard_model(sensor)  # 7 coefficients

@@ -37,7 +37,7 @@ def test_loading_a_cube_costs_numpy_and_the_file_s_library():
         "pass",
         "uplift.load().reflectance([0.5, 0.5, 0.5])",
         "uplift.build(dim=2)",
-        "from uplift import bulk; bulk.spectra(uplift.load(), [500])([0.5, 0.5, 0.5])",
+        "from uplift.lookup import bulk; bulk.spectra(uplift.load(), [500])([0.5, 0.5, 0.5])",
     ],
 )
 def test_no_setting_of_jax_is_changed(use):

@@ -62,7 +62,7 @@ A plan records sha256 of textures and atlases, and `uplift build --plan` refuses
 Python:
 
 ```
-from uplift import plan
+from uplift.scene import plan
 
 found = plan.plan(plan.read_brief("kitchen.toml"))
 found.options, found.sampling.wavelengths, found.confirmed.quantile

@@ -14,7 +14,7 @@ camera XYZ = Σ W_i E_i, where the weights W_i are at least 0. Wavelengths and w
 that their radiances may be added. The powers are each light's own and take the place of its spectrum at λ_i: what its
 lines do between the wavelengths is in them. Weights to linear RGB are those to XYZ times a matrix. In Python:
 
-    from uplift import wavelengths
+    from uplift.scene import wavelengths
 
     seen = wavelengths.set_up(reflectances, ["D65", "FL11"])  # (M, 391), 380–770 nm at 1 nm
     choice = wavelengths.choose(seen, target=1.0)

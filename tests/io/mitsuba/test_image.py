@@ -104,7 +104,7 @@ def test_mistakes_are_named(texture, options, told):
 JIT = """
 import sys
 import drjit, mitsuba as mi, numpy as np
-from uplift.mitsuba import register
+from uplift.io.mitsuba import register
 mi.set_variant("llvm_ad_spectral")
 register()
 image = np.random.default_rng(8).random((3, 4, 3), dtype=np.float32)

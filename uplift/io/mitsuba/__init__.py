@@ -1,7 +1,7 @@
 """Cubes in Mitsuba 3: the texture ``uplift``, for its spectral variants. Needs the extra ``uplift[mitsuba]``.
 
     import mitsuba as mi
-    from uplift.mitsuba import register
+    from uplift.io.mitsuba import register
 
     mi.set_variant("scalar_spectral")
     register()

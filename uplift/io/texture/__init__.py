@@ -1,6 +1,6 @@
 """Textures: every pixel of an image uplifted, written as OpenEXR (docs/textures.md).
 
-from uplift import texture
+from uplift.io import texture
 
 uplifter = texture.prepare(uplift.load("macbeth.uplift"), texture.Moments())
 uplifter.convert("wood.png", "wood.exr")

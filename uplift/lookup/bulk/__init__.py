@@ -1,6 +1,6 @@
 """Millions of colours: a cube made ready once for textures, then asked through JAX, on CPU or accelerator.
 
-    from uplift import bulk
+    from uplift.lookup import bulk
 
     sample = bulk.spectra(cube, range(400, 701, 20))
     sample(image)  # (h, w, 3) -> (h, w, 16) float32

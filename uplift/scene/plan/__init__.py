@@ -1,6 +1,6 @@
 """A plan for a scene: the least that will do, measured on its own colours (docs/plan.md).
 
-from uplift import plan
+from uplift.scene import plan
 
 found = plan.plan(plan.read_brief("kitchen.toml"))
 found.confirmed.quantile, found.options, found.sampling.wavelengths

@@ -1,6 +1,6 @@
 """As few wavelengths as a scene needs: `choose` for a `Setting` of materials and lights; `weigh` for given ones.
 
-from uplift import wavelengths
+from uplift.scene import wavelengths
 
 seen = wavelengths.set_up(reflectances, ["D65", "FL11"])
 choice = wavelengths.choose(seen, target=1.0)
