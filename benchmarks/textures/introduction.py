@@ -49,7 +49,7 @@ A scanline OpenEXR file, ZIP compressed, with the linear R, G and B that were up
 
 Spectra are in the layout of Fichet, Pacanowski & Wilkie 2021, *An OpenEXR Layout for Spectral Images*, JCGT 10(3),
 version 1.0. The header tells the rest: `uplift.cube` (digest), `uplift.model`, `uplift.space`, `uplift.illuminant`,
-`uplift.colorimetry.observer`, `chromaticities`, and `uplift.io.texture`, how it was made. `uplift.model` is JSON. For `moments` it
+`uplift.observer`, `chromaticities`, and `uplift.texture`, how it was made. `uplift.model` is JSON. For `moments` it
 has the count and the phase, φ = π (λ − start) / (end − start) − π without a warp, and the reflectance is
 
     ½ + arctan(p₀ + 2 Σ p_l cos lφ) / π        with multipliers p
