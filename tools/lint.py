@@ -48,7 +48,9 @@ def tracked(where: list[str]) -> list[Path]:
         text=True,
         check=True,
     ).stdout.split()
-    return [ROOT / name for name in listed if name.endswith((".py", ".md", ".j2")) and (ROOT / name).is_file()]
+    return [
+        ROOT / name for name in listed if name.endswith((".py", ".md", ".j2")) and (ROOT / name).is_file()
+    ]
 
 
 def prose(path: Path) -> Iterator[tuple[int, str]]:
@@ -94,7 +96,9 @@ def public(package: str) -> Iterator[str]:
             yield f"{found.__module__}.{found.__qualname__}"
         if inspect.isclass(found):
             for key, value in vars(found).items():
-                if not key.startswith("_") and (inspect.isfunction(value) or isinstance(value, property | classmethod)):
+                if not key.startswith("_") and (
+                    inspect.isfunction(value) or isinstance(value, property | classmethod)
+                ):
                     yield f"{found.__module__}.{found.__qualname__}.{key}"
 
 
