@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import subprocess
 import sys
 
@@ -70,8 +71,9 @@ def test_dir_lists_the_interface():
 @pytest.mark.parametrize("name", uplift.__all__)
 def test_every_name_of_the_interface_is_documented_at_its_home(name):
     found = getattr(uplift, name)
-    assert found.__name__ == name
-    assert found.__module__.startswith("uplift.")
+    home = found.__name__ if inspect.ismodule(found) else f"{found.__module__}.{found.__name__}"
+    assert home.startswith("uplift.")
+    assert home.endswith(f".{name}")
     assert found.__doc__
 
 

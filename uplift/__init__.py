@@ -8,7 +8,7 @@
     cube = uplift.load("macbeth.uplift")
     cube.reflectance([0.8, 0.2, 0.1], wavelengths=range(380, 781, 5))
 
-Importing this module is light and changes nothing; each name below brings in what it needs when it is used.
+``import uplift`` loads no other module of the package. The first use of a name below imports its module.
 """
 
 from __future__ import annotations
@@ -17,42 +17,68 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from uplift.atlas import Atlas, read_atlas, write_atlas
-    from uplift.common.errors import UpliftError, UpliftWarning
-    from uplift.lookup import Cube, load
+    from uplift.atlas import Atlas, Entry, read_atlas, write_atlas
+    from uplift.common.errors import (
+        AtlasError,
+        ChartFileError,
+        ColourError,
+        CubeFileError,
+        OptionError,
+        OutputError,
+        PaletteError,
+        PlanFileError,
+        TextureError,
+        UnknownNameError,
+        UpliftError,
+        UpliftWarning,
+    )
+    from uplift.lookup import Cube, bulk, load
     from uplift.pipeline import build
 
 __all__ = [
     "Atlas",
+    "AtlasError",
+    "ChartFileError",
+    "ColourError",
     "Cube",
+    "CubeFileError",
+    "Entry",
+    "OptionError",
+    "OutputError",
+    "PaletteError",
+    "PlanFileError",
+    "TextureError",
+    "UnknownNameError",
     "UpliftError",
     "UpliftWarning",
     "build",
+    "bulk",
     "load",
     "read_atlas",
     "write_atlas",
 ]
 
-_HOMES = {
-    "Cube": "uplift.lookup",
-    "Atlas": "uplift.atlas",
-    "UpliftError": "uplift.common.errors",
-    "UpliftWarning": "uplift.common.errors",
-    "build": "uplift.pipeline",
-    "load": "uplift.lookup",
-    "read_atlas": "uplift.atlas",
-    "write_atlas": "uplift.atlas",
+_EXPORTS = {
+    "uplift.atlas": ("Atlas", "Entry", "read_atlas", "write_atlas"),
+    "uplift.lookup": ("Cube", "load"),
+    "uplift.pipeline": ("build",),
 }
+_MODULES = {"bulk": "uplift.lookup.bulk"}
+"""Subpackages reached by a short name."""
+
+_HOMES = {name: module for module, names in _EXPORTS.items() for name in names}
 
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        from importlib.metadata import version  # a tenth of a query's time
+        from importlib.metadata import version  # its import takes a tenth of the time of a query
 
         return version("uplift")
-    if name not in _HOMES:
+    if name in _MODULES:
+        return importlib.import_module(_MODULES[name])
+    if name not in __all__:
         raise AttributeError(f"module 'uplift' has no attribute '{name}'")
-    return getattr(importlib.import_module(_HOMES[name]), name)
+    return getattr(importlib.import_module(_HOMES.get(name, "uplift.common.errors")), name)
 
 
 def __dir__() -> list[str]:

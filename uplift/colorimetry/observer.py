@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from types import ModuleType
 from typing import Any
 
@@ -14,7 +13,7 @@ import numpy as np
 from uplift.colorimetry.gamut import Primaries
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
-from uplift.common.errors import UnknownNameError
+from uplift.common.errors import unknown_name
 
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
 CRT = "Typical CRT Brainard 1997"
@@ -98,22 +97,14 @@ def axis_nodes(spacing: str, dim: int) -> Array:
         return even
     if spacing == "srgb":
         return np.asarray(colour_science().models.eotf_sRGB(even), dtype=float)
-    raise suggest(spacing, ("srgb", "linear"), "axis spacing")
-
-
-def suggest(name: str, known: Iterable[str], kind: str) -> UnknownNameError:
-    """The error for an unknown name, with the nearest that exists."""
-    by_folded = {entry.casefold(): entry for entry in known}
-    near = difflib.get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.4) or list(by_folded)[:6]
-    choices = ", ".join(f"'{by_folded[entry]}'" for entry in near)
-    return UnknownNameError(f"unknown {kind} '{name}'", hint=f"did you mean {choices}?")
+    raise unknown_name(spacing, ("srgb", "linear"), "axis spacing")
 
 
 def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:
     try:
         return table[name]
     except KeyError:
-        raise suggest(name, table, kind) from None
+        raise unknown_name(name, table, kind) from None
 
 
 def matching_functions(

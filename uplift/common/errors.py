@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
 
-from uplift.common.arrays import StrPath
+if TYPE_CHECKING:
+    from uplift.common.arrays import StrPath
 
 __all__ = [
     "AtlasError",
@@ -19,6 +21,7 @@ __all__ = [
     "UnknownNameError",
     "UpliftError",
     "UpliftWarning",
+    "unknown_name",
 ]
 
 
@@ -155,3 +158,37 @@ class UpliftWarning(Diagnostic, UserWarning):
     """Something was skipped or changed; the rest was done."""
 
     code = "warning"
+
+
+def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError:
+    """Make the error for an unknown name, with the nearest known names as its hint.
+
+    Parameters
+    ----------
+    name : str
+        The name received.
+    known : iterable of str
+        Valid names.
+    kind : str
+        What the name stands for, such as ``"RGB space"``. Its kebab case follows ``unknown-`` in the code.
+
+    Returns
+    -------
+    UnknownNameError
+        The error to raise.
+
+    Examples
+    --------
+    >>> error = unknown_name("srbg", ("sRGB", "ACEScg"), "RGB space")
+    >>> print(error.code, "|", error)
+    unknown-rgb-space | unknown RGB space 'srbg'; did you mean 'sRGB'?
+    """
+    import difflib
+
+    by_folded = {entry.casefold(): entry for entry in known}
+    near = difflib.get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.4) or list(by_folded)[:6]
+    choices = ", ".join(f"'{by_folded[entry]}'" for entry in near)
+    code = "unknown-" + "-".join(kind.casefold().split())
+    return UnknownNameError(
+        f"unknown {kind} '{name}'", code=code, hint=f"did you mean {choices}?" if near else ""
+    )

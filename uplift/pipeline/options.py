@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from uplift.colorimetry import observer
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, unknown_name
 from uplift.models import Model, Moments, Phase, Sigmoid
 
 AUTO: Literal["auto"] = "auto"
@@ -44,7 +44,7 @@ class Options:
             return Moments(self.coefficients, Phase(observer.START, observer.END, self.warp))
         if self.model == Sigmoid.name:
             return Sigmoid(observer.START, observer.END)
-        raise observer.suggest(self.model, MODELS, "model")
+        raise unknown_name(self.model, MODELS, "model")
 
 
 PROCESS = 500_000_000

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from importlib.resources import files
 
-from uplift.colorimetry.observer import suggest
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, unknown_name
 from uplift.lab.chart.panels import NOTABLE
 from uplift.lab.chart.table import Chart, Row, parse_chart
 from uplift.lab.chart.task import LIGHTS
@@ -41,7 +40,7 @@ class Wish:
         if not all(0 < limit < float("inf") for limit in limits):
             raise OptionError("a limit is no positive number", hint="give ns, and ΔE00, above 0")
         if self.light not in (None, BUILD_LIGHT, *LIGHTS):
-            raise suggest(str(self.light), (BUILD_LIGHT, *LIGHTS), "light of the chart")
+            raise unknown_name(str(self.light), (BUILD_LIGHT, *LIGHTS), "light of the chart")
 
     @property
     def error(self) -> str:

@@ -14,7 +14,7 @@ from uplift.atlas import Atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array
-from uplift.common.errors import UpliftWarning
+from uplift.common.errors import UpliftWarning, unknown_name
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS, Pointwise, grow_pointwise
 from uplift.lattice import Lattice, Status
@@ -99,7 +99,7 @@ def study(
     ordered = sorted(set(settings))
     for setting in ordered:
         if setting.atlas not in (NO_ATLAS, *atlases):
-            raise observer.suggest(setting.atlas, (NO_ATLAS, *atlases), "atlas")
+            raise unknown_name(setting.atlas, (NO_ATLAS, *atlases), "atlas")
     outcomes = []
     for number, setting in enumerate(ordered, 1):
         outcomes.append(run(setting, atlases))

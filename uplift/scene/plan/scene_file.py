@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.common.errors import PlanFileError, UpliftError
+from uplift.common.errors import PlanFileError, UpliftError, unknown_name
 from uplift.io.texture.colours import check_encoding
 
 LEAST, MOST = 0.01, 100.0
@@ -99,7 +99,7 @@ class _Reader:
             **dict.fromkeys(("encoding", "space", "illuminant", "observer"), self._word),
         }
         for key in self.said.keys() - readers.keys():
-            self._raise(key, observer.suggest(key, readers, "key"))
+            self._raise(key, unknown_name(key, readers, "key"))
         if "textures" not in self.said:
             hint = f"add a line such as {EXAMPLE}"
             raise PlanFileError("names no textures, so there are no colours", path=self.path, hint=hint)

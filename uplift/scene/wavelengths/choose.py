@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import observer
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, unknown_name
 from uplift.scene.wavelengths.meyer import meyer
 from uplift.scene.wavelengths.optimise import at, even, optimised
 from uplift.scene.wavelengths.sampling import MEASURES, Errors, Sampling, judge
@@ -61,9 +60,9 @@ def choose(
     UnknownNameError : a method or measure that does not exist.
     """
     if method not in METHODS:
-        raise observer.suggest(method, METHODS, "method")
+        raise unknown_name(method, METHODS, "method")
     if measure not in MEASURES:
-        raise observer.suggest(measure, MEASURES, "measure")
+        raise unknown_name(measure, MEASURES, "measure")
     if count is not None and target is None:
         return _fixed(setting, method, _checked(count))
     if target is not None and count is None:

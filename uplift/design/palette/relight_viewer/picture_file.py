@@ -9,8 +9,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.observer import suggest
-from uplift.common.errors import OptionError, TextureError
+from uplift.common.errors import OptionError, TextureError, unknown_name
 from uplift.io.texture.colours import colour_channels
 from uplift.io.texture.source import Part, Values, open_image
 
@@ -55,7 +54,7 @@ def _told(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, int]:
     codes: dict[int, int] = {}
     for name, label in labels.items():
         if name not in names:
-            raise suggest(name, names, "material")
+            raise unknown_name(name, names, "material")
         if not re.fullmatch("#[0-9a-fA-F]{6}", label):
             raise OptionError(f"'{label}' is no colour of '{name}'", hint="write it as #rrggbb")
         code = int(label[1:], 16)

@@ -1,0 +1,58 @@
+"""Errors: location, problem and hint on one line, a stable code, and the built-in error that each also is."""
+
+from __future__ import annotations
+
+import inspect
+
+import pytest
+
+import uplift
+from uplift.common import errors
+from uplift.common.errors import AtlasError, UnknownNameError, UpliftError, unknown_name
+
+CLASSES = [kind for _, kind in inspect.getmembers(errors, inspect.isclass) if issubclass(kind, UpliftError)]
+
+
+def test_message_is_location_problem_and_hint():
+    error = AtlasError("no samples", code="no-samples", path="a.txt", line=3, entry="red", hint="add some")
+    assert str(error) == "a.txt:3: entry 'red': no samples; add some"
+    assert error.where == "a.txt:3: entry 'red'"
+    assert error.to_json() == {
+        "code": "no-samples",
+        "where": "a.txt:3: entry 'red'",
+        "problem": "no samples",
+        "hint": "add some",
+    }
+
+
+def test_unknown_parts_are_left_out_of_the_message():
+    assert str(AtlasError("no samples", code="no-samples")) == "no samples"
+    assert str(AtlasError("no samples", code="no-samples", entry="red")) == "entry 'red': no samples"
+
+
+@pytest.mark.parametrize("kind", CLASSES)
+def test_every_error_class_is_exported_by_the_package(kind):
+    assert getattr(uplift, kind.__name__) is kind
+
+
+@pytest.mark.parametrize("kind", [kind for kind in CLASSES if kind is not UpliftError])
+def test_every_error_is_also_a_built_in_error(kind):
+    assert issubclass(kind, ValueError | KeyError | OSError)
+
+
+def test_unknown_name_suggests_near_names_regardless_of_case():
+    error = unknown_name("d56", ("D50", "D55", "D65", "A"), "illuminant")
+    assert isinstance(error, UnknownNameError)
+    assert error.code == "unknown-illuminant"
+    assert error.problem == "unknown illuminant 'd56'"
+    assert "'D65'" in error.hint
+    assert "'A'" not in error.hint
+
+
+def test_unknown_name_lists_valid_names_if_none_is_near():
+    assert unknown_name("?", ("none", "vision"), "warp").hint == "did you mean 'none', 'vision'?"
+    assert unknown_name("?", (), "warp").hint == ""
+
+
+def test_code_of_unknown_name_is_the_kind_in_kebab_case():
+    assert unknown_name("x", ("sRGB",), "RGB space").code == "unknown-rgb-space"
