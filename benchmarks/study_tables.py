@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 
 from benchmarks.page import table
 from benchmarks.timing import ROOT
-from uplift.lab.study.moments import LIGHTS, MEASURES, Result, Study
+from uplift.colorimetry.lights import REPORT_LIGHTS
+from uplift.lab.study.moments import MEASURES, Result, Study
 from uplift.lab.study.technique import TECHNIQUES, Technique
 
 THESIS = ROOT / "tests" / "reference" / "moments_todova2020.csv"
@@ -106,7 +107,7 @@ def lights(found: Study) -> str:
     return table(
         "Other lights",
         "Mean / largest ΔE00 under each light, and rms difference of the spectra at 5 nm.",
-        ["floats", "", *LIGHTS, MEASURES[-1]],
+        ["floats", "", *REPORT_LIGHTS, MEASURES[-1]],
         rows,
     )
 

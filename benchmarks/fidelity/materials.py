@@ -14,8 +14,9 @@ from benchmarks.timing import ROOT
 from uplift import fit
 from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import observer
+from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array
-from uplift.lab.study.held_out import LIGHTS, judge
+from uplift.lab.study.held_out import judge
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_map
 
@@ -85,4 +86,4 @@ def row(name: str, answered: Array, some: Materials, digits: int = 3) -> list[st
     return [name, f"{rms:.4f}", *(f"{value:.{digits}f}" for value in delta_e)]
 
 
-HEAD = ["rms", *LIGHTS]
+HEAD = ["rms", *HELD_OUT_LIGHTS]

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from benchmarks.page import table
+from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.lab.study.locality import MOVED, NOISE
 from uplift.lab.study.pointwise import EVALUATIONS, IN_MOMENTS, IN_MULTIPLIERS
-from uplift.lab.study.sensitivity import LIGHT
 from uplift.lab.study.stability import NO_ATLAS, OURS
 from uplift.lab.study.stability_design import COMPARED, SPACES
 
@@ -74,7 +74,7 @@ def _sensitive(cubes: Mapping[str, Any], constrained: str) -> list[list[str]]:
             "queries moved by 1e-7, all modes",
             f"{count} × 4,096 colours",
             "none",
-            f"no answer moves by more than ΔE00 {most:.1g} under {LIGHT}",
+            f"no answer moves by more than ΔE00 {most:.1g} under {NARROW_BAND_LIGHT}",
         ],
         [
             "one entry left out or wrong",
@@ -188,9 +188,9 @@ def moves(cubes: Mapping[str, Any], shown: Sequence[str]) -> str:
     return table(
         "Queries moved",
         "4,096 colours, even over 8-bit codes, every channel moved up or down by a code of 8 bits, of 10 bits, or by "
-        f"float rounding: mean / most of the rms change of the answer, of its ΔE00 under {LIGHT}, and under the build "
+        f"float rounding: mean / most of the rms change of the answer, of its ΔE00 under {NARROW_BAND_LIGHT}, and under the build "
         "light, of which the question is the cause.",
-        ["cube", "mode", "moved by", "rms", f"ΔE00, {LIGHT}", "ΔE00, D65"],
+        ["cube", "mode", "moved by", "rms", f"ΔE00, {NARROW_BAND_LIGHT}", "ΔE00, D65"],
         lines,
     )
 
@@ -260,7 +260,7 @@ def changes(record: Mapping[str, Any], name: str) -> str:
     return table(
         "An atlas a little different",
         f"{name} built anew, lattice points before and after: the share that moves by more than ΔE00 {MOVED:g} under "
-        f"{LIGHT}, mean and most over the builds; how far from the entry the farthest of them lies; the largest move; "
+        f"{NARROW_BAND_LIGHT}, mean and most over the builds; how far from the entry the farthest of them lies; the largest move; "
         "the largest mean rms change.",
         [
             "change",

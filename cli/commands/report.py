@@ -102,11 +102,11 @@ def _check_apart(path: Path, cube: str) -> None:
 def _assess(
     cube: Cube, path: str, atlases: tuple[str, ...], folders: tuple[str, ...], lights: tuple[str, ...]
 ) -> Assessment:
-    from uplift.colorimetry.display_sensors import LIGHTS
+    from uplift.colorimetry.lights import REPORT_LIGHTS
     from uplift.report.assessment import assess
 
     spectra = _measured(cube, path, atlases, folders)
-    return assess(cube, Path(path).name, Path(path).stat().st_size, spectra, lights or LIGHTS)
+    return assess(cube, Path(path).name, Path(path).stat().st_size, spectra, lights or REPORT_LIGHTS)
 
 
 def _measured(cube: Cube, path: str, atlases: tuple[str, ...], folders: tuple[str, ...]) -> Atlas | None:

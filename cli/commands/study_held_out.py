@@ -58,14 +58,15 @@ def _records(found: Found) -> list[dict[str, Any]]:
 
     import numpy as np
 
-    from uplift.lab.study.held_out import LIGHTS, stated_errors
+    from uplift.colorimetry.lights import HELD_OUT_LIGHTS
+    from uplift.lab.study.held_out import stated_errors
 
     records: list[dict[str, Any]] = []
     for name, splits in found.items():
         for method in splits[0].errors:
             rms, *delta_e = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
             record = {"atlas": name, "cube": method, "colours": len(splits[0].real), "rms": rms}
-            records.append(record | dict(zip(LIGHTS, delta_e, strict=True)))
+            records.append(record | dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True)))
         said = stated_errors(splits)
         records[-len(splits[0].errors)]["standard_error"] = said and asdict(said)
     return records
@@ -76,11 +77,14 @@ def _print_json(found: Found) -> None:
 
 
 def _print_csv(found: Found) -> None:
-    from uplift.lab.study.held_out import LIGHTS
+    from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 
     text = io.StringIO()
     writer = csv.DictWriter(
-        text, ["atlas", "cube", "colours", "rms", *LIGHTS], extrasaction="ignore", lineterminator="\n"
+        text,
+        ["atlas", "cube", "colours", "rms", *HELD_OUT_LIGHTS],
+        extrasaction="ignore",
+        lineterminator="\n",
     )
     writer.writeheader()
     writer.writerows(_records(found))
@@ -92,16 +96,16 @@ def _print_table(found: Found) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from uplift.lab.study.held_out import LIGHTS
+    from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 
     table = Table(box=box.SIMPLE_HEAD)
     for heading in ("atlas", "cube"):
         table.add_column(heading, no_wrap=True)
-    for heading in ("rms", *LIGHTS):
+    for heading in ("rms", *HELD_OUT_LIGHTS):
         table.add_column(heading, justify="right", no_wrap=True)
     sayings = []
     for record in _records(found):
-        cells = [f"{record['rms']:.4f}", *(f"{record[light]:.3f}" for light in LIGHTS)]
+        cells = [f"{record['rms']:.4f}", *(f"{record[light]:.3f}" for light in HELD_OUT_LIGHTS)]
         table.add_row(Text(record["atlas"]), record["cube"], *cells)
         if record.get("standard_error"):
             sayings.append((record["atlas"], record["standard_error"]))

@@ -83,11 +83,21 @@ def _print_json(found: Sensitivity) -> None:
 
 
 def _print_table(found: Sensitivity) -> None:
-    from uplift.lab.study.sensitivity import LIGHT
+    from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 
     record = found.record()
     _table(
-        ("mode", "step", "rms", "most", "any wavelength", f"ΔE00 {LIGHT}", "most", "ΔE00 own", "most"),
+        (
+            "mode",
+            "step",
+            "rms",
+            "most",
+            "any wavelength",
+            f"ΔE00 {NARROW_BAND_LIGHT}",
+            "most",
+            "ΔE00 own",
+            "most",
+        ),
         [tuple(move.values()) for move in record["moves"]],
     )
     steep = record["lipschitz"]
@@ -98,7 +108,16 @@ def _print_table(found: Sensitivity) -> None:
         f"steepest wavelength {steep['steepest_wavelength']:g} nm"
     )
     if record["changes"]:
-        heads = ("change", "moved", "RGB radius", "ΔE*ab radius", f"ΔE00 {LIGHT}", "most", "rms", "most")
+        heads = (
+            "change",
+            "moved",
+            "RGB radius",
+            "ΔE*ab radius",
+            f"ΔE00 {NARROW_BAND_LIGHT}",
+            "most",
+            "rms",
+            "most",
+        )
         _table(heads, [tuple(change.values()) for change in record["changes"]])
 
 

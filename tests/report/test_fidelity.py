@@ -11,7 +11,8 @@ import pytest
 
 import uplift
 from uplift.atlas import on_grid
-from uplift.colorimetry.display_sensors import LIGHTS, display_sensors, hex_codes
+from uplift.colorimetry.display_sensors import display_sensors, hex_codes
+from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.common.errors import UnknownNameError
 from uplift.cube import AtlasTable
@@ -300,8 +301,8 @@ def test_edges_hold_any_values(value):
 
 
 def test_each_light_once_and_white_is_white_under_all():
-    lights = display_sensors((*LIGHTS, "d65", "A"), colour.MSDS_CMFS["cie_2_1931"].name)
-    assert [seen.illuminant for seen in lights] == list(LIGHTS)
+    lights = display_sensors((*REPORT_LIGHTS, "d65", "A"), colour.MSDS_CMFS["cie_2_1931"].name)
+    assert [seen.illuminant for seen in lights] == list(REPORT_LIGHTS)
     for seen in lights:
         assert hex_codes(seen.rgb(np.ones((1, 81)))) == ["#ffffff"]
         assert hex_codes(seen.rgb(np.zeros((1, 81)))) == ["#000000"]

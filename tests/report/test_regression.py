@@ -9,10 +9,11 @@ import colour
 import numpy as np
 import pytest
 
+from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError
 from uplift.lattice import Lattice, Status
-from uplift.report.regression import LIGHTS, LIMITS, Comparison, compare
+from uplift.report.regression import LIMITS, Comparison, compare
 
 PATH = Path("cube.uplift")
 
@@ -89,7 +90,7 @@ def test_measures_are_the_largest_and_the_rms(data):
     measures = compare(PATH, data, other).measures
     assert measures["spectra_max"] == np.abs(first - second).max()
     assert measures["spectra_rms"] == pytest.approx(np.sqrt(np.mean((first - second) ** 2)), rel=1e-12)
-    for name in LIGHTS:
+    for name in REGRESSION_LIGHTS:
         lit = light(name)
         labs = [
             colour.XYZ_to_Lab(spectra @ lit.xyz.T, colour.XYZ_to_xy(lit.white)) for spectra in (first, second)

@@ -12,9 +12,6 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 
-LIGHTS = ("D65", "A", "FL2", "FL7", "FL11", "LED-B3")
-"""Daylight and tungsten; a cheap, a broadband and a three-band fluorescent lamp; a white LED."""
-
 
 def display_sensors(names: Sequence[str], observer: str) -> tuple[Sensor, ...]:
     """An sRGB sensor under each light, each light once: its white is taken to the screen's by Bradford.

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.gamut import Primaries
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
@@ -39,7 +40,9 @@ def grid() -> Array:
     return np.arange(START, END + STEP / 2, STEP)
 
 
-def sensor(space: str = "sRGB", illuminant: str = "D65", observer: str = DEFAULT_OBSERVER) -> Sensor:
+def sensor(
+    space: str = "sRGB", illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
+) -> Sensor:
     """A sensor by names of colour-science.
 
     The illuminant's white is taken to the space's white by Bradford adaptation, and each row is scaled

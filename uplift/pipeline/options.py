@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from uplift.colorimetry import observer
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.common.errors import OptionError, unknown_name
 from uplift.models import Model, Moments, Phase, Sigmoid
 
@@ -31,9 +32,9 @@ class Options:
     warp: str = "none"
     axis: str = "srgb"
     space: str = "sRGB"
-    illuminant: str = "D65"
+    illuminant: str = DEFAULT_ILLUMINANT
     observer: str = observer.DEFAULT_OBSERVER
-    lights: tuple[str, ...] = ("D65", "A", "FL2", "FL11", "LED-B3")
+    lights: tuple[str, ...] = SCENE_LIGHTS
     threshold: float = 1e-4
     within: float = 0.5
     debug: bool = False

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import Atlas
-from uplift.colorimetry.display_sensors import LIGHTS, display_sensors
+from uplift.colorimetry.display_sensors import display_sensors
+from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
@@ -80,7 +81,7 @@ class Assessment:
 
 
 def assess(
-    cube: Cube, name: str, size: int, spectra: Atlas | None, lights: Sequence[str] = LIGHTS
+    cube: Cube, name: str, size: int, spectra: Atlas | None, lights: Sequence[str] = REPORT_LIGHTS
 ) -> Assessment:
     """Judge a cube by its own lattice, and by measured spectra if there are any.
 

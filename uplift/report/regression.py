@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Mask
@@ -16,10 +17,8 @@ from uplift.cube import CubeData
 from uplift.lattice import Status
 from uplift.models import reflectance
 
-LIGHTS = ("D65", "A", "FL11")
-
 LIMITS = {"rgb": 1e-6, "spectra_max": 1e-5, "spectra_rms": 1e-7} | {
-    f"delta_e_{name}": 1e-4 for name in LIGHTS
+    f"delta_e_{name}": 1e-4 for name in REGRESSION_LIGHTS
 }
 """What may differ between machines: some hundred times what other instruction sets were seen to change
 (docs/stability-determinism.json). Within one machine nothing differs, whatever the threads."""
@@ -60,7 +59,7 @@ def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
         "spectra_max": float(difference.max()),
         "spectra_rms": float(np.sqrt((difference**2).mean())),
     }
-    for name in LIGHTS:
+    for name in REGRESSION_LIGHTS:
         measures[f"delta_e_{name}"] = _largest_delta_e(name, stored.sensor.observer, first, second)
     return Comparison(path, measures, *(_counts(data, settled) for data in (stored, rebuilt)))
 

@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 
 from uplift.atlas import read_atlas
+from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.method import Family, Method, Ready
 from uplift.lab.chart.table import Chart, Row, State
-from uplift.lab.chart.task import LIGHTS, Effort, task
+from uplift.lab.chart.task import Effort, task
 
 FACTS = dict.fromkeys(("machine", "versions", "commit", "colours", "spectra", "effort"), "stated")
 HASTE = Effort(answering=0.05, runs=3, lap=0.001, batch=64, builds=1)
 ERRORS = (
     "round_trip",
-    *LIGHTS,
+    *CHART_LIGHTS,
     "lights",
     "rms",
-    *(f"own_{light}" for light in LIGHTS),
+    *(f"own_{light}" for light in CHART_LIGHTS),
     "own_lights",
     "own_rms",
 )

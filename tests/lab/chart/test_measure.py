@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.measure import FAR, measure, measure_one
 from uplift.lab.chart.method import Claims, Method, NotInstalledError
 from uplift.lab.chart.methods.mallett2019 import FAMILIES
 from uplift.lab.chart.page import page
 from uplift.lab.chart.panels import PANELS
 from uplift.lab.chart.table import State
-from uplift.lab.chart.task import LIGHTS
 from uplift.lab.study.held_out import judge
 from uplift.viz.markup import Markup
 
@@ -73,8 +73,10 @@ def test_the_same_answer_is_no_error_where_less_is_claimed(small_task, greys, me
 def test_errors_are_those_of_the_study_of_halves(small_task, greys, method_of):
     numbers = measure_one(greys, method_of(grey), small_task).numbers
     for prefix, measured in (("", small_task.unseen), ("own_", small_task.own)):
-        errors = judge(grey(small_task.sensor.rgb(measured), small_task.sensor.wavelengths), measured, LIGHTS)
-        for column, light in enumerate(LIGHTS):
+        errors = judge(
+            grey(small_task.sensor.rgb(measured), small_task.sensor.wavelengths), measured, CHART_LIGHTS
+        )
+        for column, light in enumerate(CHART_LIGHTS):
             assert numbers[f"{prefix}{light}_mean"] == pytest.approx(errors.delta_e[:, column].mean())
             assert numbers[f"{prefix}{light}_max"] == pytest.approx(errors.delta_e[:, column].max())
         assert numbers[f"{prefix}rms_p99"] == pytest.approx(np.quantile(errors.rms, 0.99))

@@ -8,7 +8,8 @@ import pytest
 from uplift.atlas import Atlas, Entry
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.lab.study.held_out import LIGHTS, Errors, Split, halves, judge, stated_errors
+from uplift.colorimetry.lights import HELD_OUT_LIGHTS
+from uplift.lab.study.held_out import Errors, Split, halves, judge, stated_errors
 
 GRID = observer.grid()
 
@@ -39,7 +40,7 @@ def test_an_atlas_of_one_family_tells_its_other_half(splits):
 def test_every_split_asks_what_it_has_not_kept(splits):
     assert [len(split.real) for split in splits] == [12, 12]
     assert not np.array_equal(splits[0].real, splits[1].real)
-    assert splits[0].errors["sigmoid"].delta_e.shape == (12, len(LIGHTS))
+    assert splits[0].errors["sigmoid"].delta_e.shape == (12, len(HELD_OUT_LIGHTS))
 
 
 def test_errors_are_what_they_are_called():

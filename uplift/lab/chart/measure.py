@@ -9,11 +9,12 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.arrays import Array
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, Uplift
 from uplift.lab.chart.table import Chart, Row, State
-from uplift.lab.chart.task import LIGHTS, Task
+from uplift.lab.chart.task import Task
 from uplift.lab.chart.timing import batch_times, single_times
 from uplift.lab.study.held_out import judge
 from uplift.lab.timing import environment
@@ -113,8 +114,8 @@ def _errors(method: Method, ask: Ask, task: Task) -> dict[str, float]:
     numbers = _summary("round_trip", apart) | {"round_trip_colours": len(rgb)}
     for prefix, name, measured in (("", "unseen", task.unseen), ("own_", "own", task.own)):
         asked, answered = _answered(method, ask, task, np.clip(task.sensor.rgb(measured), 0, 1))
-        errors = judge(answered, measured[: len(asked)], LIGHTS)
-        parts = dict(zip(LIGHTS, errors.delta_e.T, strict=True))
+        errors = judge(answered, measured[: len(asked)], CHART_LIGHTS)
+        parts = dict(zip(CHART_LIGHTS, errors.delta_e.T, strict=True))
         parts |= {"lights": errors.delta_e.mean(axis=1), "rms": errors.rms}
         for key, values in parts.items():
             numbers |= _summary(f"{prefix}{key}", values)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.legend import OTHER, colours
 from uplift.lab.chart.panels import PANELS, Panel
 from uplift.lab.chart.table import Chart, Row, State
-from uplift.lab.chart.task import LIGHTS
 from uplift.report.page_parts import note, right, table
 from uplift.viz.document import Told, document, family_boxes, footer
 from uplift.viz.format import format_build_time, format_error, format_size, format_time
@@ -14,7 +14,7 @@ from uplift.viz.markup import Markup, element, number
 TITLE = "Spectral upsampling: speed against accuracy"
 ERRORS = {
     "round_trip": "round trip",
-    **{light: light for light in LIGHTS},
+    **{light: light for light in CHART_LIGHTS},
     "rms": "rms",
     "own_lights": "own, mean",
 }

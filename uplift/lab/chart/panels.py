@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.table import Chart, Row
-from uplift.lab.chart.task import LIGHTS
 from uplift.viz.format import format_build_time, format_error, format_time
 
 FLOORS = {"time_ns": 1.0, "build_s": 1e-3}
@@ -56,7 +56,7 @@ class Panel:
 
 PANELS = (
     Panel("Round trip under D65", "round_trip", "ΔE00", whiskers=True),
-    *(Panel(f"Unseen materials under {light}", light, "ΔE00") for light in LIGHTS),
+    *(Panel(f"Unseen materials under {light}", light, "ΔE00") for light in CHART_LIGHTS),
     Panel("Unseen materials, the spectrum", "rms", "rms of reflectance"),
     Panel("Materials of the atlas itself, mean of the five lights", "own_lights", "ΔE00"),
     Panel("Building: unseen materials, mean of the five lights", "lights", "ΔE00", across="build_s"),

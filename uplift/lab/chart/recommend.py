@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from importlib.resources import files
 
+from uplift.colorimetry.lights import CHART_LIGHTS, DEFAULT_ILLUMINANT
 from uplift.common.errors import OptionError, unknown_name
 from uplift.lab.chart.panels import NOTABLE
 from uplift.lab.chart.table import Chart, Row, parse_chart
-from uplift.lab.chart.task import LIGHTS
 from uplift.viz.format import format_error, format_time
 
-BUILD_LIGHT = "D65"
 MEASURED = "measured.csv"
 
 
@@ -39,22 +38,22 @@ class Wish:
             raise OptionError("nothing is wished for", hint="give --time-ns, --delta-e or both")
         if not all(0 < limit < float("inf") for limit in limits):
             raise OptionError("a limit is no positive number", hint="give ns, and ΔE00, above 0")
-        if self.light not in (None, BUILD_LIGHT, *LIGHTS):
-            raise unknown_name(str(self.light), (BUILD_LIGHT, *LIGHTS), "light of the chart")
+        if self.light not in (None, DEFAULT_ILLUMINANT, *CHART_LIGHTS):
+            raise unknown_name(str(self.light), (DEFAULT_ILLUMINANT, *CHART_LIGHTS), "light of the chart")
 
     @property
     def error(self) -> str:
         """The name of the number that is looked at."""
-        if self.light == BUILD_LIGHT:
+        if self.light == DEFAULT_ILLUMINANT:
             return "round_trip_mean"
         return f"{'own_' if self.own else ''}{self.light or 'lights'}_mean"
 
     @property
     def about(self) -> str:
         """What the error is of."""
-        if self.light == BUILD_LIGHT:
+        if self.light == DEFAULT_ILLUMINANT:
             return "of the round trip"
-        where = f"under {self.light}" if self.light else f"under {', '.join(LIGHTS)}"
+        where = f"under {self.light}" if self.light else f"under {', '.join(CHART_LIGHTS)}"
         return f"{where}, for {'materials of the atlas' if self.own else 'unseen materials'}"
 
 

@@ -10,11 +10,11 @@ import numpy as np
 
 from uplift.atlas import Atlas, merge, resample
 from uplift.colorimetry import observer
+from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError
 
-LIGHTS = ("A", "FL2", "FL7", "FL11", "LED-B3")
 COLOURS, FEWEST, SEED = 2000, 16, 1
 """Random colours by default, the fewest that make a statistic, and what they are drawn from."""
 STEPS = 9
@@ -94,7 +94,7 @@ def task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | 
         kept,
         rng.permutation(own),
         rng.permutation(asked),
-        tuple(observer.light(name) for name in LIGHTS),
+        tuple(observer.light(name) for name in CHART_LIGHTS),
         effort or Effort(),
         facts,
     )

@@ -11,12 +11,11 @@ import numpy as np
 from uplift.atlas import Atlas, merge, on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry.lights import KMENT_LIGHTS
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
 from uplift.scene.representations.dense import STEP, observed, wavelengths
 
-SETS = {"smooth": ("A", "B", "C"), "spiky": ("FL2", "FL7", "FL11")}
-"""Those of Kment 2011, 5.4: non-fluorescent and fluorescent."""
 GIVEN = "given"
 """The set of lights that a user names."""
 FEW = 40
@@ -79,7 +78,7 @@ def scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scene:
     spectra = merge(atlases.values())
     if not spectra.entries:
         raise AtlasError("no entries to compare with", hint="name an atlas that holds reflectances")
-    named = {GIVEN: tuple(dict.fromkeys(lights))} if lights else SETS
+    named = {GIVEN: tuple(dict.fromkeys(lights))} if lights else KMENT_LIGHTS
     sets = tuple(LightSet(name, members, _powers(members)) for name, members in named.items())
     return Scene(spectra.names, on_grid(spectra, wavelengths()), sets)
 

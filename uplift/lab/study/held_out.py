@@ -12,6 +12,7 @@ import numpy as np
 from uplift.atlas import Atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
@@ -19,7 +20,6 @@ from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.report.calibration import Calibration, calibration
 
-LIGHTS = ("A", "FL2", "FL7", "FL11", "LED-B3", "LED-RGB1", "HP1")
 FEWEST = 8
 """Entries within the space that can be halved."""
 
@@ -48,7 +48,7 @@ class Split:
     stated: Array | None
 
 
-def judge(answered: Array, measured: Array, lights: Sequence[str] = LIGHTS) -> Errors:
+def judge(answered: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS) -> Errors:
     """Errors of reflectances (n, N), on the grid of every sensor, against measurements (n, N)."""
     rms = np.sqrt(((answered - measured) ** 2).mean(axis=1))
     return Errors(

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from uplift.atlas import Atlas, merge, on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_2000, lab
+from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError
@@ -23,8 +24,7 @@ from uplift.lab.study.technique import TECHNIQUES, Technique
 
 DEFAULT_MOST, LIMIT = 15, 32
 """Moments beside the zeroth: as many as the thesis has; more waves than that the 5 nm grid hardly shows."""
-LIGHTS = ("D65", "A", "FL2", "FL7", "FL11", "LED-B3")
-MEASURES = ("delta_e_76_D65", *(f"delta_e_00_{name}" for name in LIGHTS), "rms")
+MEASURES = ("delta_e_76_D65", *(f"delta_e_00_{name}" for name in REPORT_LIGHTS), "rms")
 """ΔE76 under D65 (the thesis's measure), ΔE00 under every light, rms difference of the spectra."""
 EVERY = "all"
 """The name of all atlases together."""
@@ -132,7 +132,7 @@ def study(
 def _comparer(measured: Array) -> Callable[[Array], Array]:
     """The function that takes reconstructions (E, 81) on the observer's grid to errors (E, len(MEASURES))."""
     original = measured[:, :: round(observer.STEP / STEP)]
-    lights = [observer.light(name) for name in LIGHTS]
+    lights = [observer.light(name) for name in REPORT_LIGHTS]
     labs = [_lab(light, original) for light in lights]
 
     def compare(found: Array) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 
 from uplift.atlas import Atlas
 from uplift.colorimetry import observer
+from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.study.input_noise import Move, moves
@@ -17,8 +18,6 @@ from uplift.lab.study.locality import Change, before, left_out, noisy, reversed_
 from uplift.lab.study.steepness import Steepness, steepness
 from uplift.lookup import Cube
 
-LIGHT = "FL11"
-"""The light that differences are stated under: three narrow bands, hard on spectra that are not the same."""
 DRAWS = 3
 
 
@@ -92,7 +91,7 @@ def study(
     """
     if most < 0:
         raise OptionError(f"{most} entries cannot be left out", hint="use 0 or more")
-    light = observer.light(LIGHT, cube.data.sensor.observer)
+    light = observer.light(NARROW_BAND_LIGHT, cube.data.sensor.observer)
     if cube.data.complete is not None:
         problem = (
             "the cube was built for the colours of a scene, and between its cells there is nothing to measure"

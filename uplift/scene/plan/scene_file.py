@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from uplift.colorimetry import observer
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.errors import PlanFileError, UpliftError, unknown_name
 from uplift.io.texture.colours import check_encoding
@@ -40,12 +41,12 @@ class Brief:
     path: Path
     textures: tuple[Path, ...]
     atlases: tuple[Path, ...] = ()
-    lights: tuple[str, ...] = ("D65", "A", "FL2", "FL11", "LED-B3")
+    lights: tuple[str, ...] = SCENE_LIGHTS
     tolerance: float = 1.0
     quantile: float = 0.975
     encoding: str = "auto"
     space: str = "sRGB"
-    illuminant: str = "D65"
+    illuminant: str = DEFAULT_ILLUMINANT
     observer: str = observer.DEFAULT_OBSERVER
 
     def sensor(self) -> Sensor:

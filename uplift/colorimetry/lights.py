@@ -1,0 +1,34 @@
+"""Illuminants for each purpose, by the names of colour-science.
+
+D65 is daylight, A tungsten. Of fluorescent lamps, FL2 is a cheap, FL7 a broadband and FL11 a three-band one. LED-B3 is
+a white LED, LED-RGB1 one of three narrow bands, HP1 a high-pressure sodium lamp.
+"""
+
+from __future__ import annotations
+
+DEFAULT_ILLUMINANT = "D65"
+"""Illuminant that RGB refers to by default."""
+
+SCENE_LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3")
+"""Lights under which entries keep their measured colours, and lights of a scene that names none."""
+
+REPORT_LIGHTS = ("D65", "A", "FL2", "FL7", "FL11", "LED-B3")
+"""Lights of reports and of the study of moments."""
+
+CHART_LIGHTS = REPORT_LIGHTS[1:]
+"""Lights of the chart of methods: all of a report but the illuminant that colours are matched under."""
+
+HELD_OUT_LIGHTS = (*CHART_LIGHTS, "LED-RGB1", "HP1")
+"""Lights of errors on held-out measurements, which include extreme spectra."""
+
+REGRESSION_LIGHTS = ("D65", "A", "FL11")
+"""Lights of the regression check of stored cubes: smooth, reddish, and three narrow bands."""
+
+PALETTE_LIGHTS = ("D65", "A", "D50", "E")
+"""Smooth lights that the standard factor model of palettes is fitted to."""
+
+NARROW_BAND_LIGHT = "FL11"
+"""Light of the sensitivity study: its narrow bands expose differences between spectra."""
+
+KMENT_LIGHTS = {"smooth": ("A", "B", "C"), "spiky": ("FL2", "FL7", "FL11")}
+"""Sets of lights of Kment 2011, 5.4: non-fluorescent and fluorescent."""
