@@ -128,7 +128,7 @@ def _text(found: Assessment, style: str, worst: int) -> str:
 
 def _told(found: Assessment) -> str:
     """The report in a line."""
-    from uplift.viz.markup import pluralise
+    from uplift.viz.format import pluralise
 
     parts = [f"{pluralise(found.failures.missed, 'point')} over the threshold"]
     if found.entries is not None:

@@ -18,8 +18,9 @@ from uplift.report.assessment import assess
 from uplift.report.json_export import to_json
 from uplift.report.page import page
 from uplift.viz.charts import histogram_chart, spectra_chart
+from uplift.viz.format import format_power_of_ten, format_scientific
 from uplift.viz.histogram import histogram, log_edges
-from uplift.viz.markup import EMPTY, Markup, element, format_power_of_ten, format_scientific
+from uplift.viz.markup import EMPTY, Markup, element
 
 
 class Reader(HTMLParser):

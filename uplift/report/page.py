@@ -9,7 +9,8 @@ from uplift.report.page_crowding import crowding_section, crowding_told
 from uplift.report.page_entries import entries_section
 from uplift.report.page_lattice import distributions_section, failures_section
 from uplift.report.page_standard_error import mean_told, standard_error_section, standard_error_told
-from uplift.viz.markup import Markup, element, format_scientific, joined, pluralise
+from uplift.viz.format import format_scientific, pluralise
+from uplift.viz.markup import Markup, element, joined
 
 
 def page(found: Assessment, worst: int) -> str:
@@ -58,7 +59,8 @@ def _verdicts(found: Assessment) -> Markup:
     cards = [
         _verdict(
             f"{missed:,} over the threshold" if missed else "Every point fitted",
-            f"{pluralise(found.facts['points'], 'lattice point')}, worst distance {format_scientific(found.distance.largest)}",
+            f"{pluralise(found.facts['points'], 'lattice point')}, "
+            f"worst distance {format_scientific(found.distance.largest)}",
             bad=missed > 0,
         ),
         _verdict(

@@ -14,7 +14,8 @@ from uplift.report.page_parts import (
     swatches_of,
     table,
 )
-from uplift.viz.markup import Markup, element, joined, pluralise
+from uplift.viz.format import pluralise
+from uplift.viz.markup import Markup, element, joined
 
 
 def crowding_section(found: Assessment) -> Markup | None:

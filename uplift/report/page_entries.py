@@ -22,7 +22,8 @@ from uplift.report.page_parts import (
     table,
 )
 from uplift.report.page_spectra import small_multiples
-from uplift.viz.markup import Markup, element, joined, number, pluralise
+from uplift.viz.format import pluralise
+from uplift.viz.markup import Markup, element, joined, number
 
 
 def entries_section(found: Assessment, worst: int) -> Markup:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from uplift.colorimetry.display_sensors import hex_codes
 from uplift.report.assessment import Assessment
 from uplift.report.page_parts import charts, figure, note, right, swatch, table
-from uplift.viz.markup import Markup, element, format_rgb, format_scientific, joined, number, pluralise
+from uplift.viz.format import format_rgb, format_scientific, pluralise
+from uplift.viz.markup import Markup, element, joined, number
 
 
 def failures_section(found: Assessment) -> Markup:

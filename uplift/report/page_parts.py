@@ -8,8 +8,9 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.report.fidelity import EntryErrors
 from uplift.report.json_export import swatches
 from uplift.viz.charts import histogram_chart
+from uplift.viz.format import format_rgb, format_scientific
 from uplift.viz.histogram import Histogram
-from uplift.viz.markup import Markup, element, format_rgb, format_scientific, joined, number, rows
+from uplift.viz.markup import Markup, element, joined, number, rows
 
 SEEN, BAD = 1.0, 3.0
 """ΔE00 that one sees side by side, and that nobody overlooks."""

@@ -6,7 +6,8 @@ from uplift.report.assessment import Assessment
 from uplift.report.fidelity import EntryErrors
 from uplift.report.page_parts import Swatches, severity, swatch
 from uplift.viz.charts import ACCENT, BAND, INK, spectra_chart
-from uplift.viz.markup import Markup, element, format_rgb, joined
+from uplift.viz.format import format_rgb
+from uplift.viz.markup import Markup, element, joined
 
 
 def small_multiples(found: Assessment, entries: EntryErrors, shown: Swatches, worst: int) -> Markup:

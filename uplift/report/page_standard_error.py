@@ -5,8 +5,9 @@ from __future__ import annotations
 from uplift.report.assessment import Assessment
 from uplift.report.calibration import Calibration
 from uplift.report.page_parts import charts, figure, note
+from uplift.viz.format import pluralise
 from uplift.viz.histogram import Histogram
-from uplift.viz.markup import Markup, element, joined, pluralise
+from uplift.viz.markup import Markup, element, joined
 
 VERDICTS = {
     0: "Its standard errors hold.",

@@ -9,8 +9,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from uplift.common.arrays import Array
+from uplift.viz.format import format_power_of_ten
 from uplift.viz.histogram import Histogram
-from uplift.viz.markup import Markup, format_power_of_ten
+from uplift.viz.markup import Markup
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

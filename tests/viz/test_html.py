@@ -1,0 +1,77 @@
+"""Pages from templates: escaping, missing names, shared parts."""
+
+from __future__ import annotations
+
+import jinja2
+import pytest
+
+from uplift.viz.html import Markup, _environment, render, resource
+
+HOSTILE = "</script><b title='\"'>&"
+BASE = "viz/templates/base.html.j2"
+
+
+def rendered(template, **values):
+    source = '{% import "viz/templates/macros.html.j2" as parts %}' + template
+    return _environment().from_string(source).render(**values).strip()
+
+
+def test_page_escapes_its_texts():
+    page = render(BASE, title=HOSTILE, lead=HOSTILE)
+    assert HOSTILE not in page
+    assert page.count("&lt;/script&gt;&lt;b title=&#39;&#34;&#39;&gt;&amp;") == 3
+    assert page.startswith('<!DOCTYPE html>\n<html lang="en">')
+
+
+def test_page_holds_its_style_sheet_unescaped():
+    assert resource("viz/page.css") in render(BASE, title="", lead="")
+
+
+def test_markup_is_not_escaped():
+    assert '<p class="lead"><b>bold</b></p>' in render(BASE, title="", lead=Markup("<b>bold</b>"))
+
+
+def test_missing_value_is_an_error():
+    with pytest.raises(jinja2.UndefinedError, match="'lead' is undefined"):
+        render(BASE, title="")
+
+
+def test_json_cannot_end_its_script():
+    text = rendered("<script>{{ rows | tojson }}</script>", rows=[HOSTILE, "ΔE00"])
+    assert text.count("</script>") == 1
+    assert "ΔE00" in text
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        rendered("{{ rows | tojson }}", rows=[float("nan")])
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        (
+            "{{ parts.swatch(['#000000', '#ffffff']) }}",
+            '<span class="swatch" title="#000000 | #ffffff">'
+            '<i style="background:#000000"></i><i style="background:#ffffff"></i></span>',
+        ),
+        ("{{ parts.number('1.5 µs', 1500) }}", '<td class="number" data-value="1500">1.5 µs</td>'),
+        ("{{ parts.number(text) }}", '<td class="number">&lt;i&gt;</td>'),
+        (
+            "{{ parts.number_heading('rms', sort='descending') }}",
+            '<th class="number" scope="col" aria-sort="descending">rms</th>',
+        ),
+        ("{{ parts.name_cell(text, 'x') }}", '<td class="name">&lt;i&gt;<small>x</small></td>'),
+        ("{% call parts.note() %}{{ text }}{% endcall %}", '<p class="note">&lt;i&gt;</p>'),
+        ("{{ parts.facts([('a', text)]) }}", "<dl><div><dt>a</dt><dd>&lt;i&gt;</dd></div></dl>"),
+        ("{{ 1.23456 | fixed(2) }} {{ 2000 | pluralise('entry', 'entries') }}", "1.23 2,000 entries"),
+    ],
+)
+def test_shared_parts(source, expected):
+    assert rendered(source, text="<i>") == expected
+
+
+def test_simple_table_aligns_numbers():
+    text = rendered("{{ parts.simple_table(['name', 'n'], [['<i>', 1]], numbers=[1]) }}").replace("\n", "")
+    assert text == (
+        '<div class="scroll"><table class="slim"><thead><tr><th scope="col">name</th>'
+        '<th class="number" scope="col">n</th></tr></thead><tbody>'
+        '<tr><td>&lt;i&gt;</td><td class="number">1</td></tr></tbody></table></div>'
+    )

@@ -1,0 +1,79 @@
+"""Self-contained HTML pages from Jinja2 templates.
+
+Templates are named by their path below the package, as ``report/templates/page.html.j2``, and lie beside the code
+that renders them. All values are escaped unless they are `markupsafe.Markup`; a name that a template does not
+receive is an error. The filters are the functions of `uplift.viz.format` under their own names, and ``fixed``.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from uplift.viz import format as formats
+
+__all__ = ["Markup", "render", "resource"]
+
+
+def render(template: str, /, **values: Any) -> str:
+    """Render a template as text that needs no other file.
+
+    Parameters
+    ----------
+    template : str
+        Path of the template below the package ``uplift``.
+    **values
+        What the template refers to.
+
+    Returns
+    -------
+    str
+        The page. Equal values give equal text.
+
+    Examples
+    --------
+    >>> text = render("viz/templates/base.html.j2", title="R & D", lead="A page.")
+    >>> "<h1>R &amp; D</h1>" in text
+    True
+    """
+    return _environment().get_template(template).render(**values)
+
+
+def resource(*paths: str) -> Markup:
+    """Read style sheets or scripts to be inlined in a page.
+
+    Parameters
+    ----------
+    *paths : str
+        Paths below the package ``uplift``.
+
+    Returns
+    -------
+    Markup
+        The texts of the files, one after the other, not to be escaped.
+    """
+    return Markup("".join(files("uplift").joinpath(path).read_text(encoding="utf-8") for path in paths))
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("uplift", ""),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.policies["json.dumps_kwargs"] = {"ensure_ascii": False, "allow_nan": False}
+    environment.globals["resource"] = resource
+    environment.filters |= {name: getattr(formats, name) for name in formats.__all__}
+    environment.filters["fixed"] = _fixed
+    return environment
+
+
+def _fixed(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}"
