@@ -11,7 +11,7 @@ from benchmarks import study_tables as tables
 from benchmarks import warps
 from benchmarks.page import write
 from benchmarks.timing import ROOT
-from uplift.lab.study.moments import Study, study
+from uplift.lab.study.moments import MomentsStudy, study_moments
 from uplift.lab.study.moments_plots import Curve, curves, plot_errors, plot_patches, plot_worst
 from uplift.lab.study.technique import TECHNIQUES, Technique
 
@@ -75,7 +75,7 @@ c_j = (1/2π) ∫ g exp(−ijφ) dφ are complex, 2n + 1 floats. Colours: CIE 19
 def main() -> None:
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     atlases = {path.stem: uplift.read_atlas(path) for path in sorted((ROOT / "atlases").glob("*.txt"))}
-    found, thesis = study(atlases), tables.read_thesis()
+    found, thesis = study_moments(atlases), tables.read_thesis()
     PICTURES.mkdir(exist_ok=True)
     both = {f"our {len(found.names)} entries": curves(found), "Tódová 2020": _curves(thesis)}
     plot_errors(both, PICTURES / "errors.png", force=True)
@@ -92,12 +92,12 @@ def main() -> None:
     print(write("moments", INTRODUCTION, sections))
 
 
-def _warped(atlases: dict[str, uplift.Atlas], found: Study) -> dict[str, Study]:
+def _warped(atlases: dict[str, uplift.Atlas], found: MomentsStudy) -> dict[str, MomentsStudy]:
     """The study up to 9 floats with other warps."""
     studies = {}
     for name, warp in warps.made(found.measured).items():
         with warps.in_place_of_ours(warp):
-            studies[name] = study(atlases, 8)
+            studies[name] = study_moments(atlases, 8)
     return studies
 
 

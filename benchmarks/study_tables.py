@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from benchmarks.page import table
 from benchmarks.timing import ROOT
 from uplift.colorimetry.lights import REPORT_LIGHTS
-from uplift.lab.study.moments import MEASURES, Result, Study
+from uplift.lab.study.moments import MEASURES, MomentsResult, MomentsStudy
 from uplift.lab.study.technique import TECHNIQUES, Technique
 
 THESIS = ROOT / "tests" / "reference" / "moments_todova2020.csv"
@@ -34,7 +34,7 @@ def within(technique: Technique, floats: int) -> int:
     return floats - 1 if technique.mirrored else (floats - 1) // 2
 
 
-def winners(found: Study, thesis: Thesis) -> str:
+def winners(found: MomentsStudy, thesis: Thesis) -> str:
     def ours(technique: Technique, count: int) -> Pair:
         result = found.of(technique, count)
         return float(result.mean[0]), float(result.most[0])
@@ -61,7 +61,7 @@ def _best(source: Callable[[Technique, int], Pair], floats: int, side: int) -> s
     return f"{best.short} {values[best]:.2f}"
 
 
-def by_moments(found: Study, thesis: Thesis) -> str:
+def by_moments(found: MomentsStudy, thesis: Thesis) -> str:
     def row(count: int) -> Iterable[str]:
         yield str(count)
         for technique in TECHNIQUES:
@@ -78,7 +78,7 @@ def by_moments(found: Study, thesis: Thesis) -> str:
     )
 
 
-def by_warp(found: Mapping[str, Study], thesis: Thesis) -> str:
+def by_warp(found: Mapping[str, MomentsStudy], thesis: Thesis) -> str:
     """Studies that differ in what the warp is, by its name."""
     counts, technique = range(1, 9), TECHNIQUES[0]
     rows = []
@@ -96,7 +96,7 @@ def by_warp(found: Mapping[str, Study], thesis: Thesis) -> str:
     )
 
 
-def lights(found: Study) -> str:
+def lights(found: MomentsStudy) -> str:
     rows = []
     for floats in STORED:
         for technique in TECHNIQUES:
@@ -112,7 +112,7 @@ def lights(found: Study) -> str:
     )
 
 
-def by_atlas(found: Study) -> str:
+def by_atlas(found: MomentsStudy) -> str:
     rows = []
     for group in found.groups:
         cells = [group, str(len(found.rows(group)))]
@@ -124,8 +124,8 @@ def by_atlas(found: Study) -> str:
     return table("Every atlas, 9 floats", "Mean / largest ΔE76 under D65.", head, rows)
 
 
-def worst(found: Study) -> str:
-    def cell(result: Result) -> str:
+def worst(found: MomentsStudy) -> str:
+    def cell(result: MomentsResult) -> str:
         return f"{found.names[result.worst]} ({found.atlases[result.worst]}) {result.most[0]:.2f}"
 
     rows = []

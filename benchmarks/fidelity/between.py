@@ -14,7 +14,7 @@ from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array
 from uplift.fit.kriging import LENGTH, krige
 from uplift.fit.smooth import smooth
-from uplift.lab.study.held_out import judge
+from uplift.lab.study.held_out import spectrum_errors
 from uplift.models import Moments
 
 SPLITS = 3
@@ -33,11 +33,13 @@ def _lengths() -> str:
         some, model = materials(name), Moments(count)
         own = entries(model, some).multipliers
         plain = smooth(model, ahead(model))(some.rgb)
-        without = judge(solved(model, plain, some.rgb), some.measured).means()
+        without = spectrum_errors(solved(model, plain, some.rgb), some.measured).means()
         cells = [name, str(count)]
         for length in LENGTHS:
             _, left_out = krige(rgb_to_lab(SENSOR, some.rgb), own - plain, length)
-            ratio = judge(solved(model, plain + left_out, some.rgb), some.measured).means() / without
+            ratio = (
+                spectrum_errors(solved(model, plain + left_out, some.rgb), some.measured).means() / without
+            )
             cells.append(f"{ratio[1:].mean():.3f} / {ratio[1:].max():.2f}")
         rows.append(cells)
     return table(
@@ -86,7 +88,7 @@ def _score(some: Materials, model: Moments, predict: Predict, seed: int) -> Arra
 
 
 def _ratio(answered: Array, without: Array, measured: Array) -> Array:
-    return judge(answered, measured).means() / judge(without, measured).means()
+    return spectrum_errors(answered, measured).means() / spectrum_errors(without, measured).means()
 
 
 def _chosen(known: Array, values: Array, asked: Array, roughness: Array) -> tuple[Array, None]:

@@ -27,7 +27,7 @@ from uplift import fit
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.arrays import Array
-from uplift.lab.study.held_out import Split, halves, judge
+from uplift.lab.study.held_out import HoldoutSplit, holdout, spectrum_errors
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.models import Moments
@@ -41,7 +41,7 @@ SPLITS = 3
 
 def sections() -> list[str]:
     found = {
-        (name, count): halves(spectra(name), SPLITS, dim=DIM, coefficients=count)
+        (name, count): holdout(spectra(name), SPLITS, dim=DIM, coefficients=count)
         for name in large()
         for count in COUNTS
     }
@@ -73,7 +73,7 @@ def _own() -> str:
     )
 
 
-def _halves(found: dict[tuple[str, int], tuple[Split, ...]]) -> str:
+def _halves(found: dict[tuple[str, int], tuple[HoldoutSplit, ...]]) -> str:
     rows = []
     for (name, count), splits in found.items():
         for method in splits[0].errors:
@@ -99,10 +99,10 @@ def _halves(found: dict[tuple[str, int], tuple[Split, ...]]) -> str:
 def _limit(name: str, predict: Callable[[Materials, Materials], Array], seed: int) -> Array:
     some = materials(name)
     kept, asked = np.array_split(np.random.default_rng(seed).permutation(len(some.rgb)), 2)
-    return judge(predict(some.take(kept), some.take(asked)), some.measured[asked]).means()
+    return spectrum_errors(predict(some.take(kept), some.take(asked)), some.measured[asked]).means()
 
 
-def _targets(found: dict[tuple[str, int], tuple[Split, ...]]) -> str:
+def _targets(found: dict[tuple[str, int], tuple[HoldoutSplit, ...]]) -> str:
     rows = []
     for (name, count), splits in found.items():
         ours, sigmoid, plain = (
@@ -129,7 +129,7 @@ def _targets(found: dict[tuple[str, int], tuple[Split, ...]]) -> str:
     )
 
 
-def _stated(found: dict[tuple[str, int], tuple[Split, ...]]) -> str:
+def _stated(found: dict[tuple[str, int], tuple[HoldoutSplit, ...]]) -> str:
     rows = []
     strangers = {(f"macbeth, asked for {name}", 9): (_across("macbeth", name),) for name in large()}
     for (name, count), splits in (found | strangers).items():
@@ -153,12 +153,12 @@ def _stated(found: dict[tuple[str, int], tuple[Split, ...]]) -> str:
     )
 
 
-def _across(known: str, asked: str) -> Split:
+def _across(known: str, asked: str) -> HoldoutSplit:
     """A cube of one atlas asked for another."""
     cube, some = build(known), materials(asked)
     answered = cube.reflectance(some.rgb)
     light = observer.light(cube.data.reference)
-    return Split({}, delta_e_spectra(light, answered, some.measured), cube.standard_error(some.rgb))
+    return HoldoutSplit({}, delta_e_spectra(light, answered, some.measured), cube.standard_error(some.rgb))
 
 
 def _root(errors: Array) -> float:

@@ -16,7 +16,7 @@ from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array
-from uplift.lab.study.held_out import judge
+from uplift.lab.study.held_out import spectrum_errors
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_map
 
@@ -82,7 +82,7 @@ def spectra_of(model: Model, multipliers: Array) -> Array:
 
 def row(name: str, answered: Array, some: Materials, digits: int = 3) -> list[str]:
     """Name, mean rms and mean ΔE00 under each light, as cells."""
-    rms, *delta_e = judge(answered, some.measured).means()
+    rms, *delta_e = spectrum_errors(answered, some.measured).means()
     return [name, f"{rms:.4f}", *(f"{value:.{digits}f}" for value in delta_e)]
 
 

@@ -16,7 +16,7 @@ from benchmarks.fidelity.materials import (
 )
 from benchmarks.page import table
 from uplift.fit import Weights
-from uplift.lab.study.held_out import judge
+from uplift.lab.study.held_out import spectrum_errors
 from uplift.models import Moments
 from uplift.pipeline.options import Options
 
@@ -68,7 +68,7 @@ def _validation() -> str:
 
 def _scores(model: Moments, some: Materials, lights: tuple[str, ...], weights: Weights) -> list[float]:
     answered = spectra_of(model, entries(model, some, lights, weights).multipliers)
-    unseen = judge(answered, some.measured, UNSEEN).delta_e.mean()
+    unseen = spectrum_errors(answered, some.measured, UNSEEN).delta_e.mean()
     off = answered - some.measured
     return [float(unseen), float(np.sqrt((off**2).mean())), float(np.sqrt((off[:, ENDS] ** 2).mean()))]
 

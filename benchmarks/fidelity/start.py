@@ -9,7 +9,7 @@ from benchmarks.page import table
 from uplift.common.arrays import Array
 from uplift.fit.smooth import BRIGHTENING, GREY, smooth
 from uplift.fit.solve import solve
-from uplift.lab.study.held_out import judge
+from uplift.lab.study.held_out import spectrum_errors
 from uplift.models import Model, Moments, Phase, Sigmoid
 from uplift.models.minimum_norm import forward_map
 
@@ -84,7 +84,7 @@ def _variants() -> dict:
 
 
 def _means(answered: Array, name: str) -> Array:
-    return judge(answered, materials(name).measured).means()
+    return spectrum_errors(answered, materials(name).measured).means()
 
 
 def _models(name: str) -> str:

@@ -34,14 +34,14 @@ def _publish() -> None:
     from uplift.lab.comparison.measure import Comparison, compare
     from uplift.lab.comparison.pictures import DRAWN, write_picture
     from uplift.lab.comparison.scene import scene
-    from uplift.scene.representations.registry import representations
+    from uplift.scene.representations.registry import all_representations
 
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     atlases = {path.stem: uplift.read_atlas(path) for path in sorted((ROOT / "atlases").glob("*.txt"))}
     asked, others = scene(atlases), scene(atlases, OTHERS)
 
     def compared(part: Scene, label: str) -> Comparison:
-        made = representations(part.powers, part.surfaces)
+        made = all_representations(part.powers, part.surfaces)
         with click.progressbar(length=len(made), label=label, file=sys.stderr) as bar:
             return compare(part, made, progress=lambda done, total: bar.update(1))
 

@@ -13,10 +13,10 @@ from uplift.lab.comparison.measure import judge
 from uplift.lab.comparison.scene import Scene
 from uplift.lab.comparison.statistics import Statistics
 from uplift.scene.representations import composite
-from uplift.scene.representations.composite import ENHANCED, Composite
-from uplift.scene.representations.dense import TABLE, observed, wavelengths
-from uplift.scene.representations.riemann import riemann
-from uplift.scene.representations.samples import Samples
+from uplift.scene.representations.composite import ENHANCED_THRESHOLD, Composite
+from uplift.scene.representations.dense import TABLE_STRIDE, wavelengths, xyz_weights
+from uplift.scene.representations.riemann_sums import riemann_sums
+from uplift.scene.representations.samples import SampleRepresentation
 
 COUNTS = (8, 16, 32)
 
@@ -37,8 +37,8 @@ class Closed:
 
 def both(scene: Scene) -> list[Closed]:
     """Plain and enhanced sums by both readings, under every set of lights."""
-    pairs: list[tuple[Any, Any]] = [(riemann(count), closed(count)) for count in COUNTS]
-    pairs += [(composite.enhanced(count), enhanced(count)) for count in COUNTS]
+    pairs: list[tuple[Any, Any]] = [(riemann_sums(count), closed(count)) for count in COUNTS]
+    pairs += [(composite.enhanced_riemann(count), enhanced(count)) for count in COUNTS]
     return [
         Closed(part.name, one.name, judge(one, scene, part), judge(other, scene, part))
         for part in scene.sets
@@ -46,20 +46,20 @@ def both(scene: Scene) -> list[Closed]:
     ]
 
 
-def closed(count: int) -> Samples:
+def closed(count: int) -> SampleRepresentation:
     """Means over closed cells; XYZ by the colour-matching functions at 5 nm, each sample shared by its cells."""
     inside = _cells(count)
     encoder = np.zeros((len(wavelengths()), count))
-    encoder[::TABLE] = (inside / inside.sum(axis=1, keepdims=True)).T
-    weights = (inside / inside.sum(axis=0)) @ (observed()[::TABLE] * TABLE)
-    return Samples(f"RS{count}", "Riemann sums, closed cells", encoder, weights)
+    encoder[::TABLE_STRIDE] = (inside / inside.sum(axis=1, keepdims=True)).T
+    weights = (inside / inside.sum(axis=0)) @ (xyz_weights()[::TABLE_STRIDE] * TABLE_STRIDE)
+    return SampleRepresentation(f"RS{count}", "Riemann sums, closed cells", encoder, weights)
 
 
 def enhanced(count: int) -> Composite:
     """The enhanced sums over the same cells; a spike on a border meets the mean of both."""
     inside = _cells(count)
     family = "enhanced Riemann sums, closed cells"
-    return Composite(f"RE{count}", family, closed(count), inside / inside.sum(axis=0), ENHANCED)
+    return Composite(f"RE{count}", family, closed(count), inside / inside.sum(axis=0), ENHANCED_THRESHOLD)
 
 
 def _cells(count: int) -> Array:

@@ -13,10 +13,10 @@ from benchmarks.timing import ROOT
 from uplift.lab.study import sensitivity
 from uplift.lab.study.records import write_csv
 from uplift.lab.study.sensitivity_plots import plot_locality, plot_steepness
-from uplift.lab.study.stability import NO_ATLAS, study
-from uplift.lab.study.stability_design import Axes, design, grids
+from uplift.lab.study.stability import NO_ATLAS, study_stability
+from uplift.lab.study.stability_design import DesignSpace, design, grids
 from uplift.lab.study.stability_plots import plot_map
-from uplift.lab.study.synthetic_atlases import MADE
+from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES
 from uplift.lab.timing import environment
 from uplift.pipeline.provenance import recorded_atlas
 
@@ -38,8 +38,10 @@ def main() -> None:
 
 def _map() -> None:
     macbeth = {"macbeth": uplift.read_atlas(ROOT / "atlases" / "macbeth.txt")}
-    axes = Axes(atlases=(NO_ATLAS, "macbeth", *MADE))
-    found = study(design(axes), macbeth | {name: make() for name, make in MADE.items()}, _say)
+    axes = DesignSpace(atlases=(NO_ATLAS, "macbeth", *SYNTHETIC_ATLASES))
+    found = study_stability(
+        design(axes), macbeth | {name: make() for name, make in SYNTHETIC_ATLASES.items()}, _say
+    )
     write_csv([one.record() for one in found], MAP, force=True)
     plot_map(grids(axes), {one.setting: one for one in found}, FOLDER / "map.png", force=True)
 
@@ -50,12 +52,12 @@ def _sensitivity() -> None:
         path = ROOT / "cubes" / f"{name}.uplift"
         cube = uplift.load(path)
         atlas = recorded_atlas(cube.data, path) if name == CONSTRAINED else None
-        found = sensitivity.study(cube, atlas, 24)
+        found = sensitivity.study_sensitivity(cube, atlas, 24)
         figures["cubes"][name] = found.record()
         if name in (PLAIN, CONSTRAINED):
-            plot_steepness(cube.data, found.steepness, FOLDER / f"steepness-{name}.png", force=True)
-        if found.left_out:
-            plot_locality(found.left_out, FOLDER / "locality.png", force=True)
+            plot_steepness(cube.data, found.lipschitz, FOLDER / f"steepness-{name}.png", force=True)
+        if found.removed:
+            plot_locality(found.removed, FOLDER / "locality.png", force=True)
     FIGURES.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
 
 

@@ -7,19 +7,19 @@ from typing import Any
 
 from benchmarks.page import table
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
-from uplift.lab.study.locality import MOVED, NOISE
+from uplift.lab.study.locality import MOVED_DELTA_E, NOISE
 from uplift.lab.study.pointwise import EVALUATIONS, IN_MOMENTS, IN_MULTIPLIERS
-from uplift.lab.study.stability import NO_ATLAS, OURS
+from uplift.lab.study.stability import NO_ATLAS, UPLIFT
 from uplift.lab.study.stability_design import COMPARED, SPACES
 
 Row = Mapping[str, Any]
 DIM, THRESHOLD = 17, 1e-4
-SAID = {IN_MOMENTS: "scipy, in c, as the thesis", IN_MULTIPLIERS: "scipy, in p", OURS: "ours"}
+SAID = {IN_MOMENTS: "scipy, in c, as the thesis", IN_MULTIPLIERS: "scipy, in p", UPLIFT: "ours"}
 
 
 def summary(rows: Sequence[Row], cubes: Mapping[str, Any], constrained: str) -> str:
     """Inputs tried, failures found, what happens now."""
-    ours = [row for row in rows if row["solver"] == OURS]
+    ours = [row for row in rows if row["solver"] == UPLIFT]
     five = five_spaces_of(ours)
     loose = [row for row in ours if row["threshold"] >= THRESHOLD]
     strict = [row for row in ours if row["threshold"] < THRESHOLD]
@@ -80,8 +80,8 @@ def _sensitive(cubes: Mapping[str, Any], constrained: str) -> list[list[str]]:
             "one entry left out or wrong",
             f"{len(alone)} builds",
             "none",
-            f"at most {max(one['moved'] for one in alone):.2%} of the lattice points move by ΔE00 {MOVED:g}, none of "
-            f"them farther than ΔE\\*ab {far:.0f} from the entry",
+            f"at most {max(one['moved'] for one in alone):.2%} of the lattice points move by ΔE00 {MOVED_DELTA_E:g}, "
+            f"none of them farther than ΔE\\*ab {far:.0f} from the entry",
         ],
     ]
 
@@ -91,7 +91,7 @@ def five_spaces_of(rows: Iterable[Row]) -> list[Row]:
     return [
         row
         for row in rows
-        if (row["dim"], row["threshold"], row["atlas"], row["solver"]) == (DIM, THRESHOLD, NO_ATLAS, OURS)
+        if (row["dim"], row["threshold"], row["atlas"], row["solver"]) == (DIM, THRESHOLD, NO_ATLAS, UPLIFT)
     ]
 
 
@@ -113,7 +113,7 @@ def five_spaces(rows: Sequence[Row]) -> str:
 
 
 def peers(rows: Sequence[Row]) -> str:
-    dims = {row["dim"] for row in rows if row["solver"] != OURS}
+    dims = {row["dim"] for row in rows if row["solver"] != UPLIFT}
     chosen = [row for row in rows if row["dim"] in dims and row["coefficients"] in COMPARED]
     lines = []
     for dim in sorted(dims):
@@ -151,7 +151,7 @@ def _peer(row: Row) -> list[str]:
 def failures(rows: Sequence[Row]) -> str:
     """Every build of ours that left a point."""
     failed = sorted(
-        (row for row in rows if (row["unfitted"] or row["stand_ins"]) and row["solver"] == OURS),
+        (row for row in rows if (row["unfitted"] or row["stand_ins"]) and row["solver"] == UPLIFT),
         key=lambda row: (-row["threshold"], row["space"], row["dim"], row["coefficients"]),
     )
     lines = [
@@ -170,8 +170,8 @@ def failures(rows: Sequence[Row]) -> str:
     ]
     return table(
         "Builds that left points or stand-ins unfitted",
-        f"All {len(failed)} of {sum(row['solver'] == OURS for row in rows)}. *stand-ins* are unrealisable points whose "
-        "nearest realisable colour, half the threshold within the boundary, was missed as well.",
+        f"All {len(failed)} of {sum(row['solver'] == UPLIFT for row in rows)}. *stand-ins* are unrealisable "
+        "points whose nearest realisable colour, half the threshold within the boundary, was missed as well.",
         ["space", "threshold", "model", "dim", "atlas", "unfitted", "worst", "at (RGB)", "stand-ins"],
         lines or [["none", *[""] * 8]],
     )
@@ -259,9 +259,9 @@ def changes(record: Mapping[str, Any], name: str) -> str:
         )
     return table(
         "An atlas a little different",
-        f"{name} built anew, lattice points before and after: the share that moves by more than ΔE00 {MOVED:g} under "
-        f"{NARROW_BAND_LIGHT}, mean and most over the builds; how far from the entry the farthest of them lies; the largest move; "
-        "the largest mean rms change.",
+        f"{name} built anew, lattice points before and after: the share that moves by more than "
+        f"ΔE00 {MOVED_DELTA_E:g} under {NARROW_BAND_LIGHT}, mean and most over the builds; how far from the entry the farthest of them lies; "
+        "the largest move; the largest mean rms change.",
         [
             "change",
             "builds",

@@ -15,9 +15,9 @@ from benchmarks.wavelengths.methods import SMOOTH, SPIKY, Comparison, compare, s
 from benchmarks.wavelengths.words import INTRODUCTION
 from uplift.atlas import on_grid
 from uplift.common.arrays import Array
-from uplift.scene.wavelengths import grid, set_up
-from uplift.scene.wavelengths.experiments import trials
-from uplift.scene.wavelengths.opponent import cones, opponent, plain
+from uplift.scene.wavelengths import grid, make_setup
+from uplift.scene.wavelengths.experiments import run_trials
+from uplift.scene.wavelengths.opponent import cone_space, opponent_space, xyz_space
 
 MIXED = ("D65", "FL11")
 """Lights of several bounces."""
@@ -27,11 +27,11 @@ PICTURES = ROOT / "docs" / "wavelengths"
 def main() -> None:
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     atlases = sorted((ROOT / "atlases").glob("*.txt"))
-    checker = set_up(on_grid(uplift.read_atlas(ROOT / "atlases" / "macbeth.txt"), grid()), ["C"])
-    found = opponent(checker.wavelengths, checker.cmfs)
+    checker = make_setup(on_grid(uplift.read_atlas(ROOT / "atlases" / "macbeth.txt"), grid()), ["C"])
+    found = opponent_space(checker.wavelengths, checker.cmfs)
     PICTURES.mkdir(exist_ok=True)
-    spaces = (found.space, cones(checker.wavelengths, checker.cmfs), plain())
-    tried = [trials(checker, space) for space in spaces]
+    spaces = (found.space, cone_space(checker.wavelengths, checker.cmfs), xyz_space())
+    tried = [run_trials(checker, space) for space in spaces]
     figures.figure_6(tried, PICTURES / "figure-6.png")
     figures.figure_7(tried[0], PICTURES / "figure-7.png")
     materials = on_grid(uplift.read_atlas(*atlases), grid())

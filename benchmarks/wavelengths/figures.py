@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.wavelengths.methods import COUNTS, Comparison
 from uplift.scene.wavelengths import METHODS
-from uplift.scene.wavelengths.experiments import Trials, triangle
+from uplift.scene.wavelengths.experiments import Trials, bin_shares
 from uplift.viz.charts import GREY, INK, STYLE
 from uplift.viz.figure import new_figure, style_axes, write_png
 
@@ -44,7 +44,7 @@ def figure_7(trials: Trials, path: Path) -> None:
     import matplotlib
     from matplotlib.collections import PolyCollection
 
-    parts = triangle(trials)
+    parts = bin_shares(trials)
     with matplotlib.rc_context(STYLE):
         figure = new_figure(6.0, 4.6)
         axes = figure.subplots()

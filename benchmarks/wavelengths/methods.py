@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.page import table
 from uplift.common.arrays import Array
-from uplift.scene.wavelengths import METHODS, Errors, Setting, choose, judge, set_up
+from uplift.scene.wavelengths import METHODS, ColourErrors, RenderSetup, choose, evaluate, make_setup
 
 OURS, EVEN = "optimised", "fitted"
 """Ours in full, and with wavelengths that are even."""
@@ -17,7 +17,7 @@ OTHERS = ("meyer", "uniform", "bins")
 COUNTS = range(4, 17)
 SMOOTH, SPIKY = ("A", "B", "C", "D65"), ("FL2", "FL7", "FL11")
 
-Found = Mapping[tuple[str, int], Errors]
+Found = Mapping[tuple[str, int], ColourErrors]
 """By method and number of wavelengths."""
 
 
@@ -32,7 +32,7 @@ class Comparison:
 
 def compare(materials: Array, lights: tuple[str, ...]) -> Comparison:
     """All methods at every count, under some lights at once."""
-    whole = set_up(materials, lights)
+    whole = make_setup(materials, lights)
     odd = np.arange(len(materials)) % 2 == 1
     seen, unseen = {}, {}
     for count in COUNTS:
@@ -42,10 +42,10 @@ def compare(materials: Array, lights: tuple[str, ...]) -> Comparison:
     return Comparison(lights, seen, unseen)
 
 
-def _unseen(whole: Setting, odd: Array, method: str, count: int) -> Errors:
+def _unseen(whole: RenderSetup, odd: Array, method: str, count: int) -> ColourErrors:
     """Those that know no materials see only what is asked, which flatters Meyer's allocation."""
     asked = whole.only(odd)
-    return judge(asked, METHODS[method](asked if method in OTHERS else whole.only(~odd), count))
+    return evaluate(asked, METHODS[method](asked if method in OTHERS else whole.only(~odd), count))
 
 
 def factors(found: Found) -> Array:
@@ -100,5 +100,5 @@ def _fewest(found: Found, method: str) -> str:
     return next((str(count) for count in COUNTS if found[method, count].mean <= 1), "–")
 
 
-def _cell(errors: Errors) -> str:
+def _cell(errors: ColourErrors) -> str:
     return f"{errors.mean:.3f} / {errors.p95:.2f} / {errors.max:.2f}"

@@ -7,18 +7,24 @@ import numpy as np
 from benchmarks.page import table
 from benchmarks.wavelengths import printed
 from uplift.common.arrays import Array
-from uplift.scene.quadrature import Rule, Undefined, gauss
-from uplift.scene.wavelengths import Setting
-from uplift.scene.wavelengths.experiments import error
-from uplift.scene.wavelengths.meyer import POINTS, Rules, four, functions, rules
-from uplift.scene.wavelengths.opponent import Opponent, Space, cones
+from uplift.scene.quadrature import QuadratureRule, UndefinedRule, gauss_rule
+from uplift.scene.wavelengths import RenderSetup
+from uplift.scene.wavelengths.experiments import allocation_error
+from uplift.scene.wavelengths.meyer import (
+    POINTS,
+    ChannelRules,
+    channel_functions,
+    four_wavelength_rule,
+    quadrature_rules,
+)
+from uplift.scene.wavelengths.opponent import ChannelSpace, OpponentSpace, cone_space
 
 STEPS = {"100 steps of 3.9 nm": POINTS, "1 nm": np.arange(380.0, 771.0), "5 nm": np.arange(380.0, 771.0, 5)}
 """Ways to sum the functions from 380 to 770 nm."""
 
 
-def matrices(setting: Setting, opponent: Opponent) -> str:
-    spaces = {"SML": cones(setting.wavelengths, setting.cmfs), "AC1C2": opponent.space}
+def matrices(setting: RenderSetup, opponent: OpponentSpace) -> str:
+    spaces = {"SML": cone_space(setting.wavelengths, setting.cmfs), "AC1C2": opponent.space}
     lines = []
     for row in printed.rows("matrices"):
         space = spaces[row["space"]]
@@ -45,14 +51,14 @@ def matrices(setting: Setting, opponent: Opponent) -> str:
     )
 
 
-def quadrature(setting: Setting, space: Space) -> str:
+def quadrature(setting: RenderSetup, space: ChannelSpace) -> str:
     """Tables 1a and 1b: wavelengths, then weights."""
-    ours, stated = rules(space, setting.wavelengths, setting.cmfs), printed.tables_1()
+    ours, stated = quadrature_rules(space, setting.wavelengths, setting.cmfs), printed.tables_1()
     factor = _factor(ours, stated)
     nodes, weights = [], []
     for channel, orders in zip(printed.CHANNELS, ours, strict=True):
         for order, rule in orders.items():
-            if isinstance(rule, Undefined):
+            if isinstance(rule, UndefinedRule):
                 told = "undefined" if (channel, order) not in stated else "defined"
                 nodes.append([channel, str(order), told, f"undefined: {rule.reason}", ""])
                 continue
@@ -71,15 +77,15 @@ def quadrature(setting: Setting, space: Space) -> str:
     )
 
 
-def _sums(setting: Setting, space: Space) -> str:
+def _sums(setting: RenderSetup, space: ChannelSpace) -> str:
     """How the sums that integrals are taken by decide the outer wavelengths."""
     told = []
     for name, points in STEPS.items():
         cmfs = np.stack([np.interp(points, setting.wavelengths, cmf) for cmf in setting.cmfs.T])
         differences = []
         for (channel, order), (nodes, _) in printed.tables_1().items():
-            rule = gauss(points, (space.matrix @ cmfs)[space.channels.index(channel)], order)
-            if isinstance(rule, Rule):
+            rule = gauss_rule(points, (space.matrix @ cmfs)[space.channels.index(channel)], order)
+            if isinstance(rule, QuadratureRule):
                 differences.append(np.abs(rule.nodes - nodes).max())
         told.append(f"by {name} {max(differences):.2f} nm")
     return (
@@ -89,11 +95,11 @@ def _sums(setting: Setting, space: Space) -> str:
     )
 
 
-def four_wavelengths(setting: Setting, space: Space) -> str:
+def four_wavelengths(setting: RenderSetup, space: ChannelSpace) -> str:
     """Table 2."""
-    ours = rules(space, setting.wavelengths, setting.cmfs)
+    ours = quadrature_rules(space, setting.wavelengths, setting.cmfs)
     plain = tuple(orders[order] for orders, order in zip(ours, (3, 2, 1), strict=True))
-    shared = four(ours, functions(space, setting.wavelengths, setting.cmfs))
+    shared = four_wavelength_rule(ours, channel_functions(space, setting.wavelengths, setting.cmfs))
     factor = _factor(ours, printed.tables_1())
     lines = []
     for row, way in (("1", plain), ("2", shared)):
@@ -107,7 +113,7 @@ def four_wavelengths(setting: Setting, space: Space) -> str:
                     f"{_numbers(nodes, 1)}: {_numbers(weights, 5)}",
                     f"{_numbers(rule.nodes, 1)}: {_numbers(factor * rule.weights, 5)}",
                     f"{stated_error:.3f}" if first else "",
-                    f"{error(setting, space, way):.3f}" if first else "",
+                    f"{allocation_error(setting, space, way):.3f}" if first else "",
                 ]
             )
     return table(
@@ -119,13 +125,13 @@ def four_wavelengths(setting: Setting, space: Space) -> str:
     )
 
 
-def _factor(ours: Rules, stated: dict[tuple[str, int], printed.Nodes]) -> float:
+def _factor(ours: ChannelRules, stated: dict[tuple[str, int], printed.Nodes]) -> float:
     """What our weights must be multiplied by to be the printed ones, best over all."""
     pairs = [
         (rule.weights, stated[channel, order][1])
         for channel, orders in zip(printed.CHANNELS, ours, strict=True)
         for order, rule in orders.items()
-        if isinstance(rule, Rule)
+        if isinstance(rule, QuadratureRule)
     ]
     found, as_printed = (np.concatenate(part) for part in zip(*pairs, strict=True))
     return float(found @ as_printed / (found @ found))

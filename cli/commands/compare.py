@@ -105,22 +105,22 @@ def _measure(
 ) -> tuple[Comparison, tuple[Tuned, ...]]:
     from uplift.lab.comparison.measure import QUICK, Effort, compare
     from uplift.lab.comparison.scene import scene
-    from uplift.scene.representations.registry import representations
+    from uplift.scene.representations.registry import all_representations
 
     asked = scene(read_each(files), lights)
     asked = asked.thinned() if quick else asked
     with progress_bar("representations") as progress:
         effort = QUICK if quick else Effort()
-        found = compare(asked, representations(asked.powers, asked.surfaces), effort, progress)
+        found = compare(asked, all_representations(asked.powers, asked.surfaces), effort, progress)
     return found, _tune(asked, quick=quick) if filters else ()
 
 
 def _tune(asked: Scene, *, quick: bool) -> tuple[Tuned, ...]:
     from uplift.lab.comparison.filters import tune
-    from uplift.scene.representations.filters import COARSE, FINE
+    from uplift.scene.representations.filters import COARSE_STRIDE, FINE_STRIDE
 
     with progress_bar("filters") as progress:
-        return tune(asked, COARSE if quick else FINE, progress=progress)
+        return tune(asked, COARSE_STRIDE if quick else FINE_STRIDE, progress=progress)
 
 
 def _write(found: Comparison, tuned: tuple[Tuned, ...], folder: Path, *, force: bool) -> None:

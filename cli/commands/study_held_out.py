@@ -15,9 +15,9 @@ from ..params.options import format_option
 from ..params.study_atlases import SHIPPED, read_each
 
 if TYPE_CHECKING:
-    from uplift.lab.study.held_out import Split
+    from uplift.lab.study.held_out import HoldoutSplit
 
-Found = dict[str, "tuple[Split, ...]"]
+Found = dict[str, "tuple[HoldoutSplit, ...]"]
 
 
 @click.command("held-out")
@@ -43,13 +43,13 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, moments: int, style:
     from ..startup import keep_compiled
 
     keep_compiled()
-    from uplift.lab.study.held_out import halves
+    from uplift.lab.study.held_out import holdout
 
     atlases = read_each(files)
     found: Found = {}
     for name, spectra in atlases.items():
         with progress_bar(name) as progress:
-            found[name] = halves(spectra, splits, progress, dim=dim, coefficients=moments + 1)
+            found[name] = holdout(spectra, splits, progress, dim=dim, coefficients=moments + 1)
     PRINTERS[style](found)
 
 
@@ -59,7 +59,7 @@ def _records(found: Found) -> list[dict[str, Any]]:
     import numpy as np
 
     from uplift.colorimetry.lights import HELD_OUT_LIGHTS
-    from uplift.lab.study.held_out import stated_errors
+    from uplift.lab.study.held_out import pooled_calibration
 
     records: list[dict[str, Any]] = []
     for name, splits in found.items():
@@ -67,7 +67,7 @@ def _records(found: Found) -> list[dict[str, Any]]:
             rms, *delta_e = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
             record = {"atlas": name, "cube": method, "colours": len(splits[0].real), "rms": rms}
             records.append(record | dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True)))
-        said = stated_errors(splits)
+        said = pooled_calibration(splits)
         records[-len(splits[0].errors)]["standard_error"] = said and asdict(said)
     return records
 

@@ -14,7 +14,7 @@ from ..params.options import force_option, format_option
 from ..params.study_atlases import SHIPPED, read_each
 
 if TYPE_CHECKING:
-    from uplift.lab.study.moments import Study
+    from uplift.lab.study.moments import MomentsStudy
 
 FILES = ("moments.csv", "moments.png", "moments-patches.png", "moments-worst.png")
 
@@ -45,19 +45,19 @@ def moments(files: tuple[str, ...], most: int, output: str | None, style: str, f
       uplift study moments --most 8 --format json
     """
     from uplift.common.files import check_folder
-    from uplift.lab.study.moments import study
+    from uplift.lab.study.moments import study_moments
 
     atlases = read_each(files)
     if output is not None:
         check_folder(output, FILES, force=force)
     with progress_bar("reconstructions") as progress:
-        found = study(atlases, most, progress)
+        found = study_moments(atlases, most, progress)
     if output is not None:
         _write(found, Path(output), force=force)
     PRINTERS[style](found)
 
 
-def _write(found: Study, folder: Path, *, force: bool) -> None:
+def _write(found: MomentsStudy, folder: Path, *, force: bool) -> None:
     from uplift.lab.study.moments_plots import curves, plot_errors, plot_patches, plot_worst
     from uplift.lab.study.moments_table import records
     from uplift.lab.study.records import write_csv
@@ -70,20 +70,20 @@ def _write(found: Study, folder: Path, *, force: bool) -> None:
     click.echo(f"{folder}: {', '.join(FILES)}", err=True)
 
 
-def _print_json(found: Study) -> None:
+def _print_json(found: MomentsStudy) -> None:
     from uplift.lab.study.moments_table import records
 
     click.echo(json_text(records(found)))
 
 
-def _print_csv(found: Study) -> None:
+def _print_csv(found: MomentsStudy) -> None:
     from uplift.lab.study.moments_table import records
     from uplift.lab.study.records import csv_text
 
     click.echo(csv_text(records(found)), nl=False)
 
 
-def _print_table(found: Study) -> None:
+def _print_table(found: MomentsStudy) -> None:
     from rich import box
     from rich.table import Table
 
@@ -103,7 +103,7 @@ def _print_table(found: Study) -> None:
     console().print(table)
 
 
-PRINTERS: dict[str, Callable[[Study], None]] = {
+PRINTERS: dict[str, Callable[[MomentsStudy], None]] = {
     "table": _print_table,
     "json": _print_json,
     "csv": _print_csv,

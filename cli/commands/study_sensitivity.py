@@ -50,7 +50,7 @@ def sensitivity(
 
     keep_compiled()
     from uplift.common.files import check_folder
-    from uplift.lab.study.sensitivity import study
+    from uplift.lab.study.sensitivity import study_sensitivity
     from uplift.lookup import load
     from uplift.pipeline.provenance import recorded_atlas
 
@@ -59,7 +59,7 @@ def sensitivity(
     if output is not None:
         check_folder(output, FILES if atlas else FILES[:2], force=force)
     with progress_bar("builds") as progress:
-        found = study(loaded, atlas, entries, progress)
+        found = study_sensitivity(loaded, atlas, entries, progress)
     if output is not None:
         _write(found, Path(output), force=force)
     PRINTERS[style](found)
@@ -71,9 +71,9 @@ def _write(found: Sensitivity, folder: Path, *, force: bool) -> None:
 
     written = [RESULTS, STEEPNESS]
     write_text(json_text(found.record()) + "\n", folder / RESULTS, force=force)
-    plot_steepness(found.cube.data, found.steepness, folder / STEEPNESS, force=force)
-    if found.left_out:
-        plot_locality(found.left_out, folder / LOCALITY, force=force)
+    plot_steepness(found.cube.data, found.lipschitz, folder / STEEPNESS, force=force)
+    if found.removed:
+        plot_locality(found.removed, folder / LOCALITY, force=force)
         written.append(LOCALITY)
     click.echo(f"{folder}: {', '.join(written)}", err=True)
 

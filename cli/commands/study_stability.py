@@ -14,8 +14,8 @@ from ..output.progress import progress_bar
 from ..params.options import force_option, format_option
 
 if TYPE_CHECKING:
-    from uplift.lab.study.stability import Outcome
-    from uplift.lab.study.stability_design import Axes
+    from uplift.lab.study.stability import RunResult
+    from uplift.lab.study.stability_design import DesignSpace
 
 FILES = ("stability.csv", "stability.json", "stability.png")
 MACBETH = "atlases/macbeth.txt"
@@ -77,27 +77,29 @@ def stability(
     keep_compiled()
     from uplift.common.files import check_folder
     from uplift.lab.study import stability_design as design
-    from uplift.lab.study.stability import NO_ATLAS, study
-    from uplift.lab.study.synthetic_atlases import MADE
+    from uplift.lab.study.stability import NO_ATLAS, study_stability
+    from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES
 
     from ..params.study_atlases import read_each
 
     here = () if files or not Path(MACBETH).exists() else (MACBETH,)
     atlases = (read_each(files or here) if files or here else {}) | {
-        name: make() for name, make in MADE.items()
+        name: make() for name, make in SYNTHETIC_ATLASES.items()
     }
     given = {name: value for name, value in chosen.items() if value is not None}
-    axes = replace(design.QUICK if quick else design.Axes(), **({"atlases": (NO_ATLAS, *atlases)} | given))
+    axes = replace(
+        design.QUICK_DESIGN if quick else design.DesignSpace(), **({"atlases": (NO_ATLAS, *atlases)} | given)
+    )
     if output is not None:
         check_folder(output, FILES, force=force)
     with progress_bar("builds") as progress:
-        found = study(design.design(axes), atlases, progress)
+        found = study_stability(design.design(axes), atlases, progress)
     if output is not None:
         _write(axes, found, Path(output), force=force)
     PRINTERS[style](found)
 
 
-def _write(axes: Axes, found: Sequence[Outcome], folder: Path, *, force: bool) -> None:
+def _write(axes: DesignSpace, found: Sequence[RunResult], folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
     from uplift.lab.study.records import write_csv
     from uplift.lab.study.stability_design import grids
@@ -110,21 +112,21 @@ def _write(axes: Axes, found: Sequence[Outcome], folder: Path, *, force: bool) -
     click.echo(f"{folder}: {', '.join(FILES)}", err=True)
 
 
-def _json(found: Sequence[Outcome]) -> str:
+def _json(found: Sequence[RunResult]) -> str:
     return json_text([one.record() for one in found])
 
 
-def _print_json(found: Sequence[Outcome]) -> None:
+def _print_json(found: Sequence[RunResult]) -> None:
     click.echo(_json(found))
 
 
-def _print_csv(found: Sequence[Outcome]) -> None:
+def _print_csv(found: Sequence[RunResult]) -> None:
     from uplift.lab.study.records import csv_text
 
     click.echo(csv_text([one.record() for one in found]), nl=False)
 
 
-def _print_table(found: Sequence[Outcome]) -> None:
+def _print_table(found: Sequence[RunResult]) -> None:
     from rich import box
     from rich.table import Table
     from rich.text import Text
@@ -156,7 +158,7 @@ def _print_table(found: Sequence[Outcome]) -> None:
     )
 
 
-PRINTERS: dict[str, Callable[[Sequence[Outcome]], None]] = {
+PRINTERS: dict[str, Callable[[Sequence[RunResult]], None]] = {
     "table": _print_table,
     "json": _print_json,
     "csv": _print_csv,

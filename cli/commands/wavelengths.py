@@ -94,7 +94,7 @@ def command(
     seen_by = observer or DEFAULT_OBSERVER
     camera = sensor(space, illuminant, seen_by)
     spectra: Atlas = merge(read_each(files).values())
-    setting = wavelengths.set_up(
+    setting = wavelengths.make_setup(
         on_grid(spectra, wavelengths.grid()), lights or ("D65",), observer_name=seen_by
     )
     with spinner("fitting wavelengths"):
@@ -103,7 +103,7 @@ def command(
                 setting, count=count, target=target, measure=measure or "max", method=method or "optimised"
             )
         else:
-            choice = wavelengths.weigh(setting, given)
+            choice = wavelengths.fit_weights(setting, given)
     if plot_path is not None:
         from uplift.scene.wavelengths.plots import plot_choice
 

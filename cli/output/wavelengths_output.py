@@ -14,7 +14,7 @@ from .console import console, json_text
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
-    from uplift.scene.wavelengths import Choice, Errors
+    from uplift.scene.wavelengths import Choice, ColourErrors
 
 ALL = "all lights"
 
@@ -27,7 +27,7 @@ class Found:
     sensor: Sensor
     materials: tuple[str, ...]
 
-    def errors(self) -> Iterator[tuple[str, Errors]]:
+    def errors(self) -> Iterator[tuple[str, ColourErrors]]:
         """Errors under each light, and where there are several, under all."""
         lights = self.choice.sampling.lights
         for row, light in enumerate(lights):
@@ -35,7 +35,7 @@ class Found:
         if len(lights) > 1:
             yield ALL, self.choice.errors
 
-    def worst(self, errors: Errors) -> str:
+    def worst(self, errors: ColourErrors) -> str:
         """The material that is farthest off."""
         return self.materials[int(errors.delta_e.max(axis=0).argmax())]
 
@@ -58,7 +58,7 @@ def _print_json(found: Found) -> None:
     click.echo(json_text(answer))
 
 
-def _stated(found: Found, errors: Errors) -> dict[str, Any]:
+def _stated(found: Found, errors: ColourErrors) -> dict[str, Any]:
     return {"mean": errors.mean, "p95": errors.p95, "max": errors.max, "worst": found.worst(errors)}
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.polynomial import legendre
 
 from uplift.common.errors import OptionError
-from uplift.scene.quadrature import Rule, Undefined, gauss, interpolatory
+from uplift.scene.quadrature import QuadratureRule, UndefinedRule, gauss_rule, interpolatory_rule
 
 POINTS = np.arange(380.0, 771.0)
 BELL = np.exp(-(((POINTS - 560) / 40) ** 2))
@@ -19,13 +19,13 @@ OPPONENT = (POINTS - 545) * BELL
 """Of both signs."""
 
 
-def _rule(points: np.ndarray, masses: np.ndarray, order: int) -> Rule:
-    found = gauss(points, masses, order)
-    assert isinstance(found, Rule), found
+def _rule(points: np.ndarray, masses: np.ndarray, order: int) -> QuadratureRule:
+    found = gauss_rule(points, masses, order)
+    assert isinstance(found, QuadratureRule), found
     return found
 
 
-def _moment_error(rule: Rule, points: np.ndarray, masses: np.ndarray, degree: int) -> float:
+def _moment_error(rule: QuadratureRule, points: np.ndarray, masses: np.ndarray, degree: int) -> float:
     """Largest error over Legendre polynomials up to ``degree``, against the masses' own size."""
     middle, half = (points[0] + points[-1]) / 2, (points[-1] - points[0]) / 2
     exact = masses @ legendre.legvander((points - middle) / half, degree)
@@ -81,8 +81,8 @@ def _exact_nodes(points: list[int], masses: list[int], order: int) -> np.ndarray
 )
 def test_agrees_with_fractions_wherever_the_order_exists(masses: list[int], order: int) -> None:
     points = list(range(len(masses)))
-    found = gauss(points, masses, order)
-    if isinstance(found, Undefined):
+    found = gauss_rule(points, masses, order)
+    if isinstance(found, UndefinedRule):
         return
     expected = np.sort_complex(_exact_nodes(points, masses, order))
     gap = np.diff(found.nodes).min() if order > 1 else 1.0
@@ -100,21 +100,21 @@ def test_agrees_with_fractions_wherever_the_order_exists(masses: list[int], orde
     ],
 )
 def test_says_why_an_order_is_undefined(masses: list[int], order: int, reason: str) -> None:
-    found = gauss(range(len(masses)), masses, order)
-    assert isinstance(found, Undefined)
+    found = gauss_rule(range(len(masses)), masses, order)
+    assert isinstance(found, UndefinedRule)
     assert found.order == order
     assert reason in found.reason
 
 
 def test_an_order_past_an_undefined_one_exists() -> None:
     rule = _rule(np.array([0, 1, 2, 3]), np.array([1, 1, -1, -1]), 2)
-    assert isinstance(gauss([0, 1, 2, 3], [1, 1, -1, -1], 1), Undefined)
+    assert isinstance(gauss_rule([0, 1, 2, 3], [1, 1, -1, -1], 1), UndefinedRule)
     np.testing.assert_allclose(rule.nodes, 1.5 + np.array([-1, 1]) * np.sqrt(1.75), atol=1e-12)
 
 
 @pytest.mark.parametrize("nodes", [[560.0], [631.4, 490.9, 557.7], np.linspace(400, 700, 12)])
 def test_given_nodes_are_exact_below_their_number(nodes: list[float]) -> None:
-    rule = interpolatory(nodes, POINTS, BELL)
+    rule = interpolatory_rule(nodes, POINTS, BELL)
     np.testing.assert_array_equal(rule.nodes, np.sort(nodes))
     assert _moment_error(rule, POINTS, BELL, len(nodes) - 1) < 1e-12
 
@@ -139,9 +139,9 @@ def test_scale_and_shift_go_with_the_points_and_masses() -> None:
 )
 def test_refuses_what_is_no_weight(points: list[float], masses: list[float], order: int) -> None:
     with pytest.raises(OptionError, match="; "):
-        gauss(points, masses, order)
+        gauss_rule(points, masses, order)
 
 
 def test_refuses_nodes_that_coincide() -> None:
     with pytest.raises(OptionError, match="coincide"):
-        interpolatory([500, 500], POINTS, BELL)
+        interpolatory_rule([500, 500], POINTS, BELL)

@@ -29,7 +29,7 @@ APART = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Rule:
+class QuadratureRule:
     """``Σ weights · f(nodes)`` stands for ``Σ masses · f(points)``.
 
     Parameters
@@ -46,7 +46,7 @@ class Rule:
 
 
 @dataclass(frozen=True, eq=False)
-class Undefined:
+class UndefinedRule:
     """An order that the weight has no rule of, and why.
 
     Parameters
@@ -59,7 +59,7 @@ class Undefined:
     reason: str
 
 
-def gauss(points: ArrayLike, masses: ArrayLike, order: int) -> Rule | Undefined:
+def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRule | UndefinedRule:
     """The rule of ``order`` nodes that is exact for every polynomial of degree below ``2 · order``.
 
     Masses of one sign have a rule of every order up to their number; masses of both signs lack those orders
@@ -78,16 +78,16 @@ def gauss(points: ArrayLike, masses: ArrayLike, order: int) -> Rule | Undefined:
     signed = basis * np.sign(masses)[:, None]
     gram = basis.T @ signed
     if np.linalg.svd(gram, compute_uv=False).min() <= SINGULAR:
-        return Undefined(order, "no polynomial of that order is orthogonal")
+        return UndefinedRule(order, "no polynomial of that order is orthogonal")
     return _solve(gram, basis.T @ (x[:, None] * signed), np.abs(masses).sum(), points)
 
 
-def interpolatory(nodes: ArrayLike, points: ArrayLike, masses: ArrayLike) -> Rule:
+def interpolatory_rule(nodes: ArrayLike, points: ArrayLike, masses: ArrayLike) -> QuadratureRule:
     """The rule at given ``nodes`` (n,) that is exact for every polynomial of degree below n.
 
     Raises
     ------
-    OptionError : as `gauss` does, or nodes that coincide.
+    OptionError : as `gauss_rule` does, or nodes that coincide.
     """
     points, masses = _checked(points, masses)
     nodes = np.sort(np.asarray(nodes, dtype=float))
@@ -96,26 +96,28 @@ def interpolatory(nodes: ArrayLike, points: ArrayLike, masses: ArrayLike) -> Rul
     degree = len(nodes) - 1
     values = chebyshev.chebvander(_to_unit(nodes, points), degree)
     moments = masses @ chebyshev.chebvander(_to_unit(points, points), degree)
-    return Rule(nodes, np.asarray(np.linalg.solve(values.T, moments), dtype=float))
+    return QuadratureRule(nodes, np.asarray(np.linalg.solve(values.T, moments), dtype=float))
 
 
-def _solve(gram: Array, position: Array, total: float, points: Array) -> Rule | Undefined:
+def _solve(gram: Array, position: Array, total: float, points: Array) -> QuadratureRule | UndefinedRule:
     """Nodes and weights from the weight's inner products of the basis, and those with x between."""
     values, vectors = scipy.linalg.eig(position, gram)
     order = len(gram)
     if np.abs(values.imag).max() > APART:
-        return Undefined(order, "its nodes are not real")
+        return UndefinedRule(order, "its nodes are not real")
     ascending = np.argsort(values.real)
     unit, vectors = values.real[ascending], vectors.real[:, ascending]
     if order > 1 and np.diff(unit).min() <= APART:
-        return Undefined(order, "two of its nodes coincide")
+        return UndefinedRule(order, "two of its nodes coincide")
     nodes = _from_unit(unit, points)
     outside = nodes[np.abs(unit) > 1 + APART]
     if len(outside):
-        return Undefined(order, f"a node lies at {outside[0]:.1f}, outside {points[0]:g} to {points[-1]:g}")
+        return UndefinedRule(
+            order, f"a node lies at {outside[0]:.1f}, outside {points[0]:g} to {points[-1]:g}"
+        )
     # A vector is 0 at all nodes but its own; the first polynomial of the basis is the constant 1/√total.
     seen = gram @ vectors
-    return Rule(nodes, total * seen[0] ** 2 / (vectors * seen).sum(axis=0))
+    return QuadratureRule(nodes, total * seen[0] ** 2 / (vectors * seen).sum(axis=0))
 
 
 def _checked(points: ArrayLike, masses: ArrayLike) -> tuple[Array, Array]:

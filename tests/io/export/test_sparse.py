@@ -10,7 +10,7 @@ import pytest
 from tests.sparse_cubes import dark, robbed
 from uplift.common.errors import ColourError, OptionError
 from uplift.io.export import write_c, write_coeff, write_csv, write_npz
-from uplift.lab.study.sensitivity import study
+from uplift.lab.study.sensitivity import study_sensitivity
 
 
 @pytest.fixture
@@ -45,4 +45,4 @@ def test_what_cannot_refuse_a_colour_is_not_made(data, tmp_path, small_cube):
 
 def test_nor_studied(data, small_cube):
     with pytest.raises(OptionError, match="nothing to measure"):
-        study(type(small_cube)(data), None, 0)
+        study_sensitivity(type(small_cube)(data), None, 0)

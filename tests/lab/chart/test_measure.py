@@ -12,7 +12,7 @@ from uplift.lab.chart.methods.mallett2019 import FAMILIES
 from uplift.lab.chart.page import page
 from uplift.lab.chart.panels import PANELS
 from uplift.lab.chart.table import State
-from uplift.lab.study.held_out import judge
+from uplift.lab.study.held_out import spectrum_errors
 from uplift.viz.markup import Markup
 
 
@@ -73,7 +73,7 @@ def test_the_same_answer_is_no_error_where_less_is_claimed(small_task, greys, me
 def test_errors_are_those_of_the_study_of_halves(small_task, greys, method_of):
     numbers = measure_one(greys, method_of(grey), small_task).numbers
     for prefix, measured in (("", small_task.unseen), ("own_", small_task.own)):
-        errors = judge(
+        errors = spectrum_errors(
             grey(small_task.sensor.rgb(measured), small_task.sensor.wavelengths), measured, CHART_LIGHTS
         )
         for column, light in enumerate(CHART_LIGHTS):

@@ -7,10 +7,10 @@ import pytest
 from tests.lab.comparison_scenes import colorchecker
 from uplift.lab.comparison.measure import Comparison, Effort, compare
 from uplift.lab.comparison.scene import Scene
-from uplift.scene.representations.composite import enhanced, sun
-from uplift.scene.representations.moments import moments
-from uplift.scene.representations.point import point
-from uplift.scene.representations.riemann import riemann
+from uplift.scene.representations.composite import enhanced_riemann, sun_composite
+from uplift.scene.representations.point_sampling import point_samples
+from uplift.scene.representations.riemann_sums import riemann_sums
+from uplift.scene.representations.trigonometric_moments import trigonometric_moments
 
 EFFORT = Effort(runs=3, lap=0.001, rows=32)
 
@@ -22,5 +22,5 @@ def checker() -> Scene:
 
 @pytest.fixture(scope="session")
 def found(checker) -> Comparison:
-    made = [make(count) for make in (point, riemann, enhanced) for count in (16, 32)]
-    return compare(checker, [*made, sun(15), moments(9)], EFFORT)
+    made = [make(count) for make in (point_samples, riemann_sums, enhanced_riemann) for count in (16, 32)]
+    return compare(checker, [*made, sun_composite(15), trigonometric_moments(9)], EFFORT)

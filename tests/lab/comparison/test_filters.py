@@ -6,14 +6,15 @@ import pytest
 
 from uplift.lab.comparison.filters import NONE, tune
 from uplift.lab.comparison.measure import judge
-from uplift.scene.representations.filters import COARSE, candidates
-from uplift.scene.representations.point import filtered, point
+from uplift.scene.representations.filters import COARSE_STRIDE, candidates
+from uplift.scene.representations.point_sampling import filtered_point_samples, point_samples
 
 
 @pytest.fixture(scope="module")
 def tuned(checker):
     return {
-        (one.lights, one.kind): one for one in tune(checker, COARSE, ("tent", "lanczos", "mitchell"), (16,))
+        (one.lights, one.kind): one
+        for one in tune(checker, COARSE_STRIDE, ("tent", "lanczos", "mitchell"), (16,))
     }
 
 
@@ -21,7 +22,10 @@ def tuned(checker):
 @pytest.mark.parametrize("kind", ["tent", "lanczos"])
 def test_none_that_was_tried_is_better(checker, tuned, lights, kind):
     (part,) = [part for part in checker.sets if part.name == lights]
-    means = {one: judge(filtered(16, one), checker, part).mean for one in candidates(kind, COARSE)}
+    means = {
+        one: judge(filtered_point_samples(16, one), checker, part).mean
+        for one in candidates(kind, COARSE_STRIDE)
+    }
     best = tuned[lights, kind]
     assert best.low_pass == min(means, key=means.__getitem__)
     assert best.statistics.mean == pytest.approx(min(means.values()), rel=1e-9)
@@ -29,7 +33,7 @@ def test_none_that_was_tried_is_better(checker, tuned, lights, kind):
 
 def test_without_a_filter_it_is_point_sampling(checker, tuned):
     for part in checker.sets:
-        assert tuned[part.name, NONE].statistics == judge(point(16), checker, part)
+        assert tuned[part.name, NONE].statistics == judge(point_samples(16), checker, part)
         assert tuned[part.name, NONE].told == ""
 
 

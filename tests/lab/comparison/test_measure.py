@@ -15,30 +15,32 @@ from uplift.common.errors import AtlasError, UnknownNameError, UpliftError
 from uplift.lab.comparison.measure import compare, judge
 from uplift.lab.comparison.scene import FEW, scene
 from uplift.lab.comparison.statistics import HEADINGS, statistics
-from uplift.scene.representations.dense import observed
-from uplift.scene.representations.point import point
-from uplift.scene.representations.samples import Samples
+from uplift.scene.representations.dense import xyz_weights
+from uplift.scene.representations.point_sampling import point_samples
+from uplift.scene.representations.samples import SampleRepresentation
 
 
 def test_the_dense_data_itself_has_no_error(checker):
-    dense = Samples("dense", "dense", np.eye(401), observed())
+    dense = SampleRepresentation("dense", "dense", np.eye(401), xyz_weights())
     for part in checker.sets:
         assert max(judge(dense, checker, part)) < 1e-9
 
 
 def test_errors_are_those_of_one_product_after_another(checker):
-    part, samples, apart = checker.sets[1], point(16), []
+    part, samples, apart = checker.sets[1], point_samples(16), []
     for power in part.powers:
-        white = power @ observed()
+        white = power @ xyz_weights()
         for surface in checker.surfaces:
-            product = samples.product(samples.light(power[None]), samples.surface(surface[None]))
-            pair = (lab(samples.xyz(product)[0], white), lab((power * surface) @ observed(), white))
+            product = samples.multiply(
+                samples.encode_light(power[None]), samples.encode_surface(surface[None])
+            )
+            pair = (lab(samples.xyz(product)[0], white), lab((power * surface) @ xyz_weights(), white))
             apart.append(float(delta_e_2000(*pair)))
     assert tuple(judge(samples, checker, part)) == pytest.approx(tuple(statistics(apart)), rel=1e-9)
 
 
 def test_what_is_no_number_is_refused(checker):
-    broken = Samples("broken", "broken", np.full((401, 3), np.nan), np.eye(3))
+    broken = SampleRepresentation("broken", "broken", np.full((401, 3), np.nan), np.eye(3))
     with pytest.raises(UpliftError, match="broken answers what is no number under smooth lights"):
         compare(checker, [broken], EFFORT)
 
@@ -54,7 +56,7 @@ def test_rows_are_ranked_within_their_sets(checker, found):
 
 
 def test_lights_are_as_bright_as_one_another(checker):
-    np.testing.assert_allclose(checker.powers @ observed()[:, 1], 1)
+    np.testing.assert_allclose(checker.powers @ xyz_weights()[:, 1], 1)
 
 
 def test_spikes_count_where_they_are_stored(found):

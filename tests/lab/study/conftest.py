@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from uplift.atlas import read_atlas
-from uplift.lab.study.moments import Study, study
+from uplift.lab.study.moments import MomentsStudy, study_moments
 
 
 @pytest.fixture(scope="session")
-def macbeth_study(repository) -> Study:
-    return study({"macbeth": read_atlas(repository / "atlases" / "macbeth.txt")})
+def macbeth_study(repository) -> MomentsStudy:
+    return study_moments({"macbeth": read_atlas(repository / "atlases" / "macbeth.txt")})

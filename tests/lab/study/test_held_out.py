@@ -9,7 +9,13 @@ from uplift.atlas import Atlas, Entry
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
-from uplift.lab.study.held_out import Errors, Split, halves, judge, stated_errors
+from uplift.lab.study.held_out import (
+    HoldoutSplit,
+    SpectrumErrors,
+    holdout,
+    pooled_calibration,
+    spectrum_errors,
+)
 
 GRID = observer.grid()
 
@@ -25,7 +31,7 @@ def family():
 @pytest.fixture(scope="module")
 def splits(family):
     heard = []
-    found = halves(family, 2, lambda done, total: heard.append((done, total)), dim=8)
+    found = holdout(family, 2, lambda done, total: heard.append((done, total)), dim=8)
     assert heard == [(2, 4), (3, 4), (4, 4)]
     return found
 
@@ -46,7 +52,7 @@ def test_every_split_asks_what_it_has_not_kept(splits):
 def test_errors_are_what_they_are_called():
     rng = np.random.default_rng(0)
     answered, measured = rng.random((3, 81)), rng.random((3, 81))
-    errors = judge(answered, measured, ("A", "FL11"))
+    errors = spectrum_errors(answered, measured, ("A", "FL11"))
     for row in range(3):
         assert errors.rms[row] == pytest.approx(np.sqrt(np.mean((answered[row] - measured[row]) ** 2)))
         for column, name in enumerate(("A", "FL11")):
@@ -56,13 +62,13 @@ def test_errors_are_what_they_are_called():
 
 
 def test_stated_errors_by_hand():
-    nothing = Errors(np.zeros(2), np.zeros((2, 1)))
-    found = stated_errors(
+    nothing = SpectrumErrors(np.zeros(2), np.zeros((2, 1)))
+    found = pooled_calibration(
         [
-            Split({"": nothing}, np.array([1.0, 3.0]), np.array([2.0, 2.0])),
-            Split({"": nothing}, np.array([5.0, 9.0]), None),
+            HoldoutSplit({"": nothing}, np.array([1.0, 3.0]), np.array([2.0, 2.0])),
+            HoldoutSplit({"": nothing}, np.array([5.0, 9.0]), None),
         ]
     )
     assert (found.count, found.stated, found.within_one, found.within_two) == (2, 2, 0.5, 1)
     assert found.real == pytest.approx(5**0.5)
-    assert stated_errors([Split({"": nothing}, np.zeros(2), None)]) is None
+    assert pooled_calibration([HoldoutSplit({"": nothing}, np.zeros(2), None)]) is None

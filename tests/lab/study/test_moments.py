@@ -11,7 +11,7 @@ import uplift
 from benchmarks.study_tables import STORED, read_thesis, within
 from uplift.atlas import Atlas, read_atlas
 from uplift.common.errors import AtlasError, OptionError
-from uplift.lab.study.moments import EVERY, LIMIT, MEASURES, study
+from uplift.lab.study.moments import ALL_ATLASES, MAX_MOMENTS, MEASURES, study_moments
 from uplift.lab.study.technique import TECHNIQUES
 
 MW, MNW, NMW, NMNW = TECHNIQUES
@@ -22,13 +22,15 @@ def whole_study(repository):
     """All shipped atlases."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
-        return study({path.stem: read_atlas(path) for path in sorted((repository / "atlases").glob("*.txt"))})
+        return study_moments(
+            {path.stem: read_atlas(path) for path in sorted((repository / "atlases").glob("*.txt"))}
+        )
 
 
-@pytest.fixture(params=["macbeth", EVERY])
+@pytest.fixture(params=["macbeth", ALL_ATLASES])
 def errors(request, macbeth_study, whole_study):
     """Mean errors of the ColorChecker and of everything by technique, floats and measure."""
-    found = whole_study if request.param == EVERY else macbeth_study
+    found = whole_study if request.param == ALL_ATLASES else macbeth_study
     return lambda technique, floats, measure=0: found.of(technique, within(technique, floats)).mean[measure]
 
 
@@ -113,29 +115,31 @@ def test_an_atlas_alone_is_as_among_others(whole_study, macbeth_study):
 
 def test_progress_is_told(repository):
     told = []
-    study({"tcs": read_atlas(repository / "atlases" / "tcs.txt")}, 2, lambda *counts: told.append(counts))
+    study_moments(
+        {"tcs": read_atlas(repository / "atlases" / "tcs.txt")}, 2, lambda *counts: told.append(counts)
+    )
     assert told == [(done, 12) for done in range(1, 13)]
 
 
-@pytest.mark.parametrize("most", [-1, LIMIT + 1])
+@pytest.mark.parametrize("most", [-1, MAX_MOMENTS + 1])
 def test_moments_out_of_range_are_refused(most, repository):
-    with pytest.raises(OptionError, match=f"{most} moments are out of range; take 0 to {LIMIT}"):
-        study({"tcs": read_atlas(repository / "atlases" / "tcs.txt")}, most)
+    with pytest.raises(OptionError, match=f"{most} moments are out of range; take 0 to {MAX_MOMENTS}"):
+        study_moments({"tcs": read_atlas(repository / "atlases" / "tcs.txt")}, most)
 
 
 def test_the_most_moments_work(repository):
-    found = study({"tcs": read_atlas(repository / "atlases" / "tcs.txt")}, LIMIT)
+    found = study_moments({"tcs": read_atlas(repository / "atlases" / "tcs.txt")}, MAX_MOMENTS)
     assert np.isfinite(found.errors).all()
-    assert found.of(MNW, LIMIT).most[0] < 0.1
+    assert found.of(MNW, MAX_MOMENTS).most[0] < 0.1
 
 
 def test_nothing_to_study_is_refused():
     for atlases in ({}, {"empty": Atlas()}):
         with pytest.raises(AtlasError, match="no entries to study; name an atlas"):
-            study(atlases)
+            study_moments(atlases)
 
 
 def test_names_that_two_atlases_share_are_refused(repository):
     path = repository / "atlases" / "macbeth.txt"
     with pytest.raises(AtlasError, match="the name is taken"):
-        study({"one": read_atlas(path), "two": read_atlas(path)})
+        study_moments({"one": read_atlas(path), "two": read_atlas(path)})

@@ -11,15 +11,15 @@ from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
 from uplift.lab.study import sensitivity
-from uplift.lab.study.input_noise import MOVING, moves
-from uplift.lab.study.locality import Change, before, left_out, noisy, reversed_entry
+from uplift.lab.study.input_noise import CONTINUOUS_MODES, perturb
+from uplift.lab.study.locality import Change, add_noise, build_baseline, remove_entry, reverse_entry
 
 LIGHT = observer.light("FL11")
 
 
 def test_answers_move_with_the_question(small_cube):
-    found = moves(small_cube, LIGHT, 200)
-    assert [move.mode for move in found[::3]] == list(MOVING)
+    found = perturb(small_cube, LIGHT, 200)
+    assert [move.mode for move in found[::3]] == list(CONTINUOUS_MODES)
     for wide, narrow, rounding in zip(found[::3], found[1::3], found[2::3], strict=True):
         assert wide.rms_mean == pytest.approx(4 * narrow.rms_mean, rel=0.1)
         assert wide.own_mean == pytest.approx(4 * narrow.own_mean, rel=0.05)
@@ -30,12 +30,12 @@ def test_answers_move_with_the_question(small_cube):
 
 @pytest.fixture(scope="module")
 def base(repository):
-    return before(read_atlas(repository / "atlases" / "tcs.txt"), LIGHT, dim=8)
+    return build_baseline(read_atlas(repository / "atlases" / "tcs.txt"), LIGHT, dim=8)
 
 
 def test_an_entry_left_out_is_missed_nearby_alone(base):
     name = base.data.atlas.names[0]
-    found = left_out(base, name)
+    found = remove_entry(base, name)
     assert found.delta_e[found.lab_apart.argmin()] > 0
     far = found.lab_apart > 60
     assert far.sum() > 100
@@ -46,13 +46,13 @@ def test_an_entry_left_out_is_missed_nearby_alone(base):
 
 def test_a_wrong_entry_is_felt_where_it_was_and_where_it_is(base):
     name = base.data.atlas.names[0]
-    wrong, without = reversed_entry(base, name), left_out(base, name)
+    wrong, without = reverse_entry(base, name), remove_entry(base, name)
     assert (wrong.rgb_apart <= without.rgb_apart + 1e-12).all()
     assert wrong.delta_e.max() > 0
 
 
 def test_noise_on_all_entries_has_no_place(base):
-    found = noisy(base, 0)
+    found = add_noise(base, 0)
     assert found.rms.shape == (512,)
     assert found.rgb_apart.size == 0
     assert np.isnan(found.radius(found.rgb_apart))
@@ -67,11 +67,11 @@ def test_moved_and_radius_by_hand():
 
 
 def test_a_cube_without_an_atlas_has_queries_and_steepness_alone(plain_cube):
-    found = sensitivity.study(plain_cube, None, 5)
-    assert (found.noise, found.wrong, found.left_out) == ([], [], [])
+    found = sensitivity.study_sensitivity(plain_cube, None, 5)
+    assert (found.noise, found.reversed, found.removed) == ([], [], [])
     record = json.loads(json.dumps(found.record()))
     assert record["changes"] == []
     assert record["lipschitz"]["largest_box"] is None
     assert record["lipschitz"]["largest"] >= record["lipschitz"]["median_cell"]
     with pytest.raises(OptionError, match="-1 entries"):
-        sensitivity.study(plain_cube, None, -1)
+        sensitivity.study_sensitivity(plain_cube, None, -1)

@@ -9,15 +9,23 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
 from uplift.common.errors import OptionError, UpliftError
 from uplift.lab.study import stability
-from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS, Pointwise, grow_pointwise
-from uplift.lab.study.stability import NO_ATLAS, Outcome, Setting, run, study
-from uplift.lab.study.stability_design import QUICK, SPACES, Axes, design, grids, peers, sample
+from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS, PointwiseProblem, fit_pointwise
+from uplift.lab.study.stability import NO_ATLAS, RunConfig, RunResult, run, study_stability
+from uplift.lab.study.stability_design import (
+    QUICK_DESIGN,
+    SPACES,
+    DesignSpace,
+    design,
+    draw_sample,
+    grids,
+    solver_runs,
+)
 from uplift.lattice import Lattice
 from uplift.models import Moments
 
 
 def test_a_build_is_judged_over_its_realisable_points():
-    found = run(Setting(dim=4, space="ITU-R BT.2020"), {})
+    found = run(RunConfig(dim=4, space="ITU-R BT.2020"), {})
     sensor, lattice = observer.sensor("ITU-R BT.2020"), Lattice(observer.axis_nodes("srgb", 4))
     assert found.points == 64
     assert found.realisable == solid(sensor.matrix).holds(lattice.points).sum() < 64
@@ -30,7 +38,7 @@ def test_points_that_fail_are_counted_and_the_worst_is_named():
     points = np.array([[0.0, 0, 0], [0.5, 0.5, 0.5], [1, 1, 1], [0, 1, 0]])
     realisable = np.array([True, True, True, False])
     distance = np.array([2e-4, 1e-5, 3e-3, 0.5])
-    found = stability._judge(Setting(), points, realisable, distance, 1, 2, 3, 4.0)
+    found = stability._judge(RunConfig(), points, realisable, distance, 1, 2, 3, 4.0)
     assert (found.points, found.realisable, found.unfitted, found.stand_ins) == (4, 3, 2, 1)
     assert (found.worst, found.r, found.g, found.b) == (3e-3, 1, 1, 1)
     assert found.success == pytest.approx(1 / 3)
@@ -43,46 +51,48 @@ def test_points_that_fail_are_counted_and_the_worst_is_named():
 
 
 def test_a_study_runs_every_setting_once_model_by_model(monkeypatch):
-    settings = [Setting(dim=8), Setting("sigmoid", 3), Setting(dim=4), Setting(dim=8)]
+    settings = [RunConfig(dim=8), RunConfig("sigmoid", 3), RunConfig(dim=4), RunConfig(dim=8)]
     ran, heard = [], []
 
     def pretend(setting, atlases):
         ran.append(setting)
-        return Outcome(setting, 1, 1, 0, 0, 0, 0, 0.0, 0, 0, 0, 0.0)
+        return RunResult(setting, 1, 1, 0, 0, 0, 0, 0.0, 0, 0, 0, 0.0)
 
     monkeypatch.setattr(stability, "run", pretend)
-    found = study(settings, {}, lambda done, total: heard.append((done, total)))
+    found = study_stability(settings, {}, lambda done, total: heard.append((done, total)))
     assert [one.setting for one in found] == ran == [settings[2], settings[0], settings[1]]
     assert heard == [(1, 3), (2, 3), (3, 3)]
 
 
 def test_the_design_holds_its_grids_its_sample_and_its_peers_once():
-    axes = Axes(drawn=10)
+    axes = DesignSpace(drawn=10)
     found = design(axes)
     assert len(set(found)) == len(found)
     for grid in grids(axes):
         for _, row in grid.rows():
             assert set(row) <= set(found)
             assert [getattr(setting, grid.axis) for setting in row] == list(grid.values)
-    assert len(sample(axes)) == 10
-    assert sample(axes) == sample(axes)
-    assert {setting.solver for setting in peers(axes)} == {"uplift", IN_MOMENTS, IN_MULTIPLIERS}
+    assert len(draw_sample(axes)) == 10
+    assert draw_sample(axes) == draw_sample(axes)
+    assert {setting.solver for setting in solver_runs(axes)} == {"uplift", IN_MOMENTS, IN_MULTIPLIERS}
     five = {(setting.space, setting.model) for setting in found if setting.dim == 17}
     assert five >= {(space, model) for space in SPACES for model in ("moments", "sigmoid")}
 
 
 def test_the_design_keeps_to_what_is_chosen():
-    axes = Axes(dims=(6,), spaces=("ACEScg",), models=("sigmoid",), thresholds=(1e-3,), atlases=(NO_ATLAS,))
-    assert design(axes) == (Setting("sigmoid", 3, 6, "ACEScg", 1e-3),)
-    assert len(design(QUICK)) < len(design(Axes())) / 3
+    axes = DesignSpace(
+        dims=(6,), spaces=("ACEScg",), models=("sigmoid",), thresholds=(1e-3,), atlases=(NO_ATLAS,)
+    )
+    assert design(axes) == (RunConfig("sigmoid", 3, 6, "ACEScg", 1e-3),)
+    assert len(design(QUICK_DESIGN)) < len(design(DesignSpace())) / 3
     with pytest.raises(OptionError, match="no spaces"):
-        Axes(spaces=())
+        DesignSpace(spaces=())
 
 
 def test_multipliers_reach_where_moments_stop():
     lattice, threshold = Lattice(observer.axis_nodes("srgb", 3)), 1e-4
     in_moments, in_multipliers = (
-        grow_pointwise(Pointwise(Moments(5), observer.sensor(), unknowns), lattice, threshold)
+        fit_pointwise(PointwiseProblem(Moments(5), observer.sensor(), unknowns), lattice, threshold)
         for unknowns in (IN_MOMENTS, IN_MULTIPLIERS)
     )
     failed = [int((found.distance > threshold).sum()) for found in (in_moments, in_multipliers)]
@@ -93,7 +103,7 @@ def test_multipliers_reach_where_moments_stop():
 
 @pytest.mark.parametrize("unknowns", [IN_MOMENTS, IN_MULTIPLIERS])
 def test_differences_are_the_derivative(unknowns):
-    task = Pointwise(Moments(5), observer.sensor(), unknowns)
+    task = PointwiseProblem(Moments(5), observer.sensor(), unknowns)
     x, rgb = task.grey + np.array([0.01, -0.02, 0.03, 0.01, 0]), np.full(3, 0.4)
     found = task.differences(x, rgb)
     for row, way in enumerate(np.eye(5)):
@@ -102,7 +112,7 @@ def test_differences_are_the_derivative(unknowns):
 
 
 def test_a_solver_in_moments_stops_at_their_boundary():
-    task = Pointwise(Moments(5), observer.sensor(), IN_MOMENTS)
+    task = PointwiseProblem(Moments(5), observer.sensor(), IN_MOMENTS)
     beyond = np.array([1.2, 0, 0, 0, 0])
     assert np.abs(task.miss(beyond, np.zeros(3))).max() == 1
     with pytest.raises(UpliftError):

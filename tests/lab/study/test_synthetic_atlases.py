@@ -7,16 +7,16 @@ import pytest
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import rgb_to_lab
-from uplift.lab.study.synthetic_atlases import MADE, crowded, noisy, spiky
+from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES, crowded, noisy, spiky
 
 
 def values(atlas):
     return np.array([entry.values for entry in atlas.entries])
 
 
-@pytest.mark.parametrize("name", MADE)
+@pytest.mark.parametrize("name", SYNTHETIC_ATLASES)
 def test_they_are_always_the_same(name):
-    first, second = MADE[name](), MADE[name]()
+    first, second = SYNTHETIC_ATLASES[name](), SYNTHETIC_ATLASES[name]()
     np.testing.assert_array_equal(values(first), values(second))
     assert first.names == second.names
 

@@ -12,8 +12,8 @@ import uplift
 from tests.conftest import MACBETH
 from tests.io.texture.conftest import planes, write_exr
 from uplift.scene import plan
-from uplift.scene.representations.point import point
-from uplift.scene.representations.riemann import riemann
+from uplift.scene.representations.point_sampling import point_samples
+from uplift.scene.representations.riemann_sums import riemann_sums
 
 SMALL = plan.Effort(coefficients=(5, 9), dims=(3, 5), reference=7, predicting=60, confirming=90)
 LIGHTS = ("D65", "FL11")
@@ -48,7 +48,7 @@ def planned(kitchen):
     with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         patch.setattr(
-            "uplift.scene.plan.representation.representations",
-            lambda lights, surfaces: [riemann(8), point(32)],
+            "uplift.scene.plan.representation.all_representations",
+            lambda lights, surfaces: [riemann_sums(8), point_samples(32)],
         )
         return plan.plan(plan.read_brief(kitchen), SMALL, steps.append), steps

@@ -7,7 +7,7 @@ import pytest
 
 from tests.lab.comparison_scenes import colorchecker
 from uplift.lab.comparison.scene import Scene
-from uplift.scene.representations.registry import representations
+from uplift.scene.representations.registry import all_representations
 
 
 @pytest.fixture(scope="session")
@@ -18,7 +18,7 @@ def checker() -> Scene:
 @pytest.fixture(scope="session")
 def every(checker):
     """Every representation, by name."""
-    return {one.name: one for one in representations(checker.powers, checker.surfaces)}
+    return {one.name: one for one in all_representations(checker.powers, checker.surfaces)}
 
 
 @pytest.fixture

@@ -12,22 +12,22 @@ from hypothesis.extra.numpy import arrays
 
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
-from uplift.scene.representations.composite import enhanced, sun
-from uplift.scene.representations.dense import hats, observed, wavelengths
-from uplift.scene.representations.fourier import fourier
-from uplift.scene.representations.spikes import split
+from uplift.scene.representations.composite import enhanced_riemann, sun_composite
+from uplift.scene.representations.dense import hat_functions, wavelengths, xyz_weights
+from uplift.scene.representations.fourier_coefficients import fourier_coefficients
+from uplift.scene.representations.spikes import split_spikes
 
 TABLES = arrays(float, (2, 81), elements=st.floats(0, 100, width=32))
 
 
 def dense(table):
-    return table @ hats(observer.grid())
+    return table @ hat_functions(observer.grid())
 
 
 @settings(max_examples=25)
 @given(TABLES, st.sampled_from([0.1, 0.2, 0.3]))
 def test_the_smooth_part_is_the_largest_that_is_nowhere_too_steep(table, threshold):
-    rest, spikes = split(dense(table), threshold)
+    rest, spikes = split_spikes(dense(table), threshold)
     apart = np.abs(np.arange(81)[:, None] - np.arange(81))
     steepest = threshold * table.max(axis=1)[:, None, None]
     oracle = (table[:, None, :] + steepest * apart).min(axis=2)
@@ -37,11 +37,13 @@ def test_the_smooth_part_is_the_largest_that_is_nowhere_too_steep(table, thresho
     whole[:, spikes.places] += spikes.heights
     np.testing.assert_allclose(whole, table, atol=1e-12 * scale)
     assert (spikes.heights >= 0).all()
-    np.testing.assert_array_equal(spikes.floats, 2 * (spikes.heights > 0).sum(axis=1))
+    np.testing.assert_array_equal(spikes.storage, 2 * (spikes.heights > 0).sum(axis=1))
 
 
 def test_the_lines_of_mercury_are_spikes_and_daylight_has_none():
-    lines, none = (split(observer.illuminant_spd(name, step=1.0)[None], 0.3)[1] for name in ("FL2", "C"))
+    lines, none = (
+        split_spikes(observer.illuminant_spd(name, step=1.0)[None], 0.3)[1] for name in ("FL2", "C")
+    )
     assert observer.grid()[lines.places].tolist() == [405, 435, 545]
     assert none.places.size == 0
 
@@ -50,7 +52,7 @@ def test_the_lines_of_mercury_are_spikes_and_daylight_has_none():
 def test_coefficients_are_those_of_the_thesis(count):
     table = np.random.default_rng(6).random((2, 81))
     phase = np.arange(1, 81) * 2 * np.pi / 80
-    found = fourier(count).light(dense(table))
+    found = fourier_coefficients(count).encode_light(dense(table))
     table[:, 80] = (table[:, 0] + table[:, 80]) / 2
     np.testing.assert_allclose(found[:, 0], table[:, 1:].mean(axis=1))  # ã_0 / 2 of eq. 4.7
     for order in range(1, count // 2 + 1):
@@ -62,34 +64,34 @@ def test_coefficients_are_those_of_the_thesis(count):
 
 @pytest.mark.parametrize("count", [3, 7])
 def test_a_product_of_waves_keeps_its_own_low_frequencies(count):
-    one, rng = fourier(count), np.random.default_rng(7)
+    one, rng = fourier_coefficients(count), np.random.default_rng(7)
     first, second = rng.random((2, 4, count))
     whole = (first @ one.waves) * (second @ one.waves)
     table = np.concatenate([np.ones((1, 400)), one.waves[1:, :400]])
     kept = (whole[:, :400] @ table.T) / (table**2).sum(axis=1)
-    np.testing.assert_allclose(one.product(first, second), kept, atol=1e-12)
+    np.testing.assert_allclose(one.multiply(first, second), kept, atol=1e-12)
 
 
 def test_waves_come_in_pairs():
     with pytest.raises(OptionError, match="take an odd number"):
-        fourier(4)
+        fourier_coefficients(4)
 
 
-@pytest.mark.parametrize("make", [sun, enhanced])
+@pytest.mark.parametrize("make", [sun_composite, enhanced_riemann])
 def test_a_spike_goes_through_a_product_exactly_where_the_rest_is_even(make):
     one = replace(make(7), threshold=1e-9)  # so that no stump of it stays with the rest
     light, surface = np.full((1, 81), 2.0), np.full((1, 81), 0.25)
     light[0, 40] += 30.0
     surface[0, 60] += 0.5
     surface[0, 40] += 0.6
-    found = one.product(one.light(dense(light)), one.surface(dense(surface)))
+    found = one.multiply(one.encode_light(dense(light)), one.encode_surface(dense(surface)))
     assert found.spikes.places.tolist() == [40, 60]
-    np.testing.assert_allclose(one.xyz(found), dense(light * surface) @ observed(), rtol=1e-6)
-    assert one.floats(found).tolist() == [7 + 4]
+    np.testing.assert_allclose(one.xyz(found), dense(light * surface) @ xyz_weights(), rtol=1e-6)
+    assert one.storage(found).tolist() == [7 + 4]
 
 
 def test_without_spikes_the_enhanced_sums_are_riemann_sums(every):
     even = 0.5 + 0.3 * np.sin(wavelengths() / 60)[None]
-    enhanced_code, plain = (every[name].surface(even) for name in ("RE16", "RS16"))
+    enhanced_code, plain = (every[name].encode_surface(even) for name in ("RE16", "RS16"))
     np.testing.assert_allclose(enhanced_code.smooth, plain, atol=1e-3)
     assert enhanced_code.spikes.places.size == 0

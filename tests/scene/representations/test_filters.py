@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.scene.representations.filters import COARSE, EXTENTS, KINDS, Filter, candidates, conversion
-from uplift.scene.representations.point import filtered
+from uplift.scene.representations.filters import COARSE_STRIDE, EXTENTS, KINDS, Filter, candidates, conversion
+from uplift.scene.representations.point_sampling import filtered_point_samples
 
 SOME = [
     Filter("box", 5),
@@ -72,15 +72,15 @@ def test_the_search_tries_every_combination_once():
         tried = candidates(kind)
         sizes = [len(values) for values in made.choices.values()]
         assert len(set(tried)) == len(tried) == len(EXTENTS) * int(np.prod(sizes))
-        assert set(candidates(kind, COARSE)) < set(tried)
+        assert set(candidates(kind, COARSE_STRIDE)) < set(tried)
 
 
 def test_every_filter_of_the_search_is_made_of_numbers():
     for kind in KINDS:
-        for low_pass in candidates(kind, COARSE):
+        for low_pass in candidates(kind, COARSE_STRIDE):
             assert np.isfinite(conversion(low_pass, 16)).all(), low_pass.name
 
 
 def test_names_tell_the_parameters():
-    assert filtered(16, SOME[4]).name == "PS16 mitchell(19, b=-0.4, c=1)"
-    assert filtered(8, SOME[0]).name == "PS8 box(5)"
+    assert filtered_point_samples(16, SOME[4]).name == "PS16 mitchell(19, b=-0.4, c=1)"
+    assert filtered_point_samples(8, SOME[0]).name == "PS8 box(5)"

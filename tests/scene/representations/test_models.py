@@ -9,15 +9,15 @@ from uplift.colorimetry.observer import grid
 from uplift.lab.study.technique import Technique
 from uplift.models import Sigmoid
 from uplift.models.model import evaluate
-from uplift.scene.representations.dense import observed, wavelengths
-from uplift.scene.representations.hero import Hero
-from uplift.scene.representations.linear import linear
-from uplift.scene.representations.moments import moments
-from uplift.scene.representations.sigmoid import fitted
+from uplift.scene.representations.dense import wavelengths, xyz_weights
+from uplift.scene.representations.hero_wavelengths import HeroWavelengths
+from uplift.scene.representations.linear_model import linear_model
+from uplift.scene.representations.sigmoid import fit_sigmoids
+from uplift.scene.representations.trigonometric_moments import trigonometric_moments
 
 
 def test_moments_are_the_integrals(checker):
-    found = moments(9).surface(checker.surfaces)
+    found = trigonometric_moments(9).encode_surface(checker.surfaces)
     exact = Technique(mirrored=True, warped=False).moments(checker.surfaces, wavelengths(), 8)
     np.testing.assert_allclose(found, exact, atol=2e-5)
 
@@ -25,33 +25,33 @@ def test_moments_are_the_integrals(checker):
 def test_a_sigmoid_is_found_again():
     known = np.array([[-1.0, 2.0, 0.5], [3.0, -1.0, -2.0], [0.3, 0.2, 0.1]])
     table = evaluate(Sigmoid(), known, grid())
-    np.testing.assert_allclose(evaluate(Sigmoid(), fitted(Sigmoid(), table), grid()), table, atol=1e-6)
+    np.testing.assert_allclose(evaluate(Sigmoid(), fit_sigmoids(Sigmoid(), table), grid()), table, atol=1e-6)
 
 
 def test_black_and_white_have_sigmoids_too():
     table = np.array([np.zeros(81), np.ones(81)])
-    np.testing.assert_allclose(evaluate(Sigmoid(), fitted(Sigmoid(), table), grid()), table, atol=0.01)
+    np.testing.assert_allclose(evaluate(Sigmoid(), fit_sigmoids(Sigmoid(), table), grid()), table, atol=0.01)
 
 
 def test_a_linear_model_of_all_components_is_exact(checker, lit):
     power, surfaces = checker.powers[:1], checker.surfaces[:5]
-    model = linear(6, power, surfaces)  # five products and the light
-    light = model.light(np.tile(power, (5, 1)))
-    found = model.xyz(model.product(light, model.surface(surfaces)))
-    np.testing.assert_allclose(found, (power * surfaces) @ observed(), rtol=1e-6)
+    model = linear_model(6, power, surfaces)  # five products and the light
+    light = model.encode_light(np.tile(power, (5, 1)))
+    found = model.xyz(model.multiply(light, model.encode_surface(surfaces)))
+    np.testing.assert_allclose(found, (power * surfaces) @ xyz_weights(), rtol=1e-6)
     np.testing.assert_allclose(model.basis.T @ model.basis, np.eye(6), atol=1e-12)
 
 
 def test_it_does_worse_with_what_it_was_not_made_from(checker, lit):
-    model = linear(6, checker.powers[:1], checker.surfaces[:5])
+    model = linear_model(6, checker.powers[:1], checker.surfaces[:5])
     surfaces = checker.surfaces[5:10]
-    found = model.xyz(model.product(model.light(lit("A")[:5]), model.surface(surfaces)))
-    assert np.abs(found - (lit("A")[:5] * surfaces) @ observed()).max() > 1e-3
+    found = model.xyz(model.multiply(model.encode_light(lit("A")[:5]), model.encode_surface(surfaces)))
+    assert np.abs(found - (lit("A")[:5] * surfaces) @ xyz_weights()).max() > 1e-3
 
 
 @pytest.mark.parametrize("paths", [1, 8])
 def test_heroes_are_a_quarter_apart_and_stratified(paths):
-    drawn = Hero(paths).wavelengths(500)
+    drawn = HeroWavelengths(paths).wavelengths(500)
     assert drawn.shape == (500, 4 * paths)
     assert drawn.min() >= 380
     assert drawn.max() <= 780
@@ -67,13 +67,13 @@ def test_heroes_are_right_in_the_mean_and_nearer_with_more_paths(checker):
     power = checker.powers[:1] * checker.surfaces[:1]
     spread = []
     for paths in (1, 8):
-        hero = Hero(paths)
-        found = hero.xyz(hero.light(np.tile(power, (4000, 1))))
+        hero = HeroWavelengths(paths)
+        found = hero.xyz(hero.encode_light(np.tile(power, (4000, 1))))
         error = found.std(axis=0) / np.sqrt(len(found))
-        assert (np.abs(found.mean(axis=0) - power @ observed()) < 4 * error + 1e-5).all()
+        assert (np.abs(found.mean(axis=0) - power @ xyz_weights()) < 4 * error + 1e-5).all()
         spread.append(found.std(axis=0).max())
     assert spread[1] < spread[0] / 8**0.5
 
 
 def test_the_same_pixels_draw_the_same_numbers():
-    np.testing.assert_array_equal(Hero(2).wavelengths(5), Hero(2).wavelengths(5))
+    np.testing.assert_array_equal(HeroWavelengths(2).wavelengths(5), HeroWavelengths(2).wavelengths(5))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.scene.representations.dense import observed
+from uplift.scene.representations.dense import xyz_weights
 from uplift.scene.representations.registry import COEFFICIENTS, COMPONENTS, MOMENTS, PATHS, SIZES
 
 NAMES = [
@@ -29,15 +29,15 @@ def test_these_are_all(every):
 def test_a_grey_under_an_even_light_is_exact(every, name):
     one = every[name]
     greys = np.array([[0.2], [0.5], [0.9]]) * np.ones(401)
-    light = one.light(np.full((3, 401), 2.0))
-    found = one.xyz(one.product(light, one.surface(greys)))
-    np.testing.assert_allclose(found, 2 * greys @ observed(), rtol=2e-4)
+    light = one.encode_light(np.full((3, 401), 2.0))
+    found = one.xyz(one.multiply(light, one.encode_surface(greys)))
+    np.testing.assert_allclose(found, 2 * greys @ xyz_weights(), rtol=2e-4)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_twice_the_light_is_twice_the_colour(every, checker, lit, name):
-    one, surfaces = every[name], every[name].surface(checker.surfaces)
-    once, twice = (one.xyz(one.product(one.light(k * lit("FL11")), surfaces)) for k in (1, 2))
+    one, surfaces = every[name], every[name].encode_surface(checker.surfaces)
+    once, twice = (one.xyz(one.multiply(one.encode_light(k * lit("FL11")), surfaces)) for k in (1, 2))
     np.testing.assert_allclose(twice, 2 * once, rtol=1e-9)
 
 
@@ -45,37 +45,37 @@ def test_twice_the_light_is_twice_the_colour(every, checker, lit, name):
 def test_every_row_is_by_itself(every, checker, lit, name):
     """But those of hero wavelengths: there a row is a pixel with random numbers of its own."""
     one = every[name]
-    whole = one.xyz(one.product(one.light(lit("FL2")), one.surface(checker.surfaces)))
-    part = one.xyz(one.product(one.light(lit("FL2")[5:7]), one.surface(checker.surfaces[5:7])))
+    whole = one.xyz(one.multiply(one.encode_light(lit("FL2")), one.encode_surface(checker.surfaces)))
+    part = one.xyz(one.multiply(one.encode_light(lit("FL2")[5:7]), one.encode_surface(checker.surfaces[5:7])))
     np.testing.assert_allclose(part, whole[5:7], rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_light_can_meet_a_second_surface(every, checker, lit, name):
-    one, surfaces = every[name], every[name].surface(checker.surfaces)
-    once = one.product(one.light(lit("A")), surfaces)
-    twice = one.xyz(one.product(once, surfaces))
+    one, surfaces = every[name], every[name].encode_surface(checker.surfaces)
+    once = one.multiply(one.encode_light(lit("A")), surfaces)
+    twice = one.xyz(one.multiply(once, surfaces))
     assert np.isfinite(twice).all()
-    np.testing.assert_array_equal(one.floats(once) >= 3, True)
-    dense = (lit("A") * checker.surfaces**2) @ observed()
+    np.testing.assert_array_equal(one.storage(once) >= 3, True)
+    dense = (lit("A") * checker.surfaces**2) @ xyz_weights()
     if name in ("PS32", "PF32", "RS32", "RE32", "GQ32", "TM17", "LM16"):
         np.testing.assert_allclose(twice, dense, atol=0.01)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_number_in_the_name_is_what_a_smooth_spectrum_takes(every, name):
-    stored = every[name].floats(every[name].surface(np.full((2, 401), 0.4)))
+    stored = every[name].storage(every[name].encode_surface(np.full((2, 401), 0.4)))
     count = int(name[2:])
     np.testing.assert_array_equal(stored, count**2 if name.startswith("LM") else count)
 
 
 @pytest.mark.parametrize("family", ["PS", "PF", "RS", "GQ"])
 def test_more_numbers_are_nearer_under_smooth_light(every, checker, lit, family):
-    dense = (lit("A") * checker.surfaces) @ observed()
+    dense = (lit("A") * checker.surfaces) @ xyz_weights()
     worst = []
     for count in SIZES:
         one = every[f"{family}{count}"]
-        found = one.xyz(one.product(one.light(lit("A")), one.surface(checker.surfaces)))
+        found = one.xyz(one.multiply(one.encode_light(lit("A")), one.encode_surface(checker.surfaces)))
         worst.append(np.abs(found - dense).max())
     assert worst == sorted(worst, reverse=True)
     assert worst[0] > 30 * worst[3]

@@ -5,27 +5,27 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.scene.representations.dense import at, hats, observed, wavelengths
-from uplift.scene.representations.point import point, points
-from uplift.scene.representations.quadrature import quadrature
-from uplift.scene.representations.riemann import cells, riemann
+from uplift.scene.representations.dense import hat_functions, interp_spectra, wavelengths, xyz_weights
+from uplift.scene.representations.gauss_quadrature import gauss_samples
+from uplift.scene.representations.point_sampling import point_samples, sample_points
+from uplift.scene.representations.riemann_sums import cell_overlaps, riemann_sums
 
 RANDOM = np.random.default_rng(5).random((3, 401))
 
 
 @pytest.mark.parametrize("count", [4, 9, 32])
 def test_points_are_linear_interpolation_there_and_back(count):
-    samples, places = point(count), np.linspace(380, 780, count)
-    assert points(count)[[0, -1]].tolist() == [380, 780]
-    taken = samples.light(RANDOM)
+    samples, places = point_samples(count), np.linspace(380, 780, count)
+    assert sample_points(count)[[0, -1]].tolist() == [380, 780]
+    taken = samples.encode_light(RANDOM)
     np.testing.assert_allclose(taken, [np.interp(places, wavelengths(), row) for row in RANDOM], rtol=1e-12)
     back = np.array([np.interp(wavelengths(), places, row) for row in taken])
-    np.testing.assert_allclose(samples.xyz(taken), back @ observed(), rtol=1e-12)
+    np.testing.assert_allclose(samples.xyz(taken), back @ xyz_weights(), rtol=1e-12)
 
 
 @pytest.mark.parametrize("count", [4, 7, 32])
 def test_cells_share_every_nanometre_out(count):
-    shares = cells(count)
+    shares = cell_overlaps(count)
     np.testing.assert_allclose(shares.sum(axis=0), 1)
     np.testing.assert_allclose(shares.sum(axis=1), 401 / count)
 
@@ -34,23 +34,23 @@ def test_cells_share_every_nanometre_out(count):
 def test_riemann_sums_are_means(count):
     fine = np.repeat(RANDOM, 16 * count, axis=1)  # 401 · 16 · count samples fill the cells evenly
     means = fine.reshape(len(RANDOM), count, -1).mean(axis=2)
-    np.testing.assert_allclose(riemann(count).surface(RANDOM), means, rtol=1e-12)
-    seen = np.repeat(observed(), 16 * count, axis=0).reshape(count, -1, 3).sum(axis=1) / (16 * count)
-    np.testing.assert_allclose(riemann(count).weights, seen, rtol=1e-12)
+    np.testing.assert_allclose(riemann_sums(count).encode_surface(RANDOM), means, rtol=1e-12)
+    seen = np.repeat(xyz_weights(), 16 * count, axis=0).reshape(count, -1, 3).sum(axis=1) / (16 * count)
+    np.testing.assert_allclose(riemann_sums(count).weights, seen, rtol=1e-12)
 
 
 @pytest.mark.parametrize("count", [4, 8, 16])
 def test_quadrature_is_exact_for_polynomials(count):
     x = (wavelengths() - 580) / 200
-    rule = quadrature(count)
+    rule = gauss_samples(count)
     for degree in range(count):
         power = np.polynomial.chebyshev.chebval(x, np.eye(degree + 1)[-1])[None]
         # What lies between the dense samples is linear, so nearly.
-        np.testing.assert_allclose(rule.xyz(rule.light(power)), power @ observed(), atol=1e-3)
+        np.testing.assert_allclose(rule.xyz(rule.encode_light(power)), power @ xyz_weights(), atol=1e-3)
 
 
 def test_quadrature_samples_where_the_eye_sees():
-    nodes = wavelengths() @ quadrature(8).encoder
+    nodes = wavelengths() @ gauss_samples(8).encoder
     assert 400 < nodes.min() < 440
     assert 650 < nodes.max() < 760
 
@@ -58,9 +58,9 @@ def test_quadrature_samples_where_the_eye_sees():
 def test_reading_between_samples():
     places = np.array([380.0, 380.25, 555.5, 780.0])
     expected = [np.interp(places, wavelengths(), row) for row in RANDOM]
-    np.testing.assert_allclose(at(RANDOM, places), expected, rtol=1e-12)
-    np.testing.assert_allclose(at(RANDOM, np.tile(places, (3, 1))), expected, rtol=1e-12)
+    np.testing.assert_allclose(interp_spectra(RANDOM, places), expected, rtol=1e-12)
+    np.testing.assert_allclose(interp_spectra(RANDOM, np.tile(places, (3, 1))), expected, rtol=1e-12)
 
 
 def test_hats_share_one_out():
-    np.testing.assert_allclose(hats([380, 400, 555.5, 780]).sum(axis=0), 1)
+    np.testing.assert_allclose(hat_functions([380, 400, 555.5, 780]).sum(axis=0), 1)

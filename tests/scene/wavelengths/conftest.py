@@ -8,7 +8,7 @@ from tests.conftest import MACBETH
 from uplift import read_atlas
 from uplift.atlas import on_grid
 from uplift.common.arrays import Array
-from uplift.scene.wavelengths import Setting, grid, set_up
+from uplift.scene.wavelengths import RenderSetup, grid, make_setup
 
 
 @pytest.fixture(scope="session")
@@ -18,10 +18,10 @@ def checker() -> Array:
 
 
 @pytest.fixture(scope="session")
-def smooth(checker: Array) -> Setting:
-    return set_up(checker, ["A", "D65"])
+def smooth(checker: Array) -> RenderSetup:
+    return make_setup(checker, ["A", "D65"])
 
 
 @pytest.fixture(scope="session")
-def spiky(checker: Array) -> Setting:
-    return set_up(checker, ["FL2", "FL11"])
+def spiky(checker: Array) -> RenderSetup:
+    return make_setup(checker, ["FL2", "FL11"])

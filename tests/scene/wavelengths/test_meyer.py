@@ -9,11 +9,18 @@ from benchmarks.wavelengths.printed import CHANNELS, rows
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.scene.quadrature import Undefined
-from uplift.scene.wavelengths import Setting, grid, judge, set_up
-from uplift.scene.wavelengths.experiments import error, trials, triangle
-from uplift.scene.wavelengths.meyer import allocations, four, functions, meyer, rules, sampling
-from uplift.scene.wavelengths.opponent import Opponent, cones, opponent, plain
+from uplift.scene.quadrature import UndefinedRule
+from uplift.scene.wavelengths import RenderSetup, evaluate, grid, make_setup
+from uplift.scene.wavelengths.experiments import allocation_error, bin_shares, run_trials
+from uplift.scene.wavelengths.meyer import (
+    allocations,
+    channel_functions,
+    combine_rules,
+    four_wavelength_rule,
+    meyer,
+    quadrature_rules,
+)
+from uplift.scene.wavelengths.opponent import OpponentSpace, cone_space, opponent_space, xyz_space
 
 
 def _matrix(space: str) -> Array:
@@ -27,46 +34,46 @@ def cmfs() -> Array:
 
 
 @pytest.fixture(scope="module")
-def found(cmfs: Array) -> Opponent:
-    return opponent(grid(), cmfs)
+def found(cmfs: Array) -> OpponentSpace:
+    return opponent_space(grid(), cmfs)
 
 
 @pytest.fixture(scope="module")
-def setting_c(checker: Array) -> Setting:
-    return set_up(checker, ["C"])
+def setting_c(checker: Array) -> RenderSetup:
+    return make_setup(checker, ["C"])
 
 
-def test_the_matrices_come_out_as_printed(cmfs: Array, found: Opponent) -> None:
-    np.testing.assert_allclose(cones(grid(), cmfs).matrix, _matrix("SML"), atol=1.5e-4)
+def test_the_matrices_come_out_as_printed(cmfs: Array, found: OpponentSpace) -> None:
+    np.testing.assert_allclose(cone_space(grid(), cmfs).matrix, _matrix("SML"), atol=1.5e-4)
     np.testing.assert_allclose(found.space.matrix, _matrix("AC1C2"), atol=1.5e-4)
 
 
-def test_the_eigenvalues_come_out_as_printed(found: Opponent) -> None:
+def test_the_eigenvalues_come_out_as_printed(found: OpponentSpace) -> None:
     printed = [float(row["eigenvalue"]) for row in rows("matrices") if row["eigenvalue"]]
     np.testing.assert_allclose(found.eigenvalues, printed, rtol=3e-3)
 
 
 def test_cones_alone_lie_at_the_confusion_points(cmfs: Array) -> None:
-    alone = np.linalg.inv(cones(grid(), cmfs).matrix)
+    alone = np.linalg.inv(cone_space(grid(), cmfs).matrix)
     chromaticities = (alone / alone.sum(axis=0))[:2].T
     np.testing.assert_allclose(chromaticities, [[0.171, -0.003], [1.14, -0.14], [0.735, 0.265]], atol=1e-12)
 
 
-def test_opponent_channels_are_uncorrelated(cmfs: Array, found: Opponent) -> None:
+def test_opponent_channels_are_uncorrelated(cmfs: Array, found: OpponentSpace) -> None:
     """The rotation alone is Karhunen–Loève; scaling each channel keeps them orthogonal."""
     seen = cmfs @ found.space.matrix.T
     gram = seen.T @ seen
     assert np.abs(gram - np.diag(np.diag(gram))).max() < 1e-9 * gram.max()
 
 
-def test_tables_1a_and_1b(cmfs: Array, found: Opponent) -> None:
-    ours = rules(found.space, grid(), cmfs)
+def test_tables_1a_and_1b(cmfs: Array, found: OpponentSpace) -> None:
+    ours = quadrature_rules(found.space, grid(), cmfs)
     printed = rows("table1")
     pairs, undefined = [], []
     for channel, orders in zip(CHANNELS, ours, strict=True):
         for order, rule in orders.items():
             own = [row for row in printed if (row["channel"], row["order"]) == (channel, str(order))]
-            if isinstance(rule, Undefined):
+            if isinstance(rule, UndefinedRule):
                 undefined.append((channel, order))
                 assert not own
                 continue
@@ -79,9 +86,9 @@ def test_tables_1a_and_1b(cmfs: Array, found: Opponent) -> None:
     np.testing.assert_allclose(factor * weights, as_printed, atol=4e-4)
 
 
-def test_table_2(cmfs: Array, found: Opponent, setting_c: Setting) -> None:
-    ours = rules(found.space, grid(), cmfs)
-    shared = four(ours, functions(found.space, grid(), cmfs))
+def test_table_2(cmfs: Array, found: OpponentSpace, setting_c: RenderSetup) -> None:
+    ours = quadrature_rules(found.space, grid(), cmfs)
+    shared = four_wavelength_rule(ours, channel_functions(found.space, grid(), cmfs))
     stated = [row for row in rows("table2") if row["row"] == "2"]
     nodes = np.concatenate([rule.nodes for rule in shared])
     weights = np.concatenate([rule.weights for rule in shared])
@@ -91,31 +98,33 @@ def test_table_2(cmfs: Array, found: Opponent, setting_c: Setting) -> None:
     # Our ColorChecker is another measurement than the paper's.
     for way, row in ((shared, "2"), ((ours[0][3], ours[1][2], ours[2][1]), "1")):
         expected = next(float(r["error"]) for r in rows("table2") if r["row"] == row)
-        assert error(setting_c, found.space, way) == pytest.approx(expected, rel=0.03)
+        assert allocation_error(setting_c, found.space, way) == pytest.approx(expected, rel=0.03)
 
 
 def test_figure_6_the_opponent_space_needs_the_fewest(
-    cmfs: Array, found: Opponent, setting_c: Setting
+    cmfs: Array, found: OpponentSpace, setting_c: RenderSetup
 ) -> None:
     """Averaged over all allocations of a total, as the paper does."""
-    spaces = (found.space, cones(grid(), cmfs), plain())
-    curves = [dict(zip(*trials(setting_c, space).by_total, strict=True)) for space in spaces]
+    spaces = (found.space, cone_space(grid(), cmfs), xyz_space())
+    curves = [dict(zip(*run_trials(setting_c, space).by_total, strict=True)) for space in spaces]
     for total in range(4, 31):
         assert curves[0][total] < min(curves[1][total], curves[2][total]), total
 
 
-def test_figure_7_a_before_c2_and_all_channels_before_one(found: Opponent, setting_c: Setting) -> None:
-    tried = trials(setting_c, found.space)
-    parts = triangle(tried)
+def test_figure_7_a_before_c2_and_all_channels_before_one(
+    found: OpponentSpace, setting_c: RenderSetup
+) -> None:
+    tried = run_trials(setting_c, found.space)
+    parts = bin_shares(tried)
     middle = np.abs(parts.corners.mean(axis=1) - 1 / 3).max(axis=1) < 0.2
     assert parts.errors[middle].mean() < parts.errors[~middle].mean()
     most = tried.counts.argmax(axis=1)
     assert tried.errors[most == 0].mean() < min(tried.errors[most == channel].mean() for channel in (1, 2))
 
 
-def test_small_triangles_hold_their_trials(found: Opponent, setting_c: Setting) -> None:
-    tried = trials(setting_c, found.space)
-    parts = triangle(tried, cuts=4)
+def test_small_triangles_hold_their_trials(found: OpponentSpace, setting_c: RenderSetup) -> None:
+    tried = run_trials(setting_c, found.space)
+    parts = bin_shares(tried, cuts=4)
     np.testing.assert_allclose(parts.corners.sum(axis=2), 1)
     assert parts.corners.min() >= 0
     for corners, stated in zip(parts.corners, parts.errors, strict=True):
@@ -138,17 +147,19 @@ def test_weights_of_every_order_add_up_to_the_same() -> None:
 
 
 @pytest.mark.parametrize("count", [4, 5, 12])
-def test_meyer_is_the_best_allocation(smooth: Setting, count: int, found: Opponent, cmfs: Array) -> None:
+def test_meyer_is_the_best_allocation(
+    smooth: RenderSetup, count: int, found: OpponentSpace, cmfs: Array
+) -> None:
     chosen = meyer(smooth, count)
     assert len(chosen) == count
     np.testing.assert_allclose((chosen.powers @ chosen.to_xyz)[:, 1], 1, rtol=1e-12)
-    reached = judge(smooth, chosen).mean
-    for way in allocations(rules(found.space, grid(), cmfs), count):
+    reached = evaluate(smooth, chosen).mean
+    for way in allocations(quadrature_rules(found.space, grid(), cmfs), count):
         assert sum(map(len, way)) == count
-        assert judge(smooth, sampling(smooth, found.space, way).balanced()).mean >= reached
+        assert evaluate(smooth, combine_rules(smooth, found.space, way).balanced()).mean >= reached
 
 
 @pytest.mark.parametrize("count", [1, 3, 31])
-def test_meyer_says_when_it_has_no_such_set(smooth: Setting, count: int) -> None:
+def test_meyer_says_when_it_has_no_such_set(smooth: RenderSetup, count: int) -> None:
     with pytest.raises(OptionError, match="4 to 30"):
         meyer(smooth, count)

@@ -16,7 +16,7 @@ from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, U
 from uplift.lab.chart.table import Chart, Row, State
 from uplift.lab.chart.task import Task
 from uplift.lab.chart.timing import batch_times, single_times
-from uplift.lab.study.held_out import judge
+from uplift.lab.study.held_out import spectrum_errors
 from uplift.lab.timing import environment
 
 FAR = 10
@@ -114,7 +114,7 @@ def _errors(method: Method, ask: Ask, task: Task) -> dict[str, float]:
     numbers = _summary("round_trip", apart) | {"round_trip_colours": len(rgb)}
     for prefix, name, measured in (("", "unseen", task.unseen), ("own_", "own", task.own)):
         asked, answered = _answered(method, ask, task, np.clip(task.sensor.rgb(measured), 0, 1))
-        errors = judge(answered, measured[: len(asked)], CHART_LIGHTS)
+        errors = spectrum_errors(answered, measured[: len(asked)], CHART_LIGHTS)
         parts = dict(zip(CHART_LIGHTS, errors.delta_e.T, strict=True))
         parts |= {"lights": errors.delta_e.mean(axis=1), "rms": errors.rms}
         for key, values in parts.items():

@@ -17,9 +17,9 @@ from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.comparison.measure import judge
 from uplift.lab.comparison.scene import LightSet, Scene
 from uplift.lab.comparison.statistics import Statistics
-from uplift.scene.representations.dense import TABLE
-from uplift.scene.representations.filters import FINE, KINDS, Filter, candidates, conversion
-from uplift.scene.representations.point import filtered, point
+from uplift.scene.representations.dense import TABLE_STRIDE
+from uplift.scene.representations.filters import FINE_STRIDE, KINDS, Filter, candidates, conversion
+from uplift.scene.representations.point_sampling import filtered_point_samples, point_samples
 
 COUNTS = (4, 8, 16)
 """As the thesis has them."""
@@ -47,7 +47,7 @@ class Tuned:
 
 def tune(
     scene: Scene,
-    every: int = FINE,
+    every: int = FINE_STRIDE,
     kinds: Sequence[str] = tuple(KINDS),
     counts: Sequence[int] = COUNTS,
     progress: ProgressCallback = ignore_progress,
@@ -57,14 +57,14 @@ def tune(
     The search tries ``every`` so many of the choices for each parameter.
     """
     found = [
-        Tuned(NONE, count, part.name, None, judge(point(count), scene, part))
+        Tuned(NONE, count, part.name, None, judge(point_samples(count), scene, part))
         for count in counts
         for part in scene.sets
     ]
     tasks = list(product(kinds, counts))
     for done, (kind, count) in enumerate(tasks, 1):
         for part, low_pass in zip(scene.sets, _best(candidates(kind, every), count, scene), strict=True):
-            best = judge(filtered(count, low_pass), scene, part)
+            best = judge(filtered_point_samples(count, low_pass), scene, part)
             found.append(Tuned(kind, count, part.name, low_pass, best))
         progress(Progress("filters", done, len(tasks)))
     return tuple(found)
@@ -82,8 +82,8 @@ def _best(tried: Sequence[Filter], count: int, scene: Scene) -> list[Filter]:
 
 def _judge(scene: Scene, part: LightSet, count: int) -> Callable[[Array], float]:
     """From what takes the 5 nm table to samples, (81, count), to the mean ΔE00: `judge`, quicker."""
-    surfaces, lights = scene.surfaces[:, ::TABLE], part.powers[:, ::TABLE]
-    reference, weights = scene.reference(part), point(count).weights
+    surfaces, lights = scene.surfaces[:, ::TABLE_STRIDE], part.powers[:, ::TABLE_STRIDE]
+    reference, weights = scene.reference(part), point_samples(count).weights
 
     def mean(encoder: Array) -> float:
         sent = (lights @ encoder)[:, None] * (surfaces @ encoder)

@@ -79,7 +79,7 @@ def compare(
     references = [scene.reference(part) for part in scene.sets]
     rows = []
     for done, representation in enumerate(representations, 1):
-        surfaces = representation.surface(scene.surfaces)
+        surfaces = representation.encode_surface(scene.surfaces)
         times = _times(representation, scene, effort or Effort())
         rows += [
             _row(representation, surfaces, part, scene, reference, ns)
@@ -98,7 +98,7 @@ def errors(
     """ΔE00 (K, E) of encoded ``surfaces`` under each light of a set. Raises `UpliftError`."""
     seen = [
         representation.xyz(
-            representation.product(_repeated(representation, power, len(scene.names)), surfaces)
+            representation.multiply(_repeated(representation, power, len(scene.names)), surfaces)
         )
         for power in part.powers
     ]
@@ -110,7 +110,7 @@ def errors(
 
 def judge(representation: Representation, scene: Scene, part: LightSet) -> Statistics:
     """The errors of a representation under a set of lights, and no cost. Raises `UpliftError`."""
-    surfaces = representation.surface(scene.surfaces)
+    surfaces = representation.encode_surface(scene.surfaces)
     return statistics(errors(representation, surfaces, part, scene, scene.reference(part)))
 
 
@@ -123,15 +123,17 @@ def _row(
         family=representation.family,
         lights=part.name,
         statistics=statistics(apart),
-        floats=float(representation.floats(surfaces).mean()),
-        light_floats=float(representation.floats(representation.light(part.powers)).mean()),
+        floats=float(representation.storage(surfaces).mean()),
+        light_floats=float(representation.storage(representation.encode_light(part.powers)).mean()),
         ns=ns,
     )
 
 
 def _times(representation: Representation, scene: Scene, effort: Effort) -> list[Spread]:
     """CPU time of a product, in ns, for each set: of each of its lights in turn with many surfaces at once."""
-    surfaces = representation.surface(np.resize(scene.surfaces, (effort.rows, scene.surfaces.shape[1])))
+    surfaces = representation.encode_surface(
+        np.resize(scene.surfaces, (effort.rows, scene.surfaces.shape[1]))
+    )
     return [_time(representation, surfaces, part, effort) for part in scene.sets]
 
 
@@ -140,7 +142,7 @@ def _time(representation: Representation, surfaces: Any, part: LightSet, effort:
 
     def laps(count: int) -> None:
         for light in lights * count:
-            representation.product(light, surfaces)
+            representation.multiply(light, surfaces)
 
     laps(1)
     _, once = timed(lambda: laps(1), 1)
@@ -150,4 +152,4 @@ def _time(representation: Representation, surfaces: Any, part: LightSet, effort:
 
 
 def _repeated(representation: Representation, power: Array, rows: int) -> Any:
-    return representation.light(np.broadcast_to(power, (rows, len(power))))
+    return representation.encode_light(np.broadcast_to(power, (rows, len(power))))

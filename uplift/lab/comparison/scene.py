@@ -14,7 +14,7 @@ from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.lights import KMENT_LIGHTS
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
-from uplift.scene.representations.dense import STEP, observed, wavelengths
+from uplift.scene.representations.dense import STEP, wavelengths, xyz_weights
 
 GIVEN = "given"
 """The set of lights that a user names."""
@@ -37,7 +37,7 @@ class LightSet:
     @cached_property
     def whites(self) -> Array:
         """(K, 3) XYZ of the lights."""
-        return self.powers @ observed()
+        return self.powers @ xyz_weights()
 
     def lab(self, xyz: Array) -> Array:
         """L*a*b* (K, E, 3) of XYZ (K, E, 3), each light's against its own white."""
@@ -59,7 +59,7 @@ class Scene:
 
     def reference(self, part: LightSet) -> Array:
         """L*a*b* (K, E, 3) of every surface under every light of a set, from the dense products."""
-        return part.lab((part.powers[:, None] * self.surfaces) @ observed())
+        return part.lab((part.powers[:, None] * self.surfaces) @ xyz_weights())
 
     def thinned(self, most: int = FEW) -> Scene:
         """The same with ``most`` surfaces at most, evenly from all."""
@@ -85,4 +85,4 @@ def scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scene:
 
 def _powers(names: Sequence[str]) -> Array:
     powers = np.stack([observer.illuminant_spd(name, step=STEP) for name in names])
-    return np.asarray(powers / (powers @ observed()[:, 1:2]))
+    return np.asarray(powers / (powers @ xyz_weights()[:, 1:2]))

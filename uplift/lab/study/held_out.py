@@ -25,7 +25,7 @@ FEWEST = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Errors:
+class SpectrumErrors:
     """Answers against measurements of n colours: rms (n,) over wavelength, ΔE00 (n, L) under L lights."""
 
     rms: Array
@@ -37,31 +37,33 @@ class Errors:
 
 
 @dataclass(frozen=True, eq=False)
-class Split:
+class HoldoutSplit:
     """One way to halve an atlas. ``errors`` by what answered; ``stated`` (n,) standard errors, if the cube has any.
 
     ``real`` (n,) is what the stated errors are about: ΔE00 under the cube's reference light.
     """
 
-    errors: dict[str, Errors]
+    errors: dict[str, SpectrumErrors]
     real: Array
     stated: Array | None
 
 
-def judge(answered: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS) -> Errors:
+def spectrum_errors(
+    answered: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS
+) -> SpectrumErrors:
     """Errors of reflectances (n, N), on the grid of every sensor, against measurements (n, N)."""
     rms = np.sqrt(((answered - measured) ** 2).mean(axis=1))
-    return Errors(
+    return SpectrumErrors(
         rms, np.stack([delta_e_spectra(observer.light(name), answered, measured) for name in lights], axis=1)
     )
 
 
-def halves(
+def holdout(
     spectra: Atlas,
     splits: int = 3,
     progress: ProgressCallback = ignore_progress,
     **options: Any,
-) -> tuple[Split, ...]:
+) -> tuple[HoldoutSplit, ...]:
     """Halve an atlas ``splits`` times, build a cube from one half with ``options``, ask it for the other.
 
     Beside the cube answer one of the same options without an atlas, and the sigmoid's. ``progress`` hears how many
@@ -89,15 +91,15 @@ def halves(
     return tuple(found)
 
 
-def _ask(cubes: dict[str, Cube], asked: Atlas) -> Split:
+def _ask(cubes: dict[str, Cube], asked: Atlas) -> HoldoutSplit:
     cube = cubes["half the atlas"]
     sensor = cube.data.sensor
     measured = resample(asked, sensor.wavelengths).values
     rgb = np.clip(sensor.rgb(measured), 0, 1)
     answers = {name: other.reflectance(rgb) for name, other in cubes.items()}
     light = observer.light(cube.data.reference, sensor.observer)
-    return Split(
-        {name: judge(answered, measured) for name, answered in answers.items()},
+    return HoldoutSplit(
+        {name: spectrum_errors(answered, measured) for name, answered in answers.items()},
         delta_e_spectra(light, answers["half the atlas"], measured),
         cube.standard_error(rgb),
     )
@@ -119,7 +121,7 @@ def _some(spectra: Atlas, rows: Indices) -> Atlas:
     return Atlas(tuple(spectra.entries[row] for row in rows))
 
 
-def stated_errors(splits: Sequence[Split]) -> Calibration | None:
+def pooled_calibration(splits: Sequence[HoldoutSplit]) -> Calibration | None:
     """Of all splits together. None where the cubes state no errors."""
     parts = [(split.real, split.stated) for split in splits if split.stated is not None]
     if not parts:

@@ -21,7 +21,7 @@ from uplift.pipeline import build
 
 NOISE = 0.002
 """Repeatability of a spectrophotometer, standard deviation at every wavelength."""
-MOVED = 0.5
+MOVED_DELTA_E = 0.5
 """ΔE00 by which a lattice point has moved enough to count: half of what an eye can just tell."""
 
 
@@ -45,16 +45,16 @@ class Change:
 
     @property
     def moved(self) -> float:
-        """Share of the lattice points that have `MOVED`."""
-        return float((self.delta_e > MOVED).mean())
+        """Share of the lattice points that have `MOVED_DELTA_E`."""
+        return float((self.delta_e > MOVED_DELTA_E).mean())
 
     def radius(self, apart: Array) -> float:
-        """The largest distance (n,) of a point that has `MOVED`; 0 where none has, NaN where all entries changed."""
-        return float(np.max(apart[self.delta_e > MOVED], initial=0)) if apart.size else float("nan")
+        """Largest distance (n,) of a point that moved; 0 where none has, NaN where all entries changed."""
+        return float(np.max(apart[self.delta_e > MOVED_DELTA_E], initial=0)) if apart.size else float("nan")
 
 
 @dataclass(frozen=True, eq=False)
-class Before:
+class Baseline:
     """A cube before its atlas changes: its entries, what it holds, the spectra (n, N) of its lattice points."""
 
     entries: tuple[Entry, ...]
@@ -64,19 +64,19 @@ class Before:
     options: Mapping[str, Any]
 
 
-def before(spectra: Atlas, light: Light, **options: Any) -> Before:
+def build_baseline(spectra: Atlas, light: Light, **options: Any) -> Baseline:
     """Build the cube that changes are compared with; changes are ΔE00 under ``light``. Raises `UpliftError`."""
     data = _build(spectra.entries, options)
     entries = tuple(entry for entry in spectra.entries if entry.name in data.atlas.names)
-    return Before(entries, data, _lattice(data), light, options)
+    return Baseline(entries, data, _lattice(data), light, options)
 
 
-def left_out(base: Before, name: str) -> Change:
+def remove_entry(base: Baseline, name: str) -> Change:
     """Without an entry."""
     return _compare(base, f"{name} left out", [entry for entry in base.entries if entry.name != name], name)
 
 
-def reversed_entry(base: Before, name: str) -> Change:
+def reverse_entry(base: Baseline, name: str) -> Change:
     """With an entry whose wavelengths were read from the wrong end."""
     entries = [
         replace(entry, values=entry.values[::-1]) if entry.name == name else entry for entry in base.entries
@@ -84,7 +84,7 @@ def reversed_entry(base: Before, name: str) -> Change:
     return _compare(base, f"{name} wrong", entries, name)
 
 
-def noisy(base: Before, seed: int) -> Change:
+def add_noise(base: Baseline, seed: int) -> Change:
     """With `NOISE` on every entry."""
     rng = np.random.default_rng(seed)
 
@@ -96,7 +96,7 @@ def noisy(base: Before, seed: int) -> Change:
     return _compare(base, f"noise, draw {seed}", [again(entry) for entry in base.entries])
 
 
-def _compare(base: Before, what: str, entries: Sequence[Entry], name: str | None = None) -> Change:
+def _compare(base: Baseline, what: str, entries: Sequence[Entry], name: str | None = None) -> Change:
     data = _build(entries, base.options)
     after = _lattice(data)
     rms = np.sqrt(((after - base.spectra) ** 2).mean(axis=1))

@@ -22,18 +22,18 @@ from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.study.technique import TECHNIQUES, Technique
 
-DEFAULT_MOST, LIMIT = 15, 32
+DEFAULT_MAX_MOMENTS, MAX_MOMENTS = 15, 32
 """Moments beside the zeroth: as many as the thesis has; more waves than that the 5 nm grid hardly shows."""
 MEASURES = ("delta_e_76_D65", *(f"delta_e_00_{name}" for name in REPORT_LIGHTS), "rms")
 """ΔE76 under D65 (the thesis's measure), ΔE00 under every light, rms difference of the spectra."""
-EVERY = "all"
+ALL_ATLASES = "all"
 """The name of all atlases together."""
 STEP = 1.0
 """nm between the samples that moments are taken from."""
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class MomentsStudy:
     """Errors of every entry, by every technique, with every count of moments.
 
     Parameters
@@ -56,20 +56,20 @@ class Study:
     @property
     def groups(self) -> tuple[str, ...]:
         """All entries together, and every atlas."""
-        return (EVERY, *dict.fromkeys(self.atlases))
+        return (ALL_ATLASES, *dict.fromkeys(self.atlases))
 
-    def rows(self, group: str = EVERY) -> NDArray[np.intp]:
+    def rows(self, group: str = ALL_ATLASES) -> NDArray[np.intp]:
         """Which entries are of a group."""
-        return np.array([row for row, atlas in enumerate(self.atlases) if group in (EVERY, atlas)])
+        return np.array([row for row, atlas in enumerate(self.atlases) if group in (ALL_ATLASES, atlas)])
 
-    def of(self, technique: Technique, moments: int, group: str = EVERY) -> Result:
+    def of(self, technique: Technique, moments: int, group: str = ALL_ATLASES) -> MomentsResult:
         """What a technique did to a group with so many moments."""
         rows = self.rows(group)
         errors = self.errors[TECHNIQUES.index(technique), moments, rows]
         worst = int(rows[errors[:, 0].argmax()])
-        return Result(group, technique, moments, errors.mean(axis=0), errors.max(axis=0), worst)
+        return MomentsResult(group, technique, moments, errors.mean(axis=0), errors.max(axis=0), worst)
 
-    def results(self) -> Iterator[Result]:
+    def results(self) -> Iterator[MomentsResult]:
         """Every group, technique and count."""
         for group in self.groups:
             for technique in TECHNIQUES:
@@ -78,7 +78,7 @@ class Study:
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
+class MomentsResult:
     """Mean and largest error over a group, in the order of `MEASURES`; ``worst`` is the entry of the largest ΔE76."""
 
     group: str
@@ -98,9 +98,11 @@ def fine_grid() -> Array:
     return np.arange(observer.START, observer.END + STEP / 2, STEP)
 
 
-def study(
-    atlases: Mapping[str, Atlas], most: int = DEFAULT_MOST, progress: ProgressCallback = ignore_progress
-) -> Study:
+def study_moments(
+    atlases: Mapping[str, Atlas],
+    most: int = DEFAULT_MAX_MOMENTS,
+    progress: ProgressCallback = ignore_progress,
+) -> MomentsStudy:
     """Reduce every entry of the atlases to 0 … ``most`` moments and back, by all four techniques.
 
     ``progress`` hears how many of how many reconstructions are done. An `UpliftWarning` names every entry that
@@ -111,8 +113,8 @@ def study(
     OptionError : ``most`` outside 0 to 32.
     AtlasError : no entries, or two of one name.
     """
-    if not 0 <= most <= LIMIT:
-        raise OptionError(f"{most} moments are out of range", hint=f"take 0 to {LIMIT}")
+    if not 0 <= most <= MAX_MOMENTS:
+        raise OptionError(f"{most} moments are out of range", hint=f"take 0 to {MAX_MOMENTS}")
     spectra = merge(atlases.values())
     if not spectra.entries:
         raise AtlasError("no entries to study", hint="name an atlas that holds reflectances")
@@ -126,7 +128,7 @@ def study(
             errors[row, count] = compare(found)
             progress(Progress("reconstructions", row * (most + 1) + count + 1, len(TECHNIQUES) * (most + 1)))
     homes = [name for name, atlas in atlases.items() for _ in atlas.entries]
-    return Study(spectra.names, tuple(homes), measured, errors)
+    return MomentsStudy(spectra.names, tuple(homes), measured, errors)
 
 
 def _comparer(measured: Array) -> Callable[[Array], Array]:

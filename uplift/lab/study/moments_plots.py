@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.lab.study.moments import Study, fine_grid
+from uplift.lab.study.moments import MomentsStudy, fine_grid
 from uplift.lab.study.technique import TECHNIQUES, Technique
 from uplift.viz.figure import new_figure, style_axes, style_spectrum_axes, write_png
 
@@ -34,7 +34,7 @@ class Curve:
     most: Array
 
 
-def curves(study: Study) -> dict[Technique, Curve]:
+def curves(study: MomentsStudy) -> dict[Technique, Curve]:
     """The errors of all entries together."""
     found = {}
     for technique in TECHNIQUES:
@@ -62,13 +62,13 @@ def plot_errors(rows: Mapping[str, Mapping[Technique, Curve]], path: Path, *, fo
     write_png(figure, path, force=force)
 
 
-def plot_patches(study: Study, path: Path, *, force: bool = False) -> None:
+def plot_patches(study: MomentsStudy, path: Path, *, force: bool = False) -> None:
     """Draw the thesis's patches, or the first entries where it is another atlas. Raises `OutputError`."""
     held = [study.names.index(name) for name in PATCHES if name in study.names]
     _plot_spectra(study, [held or range(min(2, len(study.names)))], path, force=force)
 
 
-def plot_worst(study: Study, path: Path, *, force: bool = False) -> None:
+def plot_worst(study: MomentsStudy, path: Path, *, force: bool = False) -> None:
     """Draw the worst two entries of mirroring with the warp (top) and without it. Raises `OutputError`."""
     errors = study.errors[: len(COLOURS), _compared(study), :, 0]
     _plot_spectra(study, [np.argsort(row)[::-1][:2] for row in errors], path, force=force)
@@ -92,7 +92,7 @@ def _draw_curves(axes: Any, found: Mapping[Technique, Curve], key: str) -> None:
     style_axes(axes)
 
 
-def _plot_spectra(study: Study, rows: Sequence[Iterable[int]], path: Path, *, force: bool) -> None:
+def _plot_spectra(study: MomentsStudy, rows: Sequence[Iterable[int]], path: Path, *, force: bool) -> None:
     """A panel for every entry of every row; all rows are as long."""
     entries = [list(row) for row in rows]
     figure = new_figure(9.0, 3.6 * len(entries))
@@ -106,7 +106,7 @@ def _plot_spectra(study: Study, rows: Sequence[Iterable[int]], path: Path, *, fo
     write_png(figure, path, force=force)
 
 
-def _draw_entry(axes: Any, study: Study, entry: int) -> None:
+def _draw_entry(axes: Any, study: MomentsStudy, entry: int) -> None:
     measured, moments = study.measured[entry : entry + 1], _compared(study)
     axes.plot(fine_grid(), measured[0], color="0.15", linewidth=3.0, alpha=0.35, label="measured")
     for technique, colour in COLOURS.items():
@@ -123,6 +123,6 @@ def _draw_entry(axes: Any, study: Study, entry: int) -> None:
     axes.legend(frameon=False, fontsize=9)
 
 
-def _compared(study: Study) -> int:
+def _compared(study: MomentsStudy) -> int:
     """Moments of the mirrored techniques that are drawn."""
     return min(COMPARED - 1, study.most)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from uplift.lab.study.moments import MEASURES, Result, Study
+from uplift.lab.study.moments import MEASURES, MomentsResult, MomentsStudy
 
 
-def records(study: Study) -> list[dict[str, Any]]:
+def records(study: MomentsStudy) -> list[dict[str, Any]]:
     """A flat record for every group, technique and count; ``<measure>_mean`` and ``_max`` for every measure."""
     return [_record(study, result) for result in study.results()]
 
 
-def _record(study: Study, result: Result) -> dict[str, Any]:
+def _record(study: MomentsStudy, result: MomentsResult) -> dict[str, Any]:
     errors: dict[str, float] = {}
     for name, mean, most in zip(MEASURES, result.mean, result.most, strict=True):
         errors |= {f"{name}_mean": float(mean), f"{name}_max": float(most)}

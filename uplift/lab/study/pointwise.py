@@ -32,7 +32,7 @@ IN_MOMENTS, IN_MULTIPLIERS = "in c", "in p"
 
 
 @dataclass(frozen=True, eq=False)
-class Pointwise:
+class PointwiseProblem:
     """Residuals of one colour in ``unknowns``: `IN_MOMENTS` or `IN_MULTIPLIERS`."""
 
     model: Model
@@ -72,7 +72,7 @@ class Pointwise:
         try:
             ends = self.rgb(np.concatenate([x + step, x - step]))
         except UpliftError as error:
-            raise StuckError(x) from error
+            raise NoDerivativeError(x) from error
         return np.asarray((ends[: len(x)] - ends[len(x) :]).T / (2 * STEP))
 
     def solve(self, rgb: Array, start: Array) -> Array:
@@ -90,12 +90,12 @@ class Pointwise:
                 xtol=LEAST,
                 gtol=LEAST,
             )
-        except StuckError as stuck:
+        except NoDerivativeError as stuck:
             return stuck.at
         return np.asarray(found.x)
 
 
-class StuckError(UpliftError):
+class NoDerivativeError(UpliftError):
     """The solver cannot take a derivative ``at`` these unknowns (C,)."""
 
     def __init__(self, at: Array) -> None:
@@ -104,7 +104,7 @@ class StuckError(UpliftError):
 
 
 @dataclass(frozen=True, eq=False)
-class Grown:
+class PointwiseFit:
     """Distance (n,), max |linear RGB|, of every lattice point; how many starts, and the longest chain of neighbours."""
 
     distance: Array
@@ -112,9 +112,9 @@ class Grown:
     rounds: int
 
 
-def grow_pointwise(
-    task: Pointwise, lattice: Lattice, threshold: float, progress: ProgressCallback = ignore_progress
-) -> Grown:
+def fit_pointwise(
+    task: PointwiseProblem, lattice: Lattice, threshold: float, progress: ProgressCallback = ignore_progress
+) -> PointwiseFit:
     """Fit the lattice from its middle; each fitted point lends its unknowns to neighbours that are not.
 
     ``progress`` hears how many points are fitted.
@@ -147,4 +147,4 @@ def grow_pointwise(
         progress(Progress("fit", int((distance <= threshold).sum()), lattice.size))
     for point in np.flatnonzero(np.isinf(distance)).tolist():  # no fitted neighbour ever reached these
         attempt(point, task.grey, 0)
-    return Grown(distance, starts, int(rounds.max()))
+    return PointwiseFit(distance, starts, int(rounds.max()))

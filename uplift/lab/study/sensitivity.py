@@ -13,9 +13,9 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.study.input_noise import Move, moves
-from uplift.lab.study.locality import Change, before, left_out, noisy, reversed_entry
-from uplift.lab.study.steepness import Steepness, steepness
+from uplift.lab.study.input_noise import Perturbation, perturb
+from uplift.lab.study.lipschitz import LipschitzConstants, lipschitz_constants
+from uplift.lab.study.locality import Change, add_noise, build_baseline, remove_entry, reverse_entry
 from uplift.lookup import Cube
 
 DRAWS = 3
@@ -26,16 +26,16 @@ class Sensitivity:
     """Of a cube; the changes of its atlas are none for a cube without."""
 
     cube: Cube
-    moves: list[Move]
-    steepness: Steepness
+    perturbations: list[Perturbation]
+    lipschitz: LipschitzConstants
     noise: list[Change]
-    wrong: list[Change]
-    left_out: list[Change]
+    reversed: list[Change]
+    removed: list[Change]
 
     @property
     def steepest(self) -> tuple[float, float, float]:
         """Linear RGB of the lowest corner of the steepest cell."""
-        cells = self.steepness.cells
+        cells = self.lipschitz.cells
         red, green, blue = (
             float(self.cube.data.lattice.nodes[place])
             for place in np.unravel_index(int(cells.argmax()), cells.shape)
@@ -44,9 +44,9 @@ class Sensitivity:
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
-        steep, boxes = self.steepness, self.steepness.boxes
+        steep, boxes = self.lipschitz, self.lipschitz.boxes
         return {
-            "moves": [asdict(move) for move in self.moves],
+            "moves": [asdict(move) for move in self.perturbations],
             "lipschitz": {
                 "largest": steep.largest,
                 "median_cell": float(np.median(steep.cells)),
@@ -56,7 +56,7 @@ class Sensitivity:
                 "steepest_wavelength": float(self.cube.data.sensor.wavelengths[steep.waves.argmax()]),
                 "largest_box": float(boxes.max()) if boxes.size else None,
             },
-            "changes": [changed(change) for change in (*self.noise, *self.wrong, *self.left_out)],
+            "changes": [changed(change) for change in (*self.noise, *self.reversed, *self.removed)],
         }
 
 
@@ -75,7 +75,7 @@ def changed(change: Change) -> dict[str, Any]:
     }
 
 
-def study(
+def study_sensitivity(
     cube: Cube,
     atlas: Atlas | None,
     most: int,
@@ -97,16 +97,16 @@ def study(
             "the cube was built for the colours of a scene, and between its cells there is nothing to measure"
         )
         raise OptionError(problem, hint="build it without --scene")
-    asked, steep = moves(cube, light), steepness(cube.data)
+    asked, steep = perturb(cube, light), lipschitz_constants(cube.data)
     if atlas is None or not most:
         return Sensitivity(cube, asked, steep, [], [], [])
     options = dict(cube.data.provenance["options"])
-    base = before(atlas, light, **options | {"lights": tuple(options["lights"])})
+    base = build_baseline(atlas, light, **options | {"lights": tuple(options["lights"])})
     names = base.data.atlas.names[:most]
     jobs = [
-        *(partial(noisy, base, seed) for seed in range(DRAWS)),
-        *(partial(reversed_entry, base, name) for name in names),
-        *(partial(left_out, base, name) for name in names),
+        *(partial(add_noise, base, seed) for seed in range(DRAWS)),
+        *(partial(reverse_entry, base, name) for name in names),
+        *(partial(remove_entry, base, name) for name in names),
     ]
     done = []
     for number, job in enumerate(jobs, 1):

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from uplift.cube import CubeData
-from uplift.lab.study.locality import MOVED, Change
-from uplift.lab.study.steepness import Steepness
+from uplift.lab.study.lipschitz import LipschitzConstants
+from uplift.lab.study.locality import MOVED_DELTA_E, Change
 from uplift.viz.figure import new_figure, style_axes, write_png
 
 Path = str | os.PathLike[str]
@@ -21,7 +21,7 @@ SHOWN = 1e-4
 """Least ΔE00 that is drawn."""
 
 
-def plot_steepness(data: CubeData, found: Steepness, path: Path, *, force: bool = False) -> None:
+def plot_steepness(data: CubeData, found: LipschitzConstants, path: Path, *, force: bool = False) -> None:
     """Draw the steepest cell along each channel, and the steepest wavelengths. Raises `OutputError`."""
     from matplotlib.colors import LinearSegmentedColormap, LogNorm
 
@@ -73,7 +73,7 @@ def _scatter(axes: Any, apart: Sequence[Any], changes: Sequence[Change]) -> None
     distance = np.concatenate(apart)
     moved = np.maximum(np.concatenate([change.delta_e for change in changes]), SHOWN)
     shown = moved > SHOWN
-    far, high = float(distance[shown].max(initial=0.1)), max(float(moved.max()), 2 * MOVED)
+    far, high = float(distance[shown].max(initial=0.1)), max(float(moved.max()), 2 * MOVED_DELTA_E)
     axes.hexbin(
         distance[shown],
         moved[shown],
@@ -93,9 +93,14 @@ def _scatter(axes: Any, apart: Sequence[Any], changes: Sequence[Change]) -> None
     axes.plot(
         middle, [np.median(moved[place == bin]) for bin in held], color=INK, linewidth=1.6, label="median"
     )
-    axes.axhline(MOVED, color="0.4", linewidth=0.8, linestyle=(0, (4, 3)))
+    axes.axhline(MOVED_DELTA_E, color="0.4", linewidth=0.8, linestyle=(0, (4, 3)))
     axes.annotate(
-        f"ΔE00 {MOVED:g}", (1, MOVED), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8
+        f"ΔE00 {MOVED_DELTA_E:g}",
+        (1, MOVED_DELTA_E),
+        xycoords=("axes fraction", "data"),
+        ha="right",
+        va="bottom",
+        fontsize=8,
     )
     axes.yaxis.set_major_formatter("{x:g}")
     axes.set_xlim(0, 1.05 * far)

@@ -16,19 +16,19 @@ from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning, unknown_name
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS, Pointwise, grow_pointwise
+from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS, PointwiseProblem, fit_pointwise
 from uplift.lattice import Lattice, Status
 from uplift.models import Moments, Sigmoid
 from uplift.pipeline import build
 
-OURS = "uplift"
-SOLVERS = (OURS, IN_MOMENTS, IN_MULTIPLIERS)
+UPLIFT = "uplift"
+SOLVERS = (UPLIFT, IN_MOMENTS, IN_MULTIPLIERS)
 NO_ATLAS = "none"
 
 
 @dataclass(frozen=True, order=True)
-class Setting:
-    """One build. ``solver`` is `OURS`, or what the thesis's least squares solve in."""
+class RunConfig:
+    """One build. ``solver`` is `UPLIFT`, or what the thesis's least squares solve in."""
 
     model: str = Moments.name
     coefficients: int = 9
@@ -36,7 +36,7 @@ class Setting:
     space: str = "sRGB"
     threshold: float = 1e-4
     atlas: str = NO_ATLAS
-    solver: str = OURS
+    solver: str = UPLIFT
 
     @property
     def technique(self) -> str:
@@ -45,7 +45,7 @@ class Setting:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class RunResult:
     """What became of a build.
 
     Parameters
@@ -59,7 +59,7 @@ class Outcome:
     seconds : wall time; with what is compiled for the first time.
     """
 
-    setting: Setting
+    setting: RunConfig
     points: int
     realisable: int
     unfitted: int
@@ -83,11 +83,11 @@ class Outcome:
         return rest.pop("setting") | {"success": self.success} | rest
 
 
-def study(
-    settings: Iterable[Setting],
+def study_stability(
+    settings: Iterable[RunConfig],
     atlases: Mapping[str, Atlas],
     progress: ProgressCallback = ignore_progress,
-) -> list[Outcome]:
+) -> list[RunResult]:
     """Run every setting; ``progress`` hears how many of how many are done.
 
     In the order of models, so that what JAX compiles for one is all used before the next.
@@ -107,12 +107,12 @@ def study(
     return outcomes
 
 
-def run(setting: Setting, atlases: Mapping[str, Atlas]) -> Outcome:
+def run(setting: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
     """Build, and judge by what is stored. Raises `UpliftError` for what cannot be built."""
-    return _ours(setting, atlases) if setting.solver == OURS else _pointwise(setting)
+    return _ours(setting, atlases) if setting.solver == UPLIFT else _pointwise(setting)
 
 
-def _ours(setting: Setting, atlases: Mapping[str, Atlas]) -> Outcome:
+def _ours(setting: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
     rounds = 0
 
     def progress(done: Progress) -> None:
@@ -138,12 +138,12 @@ def _ours(setting: Setting, atlases: Mapping[str, Atlas]) -> Outcome:
     return _judge(setting, data.lattice.points, ~unrealisable, data.distance, missed, rounds, calls, seconds)
 
 
-def _pointwise(setting: Setting) -> Outcome:
+def _pointwise(setting: RunConfig) -> RunResult:
     sensor = observer.sensor(setting.space)
     lattice = Lattice(observer.axis_nodes("srgb", setting.dim))
     begin = time.perf_counter()
-    task = Pointwise(Moments(setting.coefficients), sensor, setting.solver)
-    grown = grow_pointwise(task, lattice, setting.threshold)
+    task = PointwiseProblem(Moments(setting.coefficients), sensor, setting.solver)
+    grown = fit_pointwise(task, lattice, setting.threshold)
     seconds = time.perf_counter() - begin
     realisable = solid(sensor.matrix).holds(lattice.points)
     calls = grown.starts - lattice.size
@@ -151,7 +151,7 @@ def _pointwise(setting: Setting) -> Outcome:
 
 
 def _judge(
-    setting: Setting,
+    setting: RunConfig,
     points: Array,
     realisable: Any,
     distance: Any,
@@ -159,11 +159,11 @@ def _judge(
     rounds: int,
     calls: int,
     seconds: float,
-) -> Outcome:
+) -> RunResult:
     off = np.where(realisable, distance, -1)
     worst = int(off.argmax())
     r, g, b = (float(value) for value in points[worst])
-    return Outcome(
+    return RunResult(
         setting,
         points=len(points),
         realisable=int(realisable.sum()),

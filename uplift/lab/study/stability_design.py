@@ -15,8 +15,8 @@ import numpy as np
 
 from uplift.common.errors import OptionError
 from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS
-from uplift.lab.study.stability import NO_ATLAS, Setting
-from uplift.lab.study.synthetic_atlases import MADE
+from uplift.lab.study.stability import NO_ATLAS, RunConfig
+from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES
 from uplift.models import Moments, Sigmoid
 from uplift.pipeline.options import MODELS
 
@@ -30,7 +30,7 @@ LARGEST_DRAWN = 17
 
 
 @dataclass(frozen=True)
-class Axes:
+class DesignSpace:
     """The values to choose from; ``drawn`` settings are a sample of them all."""
 
     dims: tuple[int, ...] = (4, 8, 17, 32, 64)
@@ -38,7 +38,7 @@ class Axes:
     spaces: tuple[str, ...] = SPACES
     models: tuple[str, ...] = MODELS
     thresholds: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-    atlases: tuple[str, ...] = (NO_ATLAS, *MADE)
+    atlases: tuple[str, ...] = (NO_ATLAS, *SYNTHETIC_ATLASES)
     drawn: int = 12
     peer_dims: tuple[int, ...] = (4,)
 
@@ -48,10 +48,10 @@ class Axes:
                 raise OptionError(f"no {name} to study", hint="give at least one")
 
     @property
-    def techniques(self) -> tuple[Setting, ...]:
+    def techniques(self) -> tuple[RunConfig, ...]:
         """One setting for every model and count of coefficients."""
-        found = [Setting(Moments.name, count) for count in self.coefficients if Moments.name in self.models]
-        return (*found, *[Setting(Sigmoid.name, 3)] * (Sigmoid.name in self.models))
+        found = [RunConfig(Moments.name, count) for count in self.coefficients if Moments.name in self.models]
+        return (*found, *[RunConfig(Sigmoid.name, 3)] * (Sigmoid.name in self.models))
 
     def base(self, **preferred: Any) -> dict[str, Any]:
         """What a grid holds fast: the preferred values where they are among those chosen, else the nearest."""
@@ -69,7 +69,7 @@ class Axes:
         }
 
 
-QUICK = Axes(
+QUICK_DESIGN = DesignSpace(
     dims=(4, 9),
     coefficients=(3, 9),
     spaces=(SPACES[0], SPACES[-1]),
@@ -81,15 +81,15 @@ QUICK = Axes(
 
 @dataclass(frozen=True)
 class Grid:
-    """An axis of `Setting` against the techniques."""
+    """An axis of `RunConfig` against the techniques."""
 
     title: str
     axis: str
     values: tuple[Any, ...]
-    techniques: tuple[Setting, ...]
+    techniques: tuple[RunConfig, ...]
     fixed: dict[str, Any]
 
-    def rows(self) -> Iterator[tuple[str, list[Setting]]]:
+    def rows(self) -> Iterator[tuple[str, list[RunConfig]]]:
         """Every technique's name, and its settings along the axis."""
         for technique in self.techniques:
             yield (
@@ -98,7 +98,7 @@ class Grid:
             )
 
 
-def grids(axes: Axes) -> tuple[Grid, ...]:
+def grids(axes: DesignSpace) -> tuple[Grid, ...]:
     """The grids; a later one of the same settings costs nothing."""
     techniques, wide = axes.techniques, _in(axes.spaces, SPACES[-1])
     small = {"dim": min(axes.dims, key=lambda dim: abs(dim - SMALL))}
@@ -117,20 +117,20 @@ def grids(axes: Axes) -> tuple[Grid, ...]:
     return tuple(found.values())
 
 
-def peers(axes: Axes) -> tuple[Setting, ...]:
+def solver_runs(axes: DesignSpace) -> tuple[RunConfig, ...]:
     """The thesis's solver in its own unknowns and in ours, and our solver, on small sRGB lattices."""
     if Moments.name not in axes.models or SPACES[0] not in axes.spaces:
         return ()
     return tuple(
-        Setting(Moments.name, count, dim, solver=solver)
+        RunConfig(Moments.name, count, dim, solver=solver)
         for dim in axes.peer_dims
         for count in COMPARED
         if count in axes.coefficients
-        for solver in (IN_MOMENTS, IN_MULTIPLIERS, Setting.solver)
+        for solver in (IN_MOMENTS, IN_MULTIPLIERS, RunConfig.solver)
     )
 
 
-def sample(axes: Axes) -> tuple[Setting, ...]:
+def draw_sample(axes: DesignSpace) -> tuple[RunConfig, ...]:
     """Settings drawn from everything up to `LARGEST_DRAWN`; always the same."""
     dims = [dim for dim in axes.dims if dim <= LARGEST_DRAWN] or [min(axes.dims)]
     every = [
@@ -144,10 +144,10 @@ def sample(axes: Axes) -> tuple[Setting, ...]:
     return tuple(every[number] for number in drawn)
 
 
-def design(axes: Axes) -> tuple[Setting, ...]:
+def design(axes: DesignSpace) -> tuple[RunConfig, ...]:
     """Every setting of the grids, the sample and the peers, once."""
     in_grids = [setting for grid in grids(axes) for _, row in grid.rows() for setting in row]
-    return tuple(dict.fromkeys([*in_grids, *sample(axes), *peers(axes)]))
+    return tuple(dict.fromkeys([*in_grids, *draw_sample(axes), *solver_runs(axes)]))
 
 
 def _in(values: tuple[Any, ...], wanted: Any) -> Any:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.lab.study.stability import Outcome, Setting
+from uplift.lab.study.stability import RunConfig, RunResult
 from uplift.lab.study.stability_design import Grid
 from uplift.viz.figure import new_figure, write_png
 
@@ -25,8 +25,8 @@ class Quantity:
     """What a column of panels shows of an outcome: a value from 0 to 1 for the colour, and a text for the cell."""
 
     title: str
-    value: Callable[[Outcome], float]
-    text: Callable[[Outcome], str]
+    value: Callable[[RunResult], float]
+    text: Callable[[RunResult], str]
 
 
 def _decades(value: float, low: float, high: float) -> float:
@@ -34,12 +34,12 @@ def _decades(value: float, low: float, high: float) -> float:
     return float(np.clip(np.log10(max(value, low) / low) / np.log10(high / low), 0, 1))
 
 
-def _failed(outcome: Outcome) -> str:
+def _failed(outcome: RunResult) -> str:
     stand_ins = f" ({outcome.stand_ins})" if outcome.stand_ins else ""
     return (f"{outcome.unfitted}" if outcome.unfitted or stand_ins else "·") + stand_ins
 
 
-def _calls(outcome: Outcome) -> str:
+def _calls(outcome: RunResult) -> str:
     return f"{outcome.rounds}/{outcome.calls}" if outcome.rounds or outcome.calls else "·"
 
 
@@ -58,7 +58,7 @@ QUANTITIES = (
 
 def plot_map(
     grids: Sequence[Grid],
-    outcomes: Mapping[Setting, Outcome],
+    outcomes: Mapping[RunConfig, RunResult],
     path: str | os.PathLike[str],
     *,
     force: bool = False,
@@ -82,7 +82,7 @@ def plot_map(
     write_png(figure, path, force=force)
 
 
-def _panel(axes: Any, grid: Grid, found: list[list[Outcome]], quantity: Quantity) -> None:
+def _panel(axes: Any, grid: Grid, found: list[list[RunResult]], quantity: Quantity) -> None:
     values = np.array([[quantity.value(one) for one in row] for row in found])
     failed = np.array([[one.unfitted > 0 for one in row] for row in found])
     missed = np.array([[one.stand_ins > 0 and quantity is QUANTITIES[0] for one in row] for row in found])

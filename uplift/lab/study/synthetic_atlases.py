@@ -48,7 +48,7 @@ def noisy() -> Atlas:
     return _named("noisy", [one(level) for level in np.linspace(0.05, 0.95, FEW)])
 
 
-MADE: dict[str, Callable[[], Atlas]] = {"crowded": crowded, "spiky": spiky, "noisy": noisy}
+SYNTHETIC_ATLASES: dict[str, Callable[[], Atlas]] = {"crowded": crowded, "spiky": spiky, "noisy": noisy}
 
 
 def _smooth(rng: np.random.Generator, amplitude: float) -> Array:

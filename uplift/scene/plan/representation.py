@@ -18,8 +18,8 @@ from uplift.lookup import Cube
 from uplift.scene.plan.context import Bench
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import WRONG, Question
-from uplift.scene.representations.dense import STEP, observed, wavelengths
-from uplift.scene.representations.registry import representations
+from uplift.scene.representations.dense import STEP, wavelengths, xyz_weights
+from uplift.scene.representations.registry import all_representations
 from uplift.scene.representations.representation import Representation
 
 COLOURS = 200
@@ -39,18 +39,18 @@ class Dense:
 
     def trial(self, representation: Representation, typed: str) -> Trial:
         """What products of every light with every surface look like."""
-        held = representation.surface(self.surfaces)
-        floats = float(representation.floats(held).mean())
-        of_light = float(representation.floats(representation.light(self.powers)).mean())
+        held = representation.encode_surface(self.surfaces)
+        floats = float(representation.storage(held).mean())
+        of_light = float(representation.storage(representation.encode_light(self.powers)).mean())
         error = self.question.seen([self._seen(representation, power, held) for power in self.powers])
         told = f"{floats:.4g} floats a surface, {of_light:.4g} a light"
         choice = {"representation": representation.name, "family": representation.family}
         return Trial(representation.name, floats + of_light / 1000, told, typed, choice, error)
 
     def _seen(self, representation: Representation, power: Array, held: Any) -> Array:
-        light = representation.light(np.broadcast_to(power, (len(self.surfaces), len(power))))
+        light = representation.encode_light(np.broadcast_to(power, (len(self.surfaces), len(power))))
         try:
-            return representation.xyz(representation.product(light, held))
+            return representation.xyz(representation.multiply(light, held))
         except UpliftError:
             return np.full((len(self.surfaces), 3), WRONG)
 
@@ -64,7 +64,7 @@ def representation(bench: Bench, question: Question, limit: float, cube: Cube) -
     typed = shlex.join(["uplift", "compare", *words, "--target", f"{limit:.3g}"])
 
     def trials() -> Iterator[Trial]:
-        every = representations(dense.powers, dense.surfaces)
+        every = all_representations(dense.powers, dense.surfaces)
         made = []
         for done, each in enumerate(every):
             bench.progress(Progress(f"representation {each.name}", done, len(every)))
@@ -77,11 +77,11 @@ def representation(bench: Bench, question: Question, limit: float, cube: Cube) -
 def _dense(bench: Bench, question: Question, cube: Cube) -> Dense:
     few, nm = question.thinned(COLOURS), wavelengths()
     powers = np.stack([observer.illuminant_spd(light.name, step=STEP) for light in few.lights])
-    powers = powers / (powers @ observed()[:, 1:2])
+    powers = powers / (powers @ xyz_weights()[:, 1:2])
     finer = [
         np.stack([np.interp(nm, bench.sensor.wavelengths, row) for row in each.wanted]) for each in few.groups
     ]
     groups = tuple(replace(each, wanted=wanted) for each, wanted in zip(few.groups, finer, strict=True))
     named = zip(few.lights, powers, strict=True)
-    lights = tuple(Light(light.name, (power[:, None] * observed()).T) for light, power in named)
+    lights = tuple(Light(light.name, (power[:, None] * xyz_weights()).T) for light, power in named)
     return Dense(Question(groups, lights, few.share), powers, cube.reflectance(few.rgb, nm))

@@ -12,7 +12,7 @@ from uplift.lookup import Cube
 from uplift.scene.plan.context import Bench
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import Question
-from uplift.scene.wavelengths import Sampling, Setting, choose, set_up
+from uplift.scene.wavelengths import RenderSetup, Sampling, choose, make_setup
 
 COUNTS = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, 32, 40)
 """After the last, all that there are."""
@@ -44,9 +44,9 @@ def typed(sampling: Sampling) -> str:
     return ",".join(f"{wavelength:g}" for wavelength in sampling.wavelengths)
 
 
-def _setting(bench: Bench, question: Question, cube: Cube) -> Setting:
+def _setting(bench: Bench, question: Question, cube: Cube) -> RenderSetup:
     """Answers for pixels that stand for as many others each, and for the materials."""
-    return set_up(
+    return make_setup(
         cube.reflectance(question.thinned(FITTED).rgb),
         [light.name for light in question.lights],
         wavelengths=bench.sensor.wavelengths,
@@ -54,7 +54,7 @@ def _setting(bench: Bench, question: Question, cube: Cube) -> Setting:
     )
 
 
-def _chosen(setting: Setting, count: int) -> Sampling:
+def _chosen(setting: RenderSetup, count: int) -> Sampling:
     """Wavelengths to a few digits, no two the same."""
     found = choose(setting, count=count).sampling
     least = np.arange(count) / 10**DIGITS

@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.scene.representations import fourier, riemann
-from uplift.scene.representations.dense import TABLE
+from uplift.scene.representations import fourier_coefficients, riemann_sums
+from uplift.scene.representations.dense import TABLE_STRIDE
 from uplift.scene.representations.representation import Representation
-from uplift.scene.representations.spikes import Spikes, split, spread, triangles
+from uplift.scene.representations.spikes import Spikes, split_spikes, spread, triangles
 
-SUN, ENHANCED = 0.3, 0.2
+SUN_THRESHOLD, ENHANCED_THRESHOLD = 0.3, 0.2
 
 
 class Parts(NamedTuple):
@@ -42,35 +42,37 @@ class Composite:
     decoder: Array
     threshold: float
 
-    def light(self, power: Array) -> Parts:
-        rest, spikes = split(power, self.threshold)
-        return Parts(self.smooth.light(rest), spikes)
+    def encode_light(self, power: Array) -> Parts:
+        rest, spikes = split_spikes(power, self.threshold)
+        return Parts(self.smooth.encode_light(rest), spikes)
 
-    def surface(self, reflectance: Array) -> Parts:
-        rest, spikes = split(reflectance, self.threshold)
-        return Parts(self.smooth.surface(rest), spikes)
+    def encode_surface(self, reflectance: Array) -> Parts:
+        rest, spikes = split_spikes(reflectance, self.threshold)
+        return Parts(self.smooth.encode_surface(rest), spikes)
 
-    def product(self, light: Parts, surface: Parts) -> Parts:
+    def multiply(self, light: Parts, surface: Parts) -> Parts:
         places = np.union1d(light.spikes.places, surface.spikes.places)
         one, other = spread(light.spikes, places), spread(surface.spikes, places)
         below_one, below_other = (parts.smooth @ self.decoder[:, places] for parts in (light, surface))
         heights = one * (below_other + other) + below_one * other
-        return Parts(self.smooth.product(light.smooth, surface.smooth), Spikes(places, heights))
+        return Parts(self.smooth.multiply(light.smooth, surface.smooth), Spikes(places, heights))
 
     def xyz(self, light: Parts) -> Array:
         return self.smooth.xyz(light.smooth) + light.spikes.heights @ triangles()[light.spikes.places]
 
-    def floats(self, code: Parts) -> Array:
-        return self.smooth.floats(code.smooth) + code.spikes.floats
+    def storage(self, code: Parts) -> Array:
+        return self.smooth.storage(code.smooth) + code.spikes.storage
 
 
-def sun(count: int) -> Composite:
+def sun_composite(count: int) -> Composite:
     """Sun's, with ``count`` real Fourier coefficients."""
-    waves = fourier.fourier(count)
-    return Composite(f"CS{count}", "Sun's composite", waves, waves.waves[:, ::TABLE], SUN)
+    waves = fourier_coefficients.fourier_coefficients(count)
+    return Composite(f"CS{count}", "Sun's composite", waves, waves.waves[:, ::TABLE_STRIDE], SUN_THRESHOLD)
 
 
-def enhanced(count: int) -> Composite:
+def enhanced_riemann(count: int) -> Composite:
     """Kment's, with ``count`` Riemann sums; a spike meets the mean of the cell that it lies in."""
-    means = riemann.cells(count)[:, ::TABLE]
-    return Composite(f"RE{count}", "enhanced Riemann sums", riemann.riemann(count), means, ENHANCED)
+    means = riemann_sums.cell_overlaps(count)[:, ::TABLE_STRIDE]
+    return Composite(
+        f"RE{count}", "enhanced Riemann sums", riemann_sums.riemann_sums(count), means, ENHANCED_THRESHOLD
+    )

@@ -11,7 +11,7 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 
 STEP = 1.0
-TABLE = round(observer.STEP / STEP)
+TABLE_STRIDE = round(observer.STEP / STEP)
 """Every so many samples of the dense data lies one of the tables that lights are published as, 81 in all."""
 
 
@@ -21,7 +21,7 @@ def wavelengths() -> Array:
 
 
 @functools.cache
-def observed() -> Array:
+def xyz_weights() -> Array:
     """(401, 3) weights: ``spectra @ observed()`` is XYZ, where a power of 1 at every wavelength has Y = 1."""
     cmfs = observer.matching_functions(step=STEP)
     weights = cmfs / cmfs[:, 1].sum()
@@ -29,13 +29,13 @@ def observed() -> Array:
     return weights
 
 
-def hats(points: ArrayLike) -> Array:
+def hat_functions(points: ArrayLike) -> Array:
     """(n, 401) what linear interpolation between ascending ``points`` (n,) nm gives each of them a share of."""
     points = np.asarray(points, dtype=float)
     return np.stack([np.interp(wavelengths(), points, row) for row in np.eye(len(points))])
 
 
-def at(spectra: Array, points: ArrayLike) -> Array:
+def interp_spectra(spectra: Array, points: ArrayLike) -> Array:
     """Dense ``spectra`` (n, 401) at ``points`` (K,) or (n, K) nm within them, linear between samples."""
     places = (np.asarray(points, dtype=float) - observer.START) / STEP
     left = np.clip(places.astype(np.intp), 0, spectra.shape[1] - 2)

@@ -25,12 +25,12 @@ from uplift.common.arrays import Array
 
 EXTENTS = range(3, 22, 2)
 """As the thesis has tried them."""
-FINE, COARSE = 1, 5
+FINE_STRIDE, COARSE_STRIDE = 1, 5
 """Of the choices for a parameter a search tries every so many."""
 
 
 @dataclass(frozen=True)
-class Kind:
+class FilterKind:
     """A family of filters: ``window`` takes an odd number of taps and the parameters, whose ``choices`` are tried."""
 
     title: str
@@ -65,7 +65,7 @@ def conversion(low_pass: Filter, count: int) -> Array:
     return np.asarray(resample_poly(np.eye(size), rate.numerator, rate.denominator, axis=0, window=taps))
 
 
-def candidates(kind: str, every: int = FINE) -> list[Filter]:
+def candidates(kind: str, every: int = FINE_STRIDE) -> list[Filter]:
     """The filters of a kind that a search tries: of each parameter every so many of the choices."""
     choices = [values[::every] for values in KINDS[kind].choices.values()]
     return [Filter(kind, extent, values) for extent in EXTENTS[::every] for values in product(*choices)]
@@ -103,14 +103,14 @@ _TAU = np.round(np.arange(0.05, 3.001, 0.05), 2).tolist()
 _ALPHA = [0.05, *np.round(np.arange(0.1, 3.01, 0.1), 1).tolist()]
 _CUBIC = np.round(np.arange(-3, 3.01, 0.2), 1).tolist()
 
-KINDS: dict[str, Kind] = {
-    "box": Kind("box", windows.boxcar, {}),
-    "tent": Kind("tent", windows.triang, {}),
-    "welch": Kind("Welch", _welch, {}),
-    "gaussian": Kind("Gaussian", _gaussian, {"α": _ALPHA}),
-    "mitchell": Kind("Mitchell", _mitchell, {"b": _CUBIC, "c": _CUBIC}),
-    "lanczos": Kind("Lanczos", _lanczos, {"τ": _TAU}),
-    "hann": Kind("Hann", functools.partial(_inside, windows.hann), {}),
-    "hamming": Kind("Hamming", functools.partial(_inside, windows.hamming), {}),
+KINDS: dict[str, FilterKind] = {
+    "box": FilterKind("box", windows.boxcar, {}),
+    "tent": FilterKind("tent", windows.triang, {}),
+    "welch": FilterKind("Welch", _welch, {}),
+    "gaussian": FilterKind("Gaussian", _gaussian, {"α": _ALPHA}),
+    "mitchell": FilterKind("Mitchell", _mitchell, {"b": _CUBIC, "c": _CUBIC}),
+    "lanczos": FilterKind("Lanczos", _lanczos, {"τ": _TAU}),
+    "hann": FilterKind("Hann", functools.partial(_inside, windows.hann), {}),
+    "hamming": FilterKind("Hamming", functools.partial(_inside, windows.hamming), {}),
 }
 """In the order of tables A.1 and A.2."""

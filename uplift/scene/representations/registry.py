@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 from uplift.common.arrays import Array
-from uplift.scene.representations.composite import enhanced, sun
-from uplift.scene.representations.hero import Hero
-from uplift.scene.representations.linear import linear
-from uplift.scene.representations.moments import moments
-from uplift.scene.representations.point import point, prefiltered
-from uplift.scene.representations.quadrature import quadrature
+from uplift.scene.representations.composite import enhanced_riemann, sun_composite
+from uplift.scene.representations.gauss_quadrature import gauss_samples
+from uplift.scene.representations.hero_wavelengths import HeroWavelengths
+from uplift.scene.representations.linear_model import linear_model
+from uplift.scene.representations.point_sampling import mitchell_point_samples, point_samples
 from uplift.scene.representations.representation import Representation
-from uplift.scene.representations.riemann import riemann
-from uplift.scene.representations.sigmoid import SigmoidCurve
+from uplift.scene.representations.riemann_sums import riemann_sums
+from uplift.scene.representations.sigmoid import SigmoidCoefficients
+from uplift.scene.representations.trigonometric_moments import trigonometric_moments
 
 SIZES = (4, 8, 16, 32)
 COEFFICIENTS = (5, 7, 11, 15)
@@ -24,12 +24,16 @@ COMPONENTS = (4, 8, 16)
 PATHS = (1, 4, 16, 64)
 
 
-def representations(lights: Array, surfaces: Array) -> tuple[Representation, ...]:
+def all_representations(lights: Array, surfaces: Array) -> tuple[Representation, ...]:
     """All, for a scene of lights (L, 401) and surfaces (E, 401), which the linear models are made from."""
-    found: list[Any] = [make(count) for make in (point, prefiltered, riemann, enhanced) for count in SIZES]
-    found += [sun(count) for count in COEFFICIENTS]
-    found += [quadrature(count) for count in SIZES]
-    found += [moments(count) for count in MOMENTS]
-    found += [SigmoidCurve()]
-    found += [linear(count, lights, surfaces) for count in COMPONENTS]
-    return (*found, *(Hero(paths) for paths in PATHS))
+    found: list[Any] = [
+        make(count)
+        for make in (point_samples, mitchell_point_samples, riemann_sums, enhanced_riemann)
+        for count in SIZES
+    ]
+    found += [sun_composite(count) for count in COEFFICIENTS]
+    found += [gauss_samples(count) for count in SIZES]
+    found += [trigonometric_moments(count) for count in MOMENTS]
+    found += [SigmoidCoefficients()]
+    found += [linear_model(count, lights, surfaces) for count in COMPONENTS]
+    return (*found, *(HeroWavelengths(paths) for paths in PATHS))

@@ -24,15 +24,15 @@ class Representation(Protocol):
         """What it is called whatever its size."""
         ...
 
-    def light(self, power: Array) -> Any:
+    def encode_light(self, power: Array) -> Any:
         """The code of relative powers (n, 401), as `dense.wavelengths` has them."""
         ...
 
-    def surface(self, reflectance: Array) -> Any:
+    def encode_surface(self, reflectance: Array) -> Any:
         """The code of reflectances (n, 401)."""
         ...
 
-    def product(self, light: Any, surface: Any) -> Any:
+    def multiply(self, light: Any, surface: Any) -> Any:
         """The code of the light that the surfaces send back."""
         ...
 
@@ -40,6 +40,6 @@ class Representation(Protocol):
         """XYZ (n, 3) of a light, as `dense.observed` weighs it."""
         ...
 
-    def floats(self, code: Any) -> Array:
+    def storage(self, code: Any) -> Array:
         """(n,) numbers stored for each spectrum of a light or of surfaces."""
         ...

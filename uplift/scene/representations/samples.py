@@ -11,7 +11,7 @@ from uplift.models.matmul import matmul_rows
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class SampleRepresentation:
     """Lights and surfaces alike are ``spectra @ encoder`` (401, n), a light's XYZ is ``code @ weights`` (n, 3)."""
 
     name: str
@@ -19,22 +19,22 @@ class Samples:
     encoder: Array
     weights: Array
 
-    def light(self, power: Array) -> Array:
+    def encode_light(self, power: Array) -> Array:
         return np.asarray(matmul_rows(power, self.encoder))
 
-    def surface(self, reflectance: Array) -> Array:
+    def encode_surface(self, reflectance: Array) -> Array:
         return np.asarray(matmul_rows(reflectance, self.encoder))
 
-    def product(self, light: Array, surface: Array) -> Array:
+    def multiply(self, light: Array, surface: Array) -> Array:
         return light * surface
 
     def xyz(self, light: Array) -> Array:
         return light @ self.weights
 
-    def floats(self, code: Array) -> Array:
-        return stored(code)
+    def storage(self, code: Array) -> Array:
+        return row_sizes(code)
 
 
-def stored(code: Array) -> Array:
+def row_sizes(code: Array) -> Array:
     """(n,) numbers in each row of a code that is one array."""
     return np.full(len(code), float(code[0].size))

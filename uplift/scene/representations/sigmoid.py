@@ -14,8 +14,8 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.models import Sigmoid
 from uplift.models.model import evaluate
-from uplift.scene.representations.dense import TABLE
-from uplift.scene.representations.table import Tabled
+from uplift.scene.representations.dense import TABLE_STRIDE
+from uplift.scene.representations.table import TabulatedProducts
 
 LIGHT = "D65"
 SHAPE = 1e-4
@@ -26,18 +26,18 @@ EASE, EAGER, FIRST = 10.0, 0.3, 1e-3
 
 
 @dataclass(frozen=True)
-class SigmoidCurve(Tabled):
+class SigmoidCoefficients(TabulatedProducts):
     """Three coefficients."""
 
     model: Sigmoid = field(default_factory=Sigmoid)
     name = "SG3"
     family = "sigmoid"
 
-    def surface(self, reflectance: Array) -> Array:
-        return fitted(self.model, reflectance[:, ::TABLE])
+    def encode_surface(self, reflectance: Array) -> Array:
+        return fit_sigmoids(self.model, reflectance[:, ::TABLE_STRIDE])
 
 
-def fitted(model: Sigmoid, table: Array) -> Array:
+def fit_sigmoids(model: Sigmoid, table: Array) -> Array:
     """Coefficients (n, 3) for reflectances (n, 81)."""
     light, basis = observer.light(LIGHT), model.basis(observer.grid())
     measure = np.concatenate([light.xyz / light.white[:, None], SHAPE * np.eye(len(basis))])

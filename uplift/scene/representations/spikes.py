@@ -15,7 +15,7 @@ import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array, Indices
-from uplift.scene.representations.dense import TABLE, hats, observed
+from uplift.scene.representations.dense import TABLE_STRIDE, hat_functions, xyz_weights
 
 NOISE = 1e-9
 """Of the highest sample: rounding leaves as much above the smooth part."""
@@ -30,14 +30,14 @@ class Spikes(NamedTuple):
     heights: Array
 
     @property
-    def floats(self) -> Array:
+    def storage(self) -> Array:
         """(n,) numbers that the spikes of each spectrum take."""
         return FLOATS * (self.heights != 0).sum(axis=1, dtype=float)
 
 
-def split(spectra: Array, threshold: float) -> tuple[Array, Spikes]:
+def split_spikes(spectra: Array, threshold: float) -> tuple[Array, Spikes]:
     """The smooth part (n, 401) of dense spectra (n, 401), linear in 5 nm, and the spikes upon it."""
-    table = spectra[:, ::TABLE]
+    table = spectra[:, ::TABLE_STRIDE]
     steepest = threshold * table.max(axis=1, keepdims=True)
     smooth = table.copy()
     # Whatever is too steep for its neighbour is cut down to it; one sweep each way settles all.
@@ -48,7 +48,7 @@ def split(spectra: Array, threshold: float) -> tuple[Array, Spikes]:
     heights = table - smooth
     heights[heights < NOISE * table.max(axis=1, keepdims=True)] = 0
     places = np.flatnonzero(heights.any(axis=0))
-    return (table - heights) @ hats(observer.grid()), Spikes(places, heights[:, places])
+    return (table - heights) @ hat_functions(observer.grid()), Spikes(places, heights[:, places])
 
 
 def spread(spikes: Spikes, places: Indices) -> Array:
@@ -61,4 +61,4 @@ def spread(spikes: Spikes, places: Indices) -> Array:
 @functools.cache
 def triangles() -> Array:
     """(81, 3) XYZ of a spike of height 1 at each place: a triangle as wide as linear interpolation makes it."""
-    return hats(observer.grid()) @ observed()
+    return hat_functions(observer.grid()) @ xyz_weights()

@@ -1,4 +1,4 @@
-"""As few wavelengths as a scene needs: `choose` for a `Setting` of materials and lights; `weigh` for given ones.
+"""Choice of the few wavelengths that a renderer traces for given materials and lights.
 
 from uplift.scene import wavelengths
 
@@ -9,21 +9,21 @@ choice.sampling.wavelengths, choice.sampling.to_xyz, choice.sampling.powers, cho
 
 from __future__ import annotations
 
-from uplift.scene.wavelengths.choose import METHODS, MOST, Choice, choose, weigh
-from uplift.scene.wavelengths.sampling import MEASURES, Errors, Sampling, judge
-from uplift.scene.wavelengths.setup import Setting, grid, set_up
+from uplift.scene.wavelengths.choose import MAX_COUNT, METHODS, Choice, choose, fit_weights
+from uplift.scene.wavelengths.sampling import MEASURES, ColourErrors, Sampling, evaluate
+from uplift.scene.wavelengths.setup import RenderSetup, grid, make_setup
 
 __all__ = [
+    "MAX_COUNT",
     "MEASURES",
     "METHODS",
-    "MOST",
     "Choice",
-    "Errors",
+    "ColourErrors",
+    "RenderSetup",
     "Sampling",
-    "Setting",
     "choose",
+    "evaluate",
+    "fit_weights",
     "grid",
-    "judge",
-    "set_up",
-    "weigh",
+    "make_setup",
 ]

@@ -9,21 +9,21 @@ from numpy.typing import ArrayLike
 
 from uplift.common.errors import OptionError, unknown_name
 from uplift.scene.wavelengths.meyer import meyer
-from uplift.scene.wavelengths.optimise import at, even, optimised
-from uplift.scene.wavelengths.sampling import MEASURES, Errors, Sampling, judge
-from uplift.scene.wavelengths.setup import Setting
-from uplift.scene.wavelengths.uniform import bins, uniform
+from uplift.scene.wavelengths.optimise import fit_at, fit_uniform, optimise
+from uplift.scene.wavelengths.sampling import MEASURES, ColourErrors, Sampling, evaluate
+from uplift.scene.wavelengths.setup import RenderSetup
+from uplift.scene.wavelengths.uniform import prefiltered_uniform, uniform
 
-METHODS: Mapping[str, Callable[[Setting, int], Sampling]] = {
-    "optimised": optimised,
+METHODS: Mapping[str, Callable[[RenderSetup, int], Sampling]] = {
+    "optimised": optimise,
     "meyer": meyer,
     "uniform": uniform,
-    "bins": bins,
-    "fitted": even,
+    "bins": prefiltered_uniform,
+    "fitted": fit_uniform,
 }
 GIVEN = "given"
 """The method where the wavelengths are given."""
-MOST = 40
+MAX_COUNT = 40
 """More wavelengths than that are no saving: tables have 40 at 10 nm."""
 
 
@@ -33,11 +33,11 @@ class Choice:
 
     method: str
     sampling: Sampling
-    errors: Errors
+    errors: ColourErrors
 
 
 def choose(
-    setting: Setting,
+    setting: RenderSetup,
     *,
     count: int | None = None,
     target: float | None = None,
@@ -70,32 +70,32 @@ def choose(
     raise OptionError("either a count or a target says how many", hint="give one of the two")
 
 
-def weigh(setting: Setting, wavelengths: ArrayLike) -> Choice:
+def fit_weights(setting: RenderSetup, wavelengths: ArrayLike) -> Choice:
     """The best weights and powers for wavelengths that are given. Raises `OptionError`."""
-    sampling = at(setting, wavelengths).ordered()
-    return Choice(GIVEN, sampling, judge(setting, sampling))
+    sampling = fit_at(setting, wavelengths).ordered()
+    return Choice(GIVEN, sampling, evaluate(setting, sampling))
 
 
-def _fixed(setting: Setting, method: str, count: int) -> Choice:
+def _fixed(setting: RenderSetup, method: str, count: int) -> Choice:
     sampling = METHODS[method](setting, count).ordered()
-    return Choice(method, sampling, judge(setting, sampling))
+    return Choice(method, sampling, evaluate(setting, sampling))
 
 
-def _fewest(setting: Setting, method: str, target: float, measure: str) -> Choice:
+def _fewest(setting: RenderSetup, method: str, target: float, measure: str) -> Choice:
     if not target > 0:
         raise OptionError(f"target {target:g} is not above 0", hint="give a tolerated ΔE00, such as 1")
-    for count in range(1, MOST + 1):
+    for count in range(1, MAX_COUNT + 1):
         choice = _fixed(setting, method, count)
         reached = getattr(choice.errors, measure)
         if reached <= target:
             return choice
     raise OptionError(
-        f"{MOST} wavelengths by method '{method}' leave a {measure} of ΔE00 {reached:.3g}",
+        f"{MAX_COUNT} wavelengths by method '{method}' leave a {measure} of ΔE00 {reached:.3g}",
         hint=f"give a target above {target:g}, or another method",
     )
 
 
 def _checked(count: int) -> int:
-    if not 1 <= count <= MOST:
-        raise OptionError(f"count {count} is not within 1 to {MOST}", hint="give a number of that range")
+    if not 1 <= count <= MAX_COUNT:
+        raise OptionError(f"count {count} is not within 1 to {MAX_COUNT}", hint="give a number of that range")
     return count

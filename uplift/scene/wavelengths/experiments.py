@@ -8,10 +8,10 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_1976, lab
 from uplift.common.arrays import Array
-from uplift.scene.quadrature import Rule
-from uplift.scene.wavelengths.meyer import allocations, rules
-from uplift.scene.wavelengths.opponent import Space
-from uplift.scene.wavelengths.setup import Setting
+from uplift.scene.quadrature import QuadratureRule
+from uplift.scene.wavelengths.meyer import allocations, quadrature_rules
+from uplift.scene.wavelengths.opponent import ChannelSpace
+from uplift.scene.wavelengths.setup import RenderSetup
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class Trials:
     errors : (T,) mean ΔE76 over materials and lights.
     """
 
-    space: Space
+    space: ChannelSpace
     counts: Array
     errors: Array
 
@@ -42,9 +42,9 @@ class Trials:
         return self.counts / self.counts.sum(axis=1, keepdims=True)
 
 
-def trials(setting: Setting, space: Space) -> Trials:
+def run_trials(setting: RenderSetup, space: ChannelSpace) -> Trials:
     """Every allocation of defined orders up to 10 in a space, judged on a setting."""
-    ways = list(allocations(rules(space, setting.wavelengths, setting.cmfs)))
+    ways = list(allocations(quadrature_rules(space, setting.wavelengths, setting.cmfs)))
     seen = {rule: _channel(setting, rule) for way in ways for rule in way}
     counts, errors = [], []
     for way in ways:
@@ -53,18 +53,20 @@ def trials(setting: Setting, space: Space) -> Trials:
     return Trials(space, np.array(counts), np.array(errors))
 
 
-def error(setting: Setting, space: Space, way: tuple[Rule, Rule, Rule]) -> float:
+def allocation_error(
+    setting: RenderSetup, space: ChannelSpace, way: tuple[QuadratureRule, QuadratureRule, QuadratureRule]
+) -> float:
     """Mean ΔE76 of one allocation: table 2."""
     return _error(setting, space, np.stack([_channel(setting, rule) for rule in way], axis=-1))
 
 
-def _channel(setting: Setting, rule: Rule) -> Array:
+def _channel(setting: RenderSetup, rule: QuadratureRule) -> Array:
     """(K, M + 1) what a rule makes of the materials, and last of the perfect reflector."""
     lit = setting.sampled_powers(rule.nodes) * rule.weights
     return np.concatenate([lit @ setting.curves(rule.nodes).T, lit.sum(axis=1, keepdims=True)], axis=1)
 
 
-def _error(setting: Setting, space: Space, channels: Array) -> float:
+def _error(setting: RenderSetup, space: ChannelSpace, channels: Array) -> float:
     """Mean ΔE76 of channel values (K, M + 1, 3) whose last is the white that L*a*b* refers to.
 
     The paper takes the light itself as white. Seen through the same few wavelengths as the materials, as here,
@@ -76,7 +78,7 @@ def _error(setting: Setting, space: Space, channels: Array) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Triangle:
+class BinnedShares:
     """Figure 7: the triangle of shares, cut into small ones.
 
     Parameters
@@ -89,15 +91,15 @@ class Triangle:
     errors: Array
 
 
-def triangle(trials: Trials, cuts: int = 10) -> Triangle:
+def bin_shares(run_trials: Trials, cuts: int = 10) -> BinnedShares:
     """Mean error over small triangles, ``cuts`` to an edge."""
-    scaled = trials.shares * cuts
+    scaled = run_trials.shares * cuts
     # Rounding must not take a trial on a line to either side of it by chance.
     floors = np.floor(scaled + 1e-9).astype(int)
     floors -= (floors.sum(axis=1) == cuts)[:, None] * np.eye(3, dtype=int)[floors.argmax(axis=1)]
     cells, homes = np.unique(floors, axis=0, return_inverse=True)
     homes = homes.ravel()
-    errors = np.array([trials.errors[homes == cell].mean() for cell in range(len(cells))])
+    errors = np.array([run_trials.errors[homes == cell].mean() for cell in range(len(cells))])
     upright = (cells.sum(axis=1) == cuts - 1)[:, None, None]
     corners = cells[:, None, :] + np.where(upright, np.eye(3), 1 - np.eye(3))
-    return Triangle(corners / cuts, errors)
+    return BinnedShares(corners / cuts, errors)

@@ -11,7 +11,7 @@ from uplift.common.arrays import Array
 from uplift.common.threads import single_threaded_blas
 from uplift.scene.wavelengths import metric
 from uplift.scene.wavelengths.sampling import Sampling
-from uplift.scene.wavelengths.setup import Setting
+from uplift.scene.wavelengths.setup import RenderSetup
 
 STEPS = 60
 """Steps of the least squares; more gain nothing on materials that were not fitted."""
@@ -27,7 +27,7 @@ class Problem:
     rows : (K, M, 3, 3) from XYZ to ΔE00, see `metric.rows`.
     """
 
-    setting: Setting
+    setting: RenderSetup
     rows: Array
 
     def unpack(self, unknowns: Array) -> Sampling:
@@ -61,9 +61,9 @@ class Problem:
         return np.concatenate([part.reshape(height, -1) for part in parts], axis=1)
 
 
-def problem(setting: Setting) -> Problem:
+def problem(setting: RenderSetup) -> Problem:
     """The least squares of a setting."""
-    return Problem(setting, metric.rows(setting))
+    return Problem(setting, metric.delta_e_factors(setting))
 
 
 def polish(problem: Problem, start: Sampling) -> Sampling:

@@ -6,7 +6,7 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000, lab_jacobian
 from uplift.common.arrays import Array
-from uplift.scene.wavelengths.setup import Setting
+from uplift.scene.wavelengths.setup import RenderSetup
 
 NEAR = 1e-3
 """Length of the differences that are tried, in units of L*a*b*."""
@@ -14,7 +14,7 @@ LEAST = 1e-3
 """No direction of L*a*b* counts less than this, squared: rounding may turn it negative."""
 
 
-def rows(setting: Setting) -> Array:
+def delta_e_factors(setting: RenderSetup) -> Array:
     """(K, M, 3, 3) T for every material under every light: |T (XYZ' − XYZ)| is ΔE00 of colours close together."""
     slope = np.stack(
         [lab_jacobian(xyz, white) for xyz, white in zip(setting.xyz, setting.whites, strict=True)]

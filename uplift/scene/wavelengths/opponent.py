@@ -21,7 +21,7 @@ S_TO_M_AND_L, L_TO_M = 1 / 16, 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Space:
+class ChannelSpace:
     """Three channels, linear in XYZ.
 
     Parameters
@@ -37,19 +37,19 @@ class Space:
 
 
 @dataclass(frozen=True, eq=False)
-class Opponent:
+class OpponentSpace:
     """The opponent space, and the share (3,) of the squared error that leaving out each channel brings."""
 
-    space: Space
+    space: ChannelSpace
     eigenvalues: Array
 
 
-def plain() -> Space:
+def xyz_space() -> ChannelSpace:
     """CIE XYZ itself."""
-    return Space("XYZ", ("X", "Y", "Z"), np.eye(3))
+    return ChannelSpace("XYZ", ("X", "Y", "Z"), np.eye(3))
 
 
-def cones(wavelengths: Array, cmfs: Array) -> Space:
+def cone_space(wavelengths: Array, cmfs: Array) -> ChannelSpace:
     """Cone fundamentals of an observer (N, 3) at wavelengths (N,) nm, the peak of l at 1.
 
     The confusion points are the chromaticities of the cones' own primaries, so the fundamentals are XYZ taken
@@ -65,19 +65,19 @@ def cones(wavelengths: Array, cmfs: Array) -> Space:
     medium = long * at(BALANCED_YELLOW)[2] / at(BALANCED_YELLOW)[1] / L_TO_M
     blue = at(BALANCED_BLUE)
     short = S_TO_M_AND_L * (medium * blue[1] + long * blue[2]) / blue[0]
-    return Space("SML", ("S", "M", "L"), np.array([short, medium, long])[:, None] * apart)
+    return ChannelSpace("SML", ("S", "M", "L"), np.array([short, medium, long])[:, None] * apart)
 
 
-def opponent(wavelengths: Array, cmfs: Array) -> Opponent:
+def opponent_space(wavelengths: Array, cmfs: Array) -> OpponentSpace:
     """Karhunen–Loève of the cones under spectra of which no two wavelengths are correlated (eq. 3–10).
 
     Channels by falling eigenvalue; each peaks at 1 or −1, with signs that let A and C1 grow with Y, and C2 with Z.
     """
-    fundamentals = cones(wavelengths, cmfs).matrix
+    fundamentals = cone_space(wavelengths, cmfs).matrix
     seen = cmfs @ fundamentals.T
     step = wavelengths[1] - wavelengths[0]
     values, vectors = np.linalg.eigh(seen.T @ seen * step)
     matrix = vectors[:, ::-1].T @ fundamentals
     matrix /= np.abs(cmfs @ matrix.T).max(axis=0)[:, None]
     matrix *= np.sign(matrix[[0, 1, 2], [1, 1, 2]])[:, None]
-    return Opponent(Space("AC1C2", ("A", "C1", "C2"), matrix), values[::-1])
+    return OpponentSpace(ChannelSpace("AC1C2", ("A", "C1", "C2"), matrix), values[::-1])

@@ -10,8 +10,8 @@ import numpy as np
 from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
-from uplift.scene.wavelengths import Choice, Setting
-from uplift.scene.wavelengths.setup import read_off
+from uplift.scene.wavelengths import Choice, RenderSetup
+from uplift.scene.wavelengths.setup import interp_curves
 from uplift.viz.charts import GREY, INK, STYLE
 from uplift.viz.figure import new_figure, style_axes, write_png
 
@@ -21,7 +21,7 @@ CHANNELS = {"X": "#c0392b", "Y": "#2e8b57", "Z": "#2f5fb3"}
 
 
 def plot_choice(
-    setting: Setting, choice: Choice, path: str | os.PathLike[str], *, force: bool = False
+    setting: RenderSetup, choice: Choice, path: str | os.PathLike[str], *, force: bool = False
 ) -> None:
     """Draw every light with its powers at the wavelengths, and the weights to XYZ, as PNG. Raises `OutputError`."""
     import matplotlib
@@ -46,7 +46,7 @@ def plot_choice(
         write_png(figure, path, force=force)
 
 
-def _draw_light(axes: Any, setting: Setting, choice: Choice, light: int) -> None:
+def _draw_light(axes: Any, setting: RenderSetup, choice: Choice, light: int) -> None:
     sampling = choice.sampling
     power, powers = setting.powers[light], sampling.powers[light]
     # Both as shares of their mean over the wavelengths, for the two are in different units.
@@ -61,7 +61,7 @@ def _draw_light(axes: Any, setting: Setting, choice: Choice, light: int) -> None
     style_axes(axes)
 
 
-def _draw_weights(axes: Any, setting: Setting, choice: Choice) -> None:
+def _draw_weights(axes: Any, setting: RenderSetup, choice: Choice) -> None:
     sampling = choice.sampling
     spread = np.interp(setting.wavelengths, sampling.wavelengths, sampling.to_xyz[:, 1]).sum()
     curves = setting.cmfs * (spread / setting.cmfs[:, 1].sum())
@@ -76,8 +76,8 @@ def _draw_weights(axes: Any, setting: Setting, choice: Choice) -> None:
     style_axes(axes)
 
 
-def _tints(setting: Setting, wavelengths: Array) -> Array:
+def _tints(setting: RenderSetup, wavelengths: Array) -> Array:
     """(n, 3) how the wavelengths look, as far as sRGB can show."""
-    xyz = read_off(wavelengths, setting.wavelengths, setting.cmfs.T).T
+    xyz = interp_curves(wavelengths, setting.wavelengths, setting.cmfs.T).T
     rgb = map_to_gamut(xyz @ np.linalg.inv(SRGB.rgb_to_xyz).T, SRGB, "scale").rgb + 1e-3
     return encode(rgb / rgb.max(axis=1, keepdims=True))

@@ -10,10 +10,10 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.scene.wavelengths.setup import Setting
+from uplift.scene.wavelengths.setup import RenderSetup
 
 MEASURES = ("mean", "p95", "max")
-"""What may be said of errors, as `Errors` names it."""
+"""What may be said of errors, as `ColourErrors` names it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,7 @@ class Sampling:
 
 
 @dataclass(frozen=True, eq=False)
-class Errors:
+class ColourErrors:
     """ΔE00 (K, M) of materials under lights."""
 
     delta_e: Array
@@ -81,12 +81,12 @@ class Errors:
     def max(self) -> float:
         return float(self.delta_e.max())
 
-    def under(self, light: int) -> Errors:
+    def under(self, light: int) -> ColourErrors:
         """The errors under one light."""
-        return Errors(self.delta_e[light : light + 1])
+        return ColourErrors(self.delta_e[light : light + 1])
 
 
-def judge(setting: Setting, sampling: Sampling) -> Errors:
+def evaluate(setting: RenderSetup, sampling: Sampling) -> ColourErrors:
     """What the sampling makes of every material under every light, against the sum over the whole grid."""
     seen = sampling.xyz(setting.curves(sampling.wavelengths))
-    return Errors(delta_e_2000(setting.lab, setting.to_lab(seen)))
+    return ColourErrors(delta_e_2000(setting.lab, setting.to_lab(seen)))

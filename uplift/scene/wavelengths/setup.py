@@ -21,7 +21,7 @@ START, END, STEP = 380.0, 770.0, 1.0
 
 
 @dataclass(frozen=True, eq=False)
-class Setting:
+class RenderSetup:
     """Materials under lights.
 
     Parameters
@@ -65,11 +65,11 @@ class Setting:
 
     def sampled_powers(self, wavelengths: Array) -> Array:
         """(K, n) the lights read off at wavelengths (n,) nm: what a renderer does that knows no better."""
-        return read_off(wavelengths, self.wavelengths, self.powers)
+        return interp_curves(wavelengths, self.wavelengths, self.powers)
 
-    def only(self, materials: ArrayLike) -> Setting:
+    def only(self, materials: ArrayLike) -> RenderSetup:
         """The same lights on some of the materials: indices or a mask."""
-        return Setting(
+        return RenderSetup(
             self.wavelengths, self.reflectances[np.asarray(materials)], self.lights, self.powers, self.cmfs
         )
 
@@ -79,13 +79,13 @@ def grid() -> Array:
     return np.arange(START, END + STEP / 2, STEP)
 
 
-def set_up(
+def make_setup(
     reflectances: ArrayLike,
     lights: Sequence[str],
     *,
     wavelengths: ArrayLike | None = None,
     observer_name: str = DEFAULT_OBSERVER,
-) -> Setting:
+) -> RenderSetup:
     """Materials (M, N) at ``wavelengths`` (N,) nm, by default `grid`, under illuminants of colour-science.
 
     Raises
@@ -102,12 +102,12 @@ def set_up(
     # Tables have steps of whole nanometres; a grid may have any.
     shape = np.floor(nm[0]), np.ceil(nm[-1]), 1.0
     whole = np.arange(shape[0], shape[1] + 0.5)
-    cmfs = read_off(nm, whole, observer.matching_functions(observer_name, *shape).T).T
-    powers = read_off(nm, whole, np.stack([observer.illuminant_spd(name, *shape) for name in lights]))
-    return Setting(nm, materials, lights, powers / (powers @ cmfs[:, 1])[:, None], cmfs)
+    cmfs = interp_curves(nm, whole, observer.matching_functions(observer_name, *shape).T).T
+    powers = interp_curves(nm, whole, np.stack([observer.illuminant_spd(name, *shape) for name in lights]))
+    return RenderSetup(nm, materials, lights, powers / (powers @ cmfs[:, 1])[:, None], cmfs)
 
 
-def read_off(wavelengths: Array, known: Array, curves: Array) -> Array:
+def interp_curves(wavelengths: Array, known: Array, curves: Array) -> Array:
     """Curves (C, …) at ``known`` (…,) nm → (C, n) at ``wavelengths`` (n,)."""
     return np.stack([np.interp(wavelengths, known, curve) for curve in curves])
 

@@ -6,30 +6,30 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.scene.wavelengths.sampling import Sampling
-from uplift.scene.wavelengths.setup import Setting, read_off
+from uplift.scene.wavelengths.setup import RenderSetup, interp_curves
 
 FROM, TO = 400.0, 700.0
 """Where even spacing does best for few wavelengths: beyond, the eye sees little (nm)."""
 
 
-def even(count: int, start: float = FROM, end: float = TO) -> Array:
+def midpoints(count: int, start: float = FROM, end: float = TO) -> Array:
     """(count,) the middles of equal parts of ``start`` to ``end`` nm."""
     return start + (np.arange(count) + 0.5) * (end - start) / count
 
 
-def uniform(setting: Setting, count: int) -> Sampling:
+def uniform(setting: RenderSetup, count: int) -> Sampling:
     """Evenly spaced, lights and matching functions read off at the wavelengths; whites balanced."""
-    nm = even(count)
-    weights = read_off(nm, setting.wavelengths, setting.cmfs.T).T
+    nm = midpoints(count)
+    weights = interp_curves(nm, setting.wavelengths, setting.cmfs.T).T
     return Sampling(nm, weights, setting.lights, setting.sampled_powers(nm)).balanced()
 
 
-def bins(setting: Setting, count: int) -> Sampling:
-    """Evenly spaced, lights and matching functions prefiltered: `prefiltered` at `even`."""
-    return prefiltered(setting, even(count))
+def prefiltered_uniform(setting: RenderSetup, count: int) -> Sampling:
+    """Evenly spaced, lights and matching functions prefiltered: `prefiltered` at `midpoints`."""
+    return prefiltered(setting, midpoints(count))
 
 
-def prefiltered(setting: Setting, wavelengths: Array) -> Sampling:
+def prefiltered(setting: RenderSetup, wavelengths: Array) -> Sampling:
     """Lights and matching functions spread onto wavelengths (n,) nm as linear interpolation between them has it.
 
     What lies beyond the first and the last goes to these. The whites are exact in Y.

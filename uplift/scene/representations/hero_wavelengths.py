@@ -16,8 +16,8 @@ import numpy as np
 
 from uplift.colorimetry.observer import END, START
 from uplift.common.arrays import Array
-from uplift.scene.representations.dense import at, observed
-from uplift.scene.representations.samples import stored
+from uplift.scene.representations.dense import interp_spectra, xyz_weights
+from uplift.scene.representations.samples import row_sizes
 
 WAVELENGTHS = 4
 SEED = 7
@@ -33,7 +33,7 @@ class Carried(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Hero:
+class HeroWavelengths:
     """``paths`` a pixel."""
 
     paths: int
@@ -46,26 +46,26 @@ class Hero:
     def family(self) -> str:
         return "hero wavelengths"
 
-    def light(self, power: Array) -> Carried:
+    def encode_light(self, power: Array) -> Carried:
         drawn = self.wavelengths(len(power))
-        return Carried(drawn, at(power, drawn))
+        return Carried(drawn, interp_spectra(power, drawn))
 
-    def surface(self, reflectance: Array) -> Carried:
-        return self.light(reflectance)
+    def encode_surface(self, reflectance: Array) -> Carried:
+        return self.encode_light(reflectance)
 
-    def product(self, light: Carried, surface: Carried) -> Carried:
+    def multiply(self, light: Carried, surface: Carried) -> Carried:
         return Carried(light.wavelengths, light.values * surface.values)
 
     def xyz(self, light: Carried) -> Array:
         low, high = _share(np.array([START, END]))
         density = STEEPNESS / np.cosh(STEEPNESS * (light.wavelengths - CENTRE)) ** 2 / (high - low)
         weighed = light.values / density
-        rows = np.broadcast_to(observed().T[:, None], (3, len(weighed), len(observed())))
-        seen = [at(row, light.wavelengths) for row in rows]
+        rows = np.broadcast_to(xyz_weights().T[:, None], (3, len(weighed), len(xyz_weights())))
+        seen = [interp_spectra(row, light.wavelengths) for row in rows]
         return np.stack([(weighed * one).mean(axis=1) for one in seen], axis=1)
 
-    def floats(self, code: Carried) -> Array:
-        return stored(code.values)
+    def storage(self, code: Carried) -> Array:
+        return row_sizes(code.values)
 
     def wavelengths(self, pixels: int) -> Array:
         """(pixels, 4 · paths) nm."""

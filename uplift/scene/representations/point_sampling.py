@@ -13,40 +13,46 @@ import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.scene.representations.dense import TABLE, hats, observed, wavelengths
+from uplift.scene.representations.dense import TABLE_STRIDE, hat_functions, wavelengths, xyz_weights
 from uplift.scene.representations.filters import Filter, conversion
-from uplift.scene.representations.samples import Samples
+from uplift.scene.representations.samples import SampleRepresentation
 
 FAMILY, FILTERED = "point sampling", "point sampling, filtered"
 MITCHELL, SPACINGS = (-0.4, 1.0), 4
 
 
-def points(count: int) -> Array:
+def sample_points(count: int) -> Array:
     """(count,) nm, evenly spaced from end to end."""
     return np.linspace(observer.START, observer.END, count)
 
 
-def point(count: int) -> Samples:
+def point_samples(count: int) -> SampleRepresentation:
     """``count`` samples of the spectra as they are."""
-    places = points(count)
-    return Samples(f"PS{count}", FAMILY, hats_of_dense(places), hats(places) @ observed())
+    places = sample_points(count)
+    return SampleRepresentation(
+        f"PS{count}", FAMILY, hats_of_dense(places), hat_functions(places) @ xyz_weights()
+    )
 
 
-def filtered(count: int, low_pass: Filter) -> Samples:
+def filtered_point_samples(count: int, low_pass: Filter) -> SampleRepresentation:
     """``count`` samples of spectra that a low-pass filter has been over (`filters`)."""
     encoder = np.zeros((len(wavelengths()), count))
-    encoder[::TABLE] = conversion(low_pass, count).T
-    return Samples(f"PS{count} {low_pass.name}", FILTERED, encoder, hats(points(count)) @ observed())
+    encoder[::TABLE_STRIDE] = conversion(low_pass, count).T
+    return SampleRepresentation(
+        f"PS{count} {low_pass.name}", FILTERED, encoder, hat_functions(sample_points(count)) @ xyz_weights()
+    )
 
 
-def prefiltered(count: int) -> Samples:
+def mitchell_point_samples(count: int) -> SampleRepresentation:
     """``count`` samples after Mitchell's filter as table A.2 has it at its best, b = −0.4 and c = 1.
 
     There it is as wide as four spacings of its 16 points, which for a cubic filter is the usual; so it is here for
     any count.
     """
     spacing = (len(observer.grid()) - 1) / (count - 1)
-    found = filtered(count, Filter("mitchell", 2 * round((SPACINGS * spacing - 1) / 2) + 1, MITCHELL))
+    found = filtered_point_samples(
+        count, Filter("mitchell", 2 * round((SPACINGS * spacing - 1) / 2) + 1, MITCHELL)
+    )
     return replace(found, name=f"PF{count}")
 
 

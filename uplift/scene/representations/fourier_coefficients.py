@@ -15,12 +15,12 @@ import numpy as np
 from uplift.colorimetry.observer import END, START
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.scene.representations.dense import TABLE, observed, wavelengths
-from uplift.scene.representations.samples import stored
+from uplift.scene.representations.dense import TABLE_STRIDE, wavelengths, xyz_weights
+from uplift.scene.representations.samples import row_sizes
 
 
 @dataclass(frozen=True, eq=False)
-class Fourier:
+class FourierCoefficients:
     """Coefficients (n, C) of ``waves`` (C, 401); ``resampled`` (C, K) has them at as many points as a product needs.
 
     A product of two such spectra has twice the highest frequency. At 2C points in the period none of it is taken
@@ -39,32 +39,34 @@ class Fourier:
     def family(self) -> str:
         return "Fourier coefficients"
 
-    def light(self, power: Array) -> Array:
-        periodic = power[:, :-1:TABLE].copy()
+    def encode_light(self, power: Array) -> Array:
+        periodic = power[:, :-1:TABLE_STRIDE].copy()
         periodic[:, 0] = (power[:, 0] + power[:, -1]) / 2
-        return _analysed(periodic, self.waves[:, :-1:TABLE])
+        return _analysed(periodic, self.waves[:, :-1:TABLE_STRIDE])
 
-    def surface(self, reflectance: Array) -> Array:
-        return self.light(reflectance)
+    def encode_surface(self, reflectance: Array) -> Array:
+        return self.encode_light(reflectance)
 
-    def product(self, light: Array, surface: Array) -> Array:
+    def multiply(self, light: Array, surface: Array) -> Array:
         return _analysed((light @ self.resampled) * (surface @ self.resampled), self.resampled)
 
     def xyz(self, light: Array) -> Array:
-        return light @ (self.waves @ observed())
+        return light @ (self.waves @ xyz_weights())
 
-    def floats(self, code: Array) -> Array:
-        return stored(code)
+    def storage(self, code: Array) -> Array:
+        return row_sizes(code)
 
 
-def fourier(count: int) -> Fourier:
+def fourier_coefficients(count: int) -> FourierCoefficients:
     """``count`` real coefficients, an odd number. Raises `OptionError`."""
     if count < 1 or count % 2 == 0:
         raise OptionError(
             f"{count} Fourier coefficients are no mean with pairs of waves", hint="take an odd number"
         )
     phase = 2 * np.pi * (wavelengths() - START) / (END - START)
-    return Fourier(count, _waves(phase, count), _waves(2 * np.pi * np.arange(2 * count) / (2 * count), count))
+    return FourierCoefficients(
+        count, _waves(phase, count), _waves(2 * np.pi * np.arange(2 * count) / (2 * count), count)
+    )
 
 
 def _waves(phase: Array, count: int) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import uplift
-from uplift.lab.study.steepness import _cuts, norms, steepness
+from uplift.lab.study.lipschitz import _cuts, lipschitz_constants, spectral_norms
 from uplift.lattice import CORNERS
 from uplift.lookup.interpolate import lattice_spectra
 
@@ -15,7 +15,7 @@ RNG = np.random.default_rng(6)
 
 @pytest.fixture(scope="module")
 def steep(small_cube):
-    return steepness(small_cube.data)
+    return lipschitz_constants(small_cube.data)
 
 
 def quotient(first, second, before, after):
@@ -70,7 +70,7 @@ def test_a_box_is_as_steep_as_stated(small_cube, steep):
 def test_codes_count_along_the_curve_of_the_space(plain_cube):
     """A cell between codes is as steep per code as its two ends tell, the curve being steepest above."""
     data = plain_cube.data
-    steep = steepness(data)
+    steep = lipschitz_constants(data)
     slope = np.diff(data.sensor.decoding)
     ratio = steep.codes / steep.cells
     assert ratio.min() >= slope.min() * (1 - 1e-9)
@@ -83,7 +83,7 @@ def test_codes_count_along_the_curve_of_the_space(plain_cube):
 def test_norms_are_those_of_the_jacobian():
     columns = RNG.normal(size=(5, 3, 20))
     expected = [np.linalg.norm(one, 2) / np.sqrt(20) for one in columns]
-    np.testing.assert_allclose(norms(columns), expected)
+    np.testing.assert_allclose(spectral_norms(columns), expected)
 
 
 @pytest.mark.parametrize("axis", range(3))

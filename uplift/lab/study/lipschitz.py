@@ -27,7 +27,7 @@ THIN = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Steepness:
+class LipschitzConstants:
     """The largest rms over wavelength of the change of the answer, per unit of change of the colour.
 
     Parameters
@@ -49,7 +49,7 @@ class Steepness:
         return max(float(self.cells.max()), float(self.boxes.max(initial=0)))
 
 
-def steepness(data: CubeData) -> Steepness:
+def lipschitz_constants(data: CubeData) -> LipschitzConstants:
     """Of every cell and box. Two planes of spectra are in memory at a time."""
     dim, nodes = data.lattice.dim, data.lattice.nodes
     sides, slope = np.diff(nodes), _steepest_curve(data)
@@ -61,15 +61,15 @@ def steepness(data: CubeData) -> Steepness:
         both = np.stack([before, after])
         corners = [_columns(both, corner, red, sides) for corner in CORNERS]
         scale = np.stack(np.broadcast_arrays(slope[red], slope[:, None], slope[None, :]), axis=-1)
-        cells[red] = np.max([norms(columns) for columns in corners], axis=0)
-        codes[red] = np.max([norms(columns * scale[..., None]) for columns in corners], axis=0)
+        cells[red] = np.max([spectral_norms(columns) for columns in corners], axis=0)
+        codes[red] = np.max([spectral_norms(columns * scale[..., None]) for columns in corners], axis=0)
         for columns in corners:
             waves = np.maximum(waves, np.linalg.norm(columns, axis=-2).max(axis=(0, 1)))
         before = after
-    return Steepness(cells, codes, waves, _boxes(data))
+    return LipschitzConstants(cells, codes, waves, _boxes(data))
 
 
-def norms(columns: Array) -> Array:
+def spectral_norms(columns: Array) -> Array:
     """The largest rms (…) that columns (…, 3, N), the derivatives along three axes, give any unit direction."""
     gram = columns @ columns.mT / columns.shape[-1]
     return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(gram)[..., -1], 0)))
@@ -113,7 +113,7 @@ def _box(data: CubeData, entry: int) -> float:
     if not data.atlas.reach[entry]:
         return 0.0
     own = reflectance(data.model, data.atlas.coefficients[entry : entry + 1], data.sensor.wavelengths)[0]
-    return max(float(norms(columns).max()) for columns in _faces(data, entry, own))
+    return max(float(spectral_norms(columns).max()) for columns in _faces(data, entry, own))
 
 
 def _faces(data: CubeData, entry: int, own: Array) -> Iterator[Array]:

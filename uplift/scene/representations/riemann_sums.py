@@ -12,18 +12,18 @@ import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.scene.representations.dense import STEP, observed, wavelengths
-from uplift.scene.representations.samples import Samples
+from uplift.scene.representations.dense import STEP, wavelengths, xyz_weights
+from uplift.scene.representations.samples import SampleRepresentation
 
 
-def riemann(count: int) -> Samples:
+def riemann_sums(count: int) -> SampleRepresentation:
     """``count`` cells."""
-    shares = cells(count)
+    shares = cell_overlaps(count)
     means = shares / shares.sum(axis=1, keepdims=True)
-    return Samples(f"RS{count}", "Riemann sums", means.T, shares @ observed())
+    return SampleRepresentation(f"RS{count}", "Riemann sums", means.T, shares @ xyz_weights())
 
 
-def cells(count: int) -> Array:
+def cell_overlaps(count: int) -> Array:
     """(count, 401) the share of each dense sample's nanometre that lies in each cell."""
     edges = np.linspace(observer.START - STEP / 2, observer.END + STEP / 2, count + 1)
     below, above = wavelengths() - STEP / 2, wavelengths() + STEP / 2

@@ -15,11 +15,11 @@ from uplift.models import Moments
 from uplift.models.duality import cosine_basis
 from uplift.models.matmul import matmul_rows
 from uplift.scene.representations.dense import wavelengths
-from uplift.scene.representations.table import Tabled
+from uplift.scene.representations.table import TabulatedProducts
 
 
 @dataclass(frozen=True)
-class TrigonometricMoments(Tabled):
+class TrigonometricMoments(TabulatedProducts):
     """As many coefficients as ``model`` has: the zeroth moment and those above it."""
 
     model: Moments
@@ -32,7 +32,7 @@ class TrigonometricMoments(Tabled):
     def family(self) -> str:
         return "trigonometric moments"
 
-    def surface(self, reflectance: Array) -> Array:
+    def encode_surface(self, reflectance: Array) -> Array:
         phase = self.model.phase(wavelengths())
         analysis = cosine_basis(phase, self.model.count) * np.gradient(phase)[:, None] / np.pi
         analysis[:, 1:] /= 2
@@ -40,6 +40,6 @@ class TrigonometricMoments(Tabled):
         return np.asarray(matmul_rows(reflectance, analysis))
 
 
-def moments(count: int) -> TrigonometricMoments:
+def trigonometric_moments(count: int) -> TrigonometricMoments:
     """``count`` coefficients."""
     return TrigonometricMoments(Moments(count))

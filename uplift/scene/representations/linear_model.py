@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.scene.representations.dense import observed
-from uplift.scene.representations.samples import stored
+from uplift.scene.representations.dense import xyz_weights
+from uplift.scene.representations.samples import row_sizes
 
 
 @dataclass(frozen=True, eq=False)
-class Linear:
+class LinearModel:
     """Coordinates in an orthonormal ``basis`` (401, n)."""
 
     basis: Array
@@ -31,27 +31,27 @@ class Linear:
     def family(self) -> str:
         return "linear model (PCA)"
 
-    def light(self, power: Array) -> Array:
+    def encode_light(self, power: Array) -> Array:
         return power @ self.basis
 
-    def surface(self, reflectance: Array) -> Array:
+    def encode_surface(self, reflectance: Array) -> Array:
         return np.asarray(np.einsum("ik,ni,il->nkl", self.basis, reflectance, self.basis, optimize=True))
 
-    def product(self, light: Array, surface: Array) -> Array:
+    def multiply(self, light: Array, surface: Array) -> Array:
         return np.asarray((surface @ light[:, :, None])[:, :, 0])
 
     def xyz(self, light: Array) -> Array:
-        return light @ (self.basis.T @ observed())
+        return light @ (self.basis.T @ xyz_weights())
 
-    def floats(self, code: Array) -> Array:
-        return stored(code)
+    def storage(self, code: Array) -> Array:
+        return row_sizes(code)
 
 
-def linear(count: int, lights: Array, surfaces: Array) -> Linear:
+def linear_model(count: int, lights: Array, surfaces: Array) -> LinearModel:
     """``count`` components of a scene of lights (L, 401) and surfaces (E, 401); all lights count alike."""
     scatter = np.zeros((lights.shape[1],) * 2)
-    for power in lights / (lights @ observed()[:, 1:2]):
+    for power in lights / (lights @ xyz_weights()[:, 1:2]):
         sent = np.concatenate([surfaces * power, power[None]])
         scatter += sent.T @ sent
     _, vectors = np.linalg.eigh(scatter)
-    return Linear(vectors[:, ::-1][:, :count])
+    return LinearModel(vectors[:, ::-1][:, :count])
