@@ -47,10 +47,10 @@ def _cubes() -> dict[str, Cube]:
 def _fitted(cubes: dict[str, Cube]) -> str:
     rows = []
     for name, cube in cubes.items():
-        counts, data = cube.data.counts(), cube.data
-        rounds = int(data.round.max()) + 1 if data.round is not None else 0
+        counts, data = cube.data.points.counts(), cube.data
+        rounds = int(data.points.round.max()) + 1 if data.points.round is not None else 0
         numbers = (rounds, counts["improved"], counts["unfitted"])
-        rows.append([name, *map(str, numbers), f"{data.distance.max():.1e}"])
+        rows.append([name, *map(str, numbers), f"{data.points.distance.max():.1e}"])
     return table(
         "Every lattice point is fitted",
         "*improved* points were over the threshold of 1e-4 after growth; *worst* is the largest fitting distance, "

@@ -100,7 +100,7 @@ def _build(dim: int, scene: Sequence[Picture]) -> Build:
 
 
 def _row(name: str, part: Build, whole: Build, difference: str) -> list[str]:
-    points, size = int(part.cube.data.present.sum()), whole.cube.data.lattice.size
+    points, size = int(part.cube.data.points.present.sum()), whole.cube.data.lattice.size
     return [
         name,
         f"{points:,}",

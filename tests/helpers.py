@@ -5,11 +5,13 @@ from __future__ import annotations
 import contextlib
 import warnings
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from uplift.common.errors import UpliftError, UpliftWarning
+from uplift.cube import CubeData
 
 
 @contextlib.contextmanager
@@ -29,3 +31,8 @@ def warns(*codes: str) -> Iterator[list[UpliftWarning]]:
         yield found
     found += [each.message for each in caught if isinstance(each.message, UpliftWarning)]
     assert sorted(each.code for each in found) == sorted(codes)
+
+
+def with_points(data: CubeData, **arrays: Any) -> CubeData:
+    """Return ``data`` with some arrays of its point table replaced."""
+    return replace(data, points=replace(data.points, **arrays))

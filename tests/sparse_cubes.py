@@ -1,30 +1,25 @@
-"""Sparse cubes without a fit: whole ones, robbed of points."""
+"""Sparse cubes without a fit: points of complete cubes marked as absent."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
+from tests.helpers import with_points
 from uplift.cube import CubeData
-from uplift.lattice import Status
+from uplift.cube.checks import POINT_TYPES
+from uplift.cube.sparse import ABSENT
 
 
-def robbed(data: CubeData, present) -> CubeData:
-    """The cube with the points ``present`` (dim³,) alone, all else as a build for a scene leaves it."""
-    gone = ~present
-    changed = {name: getattr(data, name).copy() for name in ("coefficients", "rgb", "distance")}
-    status, entry = data.status.copy(), data.entry.copy()
-    status[gone], entry[gone] = Status.ABSENT, -1
-    for name in ("round", "standard_error"):
-        if getattr(data, name) is not None:
-            changed[name] = getattr(data, name).copy()
-    for name, array in changed.items():
-        array[gone] = -1 if name == "round" else 0
-    return replace(data, status=status, entry=entry, **changed)
+def with_absent_points(data: CubeData, present: np.ndarray) -> CubeData:
+    """Return the cube with the points ``present`` (dim³,) only, as a build for a scene returns it."""
+    arrays = {name: getattr(data.points, name) for name in POINT_TYPES}
+    arrays = {name: array.copy() for name, array in arrays.items() if array is not None}
+    for name, array in arrays.items():
+        array[~present] = ABSENT.get(name, 0)
+    return with_points(data, **arrays)
 
 
-def dark(data: CubeData) -> np.ndarray:
-    """Which points (dim³,) the cells near black have: a quarter of the axes."""
+def near_black(data: CubeData) -> np.ndarray:
+    """Mask (dim³,) of the points in the lowest quarter of every axis."""
     position = data.lattice.position(np.arange(data.lattice.size))
     return (position <= data.lattice.dim // 4).all(axis=1)

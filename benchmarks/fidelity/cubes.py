@@ -157,7 +157,7 @@ def _across(known: str, asked: str) -> HoldoutSplit:
     """A cube of one atlas asked for another."""
     cube, some = build(known), materials(asked)
     answered = cube.reflectance(some.rgb)
-    light = observer.light(cube.data.reference)
+    light = observer.light(cube.data.error_illuminant)
     return HoldoutSplit({}, delta_e_spectra(light, answered, some.measured), cube.standard_error(some.rgb))
 
 

@@ -140,7 +140,7 @@ def _told(found: Assessment) -> str:
     if found.calibration is not None:
         judged = found.calibration
         parts.append(
-            f"under {found.data.reference} {judged.real:.2f}, {judged.stated:.2f} stated (root mean squares)"
+            f"under {found.data.error_illuminant} {judged.real:.2f}, {judged.stated:.2f} stated (root mean squares)"
         )
     if found.crowding is not None:
         parts.append(pluralise(len(found.crowding.entries.names), "crowded entry", "crowded entries"))

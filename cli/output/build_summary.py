@@ -20,13 +20,13 @@ def tell_improvements(cube: Cube) -> None:
 def tell(cube: Cube, path: Path, seconds: float) -> None:
     from uplift.lattice import Status
 
-    data, counts = cube.data, cube.data.counts()
+    data, counts = cube.data, cube.data.points.counts()
     missed, beyond = counts["unfitted"], counts["unrealisable"]
     within = f"all within {data.threshold:g}"
     fitted = within if not missed else f"{missed} MISS the threshold {data.threshold:g}"
     if beyond:
         fitted += f" but {beyond} that no reflectance has the colour of: these have less chroma"
-    worst = data.distance[data.status != Status.UNREALISABLE].max(initial=0)
+    worst = data.points.distance[data.points.status != Status.UNREALISABLE].max(initial=0)
     entries = f"{len(data.atlas.names)} atlas entries, " if data.provenance["atlases"] else ""
     click.echo(
         f"{path}: {_points(data)}, {entries}{fitted} (worst {worst:.1e}), "
@@ -35,7 +35,7 @@ def tell(cube: Cube, path: Path, seconds: float) -> None:
 
 
 def _points(data: CubeData) -> str:
-    if data.complete is None:
+    if data.complete_cells is None:
         return f"{data.lattice.size} points"
-    there = int(data.present.sum())
+    there = int(data.points.present.sum())
     return f"{there} of {data.lattice.size} points ({there / data.lattice.size:.1%})"

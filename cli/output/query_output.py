@@ -43,7 +43,7 @@ def _object(cube: Cube, answer: QueryResult) -> dict[str, Any]:
         "realisable": answer.realisable,
         "entry": answer.entry,
         "standard_error": answer.standard_error,
-        "reference": cube.data.reference,
+        "reference": cube.data.error_illuminant,
     }
 
 
@@ -103,7 +103,7 @@ def _moved(cube: Cube, answer: QueryResult) -> dict[str, str]:
 def _expected(cube: Cube, answer: QueryResult) -> str:
     if answer.standard_error is None:
         return "no telling: too few atlas entries"
-    return f"may differ by ΔE00 {answer.standard_error:.2g} ({cube.data.reference}; standard error)"
+    return f"may differ by ΔE00 {answer.standard_error:.2g} ({cube.data.error_illuminant}; standard error)"
 
 
 def columns(wavelengths: Array, reflectance: Array) -> None:

@@ -26,7 +26,7 @@ def test_a_cube_is_written_and_told_in_a_line(run, home):
     result = run("build", *SMALL, "-o", "cube.uplift")
     assert os.listdir(home) == ["cube.uplift"]
     data = uplift.load(home / "cube.uplift").data
-    assert (data.lattice.dim, data.model.count, data.round) == (4, 4, None)
+    assert (data.lattice.dim, data.model.count, data.points.round) == (4, 4, None)
     assert result.stdout.startswith("cube.uplift: 64 points, all within 0.0001 (worst ")
     assert result.stdout.count("\n") == 1
     assert result.stderr == ""
@@ -38,7 +38,7 @@ def test_help_names_the_lights_that_are_the_default(run):
 
 def test_colours_that_no_reflectance_has_are_told_of(run, home):
     result = run("build", "--dim", "3", "--space", "ITU-R BT.2020", "-o", "wide.uplift")
-    beyond = uplift.load(home / "wide.uplift").data.counts()["unrealisable"]
+    beyond = uplift.load(home / "wide.uplift").data.points.counts()["unrealisable"]
     assert beyond > 0
     assert f"all within 0.0001 but {beyond} that no reflectance has the colour of" in result.stdout
     asked = run("query", "--cube", "wide.uplift", "0", "1", "0").stdout
@@ -74,7 +74,7 @@ def test_every_option_reaches_the_cube(run, home):
     assert (data.sensor.space, data.sensor.illuminant) == ("Display P3", "D50")
     assert data.sensor.observer == "CIE 1964 10 Degree Standard Observer"
     assert data.threshold == 1e-3
-    assert data.round is not None
+    assert data.points.round is not None
     assert data.provenance["options"]["lights"] == ["A", "FL2"]
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import shutil
 
 import pytest
 
 import uplift
+from tests.helpers import with_points
 from uplift.cube import write
 from uplift.report.regression import LIMITS
 
@@ -24,9 +24,9 @@ def stored(home):
 def spoilt(home, stored):
     """The same cube, one coefficient nudged, its digest right."""
     data = uplift.load(stored).data
-    coefficients = data.coefficients.copy()
+    coefficients = data.points.coefficients.copy()
     coefficients[13, 2] += 1e-3
-    write(dataclasses.replace(data, coefficients=coefficients), home / "spoilt[red].uplift")
+    write(with_points(data, coefficients=coefficients), home / "spoilt[red].uplift")
     return home / "spoilt[red].uplift"
 
 

@@ -6,6 +6,7 @@ import dataclasses
 import json
 
 import uplift
+from tests.helpers import with_points
 from uplift.cube import digest, write
 
 
@@ -18,15 +19,15 @@ def test_json_holds_the_facts(run, cubes):
     assert (facts["dim"], facts["points"], facts["coefficients"]) == (8, 512, 9)
     assert facts["model"] == data.model.describe()
     assert (facts["space"], facts["illuminant"]) == ("sRGB", "D65")
-    assert facts["status"] == data.counts()
+    assert facts["status"] == data.points.counts()
     assert sum(facts["status"].values()) == 512
     assert facts["entries"] == list(data.atlas.names)
-    assert facts["worst_distance"] == float(data.distance.max())
+    assert facts["worst_distance"] == float(data.points.distance.max())
     assert (facts["reference"], facts["mean_standard_error"]) == (
         "A",
-        float(data.standard_error.mean(dtype=float)),
+        float(data.points.standard_error.mean(dtype=float)),
     )
-    assert facts["rounds"] == data.round.max() + 1
+    assert facts["rounds"] == data.points.round.max() + 1
     assert facts["provenance"]["left_out"] == ["cyan"]
     assert facts["digest"] == digest(data)
 
@@ -37,7 +38,7 @@ def test_without_a_file_it_is_the_package_s_own_cube(run):
 
 
 def test_without_debug_information_there_are_no_rounds(run, small_cube, home):
-    write(dataclasses.replace(small_cube.data, round=None), home / "plain.uplift")
+    write(with_points(small_cube.data, round=None), home / "plain.uplift")
     facts = json.loads(run("info", "plain.uplift", "--format", "json").stdout)
     assert (facts["debug"], facts["rounds"]) == (False, None)
 

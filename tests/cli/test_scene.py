@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from tests.io.texture.conftest import channels, planes, write_exr
-from tests.sparse_cubes import dark, robbed
+from tests.sparse_cubes import near_black, with_absent_points
 from uplift.cube import read, write
 
 
 @pytest.fixture
 def scene(home, small_cube):
     """The ColorChecker cube with dark colours alone."""
-    write(robbed(small_cube.data, dark(small_cube.data)), home / "dark.uplift")
+    write(with_absent_points(small_cube.data, near_black(small_cube.data)), home / "dark.uplift")
     return home / "dark.uplift"
 
 
@@ -24,7 +24,7 @@ def test_build_tells_what_is_kept_and_names_the_cube_for_it(run, home, macbeth):
         write_exr(home / name, planes(np.full((4, 4, 3), value, np.float32)))
     result = run("build", "--atlas", macbeth, "--dim", 8, "--scene", "a.exr", "--scene", "b.*.exr", "-v")
     data = read(home / "macbeth-8-scene.uplift")
-    count = int(data.present.sum())
+    count = int(data.points.present.sum())
     assert 16 <= count < 300
     assert f"macbeth-8-scene.uplift: {count} of 512 points ({count / 512:.1%})" in result.stdout
     assert "scene: read 0 of 3 images" in result.stderr

@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from tests.helpers import with_points
 from uplift.colorimetry.observer import axis_nodes, sensor
 from uplift.cube import AtlasTable, CubeData
-from uplift.lattice import Lattice, Status
+from uplift.cube.checks import POINT_TYPES
+from uplift.lattice import Lattice, PointTable, Status
 from uplift.models import Moments
 
 
@@ -30,14 +32,17 @@ def hand_made(dim: int = 4, **changes: object) -> CubeData:
             np.array([0.5, 0.0]),
             np.full(2, 0.1),
         ),
-        coefficients=rng.normal(size=(lattice.size, 3)),
-        rgb=rgb,
-        distance=np.abs(rgb - lattice.points).max(axis=1).astype(np.float32),
-        status=(points % Status.ABSENT).astype(np.uint8),
-        entry=(points % 3 - 1).astype(np.int32),
-        round=(points % 5 - 1).astype(np.int16),
-        standard_error=rng.uniform(0.1, 2, lattice.size).astype(np.float32),
-        reference="A",
+        points=PointTable(
+            coefficients=rng.normal(size=(lattice.size, 3)),
+            rgb=rgb,
+            distance=np.abs(rgb - lattice.points).max(axis=1).astype(np.float32),
+            status=(points % Status.ABSENT).astype(np.uint8),
+            entry=(points % 3 - 1).astype(np.int32),
+            round=(points % 5 - 1).astype(np.int16),
+            standard_error=rng.uniform(0.1, 2, lattice.size).astype(np.float32),
+        ),
+        error_illuminant="A",
         provenance={},
     )
-    return replace(data, **changes)
+    arrays = {name: changes.pop(name) for name in POINT_TYPES if name in changes}
+    return replace(with_points(data, **arrays), **changes)

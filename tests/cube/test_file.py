@@ -11,6 +11,7 @@ import pytest
 from safetensors.numpy import load_file, save_file
 
 from tests.cube.cube_files import forge, header_length, with_header, with_header_length
+from tests.helpers import with_points
 from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube import digest, read, write
 from uplift.cube.file import KEY, POINT_TYPES, SENSOR_ARRAYS
@@ -50,7 +51,7 @@ def refused(path):
 
 def assert_same(one, other):
     for name in POINT_TYPES:
-        assert_same_array(getattr(one, name), getattr(other, name))
+        assert_same_array(getattr(one.points, name), getattr(other.points, name))
     for name in SENSOR_ARRAYS:
         assert_same_array(getattr(one.sensor, name), getattr(other.sensor, name))
     for name in ("space", "illuminant", "observer"):
@@ -77,7 +78,7 @@ def test_every_field_comes_back(data, path):
 
 
 def test_without_debug_information_there_is_no_round(data, tmp_path):
-    plain = dataclasses.replace(data, round=None)
+    plain = with_points(data, round=None)
     write(plain, tmp_path / "plain.uplift")
     assert_same(read(tmp_path / "plain.uplift"), plain)
 
@@ -131,7 +132,7 @@ def changed(data, name):
         return dataclasses.replace(data, threshold=float(np.nextafter(data.threshold, 1)))
     if name == "provenance":
         return dataclasses.replace(data, provenance={**data.provenance, "uplift": "0.0.0"})
-    return dataclasses.replace(data, **{name: nudged(getattr(data, name))})
+    return with_points(data, **{name: nudged(getattr(data.points, name))})
 
 
 def nudged(array):
@@ -419,7 +420,7 @@ def test_an_entry_out_of_the_table_is_refused(data, tmp_path, row):
 
 
 def test_debug_information_that_is_promised_must_be_there(data, tmp_path):
-    plain = dataclasses.replace(data, round=None)
+    plain = with_points(data, round=None)
     path = forge(plain, tmp_path / "cube", lambda tensors, metadata: metadata.update(features=["debug"]))
     assert "KeyError: 'round'" in refused(path)
 

@@ -13,6 +13,7 @@ from hypothesis.extra.numpy import arrays
 
 from tests.cube.hand_made import hand_made
 from uplift.cube import digest, read, write
+from uplift.lattice import PointTable
 
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
 JSON = st.recursive(
@@ -31,13 +32,16 @@ def cubes(draw):
         DATA,
         threshold=draw(st.floats(1e-9, 0.1)),
         atlas=replace(DATA.atlas, names=names, error=draw(arrays(float, 2, elements=NUMBERS))),
-        coefficients=draw(arrays(float, (8, 3), elements=NUMBERS)),
-        distance=draw(arrays(np.float32, 8, elements=st.floats(0, 1024, width=32))),
-        status=draw(arrays(np.uint8, 8, elements=st.integers(0, 5))),
-        entry=draw(arrays(np.int32, 8, elements=st.integers(-1, 1))),
-        round=draw(st.none() | arrays(np.int16, 8)),
-        standard_error=draw(st.none() | arrays(np.float32, 8, elements=st.floats(0, 128, width=32))),
-        reference=draw(TEXT),
+        points=PointTable(
+            coefficients=draw(arrays(float, (8, 3), elements=NUMBERS)),
+            rgb=DATA.points.rgb,
+            distance=draw(arrays(np.float32, 8, elements=st.floats(0, 1024, width=32))),
+            status=draw(arrays(np.uint8, 8, elements=st.integers(0, 5))),
+            entry=draw(arrays(np.int32, 8, elements=st.integers(-1, 1))),
+            round=draw(st.none() | arrays(np.int16, 8)),
+            standard_error=draw(st.none() | arrays(np.float32, 8, elements=st.floats(0, 128, width=32))),
+        ),
+        error_illuminant=draw(TEXT),
         provenance=draw(st.dictionaries(TEXT, JSON, max_size=3)),
     )
 
@@ -53,6 +57,6 @@ def test_what_is_written_is_read_and_written_again_alike(data):
         assert second.read_bytes() == first.read_bytes()
     assert digest(found) == digest(data)
     for name in ("coefficients", "distance", "status", "entry", "round", "standard_error"):
-        np.testing.assert_array_equal(getattr(found, name), getattr(data, name))
+        np.testing.assert_array_equal(getattr(found.points, name), getattr(data.points, name))
     assert found.atlas.names == data.atlas.names
     assert found.provenance == data.provenance

@@ -7,7 +7,7 @@ import pytest
 
 from tests.cube.cube_files import forge
 from tests.cube.hand_made import hand_made
-from tests.sparse_cubes import dark, robbed
+from tests.sparse_cubes import near_black, with_absent_points
 from uplift.common.errors import CubeFileError
 from uplift.cube import digest, read, write
 from uplift.cube.checks import POINT_TYPES
@@ -21,7 +21,7 @@ from uplift.viz.sheet.panels import BACKGROUND, panels
 @pytest.fixture
 def data():
     whole = hand_made(6)
-    return robbed(whole, dark(whole))
+    return with_absent_points(whole, near_black(whole))
 
 
 def test_it_comes_back_bit_by_bit_and_takes_no_more_than_it_must(data, tmp_path):
@@ -29,9 +29,9 @@ def test_it_comes_back_bit_by_bit_and_takes_no_more_than_it_must(data, tmp_path)
     write(hand_made(6), tmp_path / "whole.uplift")
     back = read(tmp_path / "part.uplift")
     for name in POINT_TYPES:
-        np.testing.assert_array_equal(getattr(back, name), getattr(data, name), err_msg=name)
+        np.testing.assert_array_equal(getattr(back.points, name), getattr(data.points, name), err_msg=name)
     assert digest(back) == digest(data)
-    row = sum(np.asarray(getattr(data, name)[0]).nbytes for name in POINT_TYPES)
+    row = sum(np.asarray(getattr(data.points, name)[0]).nbytes for name in POINT_TYPES)
     saved = [(tmp_path / f"{name}.uplift").stat().st_size for name in ("whole", "part")]
     assert saved[0] - saved[1] == pytest.approx((6**3 - 8) * row, abs=200)
 
@@ -119,18 +119,18 @@ def test_a_whole_file_cannot_call_points_absent(tmp_path):
 
 
 def test_an_unforged_one_is_not(data, tmp_path):
-    assert not read(forge(data, tmp_path / "true.uplift", lambda *_: None)).present.all()
+    assert not read(forge(data, tmp_path / "true.uplift", lambda *_: None)).points.present.all()
 
 
 def test_absent_points_are_background_on_sheets_and_nothing_in_slices(data, tmp_path):
     for panel in panels(data):
-        assert (panel.colours[~data.present] == np.float32(BACKGROUND)).all() or np.allclose(
-            panel.colours[~data.present], BACKGROUND
+        assert (panel.colours[~data.points.present] == np.float32(BACKGROUND)).all() or np.allclose(
+            panel.colours[~data.points.present], BACKGROUND
         )
-        assert not np.allclose(panel.colours[data.present], BACKGROUND)
+        assert not np.allclose(panel.colours[data.points.present], BACKGROUND)
     for name, values in channels(data).items():
         if not name.startswith("target"):
             expected = {"status": Status.ABSENT, "entry": -1, "round": -1}.get(name, 0)
-            assert (np.asarray(values)[~data.present] == expected).all(), name
+            assert (np.asarray(values)[~data.points.present] == expected).all(), name
     write_slices(data, tmp_path / "slices.exr")
     write_sheet(data, tmp_path / "sheet.png")

@@ -34,7 +34,7 @@ def test_what_the_trial_says_is_what_the_cube_does(stage, sensor, macbeth_cube):
     trial = lattice_error(problem, sensor.wavelengths, lights, entries)
     data = macbeth_cube.data
     corners, weights = data.lattice.corners(entries.rgb)
-    spectra = reflectance(data.model, data.coefficients[corners.ravel()], sensor.wavelengths)
+    spectra = reflectance(data.model, data.points.coefficients[corners.ravel()], sensor.wavelengths)
     answered = (weights[..., None] * spectra.reshape(*corners.shape, -1)).sum(axis=1)
     own = reflectance(data.model, data.atlas.coefficients, sensor.wavelengths)
     plain = np.max([delta_e_spectra(lit, answered, own) for lit in lights], axis=0)

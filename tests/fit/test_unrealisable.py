@@ -23,12 +23,12 @@ DIM = 17
 def test_all_that_is_realisable_is_fitted(space, model, count):
     data = uplift.build(dim=DIM, space=space, model=model, coefficients=count).data
     possible = solid(data.sensor.matrix).holds(data.lattice.points)
-    assert Status.UNFITTED not in data.status
-    rgb = data.sensor.rgb(reflectance(data.model, data.coefficients, data.sensor.wavelengths))
+    assert Status.UNFITTED not in data.points.status
+    rgb = data.sensor.rgb(reflectance(data.model, data.points.coefficients, data.sensor.wavelengths))
     distance = np.abs(rgb - data.lattice.points).max(axis=1)
     assert (~possible).sum() > 100
     assert distance[possible].max() <= data.threshold
-    named = data.status == Status.UNREALISABLE
+    named = data.points.status == Status.UNREALISABLE
     np.testing.assert_array_equal(named, ~possible & (distance > data.threshold))
 
 

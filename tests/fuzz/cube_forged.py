@@ -15,7 +15,7 @@ from tests.fuzz.mutate import Random
 from tests.fuzz.target import ROOT, Target
 from uplift.cube import CubeData, read
 from uplift.cube.file import POINT_TYPES
-from uplift.lattice import Lattice
+from uplift.lattice import Lattice, PointTable
 
 Tensors = dict[str, NDArray[Any]]
 
@@ -49,11 +49,11 @@ def _coarse(data: CubeData) -> CubeData:
     """Every seventh node of the lattice: small, and a cube like any other."""
     lattice = Lattice(data.lattice.nodes[::7])
     kept = data.lattice.index(7 * lattice.position(np.arange(lattice.size)))
-    arrays = {name: getattr(data, name) for name in POINT_TYPES}
+    arrays = {name: getattr(data.points, name) for name in POINT_TYPES}
     return replace(
         data,
         lattice=lattice,
-        **{name: None if array is None else array[kept] for name, array in arrays.items()},
+        points=PointTable(**{name: None if array is None else array[kept] for name, array in arrays.items()}),
     )
 
 

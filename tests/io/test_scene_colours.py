@@ -12,7 +12,7 @@ from PIL import Image
 import uplift
 from tests.conftest import ATLASES, MACBETH
 from tests.io.texture.conftest import AT, PHOTO, planes, write_exr
-from tests.sparse_cubes import dark, robbed
+from tests.sparse_cubes import near_black, with_absent_points
 from uplift.common.errors import ColourError, CubeFileError, OptionError, TextureError, UpliftWarning
 from uplift.cube import AtlasTable, digest
 from uplift.io.scene_colours import Images, StoredScene, cells_touched
@@ -40,7 +40,7 @@ def photo_colours(scene_cube):
 
 def points_of(cube, *paths, encoding="auto", out_of_gamut="clip"):
     data = cube.data
-    return Images(paths, encoding, out_of_gamut).points(data.pins, data.sensor, lambda done: None)
+    return Images(paths, encoding, out_of_gamut).points(data.entry_boxes, data.sensor, lambda done: None)
 
 
 def test_images_of_another_space_are_remarked_on(small_cube, tmp_path):
@@ -52,11 +52,13 @@ def test_images_of_another_space_are_remarked_on(small_cube, tmp_path):
 
 def test_its_points_are_those_of_the_whole_cube(scene_cube, macbeth_cube):
     part, whole = scene_cube.data, macbeth_cube.data
-    there = part.present
+    there = part.points.present
     assert 0 < there.sum() < 0.3 * len(there)
     for name in ("coefficients", "rgb", "distance", "status", "entry", "round", "standard_error"):
-        array = getattr(part, name)
-        np.testing.assert_allclose(array[there], getattr(whole, name)[there], rtol=0, atol=1e-9, err_msg=name)
+        array = getattr(part.points, name)
+        np.testing.assert_allclose(
+            array[there], getattr(whole.points, name)[there], rtol=0, atol=1e-9, err_msg=name
+        )
         absent = {"status": Status.ABSENT, "entry": -1, "round": -1}.get(name, 0)
         assert (array[~there] == absent).all(), name
 
@@ -102,7 +104,7 @@ def outsiders(cube):
     ],
 )
 def test_others_are_refused_by_the_first_of_them(small_cube, ask):
-    cube = Cube(robbed(small_cube.data, dark(small_cube.data)))
+    cube = Cube(with_absent_points(small_cube.data, near_black(small_cube.data)))
     held, (first, *more) = np.array([0.001, 0.002, 0.003]), outsiders(cube)
     with pytest.raises(ColourError) as caught:
         ask(cube, np.array([held, first, *more]))
@@ -113,7 +115,7 @@ def test_others_are_refused_by_the_first_of_them(small_cube, ask):
 
 
 def test_long_questions_are_answered_from_a_table_all_the_same(small_cube):
-    cube = Cube(robbed(small_cube.data, dark(small_cube.data)))
+    cube = Cube(with_absent_points(small_cube.data, near_black(small_cube.data)))
     rgb = np.random.default_rng(1).random((2000, 3)) * 0.01
     expected = small_cube.reflectance(rgb, AT)
     np.testing.assert_allclose(cube.reflectance(rgb, AT), expected, rtol=0, atol=1e-12)
@@ -134,7 +136,7 @@ def asked_in(data, cell, count=400):
 def missing(data, needs):
     """How many colours of cells are answered from points that ``needs`` of the cell does not name."""
     count = 0
-    for cell in np.unique(data.pins.cells[0])[::3]:
+    for cell in np.unique(data.entry_boxes.cells[0])[::3]:
         mask = np.zeros(data.lattice.size, dtype=bool)
         mask[cell] = True
         nodes = around(data, asked_in(data, cell))
@@ -145,7 +147,7 @@ def missing(data, needs):
 @pytest.mark.parametrize("name", ["small_cube", "macbeth_cube"])
 def test_every_colour_of_a_cell_has_what_it_needs(request, name):
     data = request.getfixturevalue(name).data
-    assert missing(data, data.pins.needs) == 0
+    assert missing(data, data.entry_boxes.needs) == 0
     assert (
         missing(data, data.lattice.corners_of) > 0
     )  # the cell's corners are not enough: entries ask elsewhere
@@ -158,8 +160,8 @@ def test_entries_on_a_node_have_faces_on_nodes_that_rounding_may_cross(plain_cub
         ("one",), np.full((1, 3), data.lattice.nodes[node]), np.zeros((1, 9)), np.ones(1), np.ones(1)
     )
     data = replace(data, atlas=one)
-    assert data.pins.cells[0].size
-    assert missing(data, data.pins.needs) == 0
+    assert data.entry_boxes.cells[0].size
+    assert missing(data, data.entry_boxes.needs) == 0
 
 
 def test_colours_beside_a_face_touch_both_cells(small_cube):
@@ -241,10 +243,10 @@ def test_in_a_wide_space_colours_come_back_where_they_can(tmp_path):
     path = write_exr(tmp_path / "wide.exr", planes(rgb))
     cube = uplift.build(scene=[path], dim=8, space="ITU-R BT.2020")
     data, asked = cube.data, rgb.reshape(-1, 3).astype(float)
-    assert data.counts()["unfitted"] == 0
-    assert data.counts()["unrealisable"] > 0
+    assert data.points.counts()["unfitted"] == 0
+    assert data.points.counts()["unrealisable"] > 0
     corners, _ = data.lattice.corners(asked)
-    possible = ~(data.status[corners] == Status.UNREALISABLE).any(axis=1)
+    possible = ~(data.points.status[corners] == Status.UNREALISABLE).any(axis=1)
     back = data.sensor.rgb(cube.reflectance(asked))
     assert possible.sum() > 10
     np.testing.assert_allclose(back[possible], asked[possible], rtol=0, atol=data.threshold)
@@ -259,14 +261,18 @@ def test_it_is_made_again_without_its_images(scene_cube):
 
 def test_a_point_that_is_missing_is_found(scene_cube):
     data = scene_cube.data
-    fewer = robbed(data, data.present & (np.arange(data.lattice.size) != np.flatnonzero(data.present)[-1]))
+    fewer = with_absent_points(
+        data, data.points.present & (np.arange(data.lattice.size) != np.flatnonzero(data.points.present)[-1])
+    )
     failures = compare("photo.uplift", data, fewer).failures
     assert {"spectra_max", "status"} <= set(failures)
 
 
 def test_points_of_another_lattice_are_refused(scene_cube, plain_cube):
     with pytest.raises(OptionError, match="those of dim 32"):
-        StoredScene(scene_cube.data).points(plain_cube.data.pins, plain_cube.data.sensor, lambda done: None)
+        StoredScene(scene_cube.data).points(
+            plain_cube.data.entry_boxes, plain_cube.data.sensor, lambda done: None
+        )
 
 
 def test_a_filled_cube_cannot_be_made_again(scene_cube):

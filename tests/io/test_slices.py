@@ -46,14 +46,14 @@ def test_every_channel_of_every_point(written):
         point = (red * dim + green) * dim + blue
         expected = {
             **{
-                f"{layer}{letter}": data.rgb[point, i]
+                f"{layer}{letter}": data.points.rgb[point, i]
                 for i, letter in enumerate("RGB")
                 for layer in ("", "lattice.")
             },
             **{f"target.{letter}": data.lattice.points[point, i] for i, letter in enumerate("RGB")},
-            **{f"coefficient.{i:02}": data.coefficients[point, i] for i in range(3)},
-            **{name: getattr(data, name)[point] for name in ("distance", "status", "entry", "round")},
-            "standardError": data.standard_error[point],
+            **{f"coefficient.{i:02}": data.points.coefficients[point, i] for i in range(3)},
+            **{name: getattr(data.points, name)[point] for name in ("distance", "status", "entry", "round")},
+            "standardError": data.points.standard_error[point],
         }
         channels = slices[blue].channels
         assert set(channels) == {*expected, "deltaE2000"}
@@ -193,5 +193,5 @@ def test_a_cube_as_it_is_built(small_cube, tmp_path):
     write_slices(data, tmp_path / "real.exr")
     slices = parts(tmp_path / "real.exr")
     found = np.stack([part.channels["distance"].pixels for part in slices])
-    assert found.max() == data.distance.max()
+    assert found.max() == data.points.distance.max()
     assert max(part.channels["deltaE2000"].pixels.max() for part in slices) < 0.1

@@ -210,6 +210,6 @@ def test_the_default_cube_is_srgb_without_an_atlas_and_fitted_everywhere():
     data = uplift.load().data
     assert (data.sensor.space, data.sensor.illuminant) == ("sRGB", "D65")
     assert data.atlas.names == ()
-    assert not set(data.status.tolist()) & {Status.UNFITTED, Status.UNREALISABLE}
-    assert data.distance.max() <= data.threshold
-    assert (data.entry == -1).all()
+    assert not set(data.points.status.tolist()) & {Status.UNFITTED, Status.UNREALISABLE}
+    assert data.points.distance.max() <= data.threshold
+    assert (data.points.entry == -1).all()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import uplift
-from tests.sparse_cubes import dark, robbed
+from tests.sparse_cubes import near_black, with_absent_points
 from uplift.common.errors import ColourError
 from uplift.lookup import MODES, Cube
 
@@ -22,23 +22,26 @@ def whole(request):
 
 @pytest.fixture
 def sparse(whole):
-    return Cube(robbed(whole.data, dark(whole.data)))
+    return Cube(with_absent_points(whole.data, near_black(whole.data)))
 
 
 def test_colours_come_back_and_what_was_there_stays(whole, sparse):
     full = sparse.fill_missing()
-    data, there = full.data, sparse.data.present
-    assert data.present.all()
-    assert data.distance.max() <= data.threshold
+    data, there = full.data, sparse.data.points.present
+    assert data.points.present.all()
+    assert data.points.distance.max() <= data.threshold
     np.testing.assert_allclose(full.data.sensor.rgb(full.reflectance(RGB)), RGB, rtol=0, atol=1e-4)
-    np.testing.assert_array_equal(data.coefficients[there], whole.data.coefficients[there])
-    np.testing.assert_array_equal(data.status[there], whole.data.status[there])
+    np.testing.assert_array_equal(data.points.coefficients[there], whole.data.points.coefficients[there])
+    np.testing.assert_array_equal(data.points.status[there], whole.data.points.status[there])
 
 
 def test_the_spectra_are_those_of_the_package_s_own_cube(plain_cube):
     """At lattice points, of the same model; single precision takes its share."""
-    own, full = uplift.load(), Cube(robbed(plain_cube.data, dark(plain_cube.data))).fill_missing()
-    points = full.data.lattice.points[~dark(plain_cube.data)]
+    own, full = (
+        uplift.load(),
+        Cube(with_absent_points(plain_cube.data, near_black(plain_cube.data))).fill_missing(),
+    )
+    points = full.data.lattice.points[~near_black(plain_cube.data)]
     np.testing.assert_allclose(full.reflectance(points), own.reflectance(points, mode="refined"), atol=1e-5)
 
 
@@ -46,7 +49,7 @@ def test_only_what_the_colours_lack_is_filled(sparse):
     asked = RGB[~sparse.holds(RGB)][:1]
     some = sparse.fill_missing(asked)
     assert some.holds(asked).all()
-    assert 0 < some.data.present.sum() - sparse.data.present.sum() <= 8
+    assert 0 < some.data.points.present.sum() - sparse.data.points.present.sum() <= 8
     for mode in MODES:
         np.testing.assert_allclose(
             some.reflectance(asked, mode=mode), sparse.fill_missing().reflectance(asked, mode=mode), atol=1e-6
@@ -54,8 +57,10 @@ def test_only_what_the_colours_lack_is_filled(sparse):
 
 
 def test_errors_at_filled_points_are_the_largest_of_the_cube(small_cube):
-    sparse = Cube(robbed(small_cube.data, dark(small_cube.data)))
-    assert sparse.fill_missing().standard_error([1, 1, 1]) == pytest.approx(sparse.data.standard_error.max())
+    sparse = Cube(with_absent_points(small_cube.data, near_black(small_cube.data)))
+    assert sparse.fill_missing().standard_error([1, 1, 1]) == pytest.approx(
+        sparse.data.points.standard_error.max()
+    )
 
 
 def test_a_whole_cube_has_nothing_to_fill(small_cube):
@@ -66,11 +71,11 @@ def test_a_whole_cube_has_nothing_to_fill(small_cube):
 def test_other_colours_are_refused(plain_cube):
     wide = replace(plain_cube.data, sensor=replace(plain_cube.data.sensor, space="ITU-R BT.2020"))
     with pytest.raises(ColourError, match=r"BT.2020 under D65.* cannot be filled from one in sRGB under D65"):
-        Cube(robbed(wide, dark(wide))).fill_missing()
+        Cube(with_absent_points(wide, near_black(wide))).fill_missing()
 
 
 def test_another_cube_may_be_named_and_may_lack_the_colour_too(plain_cube, small_cube):
-    sparse = Cube(robbed(plain_cube.data, dark(plain_cube.data)))
+    sparse = Cube(with_absent_points(plain_cube.data, near_black(plain_cube.data)))
     assert sparse.fill_missing([1, 1, 1], small_cube).holds([1, 1, 1])
     with pytest.raises(ColourError, match="none of them"):
         sparse.fill_missing([1, 1, 1], sparse)

@@ -17,7 +17,9 @@ def random_colours(count=1000, seed=3):
 
 def stored_spectra(data, wavelengths):
     """(n, N) spectra of all lattice points, each by itself."""
-    return data.model.squash(data.model.from_storage(data.coefficients) @ data.model.basis(wavelengths).T)
+    return data.model.squash(
+        data.model.from_storage(data.points.coefficients) @ data.model.basis(wavelengths).T
+    )
 
 
 def miss(cube, rgb, mode):
@@ -48,11 +50,11 @@ def test_refined_moves_a_node_s_spectrum_to_its_colour_and_no_further(cube):
 
 def test_a_node_s_coefficients_are_those_stored(cube):
     found = cube.coefficients(cube.data.lattice.points)
-    np.testing.assert_allclose(found, cube.data.coefficients, rtol=1e-15, atol=1e-15)
+    np.testing.assert_allclose(found, cube.data.points.coefficients, rtol=1e-15, atol=1e-15)
 
 
 def test_coefficients_are_trilinear_in_a_cell(cube):
-    nodes, stored = cube.data.lattice.nodes, cube.data.coefficients
+    nodes, stored = cube.data.lattice.nodes, cube.data.points.coefficients
     low, high = nodes[[3, 5, 2]], nodes[[4, 6, 3]]
     fraction = np.array([0.25, 0.5, 0.9])
     expected = np.zeros(cube.data.model.count)
@@ -66,8 +68,8 @@ def test_coefficients_are_trilinear_in_a_cell(cube):
 
 
 def test_spectra_are_as_exact_as_the_lattice(cube):
-    assert cube.data.distance.max() <= cube.data.threshold / 100
-    assert miss(cube, random_colours(), "spectra").max() <= cube.data.distance.max() + 1e-9
+    assert cube.data.points.distance.max() <= cube.data.threshold / 100
+    assert miss(cube, random_colours(), "spectra").max() <= cube.data.points.distance.max() + 1e-9
 
 
 def test_spectra_stay_between_those_of_the_corners(plain_cube):
@@ -142,7 +144,7 @@ def test_the_nearest_lattice_point_answers_where_no_entry_is_near(plain_cube):
 def test_of_an_entry_and_the_lattice_the_one_of_more_weight_is_nearest(small_cube):
     data = small_cube.data
     own = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
-    _, high = data.pins.faces
+    _, high = data.entry_boxes.faces
     beside, off = (
         data.atlas.rgb + 0.1 * (high - data.atlas.rgb),
         data.atlas.rgb + 0.95 * (high - data.atlas.rgb),

@@ -35,7 +35,7 @@ def test_cells_are_counted_along_the_axes(small_cube):
 
 def test_statuses_are_those_of_the_cell_s_corners(small_cube):
     data = small_cube.data
-    grid = data.status.reshape(8, 8, 8)
+    grid = data.points.status.reshape(8, 8, 8)
     rgb = np.random.default_rng(5).random((100, 3))
     seen = set()
     for answer in query(small_cube, rgb):

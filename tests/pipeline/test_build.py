@@ -32,7 +32,7 @@ def quietly(*args, **options):
 def fresh_distance(cube):
     """max |target − RGB| of every point, from the stored coefficients alone."""
     data = cube.data
-    spectra = data.model.squash(data.model.from_storage(data.coefficients) @ data.model.basis(GRID).T)
+    spectra = data.model.squash(data.model.from_storage(data.points.coefficients) @ data.model.basis(GRID).T)
     return np.abs(data.sensor.rgb(spectra) - data.lattice.points).max(axis=1)
 
 
@@ -44,8 +44,8 @@ def delta_e(cube, rgb, mode):
 
 def test_every_point_of_the_macbeth_cube_is_fitted_corners_included(macbeth_cube):
     assert fresh_distance(macbeth_cube).max() <= 1e-4
-    assert macbeth_cube.data.distance.max() <= 1e-4
-    assert Status.UNFITTED not in macbeth_cube.data.status
+    assert macbeth_cube.data.points.distance.max() <= 1e-4
+    assert Status.UNFITTED not in macbeth_cube.data.points.status
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_every_point_of_the_macbeth_cube_is_fitted_corners_included(macbeth_cube
 def test_every_point_is_fitted_whatever_the_size_model_and_atlas(options):
     cube = quietly(options.pop("atlas"), **options)
     assert fresh_distance(cube).max() <= 1e-4
-    assert Status.UNFITTED not in cube.data.status
+    assert Status.UNFITTED not in cube.data.points.status
 
 
 @pytest.mark.parametrize(
@@ -108,9 +108,9 @@ def test_the_atlas_makes_the_difference_under_other_lights(macbeth_cube):
 
 def test_every_seeded_point_names_its_entry_and_no_other_does(macbeth_cube):
     data = macbeth_cube.data
-    seeded = np.isin(data.status, [Status.ATLAS_PRIMARY, Status.ATLAS_CORNER])
-    np.testing.assert_array_equal(seeded, data.entry >= 0)
-    assert np.bincount(data.entry[data.status == Status.ATLAS_PRIMARY]).tolist() == [1] * 23
+    seeded = np.isin(data.points.status, [Status.ATLAS_PRIMARY, Status.ATLAS_CORNER])
+    np.testing.assert_array_equal(seeded, data.points.entry >= 0)
+    assert np.bincount(data.points.entry[data.points.status == Status.ATLAS_PRIMARY]).tolist() == [1] * 23
 
 
 def test_what_is_left_out_is_named_and_recorded():
@@ -173,13 +173,13 @@ def test_the_order_of_the_atlas_sets_the_order_of_its_table_and_nothing_else(in_
     spectra = read_atlas(MACBETH)
     shuffled = quietly(Atlas(tuple(spectra.entries[row] for row in order)), dim=5).data
     for name in ("coefficients", "rgb", "distance", "status", "standard_error"):
-        assert getattr(shuffled, name).tobytes() == getattr(in_order, name).tobytes()
+        assert getattr(shuffled.points, name).tobytes() == getattr(in_order.points, name).tobytes()
     row = [shuffled.atlas.names.index(name) for name in in_order.atlas.names]
-    for name in ("rgb", "coefficients", "reach", "error"):
+    for name in ("rgb", "coefficients", "half_width", "error"):
         np.testing.assert_allclose(
             getattr(shuffled.atlas, name)[row], getattr(in_order.atlas, name), rtol=1e-12, atol=1e-13
         )
-    np.testing.assert_array_equal(np.append(row, -1)[in_order.entry], shuffled.entry)
+    np.testing.assert_array_equal(np.append(row, -1)[in_order.points.entry], shuffled.points.entry)
 
 
 def test_batches_do_not_show(monkeypatch):
@@ -233,7 +233,7 @@ def test_bad_options_are_refused(options, error, message):
 
 def test_a_build_outside_srgb_names_the_colours_that_no_reflectance_has():
     cube = uplift.build(dim=3, space="ProPhoto RGB", illuminant="D50")
-    counts = cube.data.counts()
+    counts = cube.data.points.counts()
     assert counts["unrealisable"] > 0
     assert counts["unfitted"] == 0
     assert (fresh_distance(cube) > 1e-4).sum() == counts["unrealisable"]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import uplift
+from tests.helpers import with_points
 from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.cube import AtlasTable
 from uplift.lattice import Status
@@ -53,10 +54,10 @@ def lossy_cube(small_cube):
 @pytest.fixture(scope="session")
 def spoilt(small_cube):
     """The same cube with two points over the threshold."""
-    distance, status = small_cube.data.distance.copy(), small_cube.data.status.copy()
+    distance, status = small_cube.data.points.distance.copy(), small_cube.data.points.status.copy()
     distance[[100, 300]] = 0.01, 0.02
     status[[100, 300]] = Status.UNFITTED
-    return Cube(dataclasses.replace(small_cube.data, distance=distance, status=status))
+    return Cube(with_points(small_cube.data, distance=distance, status=status))
 
 
 @pytest.fixture(scope="session")

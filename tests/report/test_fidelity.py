@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import uplift
+from tests.helpers import with_points
 from uplift.atlas import on_grid
 from uplift.colorimetry.display_sensors import display_sensors, hex_codes
 from uplift.colorimetry.lights import REPORT_LIGHTS
@@ -49,7 +50,7 @@ def test_every_entry_s_errors(judged, small_cube, macbeth):
         assert found.rms[row] == pytest.approx(np.sqrt(np.mean((answered - measured[name]) ** 2)), rel=1e-9)
         assert found.real[row] == pytest.approx(delta_e(answered, measured[name], "A"), abs=1e-6)
         assert found.stated[row] == pytest.approx(atlas.error[own], abs=1e-12)
-        assert found.reach[row] == atlas.reach[own]
+        assert found.reach[row] == atlas.half_width[own]
         for column, seen in enumerate(judged.lights):
             expected = delta_e(answered, measured[name], seen.illuminant)
             assert found.delta_e[row, column] == pytest.approx(expected, abs=1e-6)
@@ -73,7 +74,9 @@ def mixture(data, rgb):
             share = (value - first) / (second - first)
             weight *= share if up else 1 - share
             point = point * data.lattice.dim + place + up
-        total += weight * reflectance(data.model, data.coefficients[[point]], data.sensor.wavelengths)[0]
+        total += (
+            weight * reflectance(data.model, data.points.coefficients[[point]], data.sensor.wavelengths)[0]
+        )
     return total
 
 
@@ -153,7 +156,7 @@ def test_round_trips_are_the_same_colours_every_time(small_cube):
 @pytest.mark.parametrize("model", ["moments", "sigmoid"])
 def test_smoothness_by_loops(model):
     data = uplift.build(dim=4, model=model, **({"coefficients": 5} if model == "moments" else {})).data
-    spectra = reflectance(data.model, data.coefficients, data.sensor.wavelengths).reshape(4, 4, 4, -1)
+    spectra = reflectance(data.model, data.points.coefficients, data.sensor.wavelengths).reshape(4, 4, 4, -1)
     expected = {}
     for first in itertools.product(range(4), repeat=3):
         for axis in range(3):
@@ -276,7 +279,9 @@ def test_failures_name_the_worst(spoilt, small_cube):
     assert (found.missed, found.points.tolist()) == (2, [300, 100])
     assert found.counts["unfitted"] == 2
     assert found.left_out == ("cyan",)
-    nothing = dataclasses.replace(spoilt.data, distance=np.full(512, np.nan, np.float32), provenance={})
+    nothing = dataclasses.replace(
+        with_points(spoilt.data, distance=np.full(512, np.nan, np.float32)), provenance={}
+    )
     assert (failures(nothing).missed, len(failures(nothing).points)) == (512, NAMED)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import re
 from html.parser import HTMLParser
@@ -11,6 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from tests.helpers import with_points
 from tests.report.conftest import HOSTILE
 from uplift.atlas import read_atlas
 from uplift.lookup import MODES, Cube
@@ -194,7 +194,7 @@ def test_stated_errors_stand_beside_real_ones(small_cube, repository):
 
 
 def test_a_cube_that_states_no_errors_says_why(plain_cube, lossy_cube, macbeth):
-    few = Cube(dataclasses.replace(lossy_cube.data, standard_error=None))
+    few = Cube(with_points(lossy_cube.data, standard_error=None))
     for cube, why in ((plain_cube, "built without an atlas, so nothing"), (few, "its 2 entries are too few")):
         found = assess(cube, "none.uplift", 1, macbeth, ("D65",))
         text = Reader(page(found, worst=0)).text

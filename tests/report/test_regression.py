@@ -9,6 +9,7 @@ import colour
 import numpy as np
 import pytest
 
+from tests.helpers import with_points
 from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError
@@ -24,20 +25,20 @@ def data(small_cube):
 
 
 def with_point(data, name, point, value):
-    array = getattr(data, name).copy()
+    array = getattr(data.points, name).copy()
     array[point] = value
-    return dataclasses.replace(data, **{name: array})
+    return with_points(data, **{name: array})
 
 
 def test_a_cube_equals_itself(data):
     found = compare(PATH, data, data)
     assert found.failures == ()
     assert set(found.measures.values()) == {0.0}
-    assert found.stored_counts == found.rebuilt_counts == data.counts()
+    assert found.stored_counts == found.rebuilt_counts == data.points.counts()
 
 
 def test_one_nudged_coefficient_fails_and_says_where(data):
-    nudged = with_point(data, "coefficients", (300, 4), data.coefficients[300, 4] + 1e-3)
+    nudged = with_point(data, "coefficients", (300, 4), data.points.coefficients[300, 4] + 1e-3)
     found = compare(PATH, data, nudged)
     assert "spectra_max" in found.failures
     assert "spectra_rms" in found.failures
@@ -46,17 +47,17 @@ def test_one_nudged_coefficient_fails_and_says_where(data):
 
 
 def test_a_nudge_by_rounding_passes(data):
-    nudged = with_point(data, "coefficients", (300, 4), data.coefficients[300, 4] * (1 + 1e-14))
+    nudged = with_point(data, "coefficients", (300, 4), data.points.coefficients[300, 4] * (1 + 1e-14))
     assert compare(PATH, data, nudged).failures == ()
 
 
 def test_one_nudged_colour_fails(data):
-    nudged = with_point(data, "rgb", (300, 1), data.rgb[300, 1] + 2 * LIMITS["rgb"])
+    nudged = with_point(data, "rgb", (300, 1), data.points.rgb[300, 1] + 2 * LIMITS["rgb"])
     assert compare(PATH, data, nudged).failures == ("rgb",)
 
 
 def test_one_other_status_fails(data):
-    assert data.status[300] != Status.UNFITTED
+    assert data.points.status[300] != Status.UNFITTED
     found = compare(PATH, data, with_point(data, "status", 300, Status.UNFITTED))
     assert found.failures == ("status",)
     assert found.rebuilt_counts["unfitted"] == found.stored_counts["unfitted"] + 1
@@ -81,10 +82,10 @@ def test_a_nan_in_the_spectra_fails(data):
 
 
 def test_measures_are_the_largest_and_the_rms(data):
-    other = dataclasses.replace(data, coefficients=data.coefficients[::-1].copy())
+    other = with_points(data, coefficients=data.points.coefficients[::-1].copy())
     at = data.sensor.wavelengths
     first, second = (
-        data.model.squash(data.model.from_storage(cube.coefficients) @ data.model.basis(at).T)
+        data.model.squash(data.model.from_storage(cube.points.coefficients) @ data.model.basis(at).T)
         for cube in (data, other)
     )
     measures = compare(PATH, data, other).measures

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import combinations, product
 
 import colour
@@ -12,6 +11,7 @@ import pytest
 from matplotlib.image import imread
 
 from tests.cube.hand_made import hand_made
+from tests.helpers import with_points
 from uplift.colorimetry.srgb import decode, encode
 from uplift.common.errors import OutputError
 from uplift.lattice import Status
@@ -47,7 +47,7 @@ def test_every_point_is_where_it_belongs():
 def test_colours_mean_what_the_keys_say():
     data = hand_made()
     image = compose(data).image
-    np.testing.assert_array_equal(pixel(data, image, COLOUR, (3, 1, 2)), data.rgb[3 * 16 + 1 * 4 + 2])
+    np.testing.assert_array_equal(pixel(data, image, COLOUR, (3, 1, 2)), data.points.rgb[3 * 16 + 1 * 4 + 2])
     np.testing.assert_array_equal(pixel(data, image, DISTANCE, (0, 0, 0)), LOUD[0].astype(np.float32))
     for blue in range(4):
         np.testing.assert_array_equal(pixel(data, image, STATE, (0, 0, blue)), STATUS[blue].astype("f4"))
@@ -74,12 +74,12 @@ def test_distance_is_logarithmic_up_to_the_threshold(distance, colour):
 def test_keys_count_the_points():
     data = hand_made()
     keys = [[key.text for key in panel.keys] for panel in panels(data)]
-    over = int((data.distance > data.threshold).sum())
+    over = int((data.points.distance > data.threshold).sum())
     assert keys[DISTANCE][1] == f"over the threshold: {over} point{'s' * (over != 1)}; largest distance 0.25"
     assert keys[STATE] == [
-        f"{status.label}: {data.counts()[status.label]}" for status in Status if status < Status.ABSENT
+        f"{status.label}: {data.points.counts()[status.label]}" for status in Status if status < Status.ABSENT
     ]
-    assert keys[ERROR] == [f"0 to {data.standard_error.max():.2g} ΔE00 under A"]
+    assert keys[ERROR] == [f"0 to {data.points.standard_error.max():.2g} ΔE00 under A"]
     assert keys[ROUND] == ["0 to 3", "fitted in no round: 13 points"]
 
 
@@ -133,7 +133,7 @@ def test_exr_is_flat_linear_rgb(tmp_path):
     assert file.header()["uplift.dim"] == 4
     assert image.dtype == np.float32
     for position in ((0, 0, 0), (3, 1, 2), (1, 3, 0)):
-        expected = data.rgb[data.lattice.index(np.array(position))]
+        expected = data.points.rgb[data.lattice.index(np.array(position))]
         np.testing.assert_array_equal(pixel(data, image, COLOUR, position), expected)
     assert (image[0] == np.float32(BACKGROUND)).all()
 
@@ -155,7 +155,7 @@ def test_png_is_the_same_in_srgb(tmp_path):
     image = imread(tmp_path / "sheet.png")
     assert image.shape[1::-1] == Layout(4, 5).size
     for position in ((0, 0, 0), (3, 1, 2), (1, 3, 0)):
-        expected = encode(data.rgb[data.lattice.index(np.array(position))])
+        expected = encode(data.points.rgb[data.lattice.index(np.array(position))])
         np.testing.assert_allclose(pixel(data, image[..., :3], COLOUR, position), expected, atol=0.51 / 255)
 
 
@@ -169,7 +169,7 @@ def test_same_cube_same_bytes(tmp_path, name):
 
 def test_a_cube_far_outside_the_screen(tmp_path):
     data = hand_made()
-    write_sheet(replace(data, rgb=data.rgb * 4 - 1), tmp_path / "wide.png")
+    write_sheet(with_points(data, rgb=data.points.rgb * 4 - 1), tmp_path / "wide.png")
     assert np.isfinite(imread(tmp_path / "wide.png")).all()
 
 

@@ -23,7 +23,8 @@ POINT_TYPES: dict[str, tuple[str, ...]] = {
 LARGEST = 1e30
 """No number of a cube comes near it, and squares of it can still be reckoned with."""
 WORST_CONDITION = 1e6
-ATLAS_ARRAYS = ("rgb", "coefficients", "reach", "error")
+ATLAS_ARRAYS = {"rgb": "rgb", "coefficients": "coefficients", "reach": "half_width", "error": "error"}
+"""Attributes of `AtlasTable` by their names in the file."""
 
 
 def check(data: CubeData, stored: int) -> None:
@@ -34,19 +35,19 @@ def check(data: CubeData, stored: int) -> None:
     _check_arrays(data)
     _check_sensor(data)
     sensor_names = (data.sensor.space, data.sensor.illuminant, data.sensor.observer)
-    texts = (*data.atlas.names, *sensor_names, data.reference)
+    texts = (*data.atlas.names, *sensor_names, data.error_illuminant)
     _require(all(isinstance(text, str) for text in texts), "every name is a text")
     _require(isinstance(data.provenance, dict), "the provenance is a table")
     _require(tuple(data.lattice.nodes[[0, -1]]) == (0, 1), "the lattice runs from 0 to 1")
     _require(0 < data.threshold < np.inf, "the threshold is a positive number")
-    _require(bool((data.status < len(Status)).all()), "every status is known")
-    present = np.count_nonzero(data.present)
+    _require(bool((data.points.status < len(Status)).all()), "every status is known")
+    present = np.count_nonzero(data.points.present)
     _require(present == stored, "absent points are those that are not stored")
-    _require(data.complete is None or bool(data.complete.any()), "a cell has all its corners")
+    _require(data.complete_cells is None or bool(data.complete_cells.any()), "a cell has all its corners")
     atlas = data.atlas
-    _require(_within(atlas.reach, 0, 1), "no entry reaches further than a step")
+    _require(_within(atlas.half_width, 0, 1), "no entry reaches further than a step")
     _require(_within(atlas.rgb, 0, 1), "every entry lies within the space")
-    _require(_within(data.entry, -1, len(atlas.names) - 1), "every entry is in the atlas table")
+    _require(_within(data.points.entry, -1, len(atlas.names) - 1), "every entry is in the atlas table")
 
 
 def _check_arrays(data: CubeData) -> None:
@@ -54,7 +55,7 @@ def _check_arrays(data: CubeData) -> None:
     entries = len(data.atlas.names)
     shapes: dict[str, tuple[int, ...]] = {"coefficients": (points, count), "rgb": (points, 3)}
     arrays: list[tuple[str, Any, tuple[int, ...]]] = [
-        (name, getattr(data, name), shapes.get(name, (points,))) for name in POINT_TYPES
+        (name, getattr(data.points, name), shapes.get(name, (points,))) for name in POINT_TYPES
     ]
     sensor_shapes = ((samples,), (samples, 3), (samples,), (3, 3), (256,))
     arrays += [
@@ -63,8 +64,8 @@ def _check_arrays(data: CubeData) -> None:
     ]
     atlas_shapes = ((entries, 3), (entries, count), (entries,), (entries,))
     arrays += [
-        (f"every entry's {name}", getattr(data.atlas, name), shape)
-        for name, shape in zip(ATLAS_ARRAYS, atlas_shapes, strict=True)
+        (f"every entry's {name}", getattr(data.atlas, attribute), shape)
+        for (name, attribute), shape in zip(ATLAS_ARRAYS.items(), atlas_shapes, strict=True)
     ]
     for name, array, shape in [*arrays, ("nodes", data.lattice.nodes, (data.lattice.dim,))]:
         if array is not None:

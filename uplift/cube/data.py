@@ -1,4 +1,4 @@
-"""What a cube file holds: everything that a lookup needs, and how the cube was made."""
+"""The content of a cube file: everything that a lookup needs, and how the cube was built."""
 
 from __future__ import annotations
 
@@ -7,53 +7,63 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
-from uplift.lattice import Lattice, Status
+from uplift.lattice import Lattice, PointTable
 from uplift.lattice.entry_boxes import EntryBoxes
 from uplift.models import Model
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class AtlasTable:
-    """The entries that the cube is constrained by.
+    """The atlas entries that constrain a cube.
 
     Parameters
     ----------
-    names : (E) unique.
-    rgb : (E, 3) linear RGB.
-    coefficients : (E, C) of their spectra.
-    reach : (E,) lattice steps to the faces of the box around an entry within which answers lead over to its
-        spectrum; 0 for an entry whose colour an earlier one has.
-    error : (E,) ΔE00 between stored and measured spectrum under the cube's reference light.
+    names : tuple of str
+        Unique names of the E entries.
+    rgb : ndarray, shape (E, 3)
+        Linear RGB.
+    coefficients : ndarray, shape (E, C)
+        Coefficients of the fitted spectra.
+    half_width : ndarray, shape (E,)
+        Half the width of each entry box in lattice steps, 0 to 1. 0 for an entry whose colour an earlier entry has.
+    error : ndarray, shape (E,)
+        ΔE00 between fitted and measured spectrum under `CubeData.error_illuminant`.
     """
 
     names: tuple[str, ...]
     rgb: Array
     coefficients: Array
-    reach: Array
+    half_width: Array
     error: Array
 
+    def __repr__(self) -> str:
+        return f"AtlasTable({len(self.names)} entries)"
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class CubeData:
-    """A lattice of spectra. Per point (n = dim³, blue fastest), all 0 and no entry where it is absent:
+    """A lattice of spectra, and the sensor and atlas that it was built with.
 
     Parameters
     ----------
-    coefficients : (n, C) what ``model.from_storage`` takes, float32 or, where that loses something, float64.
-    rgb : (n, 3) lattice RGB: what the stored spectrum evaluates to, linear.
-    distance : (n,) fitting distance, max |target − lattice RGB|.
-    status : (n,) `Status`.
-    entry : (n,) row of ``atlas`` that the point is based on, −1 for none.
-    round : (n,) round that fitted the point, −1 for none; None without debug information.
-    standard_error : (n,) root mean square by which answers are expected to miss measurements, ΔE00 under the
-        light ``reference``; None where no atlas tells.
-    threshold : the largest fitting distance that counts as fitted.
-    provenance : how the cube was made: version, options, atlas names and digests; JSON values.
+    model : Model
+        Spectrum model of the coefficients.
+    lattice : Lattice
+        Axis nodes in linear RGB.
+    sensor : Sensor
+        RGB space, illuminant and observer.
+    threshold : float
+        Largest fitting distance, in linear RGB, of a fitted point.
+    atlas : AtlasTable
+        The entries that constrain the cube.
+    points : PointTable
+        Arrays over the lattice points.
+    error_illuminant : str
+        Illuminant of all ΔE00 values in the cube.
+    provenance : mapping
+        How the cube was built: version, options, names and digests of the atlas files. JSON values.
     """
 
     model: Model
@@ -61,32 +71,23 @@ class CubeData:
     sensor: Sensor
     threshold: float
     atlas: AtlasTable
-    coefficients: NDArray[Any]
-    rgb: NDArray[np.float32]
-    distance: NDArray[np.float32]
-    status: NDArray[np.uint8]
-    entry: NDArray[np.int32]
-    round: NDArray[np.int16] | None
-    standard_error: NDArray[np.float32] | None
-    reference: str
+    points: PointTable
+    error_illuminant: str
     provenance: Mapping[str, Any]
 
-    @cached_property
-    def pins(self) -> EntryBoxes:
-        """The entries as extra nodes of the lattice."""
-        return EntryBoxes(self.lattice, self.atlas.rgb, self.atlas.reach)
+    def __repr__(self) -> str:
+        sensor = self.sensor
+        return (
+            f"CubeData({self.model.name} with {self.model.count} coefficients, dim {self.lattice.dim}, "
+            f"{sensor.space} under {sensor.illuminant}, {len(self.atlas.names)} entries)"
+        )
 
     @cached_property
-    def present(self) -> Mask:
-        """(n,) which points have a spectrum: all, or those that the colours of a scene need."""
-        return self.status != Status.ABSENT
+    def entry_boxes(self) -> EntryBoxes:
+        """Boxes around the atlas entries."""
+        return EntryBoxes(self.lattice, self.atlas.rgb, self.atlas.half_width)
 
     @cached_property
-    def complete(self) -> Mask | None:
-        """(n,) which cells have all their corners, by the number of the lowest; None if no point is absent."""
-        return None if self.present.all() else self.lattice.cells_of(self.present)
-
-    def counts(self) -> dict[str, int]:
-        """Points of each status, in the order of `Status`."""
-        found = np.bincount(self.status, minlength=len(Status))
-        return {status.label: int(found[status]) for status in Status}
+    def complete_cells(self) -> Mask | None:
+        """(n,) True for cells with eight present corners, by the number of the lowest. None if no point is absent."""
+        return None if self.points.present.all() else self.lattice.cells_of(self.points.present)

@@ -18,7 +18,7 @@ from uplift.common.files import atomic_write
 from uplift.cube import sparse
 from uplift.cube.checks import ATLAS_ARRAYS, POINT_TYPES, SENSOR_ARRAYS, check
 from uplift.cube.data import AtlasTable, CubeData
-from uplift.lattice import Lattice
+from uplift.lattice import Lattice, PointTable
 from uplift.models import from_description
 
 FORMAT = "uplift cube"
@@ -123,13 +123,15 @@ def _digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
 def _tensors(data: CubeData) -> Tensors:
     tensors: Tensors = {"nodes": data.lattice.nodes}
     tensors |= {f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR_ARRAYS}
-    tensors |= {f"atlas.{name}": getattr(data.atlas, name) for name in ATLAS_ARRAYS}
+    tensors |= {f"atlas.{name}": getattr(data.atlas, attribute) for name, attribute in ATLAS_ARRAYS.items()}
     for name, kinds in POINT_TYPES.items():
-        array = getattr(data, name)
+        array = getattr(data.points, name)
         if array is not None:
             kind = array.dtype if array.dtype.name in kinds else kinds[-1]
             tensors[name] = np.ascontiguousarray(array, dtype=kind)
-    return tensors if data.complete is None else sparse.gather(tensors, POINT_TYPES, data.present)
+    return (
+        tensors if data.complete_cells is None else sparse.gather(tensors, POINT_TYPES, data.points.present)
+    )
 
 
 def _metadata(data: CubeData) -> dict[str, Any]:
@@ -143,15 +145,15 @@ def _metadata(data: CubeData) -> dict[str, Any]:
         "illuminant": data.sensor.illuminant,
         "observer": data.sensor.observer,
         "threshold": data.threshold,
-        "reference": data.reference,
+        "reference": data.error_illuminant,
         "entries": list(data.atlas.names),
         "provenance": dict(data.provenance),
     }
 
 
 def _features(data: CubeData) -> list[str]:
-    optional = [name for name, array in FEATURES.items() if getattr(data, array) is not None]
-    return optional if data.complete is None else [*optional, sparse.FEATURE]
+    optional = [name for name, array in FEATURES.items() if getattr(data.points, array) is not None]
+    return optional if data.complete_cells is None else [*optional, sparse.FEATURE]
 
 
 def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
@@ -159,7 +161,7 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
     if sparse.FEATURE in metadata["features"]:
         tensors = sparse.scatter(tensors, POINT_TYPES, lattice.size)
     absent = {array for feature, array in FEATURES.items() if feature not in metadata["features"]}
-    points: dict[str, Any] = {name: None if name in absent else tensors[name] for name in POINT_TYPES}
+    arrays: dict[str, Any] = {name: None if name in absent else tensors[name] for name in POINT_TYPES}
     return CubeData(
         model=from_description(metadata["model"]),
         lattice=lattice,
@@ -170,10 +172,11 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
             *(tensors[f"sensor.{name}"] for name in SENSOR_ARRAYS),
         ),
         threshold=float(metadata["threshold"]),
-        reference=metadata["reference"],
+        error_illuminant=metadata["reference"],
         atlas=AtlasTable(
-            tuple(metadata["entries"]), **{name: tensors[f"atlas.{name}"] for name in ATLAS_ARRAYS}
+            tuple(metadata["entries"]),
+            **{attribute: tensors[f"atlas.{name}"] for name, attribute in ATLAS_ARRAYS.items()},
         ),
         provenance=metadata["provenance"],
-        **points,
+        points=PointTable(**arrays),
     )

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.fit.entries import FittedEntries, fit_entries
-from uplift.fit.grow import NOT_FITTED, grow
+from uplift.fit.grow import grow
 from uplift.fit.improve import Improvement, improve
 from uplift.fit.lattice_size import DIMS, choose_lattice
 from uplift.fit.objective import Weights
@@ -20,7 +18,7 @@ from uplift.fit.problem import Problem
 from uplift.fit.seed import Seeds, seed
 from uplift.fit.store import store
 from uplift.fit.unrealisable import Unrealisable, unrealisable
-from uplift.lattice import Status
+from uplift.lattice import NO_ENTRY, NOT_FITTED, PointTable, Status
 from uplift.lattice.box_widths import half_widths
 
 __all__ = [
@@ -42,19 +40,12 @@ __all__ = [
     "unrealisable",
 ]
 
-NO_ENTRY = -1
-
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """What is stored of every lattice point (n,), and how it came by it; the fields are those of `CubeData`."""
+    """The fitted points, and the steps of the improvement pass."""
 
-    coefficients: NDArray[Any]
-    rgb: NDArray[np.float32]
-    distance: NDArray[np.float32]
-    status: NDArray[np.uint8]
-    round: NDArray[np.int16]
-    entry: NDArray[np.int32]
+    points: PointTable
     improvements: tuple[Improvement, ...]
 
 
@@ -88,4 +79,6 @@ def fit_lattice(
     status[beyond[stored.distance[beyond] <= problem.threshold]] = Status.REGULAR
     absent = problem.absent
     status[absent], entry[absent] = Status.ABSENT, NO_ENTRY
-    return Fit(stored.coefficients, stored.rgb, stored.distance, status, grown.round, entry, improvements)
+    errors = prior.standard_errors(problem)
+    points = PointTable(stored.coefficients, stored.rgb, stored.distance, status, entry, grown.round, errors)
+    return Fit(points, improvements)

@@ -15,11 +15,9 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.fit.problem import Problem
-from uplift.lattice import Lattice
+from uplift.lattice import NOT_FITTED, Lattice
 
 PASSES = 24
-NOT_FITTED = -1
-"""The round of a point that no round has fitted."""
 BLOCK = 1 << 15
 """Points worked on at a time."""
 

@@ -42,7 +42,7 @@ class Scene(Protocol):
 
 @dataclass(frozen=True)
 class Images:
-    """The colours of images, decoded as `uplift.io.texture.prepare` has it; only the cells that they lie in are held."""
+    """The colours of images, decoded as `uplift.io.texture.prepare` does; only the cells around them are kept."""
 
     paths: tuple[Path, ...]
     encoding: str = "auto"
@@ -95,7 +95,7 @@ class StoredScene:
         """Raises `OptionError`."""
         if self.data.lattice.dim != pins.lattice.dim:
             raise OptionError(f"the scene's points are those of dim {self.data.lattice.dim}")
-        return self.data.present
+        return self.data.points.present
 
     def describe(self) -> list[dict[str, Any]]:
         return list(self.data.provenance["scene"])

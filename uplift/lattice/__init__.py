@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
-from uplift.lattice.lattice import CORNERS, Lattice, Status, weighted_sum
+from uplift.lattice.lattice import CORNERS, Lattice, weighted_sum
+from uplift.lattice.point_table import NO_ENTRY, NOT_FITTED, PointTable, Status
 
-__all__ = ["CORNERS", "Lattice", "Status", "weighted_sum"]
+__all__ = ["CORNERS", "NOT_FITTED", "NO_ENTRY", "Lattice", "PointTable", "Status", "weighted_sum"]

@@ -1,7 +1,7 @@
 """Atlas entries as extra nodes: asked at its colour, a cube answers with the entry's own spectrum.
 
-Around every entry lies a box (`uplift.lattice.box_widths`), no two of which overlap. A colour x within one is a mixture of
-the entry's colour e and of the point y where the ray from e through x leaves the box, x = (1 − t) e + t y. The
+Around every entry lies a box (`uplift.lattice.box_widths`), no two of which overlap. A colour x within
+one is a mixture of the entry's colour e and of the point y where the ray from e through x leaves the box, x = (1 − t) e + t y. The
 answer mixes the spectra of e and y alike: it has the very colour x, stays within [0, 1], meets the lattice at the
 box's faces and the entry in its middle. numpy alone.
 """

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 from functools import cached_property
 from itertools import product
 
@@ -14,22 +13,6 @@ from uplift.common.errors import OptionError
 
 CORNERS = np.array(list(product((0, 1), repeat=3)))
 """(8, 3) steps from a cell's lowest point to its corners."""
-
-
-class Status(IntEnum):
-    """How a lattice point came by its spectrum."""
-
-    ATLAS_PRIMARY = 0
-    ATLAS_CORNER = 1
-    REGULAR = 2
-    IMPROVED = 3
-    UNFITTED = 4
-    UNREALISABLE = 5
-    ABSENT = 6
-
-    @property
-    def label(self) -> str:
-        return self.name.lower().replace("_", " ")
 
 
 @dataclass(frozen=True, eq=False)

@@ -86,7 +86,7 @@ class Cube:
     def _tabulates(self, colours: int, bytes_each: int) -> bool:
         """Whether to work out the spectra of all lattice points first, so that no block does so again."""
         table = self.data.lattice.size * bytes_each
-        return table <= MOST_BYTES and colours >= int(self.data.present.sum())
+        return table <= MOST_BYTES and colours >= int(self.data.points.present.sum())
 
     def holds(self, rgb: ArrayLike) -> Mask:
         """Whether (…,) linear RGB (…, 3) can be asked: always, but for cubes of a scene. Raises `ColourError`."""
@@ -112,10 +112,10 @@ class Cube:
     def standard_error(self, rgb: ArrayLike) -> Array | None:
         """By how much (…,) answers at linear RGB (…, 3) are expected to miss measurements, a root mean square.
 
-        ΔE00 under the light ``cube.data.reference``, learnt from atlas entries left out; None where the cube has
+        ΔE00 under the light ``cube.data.error_illuminant``, learnt from atlas entries left out; None where the cube has
         too few of them. Raises `ColourError`.
         """
-        if self.data.standard_error is None:
+        if self.data.points.standard_error is None:
             return None
         return blockwise(partial(standard_error, self.data), colours(rgb, self.data.sensor), 1)[..., 0]
 

@@ -25,7 +25,7 @@ FINITE = 1e-6
 
 def missing_points(data: CubeData, rgb: Array | None = None) -> Indices:
     """Numbers of the absent points that linear RGB (n, 3) need; of all of them without."""
-    absent = ~data.present
+    absent = ~data.points.present
     if rgb is not None:
         asked = np.zeros(data.lattice.size, dtype=bool)
         asked[cells(data, rgb)] = True
@@ -43,21 +43,21 @@ def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int 
     target, at = data.lattice.target(points), data.sensor.wavelengths
     multipliers = blockwise(partial(_as_other, data, other), target, data.model.count, threads=threads)
     coefficients = data.model.to_storage(multipliers)
-    rgb = data.sensor.rgb(reflectance(data.model, coefficients.astype(data.coefficients.dtype), at))
-    kind = data.coefficients.dtype
+    rgb = data.sensor.rgb(reflectance(data.model, coefficients.astype(data.points.coefficients.dtype), at))
+    kind = data.points.coefficients.dtype
     if (np.abs(target - rgb) > data.threshold).any():  # single precision is not enough
         kind, rgb = np.dtype(np.float64), data.sensor.rgb(reflectance(data.model, coefficients, at))
     distance = np.abs(target - rgb).max(axis=1)
     status = np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)
     put: dict[str, Any] = {"rgb": rgb, "distance": distance, "status": status}
-    if data.standard_error is not None:
-        put["standard_error"] = data.standard_error.max()
-    changed: dict[str, Any] = {name: getattr(data, name).copy() for name in put}
-    changed["coefficients"], put["coefficients"] = data.coefficients.astype(kind), coefficients
+    if data.points.standard_error is not None:
+        put["standard_error"] = data.points.standard_error.max()
+    changed: dict[str, Any] = {name: getattr(data.points, name).copy() for name in put}
+    changed["coefficients"], put["coefficients"] = data.points.coefficients.astype(kind), coefficients
     for name, values in put.items():
         changed[name][points] = values
     told = {**data.provenance, "filled": {"points": len(points), "cube": digest(other)}}
-    return replace(data, provenance=told, **changed)
+    return replace(data, provenance=told, points=replace(data.points, **changed))
 
 
 def _as_other(data: CubeData, other: CubeData, rgb: Array) -> Array:

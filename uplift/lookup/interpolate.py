@@ -25,12 +25,12 @@ from uplift.models import evaluate, reflectance
 
 def coefficients(data: CubeData, rgb: Array) -> Array:
     """Coefficients (n, C) at linear RGB (n, 3) in [0, 1]: those of the nodes around, weighted."""
-    return around(data, rgb).weighted_sum(data.coefficients, data.atlas.coefficients)
+    return around(data, rgb).weighted_sum(data.points.coefficients, data.atlas.coefficients)
 
 
 def standard_error(data: CubeData, rgb: Array) -> Array:
     """ΔE00 (n, 1) by which answers are expected to miss measurements, of a cube that can tell."""
-    lattice = np.asarray(data.standard_error, dtype=float)
+    lattice = np.asarray(data.points.standard_error, dtype=float)
     return around(data, rgb).weighted_sum(lattice[:, None], data.atlas.error[:, None])
 
 
@@ -40,7 +40,7 @@ def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     points, point = np.unique(nodes.points, return_inverse=True)
     entries, entry = np.unique(nodes.entry, return_inverse=True)
     return replace(nodes, points=point.reshape(nodes.points.shape), entry=entry).weighted_sum(
-        reflectance(data.model, data.coefficients[points], wavelengths),
+        reflectance(data.model, data.points.coefficients[points], wavelengths),
         reflectance(data.model, data.atlas.coefficients[entries], wavelengths),
     )
 
@@ -48,7 +48,7 @@ def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the nearest node, lattice point or atlas entry."""
     return reflectance(
-        data.model, around(data, rgb).nearest(data.coefficients, data.atlas.coefficients), wavelengths
+        data.model, around(data, rgb).nearest(data.points.coefficients, data.atlas.coefficients), wavelengths
     )
 
 
@@ -57,7 +57,9 @@ def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     points, weights = data.lattice.corners(rgb)
     used, place = np.unique(points, return_inverse=True)
     return weighted_sum(
-        reflectance(data.model, data.coefficients[used], wavelengths), place.reshape(points.shape), weights
+        reflectance(data.model, data.points.coefficients[used], wavelengths),
+        place.reshape(points.shape),
+        weights,
     )
 
 

@@ -25,10 +25,10 @@ class NodeTable:
     @classmethod
     def of_points(cls, data: CubeData, points: Values, atlas: Values) -> NodeTable:
         """From numbers (m, K) of the points that are present."""
-        if data.complete is None:
+        if data.complete_cells is None:
             return cls(data, points, atlas)
         lattice = np.full((data.lattice.size, points.shape[1]), np.nan, points.dtype)
-        lattice[data.present] = points
+        lattice[data.points.present] = points
         return cls(data, lattice, atlas)
 
     def spectra(self, rgb: Array) -> Values:
@@ -55,7 +55,7 @@ def tabulate(
         )
 
     return NodeTable.of_points(
-        data, spectra(data.coefficients[data.present]), spectra(data.atlas.coefficients)
+        data, spectra(data.points.coefficients[data.points.present]), spectra(data.atlas.coefficients)
     )
 
 

@@ -57,17 +57,17 @@ class Nodes:
 def around(data: CubeData, rgb: Array) -> Nodes:
     """The nodes around linear RGB (n, 3) in [0, 1]. Raises `ColourError` for what a sparse cube has no nodes for."""
     low, fraction, pinned = _asked(data, rgb)
-    if data.complete is not None:
-        require(data.complete[data.lattice.index(low)], rgb)
+    if data.complete_cells is not None:
+        require(data.complete_cells[data.lattice.index(low)], rgb)
     points, weights = data.lattice.around(low, fraction)
     return Nodes(points, weights, pinned.rows, pinned.entry, pinned.share)
 
 
 def holds(data: CubeData, rgb: Array) -> Mask:
     """Whether (n,) there are nodes for linear RGB (n, 3) in [0, 1]."""
-    if data.complete is None:
+    if data.complete_cells is None:
         return np.ones(len(rgb), dtype=bool)
-    return data.complete[cells(data, rgb)]
+    return data.complete_cells[cells(data, rgb)]
 
 
 def cells(data: CubeData, rgb: Array) -> Indices:
@@ -89,6 +89,6 @@ def _asked(data: CubeData, rgb: Array) -> tuple[Indices, Array, BoxHits]:
     """Lowest corner (n, 3) and fraction (n, 3) of the cells that the lattice is asked in, and what lies in boxes."""
     lattice = data.lattice
     low, fraction = lattice.cell(rgb)
-    pinned = data.pins.within(rgb, lattice.index(low))
+    pinned = data.entry_boxes.within(rgb, lattice.index(low))
     low[pinned.rows], fraction[pinned.rows] = lattice.cell(pinned.away)
     return low, fraction, pinned

@@ -80,7 +80,9 @@ def _block(cube: Cube, rgb: Array, asked: Array, at: Array, mode: str) -> Iterat
             round_trip=back[row],
             delta_e_2000=float(apart[row]),
             cell=(int(cell[0]), int(cell[1]), int(cell[2])),
-            statuses=tuple(Status(code) for code in sorted(set(cube.data.status[corners[row]].tolist()))),
+            statuses=tuple(
+                Status(code) for code in sorted(set(cube.data.points.status[corners[row]].tolist()))
+            ),
             entry=_entry(cube, rgb[row]),
             standard_error=None if errors is None else float(errors[row]),
             realisable=bool(possible[row]),
@@ -92,7 +94,7 @@ def _realisable(data: CubeData, rgb: Array, corners: Indices) -> Mask:
 
     What such colours have, their mixtures have too, so that only cells with a corner that is not need a look.
     """
-    possible = ~(data.status[corners] == Status.UNREALISABLE).any(axis=1)
+    possible = ~(data.points.status[corners] == Status.UNREALISABLE).any(axis=1)
     if not possible.all():
         possible[~possible] = solid(data.sensor.matrix).holds(rgb[~possible])
     return np.asarray(possible)

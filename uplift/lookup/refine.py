@@ -89,7 +89,7 @@ def _move(model: Model, ahead: ForwardMap, way: _Way, columns: slice | Indices, 
 
 
 def step(model: Model, ahead: ForwardMap, linear: Array, off: Array, damping: Array) -> Array:
-    """`uplift.models.minimum_norm.minimum_norm_step` of columns: (C, n), of the linear part (N, n), for residual (3, n)."""
+    """`uplift.models.minimum_norm.minimum_norm_step` of columns (C, n): linear part (N, n), residual (3, n)."""
     jacobian = matmul_columns(ahead.products.T, model.slope(linear)).reshape(3, len(ahead.root), -1)
     gram = [[np.einsum("cn,cn->n", jacobian[a], jacobian[b]) for b in range(a + 1)] for a in range(3)]
     y = solve_3x3(gram, damping * (gram[0][0] + gram[1][1] + gram[2][2]), off)

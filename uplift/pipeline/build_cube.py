@@ -50,7 +50,7 @@ def build(
     Parameters
     ----------
     atlas : spectra, or the file or files that hold them; None for a cube without constraints.
-    scene : images, or a `uplift.io.scene_colours.Scene`, for whose colours alone there shall be points; None for all colours.
+    scene : images, or a `uplift.io.scene_colours.Scene`, for whose colours alone to fit points; None for all.
     progress : called with a `Progress` now and then, in stages "images", "fit" and "store".
     options : the fields of `Options`, by name.
 
@@ -90,7 +90,7 @@ def build(
     prior = fit.fit_prior(problem, sensor, entries, reference)
     fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, progress)
     provenance = _provenance(replace(chosen, axis=axis, dim=dim), spectra, names, seen, fitted)
-    return Cube(_cube_data(problem, sensor, fitted, prior, table, provenance, debug=chosen.debug))
+    return Cube(_cube_data(problem, sensor, fitted, table, provenance, debug=chosen.debug))
 
 
 def _room(
@@ -120,7 +120,6 @@ def _cube_data(
     problem: fit.Problem,
     sensor: Sensor,
     fitted: fit.Fit,
-    prior: fit.Prior,
     atlas: AtlasTable,
     provenance: dict[str, Any],
     *,
@@ -132,14 +131,8 @@ def _cube_data(
         sensor=sensor,
         threshold=problem.threshold,
         atlas=atlas,
-        coefficients=fitted.coefficients,
-        rgb=fitted.rgb,
-        distance=fitted.distance,
-        status=fitted.status,
-        entry=fitted.entry,
-        round=fitted.round if debug else None,
-        standard_error=prior.standard_errors(problem),
-        reference=REFERENCE,
+        points=fitted.points if debug else replace(fitted.points, round=None),
+        error_illuminant=REFERENCE,
         provenance=provenance,
     )
 
@@ -165,12 +158,14 @@ def _in_gamut(spectra: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Array, A
 
 
 def _warn_of_crowding(seeds: fit.Seeds, atlas: AtlasTable) -> None:
-    same = [atlas.names[row] for row in np.flatnonzero(atlas.reach == 0)]
+    same = [atlas.names[row] for row in np.flatnonzero(atlas.half_width == 0)]
     if same:
         _warn(
             f"{_some(same)} left out: an earlier entry has the same colour, and a cube answers a colour once"
         )
-    crowded = [atlas.names[collision.lost] for collision in seeds.collisions if atlas.reach[collision.lost]]
+    crowded = [
+        atlas.names[collision.lost] for collision in seeds.collisions if atlas.half_width[collision.lost]
+    ]
     if crowded:
         _warn(
             f"{_some(crowded)} crowded: nearer entries have the nearest lattice point. Asked at their own colours "

@@ -47,7 +47,7 @@ class Assessment:
     data, facts : the cube, and what ``uplift info`` tells of it.
     distance : of the lattice points, max |linear RGB|.
     round_trips : ΔE00 of random colours under the cube's illuminant, for each mode of lookup.
-    standard_error : of the lattice points, ΔE00 under ``data.reference``; None where the cube has none.
+    standard_error : of the lattice points, ΔE00 under ``data.error_illuminant``; None where the cube has none.
     smoothness, steepest : rms between neighbouring points, and linear RGB (2, 3) of the two farthest apart.
     lights : what the entries are seen under.
     sources : the files that ``entries`` come from; ``own`` if the cube was built from these.
@@ -93,8 +93,8 @@ def assess(
     own = spectra is not None and _built_from(data, spectra)
     question = _question(cube, spectra, own)
     found = None if question is None or not question.names else entries(cube, question, seen)
-    steps, distances = smoothness(data), data.distance[data.present]
-    errors = None if data.standard_error is None else data.standard_error[data.present]
+    steps, distances = smoothness(data), data.points.distance[data.points.present]
+    errors = None if data.points.standard_error is None else data.points.standard_error[data.points.present]
     return Assessment(
         name=name,
         size=size,

@@ -60,8 +60,8 @@ def _nearest(steps: Array) -> tuple[Indices, Array]:
 
 
 def _lost(data: CubeData) -> tuple[tuple[str, str], ...]:
-    names, rows = data.atlas.names, np.flatnonzero(data.atlas.reach == 0)
-    pinned = data.pins(data.atlas.rgb[rows])
+    names, rows = data.atlas.names, np.flatnonzero(data.atlas.half_width == 0)
+    pinned = data.entry_boxes(data.atlas.rgb[rows])
     return tuple(
         (names[rows[row]], names[other]) for row, other in zip(pinned.rows, pinned.entry, strict=True)
     )

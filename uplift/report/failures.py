@@ -33,12 +33,12 @@ class Failures:
 
 def failures(data: CubeData) -> Failures:
     """What a cube has recorded of its failures."""
-    failed = np.isin(data.status, (Status.UNFITTED, Status.UNREALISABLE))
-    rows = np.flatnonzero(failed | ~(data.distance <= data.threshold))
-    worst = rows[np.argsort(-data.distance[rows], kind="stable")][:NAMED]
+    failed = np.isin(data.points.status, (Status.UNFITTED, Status.UNREALISABLE))
+    rows = np.flatnonzero(failed | ~(data.points.distance <= data.threshold))
+    worst = rows[np.argsort(-data.points.distance[rows], kind="stable")][:NAMED]
     recorded = data.provenance
     return Failures(
-        counts=data.counts(),
+        counts=data.points.counts(),
         missed=len(rows),
         points=worst,
         improvements=tuple(recorded.get("improvements", ())),

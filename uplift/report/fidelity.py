@@ -150,7 +150,7 @@ def entries(cube: Cube, question: EntryQuery, lights: tuple[Sensor, ...]) -> Ent
         answered=answered,
         delta_e=_under(lights, answered, wanted),
         rms=_rms(answered, wanted),
-        real=delta_e_spectra(light(data.reference, data.sensor.observer), answered, wanted),
+        real=delta_e_spectra(light(data.error_illuminant, data.sensor.observer), answered, wanted),
         stated=cube.standard_error(question.rgb),
         cells=data.lattice.cell(question.rgb)[0],
     )
@@ -164,14 +164,15 @@ def _own(cube: Cube, found: EntryErrors, rows: Indices, lights: tuple[Sensor, ..
     data = cube.data
     lattice = lattice_spectra(data, found.rgb, data.sensor.wavelengths)
     low, middle, high = (
-        cube.encode(rgb[rows]) for rgb in (data.pins.faces[0], data.atlas.rgb, data.pins.faces[1])
+        cube.encode(rgb[rows])
+        for rgb in (data.entry_boxes.faces[0], data.atlas.rgb, data.entry_boxes.faces[1])
     )
     return replace(
         found,
         lattice=lattice,
         delta_e_lattice=_under(lights, lattice, found.wanted),
         rms_lattice=_rms(lattice, found.wanted),
-        reach=data.atlas.reach[rows],
+        reach=data.atlas.half_width[rows],
         codes=np.maximum(high - middle, middle - low).min(axis=1),
     )
 

@@ -56,8 +56,8 @@ def _failures(found: Assessment) -> dict[str, Any]:
         "worst": [
             {
                 "rgb": data.lattice.points[point],
-                "lattice_rgb": data.rgb[point],
-                "distance": data.distance[point],
+                "lattice_rgb": data.points.rgb[point],
+                "distance": data.points.distance[point],
             }
             for point in failed.points
         ],
@@ -69,7 +69,7 @@ def _failures(found: Assessment) -> dict[str, Any]:
 
 def _standard_error(found: Assessment) -> dict[str, Any]:
     return {
-        "light": found.data.reference,
+        "light": found.data.error_illuminant,
         "delta_e_2000": None if found.standard_error is None else _histogram(found.standard_error),
         "calibration": None if found.calibration is None else asdict(found.calibration),
     }

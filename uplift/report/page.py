@@ -97,7 +97,10 @@ def _build(found: Assessment) -> Markup:
     shown: list[tuple[str, str | Markup]] = [
         ("model", ", ".join(f"{_value(value)}" for value in _flat(facts["model"]))),
         ("coefficients", f"{facts['coefficients']} a point"),
-        ("lattice", f"{facts['points']:,} points {'=' if data.complete is None else 'of'} {facts['dim']}³"),
+        (
+            "lattice",
+            f"{facts['points']:,} points {'=' if data.complete_cells is None else 'of'} {facts['dim']}³",
+        ),
         ("axes", f"linear RGB {nodes[0]:g} to {nodes[-1]:g}, spaced {options.get('axis', 'as stored')}"),
         ("space", facts["space"]),
         ("illuminant", facts["illuminant"]),

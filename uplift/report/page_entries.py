@@ -65,7 +65,7 @@ def _note_on_entries(found: Assessment, entries: EntryErrors) -> Markup:
     elif entries.stated is not None:
         text += (
             ". Stated: the cube's standard error there; real: the ΔE00 that it turned out to be, both under "
-            f"{found.data.reference}"
+            f"{found.data.error_illuminant}"
         )
     return note(f"{text}.")
 
@@ -160,7 +160,7 @@ def _further_headings(found: Assessment, entries: EntryErrors) -> list[Markup]:
             reach_heading(),
         ]
     if entries.stated is not None:
-        light = found.data.reference
+        light = found.data.error_illuminant
         return [
             right("stated", f"standard error, ΔE00 under {light}"),
             right("real", f"ΔE00 under {light}"),

@@ -45,14 +45,16 @@ def _missed(found: Assessment) -> Markup | None:
         return None
     target = data.lattice.points[points]
     pairs = zip(
-        hex_codes(target, data.sensor), hex_codes(data.rgb[points].astype(float), data.sensor), strict=True
+        hex_codes(target, data.sensor),
+        hex_codes(data.points.rgb[points].astype(float), data.sensor),
+        strict=True,
     )
     lines = [
         [
             swatch(*codes),
             format_rgb(target[row]),
-            format_rgb(data.rgb[point]),
-            number(format_scientific(float(data.distance[point]))),
+            format_rgb(data.points.rgb[point]),
+            number(format_scientific(float(data.points.distance[point]))),
         ]
         for row, (point, codes) in enumerate(zip(points, pairs, strict=True))
     ]
@@ -114,7 +116,9 @@ def distributions_section(found: Assessment) -> Markup:
 
 
 def _whence(found: Assessment) -> str:
-    return "the same for every cube" if found.data.complete is None else "from the cells that the cube has"
+    return (
+        "the same for every cube" if found.data.complete_cells is None else "from the cells that the cube has"
+    )
 
 
 def _aside(found: Assessment) -> Markup:

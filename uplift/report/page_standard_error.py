@@ -21,7 +21,7 @@ def standard_error_section(found: Assessment) -> Markup:
     title = element("h2", "Standard error")
     if found.standard_error is None:
         return element("section", title, element("p", _why_none(found)))
-    light = found.data.reference
+    light = found.data.error_illuminant
     about = (
         f"By how much an answer is expected to miss a measurement of the same colour: a root mean square, in ΔE00 "
         f"under {light}, that the cube has learnt by leaving out its own entries, one at a time. It is least at the "
@@ -47,7 +47,7 @@ def _why_none(found: Assessment) -> str:
 
 def _calibration(found: Assessment, judged: Calibration) -> Markup:
     """Real errors against stated ones, in words."""
-    light, count = found.data.reference, pluralise(judged.count, "entry", "entries")
+    light, count = found.data.error_illuminant, pluralise(judged.count, "entry", "entries")
     return joined(
         [
             element("h3", "Does it hold?"),
@@ -75,12 +75,12 @@ def mean_told(found: Assessment) -> str:
     """The one figure, for the facts."""
     if found.standard_error is None:
         return "none"
-    return f"mean {found.standard_error.mean:.2f}, ΔE00 under {found.data.reference}"
+    return f"mean {found.standard_error.mean:.2f}, ΔE00 under {found.data.error_illuminant}"
 
 
 def standard_error_told(found: Assessment, part: Histogram) -> tuple[str, str]:
     """The same for those in a hurry: a title, and what it means."""
-    light, judged = found.data.reference, found.calibration
+    light, judged = found.data.error_illuminant, found.calibration
     title = f"Standard error {part.mean:.2f}"
     if judged is None:
         return title, f"mean over the lattice points, ΔE00 under {light}"

@@ -48,14 +48,14 @@ def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
     """Compare all points but the unsettled. Raises `CubeFileError` where the two have no points in common."""
     if not np.array_equal(stored.lattice.nodes, rebuilt.lattice.nodes):
         raise CubeFileError("has another lattice than its options say", path=path, hint="build it anew")
-    settled = _settled(stored) & (stored.present | rebuilt.present)
+    settled = _settled(stored) & (stored.points.present | rebuilt.points.present)
     first, second = (
-        reflectance(data.model, data.coefficients[settled], data.sensor.wavelengths)
+        reflectance(data.model, data.points.coefficients[settled], data.sensor.wavelengths)
         for data in (stored, rebuilt)
     )
     difference = np.abs(first - second)
     measures = {
-        "rgb": float(np.abs(stored.rgb.astype(float) - rebuilt.rgb)[settled].max()),
+        "rgb": float(np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[settled].max()),
         "spectra_max": float(difference.max()),
         "spectra_rms": float(np.sqrt((difference**2).mean())),
     }
@@ -66,14 +66,16 @@ def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
 
 def _settled(data: CubeData) -> Mask:
     """Points (n,) whose spectra are the same on any machine; all, where the space holds no unrealisable point."""
-    if Status.UNREALISABLE not in data.status:
+    if Status.UNREALISABLE not in data.points.status:
         return np.ones(data.lattice.size, dtype=bool)
     return np.asarray(solid(data.sensor.matrix).outside(data.lattice.points) < -UNSETTLED)
 
 
 def _counts(data: CubeData, settled: Mask) -> dict[str, int]:
-    unfitted = int((data.status == Status.UNFITTED).sum())
-    return replace(data, status=data.status[settled]).counts() | {Status.UNFITTED.label: unfitted}
+    unfitted = int((data.points.status == Status.UNFITTED).sum())
+    return replace(data.points, status=data.points.status[settled]).counts() | {
+        Status.UNFITTED.label: unfitted
+    }
 
 
 def _largest_delta_e(name: str, observer: str, first: Array, second: Array) -> float:

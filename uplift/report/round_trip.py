@@ -27,7 +27,7 @@ def _random(data: CubeData) -> Array:
     """Linear RGB (n, 3), even in the cube or, where it is sparse, in its complete cells."""
     random = np.random.default_rng(SEED)
     asked = random.random((COLOURS, 3))
-    if data.complete is None:
+    if data.complete_cells is None:
         return asked
-    low = data.lattice.position(random.choice(np.flatnonzero(data.complete), COLOURS))
+    low = data.lattice.position(random.choice(np.flatnonzero(data.complete_cells), COLOURS))
     return data.lattice.nodes[low] + asked * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])

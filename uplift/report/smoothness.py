@@ -51,9 +51,9 @@ def _plane(data: CubeData, red: int) -> Array:
     """(dim, dim, N) spectra of the lattice points of one red, green first; NaN where absent."""
     dim, at = data.lattice.dim, data.sensor.wavelengths
     rows = slice(red * dim**2, (red + 1) * dim**2)
-    there = data.present[rows]
+    there = data.points.present[rows]
     plane = np.full((dim**2, len(at)), np.nan)
-    plane[there] = reflectance(data.model, data.coefficients[rows][there], at)
+    plane[there] = reflectance(data.model, data.points.coefficients[rows][there], at)
     return plane.reshape(dim, dim, -1)
 
 

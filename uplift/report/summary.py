@@ -14,7 +14,7 @@ def summary(data: CubeData) -> dict[str, Any]:
 
     ``points`` are those that are present, of dim³.
     """
-    there = data.present
+    there = data.points.present
     return {
         "model": data.model.describe(),
         "coefficients": data.model.count,
@@ -25,16 +25,16 @@ def summary(data: CubeData) -> dict[str, Any]:
         "illuminant": data.sensor.illuminant,
         "observer": data.sensor.observer,
         "threshold": data.threshold,
-        "worst_distance": float(data.distance.max()),
-        "mean_distance": float(data.distance[there].mean(dtype=np.float64)),
-        "reference": data.reference,
+        "worst_distance": float(data.points.distance.max()),
+        "mean_distance": float(data.points.distance[there].mean(dtype=np.float64)),
+        "reference": data.error_illuminant,
         "mean_standard_error": None
-        if data.standard_error is None
-        else float(data.standard_error[there].mean(dtype=np.float64)),
-        "status": data.counts(),
+        if data.points.standard_error is None
+        else float(data.points.standard_error[there].mean(dtype=np.float64)),
+        "status": data.points.counts(),
         "entries": list(data.atlas.names),
-        "debug": data.round is not None,
-        "rounds": None if data.round is None else int(data.round.max()) + 1,
+        "debug": data.points.round is not None,
+        "rounds": None if data.points.round is None else int(data.points.round.max()) + 1,
         "provenance": dict(data.provenance),
         "digest": digest(data),
     }

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.helpers import with_points
 from uplift.lookup import Cube
 from uplift.models import Moments, Phase
 
@@ -16,4 +17,6 @@ def warped_cube(small_cube) -> Cube:
     data = small_cube.data
     atlas = replace(data.atlas, coefficients=data.atlas.coefficients[:, :5])
     model = Moments(5, Phase(400, 700, "vision"))
-    return Cube(replace(data, model=model, atlas=atlas, coefficients=data.coefficients[:, :5]))
+    return Cube(
+        with_points(replace(data, model=model, atlas=atlas), coefficients=data.points.coefficients[:, :5])
+    )

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.helpers import with_points
 from uplift.common.errors import UpliftWarning
 from uplift.io.export import c_header, write_c
 from uplift.io.export.c_header import _identifier
@@ -92,7 +93,7 @@ def test_it_is_cpp_too(small_cube, answers):
 
 
 def test_coefficients_in_double_precision(small_cube, answers):
-    cube = Cube(replace(small_cube.data, coefficients=small_cube.data.coefficients.astype(float)))
+    cube = Cube(with_points(small_cube.data, coefficients=small_cube.data.points.coefficients.astype(float)))
     rgb = colours(cube.data)[:3000]
     expected = cube.reflectance(rgb, WAVELENGTHS, mode="moments")
     np.testing.assert_allclose(answers(cube.data, rgb), expected, rtol=0, atol=1e-9)

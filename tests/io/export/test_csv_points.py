@@ -26,14 +26,14 @@ def test_a_line_for_every_point_and_nothing_rounded(tmp_path, monkeypatch):
         return np.array([[float(row[name]) for name in names] for row in rows]).squeeze()
 
     np.testing.assert_array_equal(column("r", "g", "b"), data.lattice.points)
-    np.testing.assert_array_equal(column("lattice_r", "lattice_g", "lattice_b"), data.rgb)
-    np.testing.assert_array_equal(column("distance"), data.distance)
-    np.testing.assert_array_equal(column("round"), data.round)
-    np.testing.assert_array_equal(column("standard_error"), data.standard_error)
-    np.testing.assert_array_equal(column("c0", "c1", "c2"), data.coefficients)
-    assert [row["status"] for row in rows] == [Status(status).label for status in data.status]
+    np.testing.assert_array_equal(column("lattice_r", "lattice_g", "lattice_b"), data.points.rgb)
+    np.testing.assert_array_equal(column("distance"), data.points.distance)
+    np.testing.assert_array_equal(column("round"), data.points.round)
+    np.testing.assert_array_equal(column("standard_error"), data.points.standard_error)
+    np.testing.assert_array_equal(column("c0", "c1", "c2"), data.points.coefficients)
+    assert [row["status"] for row in rows] == [Status(status).label for status in data.points.status]
     assert [row["entry"] for row in rows] == [
-        "" if entry < 0 else data.atlas.names[entry] for entry in data.entry
+        "" if entry < 0 else data.atlas.names[entry] for entry in data.points.entry
     ]
 
 

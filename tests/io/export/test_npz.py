@@ -28,7 +28,9 @@ def test_multipliers_are_spectra_ready_to_evaluate(small_cube, tmp_path):
     with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
         lattice = evaluate(data.model, arrays["multipliers"], [450, 650])
         atlas = evaluate(data.model, arrays["atlas.multipliers"], [450, 650])
-    np.testing.assert_allclose(lattice, reflectance(data.model, data.coefficients, [450, 650]), atol=1e-9)
+    np.testing.assert_allclose(
+        lattice, reflectance(data.model, data.points.coefficients, [450, 650]), atol=1e-9
+    )
     np.testing.assert_allclose(atlas, small_cube.reflectance(data.atlas.rgb, [450, 650]), atol=1e-9)
 
 

@@ -7,7 +7,7 @@ import csv
 import numpy as np
 import pytest
 
-from tests.sparse_cubes import dark, robbed
+from tests.sparse_cubes import near_black, with_absent_points
 from uplift.common.errors import ColourError, OptionError
 from uplift.io.export import write_c, write_coeff, write_csv, write_npz
 from uplift.lab.study.sensitivity import study_sensitivity
@@ -15,22 +15,22 @@ from uplift.lab.study.sensitivity import study_sensitivity
 
 @pytest.fixture
 def data(small_cube):
-    return robbed(small_cube.data, dark(small_cube.data))
+    return with_absent_points(small_cube.data, near_black(small_cube.data))
 
 
 def test_lines_are_those_of_the_points_there(data, tmp_path):
-    count = int(data.present.sum())
+    count = int(data.points.present.sum())
     assert write_csv(data, tmp_path / "cube.csv") == count
     lines = csv.DictReader((tmp_path / "cube.csv").read_text(encoding="utf-8").splitlines())
     found = [[float(line[name]) for name in ("r", "g", "b", "c0")] for line in lines]
-    expected = np.column_stack([data.lattice.points, data.coefficients[:, 0]])[data.present]
+    expected = np.column_stack([data.lattice.points, data.points.coefficients[:, 0]])[data.points.present]
     np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 
 def test_arrays_are_those_of_the_file(data, tmp_path):
     write_npz(data, tmp_path / "cube.npz")
     arrays = np.load(tmp_path / "cube.npz")
-    np.testing.assert_array_equal(arrays["points"], np.flatnonzero(data.present))
+    np.testing.assert_array_equal(arrays["points"], np.flatnonzero(data.points.present))
     assert len(arrays["multipliers"]) == len(arrays["coefficients"]) == len(arrays["points"])
     assert np.isfinite(arrays["multipliers"]).all()
 

@@ -10,6 +10,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
+from tests.helpers import with_points
 from tests.io.texture.conftest import AT, PHOTO, channels, held, planes, write_exr
 from uplift import models
 from uplift.colorimetry.delta_e import delta_e_rgb
@@ -140,9 +141,9 @@ def test_colours_that_no_reflectance_has_are_counted(small_cube, spectral, colou
     data = small_cube.data
     corner = np.zeros(data.lattice.size, dtype=bool)
     corner[-1] = True  # white
-    status = np.where(corner, Status.UNREALISABLE, data.status).astype(np.uint8)
+    status = np.where(corner, Status.UNREALISABLE, data.points.status).astype(np.uint8)
     distance = np.where(corner, 0.1, 0).astype(np.float32)
-    wide = replace(small_cube, data=replace(data, status=status, distance=distance))
+    wide = replace(small_cube, data=with_points(data, status=status, distance=distance))
     uplifter = texture.prepare(wide, texture.Moments(), threads=1)
     source = write_exr(tmp_path / "in.exr", planes(colours))
     counts = texture.convert(uplifter, source, tmp_path / "out.exr").counts

@@ -56,7 +56,7 @@ def test_a_box_is_as_steep_as_stated(small_cube, steep):
     """Between its steepest entry and all corners that the lattice cuts its box into, in all directions."""
     data = small_cube.data
     entry = steep.boxes.argmax()
-    low, high = (face[entry] for face in data.pins.faces)
+    low, high = (face[entry] for face in data.entry_boxes.faces)
     middle = data.atlas.rgb[entry]
     cuts = [_cuts(data.lattice.nodes, low[axis], high[axis]) for axis in range(3)]
     corners = np.stack(np.meshgrid(*cuts, indexing="ij"), axis=-1).reshape(-1, 1, 3)
@@ -91,7 +91,7 @@ def test_a_face_is_the_same_from_both_of_its_cells(small_cube, axis):
     data = small_cube.data
     low = RNG.integers(0, data.lattice.dim - 2, (200, 3))
     fraction = RNG.random((200, 3))
-    spectra = uplift.models.reflectance(data.model, data.coefficients, data.sensor.wavelengths)
+    spectra = uplift.models.reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)
 
     def answer(low, fraction):
         points, weights = data.lattice.around(low, fraction)
@@ -107,8 +107,8 @@ def test_a_face_is_the_same_from_both_of_its_cells(small_cube, axis):
 def test_the_face_of_a_box_is_the_same_from_both_sides(small_cube, steep):
     """What the entry's answer becomes at its face is what the lattice has there."""
     data = small_cube.data
-    low, high = data.pins.faces
-    entry = np.flatnonzero(data.atlas.reach)
+    low, high = data.entry_boxes.faces
+    entry = np.flatnonzero(data.atlas.half_width)
     middle = data.atlas.rgb[entry]
     for way in (1, -1):
         face = np.where(way > 0, high[entry], low[entry])

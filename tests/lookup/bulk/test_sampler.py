@@ -27,7 +27,7 @@ def sample(small_cube):
 def colours(data, count=3000):
     """Random ones, all nodes, and colours in, around and on the faces of the boxes of entries."""
     rng = np.random.default_rng(5)
-    low, high = data.pins.faces
+    low, high = data.entry_boxes.faces
     boxes = [
         data.atlas.rgb,
         low,
@@ -150,7 +150,7 @@ def test_bad_wavelengths_and_threads_are_refused(small_cube):
 def test_misses_are_the_fitting_distances_around(small_cube):
     data = small_cube.data
     found = bulk.max_rgb_error(small_cube)
-    clear = ~np.isin(np.arange(data.lattice.size), data.pins.cells[0])  # of boxes of entries
-    expected = data.distance[clear]
+    clear = ~np.isin(np.arange(data.lattice.size), data.entry_boxes.cells[0])  # of boxes of entries
+    expected = data.points.distance[clear]
     np.testing.assert_allclose(found(data.lattice.points[clear])[:, 0], expected, rtol=0, atol=1e-7)
     np.testing.assert_allclose(found(data.atlas.rgb), 0, atol=1e-7)

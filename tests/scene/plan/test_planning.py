@@ -98,8 +98,8 @@ def test_what_was_built_is_what_the_file_builds(planned, kitchen, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         cube = plan.read_plan(path).build()
-    np.testing.assert_array_equal(cube.data.coefficients, found.built.cube.data.coefficients)
-    assert (cube.data.complete is not None) == found.built.is_sparse
+    np.testing.assert_array_equal(cube.data.points.coefficients, found.built.cube.data.points.coefficients)
+    assert (cube.data.complete_cells is not None) == found.built.is_sparse
 
 
 def write(path, said):

@@ -35,7 +35,7 @@ def write_c(data: CubeData, path: str | os.PathLike[str], *, force: bool = False
     Raises `OutputError`, and `OptionError` for a cube of a scene: the header could not refuse other colours. Warns
     where the header is large.
     """
-    if data.complete is not None:
+    if data.complete_cells is not None:
         problem = "the cube was built for the colours of a scene, and a header has all colours"
         raise OptionError(problem, hint="export it with --fill (in Python: cube.fill_missing())")
     name = _identifier(Path(path).stem)
@@ -61,13 +61,13 @@ def _parts(data: CubeData, name: str) -> Iterator[str]:
     words = _words(data, name)
     yield _template("head").substitute(words)
     yield from _array(f"{name}_nodes[]", data.lattice.nodes[:, None])
-    yield from _array(f"{name}_table[][{data.model.count}]", data.coefficients)
-    boxes = "boxes" if len(data.pins.cells[0]) else "no_boxes"
+    yield from _array(f"{name}_table[][{data.model.count}]", data.points.coefficients)
+    boxes = "boxes" if len(data.entry_boxes.cells[0]) else "no_boxes"
     if boxes == "boxes":
-        yield from _array(f"{name}_box_cell[]", data.pins.cells[0][:, None])
-        yield from _array(f"{name}_box_entry[]", data.pins.cells[1][:, None])
+        yield from _array(f"{name}_box_cell[]", data.entry_boxes.cells[0][:, None])
+        yield from _array(f"{name}_box_entry[]", data.entry_boxes.cells[1][:, None])
         yield from _array(
-            f"{name}_entry_box[][9]", np.concatenate([data.atlas.rgb, *data.pins.faces], axis=1)
+            f"{name}_entry_box[][9]", np.concatenate([data.atlas.rgb, *data.entry_boxes.faces], axis=1)
         )
         yield from _array(f"{name}_entry[][{data.model.count}]", data.atlas.coefficients)
     for part in ("lattice", boxes, data.model.name, "tail"):
@@ -87,9 +87,9 @@ def _words(data: CubeData, name: str) -> dict[str, Any]:
         "NAME": name.upper(),
         "dim": data.lattice.dim,
         "count": data.model.count,
-        "type": TYPES[data.coefficients.dtype.name][0],
+        "type": TYPES[data.points.coefficients.dtype.name][0],
         "entries": len(data.atlas.names),
-        "boxes": len(data.pins.cells[0]),
+        "boxes": len(data.entry_boxes.cells[0]),
     }
     return facts | _range(data.model)
 

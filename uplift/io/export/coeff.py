@@ -104,7 +104,7 @@ def _fit(data: CubeData, scale: Array) -> tuple[NDArray[np.float32], float]:
         start = grey
         for level in levels:
             rgb = _points(scale[level], res)
-            goal = around(data, rgb).weighted_sum(data.rgb.astype(float), data.atlas.rgb)
+            goal = around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
             start = solve(model, ahead, start, goal, tolerance=TOLERANCE, passes=PASSES).multipliers
             if level == middle:
                 grey = start

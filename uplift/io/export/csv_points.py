@@ -30,14 +30,14 @@ def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
     ):
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(_names(data))
-        points = np.flatnonzero(data.present)
+        points = np.flatnonzero(data.points.present)
         for first in range(0, len(points), BLOCK):
             writer.writerows(_rows(data, points[first : first + BLOCK]))
     return len(points)
 
 
 def _names(data: CubeData) -> list[str]:
-    optional = [name for name in ("round", "standard_error") if getattr(data, name) is not None]
+    optional = [name for name in ("round", "standard_error") if getattr(data.points, name) is not None]
     return [
         *("r", "g", "b", "lattice_r", "lattice_g", "lattice_b", "distance", "status", "entry"),
         *optional,
@@ -48,16 +48,18 @@ def _names(data: CubeData) -> list[str]:
 def _rows(data: CubeData, block: Indices) -> Iterator[list[object]]:
     entries = [*data.atlas.names, ""]
     optional = [
-        array[block, None].tolist() for array in (data.round, data.standard_error) if array is not None
+        array[block, None].tolist()
+        for array in (data.points.round, data.points.standard_error)
+        if array is not None
     ]
     columns = zip(
         data.lattice.points[block].tolist(),
-        data.rgb[block].tolist(),
-        data.distance[block, None].tolist(),
-        ([Status(status).label] for status in data.status[block]),
-        ([entries[entry]] for entry in data.entry[block]),
+        data.points.rgb[block].tolist(),
+        data.points.distance[block, None].tolist(),
+        ([Status(status).label] for status in data.points.status[block]),
+        ([entries[entry]] for entry in data.points.entry[block]),
         *optional,
-        data.coefficients[block].tolist(),
+        data.points.coefficients[block].tolist(),
         strict=True,
     )
     return (list(chain.from_iterable(row)) for row in columns)

@@ -19,7 +19,7 @@ def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
     """
     tensors, metadata = contents(data)
     arrays = tensors | {
-        "multipliers": data.model.from_storage(data.coefficients[data.present]),
+        "multipliers": data.model.from_storage(data.points.coefficients[data.points.present]),
         "atlas.multipliers": data.model.from_storage(data.atlas.coefficients),
         "atlas.names": np.array(data.atlas.names, dtype=np.str_),
         "metadata": np.array(json.dumps(metadata, ensure_ascii=False)),

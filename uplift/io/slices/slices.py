@@ -54,19 +54,19 @@ def channels(data: CubeData) -> dict[str, NDArray[Any]]:
     """Everything a slice shows: values (n,) per lattice point by channel name."""
     target = data.lattice.points
     found: dict[str, NDArray[Any]] = {
-        **_rgb("", data.rgb),
-        **_rgb("lattice.", data.rgb),
+        **_rgb("", data.points.rgb),
+        **_rgb("lattice.", data.points.rgb),
         **_rgb("target.", target),
-        "distance": data.distance,
-        "deltaE2000": np.where(data.present, delta_e_rgb(data.sensor, target, data.rgb), 0),
-        "status": data.status,
-        "entry": data.entry,
+        "distance": data.points.distance,
+        "deltaE2000": np.where(data.points.present, delta_e_rgb(data.sensor, target, data.points.rgb), 0),
+        "status": data.points.status,
+        "entry": data.points.entry,
     }
-    if data.round is not None:
-        found["round"] = data.round
-    if data.standard_error is not None:
-        found["standardError"] = data.standard_error
-    return found | {f"coefficient.{i:02}": column for i, column in enumerate(data.coefficients.T)}
+    if data.points.round is not None:
+        found["round"] = data.points.round
+    if data.points.standard_error is not None:
+        found["standardError"] = data.points.standard_error
+    return found | {f"coefficient.{i:02}": column for i, column in enumerate(data.points.coefficients.T)}
 
 
 def _parts(data: CubeData) -> Iterator[Any]:

@@ -74,7 +74,7 @@ def prepare(
     asked = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
     made = json.dumps({**form.describe(cube), **asked})
     header = {**exr.attributes(cube.data), "uplift.texture": made, **form.header()}
-    beyond = (cube.data.status == Status.UNREALISABLE).any()
+    beyond = (cube.data.points.status == Status.UNREALISABLE).any()
     misses = bulk.max_rgb_error(cube, threads=threads) if beyond else None
     sample = form.sample(cube, threads)
     return Uplifter(cube, depth, encoding, out_of_gamut, channels, header, sample, misses)

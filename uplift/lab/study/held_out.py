@@ -97,7 +97,7 @@ def _ask(cubes: dict[str, Cube], asked: Atlas) -> HoldoutSplit:
     measured = resample(asked, sensor.wavelengths).values
     rgb = np.clip(sensor.rgb(measured), 0, 1)
     answers = {name: other.reflectance(rgb) for name, other in cubes.items()}
-    light = observer.light(cube.data.reference, sensor.observer)
+    light = observer.light(cube.data.error_illuminant, sensor.observer)
     return HoldoutSplit(
         {name: spectrum_errors(answered, measured) for name, answered in answers.items()},
         delta_e_spectra(light, answers["half the atlas"], measured),

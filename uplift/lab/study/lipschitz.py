@@ -78,7 +78,7 @@ def spectral_norms(columns: Array) -> Array:
 def _plane(data: CubeData, red: int) -> Array:
     """(dim, dim, N) spectra of the points of one red, green first."""
     dim = data.lattice.dim
-    rows = data.coefficients[red * dim**2 : (red + 1) * dim**2]
+    rows = data.points.coefficients[red * dim**2 : (red + 1) * dim**2]
     return reflectance(data.model, rows, data.sensor.wavelengths).reshape(dim, dim, -1)
 
 
@@ -110,7 +110,7 @@ def _boxes(data: CubeData) -> Array:
 
 def _box(data: CubeData, entry: int) -> float:
     """The largest norm within the box of an entry."""
-    if not data.atlas.reach[entry]:
+    if not data.atlas.half_width[entry]:
         return 0.0
     own = reflectance(data.model, data.atlas.coefficients[entry : entry + 1], data.sensor.wavelengths)[0]
     return max(float(spectral_norms(columns).max()) for columns in _faces(data, entry, own))
@@ -118,7 +118,7 @@ def _box(data: CubeData, entry: int) -> float:
 
 def _faces(data: CubeData, entry: int, own: Array) -> Iterator[Array]:
     """Jacobians (4, 3, N) at the corners of every patch that the lattice cuts the faces of a box into."""
-    low, high = (face[entry] for face in data.pins.faces)
+    low, high = (face[entry] for face in data.entry_boxes.faces)
     middle, nodes = data.atlas.rgb[entry], data.lattice.nodes
     cuts = [_cuts(nodes, low[axis], high[axis]) for axis in range(3)]
     points = np.stack(np.meshgrid(*cuts, indexing="ij"), axis=-1)

@@ -125,4 +125,4 @@ def _build(entries: Sequence[Entry], options: Mapping[str, Any]) -> CubeData:
 
 
 def _lattice(data: CubeData) -> Array:
-    return reflectance(data.model, data.coefficients, data.sensor.wavelengths)
+    return reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)

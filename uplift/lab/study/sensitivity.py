@@ -92,7 +92,7 @@ def study_sensitivity(
     if most < 0:
         raise OptionError(f"{most} entries cannot be left out", hint="use 0 or more")
     light = observer.light(NARROW_BAND_LIGHT, cube.data.sensor.observer)
-    if cube.data.complete is not None:
+    if cube.data.complete_cells is not None:
         problem = (
             "the cube was built for the colours of a scene, and between its cells there is nothing to measure"
         )

@@ -134,8 +134,10 @@ def _ours(setting: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
     seconds = time.perf_counter() - begin
     unrealisable = ~solid(data.sensor.matrix).holds(data.lattice.points)
     calls = sum(step["tried"] for step in data.provenance["improvements"])
-    missed = int((unrealisable & (data.status == Status.UNFITTED)).sum())
-    return _judge(setting, data.lattice.points, ~unrealisable, data.distance, missed, rounds, calls, seconds)
+    missed = int((unrealisable & (data.points.status == Status.UNFITTED)).sum())
+    return _judge(
+        setting, data.lattice.points, ~unrealisable, data.points.distance, missed, rounds, calls, seconds
+    )
 
 
 def _pointwise(setting: RunConfig) -> RunResult:

@@ -41,7 +41,7 @@ class Grid(NamedTuple):
 
 def grid(table: NodeTable) -> Grid:
     """The arrays of a table's cube."""
-    lattice, pins = table.data.lattice, table.data.pins
+    lattice, pins = table.data.lattice, table.data.entry_boxes
     bins, crowd = _bins(lattice)
     carried = np.concatenate([table.lattice.ravel(), table.atlas.ravel()])
     return Grid(

@@ -67,7 +67,9 @@ def spectra(cube: Cube, wavelengths: ArrayLike | None = None, *, threads: int = 
 def coefficients(cube: Cube, *, threads: int = 2) -> Sampler:
     """Coefficients (C,) of the cube's model, as `Cube.coefficients` has them, to float32. Raises `OptionError`."""
     data = cube.data
-    points, atlas = (c.astype(np.float32) for c in (data.coefficients[data.present], data.atlas.coefficients))
+    points, atlas = (
+        c.astype(np.float32) for c in (data.points.coefficients[data.points.present], data.atlas.coefficients)
+    )
     return _sampler(NodeTable.of_points(data, points, atlas), thread_count(threads))
 
 
@@ -76,7 +78,8 @@ def max_rgb_error(cube: Cube, *, threads: int = 2) -> Sampler:
     data = cube.data
     entries = np.zeros((len(data.atlas.names), 1), np.float32)
     return _sampler(
-        NodeTable.of_points(data, data.distance[data.present, None], entries), thread_count(threads)
+        NodeTable.of_points(data, data.points.distance[data.points.present, None], entries),
+        thread_count(threads),
     )
 
 

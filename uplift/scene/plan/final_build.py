@@ -30,11 +30,11 @@ class Built:
 
     @property
     def is_sparse(self) -> bool:
-        return self.cube.data.complete is not None
+        return self.cube.data.complete_cells is not None
 
     @property
     def points(self) -> int:
-        return int(self.cube.data.present.sum())
+        return int(self.cube.data.points.present.sum())
 
 
 def built(bench: Bench, options: Mapping[str, Any]) -> Built:
@@ -42,7 +42,7 @@ def built(bench: Bench, options: Mapping[str, Any]) -> Built:
     brief = bench.brief
     cube, seconds = _timed(bench, options, scene=Images(brief.textures, brief.encoding))
     size = _size(cube)
-    whole = size * cube.data.lattice.size / int(cube.data.present.sum())
+    whole = size * cube.data.lattice.size / int(cube.data.points.present.sum())
     if whole - size < WORTH:
         return _whole(bench, options, size)
     return Built(cube, size, seconds, whole, size)

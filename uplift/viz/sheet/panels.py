@@ -53,42 +53,42 @@ class Panel:
 def panels(data: CubeData) -> tuple[Panel, ...]:
     """Lattice RGB, fitting distance, status; where the cube has them, standard error and round."""
     shown = [_colour(data), _distance(data), _status(data)]
-    if data.standard_error is not None:
-        shown.append(_error(data.standard_error, data.reference))
-    if data.round is not None:
-        shown.append(_round(data.round, data.round[data.present] < 0))
+    if data.points.standard_error is not None:
+        shown.append(_error(data.points.standard_error, data.error_illuminant))
+    if data.points.round is not None:
+        shown.append(_round(data.points.round, data.points.round[data.points.present] < 0))
     return tuple(replace(panel, colours=_present(data, panel.colours)) for panel in shown)
 
 
 def _present(data: CubeData, colours: NDArray[np.floating]) -> NDArray[np.floating]:
-    return np.where(data.present[:, None], colours, colours.dtype.type(BACKGROUND))
+    return np.where(data.points.present[:, None], colours, colours.dtype.type(BACKGROUND))
 
 
 def _colour(data: CubeData) -> Panel:
     ramps = np.linspace(0, 1, 64)[:, None, None] * np.eye(3)
     ways = ("red rises to the right", "green rises upwards", "blue rises from tile to tile")
     keys = tuple(Key(ramps[:, i], way) for i, way in enumerate(ways))
-    return Panel("Lattice RGB", data.rgb, keys)
+    return Panel("Lattice RGB", data.points.rgb, keys)
 
 
 def _distance(data: CubeData) -> Panel:
-    within = np.clip(data.distance / data.threshold, 10.0**-DECADES, 1)
-    over = data.distance > data.threshold
+    within = np.clip(data.points.distance / data.threshold, 10.0**-DECADES, 1)
+    over = data.points.distance > data.threshold
     low, high = data.threshold / 10**DECADES, data.threshold
     keys = (
         Key(_ramp(np.linspace(0, 1, 64)), f"{low:g} or less to {high:g}, logarithmic"),
-        Key(LOUD, f"over the threshold: {_points(over)}; largest distance {data.distance.max():.2g}"),
+        Key(LOUD, f"over the threshold: {_points(over)}; largest distance {data.points.distance.max():.2g}"),
     )
     return Panel("Fitting distance", _loud_where(over, 1 + np.log10(within) / DECADES), keys)
 
 
 def _status(data: CubeData) -> Panel:
-    counts = data.counts().items()
+    counts = data.points.counts().items()
     keys = (
         Key(colour[None], f"{label}: {count:,}")
         for colour, (label, count) in zip(STATUS, counts, strict=False)
     )
-    return Panel("Status", np.append(STATUS, STATUS[:1], axis=0)[data.status], tuple(keys))
+    return Panel("Status", np.append(STATUS, STATUS[:1], axis=0)[data.points.status], tuple(keys))
 
 
 def _error(errors: NDArray[np.float32], light: str) -> Panel:

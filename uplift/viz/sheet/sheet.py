@@ -172,4 +172,4 @@ def _heading(data: CubeData, layout: Layout) -> Label:
 
 def _of(data: CubeData) -> str:
     """How many points there are, where some are absent."""
-    return "" if data.complete is None else f"{np.count_nonzero(data.present):,} of "
+    return "" if data.complete_cells is None else f"{np.count_nonzero(data.points.present):,} of "

@@ -99,7 +99,7 @@ def _prepare(task: Task, recipe: Recipe, asking: Asking) -> Ready:
         return found
 
     data = cube.data
-    arrays = (data.coefficients, data.lattice.nodes, data.atlas.rgb, data.atlas.coefficients)
+    arrays = (data.points.coefficients, data.lattice.nodes, data.atlas.rgb, data.atlas.coefficients)
     return Ready(uplift, held(arrays), seconds)
 
 

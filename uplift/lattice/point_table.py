@@ -1,0 +1,97 @@
+"""The arrays that a build computes for every lattice point, and how each point was fitted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.common.arrays import Mask
+
+NO_ENTRY = -1
+"""Value of `PointTable.entry` at points that are not based on an atlas entry."""
+NOT_FITTED = -1
+"""Value of `PointTable.round` at points that no round of growth fitted."""
+
+
+class Status(IntEnum):
+    """How a lattice point was fitted."""
+
+    ATLAS_PRIMARY = 0
+    ATLAS_CORNER = 1
+    REGULAR = 2
+    IMPROVED = 3
+    UNFITTED = 4
+    UNREALISABLE = 5
+    ABSENT = 6
+
+    @property
+    def label(self) -> str:
+        """The name in lower-case words.
+
+        Returns
+        -------
+        str
+            Such as ``"atlas primary"``.
+        """
+        return self.name.lower().replace("_", " ")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PointTable:
+    """Arrays over the lattice points, in the order of `Lattice.points` (blue fastest).
+
+    Absent points have status ``ABSENT``, entry and round −1, and 0 everywhere else.
+
+    Parameters
+    ----------
+    coefficients : ndarray, shape (n, C)
+        Argument of ``model.from_storage``. float32 or, where single precision is not accurate enough, float64.
+    rgb : ndarray of float32, shape (n, 3)
+        Lattice RGB: the linear RGB that the stored spectrum evaluates to.
+    distance : ndarray of float32, shape (n,)
+        Fitting distance, max |target RGB − lattice RGB|.
+    status : ndarray of uint8, shape (n,)
+        Values of `Status`.
+    entry : ndarray of int32, shape (n,)
+        Row of the atlas table that the point is based on, −1 for none.
+    round : ndarray of int16, shape (n,), optional
+        Round of growth that fitted the point, −1 for none. Stored with ``debug=True`` only.
+    standard_error : ndarray of float32, shape (n,), optional
+        Root-mean-square ΔE00 expected between the answer and a measurement. None where the atlas is too small
+        to estimate it.
+    """
+
+    coefficients: NDArray[Any]
+    rgb: NDArray[np.float32]
+    distance: NDArray[np.float32]
+    status: NDArray[np.uint8]
+    entry: NDArray[np.int32]
+    round: NDArray[np.int16] | None = None
+    standard_error: NDArray[np.float32] | None = None
+
+    def __len__(self) -> int:
+        return len(self.status)
+
+    def __repr__(self) -> str:
+        return f"PointTable({len(self)} points, {self.coefficients.shape[-1]} coefficients each)"
+
+    @cached_property
+    def present(self) -> Mask:
+        """(n,) True where a point has a spectrum: everywhere, unless the cube was built for a scene."""
+        return self.status != Status.ABSENT
+
+    def counts(self) -> dict[str, int]:
+        """Count the points of each status.
+
+        Returns
+        -------
+        dict
+            Number of points by `Status.label`, in the order of `Status`.
+        """
+        numbers = np.bincount(self.status, minlength=len(Status))
+        return {status.label: int(numbers[status]) for status in Status}
