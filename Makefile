@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette
+.PHONY: build lint test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -15,11 +15,15 @@ build: $(INSTALLED)
 	$(BIN)/uplift slices $(OUT)/macbeth-32.uplift $(OUT)/macbeth-32.exr --sheet $(OUT)/macbeth-32.png --force
 	$(BIN)/uplift query --cube $(OUT)/macbeth-32.uplift '#da7b2a' --plot $(OUT)/orange.png --force
 
-test: $(INSTALLED)
+lint: $(INSTALLED)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
+	$(BIN)/codespell
+	$(BIN)/python tools/lint.py
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
+
+test: lint
 	$(BIN)/pytest
 
 bench: $(INSTALLED)

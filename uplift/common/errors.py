@@ -181,7 +181,7 @@ def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError
     --------
     >>> error = unknown_name("srbg", ("sRGB", "ACEScg"), "RGB space")
     >>> print(error.code, "|", error)
-    unknown-rgb-space | unknown RGB space 'srbg'; did you mean 'sRGB'?
+    unknown-rgb-space | unknown RGB space 'srbg'; did you mean 'sRGB', 'ACEScg'?
     """
     import difflib
 

@@ -1,0 +1,3 @@
+"""Code of the integration pages."""
+
+collect_ignore = ["in_blender.py"]
