@@ -10,8 +10,7 @@ import numpy as np
 from benchmarks.wavelengths.methods import COUNTS, Comparison
 from uplift.scene.wavelengths import METHODS
 from uplift.scene.wavelengths.experiments import Trials, bin_shares
-from uplift.viz.charts import GREY, INK, STYLE
-from uplift.viz.figure import new_figure, style_axes, write_png
+from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_png
 
 COLOURS = ("#20509a", "#d1495b", "#2e8b57", "#c98a1b", "#7fa3d9")
 CORNERS = np.array([[0.5, np.sqrt(0.75)], [0.0, 0.0], [1.0, 0.0]])

@@ -15,9 +15,9 @@ from tests.report.conftest import HOSTILE
 from uplift.atlas import read_atlas
 from uplift.lookup import MODES, Cube
 from uplift.report.assessment import assess
+from uplift.report.charts import histogram_chart, spectra_chart
 from uplift.report.json_export import to_json
 from uplift.report.page import page
-from uplift.viz.charts import histogram_chart, spectra_chart
 from uplift.viz.format import format_power_of_ten, format_scientific
 from uplift.viz.histogram import histogram, log_edges
 from uplift.viz.markup import EMPTY, Markup, element
@@ -265,7 +265,7 @@ def test_charts_stand_alone():
     at = np.arange(380.0, 781.0, 5.0)
     values = np.geomspace(1e-8, 1e-3, 50)
     charts = [
-        histogram_chart(histogram(values, log_edges(values, 1e-9)), "distance", limit=1e-4),
+        histogram_chart(histogram(values, log_edges(values, 1e-9)), "distance", threshold=1e-4),
         spectra_chart(at, np.full(81, 0.05), np.full(81, 0.06), None),
         spectra_chart(at, np.full(81, 0.5), np.full(81, 1.0), np.full(81, 0.4)),
     ]

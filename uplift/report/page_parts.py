@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from uplift.colorimetry.sensor import Sensor
+from uplift.report.charts import histogram_chart
 from uplift.report.fidelity import EntryErrors
 from uplift.report.json_export import swatches
-from uplift.viz.charts import histogram_chart
 from uplift.viz.format import format_rgb, format_scientific
 from uplift.viz.histogram import Histogram
 from uplift.viz.markup import Markup, element, joined, number, rows
@@ -55,7 +55,7 @@ def figure(
     named = ("mean", part.mean), ("median", part.median), ("95 %", part.p95), ("max", part.largest)
     stated = (element("span", element("small", name), format_scientific(value)) for name, value in named)
     caption = element("figcaption", element("b", title), element("div", *stated, class_="stats"))
-    return element("figure", caption, histogram_chart(part, label, top=top, limit=limit))
+    return element("figure", caption, histogram_chart(part, label, top=top, threshold=limit))
 
 
 def charts(figures: list[Markup]) -> Markup:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from uplift.report.assessment import Assessment
+from uplift.report.charts import spectra_chart
 from uplift.report.fidelity import EntryErrors
 from uplift.report.page_parts import Swatches, severity, swatch
-from uplift.viz.charts import ACCENT, BAND, INK, spectra_chart
+from uplift.viz.figure import ACCENT, BAND, INK
 from uplift.viz.format import format_rgb
 from uplift.viz.markup import Markup, element, joined
 

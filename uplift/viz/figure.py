@@ -1,38 +1,154 @@
-"""What all figures share: no frame, a light grid, and a PNG that is whole or not there."""
+"""Figures: colours and style in one place, empty figures and axes, PNG and SVG output."""
 
 from __future__ import annotations
 
+import hashlib
+import io
 import os
+import re
 from typing import Any, Literal
+
+from markupsafe import Markup
 
 from uplift.common.files import atomic_write
 
+__all__ = [
+    "ACCENT",
+    "BAND",
+    "GREY",
+    "INK",
+    "OTHER",
+    "PALE",
+    "STYLE",
+    "new_figure",
+    "style_axes",
+    "style_spectrum_axes",
+    "to_svg",
+    "write_png",
+]
+
+INK, GREY, PALE, ACCENT = "#262626", "#6e6e6e", "#d6d6d6", "#20509a"
+BAND = "#c2c2c2"
+"""A broad line below others."""
+OTHER = "#444444"
+"""A group that has no colour."""
+STYLE: dict[str, Any] = {
+    "svg.fonttype": "none",
+    "svg.hashsalt": "uplift",
+    "font.size": 8,
+    "axes.linewidth": 0.6,
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": GREY,
+    "xtick.color": GREY,
+    "ytick.color": GREY,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+}
+"""For `matplotlib.rc_context`."""
+
+_NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
+_UNUSED = re.compile(r' id="[\w.]+_\d+"|<!--.*?-->|<defs>\s*<style.*?</style>\s*</defs>', re.DOTALL)
+"""Names of groups, comments, and a style sheet that would apply to the whole page."""
+_IDENTIFIER = re.compile(r'(id="|#)([mp][0-9a-f]{10})(?=["\)])')
+
 
 def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Any:
-    """An empty matplotlib figure, in inches. Without a ``layout`` it is known at once where everything lies."""
+    """Create an empty figure without a window.
+
+    Parameters
+    ----------
+    width, height : float
+        Size in inches.
+    layout : {"constrained", None}, default "constrained"
+        Layout engine; None if positions must be known before drawing.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+    """
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout=layout)
 
 
 def style_axes(axes: Any) -> None:
-    """Take the frame away and put a grid behind the lines."""
-    axes.grid(color="0.9")
+    """Remove the frame above and on the right, and draw a grid behind the data.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The axes to change.
+    """
+    axes.grid(color=PALE, linewidth=0.5)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
 
 
 def style_spectrum_axes(axes: Any) -> None:
-    """Axes of reflectance over wavelength."""
+    """Style axes of reflectance over wavelength.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        The axes to change.
+    """
     axes.set(xlabel="wavelength / nm", ylabel="reflectance", ylim=(-0.02, 1.02))
     axes.margins(x=0.01)
     style_axes(axes)
 
 
 def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write a figure. Raises `OutputError`."""
+    """Write a figure as PNG.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    path : path-like
+        The file to write.
+    force : bool, default False
+        Replace an existing file.
+
+    Raises
+    ------
+    OutputError
+        If the file exists and ``force`` is false, or cannot be written.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    # Without a name here matplotlib writes its own and its version.
+    # Without this entry matplotlib writes its name and version, and files would differ between versions.
     with atomic_write(path, force=force) as temporary:
         FigureCanvasAgg(figure).print_png(temporary, metadata={"Software": "uplift"})
+
+
+def to_svg(figure: Any) -> Markup:
+    """Render a figure as an ``svg`` element for a page that sets its size.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+
+    Returns
+    -------
+    Markup
+        The element. Its identifiers depend on its content: no other figure of the page has them, and equal figures
+        give equal text.
+    """
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    out = io.StringIO()
+    FigureCanvasSVG(figure).print_svg(out, metadata=_NO_METADATA)
+    text = out.getvalue()
+    text = text[text.index("<svg") :].replace("xlink:href", "href")
+    text = _UNUSED.sub("", text)
+    suffix = hashlib.sha256(text.encode()).hexdigest()[:8]
+    text = _IDENTIFIER.sub(rf"\1\2-{suffix}", text)
+    head, body = text.split(">", 1)
+    head = re.sub(r' (?:width|height|version|xmlns:xlink)="[^"]*"', "", head)
+    body = re.sub(r">\s+<", "><", body).strip()
+    return Markup(f"{head}>{body}")

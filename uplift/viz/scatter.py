@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.viz.charts import GREY, INK, PALE
+from uplift.viz.figure import GREY, INK, PALE
 from uplift.viz.labels import place
 
 POINTS = 72

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from uplift.common.arrays import Array
-from uplift.viz.charts import INK, PALE
-from uplift.viz.figure import new_figure, write_png
+from uplift.viz.figure import INK, PALE, new_figure, write_png
 
 WIDTH, HEIGHT, TITLE = 7.2, 0.62, 0.24
 """Inches of a picture, of a strip, and of its title."""

@@ -12,8 +12,7 @@ from uplift.common.arrays import Array
 from uplift.design.palette.design import Design
 from uplift.design.palette.matrix import Matrix
 from uplift.design.palette.palette import Part
-from uplift.viz.charts import BAND, GREY, INK
-from uplift.viz.figure import new_figure, style_axes, write_png
+from uplift.viz.figure import BAND, GREY, INK, new_figure, style_axes, write_png
 
 CELL, NAMES, TOP = (1.5, 1.0), 1.35, 0.75
 """Inches of a cell, of the column of names, and of the row of lights."""

@@ -6,7 +6,7 @@ from typing import Any
 
 from uplift.lab.chart.methods import FAMILIES
 from uplift.lab.chart.table import Chart
-from uplift.viz.charts import GREY, INK
+from uplift.viz.figure import GREY, INK
 from uplift.viz.format import format_size
 
 SHAPES = {"spectra": "o", "moments": "^", "refined": "s", "nearest": "D", "bulk": "P", "": "o"}

@@ -13,8 +13,7 @@ from uplift.common.files import write_text
 from uplift.lab.chart.legend import ALONE, FRONT, OTHER, SHAPES, WHISKER, colours, legend, width
 from uplift.lab.chart.panels import AXES, FLOORS, LEAST, PANELS, Panel
 from uplift.lab.chart.table import Chart, Row
-from uplift.viz.charts import STYLE, svg
-from uplift.viz.figure import new_figure, write_png
+from uplift.viz.figure import STYLE, new_figure, to_svg, write_png
 from uplift.viz.format import format_time
 from uplift.viz.markup import Markup
 from uplift.viz.scatter import Name, label, pareto_steps, set_up
@@ -34,7 +33,7 @@ def write_pictures(chart: Chart, png: Path, vector: Path, *, force: bool = False
     with matplotlib.rc_context(STYLE):
         figure = draw(chart)
         write_png(figure, png, force=force)
-        text = svg(figure)
+        text = to_svg(figure)
     write_text(text, vector, force=force)
     return text
 

@@ -7,8 +7,7 @@ from typing import Any
 
 from uplift.lab.comparison.measure import Comparison, Row
 from uplift.lab.comparison.style import colour, heading
-from uplift.viz.charts import GREY, INK, PALE
-from uplift.viz.figure import new_figure
+from uplift.viz.figure import GREY, INK, PALE, new_figure
 
 WIDTH, PANEL = 13.2, 4.0
 """Inches of the figure, and of each panel's height."""

@@ -7,8 +7,7 @@ from typing import Any
 
 from uplift.lab.comparison import box_plots, cost
 from uplift.lab.comparison.measure import Comparison
-from uplift.viz.charts import STYLE, svg
-from uplift.viz.figure import write_png
+from uplift.viz.figure import STYLE, to_svg, write_png
 from uplift.viz.markup import Markup
 
 DRAWN = {"boxes": box_plots.draw, "cost": cost.draw}
@@ -23,4 +22,4 @@ def write_picture(
     with matplotlib.rc_context(STYLE):
         figure: Any = DRAWN[kind](found)
         write_png(figure, path, force=force)
-        return svg(figure)
+        return to_svg(figure)

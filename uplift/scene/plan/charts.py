@@ -6,8 +6,7 @@ from typing import Any
 
 from uplift.scene.plan.decision import Decision
 from uplift.scene.plan.planning import Plan
-from uplift.viz.charts import ACCENT, GREY, INK, PALE, STYLE, svg
-from uplift.viz.figure import new_figure
+from uplift.viz.figure import ACCENT, GREY, INK, PALE, STYLE, new_figure, to_svg
 from uplift.viz.format import format_error
 from uplift.viz.markup import Markup
 
@@ -42,7 +41,7 @@ def trials_chart(decision: Decision) -> Markup:
                 color=ACCENT if taken else GREY,
             )
         _finish(axes)
-        return svg(figure)
+        return to_svg(figure)
 
 
 def _bare(size: tuple[float, float]) -> tuple[Any, Any]:
@@ -91,4 +90,4 @@ def budget_chart(plan: Plan) -> Markup:
         axes.invert_yaxis()
         axes.tick_params(axis="y", length=0)
         axes.spines[["top", "right", "left"]].set_visible(False)
-        return svg(figure)
+        return to_svg(figure)

@@ -12,8 +12,7 @@ from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
 from uplift.scene.wavelengths import Choice, RenderSetup
 from uplift.scene.wavelengths.setup import interp_curves
-from uplift.viz.charts import GREY, INK, STYLE
-from uplift.viz.figure import new_figure, style_axes, write_png
+from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_png
 
 WIDTH, PANEL, HEAD = 7.2, 1.55, 0.9
 """Inches: of the picture, of a panel's height, of what is above and below."""
