@@ -14,6 +14,7 @@ from uplift.common.errors import UpliftWarning
 from uplift.io.export import c_header, write_c
 from uplift.io.export.c_header import _identifier
 from uplift.lookup import Cube, load
+from uplift.lookup.nodes import around
 
 WAVELENGTHS = [300.0, 455.0, 551.5, 700.0, 900.0]
 WITHIN = 1e-6
@@ -71,12 +72,45 @@ def colours(data):
     return rgb
 
 
-@pytest.mark.parametrize("name", ["moments-8-macbeth", "moments-8", "sigmoid-8-macbeth"])
-def test_ten_thousand_colours_are_answered_as_python_answers_them(repository, answers, name):
+SHIPPED = ("moments-8-macbeth", "moments-8", "sigmoid-8-macbeth")
+
+
+def in_double(data):
+    """The cube with coefficients widened to float64, which Python then interpolates in double, as C does."""
+    return with_points(data, coefficients=data.points.coefficients.astype(float))
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_ten_thousand_colours_equal_those_of_python_in_double_precision(repository, answers, name):
+    data = load(repository / "cubes" / f"{name}.uplift").data
+    rgb = colours(data)
+    expected = Cube(in_double(data)).reflectance(rgb, WAVELENGTHS, mode="moments")
+    np.testing.assert_allclose(answers(data, rgb), expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", [name for name in SHIPPED if name.startswith("moments")])
+def test_python_in_single_precision_differs_by_less_than_1e_6_for_moments(repository, answers, name):
     cube = load(repository / "cubes" / f"{name}.uplift")
     rgb = colours(cube.data)
-    found = answers(cube.data, rgb)
-    np.testing.assert_allclose(found, cube.reflectance(rgb, WAVELENGTHS, mode="moments"), rtol=0, atol=WITHIN)
+    expected = cube.reflectance(rgb, WAVELENGTHS, mode="moments")
+    np.testing.assert_allclose(answers(cube.data, rgb), expected, rtol=0, atol=WITHIN)
+
+
+def test_python_in_single_precision_differs_by_its_rounding_for_sigmoids(repository, answers):
+    """The three terms of the quadratic cancel where coefficients are large, so the bound scales with their sizes.
+
+    A sum of eight products in float32 has a relative error of at most nine units of rounding of the sum of their
+    magnitudes. The slope of the sigmoid carries the error of the quadratic over to the reflectance.
+    """
+    cube = load(repository / "cubes" / "sigmoid-8-macbeth.uplift")
+    data, rgb = cube.data, colours(cube.data)
+    basis, nodes = data.model.basis(WAVELENGTHS), around(data, rgb)
+    mix = nodes.weighted_sum(data.points.coefficients.astype(float), data.atlas.coefficients)
+    size = nodes.weighted_sum(np.abs(data.points.coefficients).astype(float), np.abs(data.atlas.coefficients))
+    rounding = 9 * 2.0**-24 * (size @ np.abs(basis).T) * data.model.slope(mix @ basis.T)
+    off = np.abs(answers(data, rgb) - cube.reflectance(rgb, WAVELENGTHS, mode="moments"))
+    assert (off <= rounding + 1e-12).all()
+    assert rounding.max() < 2e-5
 
 
 def test_another_mode_or_no_entries_would_be_seen(small_cube, plain_cube, answers):
