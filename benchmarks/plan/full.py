@@ -24,7 +24,7 @@ from uplift import models
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.scene.plan.colours import Some
+from uplift.scene.plan.colours import ColourSet
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # of its optional parts
@@ -128,7 +128,7 @@ def _materials(folder: Path, case: Case, plan: dict[str, Any]) -> Iterator[tuple
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         options = {**plan["build"], "lights": tuple(plan["build"]["lights"])}
-        cube = uplift.build(folder / case.atlas, scene=Some(rgb), **options)
+        cube = uplift.build(folder / case.atlas, scene=ColourSet(rgb), **options)
     answered = cube.reflectance(rgb, plan["rendering"]["wavelengths"])
     for light in case.lights:
         seen = _rendered(answered, plan, light)

@@ -64,7 +64,7 @@ Python:
 ```
 from uplift.scene import plan
 
-found = plan.plan(plan.read_brief("kitchen.toml"))
+found = plan.plan(plan.read_scene_file("kitchen.toml"))
 found.options, found.sampling.wavelengths, found.confirmed.quantile
 ```
 

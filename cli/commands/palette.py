@@ -51,7 +51,7 @@ def command(
       uplift palette docs/palette/vanish.toml --format json > vanish.json
     """
     from uplift.common.files import check_output
-    from uplift.design.palette import design, matrix, misses, read_palette, standard_model
+    from uplift.design.palette import design, matrix, read_palette, standard_model, unmet_goals
 
     for path in (atlas, matrix_path, spectra_path, html):
         if path is not None:
@@ -60,7 +60,7 @@ def command(
     picture = read_picture(palette, html, image, labels)
     found = design(palette, standard_model(palette.sensor, palette.count))
     colours = matrix(found)
-    PRINTERS[style](found, colours, misses(found))
+    PRINTERS[style](found, colours, unmet_goals(found))
     _write(found, atlas, matrix_path, spectra_path, force=force)
     if html is not None:
         write_page(found, spec, picture, html, force=force)

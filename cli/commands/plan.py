@@ -49,17 +49,17 @@ def command(scene: str, output: str | None, style: str, force: bool) -> None:
 
     keep_compiled()
     from uplift.common.files import check_output, write_text
-    from uplift.scene.plan import numbers, plan, read_brief
+    from uplift.scene.plan import plan, read_scene_file, to_json
     from uplift.scene.plan.page import page
 
     path = Path(f"{Path(scene).stem}.plan.json" if output is None else output)
     html = path.with_suffix(".html")
     for each in (path, html):
         check_output(each, force=force)
-    brief = read_brief(scene)
+    scene_file = read_scene_file(scene)
     with stage_spinner() as progress:
-        found = plan(brief, progress=progress)
-    told = numbers(found, path)
+        found = plan(scene_file, progress=progress)
+    told = to_json(found, path)
     write_text(json_text(told) + "\n", path, force=force)
     write_text(page(found, path), html, force=force)
     if style == "json":
@@ -73,7 +73,13 @@ def _tell(found: Plan, lines: list[str]) -> None:
     from rich import box
     from rich.table import Table
 
-    from uplift.scene.plan.summary import about, deciding, rows, unknown, verdict
+    from uplift.scene.plan.summary import (
+        describe_error,
+        describe_metamerism,
+        summary_rows,
+        verdict,
+        worst_case,
+    )
 
     table = Table(box=box.SIMPLE_HEAD)
     table.add_column("the least that will do")
@@ -81,10 +87,10 @@ def _tell(found: Plan, lines: list[str]) -> None:
     table.add_column("ΔE00 so far", justify="right", no_wrap=True)
     table.add_column("cost")
     table.add_column("say")
-    for row in rows(found):
-        table.add_row(row.title, row.chosen, row.error, row.cost, row.typed)
-    click.echo(f"{found.brief.path.name}: {verdict(found)} ({deciding(found.confirmed)})")
+    for row in summary_rows(found):
+        table.add_row(row.title, row.chosen, row.error, row.cost, row.cli_args)
+    click.echo(f"{found.scene.path.name}: {verdict(found)} ({worst_case(found.confirmed)})")
     console().print(table)
     for line in lines:
         click.echo(f"  {line}")
-    click.echo(f"\n{about(found)}. {unknown(found)}")
+    click.echo(f"\n{describe_error(found)}. {describe_metamerism(found)}")

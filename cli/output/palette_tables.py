@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from uplift.common.arrays import Array
-    from uplift.design.palette import Design, Matrix, Miss
-    from uplift.design.palette.palette import Part
+    from uplift.design.palette import Design, Matrix, UnmetGoal
+    from uplift.design.palette.palette import SpectrumSpec
 
 
 KEY = "wanted, obtained, by the factor model; ΔE00 from wanted to obtained, of the model. * designed"
 
 
-def _print_table(found: Design, colours: Matrix, missed: Sequence[Miss]) -> None:
+def _print_table(found: Design, colours: Matrix, missed: Sequence[UnmetGoal]) -> None:
     out = console()
     out.print(_table(found, colours, coloured=out.color_system is not None))
     out.print(KEY, markup=False)
@@ -47,7 +47,7 @@ def _table(found: Design, colours: Matrix, *, coloured: bool) -> Table:
     return table
 
 
-def _name(part: Part) -> str:
+def _name(part: SpectrumSpec) -> str:
     return f"{part.name}*" if part.designed else part.name
 
 
@@ -56,18 +56,18 @@ def _cell(colours: Matrix, at: tuple[int, int], coloured: bool) -> Text:
 
     from uplift.colorimetry.display_sensors import hex_codes
 
-    wished = not math.isnan(colours.missed[at])
-    shown = [colours.wanted[at]] * wished + [colours.obtained[at], colours.factor[at]]
+    wished = not math.isnan(colours.delta_e[at])
+    shown = [colours.target[at]] * wished + [colours.obtained[at], colours.factor[at]]
     text = Text()
     for rgb in shown:
         (code,) = hex_codes(rgb[None])
         text.append("    " if coloured else code, style=f"on {code}" if coloured else "")
         text.append(" ")
-    missed = f"{colours.missed[at]:.2f}" if wished else "–"
+    missed = f"{colours.delta_e[at]:.2f}" if wished else "–"
     return text.append(f" {missed}, {colours.model_error[at]:.2f}")
 
 
-def _print_json(found: Design, colours: Matrix, missed: Sequence[Miss]) -> None:
+def _print_json(found: Design, colours: Matrix, missed: Sequence[UnmetGoal]) -> None:
     palette = found.palette
     answer = {
         "wavelengths": palette.sensor.wavelengths.tolist(),
@@ -92,7 +92,7 @@ def _print_json(found: Design, colours: Matrix, missed: Sequence[Miss]) -> None:
     click.echo(json_text(answer))
 
 
-def _part(part: Part, samples: Array, coefficients: Array) -> dict[str, object]:
+def _part(part: SpectrumSpec, samples: Array, coefficients: Array) -> dict[str, object]:
     return {
         "name": part.name,
         "designed": part.designed,
@@ -102,19 +102,19 @@ def _part(part: Part, samples: Array, coefficients: Array) -> dict[str, object]:
 
 
 def _colour(colours: Matrix, at: tuple[int, int], material: str, light: str) -> dict[str, object]:
-    wished = not math.isnan(colours.missed[at])
+    wished = not math.isnan(colours.delta_e[at])
     return {
         "material": material,
         "light": light,
-        "wanted": colours.wanted[at].tolist() if wished else None,
+        "wanted": colours.target[at].tolist() if wished else None,
         "obtained": colours.obtained[at].tolist(),
         "factor": colours.factor[at].tolist(),
-        "missed": float(colours.missed[at]) if wished else None,
+        "missed": float(colours.delta_e[at]) if wished else None,
         "model_error": float(colours.model_error[at]),
     }
 
 
-PRINTERS: dict[str, Callable[[Design, Matrix, Sequence[Miss]], None]] = {
+PRINTERS: dict[str, Callable[[Design, Matrix, Sequence[UnmetGoal]], None]] = {
     "table": _print_table,
     "json": _print_json,
 }

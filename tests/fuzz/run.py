@@ -17,7 +17,7 @@ TARGETS = {
     target.name: target
     for target in (
         *(module.TARGET for module in (atlas_text, atlas_table, cube_bytes, cube_forged, palette_spec)),
-        scene_spec.BRIEFS,
+        scene_spec.SCENE_FILES,
         scene_spec.PLANS,
     )
 }

@@ -11,11 +11,11 @@ from tests.fuzz.mutate import NUMBERS, Random, mutated
 from tests.fuzz.target import ROOT, Target
 from uplift.io.scene_colours import file_digest
 from uplift.pipeline.options import Options
-from uplift.scene.plan import read_brief, read_plan
+from uplift.scene.plan import read_plan, read_scene_file
 from uplift.scene.plan.plan_file import FORMAT
 
 ATLAS, TEXTURE = ROOT / "atlases" / "macbeth.txt", ROOT / "docs" / "plan" / "page.png"
-BRIEF = f"""# a kitchen
+SCENE_FILE = f"""# a kitchen
 textures = ["{TEXTURE}", "{TEXTURE.parent}/*.png"]
 atlases = "{ATLAS}"
 lights = ["D65", "FL11"]
@@ -43,22 +43,22 @@ def _plan() -> bytes:
     return json.dumps(said, indent=40).encode()  # mostly blank, so that not every change spoils it
 
 
-def _write_brief(random: Random, path: Path) -> None:
-    path.write_bytes(mutated(BRIEF, random, WORDS))
+def _write_scene_file(random: Random, path: Path) -> None:
+    path.write_bytes(mutated(SCENE_FILE, random, WORDS))
 
 
 def _write_plan(random: Random, path: Path) -> None:
     path.write_bytes(mutated(_plan(), random, WORDS))
 
 
-def _use_brief(path: Path) -> None:
+def _use_scene_file(path: Path) -> None:
     """What was read is looked at no further: a plan takes half a minute."""
-    read_brief(path).seen_under()
+    read_scene_file(path).light_sources()
 
 
 def _use_plan(path: Path) -> None:
     read_plan(path)
 
 
-BRIEFS = Target("scene to plan", _write_brief, _use_brief)
+SCENE_FILES = Target("scene to plan", _write_scene_file, _use_scene_file)
 PLANS = Target("plan", _write_plan, _use_plan)

@@ -7,7 +7,7 @@ import pytest
 
 from uplift.design.palette import FactorModel, Palette, standard_model
 from uplift.design.palette.lights import illuminant
-from uplift.design.palette.palette import Part, Wish
+from uplift.design.palette.palette import ColourGoal, SpectrumSpec
 
 
 @pytest.fixture(scope="session")
@@ -17,13 +17,13 @@ def model(sensor) -> FactorModel:
 
 
 @pytest.fixture(scope="session")
-def day(sensor) -> Part:
-    return Part("day", illuminant(sensor, "D65"))
+def day(sensor) -> SpectrumSpec:
+    return SpectrumSpec("day", illuminant(sensor, "D65"))
 
 
 @pytest.fixture(scope="session")
-def lamp(sensor) -> Part:
-    return Part("lamp", illuminant(sensor, "FL11"))
+def lamp(sensor) -> SpectrumSpec:
+    return SpectrumSpec("lamp", illuminant(sensor, "FL11"))
 
 
 @pytest.fixture(scope="session")
@@ -32,12 +32,12 @@ def metamers(sensor, day, lamp) -> Palette:
     return Palette(
         sensor,
         (day, lamp),
-        (Part("fox", None), Part("moss", None)),
+        (SpectrumSpec("fox", None), SpectrumSpec("moss", None)),
         (
-            Wish("fox", "day", free="coat"),
-            Wish("moss", "day", free="coat"),
-            Wish("fox", "lamp", rgb=np.array([0.52, 0.22, 0.14])),
-            Wish("moss", "lamp", rgb=np.array([0.30, 0.29, 0.14])),
+            ColourGoal("fox", "day", free="coat"),
+            ColourGoal("moss", "day", free="coat"),
+            ColourGoal("fox", "lamp", rgb=np.array([0.52, 0.22, 0.14])),
+            ColourGoal("moss", "lamp", rgb=np.array([0.30, 0.29, 0.14])),
         ),
         {"coat": (np.zeros(3), np.ones(3))},
     )

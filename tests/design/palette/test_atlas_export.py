@@ -12,12 +12,12 @@ import uplift
 from uplift.colorimetry.display_sensors import hex_codes
 from uplift.common.errors import OutputError, PaletteError, UpliftWarning
 from uplift.design.palette import design, matrix, plot_matrix, plot_spectra, write_designed
-from uplift.design.palette.palette import Part
+from uplift.design.palette.palette import SpectrumSpec
 
 
 @pytest.fixture(scope="module")
 def found(metamers, model):
-    given = Part("given", np.full(81, 0.5))
+    given = SpectrumSpec("given", np.full(81, 0.5))
     return design(dataclasses.replace(metamers, materials=(*metamers.materials, given)), model)
 
 
@@ -65,11 +65,11 @@ def test_files_are_not_replaced_unasked(found, tmp_path):
 def test_the_matrix_shows_every_colour(found, tmp_path):
     """Wanted, obtained and the factor model's, each where the PNG has it."""
     colours = matrix(found)
-    split = dataclasses.replace(colours, wanted=colours.wanted * 0.5, factor=colours.factor * 0.8)
+    split = dataclasses.replace(colours, target=colours.target * 0.5, factor=colours.factor * 0.8)
     plot_matrix(found, split, tmp_path / "m.png")
     pixels = np.rint(255 * imread(tmp_path / "m.png")[..., :3]).astype(np.uint8)
     drawn = {bytes(pixel) for pixel in np.unique(pixels.reshape(-1, 3), axis=0)}
-    for kind in (split.wanted[:2], split.obtained, split.factor):
+    for kind in (split.target[:2], split.obtained, split.factor):
         for code in hex_codes(kind.reshape(-1, 3)):
             assert bytes.fromhex(code[1:]) in drawn
 

@@ -15,7 +15,7 @@ from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.equations import Equations, equations, unknowns
 from uplift.design.palette.lights import illuminant
 from uplift.design.palette.matrix import difference
-from uplift.design.palette.palette import Apart, Part, Wish
+from uplift.design.palette.palette import ColourGoal, MinDifference, SpectrumSpec
 from uplift.design.palette.solve import solve
 
 BLACK = np.zeros(3)
@@ -32,8 +32,10 @@ def found(metamers, model):
 
 def test_metamers_match_by_day_and_part_under_the_lamp_as_asked(found, metamers):
     colours = matrix(found)
-    asked = metamers.wishes[2].rgb, metamers.wishes[3].rgb
-    day, lamp = (difference(found, colours, Apart(("fox", "moss"), light, 0)) for light in ("day", "lamp"))
+    asked = metamers.goals[2].rgb, metamers.goals[3].rgb
+    day, lamp = (
+        difference(found, colours, MinDifference(("fox", "moss"), light, 0)) for light in ("day", "lamp")
+    )
     assert day <= 0.1
     assert lamp >= delta_e_rgb(metamers.sensor, *asked) - 0.01 > 15
     assert colours.model_error.max() < 0.5
@@ -65,15 +67,17 @@ def test_bounded_minima_are_minima(sensor, model, seed):
 def at_random(sensor, draw):
     """Up to three lights, given, and three materials, to be designed, with wishes that may well contradict."""
     names = draw.choice(["D65", "A", "FL2", "FL11", "LED-RGB1", "HP1"], draw.integers(1, 4), replace=False)
-    lights = tuple(Part(str(name), illuminant(sensor, str(name))) for name in names)
-    materials = tuple(Part(f"m{row}", None) for row in range(draw.integers(1, 4)))
-    wishes = [
-        Wish(material.name, light.name, **({"free": "x"} if draw.random() < 0.3 else {"rgb": draw.random(3)}))
+    lights = tuple(SpectrumSpec(str(name), illuminant(sensor, str(name))) for name in names)
+    materials = tuple(SpectrumSpec(f"m{row}", None) for row in range(draw.integers(1, 4)))
+    goals = [
+        ColourGoal(
+            material.name, light.name, **({"free": "x"} if draw.random() < 0.3 else {"rgb": draw.random(3)})
+        )
         for material in materials
         for light in lights
     ]
     weights = {"smoothness": float(draw.choice([0, 1e-3])), "model_error": float(draw.choice([0, 0.1, 1]))}
-    return Palette(sensor, lights, materials, tuple(wishes), {"x": (BLACK, np.ones(3))}, **weights)
+    return Palette(sensor, lights, materials, tuple(goals), {"x": (BLACK, np.ones(3))}, **weights)
 
 
 def test_without_bounds_it_is_the_pseudo_inverse():
@@ -115,8 +119,8 @@ def test_a_free_colour_costs_less_than_any_other(metamers, model, found):
 
 
 def test_a_free_colour_follows_the_wishes(metamers, model, found):
-    other = (*metamers.wishes[:3], dataclasses.replace(metamers.wishes[3], rgb=np.array([0.2, 0.19, 0.1])))
-    moved = design(dataclasses.replace(metamers, wishes=other), model).free["coat"]
+    other = (*metamers.goals[:3], dataclasses.replace(metamers.goals[3], rgb=np.array([0.2, 0.19, 0.1])))
+    moved = design(dataclasses.replace(metamers, goals=other), model).free["coat"]
     assert np.abs(moved - found.free["coat"]).max() > 0.02
 
 
@@ -127,39 +131,39 @@ def test_a_free_colour_keeps_to_its_range(metamers, model):
 
 
 def test_a_metameric_black_is_black_under_one_light_alone(metamers, model):
-    smoke = Part("smoke", None, -np.inf, np.inf)
+    smoke = SpectrumSpec("smoke", None, -np.inf, np.inf)
     grey = np.array([0.2, 0.2, 0.2])
-    wishes = (Wish("smoke", "day", rgb=grey), Wish("smoke", "lamp", rgb=BLACK))
-    palette = dataclasses.replace(metamers, materials=(smoke,), wishes=wishes, free={})
+    goals = (ColourGoal("smoke", "day", rgb=grey), ColourGoal("smoke", "lamp", rgb=BLACK))
+    palette = dataclasses.replace(metamers, materials=(smoke,), goals=goals, free={})
     found = design(palette, model)
     np.testing.assert_allclose(matrix(found).obtained[0], [grey, BLACK], atol=1e-3)
     assert found.reflectances.min() < 0  # there is no other way
 
 
 def test_a_colour_stays_when_asked_to(metamers, model):
-    wishes = (Wish("firm", "day", free="own"), Wish("firm", "lamp", free="own"))
+    goals = (ColourGoal("firm", "day", free="own"), ColourGoal("firm", "lamp", free="own"))
     palette = dataclasses.replace(
         metamers,
-        materials=(Part("firm", None),),
-        wishes=wishes,
+        materials=(SpectrumSpec("firm", None),),
+        goals=goals,
         free={"own": (np.full(3, 0.1), np.ones(3))},
     )
-    assert matrix(design(palette, model)).missed.max() < 0.1
+    assert matrix(design(palette, model)).delta_e.max() < 0.1
 
 
 def test_lights_are_designed_like_materials(metamers, model):
     """The colours of two paints under a lamp ask for a light like it, and get one."""
-    paints = Part("red", np.linspace(0, 1, 81) ** 2), Part("blue", np.linspace(1, 0, 81) ** 2)
+    paints = SpectrumSpec("red", np.linspace(0, 1, 81) ** 2), SpectrumSpec("blue", np.linspace(1, 0, 81) ** 2)
     power, screen = illuminant(metamers.sensor, "A"), screen_matrix(metamers.sensor)
     palette = dataclasses.replace(
         metamers,
-        lights=(Part("odd", None, 0.0, np.inf),),
+        lights=(SpectrumSpec("odd", None, 0.0, np.inf),),
         materials=paints,
-        wishes=tuple(Wish(part.name, "odd", rgb=screen @ (power * part.samples)) for part in paints),
+        goals=tuple(ColourGoal(part.name, "odd", rgb=screen @ (power * part.samples)) for part in paints),
         free={},
     )
     found = design(palette, model)
-    assert matrix(found).missed.max() < 0.1
+    assert matrix(found).delta_e.max() < 0.1
     assert found.powers.min() >= 0
 
 
@@ -180,7 +184,7 @@ def test_given_spectra_are_left_alone(metamers, found):
 
 
 def test_a_colour_of_which_nothing_is_given_is_refused(metamers, model):
-    lights = (Part("day", None, 0.0, np.inf), metamers.lights[1])
+    lights = (SpectrumSpec("day", None, 0.0, np.inf), metamers.lights[1])
     with pytest.raises(PaletteError, match="fox under day, both of which are to be designed; give one"):
         design(dataclasses.replace(metamers, lights=lights), model)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.design.palette import design, matrix, misses, read_palette
+from uplift.design.palette import design, matrix, read_palette, unmet_goals
 
 DAY, GIVEN, NEW = (
     'lights.day.illuminant = "D65"\n',
@@ -33,4 +33,4 @@ def test_nothing_is_undefined(model, tmp_path, text):
     colours = matrix(found)
     for numbers in (found.powers, found.reflectances, colours.obtained, colours.factor, colours.model_error):
         assert np.isfinite(numbers).all()
-    assert misses(found) == ()
+    assert unmet_goals(found) == ()

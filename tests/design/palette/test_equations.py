@@ -9,7 +9,7 @@ import pytest
 
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.equations import SPACING, equations, unknowns
-from uplift.design.palette.palette import Part, Wish
+from uplift.design.palette.palette import ColourGoal, SpectrumSpec
 
 
 @pytest.fixture
@@ -30,7 +30,7 @@ def only(palette, **weights):
 def test_colours_are_missed_by_what_spectra_say(metamers, model, guess):
     where, screen = unknowns(metamers), screen_matrix(metamers.sensor)
     found = []
-    for wish in metamers.wishes:
+    for wish in metamers.goals:
         power = metamers.light(wish.light).samples
         wanted = guess[where.free("coat")] if wish.free else wish.rgb
         found.append(screen @ (guess[where.material(wish.material)] * power) - wanted)
@@ -39,19 +39,19 @@ def test_colours_are_missed_by_what_spectra_say(metamers, model, guess):
 
 
 def test_weights_multiply_their_wish_alone(metamers, model, guess):
-    heavy = dataclasses.replace(metamers.wishes[2], weight=7.0)
-    palette = only(metamers, wishes=(*metamers.wishes[:2], heavy, metamers.wishes[3]))
+    heavy = dataclasses.replace(metamers.goals[2], weight=7.0)
+    palette = only(metamers, goals=(*metamers.goals[:2], heavy, metamers.goals[3]))
     ratio = residuals(palette, model, guess) / residuals(only(metamers), model, guess)
     np.testing.assert_allclose(ratio, [*[1] * 6, *[7] * 3, *[1] * 3])
 
 
 def test_wishes_without_weight_are_left_out(metamers, model):
-    idle = tuple(dataclasses.replace(wish, weight=0.0) for wish in metamers.wishes)
-    assert len(equations(only(metamers, wishes=idle), model).values) == 0
+    idle = tuple(dataclasses.replace(wish, weight=0.0) for wish in metamers.goals)
+    assert len(equations(only(metamers, goals=idle), model).values) == 0
 
 
 def test_smoothness_is_the_second_difference_over_10_nm(metamers, model, guess):
-    palette = only(metamers, wishes=(), smoothness=2.0)
+    palette = only(metamers, goals=(), smoothness=2.0)
     where, step = unknowns(metamers), 5.0
     expected = [
         -np.diff(guess[where.material(name)], 2) * 2.0 * (SPACING / step) ** 2 / np.sqrt(79 * 6)
@@ -64,16 +64,16 @@ def test_straight_spectra_are_perfectly_smooth(metamers, model):
     x = np.tile(np.linspace(0, 1, 81), 3)[: unknowns(metamers).count]
     x[unknowns(metamers).material("fox")] = np.linspace(0, 1, 81)
     x[unknowns(metamers).material("moss")] = 0.3
-    np.testing.assert_allclose(residuals(only(metamers, wishes=(), smoothness=1.0), model, x), 0, atol=1e-12)
+    np.testing.assert_allclose(residuals(only(metamers, goals=(), smoothness=1.0), model, x), 0, atol=1e-12)
 
 
 def test_the_model_s_error_is_that_of_its_colours(metamers, model, guess):
     """For a designed light on a given paint too."""
-    paint = Part("paint", np.linspace(0.1, 0.9, 81))
+    paint = SpectrumSpec("paint", np.linspace(0.1, 0.9, 81))
     palette = only(
-        metamers, lights=(*metamers.lights, Part("odd", None)), materials=(*metamers.materials, paint)
+        metamers, lights=(*metamers.lights, SpectrumSpec("odd", None)), materials=(*metamers.materials, paint)
     )
-    palette = dataclasses.replace(palette, model_error=3.0, wishes=())
+    palette = dataclasses.replace(palette, model_error=3.0, goals=())
     where, screen = unknowns(palette), screen_matrix(palette.sensor)
     x = np.random.default_rng(5).random(where.count)
     expected = []
@@ -91,11 +91,11 @@ def test_the_model_s_error_is_that_of_its_colours(metamers, model, guess):
 
 def test_a_free_colour_may_be_tied_to_a_given_material(metamers, model, guess):
     """A wish of which all is given still says what the free colour is."""
-    paint = Part("paint", np.full(81, 0.5))
+    paint = SpectrumSpec("paint", np.full(81, 0.5))
     palette = only(
         metamers,
         materials=(*metamers.materials, paint),
-        wishes=(Wish("paint", "day", free="coat"),),
+        goals=(ColourGoal("paint", "day", free="coat"),),
     )
     seen = screen_matrix(palette.sensor) @ (0.5 * palette.light("day").samples)
     expected = (seen - guess[unknowns(palette).free("coat")]) / np.sqrt(3)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from tests.conftest import ROOT
-from uplift.design.palette import design, matrix, misses, read_palette
+from uplift.design.palette import design, matrix, read_palette, unmet_goals
 from uplift.design.palette.matrix import difference
-from uplift.design.palette.palette import Apart
+from uplift.design.palette.palette import MinDifference
 
 FOLDER = ROOT / "docs" / "palette"
 EXAMPLES = sorted(path.stem for path in FOLDER.glob("*.toml"))
@@ -22,12 +22,12 @@ def examples(model):
 
 
 def apart(found, first, second, light):
-    return difference(found, matrix(found), Apart((first, second), light, 0))
+    return difference(found, matrix(found), MinDifference((first, second), light, 0))
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_every_wish_is_fulfilled(examples, name):
-    assert misses(examples[name]) == ()
+    assert unmet_goals(examples[name]) == ()
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -47,7 +47,7 @@ def test_the_page_s_impossible_soot_is_missed(model, tmp_path):
     page = (ROOT / "docs" / "palette.md").read_text(encoding="utf-8")
     text = next(text for text in re.findall(r"```toml\n(.*?)```", page, re.DOTALL) if "soot" in text)
     (tmp_path / "soot.toml").write_text(text, encoding="utf-8")
-    told = [str(miss) for miss in misses(design(read_palette(tmp_path / "soot.toml"), model))]
+    told = [str(miss) for miss in unmet_goals(design(read_palette(tmp_path / "soot.toml"), model))]
     assert [line[: line.index("; relax")] for line in told] == re.findall(
         r"^missed: (.*?); relax", page, re.M
     )
@@ -56,7 +56,7 @@ def test_the_page_s_impossible_soot_is_missed(model, tmp_path):
 def test_metamers_split_under_the_second_light(examples):
     found = examples["metamers"]
     assert apart(found, "fox", "moss", "day") <= 0.1
-    assert apart(found, "fox", "moss", "lamp") >= found.palette.apart[0].delta_e
+    assert apart(found, "fox", "moss", "lamp") >= found.palette.min_differences[0].delta_e
 
 
 def test_the_smoke_vanishes(examples):

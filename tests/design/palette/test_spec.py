@@ -12,7 +12,7 @@ from uplift.common.errors import AtlasError, PaletteError, UnknownNameError, Upl
 from uplift.design.palette import read_palette
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.lights import planck
-from uplift.design.palette.palette import Apart
+from uplift.design.palette.palette import MinDifference
 
 WHOLE = f"""
 smoothness = 0.002
@@ -69,8 +69,8 @@ def test_a_whole_spec(read, sensor):
     assert [part.designed for part in palette.materials] == [False, False, False, True, True]
     odd, new, wild = palette.light("odd"), palette.material("new"), palette.material("wild")
     assert [(part.low, part.high) for part in (odd, new, wild)] == [(0, 3), (0, 1), (-np.inf, np.inf)]
-    assert palette.apart == (Apart(("new", "wild"), "day", 4.5),)
-    first, second, third, fourth = palette.wishes
+    assert palette.min_differences == (MinDifference(("new", "wild"), "day", 4.5),)
+    first, second, third, fourth = palette.goals
     np.testing.assert_allclose(first.rgb, sensor.decode([128] * 3))
     assert (second.rgb.tolist(), second.weight) == ([0.3, 0.2, 0.1], 2)
     assert (third.free, fourth.free, fourth.weight) == ("one", "two", 0)

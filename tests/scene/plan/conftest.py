@@ -15,7 +15,7 @@ from uplift.scene import plan
 from uplift.scene.representations.point_sampling import point_samples
 from uplift.scene.representations.riemann_sums import riemann_sums
 
-SMALL = plan.Effort(coefficients=(5, 9), dims=(3, 5), reference=7, predicting=60, confirming=90)
+SMALL = plan.SearchGrid(coefficients=(5, 9), dims=(3, 5), reference=7, predicting=60, confirming=90)
 LIGHTS = ("D65", "FL11")
 
 
@@ -51,4 +51,4 @@ def planned(kitchen):
             "uplift.scene.plan.representation.all_representations",
             lambda lights, surfaces: [riemann_sums(8), point_samples(32)],
         )
-        return plan.plan(plan.read_brief(kitchen), SMALL, steps.append), steps
+        return plan.plan(plan.read_scene_file(kitchen), SMALL, steps.append), steps

@@ -7,7 +7,7 @@ import pytest
 
 from tests.io.texture.conftest import planes, write_exr
 from uplift.lattice import Lattice
-from uplift.scene.plan.colours import STEPS, cells, colours
+from uplift.scene.plan.colours import STEPS, occupied_cells, sample_colours
 
 
 @pytest.fixture
@@ -18,17 +18,17 @@ def image(tmp_path):
 
 def test_few_pixels_are_all_drawn_and_counted(image, sensor):
     rgb = np.array([[[0.1, 0.2, 0.3], [0.1, 0.2, 0.3], [0.5, 0.5, 0.5], [0.1, 0.2, 0.3]]])
-    found = colours((image(rgb), image(rgb, "b.exr")), sensor, "auto", (4, 6))
+    found = sample_colours((image(rgb), image(rgb, "b.exr")), sensor, "auto", (4, 6))
     for drawn in (found.predicting, found.confirming):
         np.testing.assert_allclose(drawn.rgb, [[0.1, 0.2, 0.3], [0.5, 0.5, 0.5]], rtol=1e-6)
         np.testing.assert_allclose(drawn.share, [0.75, 0.25])
-    assert len(found.kinds) == 2
+    assert len(found.colour_bins) == 2
 
 
 def test_of_many_pixels_two_draws_have_none_in_common(image, sensor):
     rgb = np.random.default_rng(1).random((100, 90, 3))
     path = image(rgb)
-    found = colours((path,), sensor, "auto", (300, 600))
+    found = sample_colours((path,), sensor, "auto", (300, 600))
     first, second = (set(map(tuple, drawn.rgb.tolist())) for drawn in (found.predicting, found.confirming))
     assert not first & second
     assert 240 < len(first) < 360
@@ -37,17 +37,17 @@ def test_of_many_pixels_two_draws_have_none_in_common(image, sensor):
     for drawn in (found.predicting, found.confirming):
         assert drawn.share.sum() == pytest.approx(1)
         np.testing.assert_allclose(drawn.share @ drawn.rgb, 0.5, atol=0.06)  # all pixels alike
-    again = colours((path,), sensor, "auto", (300, 600))
+    again = sample_colours((path,), sensor, "auto", (300, 600))
     np.testing.assert_array_equal(again.predicting.rgb, found.predicting.rgb)
 
 
 def test_every_kind_of_colour_is_met_however_rare(image, sensor):
     rgb = np.full((80, 80, 3), 0.25)
     rgb[40, 40] = [0.9, 0.05, 0.1]
-    found = colours((image(rgb),), sensor, "auto", (50, 50))
-    np.testing.assert_allclose(np.sort(found.kinds[:, 0]), [0.25, 0.9], rtol=1e-6)
-    wide = colours((image(np.random.default_rng(2).random((64, 64, 3))),), sensor, "auto", (50, 50))
-    codes = np.interp(wide.kinds, sensor.decoding, np.linspace(0, STEPS, 256)).astype(int)
+    found = sample_colours((image(rgb),), sensor, "auto", (50, 50))
+    np.testing.assert_allclose(np.sort(found.colour_bins[:, 0]), [0.25, 0.9], rtol=1e-6)
+    wide = sample_colours((image(np.random.default_rng(2).random((64, 64, 3))),), sensor, "auto", (50, 50))
+    codes = np.interp(wide.colour_bins, sensor.decoding, np.linspace(0, STEPS, 256)).astype(int)
     assert len(np.unique(codes, axis=0)) == len(codes)
 
 
@@ -55,4 +55,6 @@ def test_cells_are_those_that_colours_lie_in():
     lattice = Lattice(np.linspace(0, 1, 5))
     rgb = np.random.default_rng(0).random((20, 3))
     wanted = {tuple((colour * 4).astype(int)) for colour in rgb}
-    assert {tuple(lattice.position(np.array(cell))) for cell in np.flatnonzero(cells(lattice, rgb))} == wanted
+    assert {
+        tuple(lattice.position(np.array(cell))) for cell in np.flatnonzero(occupied_cells(lattice, rgb))
+    } == wanted

@@ -18,8 +18,8 @@ def here(home, kitchen, planned, monkeypatch):
     """A working folder with the scene, where plans are as they were measured once."""
     shutil.copytree(kitchen.parent, home, dirs_exist_ok=True)
 
-    def plan(brief, progress):
-        return replace(planned[0], brief=brief)
+    def plan(scene, progress):
+        return replace(planned[0], scene=scene)
 
     monkeypatch.setattr("uplift.scene.plan.plan", plan)
     return home

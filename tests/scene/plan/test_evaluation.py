@@ -8,8 +8,8 @@ import pytest
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.scene.plan.decision import Trial, decide
-from uplift.scene.plan.evaluation import WRONG, Error, Group, Part, Question
-from uplift.scene.plan.previews import sights
+from uplift.scene.plan.evaluation import WORST_DELTA_E, ErrorSummary, EvaluationSet, Group, GroupError
+from uplift.scene.plan.previews import make_previews
 
 LIGHTS = ("D65", "FL11")
 
@@ -22,7 +22,7 @@ def question():
         Group("textures", rng.random((40, 3)), rng.random((40, 81)), weights / weights.sum()),
         Group("materials", rng.random((7, 3)), rng.random((7, 81)), np.full(7, 1 / 7)),
     )
-    return Question(groups, tuple(observer.light(name) for name in LIGHTS), 0.8)
+    return EvaluationSet(groups, tuple(observer.light(name) for name in LIGHTS), 0.8)
 
 
 def counted(values, weights, share):
@@ -54,7 +54,7 @@ def test_what_is_wanted_has_no_error_and_what_is_no_number_the_largest(question)
     broken = question.wanted.copy()
     broken[3] = np.nan
     error = question.error(broken)
-    assert {part.largest for part in error.parts if part.group == "textures"} == {WRONG}
+    assert {part.largest for part in error.parts if part.group == "textures"} == {WORST_DELTA_E}
 
 
 def test_fewer_colours_stand_for_the_others(question):
@@ -69,7 +69,7 @@ def test_fewer_colours_stand_for_the_others(question):
 
 def test_sights_are_the_colours_at_their_shares(question):
     xyz = [(0.9 * question.wanted) @ light.xyz.T for light in question.lights]
-    found = sights(question, xyz, observer.DEFAULT_OBSERVER)
+    found = make_previews(question, xyz, observer.DEFAULT_OBSERVER)
     assert [(sight.light, sight.share) for sight in found] == [
         (light, share) for light in LIGHTS for share in (0.5, 0.8, 1.0)
     ]
@@ -82,7 +82,7 @@ def test_sights_are_the_colours_at_their_shares(question):
 
 
 def trial(name, error):
-    return Trial(name, 1.0, "", "", {}, Error((Part("textures", "D65", 0.0, error, error),)))
+    return Trial(name, 1.0, "", "", {}, ErrorSummary((GroupError("textures", "D65", 0.0, error, error),)))
 
 
 def test_the_first_that_will_do_is_taken_and_no_more_are_measured():

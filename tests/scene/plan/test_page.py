@@ -8,10 +8,10 @@ from html.parser import HTMLParser
 import click
 from uplift_cli.main import main
 
-from uplift.scene.plan.commands import build_line, cube_name, spelt_line, texture_line
-from uplift.scene.plan.final_build import Built
+from uplift.scene.plan.commands import build_command, cube_name, expanded_command, texture_command
+from uplift.scene.plan.final_build import FinalBuild
 from uplift.scene.plan.page import page
-from uplift.scene.plan.summary import rows, verdict
+from uplift.scene.plan.summary import summary_rows, verdict
 
 EMPTY = {"meta", "br", "col"}
 
@@ -53,16 +53,16 @@ def test_the_page_is_whole_needs_nothing_else_and_shows_every_candidate(planned,
 
 def test_every_row_says_what_it_costs(planned):
     found, _ = planned
-    told = rows(found)
+    told = summary_rows(found)
     assert [row.title for row in told][:3] == ["Coefficients a spectrum", "Lattice", "Cells"]
     assert all(row.chosen and row.cost and row.error for row in told)
 
 
 def test_a_cube_that_is_not_sparse_says_why(planned):
-    built = planned[0].built
+    built = planned[0].final_build
     assert not built.is_sparse
-    assert "too little saved" in next(row for row in rows(planned[0]) if row.title == "Cells").cost
-    assert isinstance(built, Built)
+    assert "too little saved" in next(row for row in summary_rows(planned[0]) if row.title == "Cells").cost
+    assert isinstance(built, FinalBuild)
     assert built.sparse <= built.whole
 
 
@@ -70,11 +70,11 @@ def test_the_lines_are_lines_of_the_command_line(planned, tmp_path):
     found, _ = planned
     path = tmp_path / "my plan.plan.json"
     assert cube_name(path) == "my plan.uplift"
-    for line in (build_line(path), spelt_line(found, path), texture_line(found, path)):
+    for line in (build_command(path), expanded_command(found, path), texture_command(found, path)):
         program, name, *arguments = shlex.split(line)
         assert program == "uplift"
         with click.Context(main, **main.context_settings) as context:
             main.get_command(context, name).make_context(name, arguments, parent=context)
-    words = shlex.split(spelt_line(found, path))
+    words = shlex.split(expanded_command(found, path))
     assert words[words.index("--dim") + 1] == str(found.options["dim"])
     assert words[words.index("--moments") + 1] == str(found.options["coefficients"] - 1)

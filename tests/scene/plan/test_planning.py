@@ -32,13 +32,13 @@ def test_what_is_decided_is_the_least_that_stays_within_its_share(planned):
         else:
             assert errors[decision.taken] == min(errors)
     assert found.options["coefficients"] == int(found.decisions[0].trial.name)
-    assert found.within
+    assert found.within_tolerance
 
 
 def test_the_steps_are_told(planned):
     _, steps = planned
-    told = [step.what for step in steps]
-    assert told[0] == "reading textures"
+    told = [step.stage for step in steps]
+    assert told[0] == "textures"
     assert {"5 coefficients", "building it", "confirming"} <= set(told)
     assert all(0 <= step.done < step.total for step in steps)
 
@@ -80,11 +80,11 @@ def test_an_independent_computation_of_every_pixel_confirms_it(planned, kitchen)
 
 
 def test_a_tolerance_out_of_reach_is_refused_with_the_best_measured(kitchen):
-    brief = replace(plan.read_brief(kitchen), tolerance=0.01)
+    scene = replace(plan.read_scene_file(kitchen), tolerance=0.01)
     with pytest.raises(
         PlanFileError, match=r"no cube comes within ΔE00 0.01: the best measured has "
     ) as caught:
-        plan.plan(brief, replace(SMALL, coefficients=(5,)))
+        plan.plan(scene, replace(SMALL, coefficients=(5,)))
     hint = caught.value.hint
     assert "of materials under FL11" in str(caught.value)
     assert float(hint.removeprefix("set tolerance = ").removesuffix(" or more")) > 0.1
@@ -94,12 +94,14 @@ def test_what_was_built_is_what_the_file_builds(planned, kitchen, tmp_path):
     found, _ = planned
     shutil.copytree(kitchen.parent, tmp_path / "moved")
     path = tmp_path / "moved" / "kitchen.plan.json"
-    write(path, plan.numbers(found, kitchen.parent / "kitchen.plan.json"))
+    write(path, plan.to_json(found, kitchen.parent / "kitchen.plan.json"))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         cube = plan.read_plan(path).build()
-    np.testing.assert_array_equal(cube.data.points.coefficients, found.built.cube.data.points.coefficients)
-    assert (cube.data.complete_cells is not None) == found.built.is_sparse
+    np.testing.assert_array_equal(
+        cube.data.points.coefficients, found.final_build.cube.data.points.coefficients
+    )
+    assert (cube.data.complete_cells is not None) == found.final_build.is_sparse
 
 
 def write(path, said):
@@ -112,7 +114,7 @@ def write(path, said):
 def record(planned, kitchen, tmp_path):
     """The plan's file, and what it says; in a copy of its folder."""
     shutil.copytree(kitchen.parent, tmp_path / "copy")
-    return tmp_path / "copy" / "kitchen.plan.json", plan.numbers(
+    return tmp_path / "copy" / "kitchen.plan.json", plan.to_json(
         planned[0], kitchen.parent / "kitchen.plan.json"
     )
 

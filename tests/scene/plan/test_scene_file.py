@@ -8,7 +8,7 @@ import re
 import pytest
 
 from uplift.common.errors import PlanFileError
-from uplift.scene.plan import Brief, read_brief
+from uplift.scene.plan import SceneFile, read_scene_file
 
 
 @pytest.fixture
@@ -20,14 +20,14 @@ def say(tmp_path):
     def say(text):
         path = tmp_path / "scene.toml"
         path.write_text(text, encoding="utf-8")
-        return read_brief(path)
+        return read_scene_file(path)
 
     return say
 
 
 def test_textures_alone_will_do(say, tmp_path):
     found = say('textures = ["a.png"]')
-    assert found == Brief(tmp_path / "scene.toml", (tmp_path / "a.png",))
+    assert found == SceneFile(tmp_path / "scene.toml", (tmp_path / "a.png",))
     assert (found.tolerance, found.quantile, found.lights[0]) == (1.0, 0.975, "D65")
 
 
@@ -41,12 +41,12 @@ def test_all_can_be_said(say, tmp_path):
     assert found.atlases == (tmp_path / "c.txt",)
     assert (found.lights, found.tolerance, found.quantile) == (("A", "FL11"), 2.0, 0.9)
     assert found.sensor().illuminant == "D50"
-    assert [light.name for light in found.seen_under()] == ["A", "FL11"]
+    assert [light.name for light in found.light_sources()] == ["A", "FL11"]
 
 
 def test_every_field_can_be_said(say):
     """A key that is none would be unknown; these are only of the wrong kind."""
-    for field in dataclasses.fields(Brief)[1:]:
+    for field in dataclasses.fields(SceneFile)[1:]:
         with pytest.raises(PlanFileError, match=f"{field.name} is no "):
             say(f"textures = 'a.png'\n{field.name} = []" if field.name != "textures" else "textures = 3")
 
@@ -91,7 +91,7 @@ def test_what_is_refused_has_its_line_and_a_remedy(say, text, message):
 
 def test_a_file_that_is_none_is_refused(tmp_path):
     with pytest.raises(PlanFileError, match=r"none.toml: cannot be read: .*; name a scene file"):
-        read_brief(tmp_path / "none.toml")
+        read_scene_file(tmp_path / "none.toml")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(PlanFileError, match=r"bytes.toml: is no text; write it in UTF-8"):
-        read_brief(tmp_path / "bytes.toml")
+        read_scene_file(tmp_path / "bytes.toml")

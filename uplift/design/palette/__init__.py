@@ -11,23 +11,23 @@ from uplift.design.palette.palette import Palette
 from uplift.design.palette.plots import plot_matrix, plot_spectra
 from uplift.design.palette.spec import read_palette
 from uplift.design.palette.standard import standard_model
-from uplift.design.palette.unmet_goals import Miss, misses
+from uplift.design.palette.unmet_goals import UnmetGoal, unmet_goals
 
 __all__ = [
     "Design",
     "FactorModel",
     "LinearModel",
     "Matrix",
-    "Miss",
     "Palette",
+    "UnmetGoal",
     "design",
     "designed_atlas",
     "factor_model",
     "matrix",
-    "misses",
     "plot_matrix",
     "plot_spectra",
     "read_palette",
     "standard_model",
+    "unmet_goals",
     "write_designed",
 ]

@@ -43,5 +43,5 @@ def write_designed(found: Design, path: str | os.PathLike[str], *, force: bool =
 
 def _description(found: Design, material: str) -> str:
     """What it was designed for."""
-    lights = [wish.light for wish in found.palette.wishes if wish.material == material and wish.weight]
+    lights = [wish.light for wish in found.palette.goals if wish.material == material and wish.weight]
     return f"designed for its colours under {', '.join(lights)}" if lights else "designed"

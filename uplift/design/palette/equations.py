@@ -15,7 +15,7 @@ import numpy as np
 from uplift.common.arrays import Array
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.factor import FactorModel
-from uplift.design.palette.palette import Palette, Part, Wish
+from uplift.design.palette.palette import ColourGoal, Palette, SpectrumSpec
 
 SPACING = 10.0
 """nm between the samples of the source, for which its weights are meant."""
@@ -84,7 +84,7 @@ def equations(palette: Palette, model: FactorModel) -> Equations:
 def _colours(palette: Palette, where: Unknowns) -> Iterator[_Rows]:
     """Wanted colours (eq. 18), and free ones, which stand among the unknowns (eq. 24)."""
     screen = screen_matrix(palette.sensor)
-    for wish in palette.wishes:
+    for wish in palette.goals:
         spectrum, power = palette.material(wish.material).samples, palette.light(wish.light).samples
         weight, blocks = wish.weight / np.sqrt(3), []
         wanted = np.zeros(3) if wish.rgb is None else wish.rgb
@@ -136,7 +136,7 @@ def _model_errors(palette: Palette, model: FactorModel, where: Unknowns) -> Iter
             yield _Rows(((place, weight * block),), np.zeros(3))
 
 
-def _designed(palette: Palette, where: Unknowns) -> Iterator[tuple[Part, slice]]:
+def _designed(palette: Palette, where: Unknowns) -> Iterator[tuple[SpectrumSpec, slice]]:
     yield from ((part, where.light(part.name)) for part in palette.lights if part.designed)
     yield from ((part, where.material(part.name)) for part in palette.materials if part.designed)
 
@@ -150,9 +150,9 @@ def _bounds(palette: Palette, where: Unknowns) -> tuple[Array, Array]:
     return low, high
 
 
-def undetermined(palette: Palette) -> Wish | None:
+def undetermined(palette: Palette) -> ColourGoal | None:
     """A wish whose light and material are both to be designed: no linear equation tells it."""
-    for wish in palette.wishes:
+    for wish in palette.goals:
         if palette.material(wish.material).designed and palette.light(wish.light).designed:
             return wish
     return None

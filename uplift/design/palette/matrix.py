@@ -10,7 +10,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.design import Design
-from uplift.design.palette.palette import Apart, Wish
+from uplift.design.palette.palette import ColourGoal, MinDifference
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,10 +26,10 @@ class Matrix:
     whites : (L, 3) the perfect reflector under each light.
     """
 
-    wanted: Array
+    target: Array
     obtained: Array
     factor: Array
-    missed: Array
+    delta_e: Array
     model_error: Array
     whites: Array
 
@@ -43,7 +43,7 @@ def matrix(design: Design) -> Matrix:
         model.product(model.reflectance(design.reflectances)[:, None], model.light(design.powers))
     )
     wanted = np.full_like(obtained, np.nan)
-    for wish in palette.wishes:
+    for wish in palette.goals:
         wanted[place(design, wish)] = wanted_colour(design, wish)
     return Matrix(
         wanted,
@@ -55,7 +55,7 @@ def matrix(design: Design) -> Matrix:
     )
 
 
-def wanted_colour(design: Design, wish: Wish) -> Array:
+def wanted_colour(design: Design, wish: ColourGoal) -> Array:
     """(3,) linear RGB that a wish came to mean."""
     if wish.rgb is not None:
         return wish.rgb
@@ -63,16 +63,16 @@ def wanted_colour(design: Design, wish: Wish) -> Array:
     return design.free[wish.free]
 
 
-def place(design: Design, wish: Wish) -> tuple[int, int]:
+def place(design: Design, wish: ColourGoal) -> tuple[int, int]:
     """Row and column of a wish."""
     rows = [part.name for part in design.palette.materials]
     columns = [part.name for part in design.palette.lights]
     return rows.index(wish.material), columns.index(wish.light)
 
 
-def difference(design: Design, colours: Matrix, apart: Apart) -> float:
+def difference(design: Design, colours: Matrix, apart: MinDifference) -> float:
     """ΔE00 between two materials under a light."""
     first, second = (
-        colours.obtained[place(design, Wish(material, apart.light))] for material in apart.materials
+        colours.obtained[place(design, ColourGoal(material, apart.light))] for material in apart.materials
     )
     return float(delta_e_rgb(design.palette.sensor, first, second))

@@ -10,7 +10,7 @@ from uplift.common.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class SpectrumSpec:
     """A light or a material.
 
     Parameters
@@ -30,7 +30,7 @@ class Part:
 
 
 @dataclass(frozen=True, eq=False)
-class Wish:
+class ColourGoal:
     """A material's colour under a light: linear ``rgb`` (3,), or one that all wishes of the group ``free`` share."""
 
     material: str
@@ -44,7 +44,7 @@ class Wish:
 
 
 @dataclass(frozen=True)
-class Apart:
+class MinDifference:
     """Two materials that shall differ under a light by at least so many ΔE00. Looked at, not designed for."""
 
     materials: tuple[str, str]
@@ -65,17 +65,17 @@ class Palette:
     """
 
     sensor: Sensor
-    lights: tuple[Part, ...]
-    materials: tuple[Part, ...]
-    wishes: tuple[Wish, ...]
+    lights: tuple[SpectrumSpec, ...]
+    materials: tuple[SpectrumSpec, ...]
+    goals: tuple[ColourGoal, ...]
     free: Mapping[str, tuple[Array, Array]]
-    apart: tuple[Apart, ...] = ()
+    min_differences: tuple[MinDifference, ...] = ()
     smoothness: float = 0.001
     model_error: float = 0.1
     count: int = 7
 
-    def light(self, name: str) -> Part:
+    def light(self, name: str) -> SpectrumSpec:
         return next(part for part in self.lights if part.name == name)
 
-    def material(self, name: str) -> Part:
+    def material(self, name: str) -> SpectrumSpec:
         return next(part for part in self.materials if part.name == name)

@@ -11,7 +11,7 @@ from uplift.colorimetry.display_sensors import hex_codes
 from uplift.common.arrays import Array
 from uplift.design.palette.design import Design
 from uplift.design.palette.matrix import Matrix
-from uplift.design.palette.palette import Part
+from uplift.design.palette.palette import SpectrumSpec
 from uplift.viz.figure import BAND, GREY, INK, new_figure, style_axes, write_png
 
 CELL, NAMES, TOP = (1.5, 1.0), 1.35, 0.75
@@ -27,7 +27,7 @@ LONGEST = 18
 
 def plot_matrix(found: Design, colours: Matrix, path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Wanted colours on the left of each patch, obtained ones right above, the factor model's right below, as a PNG."""
-    rows, columns = colours.missed.shape
+    rows, columns = colours.delta_e.shape
     width, height = max(NAMES + CELL[0] * columns, NARROWEST), TOP + CELL[1] * rows + 0.4
     figure = new_figure(width, height, layout=None)
     axes = figure.add_axes((0, 0, 1, 1))
@@ -65,14 +65,14 @@ def plot_spectra(found: Design, path: str | os.PathLike[str], *, force: bool = F
 
 def _cell(axes: Any, corner: tuple[float, float], colours: Matrix, at: tuple[int, int]) -> None:
     (x, y), (width, height) = corner, (CELL[0] * PATCH[0], CELL[1] * PATCH[1])
-    wished = not np.isnan(colours.missed[at])
+    wished = not np.isnan(colours.delta_e[at])
     split = width / 2 if wished else 0.0
     if wished:
-        _patch(axes, (x, y), (split, height), colours.wanted[at])
+        _patch(axes, (x, y), (split, height), colours.target[at])
     _patch(axes, (x + split, y), (width - split, height / 2), colours.obtained[at])
     _patch(axes, (x + split, y + height / 2), (width - split, height / 2), colours.factor[at])
     _frame(axes, (x, y), (width, height))
-    told = [f"{colours.missed[at]:.2f}"] * wished + [f"model {colours.model_error[at]:.2f}"]
+    told = [f"{colours.delta_e[at]:.2f}"] * wished + [f"model {colours.model_error[at]:.2f}"]
     axes.text(x, y + height + 0.11, " · ".join(told), fontsize=SMALL, color=INK, va="center")
 
 
@@ -89,12 +89,12 @@ def _frame(axes: Any, corner: tuple[float, float], size: tuple[float, float]) ->
     axes.add_patch(Rectangle(corner, *size, facecolor="none", edgecolor=BAND, linewidth=0.6))
 
 
-def _name(axes: Any, at: tuple[float, float], part: Part, ha: str) -> None:
+def _name(axes: Any, at: tuple[float, float], part: SpectrumSpec, ha: str) -> None:
     weight = "bold" if part.designed else "normal"
     axes.text(*at, _short(part.name), fontsize=9, fontweight=weight, color=INK, ha=ha, va="center")
 
 
-def _lines(axes: Any, wavelengths: Array, parts: tuple[Part, ...], samples: Array) -> None:
+def _lines(axes: Any, wavelengths: Array, parts: tuple[SpectrumSpec, ...], samples: Array) -> None:
     for part, row in zip(parts, samples, strict=True):
         dash = "-" if part.designed else (0, (4, 2))
         axes.plot(wavelengths, row, linewidth=1.8, linestyle=dash, label=_short(part.name))

@@ -15,7 +15,7 @@ from uplift.common.errors import PaletteError
 from uplift.design.palette import spec_entries
 from uplift.design.palette.factor import COUNTS
 from uplift.design.palette.fields import Fields
-from uplift.design.palette.palette import Apart, Palette, Part, Wish
+from uplift.design.palette.palette import ColourGoal, MinDifference, Palette, SpectrumSpec
 
 DARKEST, LIGHTEST = "#000000", "#ffffff"
 """Bounds of free colours: what a screen shows."""
@@ -33,13 +33,13 @@ def read_palette(path: str | os.PathLike[str]) -> Palette:
     lights = _parts(root.table("lights"), sensor, spec_entries.light)
     materials = _parts(root.table("materials"), sensor, spec_entries.material)
     free = _free(root.table("free"), sensor)
-    wishes = _wishes(root.table("colours"), sensor, materials, lights)
-    free |= {name: _range(Fields(path, name, {}), sensor) for name in _shared(wishes) if name not in free}
+    goals = _wishes(root.table("colours"), sensor, materials, lights)
+    free |= {name: _range(Fields(path, name, {}), sensor) for name in _shared(goals) if name not in free}
     palette = Palette(
         sensor,
         lights,
         materials,
-        wishes,
+        goals,
         free,
         tuple(_apart(one, materials, lights) for one in root.tables("apart")),
         root.number("smoothness", Palette.smoothness, least=0),
@@ -59,35 +59,37 @@ def _parse(path: str | os.PathLike[str]) -> dict[str, Any]:
         raise PaletteError(f"cannot be read: {reason}", path=path, hint="write a spec in TOML") from None
 
 
-def _parts(fields: Fields, sensor: Sensor, make: Callable[[str, Fields, Sensor], Part]) -> tuple[Part, ...]:
+def _parts(
+    fields: Fields, sensor: Sensor, make: Callable[[str, Fields, Sensor], SpectrumSpec]
+) -> tuple[SpectrumSpec, ...]:
     if not fields.values:
         raise fields.error("there are none", "name at least one")
     return tuple(make(fields.name(name), fields.table(name), sensor) for name in fields.values)
 
 
 def _wishes(
-    fields: Fields, sensor: Sensor, materials: tuple[Part, ...], lights: tuple[Part, ...]
-) -> tuple[Wish, ...]:
-    wishes = []
+    fields: Fields, sensor: Sensor, materials: tuple[SpectrumSpec, ...], lights: tuple[SpectrumSpec, ...]
+) -> tuple[ColourGoal, ...]:
+    goals: list[ColourGoal] = []
     for material in fields.values:
         row = fields.table(material)
         _known(row, material, materials, "material")
         for light, value in row.values.items():
             _known(row, light, lights, "light")
-            wishes.append(_wish(row, material, light, value, sensor))
-    return tuple(wishes)
+            goals.append(_wish(row, material, light, value, sensor))
+    return tuple(goals)
 
 
-def _wish(row: Fields, material: str, light: str, value: object, sensor: Sensor) -> Wish:
+def _wish(row: Fields, material: str, light: str, value: object, sensor: Sensor) -> ColourGoal:
     """A colour alone, or a table of a colour or a free one, and its weight."""
     if not isinstance(value, dict):
-        return Wish(material, light, rgb=row.as_colour(light, value, sensor))
+        return ColourGoal(material, light, rgb=row.as_colour(light, value, sensor))
     fields = row.table(light)
     weight = fields.number("weight", 1.0, least=0)
     if fields.has("free"):
-        wish = Wish(material, light, free=fields.name(fields.text("free")), weight=weight)
+        wish = ColourGoal(material, light, free=fields.name(fields.text("free")), weight=weight)
     else:
-        wish = Wish(material, light, rgb=fields.colour("rgb", sensor), weight=weight)
+        wish = ColourGoal(material, light, rgb=fields.colour("rgb", sensor), weight=weight)
     fields.finish()
     return wish
 
@@ -104,22 +106,24 @@ def _range(fields: Fields, sensor: Sensor) -> tuple[Array, Array]:
     return low, high
 
 
-def _shared(wishes: tuple[Wish, ...]) -> list[str]:
+def _shared(wishes: tuple[ColourGoal, ...]) -> list[str]:
     return [wish.free for wish in wishes if wish.free is not None]
 
 
-def _apart(fields: Fields, materials: tuple[Part, ...], lights: tuple[Part, ...]) -> Apart:
+def _apart(
+    fields: Fields, materials: tuple[SpectrumSpec, ...], lights: tuple[SpectrumSpec, ...]
+) -> MinDifference:
     first, second = fields.names("materials", 2)
     for name in (first, second):
         _known(fields, name, materials, "material")
     light = fields.text("light")
     _known(fields, light, lights, "light")
-    apart = Apart((first, second), light, fields.number("delta-e", least=0))
+    apart = MinDifference((first, second), light, fields.number("delta-e", least=0))
     fields.finish()
     return apart
 
 
-def _known(fields: Fields, name: str, parts: tuple[Part, ...], kind: str) -> None:
+def _known(fields: Fields, name: str, parts: tuple[SpectrumSpec, ...], kind: str) -> None:
     names = [part.name for part in parts]
     if name not in names:
         raise fields.unknown(name, names, kind)

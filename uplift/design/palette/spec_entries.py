@@ -11,35 +11,35 @@ from uplift.atlas.atlas import Atlas
 from uplift.colorimetry.sensor import Sensor
 from uplift.design.palette.fields import Fields
 from uplift.design.palette.lights import illuminant, planck
-from uplift.design.palette.palette import Part
+from uplift.design.palette.palette import SpectrumSpec
 
 LIGHT_KINDS, MATERIAL_KINDS = ["illuminant", "planck", "design"], ["atlas", "rgb", "design"]
 
 
-def light(name: str, fields: Fields, sensor: Sensor) -> Part:
+def light(name: str, fields: Fields, sensor: Sensor) -> SpectrumSpec:
     """``illuminant`` or ``planck`` (K), with the ``luminance`` of white; or ``design`` with ``bounds`` of its power."""
     kind = _kind(fields, LIGHT_KINDS)
     if kind == "design":
         return _designed(name, fields, (0.0, math.inf))
     with_name = kind == "illuminant"
     power = illuminant(sensor, fields.text(kind)) if with_name else planck(sensor, fields.number(kind))
-    part = Part(name, power * fields.number("luminance", 1.0, least=0.0))
+    part = SpectrumSpec(name, power * fields.number("luminance", 1.0, least=0.0))
     fields.finish()
     return part
 
 
-def material(name: str, fields: Fields, sensor: Sensor) -> Part:
+def material(name: str, fields: Fields, sensor: Sensor) -> SpectrumSpec:
     """``atlas`` with ``entry``; ``rgb`` that a ``cube`` uplifts; or ``design``, with ``bounds`` of its reflectance."""
     kind = _kind(fields, MATERIAL_KINDS)
     if kind == "design":
         return _designed(name, fields, (0.0, 1.0))
     if kind == "atlas":
         spectra = _entry(fields, read_atlas(_beside(fields, "atlas")))
-        part = Part(name, on_grid(spectra, sensor.wavelengths)[0])
+        part = SpectrumSpec(name, on_grid(spectra, sensor.wavelengths)[0])
     else:
         cube = lookup.load(_beside(fields, "cube") if fields.has("cube") else None)
         colour = fields.colour("rgb", cube.data.sensor)
-        part = Part(name, cube.reflectance(colour, sensor.wavelengths))
+        part = SpectrumSpec(name, cube.reflectance(colour, sensor.wavelengths))
     fields.finish()
     return part
 
@@ -52,11 +52,11 @@ def _kind(fields: Fields, kinds: list[str]) -> str:
     return found[0]
 
 
-def _designed(name: str, fields: Fields, bounds: tuple[float, float]) -> Part:
+def _designed(name: str, fields: Fields, bounds: tuple[float, float]) -> SpectrumSpec:
     fields.true("design")
     low, high = fields.bounds("bounds", bounds)
     fields.finish()
-    return Part(name, None, low, high)
+    return SpectrumSpec(name, None, low, high)
 
 
 def _entry(fields: Fields, spectra: Atlas) -> Atlas:

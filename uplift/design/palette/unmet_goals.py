@@ -11,7 +11,7 @@ import numpy as np
 
 from uplift.design.palette.design import Design, design
 from uplift.design.palette.matrix import difference, matrix, place
-from uplift.design.palette.palette import Apart, Palette, Part, Wish
+from uplift.design.palette.palette import ColourGoal, MinDifference, Palette, SpectrumSpec
 
 VISIBLE = 0.5
 """ΔE00 from which a colour counts as missed; about half of what is seen side by side."""
@@ -22,54 +22,56 @@ MOST = 3
 
 
 @dataclass(frozen=True)
-class Relief:
+class Relaxation:
     """What to relax, and the ΔE00 that is left then."""
 
-    what: str
+    criterion: str
     delta_e: float
 
 
 @dataclass(frozen=True, eq=False)
-class Miss:
+class UnmetGoal:
     """A wish that is missed by so many ΔE00, and what would help, the most helpful first."""
 
-    wish: Wish | Apart
+    goal: ColourGoal | MinDifference
     delta_e: float
-    reliefs: tuple[Relief, ...] = ()
+    relaxations: tuple[Relaxation, ...] = ()
 
     def __str__(self) -> str:
-        if isinstance(self.wish, Apart):
-            first, second = self.wish.materials
+        if isinstance(self.goal, MinDifference):
+            first, second = self.goal.materials
             return (
-                f"{first} and {second} under {self.wish.light}: ΔE00 {self.delta_e:.2f} apart, "
-                f"not {self.wish.delta_e:g}; wish for colours that lie farther apart"
+                f"{first} and {second} under {self.goal.light}: ΔE00 {self.delta_e:.2f} apart, "
+                f"not {self.goal.delta_e:g}; wish for colours that lie farther apart"
             )
-        told = ", ".join(f"{relief.what} (then {relief.delta_e:.2f})" for relief in self.reliefs)
-        return f"{self.wish}: missed by ΔE00 {self.delta_e:.2f}; " + (
+        told = ", ".join(f"{relief.criterion} (then {relief.delta_e:.2f})" for relief in self.relaxations)
+        return f"{self.goal}: missed by ΔE00 {self.delta_e:.2f}; " + (
             f"relax {told}" if told else "nothing that could be relaxed alone helps"
         )
 
 
-def misses(found: Design) -> tuple[Miss, ...]:
+def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
     """All wishes that a design does not fulfil; where there are any, it is made anew without each other criterion."""
     colours, palette = matrix(found), found.palette
-    far = [wish for wish in palette.wishes if wish.weight and colours.missed[place(found, wish)] > VISIBLE]
+    far = [wish for wish in palette.goals if wish.weight and colours.delta_e[place(found, wish)] > VISIBLE]
     others = [(what, matrix(design(other, found.model))) for what, other in _relaxed(palette)] if far else []
     missed = []
     for wish in far:
         at = place(found, wish)
-        left = [Relief(what, float(other.missed[at])) for what, other in others if what != _weight_of(wish)]
-        missed.append(Miss(wish, float(colours.missed[at]), _best(left, float(colours.missed[at]))))
-    near = [(apart, difference(found, colours, apart)) for apart in palette.apart]
-    return (*missed, *(Miss(apart, delta_e) for apart, delta_e in near if delta_e < apart.delta_e))
+        left = [
+            Relaxation(what, float(other.delta_e[at])) for what, other in others if what != _weight_of(wish)
+        ]
+        missed.append(UnmetGoal(wish, float(colours.delta_e[at]), _best(left, float(colours.delta_e[at]))))
+    near = [(apart, difference(found, colours, apart)) for apart in palette.min_differences]
+    return (*missed, *(UnmetGoal(apart, delta_e) for apart, delta_e in near if delta_e < apart.delta_e))
 
 
-def _best(reliefs: list[Relief], delta_e: float) -> tuple[Relief, ...]:
+def _best(reliefs: list[Relaxation], delta_e: float) -> tuple[Relaxation, ...]:
     helpful = [relief for relief in reliefs if relief.delta_e < HELPS * delta_e]
     return tuple(sorted(helpful, key=lambda relief: relief.delta_e)[:MOST])
 
 
-def _weight_of(wish: Wish) -> str:
+def _weight_of(wish: ColourGoal) -> str:
     return f"the weight of {wish}"
 
 
@@ -85,19 +87,19 @@ def _relaxed(palette: Palette) -> Iterator[tuple[str, Palette]]:
     for part in (*palette.lights, *palette.materials):
         if part.designed and (math.isfinite(part.low) or math.isfinite(part.high)):
             yield f"the bounds of {part.name}", _without_bounds(palette, part)
-    for wish in palette.wishes:
+    for wish in palette.goals:
         if wish.weight:
             rest = tuple(
-                dataclasses.replace(one, weight=0.0) if one is wish else one for one in palette.wishes
+                dataclasses.replace(one, weight=0.0) if one is wish else one for one in palette.goals
             )
-            yield _weight_of(wish), dataclasses.replace(palette, wishes=rest)
+            yield _weight_of(wish), dataclasses.replace(palette, goals=rest)
 
 
-def _without_bounds(palette: Palette, part: Part) -> Palette:
+def _without_bounds(palette: Palette, part: SpectrumSpec) -> Palette:
     """The palette with a part open to all values."""
     wide = dataclasses.replace(part, low=-math.inf, high=math.inf)
 
-    def swapped(parts: tuple[Part, ...]) -> tuple[Part, ...]:
+    def swapped(parts: tuple[SpectrumSpec, ...]) -> tuple[SpectrumSpec, ...]:
         return tuple(wide if one is part else one for one in parts)
 
     return dataclasses.replace(palette, lights=swapped(palette.lights), materials=swapped(palette.materials))

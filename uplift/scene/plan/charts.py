@@ -74,7 +74,7 @@ def budget_chart(plan: Plan) -> Markup:
     with matplotlib.rc_context(STYLE):
         figure, axes = _bare(WIDE)
         named = [(each.title, each.trial.error.quantile, each.limit) for each in plan.chain]
-        named.append(("Confirmed", plan.confirmed.quantile, plan.brief.tolerance))
+        named.append(("Confirmed", plan.confirmed.quantile, plan.scene.tolerance))
         for row, (_, error, limit) in enumerate(named):
             axes.barh(row, error, height=0.55, color=INK if row == len(named) - 1 else ACCENT)
             axes.plot([limit, limit], [row - 0.4, row + 0.4], color=INK, linewidth=1)
@@ -86,7 +86,7 @@ def budget_chart(plan: Plan) -> Markup:
             yticklabels=[title for title, _, _ in named],
             xlabel="ΔE00 so far; the marks are what may be used up",
         )
-        axes.set_xlim(0, 1.08 * max(plan.brief.tolerance, *(error for _, error, _ in named)))
+        axes.set_xlim(0, 1.08 * max(plan.scene.tolerance, *(error for _, error, _ in named)))
         axes.invert_yaxis()
         axes.tick_params(axis="y", length=0)
         axes.spines[["top", "right", "left"]].set_visible(False)

@@ -33,7 +33,7 @@ class Pixels:
 
 
 @dataclass(frozen=True, eq=False)
-class Colours:
+class SampledColours:
     """Two draws of pixels, to choose by and to confirm by, with none in common; ``kinds`` (n, 3) linear RGB.
 
     Each kind of colour that any pixel has, be it rare, has one in ``kinds``. Textures with fewer pixels than are to be
@@ -42,16 +42,16 @@ class Colours:
 
     predicting: Pixels
     confirming: Pixels
-    kinds: Array
+    colour_bins: Array
 
 
-def colours(
+def sample_colours(
     textures: tuple[Path, ...],
     sensor: Sensor,
     encoding: str,
     wanted: tuple[int, int],
     progress: ProgressCallback = ignore_progress,
-) -> Colours:
+) -> SampledColours:
     """About so many pixels as are ``wanted`` to predict and to confirm, of all pixels alike; the same each time.
 
     Raises `TextureError`, and `PlanFileError` for images without a pixel.
@@ -72,7 +72,7 @@ def colours(
             drawn[1].append(rgb[(lot >= first) & (lot < last) | (last > 1)])
     there = kinds[~np.isnan(kinds[:, 0])]
     predicting, confirming = (_distinct(np.concatenate(each), there) for each in drawn)
-    return Colours(predicting, confirming, there)
+    return SampledColours(predicting, confirming, there)
 
 
 def _pixels(path: Path) -> int:
@@ -99,19 +99,19 @@ def _distinct(drawn: Array, kinds: Array) -> Pixels:
 
 
 @dataclass(frozen=True, eq=False)
-class Some:
+class ColourSet:
     """The scene of linear RGB (n, 3), for `uplift.build`: points for these colours alone."""
 
     rgb: Array
 
     def points(self, pins: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        return pins.needs(cells(pins.lattice, self.rgb))
+        return pins.needs(occupied_cells(pins.lattice, self.rgb))
 
     def describe(self) -> list[dict[str, Any]]:
         return []
 
 
-def cells(lattice: Lattice, rgb: Array) -> Mask:
+def occupied_cells(lattice: Lattice, rgb: Array) -> Mask:
     """Which cells (dim³,) linear RGB (n, 3) lie in."""
     found = np.zeros(lattice.size, dtype=bool)
     found[cells_touched(lattice, rgb)] = True

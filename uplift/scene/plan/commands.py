@@ -11,7 +11,7 @@ from pathlib import Path
 from uplift.io.texture import Spectrum
 from uplift.pipeline.options import Options
 from uplift.scene.plan.planning import Plan
-from uplift.scene.plan.wavelengths import typed
+from uplift.scene.plan.wavelengths import format_wavelengths
 
 SUFFIX = ".plan.json"
 DEFAULTS = {field.name: field.default for field in fields(Options)}
@@ -23,37 +23,37 @@ def cube_name(plan_path: str | os.PathLike[str]) -> str:
     return f"{name.removesuffix(SUFFIX) if name.endswith(SUFFIX) else Path(name).stem}.uplift"
 
 
-def build_line(path: Path) -> str:
+def build_command(path: Path) -> str:
     """Of the plan at ``path``."""
     return _line("uplift build --plan", [path])
 
 
-def spelt_line(plan: Plan, path: Path) -> str:
+def expanded_command(plan: Plan, path: Path) -> str:
     """The same build without the plan's file."""
-    brief, options = plan.brief, plan.options
-    words = [word for atlas in brief.atlases for word in ("--atlas", atlas)]
+    scene, options = plan.scene, plan.options
+    words = [word for atlas in scene.atlases for word in ("--atlas", atlas)]
     words += ["--dim", options["dim"], "--axis", options["axis"], "--moments", options["coefficients"] - 1]
     words += [word for light in options["lights"] for word in ("--light", light)]
     for name in ("space", "illuminant", "observer"):
         words += [] if options[name] == DEFAULTS[name] else [f"--{name}", options[name]]
-    if plan.built.is_sparse:
-        words += [word for texture in brief.textures for word in ("--scene", texture)]
+    if plan.final_build.is_sparse:
+        words += [word for texture in scene.textures for word in ("--scene", texture)]
         words += _encoding(plan)
     return _line("uplift build", [*words, "-o", cube_name(path)])
 
 
-def texture_line(plan: Plan, path: Path) -> str:
+def texture_command(plan: Plan, path: Path) -> str:
     """All textures uplifted as the plan stores them."""
-    textures, held = plan.brief.textures, plan.storage
+    textures, held = plan.scene.textures, plan.storage
     target = f"{textures[0].stem}-uplifted.exr" if len(textures) == 1 else "uplifted"
     words = [*textures, target, "--cube", cube_name(path), "--as", held.form, "--depth", held.depth]
     if held.form == Spectrum.name:
-        words += ["--wavelengths", typed(plan.sampling)]
+        words += ["--wavelengths", format_wavelengths(plan.sampling)]
     return _line("uplift texture", [*words, *_encoding(plan)])
 
 
 def _encoding(plan: Plan) -> list[str]:
-    return [] if plan.brief.encoding == "auto" else ["--encoding", plan.brief.encoding]
+    return [] if plan.scene.encoding == "auto" else ["--encoding", plan.scene.encoding]
 
 
 def _line(command: str, words: Iterable[object]) -> str:

@@ -17,13 +17,13 @@ from uplift.common.errors import UpliftWarning
 from uplift.common.progress import ProgressCallback
 from uplift.lookup import Cube
 from uplift.pipeline import build
-from uplift.scene.plan.colours import Colours, Pixels, Some, colours
-from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, Error, Group, Question
-from uplift.scene.plan.scene_file import Brief
+from uplift.scene.plan.colours import ColourSet, Pixels, SampledColours, sample_colours
+from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ErrorSummary, EvaluationSet, Group
+from uplift.scene.plan.scene_file import SceneFile
 
 
 @dataclass(frozen=True)
-class Effort:
+class SearchGrid:
     """What is tried, the least first, and how many colours it is tried on.
 
     ``reference`` is the dim of the cube that is taken for the truth, with the last of the ``coefficients``;
@@ -38,7 +38,7 @@ class Effort:
 
 
 @contextlib.contextmanager
-def silent() -> Iterator[None]:
+def quiet_warnings() -> Iterator[None]:
     """The build that counts says what is to be said of atlas and textures."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
@@ -46,62 +46,64 @@ def silent() -> Iterator[None]:
 
 
 @dataclass(frozen=True, eq=False)
-class Bench:
-    """A scene ready to measure on; ``bench`` makes it.
+class PlanContext:
+    """A scene ready to measure on; ``context`` makes it.
 
     ``reflectances`` (E, N) and ``materials`` (E, 3) are those of the atlas's entries within the space, and their RGB.
     """
 
-    brief: Brief
-    effort: Effort
+    scene: SceneFile
+    effort: SearchGrid
     sensor: Sensor
     atlas: Atlas | None
     reflectances: Array
     materials: Array
-    colours: Colours
+    colours: SampledColours
     progress: ProgressCallback
 
     @property
     def options(self) -> dict[str, Any]:
         """What all cubes of the scene share; entries hold under its lights, and under the one they are built for."""
-        brief = self.brief
+        scene = self.scene
         return {
-            "space": brief.space,
-            "illuminant": brief.illuminant,
-            "observer": brief.observer,
-            "lights": tuple(dict.fromkeys((self.sensor.illuminant, *brief.lights))),
+            "space": scene.space,
+            "illuminant": scene.illuminant,
+            "observer": scene.observer,
+            "lights": tuple(dict.fromkeys((self.sensor.illuminant, *scene.lights))),
         }
 
     def cube(self, rgb: Array, **options: Any) -> Cube:
         """A cube for linear RGB (n, 3) alone."""
-        with silent():
-            return build(self.atlas, scene=Some(rgb), **{**self.options, **options})
+        with quiet_warnings():
+            return build(self.atlas, scene=ColourSet(rgb), **{**self.options, **options})
 
-    def question(self, drawn: Pixels) -> tuple[Question, Error]:
+    def question(self, drawn: Pixels) -> tuple[EvaluationSet, ErrorSummary]:
         """Pixels of the textures, as the best cube has them, and the atlas's materials, as measured.
 
         And the error of that cube, which only the materials have.
         """
-        brief, effort = self.brief, self.effort
+        scene, effort = self.scene, self.effort
         asked = np.concatenate([drawn.rgb, self.materials])
         best = self.cube(asked, dim=effort.reference, coefficients=effort.coefficients[-1])
         answered = best.reflectance(asked)
         groups = [Group(TEXTURES, drawn.rgb, answered[: len(drawn.rgb)], drawn.share)]
         if count := len(self.materials):
             groups.append(Group(MATERIALS, self.materials, self.reflectances, np.full(count, 1 / count)))
-        found = Question(tuple(groups), brief.seen_under(), brief.quantile)
+        found = EvaluationSet(tuple(groups), scene.light_sources(), scene.quantile)
         return found, found.error(answered)
 
 
-def bench(brief: Brief, effort: Effort, progress: ProgressCallback) -> Bench:
+def prepare_context(scene: SceneFile, effort: SearchGrid, progress: ProgressCallback) -> PlanContext:
     """Reads atlases and textures. Raises `AtlasError`, `TextureError`, `PlanFileError`."""
-    sensor = brief.sensor()
-    atlas = read_atlas(*brief.atlases) if brief.atlases else None
+    sensor = scene.sensor()
+    atlas = read_atlas(*scene.atlases) if scene.atlases else None
     measured = resample(atlas or Atlas(), sensor.wavelengths).values
     rgb = sensor.rgb(measured)
     held = sensor.holds(rgb)
 
     wanted = effort.predicting, effort.confirming
-    with silent():
-        found = colours(brief.textures, sensor, brief.encoding, wanted, progress)
-    return Bench(brief, effort, sensor, atlas, measured[held], np.clip(rgb[held], 0, 1), found, progress)
+    with quiet_warnings():
+        found = sample_colours(scene.textures, sensor, scene.encoding, wanted, progress)
+    return PlanContext(
+        scene, effort, sensor, atlas, measured[held], np.clip(rgb[held], 0, 1), found, progress
+    )

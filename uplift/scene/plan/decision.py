@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from uplift.scene.plan.evaluation import Error
+from uplift.scene.plan.evaluation import ErrorSummary
 
 
 @dataclass(frozen=True)
@@ -19,10 +19,10 @@ class Trial:
 
     name: str
     cost: float
-    told: str
-    typed: str
+    cost_text: str
+    cli_args: str
     choice: Mapping[str, Any]
-    error: Error
+    error: ErrorSummary
 
 
 @dataclass(frozen=True)

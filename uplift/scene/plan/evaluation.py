@@ -12,7 +12,7 @@ from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 
 TEXTURES, MATERIALS = "textures", "materials"
-WRONG = 100.0
+WORST_DELTA_E = 100.0
 """The ΔE00 of what is no number: as far as black is from white."""
 
 
@@ -35,7 +35,7 @@ class Group:
 
 
 @dataclass(frozen=True)
-class Part:
+class GroupError:
     """ΔE00 of a group under a light: mean, the quantile that counts, and the largest."""
 
     group: str
@@ -46,13 +46,13 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Error:
+class ErrorSummary:
     """How far a candidate is off: of every group under every light."""
 
-    parts: tuple[Part, ...]
+    parts: tuple[GroupError, ...]
 
     @property
-    def worst(self) -> Part:
+    def worst(self) -> GroupError:
         """The group and the light that decide."""
         return max(self.parts, key=lambda part: part.quantile)
 
@@ -62,7 +62,7 @@ class Error:
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
+class EvaluationSet:
     """Colours of all groups one below the other, and the lights to see them under.
 
     ``share`` is that of the colours whose largest ΔE00 is the error.
@@ -82,15 +82,15 @@ class Question:
         """(n, N) reflectances."""
         return np.concatenate([group.wanted for group in self.groups])
 
-    def thinned(self, most: int) -> Question:
+    def thinned(self, most: int) -> EvaluationSet:
         """``most`` colours of each group at the most."""
         return replace(self, groups=tuple(group.thinned(most) for group in self.groups))
 
-    def error(self, answered: Array) -> Error:
+    def error(self, answered: Array) -> ErrorSummary:
         """Of reflectances (n, N) on the grid of the lights."""
         return self.seen([answered @ light.xyz.T for light in self.lights])
 
-    def seen(self, xyz: Sequence[Array] | Array) -> Error:
+    def seen(self, xyz: Sequence[Array] | Array) -> ErrorSummary:
         """Of the XYZ (n, 3) under each light; white has Y = 1, whoever computes them."""
         ends = np.cumsum([len(group.rgb) for group in self.groups])[:-1]
         parts = [
@@ -98,17 +98,17 @@ class Question:
             for light, apart in zip(self.lights, self.apart(xyz), strict=True)
             for group, values in zip(self.groups, np.split(apart, ends), strict=True)
         ]
-        return Error(tuple(parts))
+        return ErrorSummary(tuple(parts))
 
     def apart(self, xyz: Sequence[Array] | Array) -> list[Array]:
         """ΔE00 (n,) under each light, of XYZ (n, 3) under each."""
         found = []
         for light, seen in zip(self.lights, xyz, strict=True):
             apart = delta_e_2000(*(lab(each, light.white) for each in (self.wanted @ light.xyz.T, seen)))
-            found.append(np.where(np.isfinite(apart), apart, WRONG))
+            found.append(np.where(np.isfinite(apart), apart, WORST_DELTA_E))
         return found
 
-    def _part(self, group: Group, light: Light, values: Array) -> Part:
+    def _part(self, group: Group, light: Light, values: Array) -> GroupError:
         counts = np.quantile(values, self.share, weights=group.weights, method="inverted_cdf")
         mean = float(values @ group.weights)
-        return Part(group.name, light.name, mean, float(counts), float(values.max()))
+        return GroupError(group.name, light.name, mean, float(counts), float(values.max()))

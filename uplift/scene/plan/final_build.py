@@ -12,14 +12,14 @@ from typing import Any
 from uplift.io.scene_colours import Images
 from uplift.lookup import Cube
 from uplift.pipeline import build
-from uplift.scene.plan.context import Bench, silent
+from uplift.scene.plan.context import PlanContext, quiet_warnings
 
 WORTH = 1e6
 """Bytes that cells alone must save: they answer no other colours."""
 
 
 @dataclass(frozen=True, eq=False)
-class Built:
+class FinalBuild:
     """A cube, bytes of its file, CPU seconds it took; ``whole`` and ``sparse`` are the bytes of either choice."""
 
     cube: Cube
@@ -37,27 +37,29 @@ class Built:
         return int(self.cube.data.points.present.sum())
 
 
-def built(bench: Bench, options: Mapping[str, Any]) -> Built:
+def build_final(context: PlanContext, options: Mapping[str, Any]) -> FinalBuild:
     """Warns of what a build warns of."""
-    brief = bench.brief
-    cube, seconds = _timed(bench, options, scene=Images(brief.textures, brief.encoding))
+    scene = context.scene
+    cube, seconds = _timed(context, options, scene=Images(scene.textures, scene.encoding))
     size = _size(cube)
     whole = size * cube.data.lattice.size / int(cube.data.points.present.sum())
     if whole - size < WORTH:
-        return _whole(bench, options, size)
-    return Built(cube, size, seconds, whole, size)
+        return _whole(context, options, size)
+    return FinalBuild(cube, size, seconds, whole, size)
 
 
-def _whole(bench: Bench, options: Mapping[str, Any], sparse: int) -> Built:
-    with silent():  # all has been said by the build before
-        cube, seconds = _timed(bench, options)
+def _whole(context: PlanContext, options: Mapping[str, Any], sparse: int) -> FinalBuild:
+    with quiet_warnings():  # all has been said by the build before
+        cube, seconds = _timed(context, options)
     size = _size(cube)
-    return Built(cube, size, seconds, size, sparse)
+    return FinalBuild(cube, size, seconds, size, sparse)
 
 
-def _timed(bench: Bench, options: Mapping[str, Any], scene: Images | None = None) -> tuple[Cube, float]:
+def _timed(
+    context: PlanContext, options: Mapping[str, Any], scene: Images | None = None
+) -> tuple[Cube, float]:
     begin = time.process_time()
-    cube = build(bench.atlas, scene=scene, **options)
+    cube = build(context.atlas, scene=scene, **options)
     return cube, time.process_time() - begin
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from uplift.report.page_parts import note, right, swatch, table
 from uplift.scene.plan.charts import budget_chart, trials_chart
-from uplift.scene.plan.commands import build_line, spelt_line, texture_line
+from uplift.scene.plan.commands import build_command, expanded_command, texture_command
 from uplift.scene.plan.decision import Decision
 from uplift.scene.plan.planning import Plan
-from uplift.scene.plan.summary import about, percent, rows, unknown, verdict
+from uplift.scene.plan.summary import describe_error, describe_metamerism, percent, summary_rows, verdict
 from uplift.viz.format import format_error
 from uplift.viz.markup import Markup, element, number
 
@@ -26,7 +26,7 @@ OWN = """
 def page(plan: Plan, path: Path) -> str:
     """The whole HTML text; ``path`` is that of the plan's file."""
     styles = files("uplift.viz").joinpath("page.css").read_text(encoding="utf-8")
-    title = f"A plan for {plan.brief.path.stem}"
+    title = f"A plan for {plan.scene.path.stem}"
     head = element(
         "head",
         element("meta", charset="utf-8"),
@@ -48,11 +48,11 @@ def page(plan: Plan, path: Path) -> str:
 
 def _summary(plan: Plan) -> Markup:
     lines = [
-        [row.title, element("b", row.chosen), number(row.error), row.cost, _code(row.typed)]
-        for row in rows(plan)
+        [row.title, element("b", row.chosen), number(row.error), row.cost, _code(row.cli_args)]
+        for row in summary_rows(plan)
     ]
     headings = ["", "the least that will do", right("ΔE00 so far"), "cost", "say"]
-    told = note(f"{about(plan)}. {unknown(plan)}")
+    told = note(f"{describe_error(plan)}. {describe_metamerism(plan)}")
     return element(
         "section", table(headings, lines), told, element("div", budget_chart(plan), class_="budget")
     )
@@ -60,9 +60,9 @@ def _summary(plan: Plan) -> Markup:
 
 def _sights(plan: Plan) -> Markup:
     """Pairs of swatches, a column for each share of the pixels."""
-    shares = list(dict.fromkeys(sight.share for sight in plan.sights))
-    lights = dict.fromkeys(sight.light for sight in plan.sights)
-    by_place = {(sight.light, sight.share): sight for sight in plan.sights}
+    shares = list(dict.fromkeys(sight.share for sight in plan.previews))
+    lights = dict.fromkeys(sight.light for sight in plan.previews)
+    by_place = {(sight.light, sight.share): sight for sight in plan.previews}
     lines = [
         [
             light,
@@ -78,7 +78,7 @@ def _sights(plan: Plan) -> Markup:
 
 
 def _lines(plan: Plan, path: Path) -> Markup:
-    typed = (build_line(path), spelt_line(plan, path), texture_line(plan, path))
+    typed = (build_command(path), expanded_command(plan, path), texture_command(plan, path))
     return element("section", element("h2", "To type"), *(element("p", _code(line)) for line in typed))
 
 
@@ -92,7 +92,7 @@ def _section(decision: Decision) -> Markup:
     lines = [
         [
             element("td", element("b", trial.name) if place == decision.taken else trial.name, class_="name"),
-            trial.told,
+            trial.cost_text,
             number(format_error(trial.error.quantile)),
             number(format_error(trial.error.worst.mean)),
             number(format_error(trial.error.worst.largest)),
@@ -120,7 +120,7 @@ def _judged(plan: Plan) -> Markup:
         ]
         for one, other in parts
     ]
-    kinds = ("mean", percent(plan.brief.quantile), "largest")
+    kinds = ("mean", percent(plan.scene.quantile), "largest")
     headings = [
         "",
         "light",

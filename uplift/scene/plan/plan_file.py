@@ -16,29 +16,29 @@ from uplift.io.scene_colours import Images, file_digest
 from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.pipeline.options import Options
-from uplift.scene.plan.commands import build_line, spelt_line, texture_line
+from uplift.scene.plan.commands import build_command, expanded_command, texture_command
 from uplift.scene.plan.decision import Decision, Trial
-from uplift.scene.plan.evaluation import Error
+from uplift.scene.plan.evaluation import ErrorSummary
 from uplift.scene.plan.planning import Plan
 
 FORMAT = "uplift plan 1"
 AGAIN = "plan again: uplift plan SCENE.toml"
 
 
-def numbers(plan: Plan, path: Path) -> dict[str, Any]:
+def to_json(plan: Plan, path: Path) -> dict[str, Any]:
     """All of a plan in JSON values; paths are relative to the folder of ``path``, where it is to be written."""
-    brief, made = plan.brief, plan.built
+    scene, made = plan.scene, plan.final_build
     return {
         "format": FORMAT,
         "uplift": version("uplift"),
         "scene": {
-            "file": brief.path.name,
-            "lights": list(brief.lights),
-            "tolerance": brief.tolerance,
-            "quantile": brief.quantile,
-            "encoding": brief.encoding,
-            "textures": _sources(brief.textures, path),
-            "atlases": _sources(brief.atlases, path),
+            "file": scene.path.name,
+            "lights": list(scene.lights),
+            "tolerance": scene.tolerance,
+            "quantile": scene.quantile,
+            "encoding": scene.encoding,
+            "textures": _sources(scene.textures, path),
+            "atlases": _sources(scene.atlases, path),
         },
         "build": {**plan.options, "lights": list(plan.options["lights"])},
         "cells": "sparse" if made.is_sparse else "whole",
@@ -51,8 +51,8 @@ def numbers(plan: Plan, path: Path) -> dict[str, Any]:
         "error": {
             "predicted": _error(plan.predicted),
             "confirmed": _error(plan.confirmed),
-            "within": plan.within,
-            "expected_of_measurements": plan.expected,
+            "within": plan.within_tolerance,
+            "expected_of_measurements": plan.expected_error,
         },
         "cost": {
             "points": made.points,
@@ -62,7 +62,7 @@ def numbers(plan: Plan, path: Path) -> dict[str, Any]:
             "bytes_sparse": made.sparse,
         },
         "decisions": [_decision(each) for each in plan.decisions],
-        "lines": [build_line(path), spelt_line(plan, path), texture_line(plan, path)],
+        "lines": [build_command(path), expanded_command(plan, path), texture_command(plan, path)],
     }
 
 
@@ -73,7 +73,7 @@ def _sources(paths: Iterable[Path], plan: Path) -> list[dict[str, str]]:
     ]
 
 
-def _error(error: Error) -> dict[str, Any]:
+def _error(error: ErrorSummary) -> dict[str, Any]:
     return {**asdict(error.worst), "parts": [asdict(part) for part in error.parts]}
 
 
@@ -87,7 +87,7 @@ def _trial(trial: Trial) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Planned:
+class PlanFile:
     """What a plan's file says to build; all of it is as it was when the plan was measured."""
 
     path: Path
@@ -103,7 +103,7 @@ class Planned:
         return build(self.atlases or None, scene=scene, progress=progress, debug=debug, **self.options)
 
 
-def read_plan(path: str | os.PathLike[str]) -> Planned:
+def read_plan(path: str | os.PathLike[str]) -> PlanFile:
     """Raises `PlanFileError` for no plan, and where a texture or an atlas is missing or has changed."""
     path = Path(path)
     try:
@@ -125,7 +125,7 @@ def read_plan(path: str | os.PathLike[str]) -> Planned:
         raise PlanFileError("is no plan of this version", path=path, hint=AGAIN) from error
     for file, wanted in (textures | atlases).items():
         _check(path, file, wanted)
-    return Planned(path, tuple(textures), tuple(atlases), encoding, sparse, options)
+    return PlanFile(path, tuple(textures), tuple(atlases), encoding, sparse, options)
 
 
 def _check(path: Path, file: Path, wanted: str) -> None:

@@ -12,15 +12,15 @@ from uplift.colorimetry.observer import DEFAULT_OBSERVER
 from uplift.common.errors import PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.scene.plan import lattice_choice
-from uplift.scene.plan.context import Bench, Effort, bench
+from uplift.scene.plan.context import PlanContext, SearchGrid, prepare_context
 from uplift.scene.plan.decision import Decision
-from uplift.scene.plan.evaluation import Error, Question
-from uplift.scene.plan.final_build import Built, built
-from uplift.scene.plan.previews import Sight, sights
-from uplift.scene.plan.representation import representation
-from uplift.scene.plan.scene_file import Brief
-from uplift.scene.plan.storage import Storage, storage
-from uplift.scene.plan.wavelengths import wavelengths
+from uplift.scene.plan.evaluation import ErrorSummary, EvaluationSet
+from uplift.scene.plan.final_build import FinalBuild, build_final
+from uplift.scene.plan.previews import Preview, make_previews
+from uplift.scene.plan.representation import choose_representation
+from uplift.scene.plan.scene_file import SceneFile
+from uplift.scene.plan.storage import Storage, choose_storage
+from uplift.scene.plan.wavelengths import choose_wavelengths
 from uplift.scene.wavelengths import Sampling
 from uplift.viz.format import format_error
 
@@ -47,16 +47,16 @@ class Plan:
     sights : colours of the textures as they would be seen, from the plan and from the best cube.
     """
 
-    brief: Brief
+    scene: SceneFile
     decisions: tuple[Decision, ...]
     options: Mapping[str, Any]
     sampling: Sampling
     storage: Storage
-    built: Built
-    predicted: Error
-    confirmed: Error
-    expected: float | None
-    sights: tuple[Sight, ...]
+    final_build: FinalBuild
+    predicted: ErrorSummary
+    confirmed: ErrorSummary
+    expected_error: float | None
+    previews: tuple[Preview, ...]
 
     @property
     def chain(self) -> tuple[Decision, ...]:
@@ -64,12 +64,14 @@ class Plan:
         return tuple(each for each in self.decisions if each.key != "representation")
 
     @property
-    def within(self) -> bool:
+    def within_tolerance(self) -> bool:
         """Whether what was confirmed is within the tolerance."""
-        return self.confirmed.quantile <= self.brief.tolerance
+        return self.confirmed.quantile <= self.scene.tolerance
 
 
-def plan(brief: Brief, effort: Effort | None = None, progress: ProgressCallback = ignore_progress) -> Plan:
+def plan(
+    scene: SceneFile, effort: SearchGrid | None = None, progress: ProgressCallback = ignore_progress
+) -> Plan:
     """The least that will do.
 
     Raises
@@ -77,57 +79,57 @@ def plan(brief: Brief, effort: Effort | None = None, progress: ProgressCallback 
     PlanFileError : a tolerance that nothing measured comes within; tells the best.
     AtlasError, TextureError : what cannot be read.
     """
-    found = bench(brief, effort or Effort(), progress)
+    found = prepare_context(scene, effort or SearchGrid(), progress)
     progress(Progress("the best cube there is", 0, 1))
     question, best = found.question(found.colours.predicting)
-    _check_reachable(brief, best)
-    limits = {key: share * brief.tolerance for key, share in SHARES.items()}
+    _check_reachable(scene, best)
+    limits = {key: share * scene.tolerance for key, share in SHARES.items()}
 
-    coefficients = lattice_choice.coefficients(found, question, limits["coefficients"])
+    coefficients = lattice_choice.choose_coefficients(found, question, limits["coefficients"])
     count = int(coefficients.trial.choice["coefficients"])
-    lattice = lattice_choice.lattice(found, question, limits["lattice"], count)
+    lattice = lattice_choice.choose_lattice(found, question, limits["lattice"], count)
     options = {**found.options, **coefficients.trial.choice, **lattice.trial.choice}
     cube = found.cube(question.rgb, **options)
-    fewest, sampling = wavelengths(found, question, limits["wavelengths"], cube)
-    pixel = storage(found, question, limits["storage"], cube, sampling)
+    fewest, sampling = choose_wavelengths(found, question, limits["wavelengths"], cube)
+    pixel = choose_storage(found, question, limits["storage"], cube, sampling)
     held = Storage(pixel.trial.choice["as"], pixel.trial.choice["depth"])
 
     decisions = [coefficients, lattice, fewest, pixel]
-    if brief.observer == DEFAULT_OBSERVER:  # the only one that representations know
-        decisions.append(representation(found, question, limits["representation"], cube))
+    if scene.observer == DEFAULT_OBSERVER:  # the only one that representations know
+        decisions.append(choose_representation(found, question, limits["representation"], cube))
 
     progress(Progress("building it", 0, 1))
-    made = built(found, options)
+    made = build_final(found, options)
     progress(Progress("confirming", 0, 1))
     confirmed, shown = _confirmed(found, made, options, sampling, held)
     return Plan(
-        brief=brief,
+        scene=scene,
         decisions=tuple(decisions),
         options=options,
         sampling=sampling,
         storage=held,
-        built=made,
+        final_build=made,
         predicted=pixel.trial.error,
         confirmed=confirmed,
-        sights=shown,
-        expected=_expected(made, question),
+        previews=shown,
+        expected_error=_expected(made, question),
     )
 
 
-def _check_reachable(brief: Brief, best: Error) -> None:
-    if best.quantile > brief.tolerance:
+def _check_reachable(scene: SceneFile, best: ErrorSummary) -> None:
+    if best.quantile > scene.tolerance:
         worst = best.worst
         raise PlanFileError(
-            f"no cube comes within ΔE00 {brief.tolerance:g}: the best measured has {format_error(best.quantile)}, "
+            f"no cube comes within ΔE00 {scene.tolerance:g}: the best measured has {format_error(best.quantile)}, "
             f"of {worst.group} under {worst.light}",
-            path=brief.path,
+            path=scene.path,
             hint=f"set tolerance = {np.ceil(best.quantile * 110) / 100:g} or more",
         )
 
 
 def _confirmed(
-    found: Bench, made: Built, options: Mapping[str, Any], sampling: Sampling, held: Storage
-) -> tuple[Error, tuple[Sight, ...]]:
+    found: PlanContext, made: FinalBuild, options: Mapping[str, Any], sampling: Sampling, held: Storage
+) -> tuple[ErrorSummary, tuple[Preview, ...]]:
     """By other pixels, and more of them, asked of the cube that was built."""
     question, _ = found.question(found.colours.confirming)
     answered = [held.read_back(made.cube, question.groups[0].rgb, sampling.wavelengths)]
@@ -135,10 +137,10 @@ def _confirmed(
         cube = found.cube(found.materials, **options)
         answered.append(held.read_back(cube, found.materials, sampling.wavelengths))
     xyz = sampling.xyz(np.concatenate(answered))
-    return question.seen(xyz), sights(question, xyz, found.brief.observer)
+    return question.seen(xyz), make_previews(question, xyz, found.scene.observer)
 
 
-def _expected(made: Built, question: Question) -> float | None:
+def _expected(made: FinalBuild, question: EvaluationSet) -> float | None:
     textures = question.groups[0]
     errors = made.cube.standard_error(textures.rgb)
     return None if errors is None else float(errors @ textures.weights)

@@ -9,13 +9,13 @@ import numpy as np
 
 from uplift.colorimetry.display_sensors import display_sensors, hex_codes
 from uplift.common.arrays import Array
-from uplift.scene.plan.evaluation import Question
+from uplift.scene.plan.evaluation import EvaluationSet
 
 HALF, ALL = 0.5, 1.0
 
 
 @dataclass(frozen=True)
-class Sight:
+class Preview:
     """The colour that ``share`` of the pixels are no worse than under a light.
 
     ``wanted`` and ``planned`` are ``#rrggbb``, the light's white taken to the screen's.
@@ -28,7 +28,9 @@ class Sight:
     planned: str
 
 
-def sights(question: Question, xyz: Sequence[Array] | Array, observer: str) -> tuple[Sight, ...]:
+def make_previews(
+    question: EvaluationSet, xyz: Sequence[Array] | Array, observer: str
+) -> tuple[Preview, ...]:
     """Of the textures, for half the pixels, for the share that counts, and for all; XYZ (n, 3) under each light."""
     textures = question.groups[0]
     found = []
@@ -40,5 +42,5 @@ def sights(question: Question, xyz: Sequence[Array] | Array, observer: str) -> t
         for share in dict.fromkeys((HALF, question.share, ALL)):
             row = order[min(int(np.searchsorted(reached, share - 1e-12)), len(order) - 1)]
             pair = np.stack([light.xyz @ textures.wanted[row], planned[row]]) @ screen.xyz_to_rgb.T
-            found.append(Sight(light.name, share, float(apart[row]), *hex_codes(pair)))
+            found.append(Preview(light.name, share, float(apart[row]), *hex_codes(pair)))
     return tuple(found)

@@ -15,9 +15,9 @@ from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
 from uplift.common.progress import Progress
 from uplift.lookup import Cube
-from uplift.scene.plan.context import Bench
+from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.decision import Decision, Trial, decide
-from uplift.scene.plan.evaluation import WRONG, Question
+from uplift.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet
 from uplift.scene.representations.dense import STEP, wavelengths, xyz_weights
 from uplift.scene.representations.registry import all_representations
 from uplift.scene.representations.representation import Representation
@@ -33,7 +33,7 @@ class Dense:
     ``powers`` (L, 401) of the lights, ``surfaces`` (n, 401) that the cube answers with.
     """
 
-    question: Question
+    question: EvaluationSet
     powers: Array
     surfaces: Array
 
@@ -52,36 +52,39 @@ class Dense:
         try:
             return representation.xyz(representation.multiply(light, held))
         except UpliftError:
-            return np.full((len(self.surfaces), 3), WRONG)
+            return np.full((len(self.surfaces), 3), WORST_DELTA_E)
 
 
-def representation(bench: Bench, question: Question, limit: float, cube: Cube) -> Decision:
+def choose_representation(
+    context: PlanContext, question: EvaluationSet, limit: float, cube: Cube
+) -> Decision:
     """By the numbers that a surface takes, then by those of a light; of the sizes that 'uplift compare' compares."""
-    dense = _dense(bench, question, cube)
-    brief = bench.brief
-    words = [word for atlas in brief.atlases for word in ("--atlas", str(atlas))]
-    words += [word for light in brief.lights for word in ("--light", light)]
+    dense = _dense(context, question, cube)
+    scene = context.scene
+    words = [word for atlas in scene.atlases for word in ("--atlas", str(atlas))]
+    words += [word for light in scene.lights for word in ("--light", light)]
     typed = shlex.join(["uplift", "compare", *words, "--target", f"{limit:.3g}"])
 
     def trials() -> Iterator[Trial]:
         every = all_representations(dense.powers, dense.surfaces)
         made = []
         for done, each in enumerate(every):
-            bench.progress(Progress(f"representation {each.name}", done, len(every)))
+            context.progress(Progress(f"representation {each.name}", done, len(every)))
             made.append(dense.trial(each, typed))
         yield from sorted(made, key=lambda trial: trial.cost)
 
     return decide("representation", "A representation instead", "floats a surface", limit, trials())
 
 
-def _dense(bench: Bench, question: Question, cube: Cube) -> Dense:
+def _dense(context: PlanContext, question: EvaluationSet, cube: Cube) -> Dense:
     few, nm = question.thinned(COLOURS), wavelengths()
     powers = np.stack([observer.illuminant_spd(light.name, step=STEP) for light in few.lights])
     powers = powers / (powers @ xyz_weights()[:, 1:2])
     finer = [
-        np.stack([np.interp(nm, bench.sensor.wavelengths, row) for row in each.wanted]) for each in few.groups
+        np.stack([np.interp(nm, context.sensor.wavelengths, row) for row in each.wanted])
+        for each in few.groups
     ]
     groups = tuple(replace(each, wanted=wanted) for each, wanted in zip(few.groups, finer, strict=True))
     named = zip(few.lights, powers, strict=True)
     lights = tuple(Light(light.name, (power[:, None] * xyz_weights()).T) for light, power in named)
-    return Dense(Question(groups, lights, few.share), powers, cube.reflectance(few.rgb, nm))
+    return Dense(EvaluationSet(groups, lights, few.share), powers, cube.reflectance(few.rgb, nm))

@@ -25,7 +25,7 @@ EXAMPLE = 'textures = ["wood.png"]'
 
 
 @dataclass(frozen=True)
-class Brief:
+class SceneFile:
     """What a scene file says; paths lie where it lies.
 
     Parameters
@@ -52,11 +52,11 @@ class Brief:
     def sensor(self) -> Sensor:
         return observer.sensor(self.space, self.illuminant, self.observer)
 
-    def seen_under(self) -> tuple[Light, ...]:
+    def light_sources(self) -> tuple[Light, ...]:
         return tuple(observer.light(name, self.observer) for name in self.lights)
 
 
-def read_brief(path: str | os.PathLike[str]) -> Brief:
+def read_scene_file(path: str | os.PathLike[str]) -> SceneFile:
     """Raises `PlanFileError` with the line and the hint."""
     text = _text(Path(path))
     try:
@@ -69,7 +69,7 @@ def read_brief(path: str | os.PathLike[str]) -> Brief:
         raise PlanFileError(f"is no TOML: {problem}", path=path, line=line, hint=hint) from error
     except RecursionError as error:
         raise PlanFileError("nests too deeply", path=path, hint=f"write lines such as {EXAMPLE}") from error
-    return _Reader(Path(path), text, said).brief()
+    return _Reader(Path(path), text, said).scene()
 
 
 def _text(path: Path) -> str:
@@ -90,7 +90,7 @@ class _Reader:
     text: str
     said: Mapping[str, Any]
 
-    def brief(self) -> Brief:
+    def scene(self) -> SceneFile:
         readers: dict[str, Callable[[str], Any]] = {
             "textures": self._files,
             "atlases": self._files,
@@ -104,11 +104,11 @@ class _Reader:
         if "textures" not in self.said:
             hint = f"add a line such as {EXAMPLE}"
             raise PlanFileError("names no textures, so there are no colours", path=self.path, hint=hint)
-        found = Brief(self.path, **{key: readers[key](key) for key in self.said})
+        found = SceneFile(self.path, **{key: readers[key](key) for key in self.said})
         self._check(found)
         return found
 
-    def _check(self, found: Brief) -> None:
+    def _check(self, found: SceneFile) -> None:
         """Names that only the tables know."""
         checks: dict[str, Callable[[], Any]] = {
             "encoding": lambda: check_encoding(found.encoding),
@@ -161,13 +161,15 @@ class _Reader:
         value = self.said[key]
         if isinstance(value, bool) or not isinstance(value, int | float) or not least <= value <= most:
             self._fail(
-                key, f"{key} is no number from {least:g} to {most:g}", f"write {key} = {getattr(Brief, key)}"
+                key,
+                f"{key} is no number from {least:g} to {most:g}",
+                f"write {key} = {getattr(SceneFile, key)}",
             )
         return float(value)
 
     def _word(self, key: str) -> str:
         if not isinstance(self.said[key], str):
-            self._fail(key, f"{key} is no name", f'write {key} = "{getattr(Brief, key)}"')
+            self._fail(key, f"{key} is no name", f'write {key} = "{getattr(SceneFile, key)}"')
         return str(self.said[key])
 
     def _fail(self, key: str, problem: str, hint: str) -> NoReturn:

@@ -15,9 +15,9 @@ from uplift.common.progress import Progress
 from uplift.io import texture
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
-from uplift.scene.plan.context import Bench
+from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.decision import Decision, Trial, decide
-from uplift.scene.plan.evaluation import Question
+from uplift.scene.plan.evaluation import EvaluationSet
 from uplift.scene.wavelengths import Sampling
 from uplift.viz.format import format_size
 
@@ -57,14 +57,16 @@ class Storage:
 STORAGES = tuple(Storage(name, depth) for name, form in texture.FORMS.items() for depth in form().depths)
 
 
-def storage(bench: Bench, question: Question, limit: float, cube: Cube, sampling: Sampling) -> Decision:
+def choose_storage(
+    context: PlanContext, question: EvaluationSet, limit: float, cube: Cube, sampling: Sampling
+) -> Decision:
     """By the bytes of a pixel; at the same size spectra first, which take nothing to evaluate."""
     at = sampling.wavelengths
     order = sorted(STORAGES, key=lambda each: each.size(cube, at))
 
     def trials() -> Iterator[Trial]:
         for done, each in enumerate(order):
-            bench.progress(Progress(f"{each.form} as {each.depth}", done, len(order)))
+            context.progress(Progress(f"{each.form} as {each.depth}", done, len(order)))
             error = question.seen(sampling.xyz(each.read_back(cube, question.rgb, at)))
             size = each.size(cube, at)
             choice: dict[str, Any] = {"as": each.form, "depth": each.depth}

@@ -5,74 +5,76 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from uplift.scene.plan.decision import Decision
-from uplift.scene.plan.evaluation import Error
-from uplift.scene.plan.final_build import Built
+from uplift.scene.plan.evaluation import ErrorSummary
+from uplift.scene.plan.final_build import FinalBuild
 from uplift.scene.plan.planning import Plan
 from uplift.viz.format import format_error, format_size
 
 
 @dataclass(frozen=True)
-class Row:
+class SummaryRow:
     """One line of the plan: what is decided, for what, at which cost, how to say it, and the ΔE00 so far."""
 
     title: str
     chosen: str
     cost: str
-    typed: str
+    cli_args: str
     error: str
 
 
-def rows(plan: Plan) -> list[Row]:
+def summary_rows(plan: Plan) -> list[SummaryRow]:
     """In the order of the decisions; whole or sparse follows the lattice, which it belongs to."""
     told = [_row(decision) for decision in plan.decisions]
     place = 1 + next(number for number, each in enumerate(plan.decisions) if each.key == "lattice")
-    return [*told[:place], _cells(plan.built, told[place - 1].error), *told[place:]]
+    return [*told[:place], _cells(plan.final_build, told[place - 1].error), *told[place:]]
 
 
-def _row(decision: Decision) -> Row:
+def _row(decision: Decision) -> SummaryRow:
     trial = decision.trial
-    return Row(decision.title, trial.name, trial.told, trial.typed, format_error(trial.error.quantile))
+    return SummaryRow(
+        decision.title, trial.name, trial.cost_text, trial.cli_args, format_error(trial.error.quantile)
+    )
 
 
-def _cells(made: Built, error: str) -> Row:
+def _cells(made: FinalBuild, error: str) -> SummaryRow:
     cost = f"{made.points:,} points, {format_size(made.size)}, {made.seconds:.1f} s"
     if made.is_sparse:
         told = f"{cost}; all: {format_size(made.whole)}"
-        return Row("Cells", "the textures' own", told, "--scene IMAGE", error)
+        return SummaryRow("Cells", "the textures' own", told, "--scene IMAGE", error)
     told = (
         f"{cost}; the textures' own: {format_size(made.sparse)}, too little saved to answer no other colours"
     )
-    return Row("Cells", "all", told, "", error)
+    return SummaryRow("Cells", "all", told, "", error)
 
 
 def verdict(plan: Plan) -> str:
     """The plan in a sentence."""
-    brief = plan.brief
-    end = "" if plan.within else ", which is MORE than is tolerated: plan for a smaller tolerance"
+    scene = plan.scene
+    end = "" if plan.within_tolerance else ", which is MORE than is tolerated: plan for a smaller tolerance"
     return (
         f"ΔE00 {format_error(plan.predicted.quantile)} predicted, {format_error(plan.confirmed.quantile)} confirmed by "
-        f"other pixels, {brief.tolerance:g} tolerated{end}"
+        f"other pixels, {scene.tolerance:g} tolerated{end}"
     )
 
 
-def about(plan: Plan) -> str:
+def describe_error(plan: Plan) -> str:
     """What the errors are."""
-    brief = plan.brief
+    scene = plan.scene
     own, measured = " and of the atlas's materials", ", materials against their measurements"
     return (
-        f"ΔE00 that {percent(brief.quantile)} of the textures' pixels{own if brief.atlases else ''} stay within, under "
-        f"the worst of {', '.join(brief.lights)}; pixels against a cube of the finest lattice and the most "
-        f"coefficients at all wavelengths{measured if brief.atlases else ''}"
+        f"ΔE00 that {percent(scene.quantile)} of the textures' pixels{own if scene.atlases else ''} stay within, under "
+        f"the worst of {', '.join(scene.lights)}; pixels against a cube of the finest lattice and the most "
+        f"coefficients at all wavelengths{measured if scene.atlases else ''}"
     )
 
 
-def unknown(plan: Plan) -> str:
+def describe_metamerism(plan: Plan) -> str:
     """What no plan helps with; empty where nobody knows."""
-    if plan.expected is None:
+    if plan.expected_error is None:
         return ""
     return (
-        f"RGB do not tell materials: what has such a colour may differ by ΔE00 {format_error(plan.expected)} under A "
-        "from any answer"
+        f"RGB alone does not identify a material: measurements of such colours may differ by ΔE00 "
+        f"{format_error(plan.expected_error)} under A from any answer"
     )
 
 
@@ -81,6 +83,6 @@ def percent(share: float) -> str:
     return f"{100 * share:.4g} %"
 
 
-def deciding(error: Error) -> str:
+def worst_case(error: ErrorSummary) -> str:
     """textures under FL11."""
     return f"{error.worst.group} under {error.worst.light}"

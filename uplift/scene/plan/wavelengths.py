@@ -9,9 +9,9 @@ import numpy as np
 
 from uplift.common.progress import Progress
 from uplift.lookup import Cube
-from uplift.scene.plan.context import Bench
+from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.decision import Decision, Trial, decide
-from uplift.scene.plan.evaluation import Question
+from uplift.scene.plan.evaluation import EvaluationSet
 from uplift.scene.wavelengths import RenderSetup, Sampling, choose, make_setup
 
 COUNTS = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, 32, 40)
@@ -22,14 +22,16 @@ DIGITS = 2
 """Of a wavelength in nm: what can be typed is what is measured."""
 
 
-def wavelengths(bench: Bench, question: Question, limit: float, cube: Cube) -> tuple[Decision, Sampling]:
+def choose_wavelengths(
+    context: PlanContext, question: EvaluationSet, limit: float, cube: Cube
+) -> tuple[Decision, Sampling]:
     """What the cube answers, seen at few wavelengths; one set of weights serves all lights."""
-    setting = _setting(bench, question, cube)
+    setting = _setting(context, question, cube)
     tried: list[Sampling] = []
 
     def trials() -> Iterator[Trial]:
         for count in COUNTS:
-            bench.progress(Progress(f"{count} wavelengths", len(tried), len(COUNTS) + 1))
+            context.progress(Progress(f"{count} wavelengths", len(tried), len(COUNTS) + 1))
             tried.append(_chosen(setting, count))
             yield _trial(question, cube, tried[-1])
         tried.append(Sampling(setting.wavelengths, setting.cmfs, setting.lights, setting.powers))
@@ -39,18 +41,18 @@ def wavelengths(bench: Bench, question: Question, limit: float, cube: Cube) -> t
     return found, tried[found.taken]
 
 
-def typed(sampling: Sampling) -> str:
+def format_wavelengths(sampling: Sampling) -> str:
     """412.5,455,… nm."""
     return ",".join(f"{wavelength:g}" for wavelength in sampling.wavelengths)
 
 
-def _setting(bench: Bench, question: Question, cube: Cube) -> RenderSetup:
+def _setting(context: PlanContext, question: EvaluationSet, cube: Cube) -> RenderSetup:
     """Answers for pixels that stand for as many others each, and for the materials."""
     return make_setup(
         cube.reflectance(question.thinned(FITTED).rgb),
         [light.name for light in question.lights],
-        wavelengths=bench.sensor.wavelengths,
-        observer_name=bench.sensor.observer,
+        wavelengths=context.sensor.wavelengths,
+        observer_name=context.sensor.observer,
     )
 
 
@@ -62,8 +64,10 @@ def _chosen(setting: RenderSetup, count: int) -> Sampling:
     return replace(found, wavelengths=np.round(apart, DIGITS))
 
 
-def _trial(question: Question, cube: Cube, sampling: Sampling) -> Trial:
+def _trial(question: EvaluationSet, cube: Cube, sampling: Sampling) -> Trial:
     at, count = sampling.wavelengths, len(sampling)
     error = question.seen(sampling.xyz(cube.reflectance(question.rgb, at)))
     told = f"{count} samples a ray"
-    return Trial(str(count), count, told, f"--wavelengths {typed(sampling)}", {"count": count}, error)
+    return Trial(
+        str(count), count, told, f"--wavelengths {format_wavelengths(sampling)}", {"count": count}, error
+    )

@@ -18,7 +18,7 @@ from uplift.colorimetry.srgb import encode
 from uplift.common.errors import OptionError
 from uplift.design.palette import Palette, design
 from uplift.design.palette.lights import illuminant
-from uplift.design.palette.palette import Part
+from uplift.design.palette.palette import SpectrumSpec
 from uplift.design.palette.relight_viewer.cutaway import cutaway
 from uplift.design.palette.relight_viewer.packing import halves, packed
 from uplift.design.palette.relight_viewer.page import page
@@ -97,8 +97,10 @@ def test_nothing_that_is_not_finite_gets_into_a_page(shown):
 def test_a_palette_s_picture_looks_as_its_spectra_do(model, sensor, small_cube):
     """Under smooth lights the picture is what whole spectra would give, but for the factor model's small error."""
     colours = {"red": (0.5, 0.1, 0.1), "leaf": (0.1, 0.3, 0.05), "sky": (0.2, 0.4, 0.7)}
-    materials = [Part(name, small_cube.reflectance(rgb, sensor.wavelengths)) for name, rgb in colours.items()]
-    lights = [Part(name, illuminant(sensor, name)) for name in ("D65", "A")]
+    materials = [
+        SpectrumSpec(name, small_cube.reflectance(rgb, sensor.wavelengths)) for name, rgb in colours.items()
+    ]
+    lights = [SpectrumSpec(name, illuminant(sensor, name)) for name in ("D65", "A")]
     palette = Palette(sensor, tuple(lights), tuple(materials), (), {})
     found = relighting("three", design(palette, model), cutaway(3, size=64))
     mix = np.array([0.6, 0.4])
@@ -111,7 +113,7 @@ def test_a_palette_s_picture_looks_as_its_spectra_do(model, sensor, small_cube):
 
 def test_more_materials_than_labels_are_refused(model, sensor):
     flat = np.ones_like(sensor.wavelengths)
-    many = tuple(Part(str(row), flat) for row in range(MOST + 1))
-    found = design(Palette(sensor, (Part("E", flat),), many, (), {}), model)
+    many = tuple(SpectrumSpec(str(row), flat) for row in range(MOST + 1))
+    found = design(Palette(sensor, (SpectrumSpec("E", flat),), many, (), {}), model)
     with pytest.raises(OptionError, match="256 materials"):
         relighting("many", found, np.zeros((1, 1, MOST + 1), np.float32))
