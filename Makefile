@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test bench peers accuracy study stability nightly determinism munsell atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette
+.PHONY: build lint test bench peers accuracy study stability nightly determinism munsell docs atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -26,8 +26,13 @@ lint: $(INSTALLED)
 test: lint
 	$(BIN)/pytest
 
+# Measurements are stored in docs/data; this renders the pages from them, and measures nothing.
+docs: $(INSTALLED)
+	$(BIN)/python -m tools.render_docs
+
 bench: $(INSTALLED)
 	$(BIN)/python -m benchmarks.bench
+	$(BIN)/python -m tools.render_docs performance
 
 # Speed against accuracy of all methods: docs/chart.md and its pictures, and what `uplift chart --recommend` reads.
 chart: $(INSTALLED)
@@ -39,6 +44,7 @@ peers: $(INSTALLED)
 
 accuracy: $(INSTALLED)
 	$(BIN)/python -m benchmarks.accuracy
+	$(BIN)/python -m tools.render_docs accuracy
 
 # What the design rests on: docs/moments.md and docs/fidelity.md.
 study: $(INSTALLED)

@@ -1,1 +1,1 @@
-"""Timings, outside the tests: ``make bench`` writes docs/performance.md and docs/performance.json."""
+"""Programs that measure and write docs/data/*.json; `make docs` renders the pages."""

@@ -1,23 +1,23 @@
-"""The fit of the Macbeth cube, phase by phase: compile and run apart, the answer checked first."""
+"""CPU time of the fit of the Macbeth cube by phase; compilation is separate, and results are checked before timing."""
 
 from __future__ import annotations
 
 import time
 import warnings
-from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import jax
 import numpy as np
 
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT
 from uplift import fit
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.progress import Progress
 from uplift.common.threads import single_threaded_blas
-from uplift.lab.timing import Spread, spread
+from uplift.lab.timing import spread
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, Sigmoid, reflectance
 from uplift.models.minimum_norm import forward_map
@@ -28,70 +28,63 @@ DIMS = (16, 32, 64, 128)
 DIM = 64
 ACCELERATED = (64, 128, 256)
 FEW_RUNS = 3
-"""Of the largest lattices, which take long and vary little."""
+"""For the largest lattices, which take long and vary little."""
+PER_NODE = ("whole", "lattice", "storing", "errors")
 
 
-@dataclass(frozen=True)
-class FitTiming:
-    """CPU seconds of all threads, by phase; ``compile_seconds`` is what a first run takes longer.
+Timing = dict[str, Any]
+"""CPU times of all threads: in µs per node where the key ends in ``_us``, in ms where it ends in ``_ms``.
 
-    ``whole`` goes from the atlas to the last fitted point: entries, prior, growth and improvement. ``storing`` has the
-    judging of what is stored, ``errors`` the standard errors. ``worst`` is max |linear RGB| of what is stored.
-    """
-
-    model: str
-    count: int
-    dim: int
-    compile_seconds: float
-    entries: Spread
-    prior: Spread
-    lattice: Spread
-    storing: Spread
-    errors: Spread
-    whole: Spread
-    wall: Spread
-    worst: float
+``whole`` runs from the atlas to the last fitted node: entries, prior, growth and improvement. ``storing`` includes the
+evaluation of the stored coefficients, ``errors`` are the standard errors. ``compile_s`` is the extra time of a first
+run, ``worst`` the largest |linear RGB| between a stored spectrum and its node.
+"""
 
 
-def time_dims(runs: int) -> list[FitTiming]:
-    """9 moments coefficients at every dim."""
+def time_dims(runs: int) -> list[Timing]:
+    """Time nine moment coefficients at every dim."""
     return [time_fit(Moments(9), dim, runs if dim <= DIM else min(runs, FEW_RUNS)) for dim in DIMS]
 
 
-def time_models(runs: int) -> list[FitTiming]:
-    """Every model at one dim."""
+def time_models(runs: int) -> list[Timing]:
+    """Time every model at one dim."""
     return [time_fit(model, DIM, min(runs, FEW_RUNS)) for model in MODELS]
 
 
-def time_accelerator(runs: int) -> list[FitTiming]:
-    """On a GPU, if JAX has one; nothing otherwise."""
+def time_accelerator(runs: int) -> list[Timing]:
+    """Time the fit on a GPU; return an empty list if JAX has none."""
     if jax.default_backend() == "cpu":
         return []
     return [time_fit(Moments(9), dim, runs) for dim in ACCELERATED]
 
 
-def time_fit(model: Model, dim: int, runs: int) -> FitTiming:
-    """Raises `RuntimeError` where a stored spectrum misses its colour: that would not be worth timing."""
+def time_fit(model: Model, dim: int, runs: int) -> Timing:
+    """Time a fit. Raises `RuntimeError` if a stored spectrum does not have its colour."""
     jax.clear_caches()
     begin = time.perf_counter()
     measured = _macbeth()
-    _once(model, dim, measured)
+    _fit_once(model, dim, measured)
     first = time.perf_counter() - begin
-    laps = [_once(model, dim, measured) for _ in range(runs)]
-    entries, prior, lattice, storing, errors, whole, wall = (
-        spread([lap[phase] for lap, _ in laps])
-        for phase in ("entries", "prior", "lattice", "storing", "errors", "whole", "wall")
-    )
-    compiling = max(first - wall.median, 0)
-    worst = max(found for _, found in laps)
-    return FitTiming(
-        model.name, model.count, dim, compiling, entries, prior, lattice, storing, errors, whole, wall, worst
-    )
+    laps = [_fit_once(model, dim, measured) for _ in range(runs)]
+    seconds = {phase: spread([lap[phase] for lap, _ in laps]) for phase in laps[0][0]}
+    per_node = 1e6 / dim**3
+    return {
+        "model": model.name,
+        "coefficients": model.count,
+        "dim": dim,
+        "nodes": dim**3,
+        "compile_s": max(first - seconds["wall"].median, 0),
+        "wall_s": seconds["wall"],
+        **{f"{phase}_us": seconds[phase].scaled(per_node) for phase in PER_NODE},
+        "constant_us": (seconds["entries"].median + seconds["prior"].median) * per_node,
+        "entries_ms": seconds["entries"].scaled(1e3),
+        "worst": max(worst for _, worst in laps),
+    }
 
 
 @single_threaded_blas()
-def _once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float], float]:
-    """CPU seconds of each phase of a whole fit as a build has it, and the worst stored point by our own evaluation."""
+def _fit_once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float], float]:
+    """Return the CPU seconds of each phase of a fit as in a build, and the largest residual of the stored nodes."""
     sensor, lattice = observer.sensor(), Lattice(observer.axis_nodes("srgb", dim))
     problem = fit.Problem(model, forward_map(model, sensor.wavelengths, sensor.matrix), lattice)
     lights = [observer.light(name) for name in Options.lights]
@@ -126,19 +119,19 @@ def _once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float], fl
 
 
 def _worst(problem: fit.Problem, wavelengths: Array, matrix: Array, coefficients: Array) -> float:
-    """Of every 64th point of large lattices, by numpy alone."""
+    """Return the largest residual, of every 64th node if the lattice is large, evaluated by numpy."""
     points = np.arange(0, len(coefficients), 64 if len(coefficients) > 1 << 20 else 1)
     worst = 0.0
     for part in np.array_split(points, -(-len(points) // 16384)):
         rgb = reflectance(problem.model, coefficients[part], wavelengths) @ matrix.T
         worst = max(worst, float(np.abs(rgb - problem.lattice.target(part)).max()))
     if worst > problem.threshold:
-        raise RuntimeError(f"a wrong answer ({worst:.1e}) is not worth timing")
+        raise RuntimeError(f"residual {worst:.1e} exceeds the threshold: nothing to time")
     return worst
 
 
 def _macbeth() -> Array:
-    """(E, N) the entries within sRGB."""
+    """Return the spectra (E, N) of the entries inside sRGB."""
     sensor = observer.sensor()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

@@ -1,10 +1,9 @@
-"""Colours per second of lookups, in numpy by mode and in bulk; the answer is checked before it is timed."""
+"""Throughput of lookups with numpy by mode and in bulk; results are checked before timing."""
 
 from __future__ import annotations
 
 import time
 import warnings
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -12,7 +11,7 @@ import jax
 import numpy as np
 
 import uplift
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT
 from uplift.lab.timing import Spread, timed
 from uplift.lookup import Cube, bulk
 
@@ -20,42 +19,23 @@ WAVELENGTHS = np.linspace(400, 700, 16)
 BULK = 1_000_000
 CHECKED = 5000
 COLOURS = {"coefficients": 1_000_000, "spectra": 1_000_000, "moments": 200_000, "refined": 50_000}
-"""Blocks follow one another, so that more of the slower only take longer."""
+"""Queries by what is looked up: fewer where lookups are slow."""
 WORST = {"coefficients": 1e-6, "spectra": 1e-5, "moments": 2e-2, "refined": 1e-6}
-"""What is wrong, and not worth timing; for float32 too."""
+"""Largest permitted errors, for float32 too."""
 
 
-@dataclass(frozen=True)
-class LookupTiming:
-    """Seconds for ``colours`` at once.
-
-    ``bytes`` per colour are those of the question, of the rows read and of the answer. ``worst`` is max |linear RGB|
-    of the round trip; ``apart``, where no spectrum comes back or as many, the largest difference from numpy in
-    float64. ``prepare`` is what making the sampler takes, ``compile`` what a first run takes longer than the next.
-    """
-
-    what: str
-    dtype: str
-    threads: int
-    colours: int
-    bytes: int
-    wall: Spread
-    cpu: Spread
-    worst: float | None = None
-    apart: float | None = None
-    prepare: float | None = None
-    compile: float | None = None
+Timing = dict[str, Any]
 
 
 def macbeth() -> Cube:
-    """32³ points, 9 coefficients."""
+    """Build a cube of 32³ nodes with nine coefficients."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         return uplift.build(ROOT / "atlases" / "macbeth.txt", dim=32)
 
 
-def time_lookups(cube: Cube, runs: int) -> list[LookupTiming]:
-    """numpy: every mode in both types, on one thread and on two."""
+def time_lookups(cube: Cube, runs: int) -> list[Timing]:
+    """Time every mode with numpy in both types, on one thread and on two."""
     return [
         _lookup(cube, what, dtype, threads, runs)
         for what in COLOURS
@@ -64,25 +44,26 @@ def time_lookups(cube: Cube, runs: int) -> list[LookupTiming]:
     ]
 
 
-def _lookup(cube: Cube, what: str, dtype: str, threads: int, runs: int) -> LookupTiming:
+def _lookup(cube: Cube, what: str, dtype: str, threads: int, runs: int) -> Timing:
     rgb = np.random.default_rng(1).random((COLOURS[what], 3))
     options: dict[str, Any] = {"dtype": dtype, "threads": threads}
     if what == "coefficients":
-        ask = partial(cube.coefficients, rgb, **options)
-        worst, apart = None, float(np.abs(ask() - cube.coefficients(rgb)).max())
+        query = partial(cube.coefficients, rgb, **options)
+        worst, apart = None, float(np.abs(query() - cube.coefficients(rgb)).max())
     else:
-        ask = partial(cube.reflectance, rgb, WAVELENGTHS, what, **options)
+        query = partial(cube.reflectance, rgb, WAVELENGTHS, what, **options)
         back = cube.data.sensor.rgb(cube.reflectance(rgb[:CHECKED], None, what, **options))
         worst, apart = float(np.abs(back - rgb[:CHECKED]).max()), None
-    _refuse(what, worst if apart is None else apart, WORST[what])
-    wall, cpu = timed(ask, runs)
+    _check(what, worst if apart is None else apart, WORST[what])
+    wall, cpu = timed(query, runs)
     size, width = np.dtype(dtype).itemsize, _width(cube, what)
     row = size * width if what == "spectra" else 8 * cube.data.model.count
-    return LookupTiming(what, dtype, threads, len(rgb), 24 + 8 * row + size * width, wall, cpu, worst, apart)
+    bytes_each = 24 + 8 * row + size * width
+    return _timing(what, dtype, threads, len(rgb), bytes_each, wall, cpu, worst if apart is None else apart)
 
 
-def time_bulk(cube: Cube, runs: int) -> list[LookupTiming]:
-    """JAX: spectra and coefficients of random colours, and spectra of colours like those of the atlas."""
+def time_bulk(cube: Cube, runs: int) -> list[Timing]:
+    """Time JAX: spectra and coefficients of random colours, and spectra of colours near those of the atlas."""
     rng = np.random.default_rng(1)
     random, data = rng.random((BULK, 3)), cube.data
     near = data.atlas.rgb[rng.integers(len(data.atlas.rgb), size=BULK)] + rng.normal(0, 1e-3, (BULK, 3))
@@ -90,15 +71,13 @@ def time_bulk(cube: Cube, runs: int) -> list[LookupTiming]:
     return [
         _bulk(cube, "spectra", "spectra", random, 1, runs),
         _bulk(cube, "spectra", "spectra", random, 2, runs),
-        _bulk(cube, "spectra, asked in float32", "spectra", random.astype(np.float32), 2, runs),
+        _bulk(cube, "spectra, float32 queries", "spectra", random.astype(np.float32), 2, runs),
         _bulk(cube, "spectra, colours near entries", "spectra", painted, 2, runs),
         _bulk(cube, "coefficients", "coefficients", random, 2, runs),
     ]
 
 
-def _bulk(
-    cube: Cube, what: str, kind: str, rgb: np.ndarray[Any, Any], threads: int, runs: int
-) -> LookupTiming:
+def _bulk(cube: Cube, what: str, kind: str, rgb: np.ndarray[Any, Any], threads: int, runs: int) -> Timing:
     jax.clear_caches()
     begin = time.perf_counter()
     make = partial(bulk.spectra, cube, WAVELENGTHS) if kind == "spectra" else partial(bulk.coefficients, cube)
@@ -108,26 +87,43 @@ def _bulk(
     answered = time.perf_counter()
     expected = cube.reflectance(rgb, WAVELENGTHS) if kind == "spectra" else cube.coefficients(rgb)
     apart = float(np.abs(found - expected).max())
-    _refuse(what, apart, 1e-6)
+    _check(what, apart, 1e-6)
     wall, cpu = timed(lambda: sample(rgb), runs)
-    return LookupTiming(
-        what,
-        rgb.dtype.name,
-        threads,
-        len(rgb),
-        rgb.itemsize * 3 + 9 * 4 * _width(cube, kind),
-        wall,
-        cpu,
-        apart=apart,
-        prepare=prepared - begin,
-        compile=max(answered - prepared - wall.median, 0),
-    )
+    bytes_each = rgb.itemsize * 3 + 9 * 4 * _width(cube, kind)
+    return _timing(what, rgb.dtype.name, threads, len(rgb), bytes_each, wall, cpu, apart) | {
+        "prepare_s": prepared - begin,
+        "compile_s": max(answered - prepared - wall.median, 0),
+    }
+
+
+def _timing(
+    what: str,
+    dtype: str,
+    threads: int,
+    colours: int,
+    bytes_each: int,
+    wall: Spread,
+    cpu: Spread,
+    error: float,
+) -> Timing:
+    """Bytes of a colour are those of the query, of the rows read and of the result."""
+    return {
+        "what": what,
+        "dtype": dtype,
+        "threads": threads,
+        "colours": colours,
+        "bytes": bytes_each,
+        "wall_s": wall,
+        "million_per_s": colours / wall.median / 1e6,
+        "cpu_us": cpu.median / colours * 1e6,
+        "error": error,
+    }
 
 
 def _width(cube: Cube, what: str) -> int:
     return cube.data.model.count if what == "coefficients" else len(WAVELENGTHS)
 
 
-def _refuse(what: str, worst: float | None, limit: float) -> None:
+def _check(what: str, worst: float | None, limit: float) -> None:
     if worst is None or not worst <= limit:
-        raise RuntimeError(f"{what}: a wrong answer ({worst}) is not worth timing")
+        raise RuntimeError(f"{what}: error {worst} exceeds {limit}: nothing to time")

@@ -1,14 +1,14 @@
-"""How few wavelengths would do for the fit: rules of fewer nodes, against all 81."""
+"""Quadrature rules of few wavelengths for the fit, compared with all 81."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.linalg import qr
 from scipy.optimize import nnls
 
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT
 from uplift.common.arrays import Array
 from uplift.lookup import load
 from uplift.models import reflectance
@@ -17,24 +17,16 @@ COUNTS = (16, 24, 32, 48)
 SPECTRA = 3000
 
 
-@dataclass(frozen=True)
-class NodesError:
-    """|linear RGB| by which ``count`` wavelengths miss what all give: median and largest, of spectra not learnt from.
+def quadrature_errors() -> list[dict[str, Any]]:
+    """Return the error of rules of few wavelengths, |linear RGB|, as [median, largest] over held-out spectra.
 
-    ``any_sign`` with weights of any sign, ``positive`` with weights on XYZ that are not negative.
+    ``any_sign`` allows weights of any sign, ``positive`` only non-negative weights on XYZ. Nodes come from a pivoted QR
+    decomposition of half of a cube's spectra, weights from least squares over the same half.
     """
-
-    count: int
-    any_sign: tuple[float, float]
-    positive: tuple[float, float]
-
-
-def nodes_errors() -> list[NodesError]:
-    """Nodes by pivoted QR of half of a cube's spectra, weights by least squares over the same."""
     data = load(ROOT / "cubes" / "moments-16.uplift").data
     sensor = data.sensor
     chosen = np.random.default_rng(0).permutation(data.lattice.size)[:SPECTRA]
-    learn, judge = np.array_split(
+    learn, held_out = np.array_split(
         reflectance(data.model, data.points.coefficients[chosen], sensor.wavelengths), 2
     )
     importance = np.sqrt(sensor.light.xyz.sum(axis=0))
@@ -44,14 +36,12 @@ def nodes_errors() -> list[NodesError]:
         nodes = np.sort(order[:count])
         free = np.linalg.lstsq(learn[:, nodes], learn @ sensor.matrix.T, rcond=None)[0]
         xyz = np.stack([nnls(learn[:, nodes], learn @ row)[0] for row in sensor.light.xyz], axis=1)
-        found.append(
-            NodesError(
-                count, *(_missed(judge, sensor.matrix, nodes, w) for w in (free, xyz @ sensor.xyz_to_rgb.T))
-            )
-        )
+        weights = {"any_sign": free, "positive": xyz @ sensor.xyz_to_rgb.T}
+        errors = {kind: _errors(held_out, sensor.matrix, nodes, one) for kind, one in weights.items()}
+        found.append({"wavelengths": count, **errors})
     return found
 
 
-def _missed(spectra: Array, matrix: Array, nodes: Array, weights: Array) -> tuple[float, float]:
-    missed = np.abs(spectra[:, nodes.astype(int)] @ weights - spectra @ matrix.T).max(axis=1)
-    return float(np.median(missed)), float(missed.max())
+def _errors(spectra: Array, matrix: Array, nodes: Array, weights: Array) -> list[float]:
+    errors = np.abs(spectra[:, nodes.astype(int)] @ weights - spectra @ matrix.T).max(axis=1)
+    return [float(np.median(errors)), float(errors.max())]

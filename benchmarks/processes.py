@@ -1,4 +1,4 @@
-"""Whole processes, as a user starts them: cold, warm and without the cache of compiled code."""
+"""Times of processes as a user starts them: cold, warm and without the compilation cache."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.timing import ROOT, process
+from benchmarks.record import ROOT
+from benchmarks.timing import process
 from uplift.lab.timing import Spread, spread
 
 UPLIFT = str(Path(sys.executable).parent / "uplift")
@@ -16,7 +17,7 @@ MACBETH = str(ROOT / "atlases" / "macbeth.txt")
 
 @dataclass(frozen=True)
 class ProcessTiming:
-    """A command, wall seconds and peak memory in MB."""
+    """Wall seconds and peak memory in MB of a command."""
 
     what: str
     wall: Spread
@@ -45,7 +46,7 @@ def _builds(folder: str, runs: int) -> list[ProcessTiming]:
 
     timings = [
         ProcessTiming(
-            "uplift build --dim 32, nothing kept of what is compiled",
+            "uplift build --dim 32, compilation cache disabled",
             *process(build(32), runs, {"JAX_ENABLE_COMPILATION_CACHE": "false"}),
         )
     ]
@@ -55,7 +56,7 @@ def _builds(folder: str, runs: int) -> list[ProcessTiming]:
             for run in range(runs if dim < 128 else 1)
         ]
         warm_cache = {"JAX_COMPILATION_CACHE_DIR": f"{folder}/cache-{dim}-0"}
-        timings.append(_joined(f"uplift build --dim {dim}, nothing compiled yet", cold))
+        timings.append(_joined(f"uplift build --dim {dim}, first run", cold))
         timings.append(
             ProcessTiming(
                 f"uplift build --dim {dim}, compiled before",

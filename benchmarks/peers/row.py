@@ -1,8 +1,10 @@
-"""One line of the tables of peers, and the check that its answer is one worth timing."""
+"""A row of the comparison with other tools, and the check that precedes timing."""
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,12 +15,12 @@ from uplift.lab.timing import Spread
 from uplift.models import Model, Moments, Sigmoid, evaluate
 
 THRESHOLD = 1e-4
-"""Largest |linear RGB| by which a spectrum misses its colour and is counted as there: that of our cubes."""
+"""Largest |linear RGB| between a fitted spectrum and its colour: the threshold of cubes."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """How well spectra have their colours: share within `THRESHOLD`, and the largest |linear RGB| of a miss."""
+    """Accuracy of fitted spectra: share within `THRESHOLD`, and the largest residual in |linear RGB|."""
 
     share: float
     worst: float
@@ -26,10 +28,10 @@ class Answer:
 
 @dataclass(frozen=True)
 class Peer:
-    """A tool at one task: µs of CPU per point (all threads), and how good what it found is.
+    """CPU time in µs per node (all threads) and accuracy of a tool.
 
-    ``model`` is 'sigmoid' or 'moments', ``count`` its coefficients; ``cpu`` and ``answer`` are None where the tool
-    is not installed, ``notes`` then says so.
+    ``model`` is 'sigmoid' or 'moments', ``count`` its number of coefficients. ``cpu`` and ``answer`` are None if the
+    tool is not installed; ``notes`` then states it.
     """
 
     tool: str
@@ -40,9 +42,15 @@ class Peer:
     answer: Answer | None
     notes: str = ""
 
+    def to_json(self) -> dict[str, Any]:
+        """Return a row of docs/data/performance.json."""
+        answer = dataclasses.asdict(self.answer) if self.answer else {"share": None, "worst": None}
+        fields = {name: getattr(self, name) for name in ("tool", "model", "count", "points", "notes")}
+        return fields | {"cpu_us": self.cpu} | answer
+
 
 def missing(tool: str, what: str, model: str, count: int) -> Peer:
-    """The row of a tool whose ``what`` is not here: nothing was measured."""
+    """Return the row of a tool that needs ``what``, which is not installed."""
     return Peer(tool, model, count, 0, None, None, f"{what} is not installed")
 
 
@@ -55,15 +63,15 @@ def judge(rgb: ArrayLike, target: ArrayLike, *, least: float, within: float = TH
 
     Raises
     ------
-    RuntimeError : fewer than the share ``least`` come within ``within``. Some peers leave points, and their rows
-        say how many; one that leaves more is not doing what it is timed for.
+    RuntimeError : fewer than the share ``least`` come within ``within``. Some tools leave a few points unfitted, and
+        their rows state how many; with more the timing means nothing.
     """
-    missed = np.abs(np.asarray(rgb) - np.asarray(target)).max(axis=1)
-    missed = np.where(np.isfinite(missed), missed, np.inf)
-    there = float((missed <= within).mean())
-    if there < least:
-        raise RuntimeError(f"a wrong answer is not worth timing: {there:.1%} of the points within {within:g}")
-    return Answer(float((missed <= THRESHOLD).mean()), float(missed.max()))
+    residual = np.abs(np.asarray(rgb) - np.asarray(target)).max(axis=1)
+    residual = np.where(np.isfinite(residual), residual, np.inf)
+    share = float((residual <= within).mean())
+    if share < least:
+        raise RuntimeError(f"wrong answer, not timed: {share:.1%} of the points are within {within:g}")
+    return Answer(float((residual <= THRESHOLD).mean()), float(residual.max()))
 
 
 def judge_multipliers(

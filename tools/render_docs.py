@@ -1,0 +1,167 @@
+"""Render the pages of measurements: docs/templates/NAME.md.j2 filled from docs/data/NAME.json is docs/NAME.md.
+
+Nothing is measured here. The programs in benchmarks/ write the data.
+
+Examples
+--------
+    python -m tools.render_docs                # all pages
+    python -m tools.render_docs accuracy       # one page
+    python -m tools.render_docs --check        # fail if a committed page is out of date
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import string
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Undefined
+
+from uplift.viz import format as viz_format
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+NAMED: dict[str, Callable[[float], str]] = {
+    "time": viz_format.format_time,
+    "size": viz_format.format_size,
+    "error": viz_format.format_error,
+    "build_time": viz_format.format_build_time,
+}
+"""Formats that are no format specification of Python: `time` takes nanoseconds, `size` bytes."""
+Row = Mapping[str, Any]
+
+
+def number(value: Any, spec: str = "") -> str:
+    """Format a value of the data.
+
+    Parameters
+    ----------
+    value : number, str, None, list or dict
+        None is an empty string, a bool a filled or an empty circle. The items of a list are joined by slashes.
+        ``{median, min, max}`` is written as "median (min–max)", ``{mean, std}`` as "mean ± std".
+    spec : str
+        A format specification of Python, or a key of `NAMED`. After "list " the items of a list are joined by commas.
+
+    Returns
+    -------
+    str
+    """
+    if value is None:
+        return ""
+    if isinstance(value, str | Undefined):
+        return str(value)
+    if isinstance(value, bool):
+        return "●" if value else "○"
+    if isinstance(value, list | tuple) and spec.startswith("list "):
+        return ", ".join(number(item, spec.removeprefix("list ")) for item in value)
+    if isinstance(value, list | tuple):
+        return " / ".join(number(item, spec) for item in value)
+    if isinstance(value, Mapping):
+        parts = {key: number(item, spec) for key, item in value.items()}
+        return (
+            "{mean} ± {std}".format_map(parts)
+            if "std" in parts
+            else "{median} ({min}–{max})".format_map(parts)
+        )
+    return NAMED[spec](value) if spec in NAMED else format(value, spec)
+
+
+class RowFormatter(string.Formatter):
+    """Fill a pattern such as ``{cube} | {worst:.1e}`` from a row; a dot leads into a nested dict or list."""
+
+    def get_field(self, field_name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> Any:
+        """Return the value at a dotted path."""
+        value: Any = kwargs
+        for key in field_name.split("."):
+            value = value[int(key)] if isinstance(value, list) else value[key]
+        return value, field_name
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        """Format as `number` does."""
+        return number(value, format_spec)
+
+
+def table(rows: Iterable[Row], caller: Callable[[], str]) -> str:
+    """Return a Markdown table.
+
+    The body of the ``call`` block has two lines: the headings, and the pattern of a row.
+    """
+    heading, pattern = caller().strip("\n").splitlines()
+    rule = " | ".join(["---"] * (heading.count(" | ") + 1))
+    body = [RowFormatter().vformat(pattern, (), row) for row in rows]
+    return "".join(f"| {line} |\n" for line in (heading, rule, *body))
+
+
+def where(rows: Iterable[Row], **conditions: Any) -> list[Row]:
+    """Return the rows with these values."""
+    return [row for row in rows if all(row[key] == value for key, value in conditions.items())]
+
+
+def pick(rows: Iterable[Row], **conditions: Any) -> Row:
+    """Return the one row with these values; raise `LookupError` if there is none, or more than one."""
+    found = where(rows, **conditions)
+    if len(found) != 1:
+        raise LookupError(f"{len(found)} rows with {conditions}")
+    return found[0]
+
+
+def mean(values: Iterable[float]) -> float:
+    """Return the arithmetic mean."""
+    numbers = list(values)
+    return sum(numbers) / len(numbers)
+
+
+def pages(docs: Path = DOCS) -> list[str]:
+    """Return the names of the pages that have a template."""
+    return sorted(path.name.removesuffix(".md.j2") for path in (docs / "templates").glob("*.md.j2"))
+
+
+def render(name: str, docs: Path = DOCS) -> str:
+    """Return the text of a page, from its template and data below ``docs``."""
+
+    def load(part: str) -> Any:
+        return json.loads((docs / "data" / f"{part}.json").read_text(encoding="utf-8"))
+
+    def text(path: str) -> str:
+        return (docs / path).read_text(encoding="utf-8")
+
+    environment = Environment(
+        loader=FileSystemLoader(docs / "templates"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+    environment.filters |= {"num": number, "mean": mean}
+    environment.globals |= {"load": load, "text": text, "table": table, "where": where, "pick": pick}
+    return environment.get_template(f"{name}.md.j2").render(load(name))
+
+
+def stale(docs: Path = DOCS) -> list[str]:
+    """Return the names of the pages that differ from their rendering."""
+    return [
+        name
+        for name in pages(docs)
+        if (docs / f"{name}.md").read_text(encoding="utf-8") != render(name, docs)
+    ]
+
+
+def main() -> None:
+    """Write pages, or check them."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("names", nargs="*", help="pages to render; all by default")
+    parser.add_argument("--check", action="store_true", help="write nothing, fail if a page is out of date")
+    options = parser.parse_args()
+    if options.check:
+        outdated = stale()
+        raise SystemExit(f"out of date: {', '.join(outdated)}; run 'make docs'" if outdated else 0)
+    for name in options.names or pages():
+        (DOCS / f"{name}.md").write_text(render(name), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
