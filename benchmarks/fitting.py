@@ -136,4 +136,4 @@ def _macbeth() -> Array:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         spectra = on_grid(read_atlas(ROOT / "atlases" / "macbeth.txt"), sensor.wavelengths)
-    return spectra[sensor.holds(sensor.rgb(spectra))]
+    return spectra[sensor.contains(sensor.rgb(spectra))]

@@ -52,7 +52,7 @@ def materials(name: str) -> Materials:
     measured = resample(spectra(name), SENSOR.wavelengths).values
     rgb = SENSOR.rgb(measured)
     _, first = np.unique(np.round(rgb, 6), axis=0, return_index=True)
-    rows = [row for row in sorted(first) if SENSOR.holds(rgb[row])]
+    rows = [row for row in sorted(first) if SENSOR.contains(rgb[row])]
     return Materials(name, measured[rows], np.clip(rgb[rows], 0, 1))
 
 

@@ -124,7 +124,7 @@ def _materials(folder: Path, case: Case, plan: dict[str, Any]) -> Iterator[tuple
     sensor = observer.sensor()
     measured = resample(read_atlas(folder / case.atlas), sensor.wavelengths).values
     rgb = sensor.rgb(measured)
-    measured, rgb = measured[sensor.holds(rgb)], np.clip(rgb[sensor.holds(rgb)], 0, 1)
+    measured, rgb = measured[sensor.contains(rgb)], np.clip(rgb[sensor.contains(rgb)], 0, 1)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         options = {**plan["build"], "lights": tuple(plan["build"]["lights"])}

@@ -38,7 +38,7 @@ def chart() -> Chart:
     spectra = read_atlas(MACBETH)
     measured = on_grid(spectra, sensor.wavelengths)
     rgb = sensor.rgb(measured)
-    return Chart(spectra.names, sensor.wavelengths, measured, np.clip(rgb, 0, 1), ~sensor.holds(rgb))
+    return Chart(spectra.names, sensor.wavelengths, measured, np.clip(rgb, 0, 1), ~sensor.contains(rgb))
 
 
 @dataclass(frozen=True)

@@ -107,7 +107,7 @@ def command(
     if fill:
         cube = _filled(cube, moved.rgb)
     found: Iterable[QueryResult] = query(
-        cube, moved.rgb, parse_wavelengths(wavelengths), mode, asked=moved.asked
+        cube, moved.rgb, parse_wavelengths(wavelengths), mode, asked=moved.requested
     )
     if plot_path is not None:
         from uplift.viz.spectra import plot_spectra
@@ -122,7 +122,7 @@ def _tell(moved: GamutMapped, way: str) -> None:
     if moved.count:
         told = (
             f"{moved.count} of {len(moved.rgb)} colours lie outside [0, 1]: moved inside ({way}), "
-            f"a component by up to {moved.farthest:.3g}"
+            f"a component by up to {moved.max_change:.3g}"
         )
         warnings.warn(told, UpliftWarning, stacklevel=1)
 

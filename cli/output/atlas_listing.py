@@ -53,7 +53,7 @@ def list_entries(spectra: Atlas, sensor: Sensor) -> Listing:
             entry.step,
             tuple(rgb),
             tuple(code),
-            bool(sensor.holds(rgb)),
+            bool(sensor.contains(rgb)),
             clips.get(entry.name, ()),
         )
         for entry, rgb, code in zip(spectra.entries, colours, codes, strict=True)

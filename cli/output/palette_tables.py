@@ -54,7 +54,7 @@ def _name(part: SpectrumSpec) -> str:
 def _cell(colours: Matrix, at: tuple[int, int], coloured: bool) -> Text:
     from rich.text import Text
 
-    from uplift.colorimetry.display_sensors import hex_codes
+    from uplift.colorimetry.srgb import hex_codes
 
     wished = not math.isnan(colours.delta_e[at])
     shown = [colours.target[at]] * wished + [colours.obtained[at], colours.factor[at]]

@@ -168,9 +168,12 @@ def test_what_lies_outside_another_display_may_lie_inside(ask, table):
     ("name", "problem"),
     [
         ("P9", "unknown RGB space 'P9'; did you mean"),
-        ("1,2", "primaries and white are eight numbers, not 2; "),
+        ("1,2", "primaries and white are eight numbers, got 2; "),
         ("1,2,", "primaries '1,2,' are not clear; "),
-        ("1,0 2,0 3,0 0.3,0.3", "(1,0 2,0 3,0 0.3,0.3) are the primaries and white of no display; "),
+        (
+            "1,0 2,0 3,0 0.3,0.3",
+            "primaries must span a triangle with the white inside, got (1,0 2,0 3,0 0.3,0.3); ",
+        ),
     ],
 )
 def test_what_is_no_display_is_refused(refuse, name, problem):

@@ -1,4 +1,4 @@
-"""ΔE00 against the published pairs, and against colour-science."""
+"""ΔE00 compared with the published pairs and with colour-science."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ PAIRS = np.loadtxt(
 )
 
 
-def test_the_published_pairs():
+def test_published_pairs_of_sharma_2005():
     assert len(PAIRS) == 34
     np.testing.assert_allclose(delta_e_2000(PAIRS[:, :3], PAIRS[:, 3:6]), PAIRS[:, 6], atol=5.1e-5)
 
 
-def test_it_is_symmetric():
+def test_delta_e_2000_is_symmetric():
     np.testing.assert_allclose(
         delta_e_2000(PAIRS[:, :3], PAIRS[:, 3:6]), delta_e_2000(PAIRS[:, 3:6], PAIRS[:, :3]), rtol=1e-12
     )
 
 
-def test_it_agrees_with_colour_science():
+def test_delta_e_2000_agrees_with_colour_science():
     rng = np.random.default_rng(3)
     first = rng.uniform([0, -100, -100], [100, 100, 100], (2000, 3))
     second = first + rng.normal(scale=10, size=first.shape)
@@ -34,7 +34,7 @@ def test_it_agrees_with_colour_science():
     np.testing.assert_allclose(delta_e_2000(first, second), expected, rtol=1e-9)
 
 
-def test_equal_colours_and_greys_do_not_differ():
+def test_equal_greys_have_no_difference():
     greys = np.stack([np.linspace(0, 100, 11), np.zeros(11), np.zeros(11)], axis=1)
     assert not delta_e_2000(greys, greys).any()
 

@@ -1,4 +1,4 @@
-"""Sensors: white is (1, 1, 1), colours agree with colour-science, unknown names are met with near ones."""
+"""Sensors, lights and tables by name, compared with colour-science."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import colour
 import numpy as np
 import pytest
 
+from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.errors import UnknownNameError
 
@@ -14,14 +15,14 @@ SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 
 @pytest.mark.parametrize("space", SPACES)
 @pytest.mark.parametrize("illuminant", ["D65", "A", "FL11"])
-def test_the_perfect_reflector_is_white(space, illuminant):
+def test_perfect_reflector_is_white(space, illuminant):
     sensor = observer.sensor(space, illuminant)
     np.testing.assert_allclose(sensor.rgb(np.ones(81)), 1, atol=1e-14)
     assert sensor.light.white[1] == pytest.approx(1, abs=1e-15)
 
 
 def test_colours_agree_with_colour_science(sensor):
-    """The only difference is the white that the table of sRGB's own matrix is rounded to."""
+    """Up to the rounded white of the published sRGB matrix."""
     shape = colour.SpectralShape(380, 780, 5)
     cmfs = colour.MSDS_CMFS[observer.DEFAULT_OBSERVER].copy().align(shape)
     d65 = colour.SDS_ILLUMINANTS["D65"].copy().align(shape)
@@ -31,21 +32,21 @@ def test_colours_agree_with_colour_science(sensor):
         np.testing.assert_allclose(sensor.rgb(samples.values), colour.XYZ_to_RGB(xyz, "sRGB"), atol=5e-4)
 
 
-def test_xyz_undoes_rgb(sensor):
+def test_xyz_of_rgb_equals_xyz_of_reflectance(sensor):
     reflectance = np.random.default_rng(1).random((10, 81))
     np.testing.assert_allclose(
         sensor.xyz(sensor.rgb(reflectance)), reflectance @ sensor.light.xyz.T, atol=1e-14
     )
 
 
-def test_rounding_takes_nothing_out_of_the_space(sensor):
-    assert sensor.holds([1 + 1e-12, 0, 1])
-    assert sensor.holds([-1e-12, 0.5, 1])
-    assert not sensor.holds([1.001, 0, 1])
-    assert not sensor.holds([np.nan, 0, 0])
+def test_rounding_errors_are_in_gamut(sensor):
+    assert sensor.contains([1 + 1e-12, 0, 1])
+    assert sensor.contains([-1e-12, 0.5, 1])
+    assert not sensor.contains([1.001, 0, 1])
+    assert not sensor.contains([np.nan, 0, 0])
 
 
-def test_decoding_is_the_space_s_own(sensor):
+def test_decoding_agrees_with_colour_science(sensor):
     expected = colour.RGB_COLOURSPACES["sRGB"].cctf_decoding(np.arange(256) / 255)
     np.testing.assert_array_equal(sensor.decoding, expected)
 
@@ -59,27 +60,26 @@ def test_axes_run_from_0_to_1(spacing):
 
 
 @pytest.mark.parametrize(
-    ("ask", "kind", "near"),
+    ("call", "code", "near"),
     [
-        (lambda: observer.sensor("sRBG"), "RGB space 'sRBG'", "'sRGB'"),
-        (lambda: observer.light("D66"), "illuminant 'D66'", "'D65'"),
+        (lambda: observer.sensor("sRBG"), "unknown-rgb-space", "'sRGB'"),
+        (lambda: observer.light("D66"), "unknown-illuminant", "'D65'"),
         (
             lambda: observer.light("D65", "CIE 1931 2 Degree"),
-            "observer",
+            "unknown-observer",
             "'CIE 1931 2 Degree Standard Observer'",
         ),
-        (lambda: observer.axis_nodes("srgbb", 4), "axis spacing 'srgbb'", "'srgb'"),
-        (lambda: observer.light("zzzzzz"), "illuminant 'zzzzzz'", "'A'"),
+        (lambda: observer.axis_nodes("srgbb", 4), "unknown-axis-spacing", "'srgb'"),
+        (lambda: observer.light("zzzzzz"), "unknown-illuminant", "'A'"),
     ],
 )
-def test_unknown_names_are_met_with_near_ones(ask, kind, near):
-    with pytest.raises(UnknownNameError) as caught:
-        ask()
-    assert kind in str(caught.value)
-    assert near in str(caught.value)
+def test_unknown_names_raise_with_near_names(call, code, near):
+    with raises(UnknownNameError, code) as caught:
+        call()
+    assert near in caught.value.hint
 
 
-def test_samples_at_1_nm_hold_those_at_5():
+def test_samples_at_1_nm_include_those_at_5_nm():
     fine, coarse = observer.matching_functions(step=1.0), observer.matching_functions()
     np.testing.assert_allclose(fine[::5], coarse, atol=1e-12)
     assert observer.illuminant_spd("FL11", 380.0, 770.0, 1.0).shape == (391,)
@@ -88,8 +88,8 @@ def test_samples_at_1_nm_hold_those_at_5():
     )
 
 
-def test_primaries_are_those_of_the_space():
+def test_primaries_of_a_named_space():
     found = observer.primaries("Display P3")
     assert str(found) == "0.68,0.32 0.265,0.69 0.15,0.06 0.3127,0.329"
-    with pytest.raises(UnknownNameError, match="unknown RGB space 'P9'"):
+    with raises(UnknownNameError, "unknown-rgb-space"):
         observer.primaries("P9")

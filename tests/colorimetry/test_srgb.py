@@ -1,4 +1,4 @@
-"""What screens show of colours: their own to the code, others at their luminance and dominant wavelength."""
+"""Display of linear RGB: sRGB colours exactly, others at their luminance and dominant wavelength."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.colorimetry.srgb import decode, encode, to_display_codes
 
 
-def test_the_curve_is_the_standard_s_and_leads_back():
+def test_transfer_curve_agrees_with_the_standard_and_is_invertible():
     linear = np.linspace(0, 1, 300)
     np.testing.assert_allclose(encode(linear), colour.models.eotf_inverse_sRGB(linear), rtol=0, atol=1e-6)
     np.testing.assert_allclose(decode(encode(linear)), linear, rtol=0, atol=1e-6)
 
 
-def test_srgb_is_shown_as_it_is(small_cube):
+def test_srgb_codes_are_unchanged(small_cube):
     codes = np.random.default_rng(0).integers(0, 256, (500, 3))
     np.testing.assert_array_equal(to_display_codes(decode(codes / 255), SRGB), codes)
     of_cube = to_display_codes(
@@ -28,8 +28,8 @@ def test_srgb_is_shown_as_it_is(small_cube):
 
 
 @pytest.mark.parametrize(("space", "illuminant"), [("P3-D65", "D65"), ("ProPhoto RGB", "D50"), ("sRGB", "A")])
-def test_other_spaces_are_shown_as_they_look(space, illuminant):
-    """What a sensor of the screen's sees under the cube's light, which adapts by Bradford's transform too."""
+def test_other_spaces_keep_their_appearance(space, illuminant):
+    """An sRGB sensor under the illuminant of the cube adapts by Bradford's transform too."""
     own, screen = (observer.sensor(name, illuminant) for name in (space, "sRGB"))
     rgb = 0.3 + 0.3 * np.random.default_rng(1).random((200, 3))  # pale enough for sRGB
     expected = 255 * encode(own.xyz(rgb) @ screen.xyz_to_rgb.T)
@@ -37,7 +37,7 @@ def test_other_spaces_are_shown_as_they_look(space, illuminant):
     np.testing.assert_array_equal(to_display_codes([1, 1, 1], own), [255, 255, 255])
 
 
-def test_what_no_screen_shows_keeps_its_luminance():
+def test_colours_outside_srgb_keep_their_luminance():
     wide = observer.sensor("P3-D65")
     red = np.array([0.6, 0, 0])
     linear = wide.xyz(red) @ np.linalg.inv(SRGB.rgb_to_xyz).T

@@ -20,7 +20,7 @@ LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3")
 @pytest.fixture(scope="module")
 def measured(sensor):
     spectra = on_grid(read_atlas(MACBETH), sensor.wavelengths)
-    return spectra[sensor.holds(sensor.rgb(spectra))]
+    return spectra[sensor.contains(sensor.rgb(spectra))]
 
 
 def fitted(sensor, measured, lights=LIGHTS, weights=BALANCED):

@@ -22,7 +22,7 @@ def stage(sensor):
     model = Moments(9)
     ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
     spectra = uplift.atlas.on_grid(uplift.read_atlas(MACBETH), sensor.wavelengths)
-    spectra = spectra[sensor.holds(sensor.rgb(spectra))]
+    spectra = spectra[sensor.contains(sensor.rgb(spectra))]
     lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3")]
     entries = fit.fit_entries(model, ahead, spectra, sensor.rgb(spectra), lights, lights[1], 1e-6)
     return fit.Problem(model, ahead, Lattice(observer.axis_nodes("srgb", 32))), lights, entries

@@ -43,7 +43,7 @@ def some(entries, rows):
 def materials(problem, sensor):
     """The materials of rawtoaces that sRGB holds."""
     measured = resample(read_atlas(ATLASES / "rawtoaces.txt"), sensor.wavelengths).values
-    return entries_of(problem, sensor, measured[sensor.holds(sensor.rgb(measured))])
+    return entries_of(problem, sensor, measured[sensor.contains(sensor.rgb(measured))])
 
 
 def test_at_an_entry_the_start_is_nearly_its_own_spectrum(problem, sensor, materials):

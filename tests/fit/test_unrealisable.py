@@ -22,7 +22,7 @@ DIM = 17
 @pytest.mark.parametrize(("model", "count"), [("moments", 9), ("moments", 17), ("sigmoid", 3)])
 def test_all_that_is_realisable_is_fitted(space, model, count):
     data = uplift.build(dim=DIM, space=space, model=model, coefficients=count).data
-    possible = solid(data.sensor.matrix).holds(data.lattice.points)
+    possible = solid(data.sensor.matrix).contains(data.lattice.points)
     assert Status.UNFITTED not in data.points.status
     rgb = data.sensor.rgb(reflectance(data.model, data.points.coefficients, data.sensor.wavelengths))
     distance = np.abs(rgb - data.lattice.points).max(axis=1)
@@ -41,7 +41,7 @@ def test_the_nearest_has_the_hue_and_the_luminance(sensor):
     np.testing.assert_allclose(wide.xyz(nearest)[:, 1:2], luminance, atol=1e-12)
     share = (nearest - luminance) / (target - luminance)
     np.testing.assert_allclose(share, share[:, :1].repeat(3, axis=1), rtol=1e-6)
-    outside = solid(wide.matrix).outside(nearest)
+    outside = solid(wide.matrix).signed_distance(nearest)
     assert outside.max() < 0
     assert outside.min() > -1e-3
     assert unrealisable(lattice, sensor, 1e-4).points.size == 0  # all of sRGB is realisable
@@ -62,6 +62,6 @@ def test_a_query_says_what_no_reflectance_has():
     cube = uplift.build(dim=5, space="ITU-R BT.2020")
     asked = np.array([[0.0, 1, 0], [0.5, 0.5, 0.5], [0.05, 0.9, 0.05], [0.4, 0.7, 0.4]])
     found = list(query(cube, asked))
-    expected = solid(cube.data.sensor.matrix).holds(asked)
+    expected = solid(cube.data.sensor.matrix).contains(asked)
     assert [answer.realisable for answer in found] == expected.tolist()
     assert expected.tolist() == [False, True, False, True]

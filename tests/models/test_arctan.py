@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from uplift.models.arctan import arctan, arctan_rise
+from uplift.models.arctan import arctan, arctan_difference
 
 SIZES = np.concatenate([[0], np.logspace(-300, 300, 4001), np.linspace(0.5, 2, 4001)])
 
@@ -45,16 +45,16 @@ def test_a_rise_is_a_difference_of_arc_tangents(change):
     x = np.concatenate([SIZES.clip(max=1e8), -SIZES.clip(max=1e8)])
     for sign in (1, -1):
         moved = x * (1 + sign * change) + sign * change
-        found = arctan_rise(x[None], (moved - x)[None])[0]
+        found = arctan_difference(x[None], (moved - x)[None])[0]
         np.testing.assert_allclose(found, np.arctan(moved) - np.arctan(x), rtol=1e-9, atol=4e-16)
 
 
 def test_rises_over_the_half_turn_are_whole():
     """From far below to far above, the quotient is as small as of two neighbours."""
-    np.testing.assert_allclose(arctan_rise(np.array([[1e6]]), np.array([[-2e6]])), -np.pi, rtol=1e-5)
+    np.testing.assert_allclose(arctan_difference(np.array([[1e6]]), np.array([[-2e6]])), -np.pi, rtol=1e-5)
 
 
 def test_a_column_is_near_or_far_whatever_is_beside_it():
     x, change = np.zeros((2, 3)), np.array([[1e-3, 1e-3, 9.0], [1e-3, np.nan, 1e-3]])
-    found = arctan_rise(x, change)
+    found = arctan_difference(x, change)
     np.testing.assert_allclose(found, np.arctan(change), rtol=1e-9)

@@ -12,9 +12,9 @@ import pytest
 import uplift
 from tests.helpers import with_points
 from uplift.atlas import on_grid
-from uplift.colorimetry.display_sensors import display_sensors, hex_codes
 from uplift.colorimetry.lights import REPORT_LIGHTS
-from uplift.colorimetry.observer import light
+from uplift.colorimetry.observer import display_sensors, light
+from uplift.colorimetry.srgb import hex_codes
 from uplift.common.errors import UnknownNameError
 from uplift.cube import AtlasTable
 from uplift.lookup import MODES, Cube

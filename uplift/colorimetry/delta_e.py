@@ -1,6 +1,7 @@
-"""CIE L*a*b*, ΔE76 and ΔE00 in numpy alone, for all who may not import colour-science: lookup, slices, checks.
+"""CIE L*a*b*, ΔE76 and ΔE00 with numpy alone.
 
-One implementation for the whole project; the tests hold it against colour-science and the published pairs.
+Modules that must not import colour-science use this implementation too. The tests compare it with colour-science and
+the published pairs.
 """
 
 from __future__ import annotations
@@ -12,40 +13,114 @@ from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 
 OPPONENTS = np.array([[0.0, 116, 0], [500, -500, 0], [0, 200, -200]])
-"""L*a*b* of the compressed X, Y, Z, but for the −16 of L*."""
+"""Compressed X, Y, Z to L*a*b*, without the −16 of L*."""
 
 
 def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
-    """CIE 1976 L*a*b* (…, 3) of XYZ (…, 3) against the white's XYZ (3,) (CIE 15:2004, 8.2.1)."""
+    """Convert XYZ to CIE 1976 L*a*b*.
+
+    Parameters
+    ----------
+    xyz : array_like, shape (..., 3)
+        XYZ, in the units of ``white``.
+    white : array_like, shape (3,)
+        XYZ of the white.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+
+    References
+    ----------
+    CIE 15:2004, 8.2.1.
+
+    Examples
+    --------
+    >>> lab([0.95, 1.0, 1.09], [0.95, 1.0, 1.09]).tolist()
+    [100.0, 0.0, 0.0]
+    """
     t = np.asarray(xyz, dtype=float) / np.asarray(white, dtype=float)
     compressed = np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29)
     return np.asarray(compressed @ OPPONENTS.T - [16, 0, 0])
 
 
 def lab_jacobian(xyz: ArrayLike, white: ArrayLike) -> Array:
-    """Derivative (…, 3, 3) of L*a*b* by XYZ (…, 3); the last axis is XYZ."""
+    """Compute the derivative of L*a*b* with respect to XYZ.
+
+    Parameters
+    ----------
+    xyz : array_like, shape (..., 3)
+        XYZ, in the units of ``white``.
+    white : array_like, shape (3,)
+        XYZ of the white.
+
+    Returns
+    -------
+    ndarray, shape (..., 3, 3)
+        The last axis is XYZ.
+    """
     white = np.asarray(white, dtype=float)
     t = np.asarray(xyz, dtype=float) / white
-    root = np.cbrt(
-        np.maximum(t, (6 / 29) ** 3)
-    )  # below, the straight line goes on with the slope it has here
+    root = np.cbrt(np.maximum(t, (6 / 29) ** 3))  # the linear part has the slope of its upper end
     return OPPONENTS * (1 / (3 * root**2 * white))[..., None, :]
 
 
 def rgb_to_lab(sensor: Sensor, rgb: ArrayLike) -> Array:
-    """CIE L*a*b* (…, 3) of linear RGB (…, 3) under the build illuminant."""
+    """Convert linear RGB to CIE L*a*b* under the build illuminant.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Sensor of the RGB.
+    rgb : array_like, shape (..., 3)
+        Linear RGB.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+    """
     return lab(sensor.xyz(rgb), sensor.light.white)
 
 
 def delta_e_1976(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
-    """CIE 1976 colour difference (…) of L*a*b* (…, 3): their distance (CIE 15:2004, 8.2.1.3)."""
+    """Compute the CIE 1976 colour difference: the distance in L*a*b*.
+
+    Parameters
+    ----------
+    lab_1, lab_2 : array_like, shape (..., 3)
+        CIE L*a*b*.
+
+    Returns
+    -------
+    ndarray, shape (...)
+
+    References
+    ----------
+    CIE 15:2004, 8.2.1.3.
+    """
     return np.asarray(np.linalg.norm(np.subtract(lab_1, lab_2), axis=-1))
 
 
 def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
-    """CIEDE2000 colour difference (…) of L*a*b* (…, 3), k_L = k_C = k_H = 1.
+    """Compute the CIEDE2000 colour difference with k_L = k_C = k_H = 1.
 
+    Parameters
+    ----------
+    lab_1, lab_2 : array_like, shape (..., 3)
+        CIE L*a*b*.
+
+    Returns
+    -------
+    ndarray, shape (...)
+
+    References
+    ----------
     Sharma, Wu & Dalal 2005, "The CIEDE2000 color-difference formula", eq. 2–22.
+
+    Examples
+    --------
+    >>> round(float(delta_e_2000([50, 2.6772, -79.7751], [50, 0, -82.7485])), 4)
+    2.0425
     """
     (l1, a1, b1), (l2, a2, b2) = (np.moveaxis(np.asarray(x, dtype=float), -1, 0) for x in (lab_1, lab_2))
     g = 1.5 - 0.5 * _weight_7((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2)
@@ -54,7 +129,7 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     h1, h2 = _hue(a1, b1), _hue(a2, b2)
     coloured = c1 * c2 > 0
     turn = np.where(coloured, (h2 - h1 + 180) % 360 - 180, 0)
-    # A difference of exactly half a turn counts as +180 when h2 is the larger, as the paper has it.
+    # The paper defines a difference of exactly half a turn as +180 if h2 is larger.
     turn = np.where((turn == -180) & (h2 > h1), 180, turn)
     light, chroma = (l1 + l2) / 2, (c1 + c2) / 2
     hue = np.where(coloured, _mean_hue(h1, h2), h1 + h2)
@@ -73,13 +148,37 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
 
 
 def delta_e_spectra(light: Light, first: ArrayLike, second: ArrayLike) -> Array:
-    """ΔE00 (…) of reflectances (…, N) seen under a light."""
-    seen = (np.asarray(spectra, dtype=float) @ light.xyz.T for spectra in (first, second))
-    return delta_e_2000(*(lab(xyz, light.white) for xyz in seen))
+    """Compute ΔE00 between reflectances under a light.
+
+    Parameters
+    ----------
+    light : Light
+        The light, on N wavelengths.
+    first, second : array_like, shape (..., N)
+        Reflectances in units of 1.
+
+    Returns
+    -------
+    ndarray, shape (...)
+    """
+    xyz = (np.asarray(spectra, dtype=float) @ light.xyz.T for spectra in (first, second))
+    return delta_e_2000(*(lab(each, light.white) for each in xyz))
 
 
 def delta_e_rgb(sensor: Sensor, first: ArrayLike, second: ArrayLike) -> Array:
-    """ΔE00 (…) of linear RGB (…, 3) of the sensor's space, under its illuminant."""
+    """Compute ΔE00 between linear RGB of a sensor, under its illuminant.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Sensor of the RGB.
+    first, second : array_like, shape (..., 3)
+        Linear RGB.
+
+    Returns
+    -------
+    ndarray, shape (...)
+    """
     return delta_e_2000(rgb_to_lab(sensor, first), rgb_to_lab(sensor, second))
 
 

@@ -1,10 +1,10 @@
-"""The one place that reads colour-science's tables: observers, illuminants and RGB spaces by name."""
+"""Observers, illuminants and RGB spaces by name: the one module that reads colour-science's tables."""
 
 from __future__ import annotations
 
 import functools
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
@@ -18,16 +18,17 @@ from uplift.common.errors import unknown_name
 
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
 CRT = "Typical CRT Brainard 1997"
-"""A cathode-ray tube's phosphors, as D. H. Brainard measured them."""
+"""Phosphors of a cathode-ray tube, measured by D. H. Brainard."""
 START, END, STEP = 380.0, 780.0, 5.0
-"""Where every table of the CIE has data (nm)."""
+"""Range and step in nm that every table of the CIE covers."""
 
 
 @functools.cache
 def colour_science() -> ModuleType:
-    """colour-science, imported when first needed (a second) and silent about its optional parts.
+    """Import colour-science on first use, which takes a second.
 
-    It sets how numpy prints; that is set back.
+    Warnings about its optional dependencies are suppressed, and the print options of numpy, which it changes, are
+    restored.
     """
     with warnings.catch_warnings(), np.printoptions():
         warnings.simplefilter("ignore")
@@ -36,57 +37,114 @@ def colour_science() -> ModuleType:
 
 
 def grid() -> Array:
-    """(81,) wavelengths of every sensor: 380–780 nm at 5 nm."""
+    """Return the wavelengths of every sensor, shape (81,): 380–780 nm at 5 nm."""
     return np.arange(START, END + STEP / 2, STEP)
 
 
 def sensor(
     space: str = "sRGB", illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
 ) -> Sensor:
-    """A sensor by names of colour-science.
+    """Create a sensor from names of colour-science.
 
-    The illuminant's white is taken to the space's white by Bradford adaptation, and each row is scaled
-    so that the perfect reflector gives (1, 1, 1) to the last bit that counts.
+    Bradford adaptation takes the white of the illuminant to the white of the space. Each row of the matrix is scaled
+    so that the perfect reflector gives (1, 1, 1) to the last significant bit.
+
+    Parameters
+    ----------
+    space : str
+        RGB space.
+    illuminant : str
+        Illuminant that the RGB refer to.
+    observer : str
+        Colour-matching functions.
+
+    Returns
+    -------
+    Sensor
 
     Raises
     ------
-    UnknownNameError : with the nearest name that exists.
+    UnknownNameError
+        A name is unknown; the hint gives the nearest names.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> sensor("sRGB").rgb(np.full(81, 0.5)).round(12).tolist()
+    [0.5, 0.5, 0.5]
     """
     colour = colour_science()
     rgb_space = _look_up(colour.RGB_COLOURSPACES, space, "RGB space")
-    lit = light(illuminant, observer)
+    build_light = light(illuminant, observer)
     white = colour.xy_to_XYZ(rgb_space.whitepoint)
-    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(lit.white, white, transform="Bradford")
+    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
+        build_light.white, white, transform="Bradford"
+    )
     matrix = rgb_space.matrix_XYZ_to_RGB @ adapt
     return Sensor(
         space=rgb_space.name,
-        illuminant=lit.name,
+        illuminant=build_light.name,
         observer=_look_up(colour.MSDS_CMFS, observer, "observer").name,
         wavelengths=grid(),
         cmfs=matching_functions(observer),
         power=illuminant_spd(illuminant),
-        xyz_to_rgb=matrix / (matrix @ lit.white)[:, None],
+        xyz_to_rgb=matrix / (matrix @ build_light.white)[:, None],
         decoding=np.asarray(rgb_space.cctf_decoding(np.arange(256) / 255), dtype=float),
     )
 
 
+def display_sensors(illuminants: Sequence[str], observer: str) -> tuple[Sensor, ...]:
+    """Create an sRGB sensor for each illuminant, without duplicates.
+
+    Their linear RGB can be displayed directly: the white of each illuminant becomes the white of the screen.
+
+    Parameters
+    ----------
+    illuminants : sequence of str
+        Illuminants; aliases of one illuminant give one sensor.
+    observer : str
+        Colour-matching functions.
+
+    Returns
+    -------
+    tuple of Sensor
+
+    Raises
+    ------
+    UnknownNameError
+        A name is unknown.
+    """
+    sensors = (sensor("sRGB", name, observer) for name in illuminants)
+    return tuple({each.illuminant: each for each in sensors}.values())
+
+
 def primaries(space: str) -> Primaries:
-    """Primaries and white of an RGB space by name. Raises `UnknownNameError`."""
-    found = _look_up(colour_science().RGB_COLOURSPACES, space, "RGB space")
-    return Primaries.of([*found.primaries.ravel(), *found.whitepoint])
+    """Return the primaries and white of an RGB space.
+
+    Raises
+    ------
+    UnknownNameError
+        The space is unknown.
+    """
+    rgb_space = _look_up(colour_science().RGB_COLOURSPACES, space, "RGB space")
+    return Primaries.of([*rgb_space.primaries.ravel(), *rgb_space.whitepoint])
 
 
 def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:
-    """An illuminant to look under, on the grid of every sensor. Raises `UnknownNameError`."""
-    colour = colour_science()
+    """Create a light on the wavelengths of `grid`.
+
+    Raises
+    ------
+    UnknownNameError
+        A name is unknown.
+    """
     weights = matching_functions(observer) * illuminant_spd(illuminant)[:, None]
-    return Light(
-        _look_up(colour.SDS_ILLUMINANTS, illuminant, "illuminant").name, (weights / weights[:, 1].sum()).T
-    )
+    name = _look_up(colour_science().SDS_ILLUMINANTS, illuminant, "illuminant").name
+    return Light(name, (weights / weights[:, 1].sum()).T)
 
 
 def aligned(sensor: Sensor, start: float = START, end: float = END, step: float = STEP) -> tuple[Any, Any]:
-    """A sensor's observer and illuminant as colour-science's own objects, from ``start`` to ``end`` nm."""
+    """Return the observer and illuminant of a sensor as objects of colour-science, from ``start`` to ``end`` nm."""
     colour = colour_science()
     shape = colour.SpectralShape(start, end, step)
     cmfs, light = colour.MSDS_CMFS[sensor.observer], colour.SDS_ILLUMINANTS[sensor.illuminant]
@@ -94,13 +152,68 @@ def aligned(sensor: Sensor, start: float = START, end: float = END, step: float 
 
 
 def axis_nodes(spacing: str, dim: int) -> Array:
-    """(dim,) linear RGB positions of the nodes of a lattice axis, from 0 to 1, spaced as ``spacing`` says."""
+    """Return the positions of the nodes of a lattice axis in linear RGB.
+
+    Parameters
+    ----------
+    spacing : {"srgb", "linear"}
+        Transfer curve in which the nodes are evenly spaced.
+    dim : int
+        Number of nodes.
+
+    Returns
+    -------
+    ndarray, shape (dim,)
+        Positions from 0 to 1, ascending.
+
+    Raises
+    ------
+    UnknownNameError
+        The spacing is unknown.
+    """
     even = np.linspace(0.0, 1.0, dim)
     if spacing == "linear":
         return even
     if spacing == "srgb":
         return np.asarray(colour_science().models.eotf_sRGB(even), dtype=float)
     raise unknown_name(spacing, ("srgb", "linear"), "axis spacing")
+
+
+def matching_functions(
+    observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
+) -> Array:
+    """Return colour-matching functions (N, 3) from ``start`` to ``end`` nm.
+
+    Raises
+    ------
+    UnknownNameError
+        The observer is unknown.
+    """
+    return _samples(colour_science().MSDS_CMFS, observer, "observer", start, end, step)
+
+
+def illuminant_spd(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
+    """Return the relative spectral power (N,) of an illuminant from ``start`` to ``end`` nm.
+
+    Raises
+    ------
+    UnknownNameError
+        The illuminant is unknown.
+    """
+    return _samples(colour_science().SDS_ILLUMINANTS, illuminant, "illuminant", start, end, step)
+
+
+def display_primaries(
+    display: str = CRT, start: float = START, end: float = END, step: float = STEP
+) -> Array:
+    """Return the relative spectral power (N, 3) of the primaries of a display from ``start`` to ``end`` nm.
+
+    Raises
+    ------
+    UnknownNameError
+        The display is unknown.
+    """
+    return _samples(colour_science().MSDS_DISPLAY_PRIMARIES, display, "display", start, end, step)
 
 
 def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:
@@ -110,28 +223,7 @@ def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:
         raise unknown_name(name, table, kind) from None
 
 
-def matching_functions(
-    observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
-) -> Array:
-    """(N, 3) colour-matching functions from ``start`` to ``end`` nm. Raises `UnknownNameError`."""
-    return _samples(colour_science().MSDS_CMFS, observer, "observer", (start, end, step))
-
-
-def illuminant_spd(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
-    """(N,) relative spectral power from ``start`` to ``end`` nm. Raises `UnknownNameError`."""
-    return _samples(colour_science().SDS_ILLUMINANTS, illuminant, "illuminant", (start, end, step))
-
-
-def display_primaries(
-    display: str = CRT, start: float = START, end: float = END, step: float = STEP
-) -> Array:
-    """(N, 3) relative power of a display's red, green and blue. Raises `UnknownNameError`."""
-    return _samples(colour_science().MSDS_DISPLAY_PRIMARIES, display, "display", (start, end, step))
-
-
-def _samples(
-    table: Mapping[str, Any], name: str, kind: str, shape: tuple[float, float, float] = (START, END, STEP)
-) -> Array:
-    """Samples of a colour-science table; outside its data held flat, as colour-science aligns."""
-    shape = colour_science().SpectralShape(*shape)
+def _samples(table: Mapping[str, Any], name: str, kind: str, start: float, end: float, step: float) -> Array:
+    """Sample a table of colour-science, with constant extrapolation."""
+    shape = colour_science().SpectralShape(start, end, step)
     return np.asarray(_look_up(table, name, kind).copy().align(shape).values, dtype=float)

@@ -1,4 +1,4 @@
-"""A sensor turns reflectances into linear RGB: plain arrays, stored in every cube (docs/mathematics.md, 1)."""
+"""Sensors: the linear map from reflectance to linear RGB, as plain arrays (docs/mathematics.md, 1)."""
 
 from __future__ import annotations
 
@@ -6,22 +6,29 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask, Values
 
 SLACK = 1e-9
-"""How far outside [0, 1] a colour may lie by rounding alone."""
+"""Distance from [0, 1] that counts as rounding."""
+
+
+def in_unit_cube(rgb: Values) -> Mask:
+    """Whether (…) RGB (…, 3) lies in [0, 1], up to `SLACK`; False for NaN."""
+    return np.asarray(((rgb >= -SLACK) & (rgb <= 1 + SLACK)).all(axis=-1))
 
 
 @dataclass(frozen=True, eq=False)
 class Light:
-    """An illuminant seen by an observer: a reflectance's XYZ under it (white has Y = 1).
+    """An illuminant with an observer: the linear map from reflectance to XYZ.
 
     Parameters
     ----------
-    name : the illuminant's name.
-    xyz : (3, N) weights; ``xyz @ reflectance`` is XYZ.
+    name : str
+        Name of the illuminant.
+    xyz : ndarray, shape (3, N)
+        Weights; ``xyz @ reflectance`` is XYZ, with Y = 1 for the perfect reflector.
     """
 
     name: str
@@ -29,22 +36,28 @@ class Light:
 
     @cached_property
     def white(self) -> Array:
-        """(3,) XYZ of the perfect reflector."""
+        """XYZ of the perfect reflector, shape (3,)."""
         return self.xyz.sum(axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class Sensor:
-    """Observer, illuminant and RGB space folded into one 3×N matrix.
+    """Observer, illuminant and RGB space combined to a 3×N matrix.
 
     Parameters
     ----------
-    space, illuminant, observer : names, as colour-science spells them.
-    wavelengths : (N,) nm, evenly spaced, ascending.
-    cmfs : (N, 3) colour-matching functions.
-    power : (N,) relative spectral power of the illuminant.
-    xyz_to_rgb : (3, 3) XYZ under the illuminant (white has Y = 1) to linear RGB; white gives (1, 1, 1).
-    decoding : (256,) linear value of every 8-bit code of the space.
+    space, illuminant, observer : str
+        Names, as colour-science spells them.
+    wavelengths : ndarray, shape (N,)
+        Wavelengths in nm, evenly spaced, ascending.
+    cmfs : ndarray, shape (N, 3)
+        Colour-matching functions.
+    power : ndarray, shape (N,)
+        Relative spectral power of the illuminant.
+    xyz_to_rgb : ndarray, shape (3, 3)
+        XYZ under the illuminant, where white has Y = 1, to linear RGB, where white is (1, 1, 1).
+    decoding : ndarray, shape (256,)
+        Linear value of each 8-bit code of the space.
     """
 
     space: str
@@ -64,27 +77,67 @@ class Sensor:
 
     @cached_property
     def matrix(self) -> Array:
-        """(3, N) W: ``W @ reflectance`` is linear RGB; the perfect reflector gives (1, 1, 1)."""
+        """W, shape (3, N): ``W @ reflectance`` is linear RGB; the perfect reflector gives (1, 1, 1)."""
         return self.xyz_to_rgb @ self.light.xyz
-
-    def rgb(self, reflectance: ArrayLike) -> Array:
-        """Linear RGB (…, 3) of reflectances (…, N) sampled at ``wavelengths``."""
-        return np.asarray(reflectance, dtype=float) @ self.matrix.T
-
-    def decode(self, codes: ArrayLike) -> Array:
-        """Linear values (…) of 8-bit codes (…), 0 to 255; fractions are interpolated."""
-        return np.interp(np.asarray(codes, dtype=float), np.arange(256), self.decoding)
-
-    def holds(self, rgb: ArrayLike) -> NDArray[np.bool_]:
-        """Whether linear RGB (…, 3) lies within the space; rounding takes nothing out of it."""
-        array = np.asarray(rgb, dtype=float)
-        return np.asarray(((array >= -SLACK) & (array <= 1 + SLACK)).all(axis=-1))
 
     @cached_property
     def rgb_to_xyz(self) -> Array:
-        """(3, 3) linear RGB to XYZ under the build illuminant."""
+        """Matrix from linear RGB to XYZ under the build illuminant, shape (3, 3)."""
         return np.asarray(np.linalg.inv(self.xyz_to_rgb))
 
+    def rgb(self, reflectance: ArrayLike) -> Array:
+        """Compute the linear RGB of reflectances.
+
+        Parameters
+        ----------
+        reflectance : array_like, shape (..., N)
+            Reflectances in units of 1 at ``wavelengths``.
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+        """
+        return np.asarray(reflectance, dtype=float) @ self.matrix.T
+
     def xyz(self, rgb: ArrayLike) -> Array:
-        """XYZ (…, 3) under the build illuminant of linear RGB (…, 3)."""
+        """Convert linear RGB to XYZ under the build illuminant.
+
+        Parameters
+        ----------
+        rgb : array_like, shape (..., 3)
+            Linear RGB.
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+        """
         return np.asarray(rgb, dtype=float) @ self.rgb_to_xyz.T
+
+    def decode(self, codes: ArrayLike) -> Array:
+        """Convert 8-bit codes to linear values.
+
+        Parameters
+        ----------
+        codes : array_like
+            Codes from 0 to 255; fractions are interpolated.
+
+        Returns
+        -------
+        ndarray
+            Linear values in [0, 1], of the same shape.
+        """
+        return np.interp(np.asarray(codes, dtype=float), np.arange(256), self.decoding)
+
+    def contains(self, rgb: ArrayLike) -> Mask:
+        """Test whether colours are in the gamut of the space, up to rounding.
+
+        Parameters
+        ----------
+        rgb : array_like, shape (..., 3)
+            Linear RGB.
+
+        Returns
+        -------
+        ndarray of bool, shape (...)
+        """
+        return in_unit_cube(np.asarray(rgb, dtype=float))

@@ -1,6 +1,7 @@
-"""What screens show: the sRGB curve, from linear values to what a PNG holds and back (IEC 61966-2-1), and its gamut.
+"""The sRGB transfer curve (IEC 61966-2-1) and the conversion of linear RGB for display.
 
-Screens and viewers take a PNG for sRGB whatever the cube's space, so this is not the cube's own encoding.
+Screens and image viewers interpret a PNG as sRGB, whatever the space of the cube, so this is separate from the
+encoding of a cube.
 """
 
 from __future__ import annotations
@@ -11,22 +12,80 @@ from numpy.typing import ArrayLike
 from uplift.colorimetry.gamut import SRGB, Gamut, conversion, map_to_gamut
 from uplift.common.arrays import Array
 
-SHOWN = "desaturate"
-"""What becomes of colours that no screen shows: swatches keep luminance and dominant wavelength."""
+DISPLAY_MAPPING = "desaturate"
+"""Gamut mapping of swatches: it keeps luminance and dominant wavelength."""
 
 
 def decode(codes: Array) -> Array:
-    """Linear values of encoded ones, both in [0, 1]."""
+    """Convert encoded sRGB to linear values, both in [0, 1].
+
+    Parameters
+    ----------
+    codes : ndarray
+        Encoded values.
+
+    Returns
+    -------
+    ndarray
+        Linear values of the same shape.
+    """
     return np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
 
 
 def encode(linear: ArrayLike) -> Array:
-    """Encoded values of linear ones; both in [0, 1], what is outside is clipped."""
+    """Convert linear values to encoded sRGB in [0, 1], clipping values outside.
+
+    Parameters
+    ----------
+    linear : array_like
+        Linear values.
+
+    Returns
+    -------
+    ndarray
+        Encoded values of the same shape.
+    """
     inside = np.clip(np.asarray(linear, dtype=float), 0, 1)
     return np.where(inside <= 0.0031308, inside * 12.92, 1.055 * inside ** (1 / 2.4) - 0.055)
 
 
 def to_display_codes(rgb: ArrayLike, gamut: Gamut) -> Array:
-    """8-bit codes (…, 3), as whole numbers, of linear RGB (…, 3) of a gamut, on a screen that white is white on."""
-    linear = map_to_gamut(np.asarray(rgb, dtype=float) @ conversion(gamut, SRGB).T, SRGB, SHOWN).rgb
-    return np.rint(255 * encode(linear))
+    """Convert linear RGB of a gamut to 8-bit sRGB codes, white to white.
+
+    Parameters
+    ----------
+    rgb : array_like, shape (..., 3)
+        Linear RGB of ``gamut``; colours outside sRGB are desaturated.
+    gamut : Gamut
+        The RGB space of ``rgb``.
+
+    Returns
+    -------
+    ndarray of float, shape (..., 3)
+        Integers from 0 to 255.
+    """
+    linear = np.asarray(rgb, dtype=float) @ conversion(gamut, SRGB).T
+    return np.rint(255 * encode(map_to_gamut(linear, SRGB, DISPLAY_MAPPING).rgb))
+
+
+def hex_codes(rgb: Array, gamut: Gamut = SRGB) -> list[str]:
+    """Convert linear RGB of a gamut to ``#rrggbb`` codes, by `to_display_codes`.
+
+    Parameters
+    ----------
+    rgb : ndarray, shape (n, 3)
+        Linear RGB of ``gamut``.
+    gamut : Gamut
+        The RGB space of ``rgb``.
+
+    Returns
+    -------
+    list of str, length n
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> hex_codes(np.array([[1.0, 0.5, 0.0]]))
+    ['#ffbc00']
+    """
+    return ["#" + bytes(code).hex() for code in to_display_codes(rgb, gamut).astype(np.uint8)]

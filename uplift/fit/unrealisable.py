@@ -38,18 +38,18 @@ def unrealisable(
     steps between 0 and 1 (MacAdam 1935), which no smooth model reaches.
     """
     limits = solid(sensor.matrix)
-    if limits.holds(CORNERS.astype(float)).all():
+    if limits.contains(CORNERS.astype(float)).all():
         return NONE  # the solid is convex, so it holds what lies between as well
     points, nearest = [NONE.points], [NONE.nearest]
     asked = np.arange(lattice.size) if wanted is None else wanted
     for first in range(0, len(asked), BLOCK):
         block = asked[first : first + BLOCK]
-        outside = block[~limits.holds(lattice.target(block))]
+        outside = block[~limits.contains(lattice.target(block))]
         target = lattice.target(outside)
         grey = np.clip(sensor.xyz(target)[:, 1:2], 0, 1).repeat(3, axis=1)
         way = target - grey
         inward = margin / np.maximum(np.abs(way).max(axis=1), margin)
-        share = np.maximum(limits.reach(grey, target) - inward, 0)
+        share = np.maximum(limits.ray_fraction(grey, target) - inward, 0)
         points.append(outside)
         nearest.append(grey + share[:, None] * way)
     return Unrealisable(np.concatenate(points), np.concatenate(nearest))

@@ -96,7 +96,7 @@ def _realisable(data: CubeData, rgb: Array, corners: Indices) -> Mask:
     """
     possible = ~(data.points.status[corners] == Status.UNREALISABLE).any(axis=1)
     if not possible.all():
-        possible[~possible] = solid(data.sensor.matrix).holds(rgb[~possible])
+        possible[~possible] = solid(data.sensor.matrix).contains(rgb[~possible])
     return np.asarray(possible)
 
 

@@ -79,7 +79,7 @@ def _move(model: Model, ahead: ForwardMap, way: _Way, columns: slice | Indices, 
         change = step(model, ahead, linear, off, damping)
         there = here + change
         off_there = off - matmul_columns(
-            ahead.sensor, model.rise(linear, matmul_columns(ahead.basis, change))
+            ahead.sensor, model.squash_difference(linear, matmul_columns(ahead.basis, change))
         )
     better = (off_there**2).sum(axis=0) < (off**2).sum(axis=0)
     better &= np.abs(there).max(axis=0) <= MAX_MULTIPLIER

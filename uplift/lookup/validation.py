@@ -25,7 +25,7 @@ def within(rgb: NDArray[Any], sensor: Sensor) -> Array:
     array = np.asarray(rgb, dtype=float)
     # Much quicker than asking for each; NaN fails both comparisons.
     if array.size and not (array.min() >= -SLACK and array.max() <= 1 + SLACK):
-        raise_out_of_gamut(array[~sensor.holds(array)])
+        raise_out_of_gamut(array[~sensor.contains(array)])
     return np.clip(array, 0, 1)
 
 

@@ -57,7 +57,7 @@ def _arctan(xp: Any, x: Any) -> Any:
     return t * series + xp.where(beyond, xp.copysign(np.pi / 2 * xp.ones_like(x), x), 0)
 
 
-def arctan_rise(x: Array, change: Array) -> Array:
+def arctan_difference(x: Array, change: Array) -> Array:
     """arctan(x + change) − arctan(x) of numpy arrays (N, n), to 1e-9 of it.
 
     It is the arc tangent of change / (1 + x (x + change)), nearly always of a small number. Columns where it is not,

@@ -39,7 +39,7 @@ class Model(Protocol):
         """Derivative of ``squash``."""
         ...
 
-    def rise(self, x: Array, change: Array) -> Array:
+    def squash_difference(self, x: Array, change: Array) -> Array:
         """squash(x + change) − squash(x) of (N, n), quicker where little changes. numpy alone."""
         ...
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.models import duality
-from uplift.models.arctan import arctan, arctan_rise
+from uplift.models.arctan import arctan, arctan_difference
 from uplift.models.duality import Quadrature
 from uplift.models.phase import Phase
 
@@ -48,8 +48,8 @@ class Moments:
     def slope(self, x: Any) -> Any:
         return 1 / (np.pi * (1 + x * x))
 
-    def rise(self, x: Array, change: Array) -> Array:
-        return arctan_rise(x, change) / np.pi
+    def squash_difference(self, x: Array, change: Array) -> Array:
+        return arctan_difference(x, change) / np.pi
 
     def unsquash(self, reflectance: Array) -> Array:
         return np.tan(np.pi * (reflectance - 0.5))

@@ -39,7 +39,7 @@ class Sigmoid:
     def slope(self, x: Any) -> Any:
         return 0.5 / (1 + x * x) ** 1.5
 
-    def rise(self, x: Array, change: Array) -> Array:
+    def squash_difference(self, x: Array, change: Array) -> Array:
         return np.asarray(self.squash(x + change) - self.squash(x))
 
     def unsquash(self, reflectance: Array) -> Array:

@@ -149,7 +149,7 @@ def _in_gamut(spectra: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Array, A
     """Names, linear RGB (E, 3) and reflectances (E, N) of the entries within the space; the rest is named."""
     measured = on_grid(spectra, sensor.wavelengths)
     rgb = sensor.rgb(measured)
-    inside = sensor.holds(rgb)
+    inside = sensor.contains(rgb)
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
         _warn(f"entry '{spectra.names[row]}' is left out: its colour ({values}) lies outside {sensor.space}")

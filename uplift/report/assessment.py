@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import Atlas
-from uplift.colorimetry.display_sensors import display_sensors
 from uplift.colorimetry.lights import REPORT_LIGHTS
+from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.cube import CubeData

@@ -124,7 +124,7 @@ def from_other_atlas(data: CubeData, spectra: Atlas) -> EntryQuery:
     """Entries that the cube was not built from, those that its space holds."""
     measured = resample(spectra, data.sensor.wavelengths).values
     rgb = data.sensor.rgb(measured)
-    inside = data.sensor.holds(rgb)
+    inside = data.sensor.contains(rgb)
     names = [
         tuple(name for name, held in zip(spectra.names, inside, strict=True) if held == wanted)
         for wanted in (True, False)

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.display_sensors import hex_codes
 from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.srgb import hex_codes
 from uplift.report.assessment import Assessment
 from uplift.report.fidelity import EntryErrors
 from uplift.report.round_trip import SEED

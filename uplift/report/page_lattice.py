@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from uplift.colorimetry.display_sensors import hex_codes
+from uplift.colorimetry.srgb import hex_codes
 from uplift.report.assessment import Assessment
 from uplift.report.page_parts import charts, figure, note, right, swatch, table
 from uplift.viz.format import format_rgb, format_scientific, pluralise

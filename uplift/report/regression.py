@@ -68,7 +68,7 @@ def _settled(data: CubeData) -> Mask:
     """Points (n,) whose spectra are the same on any machine; all, where the space holds no unrealisable point."""
     if Status.UNREALISABLE not in data.points.status:
         return np.ones(data.lattice.size, dtype=bool)
-    return np.asarray(solid(data.sensor.matrix).outside(data.lattice.points) < -UNSETTLED)
+    return np.asarray(solid(data.sensor.matrix).signed_distance(data.lattice.points) < -UNSETTLED)
 
 
 def _counts(data: CubeData, settled: Mask) -> dict[str, int]:

@@ -1,4 +1,4 @@
-"""Displays, and colours that they cannot show."""
+"""Gamuts of displays, and colours outside them."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ GAMUTS = {"sRGB": SRGB, "P3": P3, "ACEScg": ACESCG}
 
 @pytest.fixture(params=[*GAMUTS, "a cube's"])
 def gamut(request):
-    """Of a display, by its primaries; and of a cube, by its sensor."""
+    """Gamuts of displays by primaries, and of a cube by its sensor."""
     return GAMUTS.get(request.param) or observer.sensor("sRGB", "A")
 
 
 @pytest.fixture(scope="session")
 def outside() -> Array:
-    """(n, 3) linear RGB, all outside [0, 1]: a little, far, too bright, too dark, too saturated, all at once."""
+    """(n, 3) linear RGB, all outside [0, 1]: slightly, far, too bright, too dark, too saturated, and combinations."""
     rng = np.random.default_rng(0)
     near = np.clip(rng.normal(0.5, 0.5, (3000, 3)), 0, 1) + rng.normal(0, 1e-3, (3000, 3))
     found = [near, rng.normal(0.5, 1, (4000, 3)), 20 * rng.random((1000, 3)), -rng.random((100, 3))]

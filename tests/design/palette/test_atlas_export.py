@@ -9,7 +9,7 @@ import pytest
 from matplotlib.image import imread
 
 import uplift
-from uplift.colorimetry.display_sensors import hex_codes
+from uplift.colorimetry.srgb import hex_codes
 from uplift.common.errors import OutputError, PaletteError, UpliftWarning
 from uplift.design.palette import design, matrix, plot_matrix, plot_spectra, write_designed
 from uplift.design.palette.palette import SpectrumSpec

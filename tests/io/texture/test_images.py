@@ -147,9 +147,9 @@ def test_pixels_outside_are_moved_as_asked(way, told, colours, made, spectral, t
     bad[4, 4] = (1, 1, 0)
     moved = map_to_gamut(bad, spectral.cube.data.sensor, way)
     np.testing.assert_array_equal(rgb_of(found), moved.rgb)
-    assert result.counts == texture.Counts(600, outside=5, not_finite=1, farthest=moved.farthest)
+    assert result.counts == texture.Counts(600, outside=5, not_finite=1, farthest=moved.max_change)
     assert result.remarks[0] == (
-        f"5 of 600 pixels lie outside [0, 1]: {told}, a component by up to {moved.farthest:.3g}"
+        f"5 of 600 pixels lie outside [0, 1]: {told}, a component by up to {moved.max_change:.3g}"
     )
 
 

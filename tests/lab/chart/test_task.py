@@ -23,7 +23,7 @@ def test_of_each_atlas_every_second_entry_builds_and_the_others_are_asked_for(re
     rows = {tuple(row) for row in found.own.round(12)}
     assert not rows & {tuple(row) for row in found.unseen.round(12)}
     every = on_grid(merge(atlases.values()), found.sensor.wavelengths)
-    assert len(found.own) + len(found.unseen) == found.sensor.holds(found.sensor.rgb(every)).sum()
+    assert len(found.own) + len(found.unseen) == found.sensor.contains(found.sensor.rgb(every)).sum()
 
 
 def test_the_questions_are_the_same_every_time(small_task, repository):

@@ -28,7 +28,7 @@ def test_a_build_is_judged_over_its_realisable_points():
     found = run(RunConfig(dim=4, space="ITU-R BT.2020"), {})
     sensor, lattice = observer.sensor("ITU-R BT.2020"), Lattice(observer.axis_nodes("srgb", 4))
     assert found.points == 64
-    assert found.realisable == solid(sensor.matrix).holds(lattice.points).sum() < 64
+    assert found.realisable == solid(sensor.matrix).contains(lattice.points).sum() < 64
     assert (found.unfitted, found.stand_ins, found.success) == (0, 0, 1)
     assert found.worst <= found.setting.threshold
     assert lattice.points.tolist().count([found.r, found.g, found.b]) == 1

@@ -1,9 +1,4 @@
-"""Displaying the undisplayable: linear RGB outside [0, 1], brought inside (docs/display.md). numpy alone.
-
-from uplift.colorimetry.gamut import SRGB, contained
-
-contained([[1.4, 0.2, -0.1]], SRGB, "desaturate").rgb
-"""
+"""Gamut mapping: linear RGB outside [0, 1] moved inside (docs/display.md)."""
 
 from __future__ import annotations
 

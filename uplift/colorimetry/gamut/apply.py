@@ -1,4 +1,4 @@
-"""Colours as they were asked for and as they are inside [0, 1], with what was moved counted."""
+"""Apply a gamut mapping to arrays of colours and report the colours that it moved."""
 
 from __future__ import annotations
 
@@ -10,98 +10,180 @@ from numpy.typing import ArrayLike
 
 from uplift.colorimetry.gamut.boundary import Gamut
 from uplift.colorimetry.gamut.mapping import MAPPINGS
-from uplift.colorimetry.sensor import SLACK
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError, OptionError
 
 METHODS = ("error", *MAPPINGS)
-"""Names of ``--out-of-gamut``."""
+"""Names of the methods; ``"error"`` raises instead of moving a colour."""
 LARGEST = 1e300
-"""Colours beyond are scaled down to this, so that no sum of three overflows."""
+"""Components are scaled down to this magnitude, so that sums of three do not overflow."""
 BLOCK = 1 << 13
-"""Colours moved at a time: what they take fits into a processor's cache."""
+"""Colours mapped per block; the temporary arrays of a block fit into a processor's cache."""
 
 
 @dataclass(frozen=True, eq=False)
 class GamutMapped:
-    """Linear RGB (…, 3) as ``asked`` for, and as it is inside [0, 1]; which (…,) of it was ``outside``."""
+    """Linear RGB before and after gamut mapping.
 
-    asked: Values
+    Parameters
+    ----------
+    requested : ndarray, shape (..., 3)
+        Linear RGB before the mapping.
+    rgb : ndarray, shape (..., 3)
+        Linear RGB after it, in [0, 1].
+    outside : ndarray of bool, shape (...)
+        Colours that were outside [0, 1].
+    """
+
+    requested: Values
     rgb: Values
     outside: Mask
 
     @property
     def count(self) -> int:
-        """Colours that were moved."""
+        """Number of colours that were moved.
+
+        Returns
+        -------
+        int
+        """
         return int(self.outside.sum())
 
     @property
-    def farthest(self) -> float:
-        """The largest change of a component of linear RGB."""
-        return float(np.abs(self.asked[self.outside] - self.rgb[self.outside]).max(initial=0))
+    def max_change(self) -> float:
+        """Largest absolute change of a component.
+
+        Returns
+        -------
+        float
+        """
+        return float(np.abs(self.requested[self.outside] - self.rgb[self.outside]).max(initial=0))
 
 
-def map_to_gamut(rgb: ArrayLike, gamut: Gamut, way: str = "error") -> GamutMapped:
-    """Linear RGB (…, 3) with what lies outside [0, 1] brought inside; all else stays, to the bit.
+def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMapped:
+    """Move linear RGB outside [0, 1] inside; in-gamut colours are unchanged, bit for bit.
 
     Parameters
     ----------
-    rgb : float32 stays float32. Rounding takes nothing outside (`uplift.colorimetry.sensor.SLACK`).
-    gamut : the display that RGB are of: a cube's sensor, `Primaries`, or `SRGB`.
-    way : one of `METHODS`.
+    rgb : array_like, shape (..., 3)
+        Linear RGB. float32 stays float32. Deviations by rounding (`uplift.colorimetry.sensor.SLACK`) are in gamut.
+    gamut : Gamut
+        The RGB space of ``rgb``: a cube's sensor, `Primaries`, or `SRGB`.
+    method : str
+        One of `METHODS`.
+
+    Returns
+    -------
+    GamutMapped
+        The colours before and after, and which of them were moved.
 
     Raises
     ------
-    ColourError : colours that are not finite; with ``error`` all that lie outside.
-    OptionError : an unknown way.
+    ColourError
+        A colour that needs mapping is not finite, or lies outside [0, 1] and ``method`` is ``"error"``.
+    OptionError
+        The method is unknown.
+
+    Examples
+    --------
+    >>> from uplift.colorimetry.gamut import SRGB
+    >>> map_to_gamut([[0.2, 0.4, 0.6], [1.4, 0.2, -0.1]], SRGB, "clip").rgb.tolist()
+    [[0.2, 0.4, 0.6], [1.0, 0.2, 0.0]]
     """
-    check_method(way)
-    asked = as_rgb(rgb)
-    outside = np.asarray(~((asked >= -SLACK) & (asked <= 1 + SLACK)).all(axis=-1))  # NaN is
-    inside = np.clip(asked, 0, 1)
+    check_method(method)
+    requested = as_rgb(rgb)
+    outside = ~in_unit_cube(requested)
+    inside = np.clip(requested, 0, 1)
     if outside.any():
-        rows = asked[outside].astype(float)
-        if way == "error":
+        rows = requested[outside].astype(float)
+        if method == "error":
             raise_out_of_gamut(rows)
-        inside[outside] = np.clip(_moved(rows, gamut, way), 0, 1)  # rounding
-    return GamutMapped(asked, inside, outside)
+        inside[outside] = np.clip(_map_rows(rows, gamut, method), 0, 1)  # removes rounding errors
+    return GamutMapped(requested, inside, outside)
 
 
-def check_method(way: str) -> None:
-    """Raises `OptionError` for an unknown one."""
-    if way not in METHODS:
-        raise OptionError(f"unknown way out of gamut '{way}'", hint=f"use one of {', '.join(METHODS)}")
+def check_method(method: str) -> None:
+    """Validate the name of a gamut mapping method.
+
+    Parameters
+    ----------
+    method : str
+        The name to check.
+
+    Raises
+    ------
+    OptionError
+        It is not one of `METHODS`.
+    """
+    if method not in METHODS:
+        raise OptionError(
+            f"unknown gamut mapping '{method}'",
+            code="unknown-gamut-mapping",
+            hint=f"use one of {', '.join(METHODS)}",
+        )
 
 
 def as_rgb(rgb: ArrayLike) -> Values:
-    """``rgb`` (…, 3) as float32, if that is what it is, or float64. Raises `ColourError` for other shapes."""
-    single = isinstance(rgb, np.ndarray) and rgb.dtype == np.float32
+    """Convert to an array of RGB triples.
+
+    Parameters
+    ----------
+    rgb : array_like, shape (..., 3)
+        Colours. A float32 array is returned as it is.
+
+    Returns
+    -------
+    ndarray of float32 or float64, shape (..., 3)
+
+    Raises
+    ------
+    ColourError
+        The values are not numbers, or the last axis has not three of them.
+    """
+    is_single = isinstance(rgb, np.ndarray) and rgb.dtype == np.float32
     try:
-        array: Values = np.asarray(rgb) if single else np.asarray(rgb, dtype=float)
+        array: Values = np.asarray(rgb) if is_single else np.asarray(rgb, dtype=float)
     except (TypeError, ValueError) as error:
-        raise ColourError("a colour is three numbers") from error
+        raise ColourError("a colour is three numbers", code="rgb-not-numeric") from error
     if array.ndim == 0 or array.shape[-1] != 3:
-        raise ColourError(f"a colour is three numbers, not an array of shape {array.shape}")
+        raise ColourError(
+            f"a colour is three numbers, got an array of shape {array.shape}", code="rgb-wrong-shape"
+        )
     return array
 
 
 def raise_out_of_gamut(outside: Array) -> NoReturn:
-    """Raises `ColourError`, quoting the first of linear RGB (n, 3)."""
+    """Raise the error for colours outside [0, 1].
+
+    Parameters
+    ----------
+    outside : ndarray, shape (n, 3)
+        The colours, of which the message quotes the first.
+
+    Raises
+    ------
+    ColourError
+        Always.
+    """
     raise ColourError(
-        f"linear RGB {_quoted(outside[0])} lies outside [0, 1]",
-        hint="reflectances reach no further; move it with --out-of-gamut, or use --8bit for codes",
+        f"linear RGB {_format_rgb(outside[0])} lies outside [0, 1]",
+        code="rgb-out-of-gamut",
+        hint="map it with uplift.colorimetry.gamut.map_to_gamut, or convert 8-bit codes with Cube.decode",
     )
 
 
-def _moved(rgb: Array, gamut: Gamut, way: str) -> Array:
+def _map_rows(rgb: Array, gamut: Gamut, method: str) -> Array:
     finite = np.isfinite(rgb).all(axis=1)
     if not finite.all():
         first = rgb[int(finite.argmin())]
-        raise ColourError(f"linear RGB {_quoted(first)} is not finite", hint="mend what made it")
+        raise ColourError(
+            f"linear RGB {_format_rgb(first)} is not finite", code="rgb-not-finite", hint="fix its source"
+        )
     rgb = rgb * np.minimum(1, LARGEST / np.abs(rgb).max(axis=1, keepdims=True))
     blocks = (rgb[first : first + BLOCK] for first in range(0, len(rgb), BLOCK))
-    return np.concatenate([MAPPINGS[way](block, gamut) for block in blocks])
+    return np.concatenate([MAPPINGS[method](block, gamut) for block in blocks])
 
 
-def _quoted(rgb: Array) -> str:
+def _format_rgb(rgb: Array) -> str:
     return "(" + ", ".join(f"{value:g}" for value in rgb) + ")"

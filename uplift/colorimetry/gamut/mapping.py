@@ -1,9 +1,9 @@
-"""Where colours outside [0, 1] go (docs/display.md). numpy alone.
+"""Gamut mapping methods for linear RGB outside [0, 1] (docs/display.md).
 
-Fishkin, *Applying Color Science to Computer Graphics* (1983), chapter 6, has two cases. A colour too bright for the
-display is scaled (6.1). One whose chromaticity lies outside the triangle of the primaries moves toward white on a
-straight line, so that its dominant wavelength stays (6.2.3). The thesis multiplies what it finds there by the sum of
-R, G and B, and speaks of luminance; here it is the luminance that stays.
+Fishkin 1983, *Applying Color Science to Computer Graphics*, chapter 6, distinguishes two cases. A colour too bright
+for the display is scaled (6.1). A chromaticity outside the triangle of the primaries moves toward white on a straight
+line, which keeps the dominant wavelength (6.2.3). There the thesis multiplies the result by the sum of R, G and B, and
+calls this luminance. Here the luminance itself is kept.
 """
 
 from __future__ import annotations
@@ -13,65 +13,66 @@ from collections.abc import Callable
 import numpy as np
 
 from uplift.colorimetry.gamut.boundary import Gamut
-from uplift.colorimetry.gamut.oklab import oklab, responses, roots
+from uplift.colorimetry.gamut.oklab import cone_responses, cube_roots, oklab
 from uplift.common.arrays import Array, Mask
 
 NEARLY = 2.5e-3
-"""Linear RGB, relative to the largest, by which Oklab's lines may leave a gamut on the way from grey to its edge.
+"""Linear RGB, relative to the largest component, by which a line in Oklab may leave the gamut before its edge.
 
-Seen from grey the walls of gamuts have a hollow near blue: lines leave sRGB by 0.0008, ACEScg by 0.0021, and come back.
-Were that taken for the end of a line, colours on either side would end far apart.
+The boundary of a gamut is concave near blue: lines from grey leave sRGB by 0.0008, ACEScg by 0.0021, and return.
+Stopping at the first exit would map neighbouring colours far apart.
 """
 HALVINGS = 24
+"""Bisection steps along a line."""
 
-Way = Callable[[Array, Gamut], Array]
-"""From linear RGB (n, 3), finite, all of it outside [0, 1], to what is shown instead, but for rounding."""
+Mapping = Callable[[Array, Gamut], Array]
+"""Function from finite linear RGB (n, 3) outside [0, 1] to linear RGB (n, 3) inside, up to rounding."""
 
 
 def clip(rgb: Array, gamut: Gamut) -> Array:
-    """Each component by itself, which changes chromaticity, hue and luminance (6.1.1)."""
+    """Clip each component separately, which changes chromaticity, hue and luminance (Fishkin, 6.1.1)."""
     return np.clip(rgb, 0, 1)
 
 
 def scale(rgb: Array, gamut: Gamut) -> Array:
-    """Toward white, at constant luminance, only as far as no component is negative; then divided by the largest.
+    """Move toward white at constant luminance until no component is negative, then divide by the largest.
 
-    The chromaticity of what is merely too bright stays; the dominant wavelength always does.
+    The dominant wavelength is kept. So is the chromaticity of colours that are only too bright.
     """
     inside = _toward_grey(rgb, np.maximum(_luminance(rgb, gamut), 0), np.inf)
     return inside / np.maximum(inside.max(axis=1, keepdims=True), 1)
 
 
 def desaturate(rgb: Array, gamut: Gamut) -> Array:
-    """Toward white as far as all components are within [0, 1], at constant luminance and dominant wavelength.
+    """Move toward white at constant luminance and dominant wavelength until all components are in [0, 1].
 
-    What has the luminance of white, or more, becomes white; what has none, black.
+    A luminance of at least that of white gives white. A luminance of at most 0 gives black.
     """
     return _toward_grey(rgb, np.clip(_luminance(rgb, gamut), 0, 1), 1)
 
 
 def desaturate_oklab(rgb: Array, gamut: Gamut) -> Array:
-    """The same at constant lightness and hue of Oklab, on whose lines reds and yellows look more of one hue."""
+    """Move toward grey at constant lightness and hue of Oklab, which keeps the hue of reds and yellows better."""
     lab = oklab(rgb, gamut)
-    # A row a response, then a row a component: twice as fast as three numbers side by side.
-    grey = np.ascontiguousarray(roots(np.clip(lab[:, :1], 0, 1) * [1, 0, 0]).T)
-    chroma = np.ascontiguousarray(roots(lab * [0, 1, 1]).T)
-    back = np.linalg.inv(responses(gamut))
+    # One row per response, then one per component: contiguous rows are twice as fast here.
+    grey = np.ascontiguousarray(cube_roots(np.clip(lab[:, :1], 0, 1) * [1, 0, 0]).T)
+    chroma = np.ascontiguousarray(cube_roots(lab * [0, 1, 1]).T)
+    to_rgb = np.linalg.inv(cone_responses(gamut))
     inner, outer = np.zeros(len(rgb)), np.ones(len(rgb))
     for _ in range(HALVINGS):
         middle = (inner + outer) / 2
-        fits = _nearly_inside(back @ _cubed(grey + middle * chroma))
+        fits = _nearly_inside(to_rgb @ _cube(grey + middle * chroma))
         inner, outer = np.where(fits, middle, inner), np.where(fits, outer, middle)
-    return desaturate((back @ _cubed(grey + inner * chroma)).T, gamut)
+    return desaturate((to_rgb @ _cube(grey + inner * chroma)).T, gamut)
 
 
-MAPPINGS: dict[str, Way] = {
+MAPPINGS: dict[str, Mapping] = {
     "clip": clip,
     "scale": scale,
     "desaturate": desaturate,
     "desaturate-oklab": desaturate_oklab,
 }
-"""By the names of ``--out-of-gamut``."""
+"""Mappings by the name of their method."""
 
 
 def _luminance(rgb: Array, gamut: Gamut) -> Array:
@@ -80,7 +81,7 @@ def _luminance(rgb: Array, gamut: Gamut) -> Array:
 
 
 def _toward_grey(rgb: Array, grey: Array, top: float) -> Array:
-    """Mixtures with grey (n, 1) in [0, top], of as much colour as keeps all components in [0, top]."""
+    """Mix with grey (n, 1) in [0, top], keeping as much colour as all components in [0, top] allow."""
     low, high = rgb.min(axis=1, keepdims=True), rgb.max(axis=1, keepdims=True)
     below, above = np.ones_like(grey), np.ones_like(grey)
     np.divide(grey, grey - low, out=below, where=low < 0)
@@ -89,11 +90,11 @@ def _toward_grey(rgb: Array, grey: Array, top: float) -> Array:
 
 
 def _nearly_inside(rgb: Array) -> Mask:
-    """Whether (n,) linear RGB (3, n) lies within [0, 1], but for `NEARLY`."""
+    """Whether (n,) linear RGB (3, n) lies within [0, 1], up to `NEARLY`."""
     low, high = rgb.min(axis=0), rgb.max(axis=0)
     return np.asarray((low >= -NEARLY * high) & (high <= 1 + NEARLY))
 
 
-def _cubed(values: Array) -> Array:
-    """Ten times as fast as numpy's power."""
+def _cube(values: Array) -> Array:
+    """Third power, ten times as fast as numpy's ``**``."""
     return values * values * values

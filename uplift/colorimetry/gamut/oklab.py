@@ -1,6 +1,7 @@
-"""Oklab, in which lines of one hue are nearly straight: Ottosson 2020, "A perceptual color space for image processing".
+"""Oklab: a perceptual colour space in which lines of constant hue are nearly straight.
 
-L is 0 for black and 1 for white, a and b are 0 for grey. numpy alone.
+Ottosson 2020, "A perceptual color space for image processing". L is 0 for black and 1 for white, a and b are 0 for
+grey.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ CONES = np.array(
         [0.0482003018, 0.2643662691, 0.6338517070],
     ]
 )
-"""XYZ under D65 to responses of cones."""
+"""XYZ under D65 to cone responses."""
 OPPONENTS = np.array(
     [
         [0.2104542553, 0.7936177850, -0.0040720468],
@@ -25,20 +26,20 @@ OPPONENTS = np.array(
         [0.0259040371, 0.7827717662, -0.8086757660],
     ]
 )
-"""Cube roots of these to L, a, b."""
+"""Cube roots of cone responses to L, a, b."""
 
 
-def responses(gamut: Gamut) -> Array:
-    """(3, 3) linear RGB to responses of cones, which are (1, 1, 1) for the gamut's own white: the eye adapts to it."""
+def cone_responses(gamut: Gamut) -> Array:
+    """Matrix (3, 3) from linear RGB to cone responses, adapted so that the white of the gamut gives (1, 1, 1)."""
     matrix = CONES @ gamut.rgb_to_xyz
     return np.asarray(matrix / matrix.sum(axis=1, keepdims=True))
 
 
 def oklab(rgb: Array, gamut: Gamut) -> Array:
-    """L, a, b (…, 3) of linear RGB (…, 3)."""
-    return np.asarray(np.cbrt(rgb @ responses(gamut).T) @ OPPONENTS.T)
+    """Convert linear RGB (…, 3) to L, a, b (…, 3)."""
+    return np.asarray(np.cbrt(rgb @ cone_responses(gamut).T) @ OPPONENTS.T)
 
 
-def roots(lab: Array) -> Array:
-    """Cube roots (…, 3) of the responses of cones, of L, a, b (…, 3)."""
+def cube_roots(lab: Array) -> Array:
+    """Convert L, a, b (…, 3) to cube roots of cone responses (…, 3)."""
     return np.asarray(lab @ np.linalg.inv(OPPONENTS).T)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.display_sensors import hex_codes
+from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.design.palette.design import Design
 from uplift.design.palette.matrix import Matrix

@@ -116,7 +116,7 @@ class Decoder:
         except ColourError as error:
             raise ColourError(error.problem, hint="use --out-of-gamut clip, or another way") from error
         unfit = int((~finite).sum())
-        return self.function(moved.rgb), Counts(pixels, moved.count, unfit, farthest=moved.farthest)
+        return self.function(moved.rgb), Counts(pixels, moved.count, unfit, farthest=moved.max_change)
 
 
 def check_encoding(encoding: str) -> None:

@@ -114,4 +114,4 @@ def _every_second(atlases: Iterable[Atlas], start: int) -> Atlas:
 
 def _within(sensor: Sensor, spectra: Atlas) -> Array:
     values = resample(spectra, sensor.wavelengths).values
-    return values[sensor.holds(sensor.rgb(values))]
+    return values[sensor.contains(sensor.rgb(values))]

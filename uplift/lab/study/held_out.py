@@ -108,7 +108,7 @@ def _ask(cubes: dict[str, Cube], asked: Atlas) -> HoldoutSplit:
 def _inside(spectra: Atlas, cube: Cube) -> Indices:
     """Rows of the entries that the cube's space holds."""
     sensor = cube.data.sensor
-    rows = np.flatnonzero(sensor.holds(sensor.rgb(resample(spectra, sensor.wavelengths).values)))
+    rows = np.flatnonzero(sensor.contains(sensor.rgb(resample(spectra, sensor.wavelengths).values)))
     if len(rows) < FEWEST:
         raise AtlasError(
             f"{len(rows)} entries lie within {sensor.space}, too few to halve",

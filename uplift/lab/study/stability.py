@@ -132,7 +132,7 @@ def _ours(setting: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
             threshold=setting.threshold,
         ).data
     seconds = time.perf_counter() - begin
-    unrealisable = ~solid(data.sensor.matrix).holds(data.lattice.points)
+    unrealisable = ~solid(data.sensor.matrix).contains(data.lattice.points)
     calls = sum(step["tried"] for step in data.provenance["improvements"])
     missed = int((unrealisable & (data.points.status == Status.UNFITTED)).sum())
     return _judge(
@@ -147,7 +147,7 @@ def _pointwise(setting: RunConfig) -> RunResult:
     task = PointwiseProblem(Moments(setting.coefficients), sensor, setting.solver)
     grown = fit_pointwise(task, lattice, setting.threshold)
     seconds = time.perf_counter() - begin
-    realisable = solid(sensor.matrix).holds(lattice.points)
+    realisable = solid(sensor.matrix).contains(lattice.points)
     calls = grown.starts - lattice.size
     return _judge(setting, lattice.points, realisable, grown.distance, 0, grown.rounds, calls, seconds)
 

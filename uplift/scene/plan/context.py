@@ -99,7 +99,7 @@ def prepare_context(scene: SceneFile, effort: SearchGrid, progress: ProgressCall
     atlas = read_atlas(*scene.atlases) if scene.atlases else None
     measured = resample(atlas or Atlas(), sensor.wavelengths).values
     rgb = sensor.rgb(measured)
-    held = sensor.holds(rgb)
+    held = sensor.contains(rgb)
 
     wanted = effort.predicting, effort.confirming
     with quiet_warnings():

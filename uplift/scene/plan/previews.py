@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.display_sensors import display_sensors, hex_codes
+from uplift.colorimetry.observer import display_sensors
+from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.scene.plan.evaluation import EvaluationSet
 

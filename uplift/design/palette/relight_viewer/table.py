@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from uplift.colorimetry.display_sensors import hex_codes
+from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.design.palette.relight_viewer.relighting import Relighting
 from uplift.report.page_parts import note, swatch, table
