@@ -1,7 +1,7 @@
 """The sRGB transfer curve (IEC 61966-2-1) and the conversion of linear RGB for display.
 
-Screens and image viewers interpret a PNG as sRGB, whatever the space of the cube, so this is separate from the
-encoding of a cube.
+Screens and image viewers interpret a PNG as sRGB for every space of the cube, so this is separate from the encoding
+of a cube.
 """
 
 from __future__ import annotations

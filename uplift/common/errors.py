@@ -179,7 +179,7 @@ def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError
 
     Examples
     --------
-    >>> error = unknown_name("srbg", ("sRGB", "ACEScg"), "RGB space")
+    >>> error = unknown_name("srbg", ("sRGB", "P3-D65"), "RGB space")
     >>> print(error.code, "|", error)
     unknown-rgb-space | unknown RGB space 'srbg'; did you mean 'sRGB', 'ACEScg'?
     """
