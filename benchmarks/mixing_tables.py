@@ -61,7 +61,7 @@ def gradings(cube: Cube) -> str:
         "measured paints (T. Lindemeier's painty, 2020): tests/reference/paints_rgb.csv. They are best at p"
         " = 0.9 and 0.75; S alike everywhere, the single-constant theory, errs two to three times as much. "
         "The last column is what becomes of criterion 5 with blue and yellow that are measured: above p = ½"
-        f" it is lost. The default is p = {pigments.GRADING:g}; `--constants one` is p = 0."
+        f" it is lost. The default is p = {pigments.GRADING:g}; `--km-constants one` is p = 0."
     )
     return table("K and S from one reflectance", words, head, rows)
 

@@ -10,7 +10,7 @@ spectra by the theory of what they are, and shows what comes of it as RGB.
 uplift mix --pigment 2:'#005fa0' 1:'#ffd200'
 uplift mix 1:blue 1:yellow --cube macbeth-32.uplift --swatches green.png
 uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
-uplift mix --dye 1:'#d03060' 3:'#f0c000' --index 1.5 --thickness 2
+uplift mix --dye 1:'#d03060' 3:'#f0c000' --refractive-index 1.5 --thickness 2
 uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
 uplift mix --light '#ff0000' 0.5:'#00ff00'
 uplift mix '#c8342a/#401008' --thickness 0.4 --over overpaint.exr -o painted.exr
@@ -36,7 +36,7 @@ over images:
   `--thickness` counts in units of 1/S of white. Or it is given by two colours, `A/B`: a unit thick on white and on
   black; then both K and S follow.
 - A **dye** is given by its colour on white, a unit thick; a **filter** by what it lets through.
-- `--index` puts all beneath the surface of a vehicle: colours are taken for seen through it, and mixtures are seen
+- `--refractive-index` puts all beneath the surface of a vehicle: colours are taken for seen through it, and mixtures are seen
   through it. What is darker than the surface alone is taken for black beneath it.
 - Mixtures may leave the gamut, and lights do: `--out-of-gamut` moves them inside, and that is said.
 - `--over` lays a coat over a painting, pixel by pixel: EXR, PNG, JPEG or TIFF in, EXR out. In Python:
@@ -51,7 +51,7 @@ overpaint.paint_over(brush, "painting.exr", "painted.exr")
 
 ## Ramps
 
-Blue `#005fa0` and yellow `#ffd200`, by Kubelka and Munk with S = √R, the same in oil (`--index 1.5`: what the surface
+Blue `#005fa0` and yellow `#ffd200`, by Kubelka and Munk with S = √R, the same in oil (`--refractive-index 1.5`: what the surface
 throws back is no part of the paint, and without it greens are purer), with S alike everywhere, as dyes, and by the
 heuristics. The mean of RGB goes through grey and brown; spectra leave what both reflect, which is green. Filters,
 phosphors and products have the shares for their thickness here, so that ramps begin and end with their colours.

@@ -45,7 +45,7 @@ single precision if that is good enough for every point there.
   remarked on alike; `--encoding` is for both. The cube records their names and digests. `uplift check` needs no image:
   the stored points tell which.
 - **Other colours** are refused, by `query`, by `texture` and in Python; `Cube.holds` tells which can be asked. With
-  `--fill`, in Python `cube.fill_missing()`, the lattice points that they lack come from the package's own cube: its spectrum
+  `--fill-missing`, in Python `cube.fill_missing()`, the lattice points that they lack come from the package's own cube: its spectrum
   at the point's colour, in the sparse cube's model, moved to the very colour. It knows no atlas, so the standard error
   stated there is the largest that the cube has. It is sRGB under D65, and fills no cube of other RGB.
 - `uplift report` judges what is there, and names the entries that are not.

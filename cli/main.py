@@ -1,4 +1,4 @@
-"""``uplift``: finds the command, runs it, and turns errors and warnings of the library into one line each."""
+"""``uplift``: find the command, run it, and print errors and warnings of the library on one line each."""
 
 from __future__ import annotations
 
@@ -6,80 +6,94 @@ import errno
 import importlib
 import sys
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import click
 
-from uplift.common.errors import UpliftError, UpliftWarning
+from uplift.common.errors import OutputError, UpliftError, UpliftWarning
+
+from .output.diagnostics import OUTPUT_FORMAT, UsageFailure, show_warning
+from .params.renamed import renamed_option
 
 GROUPS = {
-    "Cubes": ("build", "query", "texture", "mix", "export"),
-    "What a cube holds, and what it is worth": ("info", "slices", "report", "check", "atlas"),
-    "What a scene needs": ("plan", "wavelengths", "compare", "palette"),
-    "Measurements": ("chart", "study"),
+    "Build and use cubes": ("build", "query", "texture", "mix", "export"),
+    "Inspect and verify": ("info", "slices", "report", "check", "atlas"),
+    "Plan and design scenes": ("plan", "wavelengths", "compare", "palette"),
+    "Measure methods": ("chart", "study"),
 }
-"""The commands by what they are for, as the help has them."""
+"""Commands by headings of the help."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
-WHOLE = 200
-"""Letters of a command's first sentence in the help: all of them."""
-FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""What a write says where there is no room."""
+SUMMARY_LENGTH = 200
+"""Characters of a command's summary in the help; enough for all of them."""
+DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
-class Refusal(click.ClickException):
-    """Bad input: one line, exit code 2."""
-
-    exit_code = 2
-
-    def show(self, file: Any = None) -> None:
-        click.echo(f"{click.style('error:', fg='red', bold=True)} {self.message}", err=True)
-
-
-class Commands(click.Group):
-    """The commands, each imported when it is asked for."""
+class LazyGroup(click.Group):
+    """Commands in groups, each imported when it is needed."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of all commands, in the order of the help."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """Import a command; None for an unknown name."""
         if name not in COMMANDS:
             return None
-        command = importlib.import_module(f"uplift_cli.commands.{name}").command
-        return command if isinstance(command, click.Command) else None
+        command: click.Command = importlib.import_module(f"uplift_cli.commands.{name}").command
+        return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write a section of the help for each group."""
         width = max(map(len, COMMANDS))
         for title, names in GROUPS.items():
-            found = ((name, self.get_command(ctx, name)) for name in names)
-            rows = [(f"{name:<{width}}", each.get_short_help_str(WHOLE)) for name, each in found if each]
+            commands = ((name, self.get_command(ctx, name)) for name in names)
+            rows = [
+                (f"{name:<{width}}", each.get_short_help_str(SUMMARY_LENGTH))
+                for name, each in commands
+                if each
+            ]
             with formatter.section(title):
                 formatter.write_dl(rows)
 
     def invoke(self, ctx: click.Context) -> Any:
-        with warnings.catch_warnings():
+        """Run the command; raise `UsageFailure` for errors of the library."""
+        with warnings.catch_warnings(), _usage_failures(ctx):
             warnings.simplefilter("always", UpliftWarning)
-            warnings.showwarning = _show_warning
-            try:
-                done = super().invoke(ctx)
-                sys.stdout.flush()  # what is left goes now, while errors can be told
-            except UpliftError as error:
-                raise Refusal(str(error)) from error
-            except OSError as error:
-                if error.errno not in FULL:
-                    raise
-                raise Refusal(f"standard output cannot be written: {error.strerror}; make room") from error
-            return done
+            warnings.showwarning = show_warning
+            result = super().invoke(ctx)
+            sys.stdout.flush()  # a full disk must be noticed while errors can still be reported
+            return result
 
 
-def _show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
-    if issubclass(category, UpliftWarning):
-        click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {message}", err=True)
+@contextmanager
+def _usage_failures(ctx: click.Context) -> Iterator[None]:
+    """Turn errors of the library, full disks and renamed options into `UsageFailure`."""
+    try:
+        yield
+    except UpliftError as error:
+        raise _failure(ctx, error) from error
+    except OSError as error:
+        if error.errno not in DISK_FULL:
+            raise
+        problem = f"standard output cannot be written: {error.strerror}"
+        raise _failure(ctx, OutputError(problem, code="disk-full", hint="free some space")) from error
+    except click.NoSuchOption as error:
+        renamed = renamed_option(error)
+        if renamed is None:
+            raise
+        raise _failure(ctx, renamed) from error
 
 
-@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+def _failure(ctx: click.Context, error: UpliftError) -> UsageFailure:
+    return UsageFailure(error, as_json=ctx.meta.get(OUTPUT_FORMAT) == "json")
+
+
+@click.command(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="uplift", message="uplift %(version)s")
 def main() -> None:
-    """Spectral uplifting: from RGB to reflectance spectra, constrained by measured ones.
+    """Convert RGB colours to reflectance spectra that agree with measured ones.
 
     \b
     Examples:
@@ -88,5 +102,5 @@ def main() -> None:
       uplift query 0.8 0.2 0.1 --format json
       uplift check cubes/*.uplift
 
-    'uplift COMMAND --help' tells more.
+    'uplift COMMAND --help' describes a command and all of its options.
     """

@@ -1,12 +1,12 @@
-"""What only a whole process may set, before JAX and numpy are imported."""
+"""Settings of the process that must precede the import of JAX or numpy."""
 
 from __future__ import annotations
 
 import os
 
 
-def keep_compiled() -> None:
-    """Keep what JAX compiles in the user's cache folder, so that the next build starts at once."""
+def enable_jit_cache() -> None:
+    """Keep compiled JAX code in the user's cache folder, so that later commands do not compile it again."""
     from platformdirs import user_cache_dir
 
     os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", user_cache_dir("uplift"))
@@ -14,8 +14,8 @@ def keep_compiled() -> None:
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
 
 
-def one_thread() -> None:
-    """Keep numpy's linear algebra to one thread, for timings; read when numpy is imported."""
+def use_one_blas_thread() -> None:
+    """Limit linear algebra of numpy to one thread, for timings."""
     from uplift.lab.timing import ONE_THREAD
 
     os.environ.update(ONE_THREAD)

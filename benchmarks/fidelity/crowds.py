@@ -36,7 +36,7 @@ def sections() -> list[str]:
             "Crowding",
             "What the lattice alone, before entries become nodes of it, makes of the entries at their own colours: "
             f"ΔE00 against their stored spectra, the largest under {', '.join(Options.lights)}: median / entries over "
-            f"{WITHIN[0]:g}. *--dim auto* shows what it chooses with --within "
+            f"{WITHIN[0]:g}. *--dim auto* shows what it chooses with --auto-tolerance "
             f"{' and '.join(f'{within:g}' for within in WITHIN)}.",
             ["atlas (entries)", "axis", *(f"{dim}³" for dim in DIMS[1::2])],
             rows,

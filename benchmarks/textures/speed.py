@@ -17,11 +17,11 @@ from uplift.lab.timing import Spread
 FEW = ("--wavelengths", "400:700:10")
 JOBS: tuple[tuple[int, tuple[str, ...], int], ...] = (
     (2048, (), 3),
-    (2048, ("--as", "moments"), 3),
-    (2048, ("--as", "multipliers"), 1),
+    (2048, ("--store", "moments"), 3),
+    (2048, ("--store", "multipliers"), 1),
     (4096, FEW, 1),
     (8192, FEW, 1),
-    (8192, ("--as", "moments"), 1),
+    (8192, ("--store", "moments"), 1),
 )
 """Size, options, runs."""
 

@@ -28,7 +28,7 @@ lines do between the wavelengths is in them. Weights to linear RGB are those to 
   channels it is given the best one for the very materials and lights that it is judged by.
 - **uniform**: even from 400 to 700 nm, light and matching functions read off there. **bins**: the same wavelengths,
   both spread onto them as linear interpolation has it. All three are given lights balanced to Y = 1 for white.
-- **fitted**: even wavelengths with weights and powers fitted as ours are: what moving them is worth. `--at` does the
+- **fitted**: even wavelengths with weights and powers fitted as ours are: what moving them is worth. `--wavelengths` does the
   same for any wavelengths that a renderer has anyway.
 
 ![Mean ΔE00 on unseen materials over the number of wavelengths](wavelengths/methods.png)

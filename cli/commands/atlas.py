@@ -1,4 +1,4 @@
-"""``uplift atlas``: what an atlas holds, how it looks, and its other format."""
+"""``uplift atlas``: list the entries of atlases, or convert between formats."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 @sensor_options
 @format_option("table", "json", "csv")
 @click.option(
-    "--convert", metavar="OUT", type=click.Path(), help="Write all entries to OUT and list nothing."
+    "--convert", metavar="OUT", type=click.Path(), help="Write all entries to OUT instead of a list."
 )
 @force_option()
 def command(
@@ -38,11 +38,11 @@ def command(
     convert: str | None,
     force: bool,
 ) -> None:
-    """List the entries of atlas files: range, colour, gamut, oddities.
+    """List the entries of atlas files: wavelength range, colour, gamut and warnings.
 
-    An atlas holds measured reflectances, as text (the ART measurement archive) or as a CSV table, a row or a
-    column per sample. Several files are read as one atlas. --convert writes CSV where OUT ends in .csv, text
-    otherwise.
+    An atlas contains measured reflectances, as an ART measurement archive (text) or as a CSV table with a row or a
+    column per sample. Several files are read as one atlas. --convert writes CSV if OUT ends in .csv, and an ART
+    measurement archive otherwise.
 
     \b
     Examples:
@@ -53,35 +53,35 @@ def command(
     """
     from uplift.atlas import read_atlas
 
-    spectra = read_atlas(*files)
+    atlas = read_atlas(*files)
     if convert is not None:
-        _convert(spectra, convert, force)
+        _convert(atlas, convert, force)
         return
     from uplift.colorimetry.observer import DEFAULT_OBSERVER, sensor
 
-    PRINTERS[style](list_entries(spectra, sensor(space, illuminant, observer or DEFAULT_OBSERVER)))
+    PRINTERS[style](list_entries(atlas, sensor(space, illuminant, observer or DEFAULT_OBSERVER)))
 
 
-def _convert(spectra: Atlas, path: str, force: bool) -> None:
+def _convert(atlas: Atlas, path: str, force: bool) -> None:
     from uplift.atlas import write_atlas
     from uplift.common.files import check_output
 
-    write_atlas(spectra, check_output(path, force=force))
-    click.echo(f"{path}: {len(spectra)} entries written", err=True)
+    write_atlas(atlas, check_output(path, force=force))
+    click.echo(f"{path}: {len(atlas)} entries", err=True)
 
 
 def _print_json(listing: Listing) -> None:
     rows = [{key: value for key, value in asdict(row).items() if key != "swatch"} for row in listing.rows]
     sensor = listing.sensor
-    answer = {
+    fields = {
         "space": sensor.space,
         "illuminant": sensor.illuminant,
         "observer": sensor.observer,
-        "sources": [{"name": source.name, "digest": source.digest} for source in listing.spectra.sources],
+        "sources": [{"name": source.name, "digest": source.digest} for source in listing.atlas.sources],
         "entries": rows,
-        "skipped": [asdict(skipped) for skipped in listing.spectra.skipped],
+        "skipped": [asdict(skipped) for skipped in listing.atlas.skipped],
     }
-    click.echo(json_text(answer))
+    click.echo(json_text(fields))
 
 
 def _print_csv(listing: Listing) -> None:
@@ -89,8 +89,8 @@ def _print_csv(listing: Listing) -> None:
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"])
     for row in listing.rows:
-        gamut, notes = str(row.in_gamut).lower(), "; ".join(row.warnings)
-        writer.writerow([row.name, row.start, row.end, row.step, *row.rgb, gamut, notes])
+        in_gamut, notes = str(row.in_gamut).lower(), "; ".join(row.warnings)
+        writer.writerow([row.name, row.start, row.end, row.step, *row.rgb, in_gamut, notes])
     click.echo(out.getvalue(), nl=False)
 
 
@@ -129,17 +129,17 @@ def _cells(row: Row) -> Iterator[str]:
 
 def _summary(listing: Listing) -> str:
     outside = [row.name for row in listing.rows if not row.in_gamut]
-    skipped = [skipped.name for skipped in listing.spectra.skipped]
+    skipped = [skipped.name for skipped in listing.atlas.skipped]
     parts = [
         f"{len(listing.rows)} entries",
-        _counted(outside, f"out of the {listing.sensor.space} gamut"),
-        _counted(skipped, "skipped"),
+        _count(outside, f"out of the {listing.sensor.space} gamut"),
+        _count(skipped, "skipped"),
     ]
     return ", ".join(parts)
 
 
-def _counted(names: Sequence[str], what: str) -> str:
-    return f"{len(names)} {what}" + (f" ({', '.join(names)})" if names else "")
+def _count(names: Sequence[str], label: str) -> str:
+    return f"{len(names)} {label}" + (f" ({', '.join(names)})" if names else "")
 
 
 PRINTERS: dict[str, Callable[[Listing], None]] = {

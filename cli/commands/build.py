@@ -1,4 +1,4 @@
-"""``uplift build``: a cube from an atlas."""
+"""``uplift build``: build a cube from atlases."""
 
 from __future__ import annotations
 
@@ -11,161 +11,162 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.build_summary import tell, tell_improvements
-from ..params.image_paths import expanded
+from ..output.build_summary import print_improvements, print_summary
+from ..params.image_paths import expand_patterns
 from ..params.options import (
+    LatticeDim,
+    coefficient_count,
+    coefficients_options,
     encoding_option,
     force_option,
     out_of_gamut_option,
+    quiet_option,
     sensor_options,
-    verbosity_options,
+    verbose_option,
 )
+from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
+    from uplift.io.scene_colours import Images
     from uplift.lookup import Cube
 
-BESIDE_A_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose")
-"""Parameters that go with --plan."""
-
-
-class Dim(click.ParamType):  # type: ignore[type-arg]
-    """A number or 'auto'."""
-
-    name = "dim"
-
-    def convert(
-        self, value: str | int, param: click.Parameter | None, ctx: click.Context | None
-    ) -> int | str:
-        if value == "auto" or isinstance(value, int):
-            return value
-        try:
-            return int(value)
-        except ValueError:
-            self.fail(f"'{value}' is neither a number nor 'auto'", param, ctx)
+ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose")
+"""Parameters that may accompany --plan."""
 
 
 @click.command("build")
+@click.option("--atlas", "atlases", multiple=True, metavar="FILE", help="Measured spectra; repeatable.")
 @click.option(
-    "--atlas", "atlases", multiple=True, metavar="FILE", help="Measured spectra; may be given several times."
-)
-@click.option(
-    "-o", "--output", metavar="FILE", help="Cube to write. [default: named after atlas and dim, here]"
+    "-o",
+    "--output",
+    metavar="FILE",
+    help="Cube to write. [default: named after atlas and dim, in the current folder]",
 )
 @click.option(
     "--dim",
     default="32",
-    type=Dim(),
+    type=LatticeDim(),
     show_default=True,
-    help="Lattice points along each axis, or 'auto': the smallest, and its axis, with room for every entry.",
+    help="Lattice nodes along each axis. 'auto' chooses the smallest dim, and its axis, that resolves every entry.",
 )
 @click.option(
-    "--within",
+    "--auto-tolerance",
     default=0.5,
     show_default=True,
-    help="With --dim auto: ΔE00 that the lattice may miss entries by.",
+    help="ΔE00 within which the lattice of --dim auto must reproduce the entries.",
 )
 @click.option("--model", default="moments", show_default=True, help="Spectrum model: moments or sigmoid.")
-@click.option(
-    "--moments", default=8, show_default=True, help="Moments per spectrum, 2 to 16; one coefficient more."
-)
-@click.option("--warp", default="none", show_default=True, help="Phase of the moments: none, or vision.")
-@click.option("--axis", default="srgb", show_default=True, help="Spacing of the lattice: srgb or linear.")
+@coefficients_options
+@click.option("--warp", default="none", show_default=True, help="Phase warp of the moments: none or vision.")
+@click.option("--axis", default="srgb", show_default=True, help="Spacing of the nodes: srgb or linear.")
 @sensor_options
 @click.option(
     "--light",
     "lights",
     multiple=True,
-    help="Lights entries must hold under. [default: D65 A FL2 FL11 LED-B3]",
+    metavar="NAME",
+    help="Illuminant under which entries must keep their colour; repeatable. [default: D65 A FL2 FL11 LED-B3]",
 )
 @click.option(
-    "--threshold", default=1e-4, show_default=True, help="Largest miss of a lattice point, |linear RGB|."
+    "--threshold", default=1e-4, show_default=True, help="Largest residual of a node, |linear RGB|."
 )
 @click.option(
     "--scene",
     "images",
     multiple=True,
     metavar="IMAGE",
-    help="Build only what the colours of this image, or quoted pattern, need; may be given several times.",
+    help="Build only the cells that the colours of this image, or quoted pattern, need; repeatable.",
 )
-@encoding_option("--scene images are")
-@click.option("--plan", "plan_path", metavar="PLAN", help="Build what 'uplift plan' planned.")
+@encoding_option("--scene images")
+@click.option("--plan", "plan_path", metavar="PLAN", help="Build the cube of a plan by 'uplift plan'.")
 @out_of_gamut_option("clip", "linear RGB of --scene images")
-@click.option("--debug", is_flag=True, help="Keep the round of every point, for the slices.")
+@click.option("--debug", is_flag=True, help="Store the round of every node, for 'uplift slices'.")
 @force_option()
-@verbosity_options
+@quiet_option()
+@verbose_option()
 def command(
     plan_path: str | None,
     atlases: tuple[str, ...],
     output: str | None,
     images: tuple[str, ...],
     encoding: str,
-    way: str,
+    method: str,
     force: bool,
     quiet: bool,
     verbose: bool,
-    moments: int,
-    **chosen: Any,
+    coefficients: int | None,
+    moments: int | None,
+    **options: Any,
 ) -> None:
-    """Build an uplifting cube, constrained by measured spectra.
+    """Build an uplifting cube constrained by measured spectra.
 
     \b
     Examples:
       uplift build --atlas atlases/macbeth.txt --dim 32
-      uplift build --atlas paints.csv --atlas macbeth.txt --moments 16 -o book.uplift
-      uplift build --atlas paints.csv --dim auto --within 1
+      uplift build --atlas paints.csv --atlas macbeth.txt --coefficients 17 -o book.uplift
+      uplift build --atlas paints.csv --dim auto --auto-tolerance 1
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
       uplift build --plan kitchen.plan.json
 
-    Warnings name entries that were left out, clipped or crowded. Without --atlas the spectra of the cube are
-    smooth, and dark where the colour is dark. With --scene the cube is sparse, smaller and sooner built: it answers
-    the colours of the images as the whole cube would, and refuses others ('query' and 'texture' have --fill).
-    """
-    from ..startup import keep_compiled
+    Warnings name the entries that were left out, clipped or crowded. Without --atlas the spectra are smooth.
 
-    keep_compiled()
+    With --scene the cube is sparse: it is smaller and faster to build, and gives the same spectra for colours of the
+    images. Other colours are errors, unless 'query' and 'texture' are given --fill-missing.
+    """
+    enable_jit_cache()
     from uplift.common.files import check_output
-    from uplift.io.scene_colours import Images
-    from uplift.pipeline import build
 
     from ..output.progress import build_progress
 
-    if encoding != "auto" and not images and plan_path is None:
-        raise click.UsageError("--encoding is of --scene images, and there are none.")
-    if way != "clip" and not images and plan_path is None:
-        raise click.UsageError("--out-of-gamut is of --scene images, and there are none.")
+    build: Callable[..., Cube]
     if plan_path is None:
-        scene = Images(tuple(map(Path, expanded(images))), encoding, way) if images else None
-        given = {name: value for name, value in chosen.items() if value not in (None, ())}
-        make: Callable[..., Cube] = partial(
-            build, atlases or None, scene=scene, coefficients=moments + 1, **given
-        )
-        name = _default_name(atlases, images, chosen)
+        from uplift.pipeline import build as build_cube
+
+        scene = _scene(images, encoding, method)
+        given = {name: value for name, value in options.items() if value not in (None, ())}
+        count = coefficient_count(coefficients, moments)
+        build = partial(build_cube, atlases or None, scene=scene, coefficients=count, **given)
+        name = _default_name(atlases, images, options)
     else:
-        make, name = _planned(plan_path, click.get_current_context())
+        build, name = _planned_build(plan_path, click.get_current_context())
     path = check_output(name if output is None else output, force=force)
     begin = time.perf_counter()
     with build_progress(quiet=quiet, verbose=verbose) as progress:
-        cube = make(progress=progress)
+        cube = build(progress=progress)
     cube.save(path, force=force)
     if verbose:
-        tell_improvements(cube)
+        print_improvements(cube)
     if not quiet:
-        tell(cube, path, time.perf_counter() - begin)
+        print_summary(cube, path, time.perf_counter() - begin)
 
 
-def _planned(path: str, context: click.Context) -> tuple[Callable[..., Cube], str]:
-    """What builds the cube of a plan, and its name. Raises click's error for options that would change it."""
+def _scene(images: tuple[str, ...], encoding: str, method: str) -> Images | None:
+    """Return the images of the scene. Raises click's error for their options without images."""
+    from uplift.io.scene_colours import Images
+
+    if images:
+        return Images(tuple(map(Path, expand_patterns(images))), encoding, method)
+    for option, value, default in (("--encoding", encoding, "auto"), ("--out-of-gamut", method, "clip")):
+        if value != default:
+            raise click.UsageError(f"{option} applies to --scene images, and no image is given.")
+    return None
+
+
+def _planned_build(path: str, context: click.Context) -> tuple[Callable[..., Cube], str]:
+    """Return the build of a plan and the cube's name. Raises click's error for options that contradict the plan."""
     from uplift.scene.plan import read_plan
     from uplift.scene.plan.commands import cube_name
 
-    said = click.core.ParameterSource.COMMANDLINE
-    given = [each for each in context.command.params if context.get_parameter_source(each.name or "") == said]
-    if other := [each.opts[-1] for each in given if each.name not in BESIDE_A_PLAN]:
-        raise click.UsageError(f"the plan says all of that already: leave out {', '.join(other)}.")
+    source = click.core.ParameterSource.COMMANDLINE
+    given = [
+        each for each in context.command.params if context.get_parameter_source(each.name or "") == source
+    ]
+    if others := [each.opts[-1] for each in given if each.name not in ALLOWED_WITH_PLAN]:
+        raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
     return partial(read_plan(path).build, debug=context.params["debug"]), cube_name(path)
 
 
-def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], chosen: dict[str, Any]) -> str:
-    stem = "+".join(Path(atlas).stem for atlas in atlases) or re.sub("[ /]", "-", chosen["space"]).lower()
-    return f"{stem}-{chosen['dim']}{'-scene' if images else ''}.uplift"
+def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], options: dict[str, Any]) -> str:
+    stem = "+".join(Path(atlas).stem for atlas in atlases) or re.sub("[ /]", "-", options["space"]).lower()
+    return f"{stem}-{options['dim']}{'-scene' if images else ''}.uplift"

@@ -1,4 +1,4 @@
-"""``uplift chart``: speed against accuracy of every method, and which cube to build."""
+"""``uplift chart``: speed and accuracy of upsampling methods, and a recommendation of the cube to build."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import click
 
 from ..output.console import console
 from ..output.progress import progress_bar
+from ..params.atlases import SHIPPED, read_atlases
 from ..params.options import force_option
-from ..params.study_atlases import SHIPPED, read_each
+from ..startup import enable_jit_cache, use_one_blas_thread
 
 if TYPE_CHECKING:
     from uplift.lab.chart.recommend import Wish
@@ -26,29 +27,39 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
     "patterns",
     metavar="PATTERN",
     multiple=True,
-    help="Methods by name, '*' for any; may be repeated.",
+    help="Methods by name, with '*' as a wildcard; repeatable.",
 )
 @click.option(
     "--atlas",
     "files",
     metavar="FILE",
     multiple=True,
-    help=f"Measured spectra; may be repeated. [default: {SHIPPED}]",
+    help=f"Measured spectra; repeatable. [default: {SHIPPED}]",
 )
 @click.option(
-    "--colours", metavar="N", default=2000, show_default=True, help="Random colours of the round trip."
+    "--colours",
+    metavar="N",
+    default=2000,
+    show_default=True,
+    help="Number of random colours for the round trip.",
 )
-@click.option("--quick", is_flag=True, help="Few methods, few repeats: a minute in place of ten.")
-@click.option("--from", "source", metavar="CSV", help="Draw a chart measured before, or recommend from it.")
+@click.option("--quick", is_flag=True, help="Few methods and repeats: about a minute instead of ten.")
 @click.option(
-    "--recommend", is_flag=True, help="Say which cube to build, from the chart of docs/chart.md or --from."
+    "--from", "source", metavar="CSV", help="Table of an earlier chart to draw or to recommend from."
 )
-@click.option("--time-ns", type=float, help="With --recommend: CPU time that an RGB may take, in ns.")
-@click.option("--delta-e", type=float, help="With --recommend: mean ΔE00 that answers may be off.")
 @click.option(
-    "--light", help="With --recommend: light of the ΔE00, D65 for round trips. [default: mean of five]"
+    "--recommend", is_flag=True, help="Recommend a cube to build, from the packaged chart or --from."
 )
-@click.option("--own", is_flag=True, help="With --recommend: the ΔE00 is that of the atlas's own materials.")
+@click.option("--time-ns", type=float, help="With --recommend: largest CPU time per RGB, in ns.")
+@click.option("--delta-e", type=float, help="With --recommend: largest mean ΔE00.")
+@click.option(
+    "--light", help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: mean of five]"
+)
+@click.option(
+    "--atlas-materials",
+    is_flag=True,
+    help="With --recommend: ΔE00 of the atlas entries instead of unseen materials.",
+)
 @force_option()
 def command(
     output: str,
@@ -61,15 +72,16 @@ def command(
     time_ns: float | None,
     delta_e: float | None,
     light: str | None,
-    own: bool,
+    atlas_materials: bool,
     force: bool,
 ) -> None:
-    """Chart the speed of spectral upsampling against its accuracy: ours, and other published methods.
+    """Measure speed and accuracy of spectral upsampling methods, of this package and from the literature.
 
-    Each method answers the same colours and measured spectra: the round trip, unseen materials under A, FL2, FL7,
-    FL11 and LED-B3, their spectra, and what building takes. Of every atlas the first, third, … entry builds the
-    cubes with an atlas, the others are asked for. What answers wrongly is listed, and not timed. Writes chart.csv,
-    chart.png, chart.svg and chart.html, and tells the Pareto fronts.
+    Every method processes the same colours and measured spectra. The table has the round-trip error, ΔE00 of unseen
+    materials under A, FL2, FL7, FL11 and LED-B3, the error of their spectra, and time and size of the build. Odd
+    entries of every atlas build the cubes, even entries test them. Methods with wrong results are listed but not timed.
+
+    Writes chart.csv, chart.png, chart.svg and chart.html, and prints the Pareto fronts.
 
     \b
     Examples:
@@ -77,25 +89,25 @@ def command(
       uplift chart --atlas paints.csv -o paints
       uplift chart --methods 'moments9-32-*' --methods mallett2019 -o few
       uplift chart --recommend --time-ns 500
-      uplift chart --recommend --delta-e 0.5 --light FL11 --own
+      uplift chart --recommend --delta-e 0.5 --light FL11 --atlas-materials
       uplift chart --recommend --from paints/chart.csv --delta-e 1
     """
-    from ..startup import keep_compiled, one_thread
-
-    keep_compiled()
-    one_thread()
-    wishes = (time_ns, delta_e, light, own or None)
+    enable_jit_cache()
+    use_one_blas_thread()
     if recommend:
         from uplift.lab.chart.recommend import Wish
 
-        _recommend(source, Wish(time_ns, delta_e, light, own))
+        _recommend(source, Wish(time_ns, delta_e, light, atlas_materials))
         return
-    if any(wish is not None for wish in wishes):
-        raise click.UsageError("--time-ns, --delta-e, --light and --own go with --recommend.")
-    folder = _folder(output, force=force)
-    found = _read(source) if source is not None else _measure(files, patterns, colours, quick=quick)
-    _write(found, folder, force=force)
-    _tell(found, folder)
+    if atlas_materials or any(value is not None for value in (time_ns, delta_e, light)):
+        raise click.UsageError("--time-ns, --delta-e, --light and --atlas-materials require --recommend.")
+    from uplift.common.files import check_folder
+
+    folder = check_folder(output, FILES, force=force)
+    chart = _read(source) if source is not None else _measure(files, patterns, colours, quick=quick)
+    _write(chart, folder, force=force)
+    _print_fronts(chart)
+    click.echo(f"{folder}: {', '.join(FILES)}", err=True)
 
 
 def _recommend(source: str | None, wish: Wish) -> None:
@@ -116,37 +128,30 @@ def _read(source: str) -> Chart:
     return read_chart(source)
 
 
-def _folder(output: str, *, force: bool) -> Path:
-    """Made, and every file asked for, before the work. Raises `OutputError`."""
-    from uplift.common.files import check_folder
-
-    return check_folder(output, FILES, force=force)
-
-
 def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *, quick: bool) -> Chart:
     from uplift.lab.chart.measure import measure
     from uplift.lab.chart.methods import chosen
     from uplift.lab.chart.task import QUICK, Effort, task
 
     methods = chosen(patterns, quick=quick)
-    asked = task(read_each(files), colours, QUICK if quick else Effort())
+    colours_and_spectra = task(read_atlases(files), colours, QUICK if quick else Effort())
     with progress_bar("methods") as progress:
-        return measure(methods, asked, progress)
+        return measure(methods, colours_and_spectra, progress)
 
 
-def _write(found: Chart, folder: Path, *, force: bool) -> None:
+def _write(chart: Chart, folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
     from uplift.lab.chart.page import page
     from uplift.lab.chart.picture import write_pictures
     from uplift.lab.chart.table import csv_text
 
     table, png, svg, html = (folder / name for name in FILES)
-    write_text(csv_text(found), table, force=force)
-    picture = write_pictures(found, png, svg, force=force)
-    write_text(page(found, picture), html, force=force)
+    write_text(csv_text(chart), table, force=force)
+    picture = write_pictures(chart, png, svg, force=force)
+    write_text(page(chart, picture), html, force=force)
 
 
-def _tell(found: Chart, folder: Path) -> None:
+def _print_fronts(chart: Chart) -> None:
     from rich import box
     from rich.table import Table
 
@@ -154,13 +159,13 @@ def _tell(found: Chart, folder: Path) -> None:
     from uplift.lab.chart.table import State
     from uplift.viz.format import format_size
 
-    table = Table(box=box.SIMPLE_HEAD, caption="Pareto fronts, from the quickest to the nearest")
+    table = Table(box=box.SIMPLE_HEAD, caption="Pareto fronts, from the fastest to the most accurate")
     for heading in ("", "method"):
         table.add_column(heading, no_wrap=True)
     for heading in ("time", "error", "bytes"):
         table.add_column(heading, justify="right", no_wrap=True)
     for panel in PANELS:
-        front = panel.front(found)
+        front = panel.front(chart)
         for row in front:
             title = panel.title if row is front[0] else ""
             table.add_row(
@@ -171,7 +176,6 @@ def _tell(found: Chart, folder: Path) -> None:
                 end_section=row is front[-1],
             )
     console().print(table)
-    for row in found.rows:
+    for row in chart.rows:
         if row.state != State.MEASURED:
             click.echo(f"{row.method}: {row.state}, not drawn: {row.why}")
-    click.echo(f"{folder}: {', '.join(FILES)}", err=True)

@@ -1,4 +1,4 @@
-"""``uplift check``: stored cubes against their rebuilding, for CI."""
+"""``uplift check``: compare stored cubes with rebuilt ones, for continuous integration."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from ..output.console import console, json_text
-from ..params.options import atlas_folders_option, format_option, verbosity_options
+from ..params.options import atlas_folders_option, format_option, quiet_option, verbose_option
+from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.report.regression import Comparison
@@ -18,13 +19,14 @@ if TYPE_CHECKING:
 @click.command("check")
 @click.argument("files", nargs=-1, required=True)
 @atlas_folders_option()
-@click.option("--update", is_flag=True, help="Replace the cubes that differ by what is built now.")
+@click.option("--update", is_flag=True, help="Replace the cubes that differ by the rebuilt ones.")
 @format_option("table", "json")
-@verbosity_options
+@quiet_option()
+@verbose_option()
 def command(
     files: tuple[str, ...], folders: tuple[str, ...], update: bool, style: str, quiet: bool, verbose: bool
 ) -> None:
-    """Rebuild stored cubes from their recorded options and compare.
+    """Rebuild stored cubes from their recorded options and compare the results.
 
     \b
     Examples:
@@ -32,13 +34,13 @@ def command(
       uplift check cubes/*.uplift --atlas-dir atlases --format json
       uplift check cubes/*.uplift --update
 
-    Compared are the lattice RGB, the spectra (largest and rms difference), their ΔE00 under D65, A and
-    FL11, and the number of points of each status. Exit code 0: all within their limits; 1: some are not.
-    Atlases are looked for by name and content in --atlas-dir, beside the cube, here, and in 'atlases'.
-    """
-    from ..startup import keep_compiled
+    The comparison covers lattice RGB, spectra (largest and rms difference), ΔE00 under D65, A and FL11, and the number
+    of nodes by status. The exit code is 0 if all differences are within their limits and 1 otherwise.
 
-    keep_compiled()
+    Atlases are identified by name and content. They are searched for in --atlas-dir, the cube's folder, the current
+    folder and 'atlases'.
+    """
+    enable_jit_cache()
     from uplift.lookup import load
     from uplift.pipeline.rebuild import rebuild
     from uplift.report.regression import compare

@@ -1,4 +1,4 @@
-"""``uplift export``: a cube for other tools."""
+"""``uplift export``: write a cube in formats of other tools."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import click
 
 from ..output.progress import spinner
 from ..params.options import fill_option, force_option
+from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.cube import CubeData
@@ -21,34 +22,43 @@ SUFFIXES = {"coeff": ".coeff", "c": ".h", "npz": ".npz", "csv": ".csv"}
 @click.command("export")
 @click.argument("cube", metavar="CUBE", type=click.Path())
 @click.argument("out", metavar="[OUT]", required=False, type=click.Path())
-@click.option("--to", "to", type=click.Choice(tuple(SUFFIXES)), help="Format. [default: as OUT is called]")
-@click.option("--res", type=int, help="Points along each axis of a coeff table. [default: 64]")
+@click.option(
+    "--format",
+    "style",
+    type=click.Choice(tuple(SUFFIXES)),
+    help="Format to write. [default: by the suffix of OUT]",
+)
+@click.option("--res", type=int, help="Resolution of a coeff table along each axis. [default: 64]")
 @fill_option()
 @force_option()
-def command(cube: str, out: str | None, to: str | None, res: int | None, fill: bool, force: bool) -> None:
+def command(
+    cube: str, out: str | None, style: str | None, res: int | None, fill_missing: bool, force: bool
+) -> None:
     """Write a cube in a format that other tools read.
 
-    coeff, the table of rgb2spec that Mitsuba and colour-science read: sigmoid spectra of the cube's colours.
-    Three numbers a spectrum have no room for what an atlas tells.
+    \b
+      coeff  table of rgb2spec, which Mitsuba and colour-science read
+      c      C99 header, also valid C++, with the table and its lookup functions
+      npz    all arrays of the cube, for numpy
+      csv    one line per node
 
-    c, one C99 header, which C++ takes too: the table, and functions that look up and evaluate its spectra as
-    'uplift query --mode moments' does. Its names begin with the file's.
-
-    npz, all arrays of the cube by name, for numpy; csv, a line for every lattice point.
-
-    Without OUT it has the cube's name, in this folder.
+    A coeff table stores sigmoid spectra of the cube's colours: three coefficients cannot represent the atlas. The
+    functions of the C header give the spectra of 'uplift query --mode moments', and their names start with the file's.
+    OUT defaults to the cube's name in the current folder.
 
     \b
     Examples:
       uplift export macbeth-32.uplift macbeth-32.npz
       uplift export macbeth-32.uplift data/srgb.coeff
       uplift export macbeth-32.uplift cube.h
-      uplift export macbeth-32.uplift --to csv
+      uplift export macbeth-32.uplift --format csv
     """
-    to = to or _format_of(out)
-    if res is not None and to != "coeff":
-        raise click.UsageError("--res is for --to coeff alone: other formats keep the cube's own points.")
-    out = out or Path(cube).stem + SUFFIXES[to]
+    style = style or _format_of(out)
+    if res is not None and style != "coeff":
+        raise click.UsageError(
+            "--res applies to --format coeff only: other formats keep the nodes of the cube."
+        )
+    out = out or Path(cube).stem + SUFFIXES[style]
     if os.path.realpath(out) == os.path.realpath(cube):
         raise click.UsageError("OUT is the cube itself.")
     from uplift.common.files import check_output
@@ -56,27 +66,25 @@ def command(cube: str, out: str | None, to: str | None, res: int | None, fill: b
 
     path = check_output(out, force=force)
     options = {} if res is None else {"res": res}
-    asked = load(cube).fill_missing() if fill else load(cube)
-    click.echo(f"{path}: {WRITERS[to](asked.data, path, force=force, **options)}")
+    loaded = load(cube).fill_missing() if fill_missing else load(cube)
+    click.echo(f"{path}: {WRITERS[style](loaded.data, path, force=force, **options)}")
 
 
 def _format_of(out: str | None) -> str:
-    """The format that a file's name stands for."""
+    """Return the format that the suffix of OUT stands for."""
     for name, suffix in SUFFIXES.items():
         if out is not None and Path(out).suffix.lower() == suffix:
             return name
-    raise click.UsageError(f"Name a format: --to, or OUT ending in {', '.join(SUFFIXES.values())}.")
+    raise click.UsageError(f"Give --format, or OUT ending in {', '.join(SUFFIXES.values())}.")
 
 
 def _coeff(data: CubeData, path: Path, **options: Any) -> str:
-    from ..startup import keep_compiled
-
-    keep_compiled()
+    enable_jit_cache()
     from uplift.io.export import write_coeff
 
     with spinner("fitting sigmoids"):
         worst = write_coeff(data, path, **options)
-    return f"sigmoids for rgb2spec's readers, colours within {worst:.1e}"
+    return f"rgb2spec table, largest RGB error {worst:.1e}"
 
 
 def _c(data: CubeData, path: Path, **options: Any) -> str:
@@ -84,7 +92,7 @@ def _c(data: CubeData, path: Path, **options: Any) -> str:
 
     size = write_c(data, path, **options)
     return (
-        f"C99 header, {data.lattice.size} points, {len(data.atlas.names)} atlas entries, {size / 1e6:.1f} MB"
+        f"C99 header, {data.lattice.size} nodes, {len(data.atlas.names)} atlas entries, {size / 1e6:.1f} MB"
     )
 
 
@@ -97,7 +105,7 @@ def _npz(data: CubeData, path: Path, **options: Any) -> str:
 def _csv(data: CubeData, path: Path, **options: Any) -> str:
     from uplift.io.export import write_csv
 
-    return f"{write_csv(data, path, **options)} lattice points"
+    return f"{write_csv(data, path, **options)} nodes"
 
 
 WRITERS: dict[str, Callable[..., str]] = {"coeff": _coeff, "c": _c, "npz": _npz, "csv": _csv}

@@ -1,4 +1,4 @@
-"""``uplift info``: what a cube file holds."""
+"""``uplift info``: contents of a cube file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..params.options import format_option
 @click.argument("file", required=False)
 @format_option("table", "json")
 def command(file: str | None, style: str) -> None:
-    """Tell what a cube file holds and how it was made. Without FILE: the package's own cube.
+    """Show the contents and provenance of a cube file. FILE defaults to the packaged cube.
 
     \b
     Examples:
@@ -24,14 +24,14 @@ def command(file: str | None, style: str) -> None:
     from uplift.lookup import load
     from uplift.report.summary import summary
 
-    facts = summary(load(file).data)
+    fields = summary(load(file).data)
     if style == "json":
-        click.echo(json_text(facts))
+        click.echo(json_text(fields))
     else:
-        _table(file or "the package's own cube", facts)
+        _table(file or "packaged cube", fields)
 
 
-def _table(name: str, facts: dict[str, Any]) -> None:
+def _table(name: str, fields: dict[str, Any]) -> None:
     from rich.table import Table
     from rich.text import Text
 
@@ -39,16 +39,16 @@ def _table(name: str, facts: dict[str, Any]) -> None:
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
-    provenance = facts.pop("provenance")
+    provenance = fields.pop("provenance")
     options = provenance.pop("options", {})
-    for section in (facts, provenance, {f"option {key}": value for key, value in options.items()}):
+    for section in (fields, provenance, {f"option {key}": value for key, value in options.items()}):
         for key, value in section.items():
             table.add_row(key.replace("_", " "), Text(_text(value)))
     console().print(table)
 
 
 def _text(value: Any) -> str:
-    """One line, however nested; no more digits than tell something."""
+    """Format a value, nested or not, on one line with three significant digits."""
     if isinstance(value, dict):
         return ", ".join(f"{key} {_text(inner)}" for key, inner in value.items())
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""``uplift palette``: design lights and materials for the colours that they shall make."""
+"""``uplift palette``: design lights and materials for given colours."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.palette_page import page_options, read_picture, write_page
+from ..output.palette_page import read_picture, write_page
 from ..output.palette_tables import PRINTERS
 from ..params.options import force_option, format_option
 
@@ -17,11 +17,25 @@ if TYPE_CHECKING:
 @click.command("palette")
 @click.argument("spec", metavar="SPEC.toml", type=click.Path())
 @click.option(
-    "--atlas", metavar="OUT", help="Write the designed materials as an atlas: text, or CSV for .csv."
+    "--atlas", metavar="OUT", help="Write the designed materials as an atlas; CSV if OUT ends in .csv."
 )
-@click.option("--matrix", "matrix_path", metavar="PNG", help="Draw the matrix of colours.")
-@click.option("--spectra", "spectra_path", metavar="PNG", help="Draw the spectra of lights and materials.")
-@page_options
+@click.option("--matrix", "matrix_path", metavar="PNG", help="Plot the matrix of colours.")
+@click.option("--spectra", "spectra_path", metavar="PNG", help="Plot the spectra of lights and materials.")
+@click.option(
+    "--html", metavar="HTML", help="Write a page that shows the materials under any mixture of the lights."
+)
+@click.option(
+    "--image",
+    metavar="FILE",
+    help="Picture for the page: an 8-bit image of labels, or EXR channels with the names of the materials.",
+)
+@click.option(
+    "--label",
+    "labels",
+    multiple=True,
+    metavar="NAME=#RRGGBB",
+    help="Colour of a material in --image; repeatable. [default: greys 1, 2, …]",
+)
 @format_option("table", "json")
 @force_option()
 def command(
@@ -35,12 +49,14 @@ def command(
     style: str,
     force: bool,
 ) -> None:
-    """Design what is open in a palette of lights and materials, and print the matrix of their colours.
+    """Design the unknown spectra of a palette of lights and materials, and print the matrix of their colours.
 
-    SPEC.toml names lights and materials, given or to be designed, and colours that materials shall have under lights:
-    their own, or ones that several share freely (docs/palette.md). A cell shows the colour wanted, that of the spectra
-    found, and that of the factor model, with ΔE00 from the first to the second and from the second to the third.
-    Wishes that no spectra fulfil are named, with what to relax. JSON holds all spectra.
+    SPEC.toml lists lights and materials, given or to be designed, and the colours that materials must have.
+    Several cells may share one colour that is free (docs/palette.md).
+
+    A cell of the matrix shows the requested colour, the colour of the designed spectra and the colour of the factor
+    model, with ΔE00 between the first and the second and between the second and the third. Goals that no spectra can
+    meet are listed with the requirements to relax. JSON output has all spectra.
 
     \b
     Examples:
@@ -58,25 +74,24 @@ def command(
             check_output(path, force=force)
     palette = read_palette(spec)
     picture = read_picture(palette, html, image, labels)
-    found = design(palette, standard_model(palette.sensor, palette.count))
-    colours = matrix(found)
-    PRINTERS[style](found, colours, unmet_goals(found))
-    _write(found, atlas, matrix_path, spectra_path, force=force)
+    solution = design(palette, standard_model(palette.sensor, palette.count))
+    PRINTERS[style](solution, matrix(solution), unmet_goals(solution))
+    _write(solution, atlas, matrix_path, spectra_path, force=force)
     if html is not None:
-        write_page(found, spec, picture, html, force=force)
+        write_page(solution, spec, picture, html, force=force)
 
 
 def _write(
-    found: Design, atlas: str | None, matrix_path: str | None, spectra_path: str | None, *, force: bool
+    design: Design, atlas: str | None, matrix_path: str | None, spectra_path: str | None, *, force: bool
 ) -> None:
     from uplift.design.palette import matrix, plot_matrix, plot_spectra, write_designed
 
     if atlas is not None:
-        count = write_designed(found, atlas, force=force)
+        count = write_designed(design, atlas, force=force)
         click.echo(f"{atlas}: {count} designed materials", err=True)
     if matrix_path is not None:
-        plot_matrix(found, matrix(found), matrix_path, force=force)
+        plot_matrix(design, matrix(design), matrix_path, force=force)
         click.echo(f"{matrix_path}: matrix of colours", err=True)
     if spectra_path is not None:
-        plot_spectra(found, spectra_path, force=force)
+        plot_spectra(design, spectra_path, force=force)
         click.echo(f"{spectra_path}: spectra", err=True)

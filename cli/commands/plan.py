@@ -1,4 +1,4 @@
-"""``uplift plan``: the least that will do for a scene, measured on its own colours."""
+"""``uplift plan``: choose cube, wavelengths and texture format for a scene."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import click
 from ..output.console import console, json_text
 from ..output.progress import stage_spinner
 from ..params.options import force_option, format_option
+from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.scene.plan import Plan
@@ -18,15 +19,18 @@ if TYPE_CHECKING:
 @click.command("plan")
 @click.argument("scene", metavar="SCENE.toml", type=click.Path())
 @click.option(
-    "-o", "--output", metavar="PLAN", help="Plan to write. [default: SCENE.plan.json, here; a page beside it]"
+    "-o",
+    "--output",
+    metavar="PLAN",
+    help="Plan to write, with an HTML page of the same name. [default: SCENE.plan.json in the current folder]",
 )
 @format_option("text", "json")
 @force_option()
 def command(scene: str, output: str | None, style: str, force: bool) -> None:
-    """Plan a scene: the least cube, pixel and wavelengths that keep its colours within a tolerance.
+    """Choose the smallest cube, texture format and wavelengths that keep a scene's colours within a tolerance.
 
-    SCENE.toml names textures and, unless the defaults will do, atlases, lights, the tolerated ΔE00 and the share of
-    pixels that must stay within it:
+    SCENE.toml lists textures and, optionally, atlases, lights, the tolerated ΔE00 and the fraction of pixels that must
+    stay within it:
 
     \b
       textures = ["wood.png", "shot.*.exr"]
@@ -41,35 +45,33 @@ def command(scene: str, output: str | None, style: str, force: bool) -> None:
       uplift plan kitchen.toml --format json
       uplift plan kitchen.toml -o plans/kitchen.plan.json --force
 
-    Everything is measured on pixels of the textures and on the atlas's materials, from the least candidate to the
-    first that will do, and the whole chain once more on other pixels. 'uplift build --plan' builds what the plan
-    says; a page with all measurements, .html, lies beside it.
+    Candidates are measured on pixels of the textures and on the entries of the atlases, in order of cost, up to the
+    first sufficient one. The result is then verified on other pixels. 'uplift build --plan' builds the planned cube. An
+    HTML page lists all measurements.
     """
-    from ..startup import keep_compiled
-
-    keep_compiled()
+    enable_jit_cache()
     from uplift.common.files import check_output, write_text
     from uplift.scene.plan import plan, read_scene_file, to_json
     from uplift.scene.plan.page import page
 
     path = Path(f"{Path(scene).stem}.plan.json" if output is None else output)
     html = path.with_suffix(".html")
-    for each in (path, html):
-        check_output(each, force=force)
+    for target in (path, html):
+        check_output(target, force=force)
     scene_file = read_scene_file(scene)
     with stage_spinner() as progress:
-        found = plan(scene_file, progress=progress)
-    told = to_json(found, path)
-    write_text(json_text(told) + "\n", path, force=force)
-    write_text(page(found, path), html, force=force)
+        result = plan(scene_file, progress=progress)
+    fields = to_json(result, path)
+    write_text(json_text(fields) + "\n", path, force=force)
+    write_text(page(result, path), html, force=force)
     if style == "json":
-        click.echo(json_text(told))
+        click.echo(json_text(fields))
     else:
-        _tell(found, told["lines"])
+        _print_summary(result, fields["lines"])
     click.echo(f"{path}, {html}", err=True)
 
 
-def _tell(found: Plan, lines: list[str]) -> None:
+def _print_summary(plan: Plan, lines: list[str]) -> None:
     from rich import box
     from rich.table import Table
 
@@ -82,15 +84,15 @@ def _tell(found: Plan, lines: list[str]) -> None:
     )
 
     table = Table(box=box.SIMPLE_HEAD)
-    table.add_column("the least that will do")
+    table.add_column("smallest sufficient")
     table.add_column("")
-    table.add_column("ΔE00 so far", justify="right", no_wrap=True)
+    table.add_column("cumulative ΔE00", justify="right", no_wrap=True)
     table.add_column("cost")
-    table.add_column("say")
-    for row in summary_rows(found):
+    table.add_column("options")
+    for row in summary_rows(plan):
         table.add_row(row.title, row.chosen, row.error, row.cost, row.cli_args)
-    click.echo(f"{found.scene.path.name}: {verdict(found)} ({worst_case(found.confirmed)})")
+    click.echo(f"{plan.scene.path.name}: {verdict(plan)} ({worst_case(plan.confirmed)})")
     console().print(table)
     for line in lines:
         click.echo(f"  {line}")
-    click.echo(f"\n{describe_error(found)}. {describe_metamerism(found)}")
+    click.echo(f"\n{describe_error(plan)}. {describe_metamerism(plan)}")

@@ -1,4 +1,4 @@
-"""``uplift query``: ask a cube for spectra."""
+"""``uplift query``: spectra of colours."""
 
 from __future__ import annotations
 
@@ -29,63 +29,64 @@ if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.lookup import Cube, QueryResult
 
-NEGATIVE = re.compile(r"-\.?\d")
+NEGATIVE_NUMBER = re.compile(r"-\.?\d")
 
 
-class QueryCommand(click.Command):
-    """Takes '-0.1' for a number, not for an option: the error should speak of the colour."""
+class ColourCommand(click.Command):
+    """A command that reads '-0.1' as a number, not as an option."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        return super().parse_args(ctx, [f" {arg}" if NEGATIVE.match(arg) else arg for arg in args])
+        """Mark negative numbers by a leading space before parsing."""
+        return super().parse_args(ctx, [f" {arg}" if NEGATIVE_NUMBER.match(arg) else arg for arg in args])
 
 
-@click.command("query", cls=QueryCommand)
+@click.command("query", cls=ColourCommand)
 @click.argument("colour", nargs=-1)
 @cube_option()
 @click.option(
-    "--input", "input_path", metavar="FILE", help="CSV of colours, a line each; '-' is standard input."
+    "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
 )
-@click.option("--8bit", "codes", is_flag=True, help="Numbers are encoded 8-bit codes, 0 to 255.")
+@click.option("--encoded", is_flag=True, help="Numbers are encoded 8-bit codes from 0 to 255.")
 @wavelengths_option()
 @click.option(
     "--mode",
     type=click.Choice(("spectra", "moments", "refined", "nearest")),
     default="spectra",
     show_default=True,
-    help="Interpolate spectra (exact), coefficients (fast), coefficients and refine them, or take the nearest node.",
+    help="Interpolate spectra (exact), coefficients (fast), coefficients with refinement, or use the nearest node.",
 )
 @primaries_option(
-    "Display that linear RGB are of: a space by name, or x,y of red, green, blue and white. [default: the cube's]"
+    "Display of the linear RGB: a space by name, or x,y of red, green, blue and white. [default: that of the cube]"
 )
 @out_of_gamut_option()
 @fill_option()
 @format_option("table", "json", "csv")
-@click.option("--plot", "plot_path", metavar="PNG", help="Draw the spectra into a picture.")
+@click.option("--plot", "plot_path", metavar="PNG", help="Plot the spectra.")
 @force_option()
 def command(
     colour: tuple[str, ...],
     cube_path: str | None,
     input_path: str | None,
-    codes: bool,
+    encoded: bool,
     wavelengths: str | None,
     mode: str,
     primaries: str | None,
-    way: str,
-    fill: bool,
+    method: str,
+    fill_missing: bool,
     style: str,
     plot_path: str | None,
     force: bool,
 ) -> None:
-    """Ask a cube for the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
+    """Query the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
 
-    Numbers are linear RGB from 0 to 1 in the cube's space; hex colours, and numbers with --8bit, are
-    encoded as the space has it. With --primaries they are of another display.
+    Numbers are linear RGB from 0 to 1 in the cube's space, or of the display of --primaries. Hex colours, and numbers
+    with --encoded, are encoded by the transfer function of the cube's space.
 
     \b
     Examples:
       uplift query 0.8 0.2 0.1
       uplift query --cube macbeth-32.uplift '#cc3319' --plot red.png
-      uplift query --8bit 204 51 25 --wavelengths 400:700:10 --format json
+      uplift query --encoded 204 51 25 --wavelengths 400:700:10 --format json
       uplift query --input colours.csv --format csv > spectra.csv
       uplift query 1.4 0.3 -0.1 --out-of-gamut desaturate
       uplift query --primaries P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
@@ -98,45 +99,47 @@ def command(
     if plot_path is not None:
         check_output(plot_path, force=force)
     cube = load(cube_path)
-    bounded = way == "error" and primaries is None
-    rgb = _colours(colour, input_path, cube, codes=codes, bounded=bounded)
+    bounded = method == "error" and primaries is None
+    rgb = _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded)
     if primaries is not None:
         rgb = rgb @ conversion(parse_primaries(primaries), cube.data.sensor).T
-    moved = map_to_gamut(rgb, cube.data.sensor, way)
-    _tell(moved, way)
-    if fill:
-        cube = _filled(cube, moved.rgb)
-    found: Iterable[QueryResult] = query(
-        cube, moved.rgb, parse_wavelengths(wavelengths), mode, asked=moved.requested
+    mapped = map_to_gamut(rgb, cube.data.sensor, method)
+    _warn_if_mapped(mapped, method)
+    if fill_missing:
+        cube = _fill_missing(cube, mapped.rgb)
+    results: Iterable[QueryResult] = query(
+        cube, mapped.rgb, parse_wavelengths(wavelengths), mode, asked=mapped.requested
     )
     if plot_path is not None:
         from uplift.viz.spectra import plot_spectra
 
-        found = list(found)
-        plot_spectra(cube, found, plot_path, force=force)
-    WRITERS[style](cube, found, bool(colour) and colour != ("-",))
+        results = list(results)
+        plot_spectra(cube, results, plot_path, force=force)
+    WRITERS[style](cube, results, bool(colour) and colour != ("-",))
 
 
-def _tell(moved: GamutMapped, way: str) -> None:
-    """Colours that were moved are said: how many, and how far."""
-    if moved.count:
-        told = (
-            f"{moved.count} of {len(moved.rgb)} colours lie outside [0, 1]: moved inside ({way}), "
-            f"a component by up to {moved.max_change:.3g}"
+def _warn_if_mapped(mapped: GamutMapped, method: str) -> None:
+    if mapped.count:
+        problem = (
+            f"{mapped.count} of {len(mapped.rgb)} colours lie outside [0, 1]: mapped into the gamut ({method}), "
+            f"a component by up to {mapped.max_change:.3g}"
         )
-        warnings.warn(told, UpliftWarning, stacklevel=1)
+        warnings.warn(UpliftWarning(problem, code="colours-mapped"), stacklevel=1)
 
 
-def _filled(cube: Cube, rgb: Array) -> Cube:
-    """The cube with what the colours lack; how many they are is said."""
-    outside = int((~cube.holds(rgb)).sum())
-    if outside:
-        told = f"{outside} of {len(rgb)} colours are none of the cube's scene: filled from the package's own cube"
-        warnings.warn(told, UpliftWarning, stacklevel=1)
+def _fill_missing(cube: Cube, rgb: Array) -> Cube:
+    """Fill the cells that the colours need, with a warning that counts the colours."""
+    count = int((~cube.holds(rgb)).sum())
+    if count:
+        problem = f"{count} of {len(rgb)} colours are not in the cube's scene: filled from the packaged cube"
+        warnings.warn(UpliftWarning(problem, code="colours-filled"), stacklevel=1)
     return cube.fill_missing(rgb)
 
 
-def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: bool, bounded: bool) -> Array:
+def _read_colours(
+    words: tuple[str, ...], path: str | None, cube: Cube, *, encoded: bool, bounded: bool
+) -> Array:
+    """Return linear RGB (n, 3) from arguments, a file or standard input."""
     from uplift.common.errors import ColourError
 
     from ..params.colours import from_arguments, from_table
@@ -146,11 +149,15 @@ def _colours(words: tuple[str, ...], path: str | None, cube: Cube, *, codes: boo
     if bool(words) == (path is not None):
         raise click.UsageError("Give one colour, or --input FILE, or '-'. See 'uplift query --help'.")
     if path is None:
-        return from_arguments(words, cube, codes=codes)
+        return from_arguments(words, cube, encoded=encoded)
+    name = "standard input" if path == "-" else path
     try:
         with click.open_file(path, encoding="utf-8-sig") as file:
-            return from_table(
-                file, "standard input" if path == "-" else path, cube, codes=codes, bounded=bounded
-            )
+            return from_table(file, name, cube, encoded=encoded, bounded=bounded)
     except OSError as error:
-        raise ColourError(f"{path}: {error.strerror}", hint="name a CSV file of colours") from error
+        raise ColourError(
+            f"cannot be read: {error.strerror}",
+            code="unreadable-file",
+            path=path,
+            hint="give a CSV file of colours",
+        ) from error

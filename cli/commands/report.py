@@ -1,4 +1,4 @@
-"""``uplift report``: how good a cube is, as a page to read or as numbers."""
+"""``uplift report``: assess the quality of a cube."""
 
 from __future__ import annotations
 
@@ -23,19 +23,29 @@ if TYPE_CHECKING:
     "atlases",
     multiple=True,
     metavar="OTHER",
-    help="Judge the cube by these measured spectra, not by its own; may be repeated.",
+    help="Assess the cube with these measured spectra instead of its atlases; repeatable.",
 )
 @atlas_folders_option()
 @click.option(
     "--light",
     "lights",
     multiple=True,
-    help="Light to look under; may be repeated. [default: D65 A FL2 FL7 FL11 LED-B3]",
+    metavar="NAME",
+    help="Illuminant to evaluate; repeatable. [default: D65 A FL2 FL7 FL11 LED-B3]",
 )
-@click.option("-o", "--output", metavar="FILE", help="File to write. [default: CUBE's name with .html, here]")
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    help="File to write. [default: CUBE's name with .html, in the current folder]",
+)
 @format_option("html", "json")
 @click.option(
-    "--worst", type=click.IntRange(0), default=24, show_default=True, help="Entries whose spectra are drawn."
+    "--worst",
+    type=click.IntRange(0),
+    default=24,
+    show_default=True,
+    help="Number of entries with plotted spectra, largest errors first.",
 )
 @force_option()
 def command(
@@ -48,10 +58,9 @@ def command(
     worst: int,
     force: bool,
 ) -> None:
-    """Tell how good a cube is: failures, errors, crowding, and every atlas entry beside its measurement.
+    """Assess a cube: failures, errors, crowded entries, and every atlas entry compared with its measurement.
 
-    The page holds all it needs, its plots included. With --format json the same numbers go to standard
-    output, or to FILE.
+    The HTML page is self-contained. With --format json the same numbers go to standard output, or to FILE.
 
     \b
     Examples:
@@ -60,10 +69,11 @@ def command(
       uplift report macbeth-32.uplift --light D50 --light FL4 --worst 6
       uplift report macbeth-32.uplift --format json | jq .failures
 
-    The measured spectra are the cube's own atlases, looked for by name and content in --atlas-dir, beside
-    the cube, here, and in 'atlases'. Entries of other atlases, given with --atlas, are asked at their own
-    colours: that shows what the cube makes of colours it was not built from, and whether its standard errors
-    hold.
+    The measured spectra are those of the cube's atlases. Atlases are identified by name and content, and searched for
+    in --atlas-dir, the cube's folder, the current folder and 'atlases'.
+
+    --atlas evaluates entries of other atlases at their own colours. This shows how well the cube predicts unseen
+    materials, and whether its standard errors are calibrated.
     """
     from uplift.common.files import check_output, write_text
     from uplift.lookup import load
@@ -72,31 +82,31 @@ def command(
 
     path = _path(output, cube_path, style)
     if path is not None:
-        _check_apart(check_output(path, force=force), cube_path)
+        _check_not_cube(check_output(path, force=force), cube_path)
     cube = load(cube_path)
-    with spinner("asking the cube"):
-        found = _assess(cube, cube_path, atlases, folders, lights)
-        text = _text(found, style, worst)
+    with spinner("evaluating the cube"):
+        assessment = _assess(cube, cube_path, atlases, folders, lights)
+        text = _text(assessment, style, worst)
     if path is None:
         click.echo(text, nl=False)
     else:
         write_text(text, path, force=force)
-        click.echo(f"{path}: {_told(found)}")
+        click.echo(f"{path}: {_summary(assessment)}")
 
 
 def _path(output: str | None, cube: str, style: str) -> Path | None:
-    """Where to write; None for standard output."""
+    """Return the file to write; None for standard output."""
     if output is not None:
         return Path(output)
     return Path(f"{Path(cube).stem}.html") if style == "html" else None
 
 
-def _check_apart(path: Path, cube: str) -> None:
-    """--force replaces old reports, not the cube."""
+def _check_not_cube(path: Path, cube: str) -> None:
+    """Raise `OutputError` rather than replace the cube by its report."""
     from uplift.common.errors import OutputError
 
     if path.exists() and Path(cube).exists() and path.samefile(cube):
-        raise OutputError("is the cube itself", path=path, hint="name another file with -o")
+        raise OutputError("is the cube itself", code="same-file", path=path, hint="give another file with -o")
 
 
 def _assess(
@@ -105,8 +115,8 @@ def _assess(
     from uplift.colorimetry.lights import REPORT_LIGHTS
     from uplift.report.assessment import assess
 
-    spectra = _measured(cube, path, atlases, folders)
-    return assess(cube, Path(path).name, Path(path).stat().st_size, spectra, lights or REPORT_LIGHTS)
+    atlas = _measured(cube, path, atlases, folders)
+    return assess(cube, Path(path).name, Path(path).stat().st_size, atlas, lights or REPORT_LIGHTS)
 
 
 def _measured(cube: Cube, path: str, atlases: tuple[str, ...], folders: tuple[str, ...]) -> Atlas | None:
@@ -116,32 +126,32 @@ def _measured(cube: Cube, path: str, atlases: tuple[str, ...], folders: tuple[st
     return read_atlas(*atlases) if atlases else recorded_atlas(cube.data, path, folders)
 
 
-def _text(found: Assessment, style: str, worst: int) -> str:
+def _text(assessment: Assessment, style: str, worst: int) -> str:
     if style == "json":
         from uplift.report.json_export import to_json
 
-        return json_text(to_json(found)) + "\n"
+        return json_text(to_json(assessment)) + "\n"
     from uplift.report.page import page
 
-    return page(found, worst)
+    return page(assessment, worst)
 
 
-def _told(found: Assessment) -> str:
-    """The report in a line."""
+def _summary(assessment: Assessment) -> str:
+    """Return the main numbers on one line."""
     from uplift.viz.format import pluralise
 
-    parts = [f"{pluralise(found.failures.missed, 'point')} over the threshold"]
-    if found.entries is not None:
-        entries = found.entries
+    parts = [f"{pluralise(assessment.failures.missed, 'node')} over the threshold"]
+    if assessment.entries is not None:
+        entries = assessment.entries
         parts.append(pluralise(len(entries.names), "entry", "entries"))
         parts.append(
             f"ΔE00 mean {entries.delta_e.mean():.2f}, worst {entries.worst[0]:.2f} ('{entries.names[0]}')"
         )
-    if found.calibration is not None:
-        judged = found.calibration
+    if assessment.calibration is not None:
+        calibration = assessment.calibration
         parts.append(
-            f"under {found.data.error_illuminant} {judged.real:.2f}, {judged.stated:.2f} stated (root mean squares)"
+            f"rms under {assessment.data.error_illuminant} {calibration.real:.2f}, predicted {calibration.stated:.2f}"
         )
-    if found.crowding is not None:
-        parts.append(pluralise(len(found.crowding.entries.names), "crowded entry", "crowded entries"))
+    if assessment.crowding is not None:
+        parts.append(pluralise(len(assessment.crowding.entries.names), "crowded entry", "crowded entries"))
     return ", ".join(parts)

@@ -1,4 +1,4 @@
-"""``uplift slices``: a cube to look into, as OpenEXR slices and as a contact sheet."""
+"""``uplift slices``: write a cube as OpenEXR slices and as a contact sheet."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from ..params.options import force_option
 @click.command("slices")
 @click.argument("cube", metavar="CUBE", type=click.Path())
 @click.argument("out", metavar="[OUT.exr]", required=False, type=click.Path())
-@click.option("--sheet", metavar="FILE", type=click.Path(), help="Contact sheet to write, .exr or .png.")
+@click.option("--sheet", metavar="FILE", type=click.Path(), help="Contact sheet to write, as .exr or .png.")
 @force_option()
 def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
     """Write the blue slices of a cube as images.
 
-    OUT.exr gets a part per blue slice: red rises to the right, green upwards, a pixel per lattice point.
-    Its channels hold lattice and target RGB, fitting distance, ΔE00, status, atlas entry, round (of cubes
-    with debug information) and every coefficient; -1 is no entry, no round.
+    OUT.exr has one part per blue slice and one pixel per node. Red increases to the right, green upwards. Channels
+    are lattice RGB, target RGB, fitting distance, ΔE00, status, atlas entry, round (with debug information) and every
+    coefficient. -1 stands for no entry or no round.
 
-    --sheet tiles all slices on one image that any viewer shows: lattice RGB, fitting distance, status and
-    round, with their keys.
+    --sheet tiles all slices into one image for any viewer: lattice RGB, fitting distance, status and round, with
+    legends.
 
     \b
     Examples:
@@ -31,7 +31,7 @@ def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
       uplift slices macbeth-32.uplift macbeth-32.exr --sheet sheet.exr --force
     """
     if out is None and sheet is None:
-        raise click.UsageError("Nothing to write: name OUT.exr, --sheet FILE, or both.")
+        raise click.UsageError("Nothing to write: give OUT.exr, --sheet FILE, or both.")
     if out is not None and sheet is not None and os.path.realpath(out) == os.path.realpath(sheet):
         raise click.UsageError("OUT.exr and --sheet name the same file.")
     from uplift.cube import read

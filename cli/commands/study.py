@@ -1,4 +1,4 @@
-"""``uplift study``: measurements behind the choices that the models make."""
+"""``uplift study``: measurements of models, solver and errors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .study_stability import stability
 
 @click.group("study")
 def command() -> None:
-    """Measure what the choices behind the models are worth, where they fail, and how far errors travel.
+    """Measure the accuracy of the models, the reliability of the solver, and the propagation of errors.
 
     \b
     Examples:

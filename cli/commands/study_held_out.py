@@ -1,4 +1,4 @@
-"""``uplift study held-out``: what a cube makes of materials that it has not seen."""
+"""``uplift study held-out``: errors on materials that a cube was not built from."""
 
 from __future__ import annotations
 
@@ -11,49 +11,50 @@ import click
 
 from ..output.console import console, json_text
 from ..output.progress import progress_bar
-from ..params.options import format_option
-from ..params.study_atlases import SHIPPED, read_each
+from ..params.atlases import SHIPPED, read_atlases
+from ..params.options import coefficient_count, coefficients_options, format_option
+from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.lab.study.held_out import HoldoutSplit
 
-Found = dict[str, "tuple[HoldoutSplit, ...]"]
+Results = dict[str, "tuple[HoldoutSplit, ...]"]
 
 
 @click.command("held-out")
 @click.option(
-    "--atlas", "files", metavar="FILE", multiple=True, help=f"Atlas; may be repeated. [default: {SHIPPED}]"
+    "--atlas", "files", metavar="FILE", multiple=True, help=f"Atlas; repeatable. [default: {SHIPPED}]"
 )
-@click.option("--splits", default=3, show_default=True, help="Ways to halve each atlas.")
-@click.option("--dim", default=32, show_default=True, help="Lattice points along each axis.")
-@click.option("--moments", default=8, show_default=True, help="Moments per spectrum, 2 to 16.")
+@click.option("--splits", default=3, show_default=True, help="Number of splits of each atlas.")
+@click.option("--dim", default=32, show_default=True, help="Lattice nodes along each axis.")
+@coefficients_options
 @format_option("table", "json", "csv")
-def held_out(files: tuple[str, ...], splits: int, dim: int, moments: int, style: str) -> None:
-    """Build cubes from half of an atlas, ask them for the other half, and compare with the measurements.
+def held_out(
+    files: tuple[str, ...], splits: int, dim: int, coefficients: int | None, moments: int | None, style: str
+) -> None:
+    """Build cubes from half of an atlas, query the colours of the other half, and compare with the measurements.
 
-    Beside them stand cubes without an atlas, of moments and of sigmoids: rms over the spectrum, and mean ΔE00 under
-    A, FL2, FL7, FL11, LED-B3, LED-RGB1 and HP1. Then the standard errors that the cubes state, and the real ones.
+    Reports the rms difference of the spectra and mean ΔE00 under A, FL2, FL7, FL11, LED-B3, LED-RGB1 and HP1, compared
+    with cubes of moments and of sigmoids that have no atlas, and the predicted and the actual standard errors.
 
     \b
     Examples:
       uplift study held-out --atlas paints.csv
-      uplift study held-out --atlas atlases/rawtoaces.txt --moments 16 --splits 10
+      uplift study held-out --atlas atlases/rawtoaces.txt --coefficients 17 --splits 10
       uplift study held-out --format json
     """
-    from ..startup import keep_compiled
-
-    keep_compiled()
+    enable_jit_cache()
     from uplift.lab.study.held_out import holdout
 
-    atlases = read_each(files)
-    found: Found = {}
-    for name, spectra in atlases.items():
+    count = coefficient_count(coefficients, moments)
+    results: Results = {}
+    for name, atlas in read_atlases(files).items():
         with progress_bar(name) as progress:
-            found[name] = holdout(spectra, splits, progress, dim=dim, coefficients=moments + 1)
-    PRINTERS[style](found)
+            results[name] = holdout(atlas, splits, progress, dim=dim, coefficients=count)
+    PRINTERS[style](results)
 
 
-def _records(found: Found) -> list[dict[str, Any]]:
+def _records(results: Results) -> list[dict[str, Any]]:
     from dataclasses import asdict
 
     import numpy as np
@@ -62,21 +63,21 @@ def _records(found: Found) -> list[dict[str, Any]]:
     from uplift.lab.study.held_out import pooled_calibration
 
     records: list[dict[str, Any]] = []
-    for name, splits in found.items():
+    for name, splits in results.items():
         for method in splits[0].errors:
             rms, *delta_e = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
             record = {"atlas": name, "cube": method, "colours": len(splits[0].real), "rms": rms}
             records.append(record | dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True)))
-        said = pooled_calibration(splits)
-        records[-len(splits[0].errors)]["standard_error"] = said and asdict(said)
+        errors = pooled_calibration(splits)
+        records[-len(splits[0].errors)]["standard_error"] = errors and asdict(errors)
     return records
 
 
-def _print_json(found: Found) -> None:
-    click.echo(json_text(_records(found)))
+def _print_json(results: Results) -> None:
+    click.echo(json_text(_records(results)))
 
 
-def _print_csv(found: Found) -> None:
+def _print_csv(results: Results) -> None:
     from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 
     text = io.StringIO()
@@ -87,11 +88,11 @@ def _print_csv(found: Found) -> None:
         lineterminator="\n",
     )
     writer.writeheader()
-    writer.writerows(_records(found))
+    writer.writerows(_records(results))
     click.echo(text.getvalue(), nl=False)
 
 
-def _print_table(found: Found) -> None:
+def _print_table(results: Results) -> None:
     from rich import box
     from rich.table import Table
     from rich.text import Text
@@ -103,21 +104,21 @@ def _print_table(found: Found) -> None:
         table.add_column(heading, no_wrap=True)
     for heading in ("rms", *HELD_OUT_LIGHTS):
         table.add_column(heading, justify="right", no_wrap=True)
-    sayings = []
-    for record in _records(found):
+    standard_errors = []
+    for record in _records(results):
         cells = [f"{record['rms']:.4f}", *(f"{record[light]:.3f}" for light in HELD_OUT_LIGHTS)]
         table.add_row(Text(record["atlas"]), record["cube"], *cells)
         if record.get("standard_error"):
-            sayings.append((record["atlas"], record["standard_error"]))
+            standard_errors.append((record["atlas"], record["standard_error"]))
     console().print(table)
-    for name, said in sayings:
+    for name, errors in standard_errors:
         click.echo(
-            f"{name}: stated standard error ΔE00 {said['stated']:.2f}, real {said['real']:.2f}; "
-            f"{said['within_one']:.0%} within one, {said['within_two']:.0%} within two"
+            f"{name}: predicted standard error ΔE00 {errors['stated']:.2f}, actual {errors['real']:.2f}; "
+            f"{errors['within_one']:.0%} within one, {errors['within_two']:.0%} within two"
         )
 
 
-PRINTERS: dict[str, Callable[[Found], None]] = {
+PRINTERS: dict[str, Callable[[Results], None]] = {
     "table": _print_table,
     "json": _print_json,
     "csv": _print_csv,

@@ -1,4 +1,4 @@
-"""``uplift study moments``: what trigonometric moments keep of measured spectra."""
+"""``uplift study moments``: errors of measured spectra reconstructed from trigonometric moments."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import click
 
 from ..output.console import console, json_text
 from ..output.progress import progress_bar
+from ..params.atlases import SHIPPED, read_atlases
 from ..params.options import force_option, format_option
-from ..params.study_atlases import SHIPPED, read_each
 
 if TYPE_CHECKING:
     from uplift.lab.study.moments import MomentsStudy
@@ -21,37 +21,43 @@ FILES = ("moments.csv", "moments.png", "moments-patches.png", "moments-worst.png
 
 @click.command("moments")
 @click.option(
-    "--atlas", "files", metavar="FILE", multiple=True, help=f"Atlas; may be repeated. [default: {SHIPPED}]"
+    "--atlas", "files", metavar="FILE", multiple=True, help=f"Atlas; repeatable. [default: {SHIPPED}]"
 )
-@click.option("--most", metavar="N", type=int, default=15, show_default=True, help="Moments, up to 32.")
-@click.option("-o", "--output", metavar="DIR", help="Folder to write the table and the pictures to.")
+@click.option(
+    "--max-moments",
+    metavar="N",
+    type=int,
+    default=15,
+    show_default=True,
+    help="Largest number of moments, up to 32.",
+)
+@click.option("-o", "--output", metavar="DIR", help="Folder for the table and the plots.")
 @format_option("table", "json", "csv")
 @force_option()
-def moments(files: tuple[str, ...], most: int, output: str | None, style: str, force: bool) -> None:
-    """Reduce measured spectra to their moments, reconstruct them, and compare.
+def moments(files: tuple[str, ...], max_moments: int, output: str | None, style: str, force: bool) -> None:
+    """Reconstruct measured spectra from their moments and compare them with the measurements.
 
-    Four techniques, the spectrum mirrored or not and warped or not, with 0 to N moments: mean and largest
-    ΔE76 under D65, ΔE00 under D65, A, FL2, FL7, FL11 and LED-B3, and rms difference, of all atlases together
-    and of each (Tódová 2020, table 4.1 and appendix B.1). The table shows ΔE76 of all together; JSON and CSV
-    hold everything.
+    Tests 0 to N moments of mirrored and unmirrored, warped and unwarped spectra, for all atlases together and for each
+    (Tódová 2020, table 4.1 and appendix B.1). Errors are mean and largest ΔE76 under D65, ΔE00 under D65, A, FL2, FL7,
+    FL11 and LED-B3, and the rms difference. The table shows ΔE76 of all atlases together; JSON and CSV have all errors.
 
-    --output writes moments.csv, and as PNG the errors over the numbers stored (moments), the patches that
-    the thesis shows or the first two entries (moments-patches), and the worst entries (moments-worst).
+    --output writes moments.csv and, as PNG, the errors over the number of floats (moments), the patches of the thesis
+    or the first two entries (moments-patches), and the entries with the largest errors (moments-worst).
 
     \b
     Examples:
       uplift study moments
       uplift study moments --atlas atlases/macbeth.txt --output out --force
-      uplift study moments --most 8 --format json
+      uplift study moments --max-moments 8 --format json
     """
     from uplift.common.files import check_folder
     from uplift.lab.study.moments import study_moments
 
-    atlases = read_each(files)
+    atlases = read_atlases(files)
     if output is not None:
         check_folder(output, FILES, force=force)
     with progress_bar("reconstructions") as progress:
-        found = study_moments(atlases, most, progress)
+        found = study_moments(atlases, max_moments, progress)
     if output is not None:
         _write(found, Path(output), force=force)
     PRINTERS[style](found)

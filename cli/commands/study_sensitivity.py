@@ -1,4 +1,4 @@
-"""``uplift study sensitivity``: how answers move with what they rest on."""
+"""``uplift study sensitivity``: sensitivity of spectra to colours and measurements."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import click
 from ..output.console import console, json_text
 from ..output.progress import progress_bar
 from ..params.options import atlas_folders_option, force_option, format_option
+from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.lab.study.sensitivity import Sensitivity
@@ -25,20 +26,23 @@ RESULTS, STEEPNESS, LOCALITY = FILES = (
 @click.command("sensitivity")
 @click.argument("cube", metavar="[CUBE]", required=False)
 @atlas_folders_option()
-@click.option("--entries", default=24, show_default=True, help="Atlas entries to change, one at a time.")
-@click.option("-o", "--output", metavar="DIR", help="Folder to write the figures and the pictures to.")
+@click.option(
+    "--entries", default=24, show_default=True, help="Number of atlas entries to change, one at a time."
+)
+@click.option("-o", "--output", metavar="DIR", help="Folder for the results and the plots.")
 @format_option("table", "json")
 @force_option()
 def sensitivity(
     cube: str | None, folders: tuple[str, ...], entries: int, output: str | None, style: str, force: bool
 ) -> None:
-    """Move the colours asked and the measurements behind a cube, and see how far its answers move.
+    """Perturb queried colours and the measurements of a cube, and report the change of its spectra.
 
-    Queries beside one another by a code of 8 bits, of 10 bits, and by float rounding; the Lipschitz constant of mode
-    'spectra' in every cell; the cube built anew with noise on its atlas, with one entry read from the wrong end, and
-    with one left out. CUBE defaults to the package's own, which has no atlas.
+    Colours are perturbed by an 8-bit code, a 10-bit code and float rounding. The Lipschitz constant of mode 'spectra'
+    is computed for every cell. The cube is rebuilt with noise on its atlas, with one entry reversed, and with one entry
+    left out. CUBE defaults to the packaged cube, which has no atlas.
 
-    --output writes sensitivity.json and, as PNG, where the cube is steep and how far from an entry it changes.
+    --output writes sensitivity.json and, as PNG, the steepness of the cube and the distance to which an entry affects
+    it.
 
     \b
     Examples:
@@ -46,9 +50,7 @@ def sensitivity(
       uplift study sensitivity cubes/moments-16-macbeth.uplift --output out --force
       uplift study sensitivity cubes/moments-8-macbeth.uplift --entries 4 --format json
     """
-    from ..startup import keep_compiled
-
-    keep_compiled()
+    enable_jit_cache()
     from uplift.common.files import check_folder
     from uplift.lab.study.sensitivity import study_sensitivity
     from uplift.lookup import load

@@ -1,4 +1,4 @@
-"""``uplift study stability``: where the fit fails."""
+"""``uplift study stability``: settings for which nodes stay unfitted."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ import click
 
 from ..output.console import console, json_text
 from ..output.progress import progress_bar
+from ..params.atlases import read_atlases
 from ..params.options import force_option, format_option
+from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.lab.study.stability import RunResult
@@ -21,49 +23,55 @@ FILES = ("stability.csv", "stability.json", "stability.png")
 MACBETH = "atlases/macbeth.txt"
 
 
-def _numbers(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None]:
-    """A callback that takes '4,8,16' apart."""
+def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None]:
+    """Return a callback that parses a list such as '4,8,16'."""
 
     def parse(context: click.Context, parameter: click.Parameter, text: str | None) -> tuple[Any, ...] | None:
         try:
             return None if text is None else tuple(kind(word.strip()) for word in text.split(","))
         except ValueError as error:
-            raise click.BadParameter(f"'{text}' is no list of them, as 4,8,16") from error
+            raise click.BadParameter(f"'{text}' is not a list of such values, as 4,8,16") from error
 
     return parse
 
 
 @click.command("stability")
-@click.option("--quick", is_flag=True, help="Small lattices and few values: some seconds a model.")
-@click.option("--dims", callback=_numbers(int), metavar="N,…", help="Lattice points along each axis.")
-@click.option("--coefficients", callback=_numbers(int), metavar="N,…", help="Moments + 1, 3 to 17.")
-@click.option("--spaces", callback=_numbers(str), metavar="NAME,…", help="RGB spaces of colour-science.")
-@click.option("--models", callback=_numbers(str), metavar="NAME,…", help="moments, sigmoid.")
-@click.option("--thresholds", callback=_numbers(float), metavar="X,…", help="Largest miss, |linear RGB|.")
+@click.option("--quick", is_flag=True, help="Small lattices and few values: some seconds per model.")
+@click.option("--dims", callback=_list_of(int), metavar="N,…", help="Lattice nodes along each axis.")
+@click.option(
+    "--coefficients", callback=_list_of(int), metavar="N,…", help="Coefficients per spectrum, 3 to 17."
+)
+@click.option("--spaces", callback=_list_of(str), metavar="NAME,…", help="RGB spaces of colour-science.")
+@click.option("--models", callback=_list_of(str), metavar="NAME,…", help="moments, sigmoid.")
+@click.option(
+    "--thresholds", callback=_list_of(float), metavar="X,…", help="Largest residuals, |linear RGB|."
+)
 @click.option(
     "--atlas",
     "files",
     metavar="FILE",
     multiple=True,
-    help=f"Atlas beside the made ones; may be repeated. [default: {MACBETH}, if it is here]",
+    help=f"Atlas in addition to the synthetic ones; repeatable. [default: {MACBETH} if it exists]",
 )
-@click.option("--atlases", callback=_numbers(str), metavar="NAME,…", help="Of all these: none, or by name.")
-@click.option("--drawn", type=int, help="Settings drawn from all combinations, beside the grids.")
-@click.option("--peer-dims", callback=_numbers(int), metavar="N,…", help="Lattices of scipy's solver.")
-@click.option("-o", "--output", metavar="DIR", help="Folder to write the tables and the heat map to.")
+@click.option(
+    "--atlases", callback=_list_of(str), metavar="NAME,…", help="Atlases to use by name, or 'none'."
+)
+@click.option("--samples", "drawn", type=int, help="Number of random settings in addition to the grids.")
+@click.option("--peer-dims", callback=_list_of(int), metavar="N,…", help="Lattices for the solver of scipy.")
+@click.option("-o", "--output", metavar="DIR", help="Folder for the tables and the heat map.")
 @format_option("table", "json", "csv")
 @force_option()
 def stability(
-    quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool, **chosen: Any
+    quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool, **options: Any
 ) -> None:
-    """Build over dims, coefficients, models, spaces, thresholds and atlases, and look for points that fail.
+    """Build cubes over dims, coefficients, models, spaces, thresholds and atlases, and count unfitted nodes.
 
-    For each build the share of realisable points that are fitted, rounds, points that improvement was tried on, the
-    worst point and the time. Not every combination: a grid of each axis against the models and their coefficients,
-    and a sample of the rest. Beside ours, the thesis's solver on small lattices: least squares with numeric
-    differences, grown from the middle, in moments (c) as the thesis has them and in multipliers (p) as we do.
+    Reports for each build the realisable and the unfitted nodes, rounds, improvement attempts, the largest residual and
+    the time. The builds are a grid of each setting against models and coefficients, and a random sample of other
+    combinations. For comparison, small lattices are solved by the method of the thesis: least squares with numeric
+    derivatives, grown from the centre, in moments (c) and in multipliers (p).
 
-    Atlases are none, the ColorChecker, and three that are made to be hard: crowded, spiky, noisy. --output writes
+    Atlases are none, the ColorChecker, and three difficult synthetic ones: crowded, spiky and noisy. --output writes
     stability.csv, stability.json and the heat map stability.png.
 
     \b
@@ -72,21 +80,17 @@ def stability(
       uplift study stability --output out --force
       uplift study stability --spaces 'sRGB,ProPhoto RGB' --thresholds 1e-4,1e-6 --dims 9 --format csv
     """
-    from ..startup import keep_compiled
-
-    keep_compiled()
+    enable_jit_cache()
     from uplift.common.files import check_folder
     from uplift.lab.study import stability_design as design
     from uplift.lab.study.stability import NO_ATLAS, study_stability
     from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES
 
-    from ..params.study_atlases import read_each
-
-    here = () if files or not Path(MACBETH).exists() else (MACBETH,)
-    atlases = (read_each(files or here) if files or here else {}) | {
-        name: make() for name, make in SYNTHETIC_ATLASES.items()
-    }
-    given = {name: value for name, value in chosen.items() if value is not None}
+    if not files and Path(MACBETH).exists():
+        files = (MACBETH,)
+    measured = read_atlases(files) if files else {}
+    atlases = measured | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
+    given = {name: value for name, value in options.items() if value is not None}
     axes = replace(
         design.QUICK_DESIGN if quick else design.DesignSpace(), **({"atlases": (NO_ATLAS, *atlases)} | given)
     )
@@ -153,7 +157,7 @@ def _print_table(found: Sequence[RunResult]) -> None:
     console().print(table)
     failed = [one for one in found if one.unfitted]
     click.echo(
-        f"{len(found)} builds, {sum(one.realisable for one in found)} realisable points: "
+        f"{len(found)} builds, {sum(one.realisable for one in found)} realisable nodes: "
         f"{sum(one.unfitted for one in failed)} unfitted in {len(failed)} builds"
     )
 

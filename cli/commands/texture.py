@@ -1,4 +1,4 @@
-"""``uplift texture``: every pixel of an image uplifted."""
+"""``uplift texture``: convert images to spectral textures."""
 
 from __future__ import annotations
 
@@ -12,17 +12,20 @@ import click
 
 from uplift.common.progress import Progress
 
+from ..output.diagnostics import UsageFailure
 from ..output.progress import progress_bar
-from ..params.image_paths import frames
+from ..params.image_paths import texture_paths
 from ..params.options import (
     cube_option,
     encoding_option,
     fill_option,
     force_option,
     out_of_gamut_option,
+    quiet_option,
     wavelengths_option,
 )
 from ..params.wavelengths import parse_wavelengths
+from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -34,27 +37,33 @@ if TYPE_CHECKING:
 @click.argument("target", metavar="OUT")
 @cube_option()
 @click.option(
-    "--as",
+    "--store",
     "kind",
     type=click.Choice(("spectrum", "moments", "multipliers")),
     default="spectrum",
     show_default=True,
-    help="What a pixel holds.",
+    help="Contents of a pixel.",
 )
 @wavelengths_option()
 @click.option(
     "--depth",
     type=click.Choice(("half", "float")),
-    help="16 or 32 bits a number. [default: half for spectra, else float]",
+    help="16 or 32 bits per channel. [default: half for spectra, else float]",
 )
 @encoding_option()
 @out_of_gamut_option("clip")
 @fill_option()
-@click.option("--processes", type=click.IntRange(min=1), help="For several images. [default: one a core]")
-@click.option("--scheduler", metavar="ADDRESS", help="Dask cluster to work on; it needs uplift[cluster].")
-@click.option("--resume", is_flag=True, help="Leave out images whose textures are there, newer and whole.")
+@click.option(
+    "--processes",
+    type=click.IntRange(min=1),
+    help="Number of processes for several images. [default: one per core]",
+)
+@click.option(
+    "--scheduler", metavar="ADDRESS", help="Dask cluster that converts the images; requires uplift[cluster]."
+)
+@click.option("--resume", is_flag=True, help="Skip images whose textures are complete and newer.")
 @force_option()
-@click.option("-q", "--quiet", is_flag=True, help="Say nothing but warnings and errors.")
+@quiet_option()
 def command(
     sources: tuple[str, ...],
     target: str,
@@ -63,76 +72,81 @@ def command(
     wavelengths: str | None,
     depth: str | None,
     encoding: str,
-    way: str,
-    fill: bool,
+    method: str,
+    fill_missing: bool,
     processes: int | None,
     scheduler: str | None,
     resume: bool,
     force: bool,
     quiet: bool,
 ) -> None:
-    """Uplift every pixel of an image (EXR, PNG, JPEG, TIFF) and write the texture as OpenEXR.
+    """Convert every pixel of an image (EXR, PNG, JPEG, TIFF) to a spectrum and write an OpenEXR texture.
 
     \b
     Examples:
       uplift texture wood.png wood.exr
-      uplift texture wood.png wood.exr --cube macbeth-32.uplift --as moments
+      uplift texture wood.png wood.exr --cube macbeth-32.uplift --store moments
       uplift texture 'shot.*.exr' uplifted --wavelengths 400:700:10 --resume
       uplift texture fire.exr bright.exr --out-of-gamut scale
       uplift texture shot.*.exr uplifted --scheduler tcp://10.0.0.5:8786
 
-    'spectrum' is a spectral EXR as Fichet et al. 2021 have it, at --wavelengths. 'moments' can be filtered and
-    mip-mapped, 'multipliers' evaluated at once; the header tells how. Alpha and other channels pass through.
-    Colours outside [0, 1] are clipped, or as --out-of-gamut says, NaN is taken for 0; both are counted. Several
-    images, or a quoted pattern, go into the folder OUT.
-    """
-    from ..startup import keep_compiled
+    'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
+    and mip-mapped. 'multipliers' can be evaluated directly, by the formula in the header. Alpha and other channels are
+    copied. Several images, or a quoted pattern, go into the folder OUT.
 
-    keep_compiled()
+    Colours outside [0, 1] are treated by --out-of-gamut, and NaN becomes 0. A warning counts both.
+    """
+    enable_jit_cache()
     from uplift.common.errors import UpliftWarning
     from uplift.io import texture
 
-    pairs = frames(sources, target)
+    pairs = texture_paths(sources, target)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
-    form = _form(kind, parse_wavelengths(wavelengths))
+    form = _pixel_encoding(kind, parse_wavelengths(wavelengths))
     cube = None if cube_path is None else os.path.abspath(cube_path)
-    recipe = texture.TextureSettings(cube, form, depth, encoding, max(cores // count, 1), fill, way)
-    jobs = [texture.Job(recipe, source.absolute(), made.absolute(), force) for source, made in pairs]
-    todo = texture.pending(jobs, resume=resume)
-    texture.uplifter_for(recipe)  # what is wrong with the options is said once
+    settings = texture.TextureSettings(
+        cube, form, depth, encoding, max(cores // count, 1), fill_missing, method
+    )
+    jobs = [texture.Job(settings, source.absolute(), path.absolute(), force) for source, path in pairs]
+    pending = texture.pending(jobs, resume=resume)
+    texture.uplifter_for(settings)  # report invalid options once, not once per image
     begin = time.perf_counter()
     if scheduler is None and len(jobs) == 1:
-        found: list[Conversion | Failure] = [_alone(job) for job in todo]
+        results: list[Conversion | Failure] = [_convert_here(job) for job in pending]
     else:
         with texture.processes(count) if scheduler is None else texture.cluster(scheduler) as executor:
-            found = _several(texture.convert_all(todo, executor), len(todo))
-    made = [one for one in found if isinstance(one, texture.Conversion)]
-    for conversion in made:
+            results = _collect(texture.convert_all(pending, executor), len(pending))
+    converted = [one for one in results if isinstance(one, texture.Conversion)]
+    for conversion in converted:
         for remark in conversion.remarks:
-            warnings.warn(f"{conversion.source}: {remark}", UpliftWarning, stacklevel=1)
+            warnings.warn(UpliftWarning(remark, code="image", path=conversion.source), stacklevel=1)
     if not quiet:
-        _tell(target, made, len(jobs) - len(todo), time.perf_counter() - begin)
-    failures = [one for one in found if isinstance(one, texture.Failure)]
+        _print_summary(target, converted, len(jobs) - len(pending), time.perf_counter() - begin)
+    failures = [one for one in results if isinstance(one, texture.Failure)]
     for failure in failures[1:]:
-        click.echo(f"error: {failure.error}", err=True)
+        UsageFailure(failure.error).show()
     if failures:
         raise failures[0].error
 
 
-def _form(kind: str, wavelengths: Array | None) -> PixelEncoding:
+def _pixel_encoding(kind: str, wavelengths: Array | None) -> PixelEncoding:
     from uplift.common.errors import OptionError
     from uplift.io import texture
 
     if kind == texture.Spectrum.name:
         return texture.Spectrum(None if wavelengths is None else tuple(wavelengths.tolist()))
     if wavelengths is not None:
-        raise OptionError(f"{kind} have no wavelengths", hint="leave out --wavelengths, or --as")
+        raise OptionError(
+            f"{kind} have no wavelengths",
+            code="wavelengths-not-applicable",
+            hint="leave out --wavelengths, or use --store spectrum",
+        )
     return texture.FORMS[kind]()
 
 
-def _alone(job: Job) -> Conversion:
-    """One image, here, with a bar over its rows."""
+def _convert_here(job: Job) -> Conversion:
+    """Convert one image in this process, with a progress bar over its rows."""
     from uplift.io import texture
 
     with progress_bar("rows") as progress:
@@ -141,19 +155,19 @@ def _alone(job: Job) -> Conversion:
         )
 
 
-def _several(results: Iterable[Conversion | Failure], total: int) -> list[Conversion | Failure]:
-    """Images as they are finished, with a bar over them."""
-    found = []
+def _collect(results: Iterable[Conversion | Failure], total: int) -> list[Conversion | Failure]:
+    """Collect results as images finish, with a progress bar over the images."""
+    collected = []
     with progress_bar("images") as progress:
         for result in results:
-            found.append(result)
-            progress(Progress("images", len(found), total))
-    return found
+            collected.append(result)
+            progress(Progress("images", len(collected), total))
+    return collected
 
 
-def _tell(target: str, made: list[Conversion], skipped: int, seconds: float) -> None:
-    pixels = sum(conversion.counts.pixels for conversion in made)
-    size = sum(conversion.target.stat().st_size for conversion in made)
-    there = f", {skipped} there already" if skipped else ""
-    many = f"{len(made)} texture{'s' * (len(made) != 1)}{there}"
-    click.echo(f"{target}: {many}, {pixels:,} pixels, {size / 1e6:.1f} MB, {seconds:.1f} s")
+def _print_summary(target: str, converted: list[Conversion], skipped: int, seconds: float) -> None:
+    pixels = sum(conversion.counts.pixels for conversion in converted)
+    size = sum(conversion.target.stat().st_size for conversion in converted)
+    suffix = f", {skipped} skipped" if skipped else ""
+    count = f"{len(converted)} texture{'s' * (len(converted) != 1)}{suffix}"
+    click.echo(f"{target}: {count}, {pixels:,} pixels, {size / 1e6:.1f} MB, {seconds:.1f} s")

@@ -1,4 +1,4 @@
-"""What ``uplift atlas`` says of each entry."""
+"""Rows of ``uplift atlas``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Row:
-    """One entry as it is listed: nm, linear RGB, display RGB (8 bit), and what was clipped."""
+    """One entry: range in nm, linear RGB, 8-bit sRGB, and warnings."""
 
     name: str
     start: float
@@ -26,21 +26,21 @@ class Row:
 
 @dataclass(frozen=True)
 class Listing:
-    """An atlas seen under one sensor."""
+    """An atlas and its colours under one sensor."""
 
-    spectra: Atlas
+    atlas: Atlas
     sensor: Sensor
     rows: tuple[Row, ...]
 
 
-def list_entries(spectra: Atlas, sensor: Sensor) -> Listing:
-    """Colours of all entries under a sensor, clipped as a cube would have them."""
+def list_entries(atlas: Atlas, sensor: Sensor) -> Listing:
+    """List all entries under a sensor, with reflectances clipped as in a build."""
     from uplift.atlas import resample
     from uplift.colorimetry.gamut import SRGB
     from uplift.colorimetry.observer import sensor as make_sensor
     from uplift.colorimetry.srgb import to_display_codes
 
-    resampled = resample(spectra, sensor.wavelengths)
+    resampled = resample(atlas, sensor.wavelengths)
     display = make_sensor("sRGB", sensor.illuminant, sensor.observer)
     clips = {clip.name: (str(clip),) for clip in resampled.clips}
     colours = sensor.rgb(resampled.values).tolist()
@@ -56,6 +56,6 @@ def list_entries(spectra: Atlas, sensor: Sensor) -> Listing:
             bool(sensor.contains(rgb)),
             clips.get(entry.name, ()),
         )
-        for entry, rgb, code in zip(spectra.entries, colours, codes, strict=True)
+        for entry, rgb, code in zip(atlas.entries, colours, codes, strict=True)
     ]
-    return Listing(spectra, sensor, tuple(rows))
+    return Listing(atlas, sensor, tuple(rows))

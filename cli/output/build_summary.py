@@ -1,4 +1,4 @@
-"""What a build says when it is done."""
+"""Summary of a finished build."""
 
 from __future__ import annotations
 
@@ -12,30 +12,36 @@ if TYPE_CHECKING:
     from uplift.lookup import Cube
 
 
-def tell_improvements(cube: Cube) -> None:
+def print_improvements(cube: Cube) -> None:
+    """Print a line for each improvement step to standard error."""
     for step in cube.data.provenance["improvements"]:
-        click.echo(f"improvement, {step['step']}: tried {step['tried']}, mended {step['mended']}", err=True)
+        click.echo(f"improvement, {step['step']}: tried {step['tried']}, fixed {step['mended']}", err=True)
 
 
-def tell(cube: Cube, path: Path, seconds: float) -> None:
+def print_summary(cube: Cube, path: Path, seconds: float) -> None:
+    """Print nodes, entries, accuracy, size and time on one line."""
     from uplift.lattice import Status
 
     data, counts = cube.data, cube.data.points.counts()
-    missed, beyond = counts["unfitted"], counts["unrealisable"]
-    within = f"all within {data.threshold:g}"
-    fitted = within if not missed else f"{missed} MISS the threshold {data.threshold:g}"
-    if beyond:
-        fitted += f" but {beyond} that no reflectance has the colour of: these have less chroma"
+    unfitted, unrealisable = counts["unfitted"], counts["unrealisable"]
+    accuracy = (
+        f"{unfitted} EXCEED the threshold {data.threshold:g}"
+        if unfitted
+        else f"all within {data.threshold:g}"
+    )
+    if unrealisable:
+        accuracy += f" except {unrealisable} unrealisable ones, stored with less chroma"
     worst = data.points.distance[data.points.status != Status.UNREALISABLE].max(initial=0)
     entries = f"{len(data.atlas.names)} atlas entries, " if data.provenance["atlases"] else ""
     click.echo(
-        f"{path}: {_points(data)}, {entries}{fitted} (worst {worst:.1e}), "
+        f"{path}: {_node_count(data)}, {entries}{accuracy} (worst {worst:.1e}), "
         f"{counts['improved']} improved, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
     )
 
 
-def _points(data: CubeData) -> str:
+def _node_count(data: CubeData) -> str:
+    size = data.lattice.size
     if data.complete_cells is None:
-        return f"{data.lattice.size} points"
-    there = int(data.points.present.sum())
-    return f"{there} of {data.lattice.size} points ({there / data.lattice.size:.1%})"
+        return f"{size} nodes"
+    count = int(data.points.present.sum())
+    return f"{count} of {size} nodes ({count / size:.1%})"

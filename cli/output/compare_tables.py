@@ -1,4 +1,4 @@
-"""Comparisons of representations as the terminal shows them: tables, and advice."""
+"""Tables and recommendations of ``uplift compare``."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ if TYPE_CHECKING:
     from uplift.lab.comparison.statistics import Statistics
 
 
-def print_comparison(found: Comparison) -> None:
-    """A table for each set of lights, ranked."""
+def print_comparison(comparison: Comparison) -> None:
+    """Print a ranked table for each set of lights."""
     from uplift.lab.comparison.statistics import HEADINGS
     from uplift.viz.format import format_time
 
-    for name, title in found.sets.items():
+    for name, title in comparison.sets.items():
         table = _table(
             f"ΔE00 under {title}", ("representation",), (*HEADINGS, "floats", "of a light", "product")
         )
-        for row in found.of(name):
+        for row in comparison.of(name):
             cost = (f"{row.floats:.1f}", f"{row.light_floats:.1f}", format_time(row.ns.median))
-            table.add_row(row.name, *_told(row.statistics), *cost)
+            table.add_row(row.name, *_cells(row.statistics), *cost)
         console().print(table)
 
 
 def print_filters(tuned: tuple[Tuned, ...]) -> None:
-    """The best filter of each kind."""
+    """Print the best filter of each kind."""
     from uplift.lab.comparison.statistics import HEADINGS
 
     table = _table(
@@ -41,26 +41,27 @@ def print_filters(tuned: tuple[Tuned, ...]) -> None:
         HEADINGS,
     )
     for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
-        table.add_row(one.lights, str(one.count), one.kind, one.told, *_told(one.statistics))
+        table.add_row(one.lights, str(one.count), one.kind, one.told, *_cells(one.statistics))
     console().print(table)
 
 
-def print_advice(found: Comparison, target: float) -> None:
-    """The cheapest representation under each set of lights."""
+def print_advice(comparison: Comparison, target: float) -> None:
+    """Print the cheapest sufficient representation for each set of lights."""
     from uplift.lab.comparison.recommend import cheapest, nearest
     from uplift.viz.format import format_error, format_time
 
-    for name, title in found.sets.items():
-        row = cheapest(found, name, target)
+    for name, title in comparison.sets.items():
+        row = cheapest(comparison, name, target)
         if row is None:
-            best = nearest(found, name)
-            told = f"none; the nearest, {best.name}, has {format_error(best.statistics.q97_5)}"
+            best = nearest(comparison, name)
+            text = f"none; the most accurate, {best.name}, has {format_error(best.statistics.q97_5)}"
         else:
-            told = (
-                f"{row.name} ({row.family}): 97.5 % within {format_error(row.statistics.q97_5)}, {row.floats:.4g} floats "
-                f"a surface, {row.light_floats:.4g} a light, {format_time(row.ns.median)} a product"
+            text = (
+                f"{row.name} ({row.family}): 97.5 % below {format_error(row.statistics.q97_5)}, "
+                f"{row.floats:.4g} floats per surface, {row.light_floats:.4g} per light, "
+                f"{format_time(row.ns.median)} per product"
             )
-        click.echo(f"{title}: {told}")
+        click.echo(f"{title}: {text}")
 
 
 def _table(caption: str, left: tuple[str, ...], right: tuple[str, ...]) -> Table:
@@ -75,5 +76,5 @@ def _table(caption: str, left: tuple[str, ...], right: tuple[str, ...]) -> Table
     return table
 
 
-def _told(found: Statistics) -> list[str]:
-    return [f"{value:.3f}" for value in found]
+def _cells(statistics: Statistics) -> list[str]:
+    return [f"{value:.3f}" for value in statistics]

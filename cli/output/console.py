@@ -1,4 +1,4 @@
-"""What is printed: tables as wide as the terminal, or wide enough for a pipe; JSON of numbers that all readers know."""
+"""Tables and JSON on standard output."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 PIPE_WIDTH = 160
-"""Columns of a table that no terminal limits."""
+"""Width of tables that do not go to a terminal, in characters."""
 
 
 def console() -> Console:
-    """A rich console on standard output."""
+    """Return a rich console on standard output."""
     from rich.console import Console
 
-    found = Console(file=sys.stdout, highlight=False)
-    if not found.is_terminal:
-        found.width = max(found.width, PIPE_WIDTH)
-    return found
+    console = Console(file=sys.stdout, highlight=False)
+    if not console.is_terminal:
+        console.width = max(console.width, PIPE_WIDTH)
+    return console
 
 
 def json_text(values: Any, indent: int | None = 2) -> str:
-    """JSON, which has no NaN and no infinity. Raises ValueError for these."""
+    """Return standard JSON. Raises ValueError for NaN and infinity, which it cannot represent."""
     return json.dumps(values, indent=indent, ensure_ascii=False, allow_nan=False)

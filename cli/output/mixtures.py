@@ -1,4 +1,4 @@
-"""Mixtures on paper: a sheet for eyes, or JSON."""
+"""Mixtures as text, JSON or plot."""
 
 from __future__ import annotations
 
@@ -10,23 +10,24 @@ import click
 
 from uplift.common.errors import UpliftWarning
 
-from ..params.ingredients import given
+from ..params.ingredients import library_ingredients
 from .console import json_text
-from .query_output import columns, hex_code, shown_codes, sparkline, triple
+from .query_output import display_codes, format_rgb, hex_code, print_columns, print_fields, sparkline
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.design.mixing.recipes import Medium
     from uplift.lookup import Cube
 
-    from ..params.ingredients import Ingredient, Shelf
+    from ..params.ingredients import Ingredient, SpectrumResolver
 
 
 @dataclass(frozen=True, eq=False)
 class Mixture:
-    """The first of ``parts`` (1 + k, n) is what was asked for, the others lead from the first to the last ingredient.
+    """A mixture and the ramp from its first to its last ingredient.
 
-    ``rgb`` (1 + k, 3) are linear, in [0, 1]; ``spectrum`` (N,) at ``wavelengths`` (N,) nm is that of the first.
+    Row 0 of ``parts`` (1 + k, n) and of ``rgb`` (1 + k, 3), linear in [0, 1], is the mixture. The other rows are the
+    ramp. ``spectrum`` (N,) at ``wavelengths`` (N,) nm is that of the mixture.
     """
 
     kind: str
@@ -41,46 +42,49 @@ class Mixture:
         return [one.name for one in self.ingredients]
 
     @property
-    def told(self) -> str:
-        """'2 of blue, 1 of yellow'."""
+    def recipe(self) -> str:
+        """The ingredients as '2 of blue, 1 of yellow'."""
         return ", ".join(f"{one.parts:g} of {one.name}" for one in self.ingredients)
 
 
-def mixed_on(
-    shelf: Shelf,
+def mix(
+    resolver: SpectrumResolver,
     kind: str,
     ingredients: list[Ingredient],
     medium: Medium,
     ground: str | None,
     steps: int,
-    way: str,
+    method: str,
 ) -> Mixture:
-    """The mixture, and ``steps`` on the way through its ingredients; a mixture that was moved inside is said."""
+    """Mix ingredients, and a ramp of ``steps`` through them. Warns if the mixture lies outside [0, 1]."""
     import numpy as np
 
     from uplift.colorimetry.gamut import map_to_gamut
     from uplift.design.mixing.recipes import mixed, ramp
 
-    sensor = shelf.cube.data.sensor
+    sensor = resolver.cube.data.sensor
     parts = np.array([one.parts for one in ingredients])
     amounts = np.concatenate([parts[None], ramp(parts, steps)])
-    spectra = mixed(kind, given(ingredients), amounts, medium, shelf.spectrum(ground or "white"))
+    spectra = mixed(
+        kind, library_ingredients(ingredients), amounts, medium, resolver.spectrum(ground or "white")
+    )
     count = len(sensor.wavelengths)
-    moved = map_to_gamut(sensor.rgb(spectra[:, :count]), sensor, way)
-    if moved.outside[0]:
-        warnings.warn(f"the mixture lies outside [0, 1]: moved inside ({way})", UpliftWarning, stacklevel=1)
+    mapped = map_to_gamut(sensor.rgb(spectra[:, :count]), sensor, method)
+    if mapped.outside[0]:
+        problem = f"the mixture lies outside [0, 1]: mapped into the gamut ({method})"
+        warnings.warn(UpliftWarning(problem, code="mixture-mapped"), stacklevel=1)
     return Mixture(
-        kind, tuple(ingredients), amounts, shelf.wavelengths[count:], spectra[0, count:], moved.rgb
+        kind, tuple(ingredients), amounts, resolver.wavelengths[count:], spectra[0, count:], mapped.rgb
     )
 
 
 def as_json(cube: Cube, mixture: Mixture) -> None:
-    """One object."""
+    """Print one JSON object."""
     steps = [
         {"parts": parts.tolist(), "rgb": rgb.tolist(), "hex": hex_code(cube, rgb)}
         for parts, rgb in zip(mixture.parts, mixture.rgb, strict=True)
     ]
-    found = {
+    fields = {
         "kind": mixture.kind,
         "names": mixture.names,
         **steps[0],
@@ -88,40 +92,39 @@ def as_json(cube: Cube, mixture: Mixture) -> None:
         "spectrum": mixture.spectrum.tolist(),
         "ramp": steps[1:],
     }
-    click.echo(json_text(found, indent=None))
+    click.echo(json_text(fields, indent=None))
 
 
 def as_table(cube: Cube, mixture: Mixture) -> None:
-    """A sheet, and the spectrum in columns."""
+    """Print colour, ramp and spectrum."""
     rgb, spectrum = mixture.rgb[0], mixture.spectrum
-    facts = {
-        mixture.kind: mixture.told,
-        "linear RGB": f"{triple(rgb)}  {hex_code(cube, rgb)}  {click.style(' ' * 8, bg=shown_codes(cube, rgb))}",
+    fields = {
+        mixture.kind: mixture.recipe,
+        "linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}  {click.style(' ' * 8, bg=display_codes(cube, rgb))}",
         **_ramp(cube, mixture),
         "spectrum": f"{sparkline(spectrum / max(1, spectrum.max()))}  "
         f"{mixture.wavelengths[0]:g}–{mixture.wavelengths[-1]:g} nm",
     }
-    for name, text in facts.items():
-        click.echo(f"{name:<12}{text}")
+    print_fields(fields)
     click.echo()
-    columns(mixture.wavelengths, spectrum)
+    print_columns(mixture.wavelengths, spectrum)
 
 
 def _ramp(cube: Cube, mixture: Mixture) -> dict[str, str]:
-    """Patches and codes; of one ingredient there is none."""
+    """Return patches and hex codes of the ramp; empty for a single ingredient."""
     if len(mixture.names) < 2:
         return {}
-    patches = "".join(click.style("    ", bg=shown_codes(cube, step)) for step in mixture.rgb[1:])
+    patches = "".join(click.style("    ", bg=display_codes(cube, step)) for step in mixture.rgb[1:])
     return {"ramp": patches + "  " + " ".join(hex_code(cube, step) for step in mixture.rgb[1:])}
 
 
-def draw(cube: Cube, mixture: Mixture, path: str, *, force: bool) -> None:
-    """The mixture, and below it the way from the first to the last, as a PNG. Raises `OutputError`."""
+def plot(cube: Cube, mixture: Mixture, path: str, *, force: bool) -> None:
+    """Write swatches of the mixture and of the ramp as PNG. Raises `OutputError`."""
     from uplift.colorimetry.srgb import to_display_codes
     from uplift.viz.swatches import Strip, plot_strips
 
     codes = to_display_codes(mixture.rgb, cube.data.sensor) / 255
-    strips = [Strip(f"{mixture.kind}: {mixture.told}", codes[:1])]
+    strips = [Strip(f"{mixture.kind}: {mixture.recipe}", codes[:1])]
     if len(mixture.names) > 1:
         strips.append(Strip(f"from {mixture.names[0]} to {mixture.names[-1]}", codes[1:]))
     plot_strips(strips, path, force=force)

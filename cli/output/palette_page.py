@@ -1,12 +1,13 @@
-"""The light dial of ``uplift palette``: its options, the picture, the page."""
+"""Relighting page of ``uplift palette``."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
+
+from uplift.common.errors import OptionError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -15,66 +16,51 @@ if TYPE_CHECKING:
     from uplift.design.palette import Design, Palette
 
 
-def page_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """--html, --image, --label."""
-    html = click.option(
-        "--html", metavar="HTML", help="Write a page that mixes the lights on a picture of the materials."
-    )
-    image = click.option(
-        "--image",
-        metavar="FILE",
-        help="The page's picture: an 8-bit image of labels, or EXR channels called like the materials.",
-    )
-    label = click.option(
-        "--label",
-        "labels",
-        multiple=True,
-        metavar="NAME=#RRGGBB",
-        help="Colour that stands for a material in --image; may be repeated. [default: greys of 1, 2, …]",
-    )
-    return html(image(label(function)))
-
-
 def read_picture(
     palette: Palette, html: str | None, image: str | None, labels: tuple[str, ...]
 ) -> NDArray[np.float32] | None:
-    """How much of each material a pixel shows; None where the page draws its own. Asked before long work."""
-    from uplift.common.errors import OptionError
-    from uplift.design.palette.relight_viewer.picture_file import read_weights
-
+    """Read how much of each material a pixel shows; None if the page draws its own picture."""
     if image is None and labels:
-        raise OptionError("--label without --image", hint="name the image that has these colours")
-    if image is not None and html is None:
-        raise OptionError("--image without --html", hint="name the page that shall show it")
+        raise OptionError(
+            "--label requires --image",
+            code="label-without-image",
+            hint="give the image that has these colours",
+        )
     if image is None:
         return None
-    return read_weights(image, [part.name for part in palette.materials], _told(labels))
+    if html is None:
+        raise OptionError("--image requires --html", code="image-without-page", hint="give the page to write")
+    from uplift.design.palette.relight_viewer.picture_file import read_weights
+
+    return read_weights(image, [part.name for part in palette.materials], _parse_labels(labels))
 
 
-def _told(labels: tuple[str, ...]) -> dict[str, str] | None:
-    """Colour by material."""
-    from uplift.common.errors import OptionError
-
-    told: dict[str, str] = {}
+def _parse_labels(labels: tuple[str, ...]) -> dict[str, str] | None:
+    """Return colours by material, or None without labels."""
+    colours: dict[str, str] = {}
     for label in labels:
         name, sign, colour = label.partition("=")
         if not sign:
-            raise OptionError(f"label '{label}' has no colour", hint="write it as NAME=#rrggbb")
-        if name in told:
-            raise OptionError(f"two colours for '{name}'", hint="give one")
-        told[name] = colour
-    return told or None
+            raise OptionError(
+                f"label must be NAME=#rrggbb, got '{label}'", code="label-unreadable", hint="add a colour"
+            )
+        if name in colours:
+            raise OptionError(
+                f"label '{name}' has two colours", code="duplicate-label", hint="give one colour per material"
+            )
+        colours[name] = colour
+    return colours or None
 
 
 def write_page(
-    found: Design, spec: str, picture: NDArray[np.float32] | None, path: str, *, force: bool
+    design: Design, spec: str, picture: NDArray[np.float32] | None, path: str, *, force: bool
 ) -> None:
-    """Write the page, called like the spec."""
+    """Write the page, titled with the stem of the spec's file name."""
     from uplift.common.files import write_text
     from uplift.design.palette.relight_viewer.cutaway import cutaway
     from uplift.design.palette.relight_viewer.page import page
     from uplift.design.palette.relight_viewer.relighting import relighting
 
-    weights = cutaway(len(found.palette.materials)) if picture is None else picture
-    write_text(page(relighting(Path(spec).stem, found, weights)), path, force=force)
-    click.echo(f"{path}: light dial", err=True)
+    weights = cutaway(len(design.palette.materials)) if picture is None else picture
+    write_text(page(relighting(Path(spec).stem, design, weights)), path, force=force)
+    click.echo(f"{path}: relighting page", err=True)

@@ -1,4 +1,4 @@
-"""A palette's matrix for terminals and for programs."""
+"""Matrix of ``uplift palette`` as table or JSON."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ if TYPE_CHECKING:
     from uplift.design.palette.palette import SpectrumSpec
 
 
-KEY = "wanted, obtained, by the factor model; ΔE00 from wanted to obtained, of the model. * designed"
+LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of the model. * designed"
 
 
-def _print_table(found: Design, colours: Matrix, missed: Sequence[UnmetGoal]) -> None:
+def _print_table(design: Design, colours: Matrix, missed: Sequence[UnmetGoal]) -> None:
     out = console()
-    out.print(_table(found, colours, coloured=out.color_system is not None))
-    out.print(KEY, markup=False)
+    out.print(_table(design, colours, coloured=out.color_system is not None))
+    out.print(LEGEND, markup=False)
     for miss in missed:
-        click.echo(f"missed: {miss}")
+        click.echo(f"not met: {miss}")
     if not missed:
-        click.echo("all wishes are fulfilled")
+        click.echo("all goals are met")
 
 
-def _table(found: Design, colours: Matrix, *, coloured: bool) -> Table:
+def _table(design: Design, colours: Matrix, *, coloured: bool) -> Table:
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
     table = Table(box=box.SIMPLE_HEAD)
     table.add_column("")
-    for light in found.palette.lights:
+    for light in design.palette.lights:
         table.add_column(_name(light), no_wrap=True)
-    for row, material in enumerate(found.palette.materials):
-        cells = (_cell(colours, (row, column), coloured) for column in range(len(found.palette.lights)))
+    for row, material in enumerate(design.palette.materials):
+        cells = (_cell(colours, (row, column), coloured) for column in range(len(design.palette.lights)))
         table.add_row(Text(_name(material)), *cells)
     return table
 
@@ -56,40 +56,40 @@ def _cell(colours: Matrix, at: tuple[int, int], coloured: bool) -> Text:
 
     from uplift.colorimetry.srgb import hex_codes
 
-    wished = not math.isnan(colours.delta_e[at])
-    shown = [colours.target[at]] * wished + [colours.obtained[at], colours.factor[at]]
+    has_goal = not math.isnan(colours.delta_e[at])
+    triples = [colours.target[at]] * has_goal + [colours.obtained[at], colours.factor[at]]
     text = Text()
-    for rgb in shown:
+    for rgb in triples:
         (code,) = hex_codes(rgb[None])
         text.append("    " if coloured else code, style=f"on {code}" if coloured else "")
         text.append(" ")
-    missed = f"{colours.delta_e[at]:.2f}" if wished else "–"
+    missed = f"{colours.delta_e[at]:.2f}" if has_goal else "–"
     return text.append(f" {missed}, {colours.model_error[at]:.2f}")
 
 
-def _print_json(found: Design, colours: Matrix, missed: Sequence[UnmetGoal]) -> None:
-    palette = found.palette
-    answer = {
+def _print_json(design: Design, colours: Matrix, missed: Sequence[UnmetGoal]) -> None:
+    palette = design.palette
+    fields = {
         "wavelengths": palette.sensor.wavelengths.tolist(),
-        "coefficients": found.model.count,
+        "coefficients": design.model.count,
         "lights": [
-            _part(part, samples, found.model.light(samples))
-            for part, samples in zip(palette.lights, found.powers, strict=True)
+            _part(part, samples, design.model.light(samples))
+            for part, samples in zip(palette.lights, design.powers, strict=True)
         ],
         "materials": [
-            _part(part, samples, found.model.reflectance(samples))
-            for part, samples in zip(palette.materials, found.reflectances, strict=True)
+            _part(part, samples, design.model.reflectance(samples))
+            for part, samples in zip(palette.materials, design.reflectances, strict=True)
         ],
-        "free": {name: rgb.tolist() for name, rgb in found.free.items()},
+        "free": {name: rgb.tolist() for name, rgb in design.free.items()},
         "colours": [
             _colour(colours, (row, column), material.name, light.name)
             for row, material in enumerate(palette.materials)
             for column, light in enumerate(palette.lights)
         ],
-        "to_rgb": found.model.matrix.tolist(),
+        "to_rgb": design.model.matrix.tolist(),
         "missed": [str(miss) for miss in missed],
     }
-    click.echo(json_text(answer))
+    click.echo(json_text(fields))
 
 
 def _part(part: SpectrumSpec, samples: Array, coefficients: Array) -> dict[str, object]:
@@ -102,14 +102,14 @@ def _part(part: SpectrumSpec, samples: Array, coefficients: Array) -> dict[str, 
 
 
 def _colour(colours: Matrix, at: tuple[int, int], material: str, light: str) -> dict[str, object]:
-    wished = not math.isnan(colours.delta_e[at])
+    has_goal = not math.isnan(colours.delta_e[at])
     return {
         "material": material,
         "light": light,
-        "wanted": colours.target[at].tolist() if wished else None,
+        "wanted": colours.target[at].tolist() if has_goal else None,
         "obtained": colours.obtained[at].tolist(),
         "factor": colours.factor[at].tolist(),
-        "missed": float(colours.delta_e[at]) if wished else None,
+        "missed": float(colours.delta_e[at]) if has_goal else None,
         "model_error": float(colours.model_error[at]),
     }
 

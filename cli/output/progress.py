@@ -56,7 +56,7 @@ def progress_bar(title: str) -> Iterator[ProgressCallback]:
 
 @contextlib.contextmanager
 def stage_spinner() -> Iterator[ProgressCallback]:
-    """Yield a callback that names the current stage beside a spinner."""
+    """Yield a callback that shows the current stage with a spinner."""
     if not sys.stderr.isatty():
         yield ignore_progress
         return

@@ -1,4 +1,4 @@
-"""Answers on paper: table, JSON, CSV. Only the table is meant for eyes."""
+"""Results of ``uplift query`` as table, JSON or CSV."""
 
 from __future__ import annotations
 
@@ -19,95 +19,99 @@ BLOCKS = "▁▂▃▄▅▆▇█"
 Writer = Callable[["Cube", Iterable["QueryResult"], bool], None]
 
 
-def as_json(cube: Cube, answers: Iterable[QueryResult], single: bool) -> None:
-    """One object for one colour asked on the command line, an array otherwise."""
+def as_json(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
+    """Print one object for a colour given on the command line, else an array."""
     if single:
-        click.echo(json_text(_object(cube, next(iter(answers))), indent=None))
+        click.echo(json_text(_object(cube, next(iter(results))), indent=None))
         return
-    for number, answer in enumerate(answers):
-        click.echo(
-            ("[\n" if number == 0 else ",\n") + json_text(_object(cube, answer), indent=None), nl=False
-        )
+    for number, result in enumerate(results):
+        separator = "[\n" if number == 0 else ",\n"
+        click.echo(separator + json_text(_object(cube, result), indent=None), nl=False)
     click.echo("\n]")
 
 
-def _object(cube: Cube, answer: QueryResult) -> dict[str, Any]:
+def _object(cube: Cube, result: QueryResult) -> dict[str, Any]:
     return {
-        "rgb": answer.rgb.tolist(),
-        "asked": answer.asked.tolist(),
-        "wavelengths": answer.wavelengths.tolist(),
-        "reflectance": answer.reflectance.tolist(),
-        "round_trip": {"rgb": answer.round_trip.tolist(), "delta_e_2000": answer.delta_e_2000},
-        "cell": list(answer.cell),
-        "status": [status.label for status in answer.statuses],
-        "realisable": answer.realisable,
-        "entry": answer.entry,
-        "standard_error": answer.standard_error,
+        "rgb": result.rgb.tolist(),
+        "requested_rgb": result.asked.tolist(),
+        "wavelengths": result.wavelengths.tolist(),
+        "reflectance": result.reflectance.tolist(),
+        "round_trip": {"rgb": result.round_trip.tolist(), "delta_e_2000": result.delta_e_2000},
+        "cell": list(result.cell),
+        "status": [status.label for status in result.statuses],
+        "realisable": result.realisable,
+        "entry": result.entry,
+        "standard_error": result.standard_error,
         "reference": cube.data.error_illuminant,
     }
 
 
-def as_csv(cube: Cube, answers: Iterable[QueryResult], single: bool) -> None:
-    """A row a colour: r, g, b, ΔE00 of the round trip, standard error, entry, reflectance at each wavelength."""
+def as_csv(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
+    """Print a row per colour: r, g, b, round-trip ΔE00, standard error, entry, reflectance at each wavelength."""
     writer = csv.writer(sys.stdout, lineterminator="\n")
-    for number, answer in enumerate(answers):
+    for number, result in enumerate(results):
         if number == 0:
-            wavelengths = [f"{wavelength:g}" for wavelength in answer.wavelengths]
+            wavelengths = [f"{wavelength:g}" for wavelength in result.wavelengths]
             writer.writerow(["r", "g", "b", "delta_e_2000", "standard_error", "entry", *wavelengths])
-        expected = "" if answer.standard_error is None else answer.standard_error
-        numbers = [*answer.rgb.tolist(), answer.delta_e_2000, expected]
-        writer.writerow([*numbers, answer.entry or "", *answer.reflectance.tolist()])
+        expected = "" if result.standard_error is None else result.standard_error
+        numbers = [*result.rgb.tolist(), result.delta_e_2000, expected]
+        writer.writerow([*numbers, result.entry or "", *result.reflectance.tolist()])
 
 
-def as_table(cube: Cube, answers: Iterable[QueryResult], single: bool) -> None:
-    """A sheet for one colour, a line each for several."""
+def as_table(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
+    """Print a detailed view of a single colour, or a line per colour."""
     if single:
-        _sheet(cube, next(iter(answers)))
+        _print_details(cube, next(iter(results)))
     else:
-        _lines(cube, answers)
+        _print_lines(cube, results)
 
 
-def _sheet(cube: Cube, answer: QueryResult) -> None:
+def _print_details(cube: Cube, result: QueryResult) -> None:
     data = cube.data
-    patch = click.style("        ", bg=shown_codes(cube, answer.rgb))
-    facts = {
-        **_moved(cube, answer),
-        "linear RGB": f"{triple(answer.rgb)}  {hex_code(cube, answer.rgb)}  {patch}",
-        "cell": f"{answer.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in answer.statuses)}",
-        "round trip": f"{triple(answer.round_trip)}  ΔE00 {answer.delta_e_2000:.2g} ({data.sensor.illuminant})",
+    patch = click.style("        ", bg=display_codes(cube, result.rgb))
+    fields = {
+        **_mapped(cube, result),
+        "linear RGB": f"{format_rgb(result.rgb)}  {hex_code(cube, result.rgb)}  {patch}",
+        "cell": f"{result.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in result.statuses)}",
+        "round trip": f"{format_rgb(result.round_trip)}  ΔE00 {result.delta_e_2000:.2g} ({data.sensor.illuminant})",
         **(
             {}
-            if answer.realisable
-            else {"realisable": "no: no reflectance has this colour, the answer has less chroma"}
+            if result.realisable
+            else {"realisable": "no: the spectrum has less chroma, because no reflectance has this colour"}
         ),
-        "atlas entry": answer.entry or "none here",
-        "measured": _expected(cube, answer),
-        "spectrum": f"{sparkline(answer.reflectance)}  {answer.wavelengths[0]:g}–{answer.wavelengths[-1]:g} nm",
+        "atlas entry": result.entry or "none",
+        "std. error": _standard_error(cube, result),
+        "spectrum": f"{sparkline(result.reflectance)}  {result.wavelengths[0]:g}–{result.wavelengths[-1]:g} nm",
     }
-    for name, text in facts.items():
-        click.echo(f"{name:<12}{text}")
+    print_fields(fields)
     click.echo()
-    columns(answer.wavelengths, answer.reflectance)
+    print_columns(result.wavelengths, result.reflectance)
 
 
-def _moved(cube: Cube, answer: QueryResult) -> dict[str, str]:
-    """What was asked, where it lay outside [0, 1]."""
+def _mapped(cube: Cube, result: QueryResult) -> dict[str, str]:
+    """Return the requested colour if it was outside [0, 1]."""
     from uplift.colorimetry.delta_e import delta_e_rgb
 
-    if (answer.asked == answer.rgb).all():
+    if (result.asked == result.rgb).all():
         return {}
-    apart = float(delta_e_rgb(cube.data.sensor, answer.asked, answer.rgb))
-    return {"asked": f"{triple(answer.asked)}  outside [0, 1], moved by ΔE00 {apart:.2g}"}
+    distance = float(delta_e_rgb(cube.data.sensor, result.asked, result.rgb))
+    return {"requested": f"{format_rgb(result.asked)}  outside [0, 1], mapped by ΔE00 {distance:.2g}"}
 
 
-def _expected(cube: Cube, answer: QueryResult) -> str:
-    if answer.standard_error is None:
-        return "no telling: too few atlas entries"
-    return f"may differ by ΔE00 {answer.standard_error:.2g} ({cube.data.error_illuminant}; standard error)"
+def _standard_error(cube: Cube, result: QueryResult) -> str:
+    if result.standard_error is None:
+        return "unknown: too few atlas entries"
+    return f"ΔE00 {result.standard_error:.2g} ({cube.data.error_illuminant}) to a measured material"
 
 
-def columns(wavelengths: Array, reflectance: Array) -> None:
-    """Wavelengths and reflectances, four pairs a line, to be read downwards."""
+def print_fields(fields: dict[str, str]) -> None:
+    """Print names and values in two columns."""
+    for name, text in fields.items():
+        click.echo(f"{name:<12}{text}")
+
+
+def print_columns(wavelengths: Array, reflectance: Array) -> None:
+    """Print wavelengths and reflectances in four columns, ordered downwards."""
     cells = [
         f"{wavelength:>6g} nm {value:8.5f}"
         for wavelength, value in zip(wavelengths, reflectance, strict=True)
@@ -117,22 +121,22 @@ def columns(wavelengths: Array, reflectance: Array) -> None:
         click.echo("  ".join(cells[line::height]))
 
 
-def _lines(cube: Cube, answers: Iterable[QueryResult]) -> None:
+def _print_lines(cube: Cube, results: Iterable[QueryResult]) -> None:
     from rich.table import Table
     from rich.text import Text
 
     table = Table(box=None, pad_edge=False)
     for heading in ("", "hex", "linear RGB", "ΔE00", "atlas entry", "spectrum"):
         table.add_column(heading, no_wrap=True)
-    for answer in answers:
-        red, green, blue = shown_codes(cube, answer.rgb)
+    for result in results:
+        red, green, blue = display_codes(cube, result.rgb)
         table.add_row(
             Text("   ", style=f"on rgb({red},{green},{blue})"),
-            hex_code(cube, answer.rgb),
-            " ".join(f"{value:.3f}" for value in answer.rgb),
-            f"{answer.delta_e_2000:.2g}",
-            Text(answer.entry or ""),
-            sparkline(answer.reflectance, 20),
+            hex_code(cube, result.rgb),
+            " ".join(f"{value:.3f}" for value in result.rgb),
+            f"{result.delta_e_2000:.2g}",
+            Text(result.entry or ""),
+            sparkline(result.reflectance, 20),
         )
     console().print(table)
 
@@ -142,8 +146,8 @@ def _codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:
     return red, green, blue
 
 
-def shown_codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:
-    """What the terminal's screen shows it as."""
+def display_codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:
+    """Return 8-bit sRGB codes for a terminal."""
     from uplift.colorimetry.srgb import to_display_codes
 
     red, green, blue = (int(code) for code in to_display_codes(rgb, cube.data.sensor))
@@ -151,16 +155,17 @@ def shown_codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:
 
 
 def hex_code(cube: Cube, rgb: Array) -> str:
-    """'#rrggbb' as the cube's space encodes linear RGB (3,)."""
+    """Return '#rrggbb' of linear RGB (3,), encoded by the transfer function of the cube's space."""
     return "#" + "".join(f"{code:02x}" for code in _codes(cube, rgb))
 
 
-def triple(rgb: Iterable[float]) -> str:
+def format_rgb(rgb: Iterable[float]) -> str:
+    """Return numbers with six decimals, separated by spaces."""
     return " ".join(f"{value:.6f}" for value in rgb)
 
 
 def sparkline(reflectance: Array, width: int = 40) -> str:
-    """The spectrum in eighths of a line, 0 to 1."""
+    """Return the spectrum as block characters, from 0 to 1 in eighths."""
     count = len(reflectance)
     picks = [round(i * (count - 1) / max(min(width, count) - 1, 1)) for i in range(min(width, count))]
     return "".join(BLOCKS[round(float(reflectance[pick]) * (len(BLOCKS) - 1))] for pick in picks)

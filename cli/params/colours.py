@@ -1,4 +1,4 @@
-"""Colours from arguments, files and standard input → linear RGB (n, 3)."""
+"""Colours from arguments, files and standard input as linear RGB."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import csv
 import math
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
 from uplift.common.errors import ColourError
@@ -16,50 +17,64 @@ if TYPE_CHECKING:
 
 HEX = re.compile(r"#?([0-9a-fA-F]{6})\Z")
 SHORT_HEX = re.compile(r"#([0-9a-fA-F]{3})\Z")
-SHOWN = 80
-"""Characters that a message quotes."""
-REMEDY = "write three numbers (R G B) or a hex colour such as '#cc3319'"
+QUOTE_LENGTH = 80
+"""Characters of the input that a message quotes."""
+SYNTAX = "write three numbers (R G B) or a hex colour such as '#cc3319'"
 
 
-def from_arguments(words: Sequence[str], cube: Cube, *, codes: bool) -> Array:
-    """One colour (1, 3) from 'R G B', 'R,G,B' or '#rrggbb'. Raises `ColourError`."""
+@dataclass(frozen=True)
+class Colour:
+    """Three numbers, and whether they are encoded 8-bit codes."""
+
+    numbers: tuple[float, ...]
+    encoded: bool
+
+
+def from_arguments(words: Sequence[str], cube: Cube, *, encoded: bool) -> Array:
+    """Parse one colour, 'R G B', 'R,G,B' or '#rrggbb', into linear RGB (1, 3). Raises `ColourError`."""
     parts = [part for word in words for part in re.split(r"[,\s]+", word) if part]
-    return _linear([_parse(parts, "")], cube, codes=codes)
+    colour = _parse(parts)
+    if colour is None or len(parts) > 3:
+        raise _unreadable(parts)
+    return _linear([colour], cube, encoded=encoded)
 
 
-def from_table(file: IO[str], name: str, cube: Cube, *, codes: bool, bounded: bool) -> Array:
-    """Colours (n, 3) from lines of 'r,g,b' or hex; a first line without numbers is a header.
+def from_table(file: IO[str], name: str, cube: Cube, *, encoded: bool, bounded: bool) -> Array:
+    """Parse lines of 'r,g,b' or hex colours into linear RGB (n, 3).
 
-    Further columns are left alone. Linear numbers lie in [0, 1] if they are ``bounded``, else anywhere. Raises
-    `ColourError` with the line.
+    A first line without numbers is a header. Further columns are ignored. Linear RGB must lie in [0, 1] if ``bounded``.
+    Raises `ColourError` with the line.
     """
-    colours = {line: _parse(row, f"{name}:{line}: ") for line, row in _rows(file, name)}
+    colours = {line: _parse_row(row, name, line) for line, row in _rows(file, name)}
     if not colours:
-        raise ColourError(f"{name}: no colours in it", hint="give lines of r,g,b or of hex colours")
-    for line, (is_hex, numbers) in colours.items():
-        _check_range(numbers, name, line, codes=is_hex or codes, bounded=bounded)
-    return _linear(list(colours.values()), cube, codes=codes)
+        raise ColourError(
+            "has no colours", code="no-colours", path=name, hint="give lines of r,g,b or of hex colours"
+        )
+    for line, colour in colours.items():
+        _check_range(colour, name, line, encoded=encoded or colour.encoded, bounded=bounded)
+    return _linear(list(colours.values()), cube, encoded=encoded)
 
 
-def _check_range(numbers: tuple[float, ...], name: str, line: int, *, codes: bool, bounded: bool) -> None:
-    """As the cube checks them, but with the line."""
-    values = "(" + ", ".join(f"{number:g}" for number in numbers) + ")"
-    if codes:
-        if not all(0 <= number <= 255 for number in numbers):
-            hint = "leave out --8bit for linear floats"
-            raise ColourError(f"{values} lies outside 0 to 255", path=name, line=line, hint=hint)
-        return
-    if bounded:
-        from uplift.colorimetry.sensor import SLACK
+def _check_range(colour: Colour, name: str, line: int, *, encoded: bool, bounded: bool) -> None:
+    """Check the range as the cube does, but report the line."""
+    from uplift.colorimetry.sensor import SLACK
 
-        if not all(-SLACK <= number <= 1 + SLACK for number in numbers):
-            hint = "move it with --out-of-gamut, or use --8bit for codes"
-            raise ColourError(f"{values} lies outside [0, 1]", path=name, line=line, hint=hint)
-    elif not all(map(math.isfinite, numbers)):
-        raise ColourError(f"{values} is not finite", path=name, line=line, hint=REMEDY)
+    values = "(" + ", ".join(f"{number:g}" for number in colour.numbers) + ")"
+    if encoded:
+        if not all(0 <= number <= 255 for number in colour.numbers):
+            problem = f"8-bit codes must be in [0, 255], got {values}"
+            raise ColourError(problem, code="codes-out-of-range", path=name, line=line)
+    elif bounded:
+        if not all(-SLACK <= number <= 1 + SLACK for number in colour.numbers):
+            problem = f"linear RGB must be in [0, 1], got {values}"
+            raise ColourError(problem, code="out-of-gamut", path=name, line=line)
+    elif not all(map(math.isfinite, colour.numbers)):
+        raise ColourError(f"{values} is not finite", code="not-finite", path=name, line=line, hint=SYNTAX)
 
 
 def _rows(file: IO[str], name: str) -> Iterable[tuple[int, list[str]]]:
+    """Yield the line number and the cells that are not empty, of all rows but the header."""
+    hint = "give a CSV file of colours"
     try:
         for line, text in enumerate(file, 1):
             cells = re.split(r"[;\t ]+", text.strip()) if "," not in text else next(csv.reader([text]))
@@ -67,31 +82,42 @@ def _rows(file: IO[str], name: str) -> Iterable[tuple[int, list[str]]]:
             if row and not (line == 1 and _is_header(row)):
                 yield line, row
     except UnicodeDecodeError as error:
-        raise ColourError(f"{name}: is not text", hint="give a CSV file of colours") from error
+        raise ColourError("is not a text file", code="not-text", path=name, hint=hint) from error
     except csv.Error as error:
-        raise ColourError(str(error), path=name, line=line, hint="give a CSV file of colours") from error
+        raise ColourError(str(error), code="invalid-csv", path=name, line=line, hint=hint) from error
 
 
 def _is_header(row: list[str]) -> bool:
     return _hex(row[0]) is None and not any(_number(cell) is not None for cell in row)
 
 
-def _parse(parts: Sequence[str], place: str) -> tuple[bool, tuple[float, ...]]:
-    """Whether the colour is given in codes, and its three numbers."""
-    digits = _hex(parts[0]) if parts else None
-    if digits is not None and (len(parts) == 1 or (place and parts[0].startswith("#"))):
-        return True, tuple(int(digits[i : i + 2], 16) for i in (0, 2, 4))
-    numbers = [_number(part) for part in parts[:3]]
-    if len(numbers) < 3 or None in numbers or (not place and len(parts) > 3):
-        raise ColourError(f"{place}'{' '.join(parts)[:SHOWN]}' is no colour", hint=REMEDY)
-    return False, tuple(number for number in numbers if number is not None)
+def _parse_row(row: list[str], name: str, line: int) -> Colour:
+    """Parse the first columns of a row: a hex colour with '#', or a bare one alone, or three numbers."""
+    colour = _parse(row[:1] if row[0].startswith("#") else row)
+    if colour is None:
+        raise _unreadable(row, path=name, line=line)
+    return colour
+
+
+def _parse(parts: Sequence[str]) -> Colour | None:
+    """Parse one hex colour, or the first three of several numbers."""
+    digits = _hex(parts[0]) if len(parts) == 1 else None
+    if digits is not None:
+        return Colour(tuple(int(digits[i : i + 2], 16) for i in (0, 2, 4)), encoded=True)
+    numbers = [number for part in parts[:3] if (number := _number(part)) is not None]
+    return Colour(tuple(numbers), encoded=False) if len(numbers) == 3 else None
+
+
+def _unreadable(parts: Sequence[str], *, path: str | None = None, line: int | None = None) -> ColourError:
+    problem = f"'{' '.join(parts)[:QUOTE_LENGTH]}' is not a colour"
+    return ColourError(problem, code="colour-unreadable", path=path, line=line, hint=SYNTAX)
 
 
 def _hex(word: str) -> str | None:
     if short := SHORT_HEX.match(word):
         return "".join(2 * digit for digit in short[1])
-    found = HEX.match(word)
-    return found[1] if found else None
+    match = HEX.match(word)
+    return match[1] if match else None
 
 
 def _number(word: str) -> float | None:
@@ -101,11 +127,11 @@ def _number(word: str) -> float | None:
         return None
 
 
-def _linear(colours: list[tuple[bool, tuple[float, ...]]], cube: Cube, *, codes: bool) -> Array:
-    """Hex colours and, with ``codes``, all others decoded as the cube's space has it."""
+def _linear(colours: list[Colour], cube: Cube, *, encoded: bool) -> Array:
+    """Decode hex colours, and with ``encoded`` all others, by the transfer function of the cube's space."""
     import numpy as np
 
-    values = np.array([numbers for _, numbers in colours], dtype=float)
-    encoded = np.array([is_hex or codes for is_hex, _ in colours])
-    values[encoded] = cube.decode(values[encoded])
+    values = np.array([colour.numbers for colour in colours], dtype=float)
+    mask = np.array([encoded or colour.encoded for colour in colours])
+    values[mask] = cube.decode(values[mask])
     return values

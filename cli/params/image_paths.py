@@ -1,4 +1,4 @@
-"""Images as they are typed: one, several, or a pattern; and the names of their textures."""
+"""Images by path or pattern, and the names of their textures."""
 
 from __future__ import annotations
 
@@ -8,41 +8,54 @@ from collections.abc import Sequence
 from pathlib import Path
 
 
-def frames(sources: Sequence[str], target: str) -> list[tuple[Path, Path]]:
-    """Images and their textures; several images, and patterns, go into the folder ``target``, which is made.
+def texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path]]:
+    """Return pairs of an image and its texture. Several images, and patterns, go into the folder ``target``.
 
-    Raises `TextureError` for a pattern that nothing has the name of, `OutputError` for a folder that cannot be.
+    The folder is created. Raises `TextureError` for a pattern that matches no file, `OutputError` for a folder that
+    cannot be created.
     """
     from uplift.common.errors import OutputError
 
-    found = expanded(sources)
+    images = expand_patterns(sources)
     folder = Path(target)
-    alone = len(sources) == 1 and found == [sources[0]]
-    if alone and not folder.is_dir() and not target.endswith(os.sep):
+    is_single = len(sources) == 1 and images == [sources[0]]
+    if is_single and not folder.is_dir() and not target.endswith(os.sep):
         if folder.suffix.lower() != ".exr":
-            raise OutputError("textures are OpenEXR", path=target, hint="name the file .exr, or a folder")
-        return [(Path(found[0]), folder)]
+            raise OutputError(
+                "textures are OpenEXR files",
+                code="unknown-suffix",
+                path=target,
+                hint="give a file name ending in .exr, or a folder",
+            )
+        return [(Path(images[0]), folder)]
     if folder.suffix.lower() == ".exr" and not folder.is_dir():
-        raise OutputError(f"is one file, for {len(found)} images", path=target, hint="name a folder")
+        raise _needs_folder(f"is a file name, but there are {len(images)} images", target)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        problem = f"is no folder, and {len(found)} images need one"
-        raise OutputError(problem, path=target, hint="name a folder") from error
-    return [(Path(path), folder / f"{Path(path).stem}.exr") for path in found]
+        raise _needs_folder(f"is not a folder, but there are {len(images)} images", target) from error
+    return [(Path(path), folder / f"{Path(path).stem}.exr") for path in images]
 
 
-def expanded(sources: Sequence[str]) -> list[str]:
-    """Paths, in order, of images and patterns. Raises `TextureError` for a pattern that nothing has the name of."""
-    return [path for source in sources for path in _expanded(source)]
+def expand_patterns(sources: Sequence[str]) -> list[str]:
+    """Return the paths of images and patterns, in order. Raises `TextureError` for a pattern that matches no file."""
+    return [path for source in sources for path in _expand(source)]
 
 
-def _expanded(source: str) -> list[str]:
+def _expand(source: str) -> list[str]:
     from uplift.common.errors import TextureError
 
     if os.path.exists(source) or not glob.has_magic(source):
         return [source]
-    found = sorted(glob.glob(source))
-    if not found:
-        raise TextureError(f"no file is named like '{source}'", hint="check the pattern")
-    return found
+    paths = sorted(glob.glob(source))
+    if not paths:
+        raise TextureError(
+            f"no file matches the pattern '{source}'", code="no-match", hint="check the pattern"
+        )
+    return paths
+
+
+def _needs_folder(problem: str, target: str) -> Exception:
+    from uplift.common.errors import OutputError
+
+    return OutputError(problem, code="not-a-folder", path=target, hint="give a folder for the textures")

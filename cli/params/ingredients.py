@@ -1,4 +1,4 @@
-"""What is to be mixed, as it is typed: '2:#1f3a93', 'yellow', '1:0.2,0.1,0.6', '3:#c8342a/#5a120e'."""
+"""Ingredients of a mixture: '2:#1f3a93', 'yellow', '1:0.2,0.1,0.6' or '3:#c8342a/#5a120e'."""
 
 from __future__ import annotations
 
@@ -16,14 +16,13 @@ if TYPE_CHECKING:
     from uplift.lookup import Cube
 
 PARTS = re.compile(r"\s*([0-9.+-][0-9.eE+-]*)\s*:(.*)", re.DOTALL)
-NAMED = {"white": 1.0, "black": 0.0}
-"""The perfect reflector, and nothing: the same at all wavelengths."""
-REMEDY = "write '#rrggbb', 'r,g,b' in linear RGB, or an entry of the cube's atlas or of --atlas"
+CONSTANT_SPECTRA = {"white": 1.0, "black": 0.0}
+"""The perfect reflector and the perfect absorber: the same value at all wavelengths."""
 
 
 @dataclass(frozen=True, eq=False)
 class Ingredient:
-    """``parts`` of something with a spectrum (N,), and with a second one if it was seen on black too."""
+    """``parts`` of a colour with a spectrum (N,), and its spectrum on black (N,) if one is given."""
 
     name: str
     parts: float
@@ -32,71 +31,79 @@ class Ingredient:
 
 
 @dataclass(frozen=True, eq=False)
-class Shelf:
-    """Where colours and names get their spectra at ``wavelengths`` (N,) from: a cube, and measured atlases."""
+class SpectrumResolver:
+    """Spectra at ``wavelengths`` (N,) of colours, by a cube, and of named entries, by the cube and an atlas."""
 
     cube: Cube
     atlas: Atlas
     wavelengths: Array
 
     def ingredients(self, words: Sequence[str]) -> list[Ingredient]:
-        """Raises `ColourError` for what is no colour and no name, `OptionError` for parts that are no number."""
+        """Parse ingredients.
+
+        Raises `ColourError` for an unknown name, `OptionError` for parts that are not a positive number.
+        """
         return [self._ingredient(word.strip()) for word in words]
 
     def spectrum(self, text: str) -> Array:
-        """(N,) of a colour, 'white', 'black' or an entry. Raises `ColourError`."""
+        """Return the spectrum (N,) of a colour, 'white', 'black' or an entry. Raises `ColourError`."""
         import numpy as np
 
         from uplift.atlas import Atlas as Atlas
         from uplift.atlas import on_grid
 
-        if text in self.cube.data.atlas.names:
-            return self._uplifted(self.cube.data.atlas.rgb[self.cube.data.atlas.names.index(text)])
+        entries = self.cube.data.atlas
+        if text in entries.names:
+            return self._uplift(entries.rgb[entries.names.index(text)])
         if text in self.atlas.names:
             entry = self.atlas.entries[self.atlas.names.index(text)]
             return on_grid(Atlas((entry,)), self.wavelengths)[0]
-        if text in NAMED:
-            return np.full(len(self.wavelengths), NAMED[text])
-        return self._uplifted(self._colour(text))
+        if text in CONSTANT_SPECTRA:
+            return np.full(len(self.wavelengths), CONSTANT_SPECTRA[text])
+        return self._uplift(self._linear_rgb(text))
 
-    def knows(self, text: str) -> bool:
+    def _is_entry(self, text: str) -> bool:
         return text in self.cube.data.atlas.names or text in self.atlas.names
 
     def _ingredient(self, word: str) -> Ingredient:
         parts, name = 1.0, word
-        found = None if self.knows(word) else PARTS.match(word)
-        if found:
-            parts, name = _number(found[1], word), found[2].strip()
-        if self.knows(name) or "/" not in name:
+        match = None if self._is_entry(word) else PARTS.match(word)
+        if match:
+            parts, name = _positive(match[1], word), match[2].strip()
+        if self._is_entry(name) or "/" not in name:
             return Ingredient(name, parts, self.spectrum(name), None)
         on_white, on_black = (half.strip() for half in name.split("/", 1))
         return Ingredient(name, parts, self.spectrum(on_white), self.spectrum(on_black))
 
-    def _colour(self, text: str) -> Array:
-        """Linear RGB (3,)."""
+    def _linear_rgb(self, text: str) -> Array:
+        """Parse a colour into linear RGB (3,)."""
         from uplift.common.errors import ColourError
 
         try:
-            return from_arguments([text], self.cube, codes=False)[0]
+            return from_arguments([text], self.cube, encoded=False)[0]
         except ColourError as error:
-            raise ColourError(f"{error.problem} and no entry", hint=REMEDY) from error
+            raise ColourError(
+                f"{error.problem} and not an atlas entry",
+                code=error.code,
+                hint="write '#rrggbb', 'r,g,b' in linear RGB, or an entry of the cube's atlas or of --atlas",
+            ) from error
 
-    def _uplifted(self, rgb: Array) -> Array:
+    def _uplift(self, rgb: Array) -> Array:
         return self.cube.reflectance(rgb, self.wavelengths)
 
 
-def shelf_of(cube: Cube, atlases: tuple[str, ...], asked: Array) -> Shelf:
-    """Spectra at the cube's wavelengths, which colours are told from, and at those asked for."""
+def make_resolver(cube: Cube, atlases: tuple[str, ...], wavelengths: Array) -> SpectrumResolver:
+    """Resolve spectra at the wavelengths of the cube's sensor, for colours, followed by ``wavelengths``, for output."""
     import numpy as np
 
     from uplift.atlas import Atlas, read_atlas
 
-    at = np.concatenate([cube.data.sensor.wavelengths, asked])
-    return Shelf(cube, read_atlas(*atlases) if atlases else Atlas(), at)
+    grid = np.concatenate([cube.data.sensor.wavelengths, wavelengths])
+    return SpectrumResolver(cube, read_atlas(*atlases) if atlases else Atlas(), grid)
 
 
-def given(ingredients: list[Ingredient], count: int | None = None) -> Ingredients:
-    """As the library takes them, at the first ``count`` wavelengths."""
+def library_ingredients(ingredients: list[Ingredient], count: int | None = None) -> Ingredients:
+    """Convert to the library's type, at the first ``count`` wavelengths."""
     import numpy as np
 
     from uplift.design.mixing.recipes import Ingredients
@@ -107,7 +114,7 @@ def given(ingredients: list[Ingredient], count: int | None = None) -> Ingredient
     )
 
 
-def _number(text: str, word: str) -> float:
+def _positive(text: str, word: str) -> float:
     from uplift.common.errors import OptionError
 
     try:
@@ -115,5 +122,9 @@ def _number(text: str, word: str) -> float:
     except ValueError:
         parts = 0.0
     if not 0 < parts < float("inf"):
-        raise OptionError(f"'{word}' has parts that are no number above 0", hint="write '2:#1f3a93'")
+        raise OptionError(
+            f"parts must be a number above 0, got '{word}'",
+            code="parts-out-of-range",
+            hint="write for example '2:#1f3a93'",
+        )
     return parts

@@ -1,4 +1,4 @@
-"""Options that several commands share, each defined once."""
+"""Options that several commands share."""
 
 from __future__ import annotations
 
@@ -7,79 +7,122 @@ from typing import Any
 
 import click
 
+from ..output.diagnostics import OUTPUT_FORMAT
+
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+DEFAULT_COEFFICIENTS = 9
+
+
+class LatticeDim(click.ParamType):  # type: ignore[type-arg]
+    """A whole number or 'auto'."""
+
+    name = "dim"
+
+    def convert(
+        self, value: str | int, param: click.Parameter | None, ctx: click.Context | None
+    ) -> int | str:
+        """Return a whole number or 'auto'."""
+        if value == "auto" or isinstance(value, int):
+            return value
+        try:
+            return int(value)
+        except ValueError:
+            self.fail(f"'{value}' is neither a whole number nor 'auto'", param, ctx)
 
 
 def cube_option() -> Decorator:
+    """``--cube`` as ``cube_path``."""
     return click.option(
-        "--cube", "cube_path", metavar="FILE", help="Cube to ask. [default: the package's own, sRGB]"
+        "--cube", "cube_path", metavar="FILE", help="Cube file. [default: the packaged sRGB cube]"
     )
 
 
 def fill_option() -> Decorator:
+    """``--fill-missing``."""
     return click.option(
-        "--fill", is_flag=True, help="Answer colours that a --scene cube lacks from the package's own cube."
+        "--fill-missing",
+        is_flag=True,
+        help="Take colours that a cube built with --scene lacks from the packaged cube.",
     )
 
 
-def out_of_gamut_option(default: str = "error", what: str = "linear RGB") -> Decorator:
-    """Names of `uplift.colorimetry.gamut.METHODS`, which is not imported for them."""
+def out_of_gamut_option(default: str = "error", subject: str = "linear RGB") -> Decorator:
+    """``--out-of-gamut`` as ``method``: names of `uplift.colorimetry.gamut.METHODS`, which is not imported here."""
     return click.option(
         "--out-of-gamut",
-        "way",
+        "method",
         type=click.Choice(("error", "clip", "scale", "desaturate", "desaturate-oklab")),
         default=default,
         show_default=True,
-        help=f"What becomes of {what} outside [0, 1]: refused; clipped; made darker; or less saturated, at constant "
-        "luminance and dominant wavelength, or at constant lightness and hue of Oklab.",
+        help=f"Treatment of {subject} outside [0, 1]: raise an error, clip, darken, or desaturate at constant "
+        "luminance and dominant wavelength or at constant lightness and hue of Oklab.",
     )
 
 
 def primaries_option(help: str) -> Decorator:
-    """Its value is for `cli.primaries`."""
+    """``--primaries``, to be parsed by `.primaries.parse_primaries`."""
     return click.option("--primaries", metavar="SPACE", help=help)
 
 
-def encoding_option(what: str = "colours are") -> Decorator:
+def encoding_option(subject: str = "colours") -> Decorator:
+    """``--encoding``."""
     return click.option(
         "--encoding",
         type=click.Choice(("auto", "linear", "encoded")),
         default="auto",
         show_default=True,
-        help=f"What {what} in. auto: whole numbers are encoded as the cube's space has it, floats are linear.",
+        help=f"Encoding of {subject}. auto: whole numbers have the transfer function of the cube's space, floats are "
+        "linear.",
     )
 
 
 def atlas_folders_option() -> Decorator:
+    """``--atlas-dir`` as ``folders``."""
     return click.option(
-        "--atlas-dir", "folders", multiple=True, metavar="DIR", help="Where the atlases lie; may be repeated."
+        "--atlas-dir",
+        "folders",
+        multiple=True,
+        metavar="DIR",
+        help="Folder to search for atlases; repeatable.",
     )
 
 
 def format_option(*choices: str) -> Decorator:
+    """``--format`` as ``style``; the first choice is the default."""
     return click.option(
         "--format",
         "style",
         type=click.Choice(choices),
         default=choices[0],
         show_default=True,
+        callback=_remember_format,
         help="Output format.",
     )
 
 
+def _remember_format(ctx: click.Context, param: click.Parameter, value: str) -> str:
+    """Keep the format where the main command finds it if it has an error to report."""
+    ctx.meta[OUTPUT_FORMAT] = value
+    return value
+
+
 def wavelengths_option() -> Decorator:
+    """``--wavelengths``, to be parsed by `.wavelengths.parse_wavelengths`."""
     return click.option(
-        "--wavelengths", metavar="NM", help="'START:END:STEP' or a list '450,550,650'. [default: the cube's]"
+        "--wavelengths",
+        metavar="NM",
+        help="Wavelengths as START:END:STEP or a list such as 450,550,650. [default: those of the cube]",
     )
 
 
 def sensor_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """--space, --illuminant, --observer; the observer stays None for the library's own default."""
+    """``--space``, ``--illuminant`` and ``--observer``; the observer stays None for the default of the library."""
     space = click.option(
-        "--space", default="sRGB", show_default=True, help="RGB space, as colour-science names it."
+        "--space", default="sRGB", show_default=True, help="RGB space by its name in colour-science."
     )
     illuminant = click.option(
-        "--illuminant", default="D65", show_default=True, help="Light the RGB are meant under."
+        "--illuminant", default="D65", show_default=True, help="Illuminant under which RGB are defined."
     )
     observer = click.option(
         "--observer", help="Standard observer. [default: CIE 1931 2 Degree Standard Observer]"
@@ -87,13 +130,39 @@ def sensor_options(function: Callable[..., Any]) -> Callable[..., Any]:
     return space(illuminant(observer(function)))
 
 
-def force_option() -> Decorator:
-    return click.option("--force", is_flag=True, help="Replace an existing file.")
-
-
-def verbosity_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    quiet = click.option("-q", "--quiet", is_flag=True, help="Say nothing but warnings and errors.")
-    verbose = click.option(
-        "-v", "--verbose", is_flag=True, help="A line for every round and improvement step."
+def coefficients_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """``--coefficients``, and the older ``--moments``, which counts one less; see `coefficient_count`."""
+    coefficients = click.option(
+        "--coefficients",
+        type=int,
+        metavar="N",
+        help=f"Coefficients per spectrum, 3 to 17. [default: {DEFAULT_COEFFICIENTS}]",
     )
-    return quiet(verbose(function))
+    moments = click.option("--moments", type=int, hidden=True)
+    return coefficients(moments(function))
+
+
+def coefficient_count(coefficients: int | None, moments: int | None) -> int:
+    """Return the number of coefficients that ``--coefficients`` or ``--moments`` gives."""
+    if coefficients is not None and moments is not None:
+        raise click.UsageError("--moments N is the same as --coefficients N+1: give one of the two.")
+    if moments is not None:
+        return moments + 1
+    return DEFAULT_COEFFICIENTS if coefficients is None else coefficients
+
+
+def force_option() -> Decorator:
+    """``--force``."""
+    return click.option("--force", is_flag=True, help="Replace existing files.")
+
+
+def quiet_option() -> Decorator:
+    """``--quiet``."""
+    return click.option("-q", "--quiet", is_flag=True, help="Print only warnings and errors.")
+
+
+def verbose_option() -> Decorator:
+    """``--verbose``."""
+    return click.option(
+        "-v", "--verbose", is_flag=True, help="Print a line for every round and improvement step."
+    )

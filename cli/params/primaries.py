@@ -1,4 +1,4 @@
-"""Displays as they are typed: a space by name, or chromaticities of red, green, blue and white."""
+"""Primaries: an RGB space by name, or chromaticities of red, green, blue and white."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ NUMBERS = re.compile(r"[-+\d.eE,;\s]+")
 
 
 def parse_primaries(text: str) -> Primaries:
-    """From 'P3-D65', or '0.68,0.32 0.265,0.69 0.15,0.06 0.3127,0.329'.
+    """Parse 'P3-D65', or '0.68,0.32 0.265,0.69 0.15,0.06 0.3127,0.329'.
 
-    Raises `UnknownNameError`, and `OptionError` for numbers that are no display.
+    Raises `UnknownNameError` for an unknown space and `OptionError` for chromaticities that are not those of a display.
     """
     from uplift.colorimetry.gamut import Primaries
     from uplift.common.errors import OptionError
@@ -26,6 +26,9 @@ def parse_primaries(text: str) -> Primaries:
     try:
         numbers = [float(word) for word in re.split(r"[,;\s]+", text.strip())]
     except ValueError as error:
-        problem = f"primaries '{text}' are not clear"
-        raise OptionError(problem, hint="name a space, or x,y of red, green, blue and white") from error
+        raise OptionError(
+            f"primaries must be the name of a space or eight numbers, got '{text}'",
+            code="primaries-unreadable",
+            hint="give x,y of red, green, blue and white",
+        ) from error
     return Primaries.of(numbers)

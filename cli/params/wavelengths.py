@@ -1,4 +1,4 @@
-"""Wavelengths as they are typed."""
+"""Wavelengths: ``START:END:STEP`` or a list."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
 
-MOST = 100_000
+MAX_COUNT = 100_000
 
 
 def parse_wavelengths(text: str | None) -> Array | None:
-    """'380:780:5' (end included) or '450,550,650' → (N,) nm. Raises `OptionError`."""
+    """Parse '380:780:5' (end included) or '450,550,650' into nm, shape (N,). Raises `OptionError`."""
     import numpy as np
 
     if text is None:
@@ -22,15 +22,17 @@ def parse_wavelengths(text: str | None) -> Array | None:
         start, end, step = (float(part) for part in text.split(":"))
         count = int((end - start) / step + 1e-9) + 1
     except (ValueError, ZeroDivisionError, OverflowError) as error:
-        raise _unclear(text) from error
-    if not (step > 0 and end >= start and count <= MOST):
-        raise _unclear(text)
+        raise _unreadable(text) from error
+    if not (step > 0 and end >= start and count <= MAX_COUNT):
+        raise _unreadable(text)
     return start + step * np.arange(count, dtype=float)
 
 
-def _unclear(text: str) -> Exception:
+def _unreadable(text: str) -> Exception:
     from uplift.common.errors import OptionError
 
     return OptionError(
-        f"wavelengths '{text}' are not clear", hint="write START:END:STEP or a list, in nm: 380:780:5"
+        f"wavelengths must be START:END:STEP or a list, got '{text}'",
+        code="wavelengths-unreadable",
+        hint="write for example 380:780:5 or 450,550,650, in nm",
     )

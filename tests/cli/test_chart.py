@@ -115,7 +115,7 @@ def test_what_to_build_is_recommended_from_a_table(quick, run, refuse):
 
 
 def test_by_default_from_the_chart_of_the_documentation(run, refuse, repository):
-    result = run("chart", "--recommend", "--delta-e", 1, "--light", "FL11", "--own")
+    result = run("chart", "--recommend", "--delta-e", 1, "--light", "FL11", "--atlas-materials")
     assert "--atlas FILE" in result.stdout
     assert "materials of the atlas" in result.stdout
     stored = (repository / "uplift" / "chart" / MEASURED).read_text(encoding="utf-8")

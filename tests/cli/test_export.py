@@ -26,7 +26,7 @@ def cube(home, cubes):
     ],
 )
 def test_formats_and_their_names(run, home, cube, to, name, told, first):
-    assert run("export", cube, "--to", to).stdout == f"{name}: {told}\n"
+    assert run("export", cube, "--format", to).stdout == f"{name}: {told}\n"
     assert (home / name).read_bytes().startswith(first)
 
 
@@ -39,7 +39,7 @@ def test_the_format_is_as_out_is_called(run, home, cube):
 
 
 def test_out_need_not_be_called_as_its_format(run, home, cube):
-    run("export", cube, "points.txt", "--to", "csv")
+    run("export", cube, "points.txt", "--format", "csv")
     assert (home / "points.txt").read_text().startswith("r,g,b")
 
 
@@ -48,8 +48,8 @@ def test_out_need_not_be_called_as_its_format(run, home, cube):
     [
         ((), "Name a format"),
         (("cube.exr",), "Name a format"),
-        (("cube.h", "--res", "8"), "--res is for --to coeff alone"),
-        ((f"./{STEM}.uplift", "--to", "csv", "--force"), "OUT is the cube itself"),
+        (("cube.h", "--res", "8"), "--res is for --format coeff alone"),
+        ((f"./{STEM}.uplift", "--format", "csv", "--force"), "OUT is the cube itself"),
     ],
 )
 def test_usage(run, home, cube, cubes, arguments, told):

@@ -33,7 +33,13 @@ def test_blue_and_yellow_are_green(mixed):
 
 @pytest.mark.parametrize("kind", ["--pigment", "--dye"])
 @pytest.mark.parametrize(
-    "options", [(), ("--index", "1.3"), ("--index", "1.2", "--incident", "diffuse"), ("--constants", "one")]
+    "options",
+    [
+        (),
+        ("--refractive-index", "1.3"),
+        ("--refractive-index", "1.2", "--incidence", "diffuse"),
+        ("--km-constants", "one"),
+    ],
 )
 def test_a_colour_mixed_with_itself_is_itself(mixed, kind, options):
     assert mixed(kind, "2:#c8a070", "1:#c8a070", *options)["hex"] == "#c8a070"
@@ -114,7 +120,7 @@ def test_over_a_painting(run, home, cubes):
         (("1:1.5,0,0",), "lies outside [0, 1]"),
         (("#802020/#c03030",), "hides the ground, or is lighter on the darker; measure a thinner layer"),
         (("#802020", "--thickness", "-1"), "thickness -1.0 is no number from 0 up"),
-        (("#802020", "--index", "0.5"), "index of refraction 0.5; give 1 or more"),
+        (("#802020", "--refractive-index", "0.5"), "index of refraction 0.5; give 1 or more"),
         (("--filter", "#802020", "--thickness", "2"), "parts of filters are their thickness"),
         (("#802020", "--cube", "none.uplift"), "none.uplift"),
         (("#802020", "--atlas", "none.txt"), "none.txt"),

@@ -44,9 +44,9 @@ def table(home):
         (["#cc3319"], RED),
         (["cc3319"], RED),
         (["#CC3319"], RED),
-        (["204", "51", "25", "--8bit"], RED),
-        (["204,51,25", "--8bit"], RED),
-        (["#cc3319", "--8bit"], RED),
+        (["204", "51", "25", "--encoded"], RED),
+        (["204,51,25", "--encoded"], RED),
+        (["#cc3319", "--encoded"], RED),
         (["#c31"], [RED[0], RED[1], 0.005605391624202723]),
         (["0.8", "0.2", "0.1"], [0.8, 0.2, 0.1]),
         (["0.8,0.2,0.1"], [0.8, 0.2, 0.1]),
@@ -86,9 +86,9 @@ def test_ways_to_write_a_colour(run, words, rgb):
         (["nan", "0.2", "0.3"], "linear RGB (nan, 0.2, 0.3) lies outside [0, 1]"),
         (["inf", "0.2", "0.3"], "linear RGB (inf, 0.2, 0.3) lies outside [0, 1]"),
         (["204", "51", "25"], "linear RGB (204, 51, 25) lies outside [0, 1]"),
-        (["--8bit", "256", "0", "0"], "8-bit codes run from 0 to 255"),
-        (["--8bit", "-1", "0", "0"], "8-bit codes run from 0 to 255"),
-        (["--8bit", "nan", "0", "0"], "8-bit codes run from 0 to 255"),
+        (["--encoded", "256", "0", "0"], "8-bit codes run from 0 to 255"),
+        (["--encoded", "-1", "0", "0"], "8-bit codes run from 0 to 255"),
+        (["--encoded", "nan", "0", "0"], "8-bit codes run from 0 to 255"),
     ],
 )
 def test_what_is_no_colour_is_refused(refuse, words, problem):
@@ -181,7 +181,9 @@ def test_what_is_no_display_is_refused(refuse, name, problem):
 
 
 def test_codes_outside_have_no_colour_to_move(refuse):
-    assert refuse("query", "--8bit", "256", "0", "0", "--out-of-gamut", "clip").startswith("8-bit codes run")
+    assert refuse("query", "--encoded", "256", "0", "0", "--out-of-gamut", "clip").startswith(
+        "8-bit codes run"
+    )
 
 
 def test_a_file_and_a_colour_are_too_much(run, table):
@@ -210,7 +212,7 @@ def test_files_of_colours(ask, table, text):
 
 
 def test_files_of_codes_and_hex(ask, table):
-    answers = ask("--input", table("#cc3319\ncc3319\n204,51,25\n#cc3319,brick\n"), "--8bit")
+    answers = ask("--input", table("#cc3319\ncc3319\n204,51,25\n#cc3319,brick\n"), "--encoded")
     np.testing.assert_allclose([answer["rgb"] for answer in answers], [RED] * 4, rtol=0, atol=1e-15)
 
 
@@ -245,7 +247,7 @@ def test_bad_lines_are_named(refuse, table, text, problem):
 
 def test_bad_codes_in_a_file_are_named(refuse, table):
     path = table("0,0,0\n\n0,256,0\n")
-    assert refuse("query", "--input", path, "--8bit").startswith(
+    assert refuse("query", "--input", path, "--encoded").startswith(
         f"{path}:3: (0, 256, 0) lies outside 0 to 255; "
     )
 

@@ -46,22 +46,29 @@ def test_build_refuses_bad_scenes(run, refuse, home):
 def test_query_refuses_other_colours_or_fills_them(run, refuse, scene):
     assert "linear RGB (0, 1, 0) is none of them" in refuse("query", "--cube", scene, 0, 1, 0)
     result = run(
-        "query", "-", "--cube", scene, "--fill", "--format", "json", input="0,1,0\n0.001,0.002,0.001\n"
+        "query",
+        "-",
+        "--cube",
+        scene,
+        "--fill-missing",
+        "--format",
+        "json",
+        input="0,1,0\n0.001,0.002,0.001\n",
     )
     assert "warning: 1 of 2 colours are none of the cube's scene" in result.stderr
     assert all(answer["round_trip"]["delta_e_2000"] < 1e-3 for answer in json.loads(result.stdout))
-    assert run("query", "--cube", scene, "--fill", 0.001, 0.002, 0.001).stderr == ""
+    assert run("query", "--cube", scene, "--fill-missing", 0.001, 0.002, 0.001).stderr == ""
 
 
 def test_textures_refuse_other_colours_or_fill_them(run, refuse, scene, home, small_cube):
     rgb = np.array([[[0.001, 0.002, 0.001], [0.1, 0.9, 0.2]]], np.float32)
     write_exr(home / "image.exr", planes(rgb))
-    asked = ("texture", "image.exr", "out.exr", "--cube", scene, "--as", "multipliers")
+    asked = ("texture", "image.exr", "out.exr", "--cube", scene, "--store", "multipliers")
     message = refuse(*asked)
     assert "image.exr: the cube was built for the colours of a scene" in message
     assert "(0.1, 0.9, 0.2)" in message
     assert not (home / "out.exr").exists()
-    run(*asked, "--fill")
+    run(*asked, "--fill-missing")
     found = channels(home / "out.exr")
     made = np.stack([found[f"multiplier.{index:02}"].ravel() for index in range(9)], axis=-1).astype(float)
     data = small_cube.data
@@ -81,5 +88,5 @@ def test_a_report_judges_what_is_there(run, scene, macbeth):
 
 
 def test_an_export_that_needs_all_colours_is_filled(run, refuse, scene, home):
-    assert "a header has all colours" in refuse("export", scene, "--to", "c")
-    assert "512 points" in run("export", scene, "--to", "c", "--fill").stdout
+    assert "a header has all colours" in refuse("export", scene, "--format", "c")
+    assert "512 points" in run("export", scene, "--format", "c", "--fill-missing").stdout

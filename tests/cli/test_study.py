@@ -21,7 +21,18 @@ def tcs(repository):
 
 def test_everything_at_once(run, home, macbeth, tcs):
     result = run(
-        "study", "moments", "--atlas", macbeth, "--atlas", tcs, "-o", "out", "--format", "csv", "--most", 9
+        "study",
+        "moments",
+        "--atlas",
+        macbeth,
+        "--atlas",
+        tcs,
+        "-o",
+        "out",
+        "--format",
+        "csv",
+        "--max-moments",
+        9,
     )
     assert sorted(path.name for path in (home / "out").iterdir()) == FILES
     assert (home / "out" / "moments.csv").read_text(encoding="utf-8") == result.stdout
@@ -42,7 +53,7 @@ def test_everything_at_once(run, home, macbeth, tcs):
 
 
 def test_json_holds_the_same(run, tcs):
-    args = ("study", "moments", "--atlas", tcs, "--most", 2, "--format")
+    args = ("study", "moments", "--atlas", tcs, "--max-moments", 2, "--format")
     objects = json.loads(run(*args, "json").stdout)
     rows = list(csv.DictReader(io.StringIO(run(*args, "csv").stdout)))
     assert [{key: str(value) for key, value in one.items()} for one in objects] == rows
@@ -52,7 +63,7 @@ def test_json_holds_the_same(run, tcs):
 
 
 def test_the_table_has_a_line_a_count(run, tcs):
-    result = run("study", "moments", "--atlas", tcs, "--most", 4)
+    result = run("study", "moments", "--atlas", tcs, "--max-moments", 4)
     lines = [line.split() for line in result.stdout.splitlines()]
     assert [line[0] for line in lines if line and line[0].isdigit()] == list("01234")
     assert "14 entries" in result.stdout
@@ -62,18 +73,18 @@ def test_the_table_has_a_line_a_count(run, tcs):
 def test_by_default_the_atlases_of_the_working_folder(run, home, tcs):
     (home / "atlases").mkdir()
     shutil.copy(tcs, home / "atlases")
-    rows = csv.DictReader(io.StringIO(run("study", "moments", "--most", 0, "--format", "csv").stdout))
+    rows = csv.DictReader(io.StringIO(run("study", "moments", "--max-moments", 0, "--format", "csv").stdout))
     assert {row["atlas"] for row in rows} == {"all", "tcs"}
 
 
 def test_few_entries_and_few_moments_are_drawn_too(run, home):
     (home / "greys.csv").write_text("name,400,500,600,700\ngrey,0.5,0.5,0.5,0.5\n")
-    run("study", "moments", "--atlas", "greys.csv", "--most", 0, "-o", ".")
+    run("study", "moments", "--atlas", "greys.csv", "--max-moments", 0, "-o", ".")
     assert matplotlib.image.imread(home / "moments-worst.png").size
 
 
 def test_files_are_replaced_by_force_alone(run, refuse, home, tcs):
-    args = ("study", "moments", "--atlas", tcs, "--most", 1, "-o", home)
+    args = ("study", "moments", "--atlas", tcs, "--max-moments", 1, "-o", home)
     (home / "moments-worst.png").write_text("mine")
     assert "moments-worst.png: exists already; use --force" in refuse(*args)
     assert (home / "moments-worst.png").read_text() == "mine"
@@ -85,8 +96,12 @@ def test_files_are_replaced_by_force_alone(run, refuse, home, tcs):
 def test_bad_input_is_refused(refuse, home, tcs):
     assert refuse("study", "moments").startswith("there are no atlases/*.txt here; name atlases with")
     assert refuse("study", "moments", "--atlas", "none.txt").startswith("none.txt: ")
-    assert refuse("study", "moments", "--atlas", tcs, "--most", 33).startswith("33 moments are out of range")
-    assert refuse("study", "moments", "--atlas", tcs, "--most", -1).startswith("-1 moments are out of range")
+    assert refuse("study", "moments", "--atlas", tcs, "--max-moments", 33).startswith(
+        "33 moments are out of range"
+    )
+    assert refuse("study", "moments", "--atlas", tcs, "--max-moments", -1).startswith(
+        "-1 moments are out of range"
+    )
     assert "a second atlas is called 'tcs'" in refuse("study", "moments", "--atlas", tcs, "--atlas", tcs)
     (home / "file").write_text("mine")
     assert refuse("study", "moments", "--atlas", tcs, "-o", "file").startswith("file: cannot be made: ")

@@ -8,7 +8,7 @@ import json
 
 import matplotlib.image
 
-NARROW = ("--dims", 4, "--coefficients", "9", "--models", "moments", "--spaces", "sRGB", "--drawn", 1)
+NARROW = ("--dims", 4, "--coefficients", "9", "--models", "moments", "--spaces", "sRGB", "--samples", 1)
 
 
 def test_a_map_of_little(run, home, repository):
@@ -29,7 +29,7 @@ def test_a_map_of_little(run, home, repository):
 
 
 def test_the_table_says_what_failed(run):
-    args = ("--thresholds", "1e-4", "--peer-dims", "2", "--drawn", 0, "--atlases", "none")
+    args = ("--thresholds", "1e-4", "--peer-dims", "2", "--samples", 0, "--atlases", "none")
     result = run("study", "stability", *NARROW[:-2], *args)
     lines = result.stdout.splitlines()
     assert any("in c" in line and "moments 9" in line for line in lines)

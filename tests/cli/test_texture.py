@@ -19,7 +19,7 @@ def frames(home):
 
 
 def test_one_image(run, frames, cubes):
-    options = ("--cube", cubes / "moments-8.uplift", "--as", "moments")
+    options = ("--cube", cubes / "moments-8.uplift", "--store", "moments")
     result = run("texture", "shot.0.exr", "out.exr", *options)
     assert result.output.startswith("out.exr: 1 texture, 30 pixels, 0.0 MB, ")
     assert "moment.08" in OpenEXR.File("out.exr", separate_channels=True).channels()
@@ -32,7 +32,7 @@ def test_one_image(run, frames, cubes):
 def test_a_sequence_goes_on_where_one_image_is_bad(run, frames, cubes):
     (frames / "shot.2.exr").write_text("no image")
     result = run(
-        "texture", "shot.*.exr", "out", "--cube", cubes / "moments-8.uplift", "--as", "moments",
+        "texture", "shot.*.exr", "out", "--cube", cubes / "moments-8.uplift", "--store", "moments",
         "--processes", 1, code=2,
     )  # fmt: skip
     assert result.stdout.startswith("out: 2 textures, 60 pixels, ")
@@ -56,10 +56,13 @@ def test_a_sequence_goes_on_where_one_image_is_bad(run, frames, cubes):
             ("shot.0.exr", "shot.1.exr", "shot.2.exr/out"),
             "is no folder, and 2 images need one; name a folder",
         ),
-        (("shot.0.exr", "a.exr", "--as", "moments", "--wavelengths", "500"), "moments have no wavelengths"),
+        (
+            ("shot.0.exr", "a.exr", "--store", "moments", "--wavelengths", "500"),
+            "moments have no wavelengths",
+        ),
         (("shot.0.exr", "a.exr", "--wavelengths", "500:400:5"), "wavelengths '500:400:5' are not clear"),
         (("shot.0.exr", "a.exr", "--cube", "none.uplift"), "none.uplift"),
-        (("shot.0.exr", "a.exr", "--as", "multipliers", "--depth", "half"), "not exact enough as half"),
+        (("shot.0.exr", "a.exr", "--store", "multipliers", "--depth", "half"), "not exact enough as half"),
     ],
 )
 def test_bad_input(refuse, frames, words, problem):
@@ -67,7 +70,7 @@ def test_bad_input(refuse, frames, words, problem):
 
 
 def test_out_of_gamut(run, refuse, frames, cubes):
-    words = ("texture", "shot.1.exr", "out.exr", "--cube", cubes / "moments-8.uplift", "--as", "moments")
+    words = ("texture", "shot.1.exr", "out.exr", "--cube", cubes / "moments-8.uplift", "--store", "moments")
     told = run(*words, "--out-of-gamut", "scale").stderr
     assert " of 30 pixels lie outside [0, 1]: scaled, a component by up to " in told
     scaled = OpenEXR.File("out.exr", separate_channels=True).channels()

@@ -90,8 +90,8 @@ def test_draws(choose, home):
         (["--target", "-1"], "target -1 is not above 0"),
         (["--target", "0.001", "--method", "uniform"], "40 wavelengths by method 'uniform' leave"),
         (["--count", "3", "--method", "meyer"], "Meyer's rules have no set of 3 wavelengths"),
-        (["--at", "300:700:50"], "not distinct ones of the spectrum"),
-        (["--at", "some"], "wavelengths 'some' are not clear"),
+        (["--wavelengths", "300:700:50"], "not distinct ones of the spectrum"),
+        (["--wavelengths", "some"], "wavelengths 'some' are not clear"),
         (["--count", "4", "--observer", "me"], "unknown observer 'me'"),
     ],
 )
@@ -100,14 +100,16 @@ def test_bad_options_are_told_in_one_line(refuse, macbeth, options, problem):
 
 
 def test_given_wavelengths(choose):
-    answer = json.loads(choose("--at", "420:660:40", "--format", "json"))
+    answer = json.loads(choose("--wavelengths", "420:660:40", "--format", "json"))
     assert answer["wavelengths"] == [420, 460, 500, 540, 580, 620, 660]
     assert answer["method"] == "given"
     plain = json.loads(choose("--count", 7, "--method", "bins", "--format", "json"))
     assert answer["errors"]["D65"]["mean"] < plain["errors"]["D65"]["mean"] / 2
 
 
-@pytest.mark.parametrize("options", [[], ["--count", "4", "--target", "1"], ["--at", "500", "--count", "1"]])
+@pytest.mark.parametrize(
+    "options", [[], ["--count", "4", "--target", "1"], ["--wavelengths", "500", "--count", "1"]]
+)
 def test_one_of_count_target_and_at(run, options):
     assert "give one" in run("wavelengths", *options, code=2).output
 
@@ -119,7 +121,7 @@ def test_an_existing_picture_is_kept(refuse, home, macbeth):
 
 
 @pytest.mark.parametrize(
-    "options", [["--count", "4", "--measure", "mean"], ["--at", "500", "--method", "bins"]]
+    "options", [["--count", "4", "--measure", "mean"], ["--wavelengths", "500", "--method", "bins"]]
 )
 def test_nothing_asked_for_is_left_aside(run, options):
     assert "--measure goes with --target, --method with" in run("wavelengths", *options, code=2).output

@@ -46,7 +46,7 @@ def texture_command(plan: Plan, path: Path) -> str:
     """All textures uplifted as the plan stores them."""
     textures, held = plan.scene.textures, plan.storage
     target = f"{textures[0].stem}-uplifted.exr" if len(textures) == 1 else "uplifted"
-    words = [*textures, target, "--cube", cube_name(path), "--as", held.form, "--depth", held.depth]
+    words = [*textures, target, "--cube", cube_name(path), "--store", held.form, "--depth", held.depth]
     if held.form == Spectrum.name:
         words += ["--wavelengths", format_wavelengths(plan.sampling)]
     return _line("uplift texture", [*words, *_encoding(plan)])

@@ -70,7 +70,7 @@ def choose_storage(
             error = question.seen(sampling.xyz(each.read_back(cube, question.rgb, at)))
             size = each.size(cube, at)
             choice: dict[str, Any] = {"as": each.form, "depth": each.depth}
-            typed = f"--as {each.form} --depth {each.depth}"
+            typed = f"--store {each.form} --depth {each.depth}"
             yield Trial(
                 f"{each.form}, {each.depth}", size, f"{format_size(size)} a pixel", typed, choice, error
             )

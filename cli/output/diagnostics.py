@@ -1,0 +1,49 @@
+"""Errors and warnings of the library on standard error."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import click
+
+from uplift.common.errors import UpliftError, UpliftWarning
+
+from .hints import describe, hint_for
+
+OUTPUT_FORMAT = "uplift.output-format"
+"""Key of the context's ``meta`` under which ``--format`` is kept."""
+
+
+class UsageFailure(click.ClickException):
+    """Bad input: one line on standard error and exit code 2.
+
+    Parameters
+    ----------
+    error : UpliftError
+        The error to report.
+    as_json : bool
+        Report it as JSON, for commands that run with ``--format json``.
+    """
+
+    exit_code = 2
+
+    def __init__(self, error: UpliftError, *, as_json: bool = False) -> None:
+        super().__init__(describe(error))
+        self.error, self.as_json = error, as_json
+
+    def show(self, file: Any = None) -> None:
+        """Print the error to standard error."""
+        if self.as_json:
+            text = json.dumps(
+                {"error": self.error.to_json() | {"hint": hint_for(self.error)}}, ensure_ascii=False
+            )
+        else:
+            text = f"{click.style('error:', fg='red', bold=True)} {self.message}"
+        click.echo(text, err=True)
+
+
+def show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
+    """Print warnings of the library on one line each, and no others; replaces `warnings.showwarning`."""
+    if isinstance(message, UpliftWarning):
+        click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {describe(message)}", err=True)
