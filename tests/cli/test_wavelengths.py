@@ -85,12 +85,12 @@ def test_draws(choose, home):
 @pytest.mark.parametrize(
     ("options", "problem"),
     [
-        (["--count", "0"], "count 0 is not within 1 to 40"),
+        (["--count", "0"], "count must be in [1, 40], got 0"),
         (["--count", "4", "--light", "D66"], "unknown illuminant 'D66'; did you mean"),
-        (["--target", "-1"], "target -1 is not above 0"),
-        (["--target", "0.001", "--method", "uniform"], "40 wavelengths by method 'uniform' leave"),
-        (["--count", "3", "--method", "meyer"], "Meyer's rules have no set of 3 wavelengths"),
-        (["--wavelengths", "300:700:50"], "not distinct ones of the spectrum"),
+        (["--target", "-1"], "target must be positive, got -1"),
+        (["--target", "0.001", "--method", "uniform"], "no count up to 40 meets a max ΔE00 of 0.001"),
+        (["--count", "3", "--method", "meyer"], "method 'meyer' has no rule of 3 wavelengths"),
+        (["--wavelengths", "300:700:50"], "wavelengths must be distinct and within [380, 770] nm"),
         (["--wavelengths", "some"], "wavelengths 'some' are not clear"),
         (["--count", "4", "--observer", "me"], "unknown observer 'me'"),
     ],

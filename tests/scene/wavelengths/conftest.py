@@ -1,4 +1,4 @@
-"""Settings that many tests share: the ColorChecker under smooth and under spiky lights."""
+"""Fixtures: the ColorChecker under smooth and under spiky lights."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from uplift.scene.wavelengths import RenderSetup, grid, make_setup
 
 @pytest.fixture(scope="session")
 def checker() -> Array:
-    """(24, 391) the ColorChecker at 380–770 nm."""
+    """Reflectances (24, 391) of the ColorChecker at 380–770 nm."""
     return on_grid(read_atlas(MACBETH), grid())
 
 

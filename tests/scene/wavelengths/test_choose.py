@@ -1,25 +1,24 @@
-"""So many wavelengths, or as few as a target allows: each promise checked on the ColorChecker."""
+"""A given number of wavelengths, or the fewest that meet a target, on the ColorChecker."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.scene.wavelengths import METHODS, RenderSetup, choose
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_gives_as_many_as_asked_and_states_what_a_renderer_would_get(
-    smooth: RenderSetup, method: str
-) -> None:
+def test_errors_are_those_of_a_renderer_with_count_wavelengths(smooth: RenderSetup, method: str) -> None:
     choice = choose(smooth, count=5, method=method)
     sampling = choice.sampling
     assert len(sampling) == 5
     assert (np.diff(sampling.wavelengths) > 0).all()
     assert sampling.to_xyz[:, 1].sum() == pytest.approx(1)
-    # The plain way: trace every light at every wavelength, sum with the weights.
+    # Reference: trace every light at every wavelength, sum with the weights.
     for light, name in enumerate(smooth.lights):
         for material in (0, 13):
             radiance = [
@@ -37,38 +36,49 @@ def test_gives_as_many_as_asked_and_states_what_a_renderer_would_get(
             assert choice.errors.delta_e[light, material] == pytest.approx(apart, abs=1e-6), name
 
 
-def test_a_target_is_kept_and_one_wavelength_less_breaks_it(spiky: RenderSetup) -> None:
+def test_target_is_met_and_one_wavelength_less_misses_it(spiky: RenderSetup) -> None:
     choice = choose(spiky, target=1.5)
     assert choice.errors.max <= 1.5
     assert choose(spiky, count=len(choice.sampling) - 1).errors.max > 1.5
 
 
-def test_a_mean_is_reached_earlier_than_a_maximum(spiky: RenderSetup) -> None:
+def test_mean_target_needs_fewer_wavelengths_than_maximum(spiky: RenderSetup) -> None:
     assert len(choose(spiky, target=1.5, measure="mean").sampling) < len(choose(spiky, target=1.5).sampling)
 
 
-def test_is_the_same_every_time(smooth: RenderSetup) -> None:
+def test_choice_is_deterministic(smooth: RenderSetup) -> None:
     first, second = (choose(smooth, count=4).sampling for _ in range(2))
     np.testing.assert_array_equal(first.wavelengths, second.wavelengths)
     np.testing.assert_array_equal(first.to_xyz, second.to_xyz)
 
 
 @pytest.mark.parametrize(
-    "options",
-    [{}, {"count": 4, "target": 1.0}, {"count": 0}, {"count": 41}, {"target": 0.0}, {"target": float("nan")}],
+    ("options", "code"),
+    [
+        ({}, "count-or-target"),
+        ({"count": 4, "target": 1.0}, "count-or-target"),
+        ({"count": 0}, "count-out-of-range"),
+        ({"count": 41}, "count-out-of-range"),
+        ({"target": 0.0}, "target-not-positive"),
+        ({"target": float("nan")}, "target-not-positive"),
+    ],
 )
-def test_refuses_options_out_of_range(smooth: RenderSetup, options: dict[str, float]) -> None:
-    with pytest.raises(OptionError, match="; give"):
+def test_invalid_options_raise(smooth: RenderSetup, options: dict[str, float], code: str) -> None:
+    with raises(OptionError, code):
         choose(smooth, **options)
 
 
-def test_says_when_a_target_is_out_of_reach(spiky: RenderSetup) -> None:
-    with pytest.raises(OptionError, match="40 wavelengths by method 'uniform' leave"):
+def test_unreachable_target_raises_and_states_the_best_error(spiky: RenderSetup) -> None:
+    best = choose(spiky, count=40, method="uniform").errors.max
+    with raises(OptionError, "target-unreachable") as caught:
         choose(spiky, target=0.01, method="uniform")
+    assert f"{best:.3g}" in str(caught.value)
 
 
-def test_refuses_unknown_names(smooth: RenderSetup) -> None:
-    with pytest.raises(UnknownNameError, match="did you mean 'uniform'"):
+def test_unknown_names_raise_with_the_nearest_name(smooth: RenderSetup) -> None:
+    with raises(UnknownNameError, "unknown-method") as caught:
         choose(smooth, count=4, method="unform")
-    with pytest.raises(UnknownNameError, match="'p95'"):
+    assert "'uniform'" in caught.value.hint
+    with raises(UnknownNameError, "unknown-measure") as caught:
         choose(smooth, target=1, measure="p90")
+    assert "'p95'" in caught.value.hint

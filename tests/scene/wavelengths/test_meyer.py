@@ -1,4 +1,4 @@
-"""Meyer 1988: every figure that the paper prints, derived anew."""
+"""Meyer 1988: the matrices, tables and figures of the paper, reproduced."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.wavelengths.printed import CHANNELS, rows
+from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
@@ -43,30 +44,30 @@ def setting_c(checker: Array) -> RenderSetup:
     return make_setup(checker, ["C"])
 
 
-def test_the_matrices_come_out_as_printed(cmfs: Array, found: OpponentSpace) -> None:
+def test_matrices_equal_the_printed_ones(cmfs: Array, found: OpponentSpace) -> None:
     np.testing.assert_allclose(cone_space(grid(), cmfs).matrix, _matrix("SML"), atol=1.5e-4)
     np.testing.assert_allclose(found.space.matrix, _matrix("AC1C2"), atol=1.5e-4)
 
 
-def test_the_eigenvalues_come_out_as_printed(found: OpponentSpace) -> None:
+def test_eigenvalues_equal_the_printed_ones(found: OpponentSpace) -> None:
     printed = [float(row["eigenvalue"]) for row in rows("matrices") if row["eigenvalue"]]
     np.testing.assert_allclose(found.eigenvalues, printed, rtol=3e-3)
 
 
-def test_cones_alone_lie_at_the_confusion_points(cmfs: Array) -> None:
+def test_chromaticities_of_the_cones_are_the_confusion_points(cmfs: Array) -> None:
     alone = np.linalg.inv(cone_space(grid(), cmfs).matrix)
     chromaticities = (alone / alone.sum(axis=0))[:2].T
     np.testing.assert_allclose(chromaticities, [[0.171, -0.003], [1.14, -0.14], [0.735, 0.265]], atol=1e-12)
 
 
 def test_opponent_channels_are_uncorrelated(cmfs: Array, found: OpponentSpace) -> None:
-    """The rotation alone is Karhunen–Loève; scaling each channel keeps them orthogonal."""
-    seen = cmfs @ found.space.matrix.T
-    gram = seen.T @ seen
+    """Karhunen–Loève channels are orthogonal, and scaling each channel keeps them so."""
+    channels = cmfs @ found.space.matrix.T
+    gram = channels.T @ channels
     assert np.abs(gram - np.diag(np.diag(gram))).max() < 1e-9 * gram.max()
 
 
-def test_tables_1a_and_1b(cmfs: Array, found: OpponentSpace) -> None:
+def test_rules_equal_tables_1a_and_1b(cmfs: Array, found: OpponentSpace) -> None:
     ours = quadrature_rules(found.space, grid(), cmfs)
     printed = rows("table1")
     pairs, undefined = [], []
@@ -86,7 +87,9 @@ def test_tables_1a_and_1b(cmfs: Array, found: OpponentSpace) -> None:
     np.testing.assert_allclose(factor * weights, as_printed, atol=4e-4)
 
 
-def test_table_2(cmfs: Array, found: OpponentSpace, setting_c: RenderSetup) -> None:
+def test_four_wavelength_rule_equals_table_2(
+    cmfs: Array, found: OpponentSpace, setting_c: RenderSetup
+) -> None:
     ours = quadrature_rules(found.space, grid(), cmfs)
     shared = four_wavelength_rule(ours, channel_functions(found.space, grid(), cmfs))
     stated = [row for row in rows("table2") if row["row"] == "2"]
@@ -101,19 +104,17 @@ def test_table_2(cmfs: Array, found: OpponentSpace, setting_c: RenderSetup) -> N
         assert allocation_error(setting_c, found.space, way) == pytest.approx(expected, rel=0.03)
 
 
-def test_figure_6_the_opponent_space_needs_the_fewest(
+def test_figure_6_opponent_space_needs_the_fewest_wavelengths(
     cmfs: Array, found: OpponentSpace, setting_c: RenderSetup
 ) -> None:
-    """Averaged over all allocations of a total, as the paper does."""
+    """Averaged over all allocations of a total, as in the paper."""
     spaces = (found.space, cone_space(grid(), cmfs), xyz_space())
     curves = [dict(zip(*run_trials(setting_c, space).by_total, strict=True)) for space in spaces]
     for total in range(4, 31):
         assert curves[0][total] < min(curves[1][total], curves[2][total]), total
 
 
-def test_figure_7_a_before_c2_and_all_channels_before_one(
-    found: OpponentSpace, setting_c: RenderSetup
-) -> None:
+def test_figure_7_favours_a_and_balanced_shares(found: OpponentSpace, setting_c: RenderSetup) -> None:
     tried = run_trials(setting_c, found.space)
     parts = bin_shares(tried)
     middle = np.abs(parts.corners.mean(axis=1) - 1 / 3).max(axis=1) < 0.2
@@ -122,9 +123,9 @@ def test_figure_7_a_before_c2_and_all_channels_before_one(
     assert tried.errors[most == 0].mean() < min(tried.errors[most == channel].mean() for channel in (1, 2))
 
 
-def test_small_triangles_hold_their_trials(found: OpponentSpace, setting_c: RenderSetup) -> None:
+def test_small_triangles_average_the_trials_inside(found: OpponentSpace, setting_c: RenderSetup) -> None:
     tried = run_trials(setting_c, found.space)
-    parts = bin_shares(tried, cuts=4)
+    parts = bin_shares(tried, divisions=4)
     np.testing.assert_allclose(parts.corners.sum(axis=2), 1)
     assert parts.corners.min() >= 0
     for corners, stated in zip(parts.corners, parts.errors, strict=True):
@@ -135,8 +136,8 @@ def test_small_triangles_hold_their_trials(found: OpponentSpace, setting_c: Rend
             assert stated == pytest.approx(within.mean())
 
 
-def test_weights_of_every_order_add_up_to_the_same() -> None:
-    """So a slip in the reference would show."""
+def test_printed_weights_of_every_order_have_the_same_sum() -> None:
+    """Guards the transcription of the printed tables."""
     printed = rows("table1")
     for channel, total in zip(CHANNELS, (1.05638, -0.14184, 0.54640), strict=True):
         for order in {row["order"] for row in printed if row["channel"] == channel}:
@@ -147,7 +148,7 @@ def test_weights_of_every_order_add_up_to_the_same() -> None:
 
 
 @pytest.mark.parametrize("count", [4, 5, 12])
-def test_meyer_is_the_best_allocation(
+def test_meyer_takes_the_best_allocation(
     smooth: RenderSetup, count: int, found: OpponentSpace, cmfs: Array
 ) -> None:
     chosen = meyer(smooth, count)
@@ -160,6 +161,6 @@ def test_meyer_is_the_best_allocation(
 
 
 @pytest.mark.parametrize("count", [1, 3, 31])
-def test_meyer_says_when_it_has_no_such_set(smooth: RenderSetup, count: int) -> None:
-    with pytest.raises(OptionError, match="4 to 30"):
+def test_count_without_a_rule_raises(smooth: RenderSetup, count: int) -> None:
+    with raises(OptionError, "undefined-rule"):
         meyer(smooth, count)

@@ -1,10 +1,15 @@
 """Choice of the few wavelengths that a renderer traces for given materials and lights.
 
-from uplift.scene import wavelengths
-
-seen = wavelengths.set_up(reflectances, ["D65", "FL11"])
-choice = wavelengths.choose(seen, target=1.0)
-choice.sampling.wavelengths, choice.sampling.to_xyz, choice.sampling.powers, choice.errors.max
+Examples
+--------
+>>> import numpy as np
+>>> reflectances = np.outer([0.2, 0.8], np.linspace(0.5, 1, 391))  # at 380, 381, …, 770 nm
+>>> setup = make_setup(reflectances, ["D65", "FL11"])
+>>> choice = choose(setup, target=1.0)
+>>> choice.sampling.to_xyz.shape == (len(choice.sampling), 3)
+True
+>>> choice.errors.max <= 1.0
+True
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""So many wavelengths, or as few as a target allows."""
+"""A given number of wavelengths, or the fewest that meet a target."""
 
 from __future__ import annotations
 
@@ -21,15 +21,26 @@ METHODS: Mapping[str, Callable[[RenderSetup, int], Sampling]] = {
     "bins": prefiltered_uniform,
     "fitted": fit_uniform,
 }
+"""Methods by name: all fitted, Meyer 1988, and three with even spacing."""
 GIVEN = "given"
-"""The method where the wavelengths are given."""
+"""Method of a `Choice` whose wavelengths were given."""
 MAX_COUNT = 40
-"""More wavelengths than that are no saving: tables have 40 at 10 nm."""
+"""Largest number of wavelengths: as many as tables at 10 nm have."""
 
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """What was chosen, by which method, and its errors (K, M) over the materials and lights."""
+    """Chosen wavelengths and their errors.
+
+    Parameters
+    ----------
+    method : str
+        A key of `METHODS`, or ``"given"``.
+    sampling : Sampling
+        Wavelengths, weights and powers.
+    errors : ColourErrors
+        ΔE00 of the M materials under the K lights, shape (K, M).
+    """
 
     method: str
     sampling: Sampling
@@ -37,65 +48,106 @@ class Choice:
 
 
 def choose(
-    setting: RenderSetup,
+    setup: RenderSetup,
     *,
     count: int | None = None,
     target: float | None = None,
     measure: str = "max",
     method: str = "optimised",
 ) -> Choice:
-    """``count`` wavelengths, or the fewest whose ``measure`` of ΔE00 is at most ``target``.
+    """Choose ``count`` wavelengths, or the fewest that meet a target.
 
-    One set of wavelengths and of weights serves all lights of the setting, so that their radiances may be added;
-    each light has its own powers, which hold what its spectrum does between the wavelengths.
+    One set of wavelengths and weights serves all lights, so that their radiances may be added. The powers differ
+    by light: they account for the spectrum of the light between the wavelengths.
 
     Parameters
     ----------
-    measure : what the target is about: one of `MEASURES`, over all materials under all lights.
-    method : one of `METHODS`.
+    setup : RenderSetup
+        Materials and lights.
+    count : int, optional
+        Number of wavelengths, 1 to `MAX_COUNT`. Exactly one of ``count`` and ``target`` is required.
+    target : float, optional
+        Largest accepted ``measure`` of ΔE00, above 0.
+    measure : {"max", "p95", "mean"}, optional
+        Statistic over all materials under all lights that ``target`` limits.
+    method : {"optimised", "meyer", "uniform", "bins", "fitted"}, optional
+        One of `METHODS`.
+
+    Returns
+    -------
+    Choice
+        Wavelengths with weights, powers and errors.
 
     Raises
     ------
-    OptionError : neither or both of count and target, one out of range, or a target that is out of reach.
-    UnknownNameError : a method or measure that does not exist.
+    OptionError
+        Both or neither of ``count`` and ``target``, a value out of range, or a target that no count meets.
+    UnknownNameError
+        The method or the measure does not exist.
     """
     if method not in METHODS:
         raise unknown_name(method, METHODS, "method")
     if measure not in MEASURES:
         raise unknown_name(measure, MEASURES, "measure")
     if count is not None and target is None:
-        return _fixed(setting, method, _checked(count))
+        return _with_count(setup, method, count)
     if target is not None and count is None:
-        return _fewest(setting, method, target, measure)
-    raise OptionError("either a count or a target says how many", hint="give one of the two")
-
-
-def fit_weights(setting: RenderSetup, wavelengths: ArrayLike) -> Choice:
-    """The best weights and powers for wavelengths that are given. Raises `OptionError`."""
-    sampling = fit_at(setting, wavelengths).ordered()
-    return Choice(GIVEN, sampling, evaluate(setting, sampling))
-
-
-def _fixed(setting: RenderSetup, method: str, count: int) -> Choice:
-    sampling = METHODS[method](setting, count).ordered()
-    return Choice(method, sampling, evaluate(setting, sampling))
-
-
-def _fewest(setting: RenderSetup, method: str, target: float, measure: str) -> Choice:
-    if not target > 0:
-        raise OptionError(f"target {target:g} is not above 0", hint="give a tolerated ΔE00, such as 1")
-    for count in range(1, MAX_COUNT + 1):
-        choice = _fixed(setting, method, count)
-        reached = getattr(choice.errors, measure)
-        if reached <= target:
-            return choice
+        return _with_target(setup, method, target, measure)
     raise OptionError(
-        f"{MAX_COUNT} wavelengths by method '{method}' leave a {measure} of ΔE00 {reached:.3g}",
-        hint=f"give a target above {target:g}, or another method",
+        "exactly one of count and target is required", code="count-or-target", hint="give one of them"
     )
 
 
-def _checked(count: int) -> int:
+def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:
+    """Fit the weights and powers for given wavelengths.
+
+    Parameters
+    ----------
+    setup : RenderSetup
+        Materials and lights.
+    wavelengths : array_like, shape (n,)
+        Distinct wavelengths in nm within the grid of the setup.
+
+    Returns
+    -------
+    Choice
+        The wavelengths in ascending order, with weights, powers and errors.
+
+    Raises
+    ------
+    OptionError
+        No wavelengths, one that lies outside the grid, or one given twice.
+    """
+    sampling = fit_at(setup, wavelengths).ordered()
+    return Choice(GIVEN, sampling, evaluate(setup, sampling))
+
+
+def _with_count(setup: RenderSetup, method: str, count: int) -> Choice:
     if not 1 <= count <= MAX_COUNT:
-        raise OptionError(f"count {count} is not within 1 to {MAX_COUNT}", hint="give a number of that range")
-    return count
+        raise OptionError(
+            f"count must be in [1, {MAX_COUNT}], got {count}",
+            code="count-out-of-range",
+            hint="tables at 10 nm have 40",
+        )
+    sampling = METHODS[method](setup, count).ordered()
+    return Choice(method, sampling, evaluate(setup, sampling))
+
+
+def _with_target(setup: RenderSetup, method: str, target: float, measure: str) -> Choice:
+    if not target > 0:
+        raise OptionError(
+            f"target must be positive, got {target:g}",
+            code="target-not-positive",
+            hint="give a tolerated ΔE00, such as 1",
+        )
+    for count in range(1, MAX_COUNT + 1):
+        choice = _with_count(setup, method, count)
+        error = getattr(choice.errors, measure)
+        if error <= target:
+            return choice
+    raise OptionError(
+        f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method '{method}'; "
+        f"{MAX_COUNT} wavelengths reach {error:.3g}",
+        code="target-unreachable",
+        hint="raise the target or choose another method",
+    )

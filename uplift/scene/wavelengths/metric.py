@@ -1,4 +1,4 @@
-"""CIEDE2000 near a colour: a quadratic form, so that least squares can mind it."""
+"""CIEDE2000 near a colour as a quadratic form, which least squares can minimise."""
 
 from __future__ import annotations
 
@@ -8,33 +8,34 @@ from uplift.colorimetry.delta_e import delta_e_2000, lab_jacobian
 from uplift.common.arrays import Array
 from uplift.scene.wavelengths.setup import RenderSetup
 
-NEAR = 1e-3
-"""Length of the differences that are tried, in units of L*a*b*."""
-LEAST = 1e-3
-"""No direction of L*a*b* counts less than this, squared: rounding may turn it negative."""
+STEP = 1e-3
+"""Length of the finite differences, in units of L*a*b*."""
+MIN_EIGENVALUE = 1e-3
+"""Lower bound of the eigenvalues of the form; rounding may make them negative."""
 
 
-def delta_e_factors(setting: RenderSetup) -> Array:
-    """(K, M, 3, 3) T for every material under every light: |T (XYZ' − XYZ)| is ΔE00 of colours close together."""
-    slope = np.stack(
-        [lab_jacobian(xyz, white) for xyz, white in zip(setting.xyz, setting.whites, strict=True)]
+def delta_e_factors(setup: RenderSetup) -> Array:
+    """Factors T (K, M, 3, 3) of the form at every material and light: |T (XYZ' − XYZ)| ≈ ΔE00 of close colours."""
+    jacobian = np.stack(
+        [lab_jacobian(xyz, white) for xyz, white in zip(setup.xyz, setup.whites, strict=True)]
     )
-    values, vectors = np.linalg.eigh(_form(setting.lab))
-    root = np.sqrt(np.maximum(values, LEAST))[..., None] * np.swapaxes(vectors, -1, -2)
-    return np.asarray(root @ slope)
+    values, vectors = np.linalg.eigh(_quadratic_form(setup.lab))
+    root = np.sqrt(np.maximum(values, MIN_EIGENVALUE))[..., None] * np.swapaxes(vectors, -1, -2)
+    return np.asarray(root @ jacobian)
 
 
-def _form(lab: Array) -> Array:
-    """(…, 3, 3) G with dᵀ G d = ΔE00² for small differences d of L*a*b* (…, 3)."""
-    step = np.eye(3) * NEAR
+def _quadratic_form(lab: Array) -> Array:
+    """Matrices G (…, 3, 3) with dᵀ G d ≈ ΔE00² for small differences d of L*a*b* (…, 3)."""
+    steps = np.eye(3) * STEP
 
     def squared(difference: Array) -> Array:
-        return (delta_e_2000(lab, lab + difference) / NEAR) ** 2
+        return (delta_e_2000(lab, lab + difference) / STEP) ** 2
 
-    alone = [squared(d) for d in step]
+    diagonal = [squared(step) for step in steps]
     form = np.empty((*lab.shape, 3))
     for i in range(3):
-        form[..., i, i] = alone[i]
+        form[..., i, i] = diagonal[i]
         for j in range(i):
-            form[..., i, j] = form[..., j, i] = (squared(step[i] + step[j]) - alone[i] - alone[j]) / 2
+            mixed = (squared(steps[i] + steps[j]) - diagonal[i] - diagonal[j]) / 2
+            form[..., i, j] = form[..., j, i] = mixed
     return form

@@ -1,4 +1,8 @@
-"""Wavelengths by Gaussian quadrature with colour channels as weights: Meyer 1988, sections 3 and 4."""
+"""Wavelengths by Gaussian quadrature with colour channels as weight functions.
+
+Reference: Meyer 1988, "Wavelength selection for synthetic image generation", Computer Vision, Graphics, and Image
+Processing 41(1), sections 3 and 4, tables 1a, 1b and 2.
+"""
 
 from __future__ import annotations
 
@@ -15,87 +19,85 @@ from uplift.scene.wavelengths.sampling import Sampling, evaluate
 from uplift.scene.wavelengths.setup import RenderSetup, interp_curves
 
 POINTS = np.linspace(380.0, 770.0, 101)
-"""Where the paper must have summed its functions, a hundred steps of 3.9 nm: with these its tables come out to the
-last digit; with sums over every nanometre the outer wavelengths of high orders lie up to 5 nm off."""
+"""Points in nm of the paper's sums, inferred from its tables: 100 steps of 3.9 nm reproduce every printed digit. Sums
+over every nanometre move the outer wavelengths of high orders by up to 5 nm."""
 MAX_ORDER = 10
-"""The highest order of the paper's tables."""
+"""Highest order of tables 1a and 1b."""
 
 ChannelRules = tuple[Mapping[int, QuadratureRule | UndefinedRule], ...]
-"""For each channel, order → rule."""
+"""For each channel, a mapping from order to rule."""
+Allocation = tuple[QuadratureRule, QuadratureRule, QuadratureRule]
+"""A rule for each channel."""
 
 
 def channel_functions(space: ChannelSpace, wavelengths: Array, cmfs: Array) -> Array:
-    """(3, 101) the channels of a space at `POINTS`, times the step."""
+    """Channels (3, 101) of a space at `POINTS`, multiplied by the step."""
     return (POINTS[1] - POINTS[0]) * space.matrix @ interp_curves(POINTS, wavelengths, cmfs.T)
 
 
-def quadrature_rules(
-    space: ChannelSpace, wavelengths: Array, cmfs: Array, most: int = MAX_ORDER
-) -> ChannelRules:
-    """Rules of orders 1 to ``most`` of the three channels of a space: tables 1a and 1b for AC1C2."""
-    weights = channel_functions(space, wavelengths, cmfs)
-    return tuple(
-        {order: gauss_rule(POINTS, masses, order) for order in range(1, most + 1)} for masses in weights
-    )
+def quadrature_rules(space: ChannelSpace, wavelengths: Array, cmfs: Array) -> ChannelRules:
+    """Rules of orders 1 to `MAX_ORDER` for each channel of a space: tables 1a and 1b for AC1C2."""
+    orders = range(1, MAX_ORDER + 1)
+    channels = channel_functions(space, wavelengths, cmfs)
+    return tuple({order: gauss_rule(POINTS, masses, order) for order in orders} for masses in channels)
 
 
-def allocations(
-    quadrature_rules: ChannelRules, count: int | None = None
-) -> Iterator[tuple[QuadratureRule, QuadratureRule, QuadratureRule]]:
-    """Every way to give each channel a rule; only those of ``count`` wavelengths together, if given."""
-    defined = [
-        [rule for rule in channel.values() if isinstance(rule, QuadratureRule)]
-        for channel in quadrature_rules
-    ]
+def allocations(rules: ChannelRules, count: int | None = None) -> Iterator[Allocation]:
+    """Yield every combination of defined rules, or only those of ``count`` wavelengths in total."""
+    defined = [[rule for rule in channel.values() if isinstance(rule, QuadratureRule)] for channel in rules]
     for first, second, third in itertools.product(*defined):
         if count is None or len(first) + len(second) + len(third) == count:
             yield first, second, third
 
 
-def four_wavelength_rule(
-    quadrature_rules: ChannelRules, weights: Array
-) -> tuple[QuadratureRule, QuadratureRule, QuadratureRule]:
-    """Table 2, second row: A takes the two wavelengths of C1 and its own middle one, C2 has one of its own.
+def four_wavelength_rule(rules: ChannelRules, functions: Array) -> Allocation:
+    """Rule of table 2, second row, in which A shares the two wavelengths of C1.
 
-    ``weights`` (3, 101) are the space's `channel_functions`.
+    A also has the middle node of the rule of order 3, and C2 has one node. ``functions`` (3, 101) are the
+    `channel_functions` of the space. Raises `OptionError` where the observer has no such rules.
     """
-    a, c1, c2 = quadrature_rules[0][3], quadrature_rules[1][2], quadrature_rules[2][1]
+    a, c1, c2 = rules[0][3], rules[1][2], rules[2][1]
     if isinstance(a, UndefinedRule) or isinstance(c1, UndefinedRule) or isinstance(c2, UndefinedRule):
         raise OptionError(
-            "the observer's opponent channels lack these rules", hint="take another method or observer"
+            "the opponent channels of the observer have no rules of orders 3, 2 and 1",
+            code="undefined-rule",
+            hint="choose another method or observer",
         )
-    return interpolatory_rule([*c1.nodes, a.nodes[1]], POINTS, weights[0]), c1, c2
+    return interpolatory_rule([*c1.nodes, a.nodes[1]], POINTS, functions[0]), c1, c2
 
 
-def combine_rules(setting: RenderSetup, space: ChannelSpace, channels: Sequence[QuadratureRule]) -> Sampling:
-    """One rule a channel → the wavelengths of all of them, lights read off there, weights to XYZ."""
-    nm = np.unique(np.concatenate([rule.nodes for rule in channels]))
+def combine_rules(setup: RenderSetup, space: ChannelSpace, rules: Sequence[QuadratureRule]) -> Sampling:
+    """Sample the lights at the nodes of all channels, with weights that map the channels to XYZ."""
+    nm = np.unique(np.concatenate([rule.nodes for rule in rules]))
     weights = np.zeros((len(nm), 3))
-    for channel, rule in enumerate(channels):
+    for channel, rule in enumerate(rules):
         weights[np.searchsorted(nm, rule.nodes), channel] = rule.weights
-    step = setting.wavelengths[1] - setting.wavelengths[0]
+    step = setup.wavelengths[1] - setup.wavelengths[0]
     to_xyz = weights @ np.linalg.inv(space.matrix).T / step
-    return Sampling(nm, to_xyz, setting.lights, setting.sampled_powers(nm))
+    return Sampling(nm, to_xyz, setup.lights, setup.sampled_powers(nm))
 
 
-def meyer(setting: RenderSetup, count: int) -> Sampling:
-    """The allocation of ``count`` wavelengths to A, C1 and C2 of least mean ΔE00 in the setting; whites balanced.
+def meyer(setup: RenderSetup, count: int) -> Sampling:
+    """Allocate ``count`` wavelengths to A, C1 and C2 with the least mean ΔE00 in the setup; whites balanced.
 
-    The paper leaves the allocation open; the best one that it could have taken flatters it.
+    The paper does not state how to allocate. The best allocation is an upper bound on the method.
 
     Raises
     ------
-    OptionError : fewer wavelengths than the channels need, or more than orders up to 10 have.
+    OptionError
+        No allocation of orders 1 to 10 has ``count`` wavelengths.
     """
-    nm, cmfs = setting.wavelengths, setting.cmfs
+    nm, cmfs = setup.wavelengths, setup.cmfs
     space = opponent_space(nm, cmfs).space
-    found = quadrature_rules(space, nm, cmfs)
-    ways = list(allocations(found, count))
+    rules = quadrature_rules(space, nm, cmfs)
+    candidates = list(allocations(rules, count))
     if count == 4:
-        ways.append(four_wavelength_rule(found, channel_functions(space, nm, cmfs)))
-    if not ways:
-        raise OptionError(f"Meyer's rules have no set of {count} wavelengths", hint="give a count of 4 to 30")
-    return min(
-        (combine_rules(setting, space, way).balanced() for way in ways),
-        key=lambda combine_rules: evaluate(setting, combine_rules).mean,
-    )
+        candidates.append(four_wavelength_rule(rules, channel_functions(space, nm, cmfs)))
+    if not candidates:
+        raise OptionError(
+            f"method 'meyer' has no rule of {count} wavelengths",
+            code="undefined-rule",
+            hint="give a count in [4, 30]",
+        )
+    samplings = (combine_rules(setup, space, allocation).balanced() for allocation in candidates)
+    return min(samplings, key=lambda sampling: evaluate(setup, sampling).mean)

@@ -1,4 +1,4 @@
-"""The project's own choice: wavelengths, weights and prefiltered lights fitted to what is rendered."""
+"""Wavelengths, weights and prefiltered lights fitted to the materials and lights of a setup."""
 
 from __future__ import annotations
 
@@ -8,65 +8,63 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.errors import OptionError
-from uplift.scene.wavelengths import uniform
-from uplift.scene.wavelengths.local_fit import polish, polish_weights, problem
+from uplift.scene.wavelengths.local_fit import FitProblem, local_fit
 from uplift.scene.wavelengths.sampling import Sampling, evaluate
 from uplift.scene.wavelengths.setup import RenderSetup
+from uplift.scene.wavelengths.uniform import midpoints, prefiltered
 
-RANGES = ((400.0, 700.0), (410.0, 680.0))
-"""Where the starts are spread (nm): least squares ends in the nearest minimum, so it starts twice."""
+START_RANGES = ((400.0, 700.0), (410.0, 680.0))
+"""Ranges in nm of the two starting points: least squares ends in the nearest local minimum."""
 MAX_FITTED_PAIRS = 1600
-"""Materials times lights that are fitted; of more, every so-many-th. All are judged."""
+"""Most pairs of material and light that are fitted. Materials are thinned evenly; the errors cover all of them."""
+MIN_FITTED = 32
+"""Fewest materials that are fitted, however many lights there are."""
 
 
-def optimise(setting: RenderSetup, count: int) -> Sampling:
-    """The ``count`` wavelengths, weights and powers of least ΔE00 that were found; all weights at least 0.
+def optimise(setup: RenderSetup, count: int) -> Sampling:
+    """Fit ``count`` wavelengths, their weights and powers, all at least 0, for the least mean ΔE00.
 
-    Starts are evenly spaced and prefiltered. The same input gives the same answer.
+    The fit starts from evenly spaced, prefiltered wavelengths, and is deterministic.
     """
-    fitted = problem(_thinned(setting))
-    starts = (uniform.prefiltered(fitted.setting, uniform.midpoints(count, *span)) for span in RANGES)
-    found = [_scaled(fitted.setting, polish(fitted, start).ordered()) for start in starts]
-    return min(found, key=lambda sampling: evaluate(setting, sampling).mean)
+    problem = FitProblem(_thinned(setup))
+    starts = (prefiltered(problem.setup, midpoints(count, *span)) for span in START_RANGES)
+    fits = [_with_nearby_powers(problem.setup, local_fit(problem, start).ordered()) for start in starts]
+    return min(fits, key=lambda sampling: evaluate(setup, sampling).mean)
 
 
-def fit_at(setting: RenderSetup, wavelengths: ArrayLike) -> Sampling:
-    """Weights and powers of least ΔE00 for given wavelengths (n,) nm, distinct and within the setting's.
-
-    Raises
-    ------
-    OptionError : none of them, one outside, one named twice.
-    """
+def fit_at(setup: RenderSetup, wavelengths: ArrayLike) -> Sampling:
+    """Fit weights and powers at given wavelengths (n,) nm. Raises `OptionError`."""
     nm = np.sort(np.asarray(wavelengths, dtype=float))
-    first, last = setting.wavelengths[[0, -1]]
+    first, last = setup.wavelengths[[0, -1]]
     if nm.ndim != 1 or not len(nm) or np.any(np.diff(nm) <= 0) or not first <= nm[0] <= nm[-1] <= last:
         raise OptionError(
-            "the wavelengths are not distinct ones of the spectrum",
-            hint=f"give each once, from {first:g} to {last:g} nm",
+            f"wavelengths must be distinct and within [{first:g}, {last:g}] nm",
+            code="invalid-wavelengths",
+            hint="give each wavelength once",
         )
-    fitted = problem(_thinned(setting))
-    return _scaled(fitted.setting, polish_weights(fitted, uniform.prefiltered(fitted.setting, nm)))
+    problem = FitProblem(_thinned(setup))
+    fit = local_fit(problem, prefiltered(problem.setup, nm), fix_wavelengths=True)
+    return _with_nearby_powers(problem.setup, fit)
 
 
-def fit_uniform(setting: RenderSetup, count: int) -> Sampling:
-    """Evenly spaced wavelengths, weights and powers fitted."""
-    return fit_at(setting, uniform.midpoints(count))
+def fit_uniform(setup: RenderSetup, count: int) -> Sampling:
+    """Fit weights and powers at evenly spaced wavelengths."""
+    return fit_at(setup, midpoints(count))
 
 
-def _scaled(setting: RenderSetup, sampling: Sampling) -> Sampling:
-    """The same radiances, the powers as near to the lights themselves as may be.
+def _with_nearby_powers(setup: RenderSetup, sampling: Sampling) -> Sampling:
+    """Move a factor from weights to powers at each wavelength so that the powers resemble the lights.
 
-    Only the product of weight and power is seen, so a factor may pass from one to the other at each wavelength.
+    Colours depend only on the product of weight and power.
     """
-    nearby = uniform.prefiltered(setting, sampling.wavelengths).powers.sum(axis=0)
+    nearby = prefiltered(setup, sampling.wavelengths).powers.sum(axis=0)
     fitted = sampling.powers.sum(axis=0)
     factor = np.where(fitted > 0, nearby / np.where(fitted > 0, fitted, 1), 1.0)
     return replace(sampling, to_xyz=sampling.to_xyz / factor[:, None], powers=sampling.powers * factor)
 
 
-def _thinned(setting: RenderSetup) -> RenderSetup:
-    """As many materials as can be fitted in seconds, and the perfect reflector: a white wall stays white."""
-    most = max(MAX_FITTED_PAIRS // len(setting.lights), 32)
-    count = len(setting.reflectances)
-    kept = setting.only(np.unique(np.linspace(0, count - 1, most).astype(int)))
-    return replace(kept, reflectances=np.vstack([kept.reflectances, np.ones(len(setting.wavelengths))]))
+def _thinned(setup: RenderSetup) -> RenderSetup:
+    """Thin the materials to `MAX_FITTED_PAIRS` and append the perfect reflector, which keeps white neutral."""
+    limit = max(MAX_FITTED_PAIRS // len(setup.lights), MIN_FITTED)
+    kept = setup.only(np.unique(np.linspace(0, len(setup.reflectances) - 1, limit).astype(int)))
+    return replace(kept, reflectances=np.vstack([kept.reflectances, np.ones(len(setup.wavelengths))]))

@@ -1,4 +1,4 @@
-"""A few wavelengths in place of the whole spectrum: what a renderer needs to know, and what it costs in colour."""
+"""A few wavelengths in place of the full spectrum, and the colour errors that they cause."""
 
 from __future__ import annotations
 
@@ -13,22 +13,26 @@ from uplift.common.arrays import Array
 from uplift.scene.wavelengths.setup import RenderSetup
 
 MEASURES = ("mean", "p95", "max")
-"""What may be said of errors, as `ColourErrors` names it."""
+"""Names of the statistics of `ColourErrors`."""
 
 
 @dataclass(frozen=True, eq=False)
 class Sampling:
-    """Wavelengths to trace, powers of the lights there, weights to sum with.
+    """Wavelengths to trace, powers of the lights there, and weights of the sum.
 
-    A renderer traces ``powers[k] · reflectance(wavelengths)`` for light k, and ``radiance @ to_xyz`` is XYZ; one
-    set of weights serves all lights, so radiances of several lights may be added before.
+    A renderer traces ``powers[k] * reflectance(wavelengths)`` for light k; ``radiance @ to_xyz`` is its XYZ. One set
+    of weights serves all lights, so radiances of several lights may be added first.
 
     Parameters
     ----------
-    wavelengths : (n,) nm, ascending.
-    to_xyz : (n, 3) weights.
-    lights : names of the lights.
-    powers : (K, n) what each light sends at each wavelength; the perfect reflector has Y near 1.
+    wavelengths : ndarray, shape (n,)
+        Wavelengths in nm.
+    to_xyz : ndarray, shape (n, 3)
+        Weights.
+    lights : tuple of str
+        Names of the K lights.
+    powers : ndarray, shape (K, n)
+        Power of each light at each wavelength; the perfect reflector has Y near 1.
     """
 
     wavelengths: Array
@@ -40,19 +44,53 @@ class Sampling:
         return len(self.wavelengths)
 
     def to_rgb(self, sensor: Sensor) -> Array:
-        """(n, 3) weights to linear RGB: white under the sensor's illuminant is (1, 1, 1)."""
+        """Convert the weights to the RGB space of a sensor.
+
+        Parameters
+        ----------
+        sensor : Sensor
+            RGB space and illuminant; white under the illuminant is (1, 1, 1).
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+            Weights to linear RGB.
+        """
         return self.to_xyz @ sensor.xyz_to_rgb.T
 
     def xyz(self, reflectances: Array) -> Array:
-        """XYZ (K, M, 3) of reflectances (M, n) at the wavelengths, under every light."""
+        """Compute the colours of materials under every light.
+
+        Parameters
+        ----------
+        reflectances : ndarray, shape (M, n)
+            Reflectances at the wavelengths.
+
+        Returns
+        -------
+        ndarray, shape (K, M, 3)
+            XYZ.
+        """
         return np.asarray(reflectances @ (self.powers[:, :, None] * self.to_xyz))
 
     def balanced(self) -> Sampling:
-        """The same, every light scaled so that the perfect reflector has Y = 1."""
+        """Scale every light so that the perfect reflector has Y = 1.
+
+        Returns
+        -------
+        Sampling
+            The same wavelengths and weights with scaled powers.
+        """
         return replace(self, powers=self.powers / (self.powers @ self.to_xyz[:, 1])[:, None])
 
     def ordered(self) -> Sampling:
-        """The same with wavelengths ascending and weights scaled so that equal energy has Y = 1."""
+        """Sort the wavelengths and scale the weights so that equal energy has Y = 1.
+
+        Returns
+        -------
+        Sampling
+            A sampling with the same radiances and colours.
+        """
         order, scale = np.argsort(self.wavelengths), self.to_xyz[:, 1].sum()
         return replace(
             self,
@@ -64,29 +102,61 @@ class Sampling:
 
 @dataclass(frozen=True, eq=False)
 class ColourErrors:
-    """ΔE00 (K, M) of materials under lights."""
+    """Colour errors of materials under lights.
+
+    Parameters
+    ----------
+    delta_e : ndarray, shape (K, M)
+        ΔE00 of M materials under K lights.
+    """
 
     delta_e: Array
 
     @cached_property
     def mean(self) -> float:
+        """Mean over all materials and lights."""
         return float(self.delta_e.mean())
 
     @cached_property
     def p95(self) -> float:
-        """What 95 % of all materials under all lights stay under."""
+        """95th percentile over all materials and lights."""
         return float(np.quantile(self.delta_e, 0.95))
 
     @cached_property
     def max(self) -> float:
+        """Maximum over all materials and lights."""
         return float(self.delta_e.max())
 
     def under(self, light: int) -> ColourErrors:
-        """The errors under one light."""
+        """Select the errors under one light.
+
+        Parameters
+        ----------
+        light : int
+            Index of the light.
+
+        Returns
+        -------
+        ColourErrors
+            Errors of shape (1, M).
+        """
         return ColourErrors(self.delta_e[light : light + 1])
 
 
-def evaluate(setting: RenderSetup, sampling: Sampling) -> ColourErrors:
-    """What the sampling makes of every material under every light, against the sum over the whole grid."""
-    seen = sampling.xyz(setting.curves(sampling.wavelengths))
-    return ColourErrors(delta_e_2000(setting.lab, setting.to_lab(seen)))
+def evaluate(setup: RenderSetup, sampling: Sampling) -> ColourErrors:
+    """Compare the colours of a sampling with those of the full grid.
+
+    Parameters
+    ----------
+    setup : RenderSetup
+        Materials and lights.
+    sampling : Sampling
+        Wavelengths, weights and powers for the same lights.
+
+    Returns
+    -------
+    ColourErrors
+        ΔE00 of every material under every light.
+    """
+    xyz = sampling.xyz(setup.curves(sampling.wavelengths))
+    return ColourErrors(delta_e_2000(setup.lab, setup.to_lab(xyz)))

@@ -1,9 +1,9 @@
-"""What is rendered: materials under lights, seen by an observer, all on one grid of wavelengths."""
+"""Materials under lights, measured by one observer on one wavelength grid."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -17,20 +17,27 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
 START, END, STEP = 380.0, 770.0, 1.0
-"""The visible range of Meyer 1988, finely enough for the lines of lamps (nm)."""
+"""Visible range of Meyer 1988 in nm, with a step that resolves the lines of fluorescent lamps."""
+MIN_SAMPLES = 16
+"""Fewest samples of a wavelength grid."""
 
 
 @dataclass(frozen=True, eq=False)
 class RenderSetup:
-    """Materials under lights.
+    """Materials under lights; `make_setup` makes one from names.
 
     Parameters
     ----------
-    wavelengths : (N,) nm, evenly spaced, ascending.
-    reflectances : (M, N) of the materials, units of 1.
-    lights : names of the lights.
-    powers : (K, N) their spectra, scaled so that the perfect reflector has Y = 1 under each.
-    cmfs : (N, 3) the observer's colour-matching functions.
+    wavelengths : ndarray, shape (N,)
+        Wavelengths in nm, ascending and evenly spaced.
+    reflectances : ndarray, shape (M, N)
+        Reflectances of the M materials.
+    lights : tuple of str
+        Names of the K lights.
+    powers : ndarray, shape (K, N)
+        Spectral powers of the lights, scaled so that the perfect reflector has Y = 1 under each.
+    cmfs : ndarray, shape (N, 3)
+        Colour-matching functions of the observer.
     """
 
     wavelengths: Array
@@ -41,41 +48,78 @@ class RenderSetup:
 
     @cached_property
     def xyz(self) -> Array:
-        """(K, M, 3) XYZ of the materials, by all wavelengths of the grid."""
+        """XYZ (K, M, 3) of the materials, summed over the full grid."""
         return np.asarray(self.reflectances @ (self.powers[:, :, None] * self.cmfs))
 
     @cached_property
     def whites(self) -> Array:
-        """(K, 3) XYZ of the perfect reflector."""
+        """XYZ (K, 3) of the perfect reflector under each light."""
         return self.powers @ self.cmfs
 
     @cached_property
     def lab(self) -> Array:
-        """(K, M, 3) CIE L*a*b* of the materials, each light's own white."""
+        """CIE L*a*b* (K, M, 3) of the materials, relative to the white of each light."""
         return self.to_lab(self.xyz)
 
     @cached_property
     def curves(self) -> CubicSpline:
-        """The reflectances between the wavelengths of the grid: ``curves(λ)`` is (M, …)."""
+        """Interpolant of the reflectances: ``curves(wavelengths)`` has shape (M, …)."""
         return CubicSpline(self.wavelengths, self.reflectances, axis=1)
 
     def to_lab(self, xyz: Array) -> Array:
-        """CIE L*a*b* (K, M, 3) of XYZ (K, M, 3) under the lights."""
-        return np.stack([lab(seen, white) for seen, white in zip(xyz, self.whites, strict=True)])
+        """Convert XYZ to CIE L*a*b* relative to the white of each light.
+
+        Parameters
+        ----------
+        xyz : ndarray, shape (K, M, 3)
+            Colours of M materials under the K lights.
+
+        Returns
+        -------
+        ndarray, shape (K, M, 3)
+            L*a*b*.
+        """
+        return np.stack([lab(colours, white) for colours, white in zip(xyz, self.whites, strict=True)])
 
     def sampled_powers(self, wavelengths: Array) -> Array:
-        """(K, n) the lights read off at wavelengths (n,) nm: what a renderer does that knows no better."""
+        """Interpolate the lights at single wavelengths, as a renderer without prefiltering does.
+
+        Parameters
+        ----------
+        wavelengths : ndarray, shape (n,)
+            Wavelengths in nm.
+
+        Returns
+        -------
+        ndarray, shape (K, n)
+            Powers of each light.
+        """
         return interp_curves(wavelengths, self.wavelengths, self.powers)
 
     def only(self, materials: ArrayLike) -> RenderSetup:
-        """The same lights on some of the materials: indices or a mask."""
-        return RenderSetup(
-            self.wavelengths, self.reflectances[np.asarray(materials)], self.lights, self.powers, self.cmfs
-        )
+        """Select some of the materials, under the same lights.
+
+        Parameters
+        ----------
+        materials : array_like
+            Indices of the materials, or a mask of shape (M,).
+
+        Returns
+        -------
+        RenderSetup
+            The selection.
+        """
+        return replace(self, reflectances=self.reflectances[np.asarray(materials)])
 
 
 def grid() -> Array:
-    """(391,) 380–770 nm at 1 nm."""
+    """Make the default wavelength grid.
+
+    Returns
+    -------
+    ndarray, shape (391,)
+        380, 381, …, 770 nm.
+    """
     return np.arange(START, END + STEP / 2, STEP)
 
 
@@ -86,40 +130,67 @@ def make_setup(
     wavelengths: ArrayLike | None = None,
     observer_name: str = DEFAULT_OBSERVER,
 ) -> RenderSetup:
-    """Materials (M, N) at ``wavelengths`` (N,) nm, by default `grid`, under illuminants of colour-science.
+    """Combine materials with illuminants and an observer from the tables of colour-science.
+
+    Parameters
+    ----------
+    reflectances : array_like, shape (M, N)
+        Reflectances of M materials, finite and at least 0.
+    lights : sequence of str
+        Names of illuminants, such as ``"FL11"``. Repeated names count once.
+    wavelengths : array_like, shape (N,), optional
+        Wavelengths of the samples in nm, ascending and evenly spaced, at least 16. By default `grid`.
+    observer_name : str, optional
+        Name of the observer.
+
+    Returns
+    -------
+    RenderSetup
+        Materials and lights on the common grid.
 
     Raises
     ------
-    UnknownNameError : a light or observer that does not exist.
-    OptionError : nothing to see, a grid that is not even, or values that are no reflectances.
+    UnknownNameError
+        The light or the observer does not exist.
+    OptionError
+        No lights, an uneven grid, reflectances of another shape, or values that are not reflectances.
     """
     nm = grid() if wavelengths is None else np.asarray(wavelengths, dtype=float)
     materials = np.asarray(reflectances, dtype=float)
     _check(nm, materials)
     lights = tuple(dict.fromkeys(lights))
     if not lights:
-        raise OptionError("there is no light", hint="name at least one: D65")
-    # Tables have steps of whole nanometres; a grid may have any.
+        raise OptionError("lights must not be empty", code="no-lights", hint="name at least one, such as D65")
+    # The tables have steps of whole nanometres; the grid may have any step.
     shape = np.floor(nm[0]), np.ceil(nm[-1]), 1.0
-    whole = np.arange(shape[0], shape[1] + 0.5)
-    cmfs = interp_curves(nm, whole, observer.matching_functions(observer_name, *shape).T).T
-    powers = interp_curves(nm, whole, np.stack([observer.illuminant_spd(name, *shape) for name in lights]))
+    table = np.arange(shape[0], shape[1] + 0.5)
+    cmfs = interp_curves(nm, table, observer.matching_functions(observer_name, *shape).T).T
+    powers = interp_curves(nm, table, np.stack([observer.illuminant_spd(name, *shape) for name in lights]))
     return RenderSetup(nm, materials, lights, powers / (powers @ cmfs[:, 1])[:, None], cmfs)
 
 
 def interp_curves(wavelengths: Array, known: Array, curves: Array) -> Array:
-    """Curves (C, …) at ``known`` (…,) nm → (C, n) at ``wavelengths`` (n,)."""
+    """Interpolate curves (C, N), sampled at ``known`` (N,) nm, linearly at wavelengths (n,) nm to (C, n)."""
     return np.stack([np.interp(wavelengths, known, curve) for curve in curves])
 
 
 def _check(nm: Array, materials: Array) -> None:
     steps = np.diff(nm)
-    if nm.ndim != 1 or len(nm) < 16 or not np.allclose(steps, steps[0], rtol=1e-6) or steps[0] <= 0:
-        raise OptionError("the wavelengths are not evenly spaced", hint="give a grid such as 380:770:1")
+    if nm.ndim != 1 or len(nm) < MIN_SAMPLES or not np.allclose(steps, steps[0], rtol=1e-6) or steps[0] <= 0:
+        raise OptionError(
+            f"wavelengths must be at least {MIN_SAMPLES}, ascending and evenly spaced",
+            code="uneven-wavelengths",
+            hint="give a grid such as 380, 381, …, 770 nm",
+        )
     if materials.ndim != 2 or not len(materials) or materials.shape[1] != len(nm):
         raise OptionError(
-            f"reflectances of shape {materials.shape} do not fit {len(nm)} wavelengths",
-            hint="give one row a material, at least one",
+            f"reflectances must have shape (M, {len(nm)}) with M > 0, got {materials.shape}",
+            code="shape-mismatch",
+            hint="give one row per material",
         )
     if not np.isfinite(materials).all() or materials.min() < 0:
-        raise OptionError("a reflectance is negative or no number", hint="give values from 0 to 1")
+        raise OptionError(
+            "reflectances must be finite and at least 0",
+            code="invalid-reflectance",
+            hint="give values from 0 to 1",
+        )

@@ -1,4 +1,4 @@
-"""Evenly spaced wavelengths, as renderers take them: read off, or averaged over bins."""
+"""Evenly spaced wavelengths, as renderers use them: point sampled, or prefiltered."""
 
 from __future__ import annotations
 
@@ -8,34 +8,34 @@ from uplift.common.arrays import Array
 from uplift.scene.wavelengths.sampling import Sampling
 from uplift.scene.wavelengths.setup import RenderSetup, interp_curves
 
-FROM, TO = 400.0, 700.0
-"""Where even spacing does best for few wavelengths: beyond, the eye sees little (nm)."""
+START, END = 400.0, 700.0
+"""Range in nm for which even spacing has the least error with few wavelengths."""
 
 
-def midpoints(count: int, start: float = FROM, end: float = TO) -> Array:
-    """(count,) the middles of equal parts of ``start`` to ``end`` nm."""
+def midpoints(count: int, start: float = START, end: float = END) -> Array:
+    """Midpoints (count,) of equal parts of ``start`` to ``end`` nm."""
     return start + (np.arange(count) + 0.5) * (end - start) / count
 
 
-def uniform(setting: RenderSetup, count: int) -> Sampling:
-    """Evenly spaced, lights and matching functions read off at the wavelengths; whites balanced."""
+def uniform(setup: RenderSetup, count: int) -> Sampling:
+    """Point sample the lights and the colour-matching functions at even spacing; whites balanced."""
     nm = midpoints(count)
-    weights = interp_curves(nm, setting.wavelengths, setting.cmfs.T).T
-    return Sampling(nm, weights, setting.lights, setting.sampled_powers(nm)).balanced()
+    weights = interp_curves(nm, setup.wavelengths, setup.cmfs.T).T
+    return Sampling(nm, weights, setup.lights, setup.sampled_powers(nm)).balanced()
 
 
-def prefiltered_uniform(setting: RenderSetup, count: int) -> Sampling:
-    """Evenly spaced, lights and matching functions prefiltered: `prefiltered` at `midpoints`."""
-    return prefiltered(setting, midpoints(count))
+def prefiltered_uniform(setup: RenderSetup, count: int) -> Sampling:
+    """Prefilter the lights and the colour-matching functions at even spacing: `prefiltered` at `midpoints`."""
+    return prefiltered(setup, midpoints(count))
 
 
-def prefiltered(setting: RenderSetup, wavelengths: Array) -> Sampling:
-    """Lights and matching functions spread onto wavelengths (n,) nm as linear interpolation between them has it.
+def prefiltered(setup: RenderSetup, wavelengths: Array) -> Sampling:
+    """Distribute lights and colour-matching functions over wavelengths (n,) nm by the weights of linear interpolation.
 
-    What lies beyond the first and the last goes to these. The whites are exact in Y.
+    Power outside the first and the last wavelength counts for these. The Y of white is exact.
     """
-    hats = np.stack([np.interp(setting.wavelengths, wavelengths, row) for row in np.eye(len(wavelengths))])
-    powers = setting.powers @ hats.T / hats.sum(axis=1)
-    lit = hats @ (setting.powers.sum(axis=0)[:, None] * setting.cmfs)
+    hats = interp_curves(setup.wavelengths, wavelengths, np.eye(len(wavelengths)))
+    powers = setup.powers @ hats.T / hats.sum(axis=1)
+    lit = hats @ (setup.powers.sum(axis=0)[:, None] * setup.cmfs)
     weights = lit / np.maximum(powers.sum(axis=0), np.finfo(float).tiny)[:, None]
-    return Sampling(wavelengths, weights, setting.lights, powers).balanced()
+    return Sampling(wavelengths, weights, setup.lights, powers).balanced()
