@@ -55,10 +55,10 @@ def images(cube: Cube) -> str:
     rng = np.random.default_rng(0)
     red = coats.palette([coats.paint(cube.reflectance(colour(cube, "red")))])
     coat = coats.of_paints(red, [1], 0.5)
-    brush = overpaint.ready(cube, coat, threads=1)
+    brush = overpaint.prepare(cube, coat, threads=1)
     image = rng.random((PIXELS, 3)).astype(np.float32)
     expected = cube.data.sensor.rgb(coat.over(cube.reflectance(image[:CHECKED])))
-    if np.abs(brush.over(image)[:CHECKED] - expected).max() > 1e-5:
+    if np.abs(brush.paint(image)[:CHECKED] - expected).max() > 1e-5:
         raise RuntimeError("a wrong answer is not worth timing")
     colours = rng.random((COLOURS, 3))
     peer = colour_science().HSL_to_RGB
@@ -67,7 +67,7 @@ def images(cube: Cube) -> str:
     spectra = cube.reflectance(image[:MIXTURES])
     paint = partial(_over, red, spectra)
     rows = [
-        ["a coat over a painting, RGB to RGB", _told(_ns(lambda: brush.over(image), PIXELS))],
+        ["a coat over a painting, RGB to RGB", _told(_ns(lambda: brush.paint(image), PIXELS))],
         ["K–M layer made and laid on a ground, 81 wavelengths", _told(_ns(paint, MIXTURES))],
         ["HSL to RGB (5.3.5)", _told(_ns(lambda: hsl.to_rgb(colours), COLOURS))],
         ["HSL to RGB, colour-science", _told(_ns(lambda: peer(colours), COLOURS))],

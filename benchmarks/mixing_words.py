@@ -43,10 +43,11 @@ over images:
 
 ```python
 from uplift.design.mixing import coats, overpaint
+from uplift.io import texture
 
 paint = coats.palette([coats.paint(cube.reflectance(red))])
-brush = overpaint.ready(cube, coats.of_paints(paint, [1], thickness=0.5))
-overpaint.paint_over(brush, "painting.exr", "painted.exr")
+overpainter = overpaint.prepare(cube, coats.of_paints(paint, [1], thickness=0.5))
+texture.convert(overpainter, "painting.exr", "painted.exr")
 ```
 
 ## Ramps

@@ -74,7 +74,7 @@ From Python:
 from uplift import load, texture
 
 uplifter = texture.prepare(load("macbeth-32.uplift"), texture.Moments())
-texture.convert(uplifter, "wood.png", "wood.exr").remarks
+texture.convert(uplifter, "wood.png", "wood.exr").warnings
 ```
 
 ## How the figures were taken

@@ -97,7 +97,6 @@ def command(
     Colours outside [0, 1] are treated by --out-of-gamut, and NaN becomes 0. A warning counts both.
     """
     enable_jit_cache()
-    from uplift.common.errors import UpliftWarning
     from uplift.io import texture
 
     pairs = texture_paths(sources, target)
@@ -115,12 +114,13 @@ def command(
     if scheduler is None and len(jobs) == 1:
         results: list[Conversion | Failure] = [_convert_here(job) for job in pending]
     else:
-        with texture.processes(count) if scheduler is None else texture.cluster(scheduler) as executor:
+        pool = texture.process_executor(count) if scheduler is None else texture.dask_executor(scheduler)
+        with pool as executor:
             results = _collect(texture.convert_all(pending, executor), len(pending))
     converted = [one for one in results if isinstance(one, texture.Conversion)]
     for conversion in converted:
-        for remark in conversion.remarks:
-            warnings.warn(UpliftWarning(remark, code="image", path=conversion.source), stacklevel=1)
+        for warning in conversion.warnings:
+            warnings.warn(warning, stacklevel=1)
     if not quiet:
         _print_summary(target, converted, len(jobs) - len(pending), time.perf_counter() - begin)
     failures = [one for one in results if isinstance(one, texture.Failure)]
@@ -142,7 +142,7 @@ def _pixel_encoding(kind: str, wavelengths: Array | None) -> PixelEncoding:
             code="wavelengths-not-applicable",
             hint="leave out --wavelengths, or use --store spectrum",
         )
-    return texture.FORMS[kind]()
+    return texture.PIXEL_ENCODINGS[kind]()
 
 
 def _convert_here(job: Job) -> Conversion:
@@ -151,7 +151,7 @@ def _convert_here(job: Job) -> Conversion:
 
     with progress_bar("rows") as progress:
         return texture.convert(
-            texture.uplifter_for(job.recipe), job.source, job.target, force=job.force, progress=progress
+            texture.uplifter_for(job.settings), job.source, job.target, force=job.force, progress=progress
         )
 
 

@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from uplift.common.errors import UpliftWarning
-
 from ..params.ingredients import library_ingredients
 from ..startup import enable_jit_cache
 from .progress import progress_bar
 
 if TYPE_CHECKING:
-    from uplift.design.mixing.overpaint import Brush
+    from uplift.design.mixing.overpaint import Overpainter
     from uplift.design.mixing.recipes import Medium
     from uplift.lookup import Cube
 
@@ -24,25 +22,25 @@ if TYPE_CHECKING:
 
 def make_brush(
     cube: Cube, kind: str, ingredients: list[Ingredient], medium: Medium, encoding: str, method: str
-) -> Brush:
+) -> Overpainter:
     """Mix a coat and prepare it at the wavelengths of the cube's sensor."""
     enable_jit_cache()
-    from uplift.design.mixing.overpaint import ready
+    from uplift.design.mixing.overpaint import prepare
     from uplift.design.mixing.recipes import coat
 
     count = len(cube.data.sensor.wavelengths)
     parts = [one.parts for one in ingredients]
     mixture = coat(kind, library_ingredients(ingredients, count), parts, medium)
     recipe = {"kind": kind, "of": [[one.parts, one.name] for one in ingredients], **asdict(medium)}
-    return ready(cube, mixture, recipe, encoding=encoding, out_of_gamut=method)
+    return prepare(cube, mixture, recipe, encoding=encoding, out_of_gamut=method)
 
 
-def paint(brush: Brush, image: str, output: str, *, force: bool) -> None:
+def paint(brush: Overpainter, image: str, output: str, *, force: bool) -> None:
     """Paint over an image, write the result, and print warnings and the number of pixels."""
-    from uplift.design.mixing.overpaint import paint_over
+    from uplift.io.texture import convert
 
     with progress_bar("rows") as progress:
-        painted = paint_over(brush, image, output, force=force, progress=progress)
-    for remark in painted.remarks:
-        warnings.warn(UpliftWarning(remark, code="image", path=image), stacklevel=1)
+        painted = convert(brush, image, output, force=force, progress=progress)
+    for warning in painted.warnings:
+        warnings.warn(warning, stacklevel=1)
     click.echo(f"{output}: {painted.counts.pixels:,} pixels painted over")

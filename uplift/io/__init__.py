@@ -1,1 +1,1 @@
-"""Formats of other tools: textures, EXR slices, exports, Mitsuba."""
+"""Formats of other tools: textures, EXR slices, exports for other programs, Mitsuba."""

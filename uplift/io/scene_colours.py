@@ -15,10 +15,10 @@ import numpy as np
 from uplift.colorimetry.gamut import check_method
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
-from uplift.common.errors import OptionError, UpliftWarning
+from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.cube import CubeData
-from uplift.io.texture.colours import check_encoding, decoder
+from uplift.io.texture.colours import check_encoding, make_decoder
 from uplift.io.texture.part_layout import colour_channels_by_part
 from uplift.io.texture.source import open_image
 from uplift.lattice import CORNERS, Lattice
@@ -73,12 +73,12 @@ class Images:
     def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
         """Linear RGB (n, 3) in [0, 1] of an image, block by block."""
         with open_image(path) as image:
-            for remark in image.remarks(sensor):
-                warnings.warn(f"{path}: {remark}", UpliftWarning, stacklevel=5)
+            for warning in image.warnings(sensor):
+                warnings.warn(warning, stacklevel=5)
             for part, places in colour_channels_by_part(image):
                 if places is None:
                     continue
-                decode = decoder(sensor, part, self.encoding, self.out_of_gamut)
+                decode = make_decoder(sensor, part, self.encoding, self.out_of_gamut)
                 for _, band in image.bands(part):
                     pixels = band.reshape(-1, band.shape[-1])
                     for first in range(0, len(pixels), BLOCK):

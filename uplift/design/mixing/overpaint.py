@@ -1,57 +1,94 @@
-"""A coat over a painting: every pixel uplifted, painted over in the spectrum, and seen again as RGB.
-
-Images are read and written a band of rows at a time, as textures are; other channels pass through.
-"""
+"""Painting over images: every pixel is uplifted, coated in the spectral domain, and converted back to RGB."""
 
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry.gamut import check_method, map_to_gamut
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.common.errors import ColourError
-from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.design.mixing.coats import Coat
 from uplift.io.slices import exr
-from uplift.io.texture import Counts, Uplifter
-from uplift.io.texture.colours import PAST_TENSE, Floats, check_encoding
-from uplift.io.texture.part_layout import PartLayout, part_layouts
-from uplift.io.texture.source import Image, Values, open_image
-from uplift.io.texture.writer import Writer, open_writer
-from uplift.lookup import Cube, bulk
+from uplift.io.texture.colours import Counts, Floats, check_encoding
+from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 
 
 @dataclass(frozen=True, eq=False)
-class Brush:
-    """A cube and a coat at the cube's wavelengths, made ready for any number of images; ``ready`` makes it."""
+class Overpainter:
+    """A converter that lays a coat over images, made by `prepare`; pass it to `uplift.io.texture.convert`.
 
-    uplifter: Uplifter
+    Parameters
+    ----------
+    sensor : Sensor
+        The cube's sensor.
+    coat : Coat
+        The coat, at the wavelengths of the sensor.
+    reflectance : callable
+        From linear RGB (..., 3) to reflectances (..., N).
+    encoding : {"auto", "linear", "encoded"}
+        Interpretation of the numbers in images.
+    out_of_gamut : str
+        Gamut mapping for pixels outside [0, 1], before and after painting.
+    header : mapping
+        Attributes of every file.
+    threads : int
+        Threads that share a band.
+    """
+
+    sensor: Sensor
     coat: Coat
+    reflectance: Callable[[Floats], Floats]
+    encoding: str
+    out_of_gamut: str
+    header: Mapping[str, Any]
     threads: int
+    depth = "float"
+    channels = ()
 
-    def over(self, rgb: Floats) -> Floats:
-        """Linear RGB (…, 3) of what linear RGB (…, 3) in [0, 1] become under the coat; may leave [0, 1]."""
-        return blockwise(partial(_painted, self), rgb.astype(float), 3, np.float32, self.threads)
+    def paint(self, rgb: Floats) -> Floats:
+        """Lay the coat over colours.
+
+        Parameters
+        ----------
+        rgb : ndarray of shape (..., 3)
+            Linear RGB in [0, 1].
+
+        Returns
+        -------
+        ndarray of shape (..., 3)
+            Linear RGB, possibly outside [0, 1].
+        """
+        return blockwise(self._paint_block, rgb.astype(float), 3, np.float32, self.threads)
+
+    def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
+        """Lay the coat over a block of colours and map the result to the gamut.
+
+        Parameters
+        ----------
+        rgb : ndarray of shape (..., 3)
+            Linear RGB in [0, 1].
+
+        Returns
+        -------
+        tuple of ndarray
+            Linear RGB (..., 3) in [0, 1].
+        Counts
+            Painted pixels outside [0, 1].
+        """
+        mapped = map_to_gamut(self.paint(rgb), self.sensor, self.out_of_gamut)
+        return (mapped.rgb,), Counts(painted_outside=mapped.count)
+
+    def _paint_block(self, rgb: Array) -> Array:
+        return self.sensor.rgb(self.coat.over(self.reflectance(rgb.astype(np.float32))))
 
 
-@dataclass(frozen=True)
-class Painted:
-    """What the image's pixels were, how many were ``moved`` inside once painted, and what should be said."""
-
-    counts: Counts
-    moved: int
-    remarks: tuple[str, ...] = ()
-
-
-def ready(
+def prepare(
     cube: Cube,
     coat: Coat,
     recipe: Mapping[str, Any] | None = None,
@@ -59,76 +96,52 @@ def ready(
     encoding: str = "auto",
     out_of_gamut: str = "scale",
     threads: int = 2,
-) -> Brush:
-    """A brush; ``recipe``, JSON values, is what the header will say of the coat.
+) -> Overpainter:
+    """Prepare to paint over images.
 
-    ``out_of_gamut``, one of `uplift.colorimetry.gamut.METHODS`, is for pixels outside [0, 1] before and after painting.
-    Raises `OptionError`.
+    Parameters
+    ----------
+    cube : Cube
+        The cube that uplifts.
+    coat : Coat
+        The coat, at the wavelengths of the cube's sensor.
+    recipe : mapping, optional
+        Description of the coat in JSON values, written to the header.
+    encoding : {"auto", "linear", "encoded"}
+        Interpretation of the numbers in images; ``auto`` takes integers as encoded, floats as linear.
+    out_of_gamut : str
+        Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+    threads : int
+        Threads that share a band.
+
+    Returns
+    -------
+    Overpainter
+        The converter to pass to `uplift.io.texture.convert`.
+
+    Raises
+    ------
+    OptionError
+        The encoding or the gamut mapping is unknown.
+
+    Examples
+    --------
+    ::
+
+        from uplift.design.mixing import coats, overpaint, pigments
+        from uplift.io import texture
+
+        red = coats.pigment_from_reflectance(cube.reflectance([0.5, 0.05, 0.03]))
+        glaze = coats.from_pigments(pigments.stack([red]), [1], thickness=0.5)
+        texture.convert(overpaint.prepare(cube, glaze), "painting.exr", "painted.exr")
     """
+    from uplift.lookup import bulk
+
     check_encoding(encoding)
     check_method(out_of_gamut)
+    sensor = cube.data.sensor
     header = {
-        "chromaticities": exr.chromaticities(cube.data.sensor),
+        "chromaticities": exr.chromaticities(sensor),
         "uplift.mix": json.dumps(dict(recipe or {})),
     }
-    sample = bulk.spectra(cube, threads=1)
-    return Brush(Uplifter(cube, "float", encoding, out_of_gamut, (), header, sample, None), coat, threads)
-
-
-def paint_over(
-    brush: Brush,
-    source: str | os.PathLike[str],
-    target: str | os.PathLike[str],
-    *,
-    force: bool = False,
-    progress: ProgressCallback = ignore_progress,
-) -> Painted:
-    """Write a painted image as OpenEXR, atomically.
-
-    Raises `TextureError`, `OutputError`, `OptionError` for encoded floats that should be moved, and `ColourError` for
-    colours that a cube of a scene has no points for, or that lie outside [0, 1] where that is an error.
-    """
-    with open_image(source) as image:
-        planned = part_layouts(brush.uplifter, image)
-        try:
-            with open_writer(target, [plan.layout for plan in planned], force=force) as writer:
-                found = _write(brush, image, planned, writer, progress)
-        except ColourError as error:
-            raise ColourError(error.problem, path=source, hint=error.hint) from error
-        way = brush.uplifter.out_of_gamut
-        remarks = [*found.counts.remarks(way), *image.remarks(brush.uplifter.cube.data.sensor)]
-    if found.moved:
-        remarks.append(f"{found.moved:,} painted pixels lie outside [0, 1]: {PAST_TENSE[way]}")
-    return replace(found, remarks=tuple(remarks))
-
-
-def _write(
-    brush: Brush, image: Image, planned: list[PartLayout], writer: Writer, progress: ProgressCallback
-) -> Painted:
-    counts, moved, done = Counts(), 0, 0
-    total = sum(plan.part.window.height for plan in planned)
-    for plan in planned:
-        writer.part(plan.part.number)
-        for first, band in image.bands(plan.part):
-            values, found = _band(brush, plan, band)
-            writer.rows(first, values)
-            counts, moved, done = counts + found.counts, moved + found.moved, done + len(band)
-            progress(Progress("rows", done, total))
-    return Painted(counts, moved)
-
-
-def _band(brush: Brush, plan: PartLayout, band: Values) -> tuple[Values, Painted]:
-    rest = band[..., plan.rest]
-    if plan.part.codes:
-        rest = rest / np.float32(plan.part.codes)
-    if plan.colours is None:
-        return rest, Painted(Counts(), 0)
-    rgb, counts = plan.decoder(band[..., plan.colours])
-    uplifter = brush.uplifter
-    seen = map_to_gamut(brush.over(rgb), uplifter.cube.data.sensor, uplifter.out_of_gamut)
-    return np.concatenate([seen.rgb, rest], axis=-1), Painted(counts, seen.count)
-
-
-def _painted(brush: Brush, rgb: Array) -> Array:
-    spectra = brush.uplifter.sample(rgb.astype(np.float32))
-    return brush.uplifter.cube.data.sensor.rgb(brush.coat.over(spectra))
+    return Overpainter(sensor, coat, bulk.spectra(cube, threads=1), encoding, out_of_gamut, header, threads)

@@ -1,32 +1,39 @@
-"""Textures: every pixel of an image uplifted, written as OpenEXR (docs/textures.md).
+"""Spectral textures: images whose pixels are uplifted and written as OpenEXR (docs/textures.md).
 
-from uplift.io import texture
+Examples
+--------
+::
 
-uplifter = texture.prepare(uplift.load("macbeth.uplift"), texture.Moments())
-uplifter.convert("wood.png", "wood.exr")
+    import uplift
+    from uplift.io import texture
+
+    uplifter = texture.prepare(uplift.load("macbeth.uplift"), texture.Moments())
+    texture.convert(uplifter, "wood.png", "wood.exr")
 """
 
 from __future__ import annotations
 
 from uplift.io.texture.colours import ENCODINGS, Counts
 from uplift.io.texture.conversion import Conversion, convert
-from uplift.io.texture.pixel_encoding import FORMS, Moments, Multipliers, PixelEncoding, Spectrum
+from uplift.io.texture.converter import Converter
+from uplift.io.texture.pixel_encoding import PIXEL_ENCODINGS, Moments, Multipliers, PixelEncoding, Spectrum
 from uplift.io.texture.sequence import (
     Failure,
     Job,
     TextureSettings,
-    cluster,
     convert_all,
+    dask_executor,
     pending,
-    processes,
+    process_executor,
     uplifter_for,
 )
 from uplift.io.texture.uplifter import Uplifter, prepare
 
 __all__ = [
     "ENCODINGS",
-    "FORMS",
+    "PIXEL_ENCODINGS",
     "Conversion",
+    "Converter",
     "Counts",
     "Failure",
     "Job",
@@ -36,11 +43,11 @@ __all__ = [
     "Spectrum",
     "TextureSettings",
     "Uplifter",
-    "cluster",
     "convert",
     "convert_all",
+    "dask_executor",
     "pending",
     "prepare",
-    "processes",
+    "process_executor",
     "uplifter_for",
 ]

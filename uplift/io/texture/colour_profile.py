@@ -1,7 +1,7 @@
-"""What a file says its RGB are of: chromaticities of OpenEXR, code points of a PNG, or an ICC profile.
+"""Colour space of an image file: OpenEXR chromaticities, PNG code points, or an ICC profile.
 
-ICC profiles are read by LittleCMS, through Pillow. It tells the primaries of those that have a matrix, as those of
-displays do; of those that have tables in its place, the curve alone.
+LittleCMS, through Pillow, reads ICC profiles. Matrix profiles, as displays have them, state their primaries. Of
+profiles with lookup tables only the tone curve is known.
 """
 
 from __future__ import annotations
@@ -22,63 +22,83 @@ from uplift.common.errors import OptionError
 if TYPE_CHECKING:
     from PIL.ImageCms import ImageCmsProfile
 
-CODES = np.repeat(np.arange(256.0)[:, None], 3, axis=1)
-"""Grey, from black to white."""
-CODE_POINTS = {
+GREY_CODES = np.repeat(np.arange(256.0)[:, None], 3, axis=1)
+"""8-bit RGB codes (256, 3) of the grey axis, black to white."""
+H273_PRIMARIES = {
     1: SRGB,
     9: Primaries((0.708, 0.292), (0.170, 0.797), (0.131, 0.046), SRGB.white),
     12: Primaries((0.680, 0.320), (0.265, 0.690), (0.150, 0.060), SRGB.white),
 }
-"""Colour primaries of ITU-T H.273, table 2, that PNG files name: those of sRGB, Rec. 2020 and Display P3."""
-SRGB_TRANSFER = 13
-"""Of the transfer characteristics of ITU-T H.273, table 3."""
+"""Colour primaries of ITU-T H.273, table 2, that PNG files name: sRGB, Rec. 2020 and Display P3."""
+H273_SRGB_TRANSFER = 13
+"""Transfer characteristics of sRGB in ITU-T H.273, table 3."""
 D50 = (0.3457, 0.3585)
-"""White of what ICC profiles are connected by; `conversion` adapts from it by the transform that profiles have."""
-SAME_PRIMARIES = 5e-3
-"""By which linear RGB may differ."""
-SAME_CURVE = 2.0
-"""By which 8-bit codes of sRGB may differ."""
+"""White point of the ICC profile connection space."""
+MAX_PRIMARIES_DIFFERENCE = 5e-3
+"""Largest difference in linear RGB between primaries that count as equal."""
+MAX_CURVE_DIFFERENCE = 2.0
+"""Largest difference in 8-bit sRGB codes between tone curves that count as equal."""
 
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Its name, if it has one; primaries and white, and 8-bit codes (256, 3) that sRGB has for its greys.
+    """Colour space that an image file states. Fields are None where the profile cannot be read.
 
-    None is what cannot be read.
+    Parameters
+    ----------
+    name : str
+        Name of the profile, empty if it has none.
+    primaries : Primaries or None
+        Chromaticities of the primaries and of white.
+    greys : ndarray of shape (256, 3) or None
+        8-bit sRGB codes of the profile's grey axis.
     """
 
     name: str
     primaries: Primaries | None
     greys: Array | None
 
-    def unlike(self, sensor: Sensor, *, codes: bool) -> str:
-        """What is not the sensor's; of ``codes`` the curve is looked at too. Empty where all is alike."""
+    def mismatch(self, sensor: Sensor, *, encoded: bool) -> str:
+        """Describe the difference from a sensor's RGB space.
+
+        Parameters
+        ----------
+        sensor : Sensor
+            The sensor whose space the colours are interpreted in.
+        encoded : bool
+            Whether to compare tone curves, too.
+
+        Returns
+        -------
+        str
+            The difference, empty if the spaces agree.
+        """
         found = []
         if self.primaries is None:
-            found.append("primaries that cannot be read")
-        elif np.abs(conversion(self.primaries, sensor) - np.eye(3)).max() > SAME_PRIMARIES:
+            found.append("unreadable primaries")
+        elif np.abs(conversion(self.primaries, sensor) - np.eye(3)).max() > MAX_PRIMARIES_DIFFERENCE:
             found.append("other primaries")
-        if codes:
-            found += self._curve_unlike(sensor)
+        if encoded:
+            found += self._curve_mismatch(sensor)
         return " and ".join(found)
 
-    def _curve_unlike(self, sensor: Sensor) -> list[str]:
+    def _curve_mismatch(self, sensor: Sensor) -> list[str]:
         if self.greys is None:
-            return ["a curve that cannot be read"]
-        apart = self.greys - 255 * encode(sensor.decoding)[:, None]
-        return ["another curve"] if np.abs(apart).max() > SAME_CURVE else []
+            return ["an unreadable tone curve"]
+        difference = np.abs(self.greys - 255 * encode(sensor.decoding)[:, None]).max()
+        return ["another tone curve"] if difference > MAX_CURVE_DIFFERENCE else []
 
 
-def profile_of(spec: Any) -> Profile | None:
-    """What an `OpenImageIO.ImageSpec` says, if it says something."""
+def read_profile(spec: Any) -> Profile | None:
+    """Return the profile in an `OpenImageIO.ImageSpec`, None if the file states no colour space."""
     if (chromaticities := spec.getattribute("chromaticities")) is not None:
         return Profile("", _primaries(chromaticities), None)
     if (points := spec.getattribute("CICP")) is not None:
-        greys = CODES if points[1] == SRGB_TRANSFER else None
-        return Profile(f"CICP {points[0]}, {points[1]}", CODE_POINTS.get(points[0]), greys)
+        greys = GREY_CODES if points[1] == H273_SRGB_TRANSFER else None
+        return Profile(f"CICP {points[0]}, {points[1]}", H273_PRIMARIES.get(points[0]), greys)
     if (data := spec.getattribute("ICCProfile")) is not None:
         name = spec.get_string_attribute("ICCProfile:profile_description") or "an ICC profile without a name"
-        return _icc(name, np.asarray(data, dtype=np.uint8).tobytes())
+        return _read_icc(name, np.asarray(data, dtype=np.uint8).tobytes())
     return None
 
 
@@ -89,24 +109,24 @@ def _primaries(numbers: Iterable[float]) -> Primaries | None:
         return None
 
 
-def _icc(name: str, data: bytes) -> Profile:
+def _read_icc(name: str, data: bytes) -> Profile:
     from PIL import ImageCms
 
     try:
-        found = ImageCms.ImageCmsProfile(io.BytesIO(data))
+        icc = ImageCms.ImageCmsProfile(io.BytesIO(data))
     except OSError:
         return Profile(name, None, None)
-    lights = (found.profile.red_primary, found.profile.green_primary, found.profile.blue_primary)
-    numbers = [number for light in lights if light is not None for number in light[1][:2]]
-    return Profile(name, _primaries((*numbers, *D50)), _greys(found))
+    primaries = (icc.profile.red_primary, icc.profile.green_primary, icc.profile.blue_primary)
+    numbers = [number for each in primaries if each is not None for number in each[1][:2]]
+    return Profile(name, _primaries((*numbers, *D50)), _greys(icc))
 
 
 def _greys(profile: ImageCmsProfile) -> Array | None:
     from PIL import Image, ImageCms
 
-    grey, srgb = Image.fromarray(CODES[None].astype(np.uint8)), ImageCms.createProfile("sRGB")
+    grey, srgb = Image.fromarray(GREY_CODES[None].astype(np.uint8)), ImageCms.createProfile("sRGB")
     try:
-        shown = ImageCms.profileToProfile(grey, profile, srgb, ImageCms.Intent.RELATIVE_COLORIMETRIC)
+        in_srgb = ImageCms.profileToProfile(grey, profile, srgb, ImageCms.Intent.RELATIVE_COLORIMETRIC)
     except ImageCms.PyCMSError:
         return None
-    return np.asarray(shown, dtype=float)[0]
+    return np.asarray(in_srgb, dtype=float)[0]

@@ -1,7 +1,8 @@
-"""Which channels are the colour, and from what a file holds to linear RGB in [0, 1], with what was wrong counted."""
+"""Colour channels of an image, and their conversion to linear RGB in [0, 1]."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -10,11 +11,15 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.errors import ColourError, OptionError, TextureError
+from uplift.common.errors import OptionError, TextureError, UpliftWarning
 from uplift.io.texture.source import Part, Values
 
 Floats = NDArray[np.float32]
+RGBChannels = tuple[int, int, int]
+"""Indices of red, green and blue among the channels of a part."""
+
 ENCODINGS = ("auto", "linear", "encoded")
+"""How the numbers of an image are interpreted; ``auto`` takes integers as encoded, floats as linear."""
 PAST_TENSE = {
     "error": "refused",
     "clip": "clamped",
@@ -22,123 +27,217 @@ PAST_TENSE = {
     "desaturate": "desaturated",
     "desaturate-oklab": "desaturated in Oklab",
 }
-"""What is said of pixels, by the names of `uplift.colorimetry.gamut.METHODS`."""
-COLOUR_KINDS = {"uint8", "uint16", "half", "float", "double"}
+"""Words for messages, by the names in `uplift.colorimetry.gamut.METHODS`."""
+COLOUR_TYPES = {"uint8", "uint16", "half", "float", "double"}
 
 
 @dataclass(frozen=True)
 class Counts:
-    """Pixels; those outside [0, 1]; those not finite; those that their spectra may miss.
+    """Numbers of pixels that were not plain colours in [0, 1].
 
-    ``farthest`` is the largest change, of a component of linear RGB, that brought a pixel inside.
+    Parameters
+    ----------
+    pixels : int
+        All pixels.
+    outside : int
+        Pixels outside [0, 1].
+    not_finite : int
+        Pixels with NaN or infinity.
+    unrealisable : int
+        Pixels whose spectra may miss their colour, as no reflectance in [0, 1] has it.
+    max_change : float
+        Largest change of a component of linear RGB by gamut mapping.
+    painted_outside : int
+        Pixels outside [0, 1] after painting over.
     """
 
     pixels: int = 0
     outside: int = 0
     not_finite: int = 0
-    missed: int = 0
-    farthest: float = 0.0
+    unrealisable: int = 0
+    max_change: float = 0.0
+    painted_outside: int = 0
 
     def __add__(self, other: Counts) -> Counts:
+        """Counts of both."""
         return Counts(
             self.pixels + other.pixels,
             self.outside + other.outside,
             self.not_finite + other.not_finite,
-            self.missed + other.missed,
-            max(self.farthest, other.farthest),
+            self.unrealisable + other.unrealisable,
+            max(self.max_change, other.max_change),
+            self.painted_outside + other.painted_outside,
         )
 
-    def remarks(self, way: str = "clip") -> tuple[str, ...]:
-        """What should be said of them, where ``way`` was what became of those outside."""
-        said = {
-            f"lie outside [0, 1]: {PAST_TENSE[way]}, a component by up to {self.farthest:.3g}": self.outside,
-            "are not finite: NaN is taken for 0, infinity clamped": self.not_finite,
-            "are or border on colours that no reflectance has: their spectra have less chroma": self.missed,
-        }
-        return tuple(f"{count:,} of {self.pixels:,} pixels {text}" for text, count in said.items() if count)
+    def warnings(
+        self, method: str = "clip", path: str | os.PathLike[str] | None = None
+    ) -> tuple[UpliftWarning, ...]:
+        """Return a warning for every count of changed pixels above 0.
+
+        Parameters
+        ----------
+        method : str
+            The gamut mapping that was used, one of `uplift.colorimetry.gamut.METHODS`.
+        path : path-like, optional
+            The image, for the location of the warnings.
+
+        Returns
+        -------
+        tuple of UpliftWarning
+            The warnings. They are not emitted.
+        """
+        total, past = f"of {self.pixels:,} pixels", PAST_TENSE[method]
+        table = (
+            (
+                self.outside,
+                "pixels-out-of-gamut",
+                f"{total} lie outside [0, 1]: {past}, a component by up to {self.max_change:.3g}",
+            ),
+            (
+                self.not_finite,
+                "pixels-not-finite",
+                f"{total} are not finite: NaN is replaced by 0, infinity is clamped",
+            ),
+            (
+                self.unrealisable,
+                "pixels-unrealisable",
+                f"{total} are close to unrealisable colours: their spectra have less chroma",
+            ),
+            (
+                self.painted_outside,
+                "painted-pixels-out-of-gamut",
+                f"painted pixels lie outside [0, 1]: {past}",
+            ),
+        )
+        return tuple(
+            UpliftWarning(f"{count:,} {text}", code=code, path=path) for count, code, text in table if count
+        )
 
 
-def colour_channels(part: Part) -> tuple[int, int, int] | None:
-    """Places of red, green and blue among a part's channels; a grey one is all three; None for no colour.
+def colour_channels(part: Part) -> RGBChannels | None:
+    """Find the colour channels of a part: R, G, B, else those of the only layer that has them, else Y.
 
-    That is R, G, B, else those of the only layer that has them, else Y. Raises `TextureError` for several layers,
-    and for whole numbers of which nobody knows what they count.
+    Parameters
+    ----------
+    part : Part
+        A part of an image.
+
+    Returns
+    -------
+    tuple of three int, or None
+        Indices of red, green and blue, all the same for a grey image. None for a part without colour.
+
+    Raises
+    ------
+    TextureError
+        Several layers have colours (code ``ambiguous-colour-layers``), or the colours are integers of unknown
+        scale (``unsupported-colour-type``).
     """
-    names = _names(part)
+    names = _colour_names(part)
     if names is None:
         return None
     red, green, blue = (part.channels.index(name) for name in names)
-    if kinds := {part.kinds[place] for place in (red, green, blue)} - COLOUR_KINDS:
-        problem = f"has colours of type {min(kinds)}"
-        raise TextureError(problem, hint="make them 8-bit, 16-bit, half or float")
+    if types := {part.types[channel] for channel in (red, green, blue)} - COLOUR_TYPES:
+        raise TextureError(
+            f"colour channels must be 8-bit, 16-bit, half or float, got {min(types)}",
+            code="unsupported-colour-type",
+        )
     return red, green, blue
 
 
-def _names(part: Part) -> tuple[str, str, str] | None:
+def _colour_names(part: Part) -> tuple[str, str, str] | None:
     layers = [name[:-1] for name in part.channels if name == "R" or name.endswith(".R")]
     layers = [layer for layer in layers if {layer + "G", layer + "B"} <= set(part.channels)]
     if "" in layers:
         return "R", "G", "B"
     if len(layers) > 1:
         names = ", ".join(layer[:-1] for layer in layers)
-        raise TextureError(f"has several layers of colour: {names}", hint="make each a part, or a file")
+        raise TextureError(
+            f"a part must have one layer of colour, got {names}",
+            code="ambiguous-colour-layers",
+            hint="write each layer as a part or a file",
+        )
     if layers:
         return layers[0] + "R", layers[0] + "G", layers[0] + "B"
-    luma = "Y" in part.channels and not {"RY", "BY"} & set(part.channels)
-    return ("Y", "Y", "Y") if luma else None
+    is_luminance = "Y" in part.channels and not {"RY", "BY"} & set(part.channels)
+    return ("Y", "Y", "Y") if is_luminance else None
 
 
 @dataclass(frozen=True, eq=False)
 class Decoder:
-    """From colours (…, 3) of a part to linear RGB, as `decoder` made it."""
+    """Conversion of the colours (…, 3) of a part to linear RGB, made by `make_decoder`."""
 
     function: Callable[[Values], Floats]
-    codes: bool
+    is_integer: bool
     sensor: Sensor
-    way: str
+    method: str
 
     def __call__(self, colours: Values) -> tuple[Floats, Counts]:
-        """Linear RGB (…, 3) in [0, 1], what lies outside brought inside, NaN being 0; and the counts.
+        """Return linear RGB (…, 3) in [0, 1], and counts of the pixels that were changed.
 
-        Raises `ColourError` for either where the way is ``error``.
+        Colours outside are mapped to the gamut and NaN is replaced by 0. With the method ``error`` both raise a
+        `ColourError`.
         """
         pixels = colours.size // 3
-        if self.codes:
-            return self.function(colours), Counts(pixels)
-        if colours.size and colours.min() >= 0 and colours.max() <= 1:  # NaN fails both
+        if self.is_integer or _all_inside(colours):
             return self.function(colours), Counts(pixels)
         finite = np.asarray(np.isfinite(colours).all(axis=-1))
-        if self.way != "error":
+        if self.method != "error":
             clamped = np.clip(np.nan_to_num(colours, nan=0.0, posinf=1.0, neginf=0.0), 0, 1)
             colours = np.where(finite[..., None], colours, clamped)
-        try:
-            moved = map_to_gamut(colours, self.sensor, self.way)
-        except ColourError as error:
-            raise ColourError(error.problem, hint="use --out-of-gamut clip, or another way") from error
-        unfit = int((~finite).sum())
-        return self.function(moved.rgb), Counts(pixels, moved.count, unfit, farthest=moved.max_change)
+        mapped = map_to_gamut(colours, self.sensor, self.method)
+        not_finite = int((~finite).sum())
+        return self.function(mapped.rgb), Counts(pixels, mapped.count, not_finite, max_change=mapped.max_change)
+
+
+def _all_inside(colours: Values) -> bool:
+    return bool(colours.size and colours.min() >= 0 and colours.max() <= 1)  # NaN fails both
 
 
 def check_encoding(encoding: str) -> None:
-    """Raises `OptionError` for an unknown one."""
+    """Raise `OptionError` (code ``unknown-encoding``) unless ``encoding`` is one of `ENCODINGS`."""
     if encoding not in ENCODINGS:
-        raise OptionError(f"unknown encoding '{encoding}'", hint=f"use one of {', '.join(ENCODINGS)}")
+        raise OptionError(
+            f"encoding must be one of {', '.join(ENCODINGS)}, got '{encoding}'", code="unknown-encoding"
+        )
 
 
-def decoder(sensor: Sensor, part: Part, encoding: str, way: str = "clip") -> Decoder:
-    """8-bit and 16-bit codes are encoded as the sensor's space has it, all else is linear, unless told otherwise.
+def make_decoder(sensor: Sensor, part: Part, encoding: str, method: str = "clip") -> Decoder:
+    """Make the decoder of a part.
 
-    ``way`` is what becomes of what lies outside [0, 1] (`uplift.colorimetry.gamut.METHODS`). Raises `OptionError` for encoded
-    floats that should be moved: encodings end at 0 and 1.
+    Parameters
+    ----------
+    sensor : Sensor
+        The sensor whose RGB space encodes the colours.
+    part : Part
+        The part of an image.
+    encoding : {"auto", "linear", "encoded"}
+        Interpretation of the numbers; ``auto`` takes 8-bit and 16-bit integers as encoded, all else as linear.
+    method : str
+        Gamut mapping for colours outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+
+    Returns
+    -------
+    Decoder
+        The conversion to linear RGB.
+
+    Raises
+    ------
+    OptionError
+        Encoded floats with a mapping other than ``clip`` or ``error``, as the encoding ends at 0 and 1
+        (code ``encoded-floats-not-mapped``).
     """
-    if part.codes:
-        share = np.linspace(0, 1, part.codes + 1)
+    if part.max_code:
+        share = np.linspace(0, 1, part.max_code + 1)
         values = share if encoding == "linear" else sensor.decode(255 * share)
         table = values.astype(np.float32)
-        return Decoder(lambda codes: table[codes], True, sensor, way)
+        return Decoder(lambda codes: table[codes], True, sensor, method)
     if encoding == "encoded":
-        if way not in ("error", "clip"):
-            problem = f"encoded floats end at 0 and 1: there is nothing beyond to {way}"
-            raise OptionError(problem, hint="use --out-of-gamut clip, or --encoding linear")
-        return Decoder(lambda floats: sensor.decode(255 * floats).astype(np.float32), False, sensor, way)
-    return Decoder(lambda floats: floats.astype(np.float32, copy=False), False, sensor, way)
+        if method not in ("error", "clip"):
+            raise OptionError(
+                f"encoded floats must use the gamut mapping clip or error, got '{method}'",
+                code="encoded-floats-not-mapped",
+                hint="their encoding ends at 0 and 1; pass out_of_gamut='clip' or encoding='linear'",
+            )
+        return Decoder(lambda floats: sensor.decode(255 * floats).astype(np.float32), False, sensor, method)
+    return Decoder(lambda floats: floats.astype(np.float32, copy=False), False, sensor, method)

@@ -1,4 +1,4 @@
-"""One image: read, decoded, uplifted and written a band at a time, so that memory does not grow with it."""
+"""Conversion of one image, a band of rows at a time, so that memory does not grow with its height."""
 
 from __future__ import annotations
 
@@ -10,96 +10,130 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.common.errors import ColourError
+from uplift.common.errors import UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.io.texture.colours import Counts, Floats
+from uplift.io.texture.colours import Counts
+from uplift.io.texture.converter import Converter
 from uplift.io.texture.part_layout import PartLayout, part_layouts
 from uplift.io.texture.source import Image, Values, open_image
-from uplift.io.texture.uplifter import Uplifter
 from uplift.io.texture.writer import Writer, open_writer
 
-BAND = 1 << 27
-"""Bytes of a band that is written at once."""
-LINES = 16
+MAX_BAND_BYTES = 1 << 27
+"""Size of a band to write."""
+ROWS_PER_CHUNK = 16
 """Rows that OpenEXR compresses together."""
-
-"""Told rows done, and rows in all."""
 
 
 @dataclass(frozen=True)
 class Conversion:
-    """What became of an image: how many of its pixels were what, what should be said of them, seconds it took."""
+    """Outcome of the conversion of an image.
+
+    Parameters
+    ----------
+    source, target : Path
+        The image read and the file written.
+    counts : Counts
+        Numbers of pixels by kind.
+    warnings : tuple of UpliftWarning
+        Warnings about the image. They are data: `convert` does not emit them, as it may run in another process.
+    seconds : float
+        Wall-clock time.
+    """
 
     source: Path
     target: Path
     counts: Counts
-    remarks: tuple[str, ...]
+    warnings: tuple[UpliftWarning, ...]
     seconds: float
 
 
 def convert(
-    uplifter: Uplifter,
+    converter: Converter,
     source: str | os.PathLike[str],
     target: str | os.PathLike[str],
     *,
     force: bool = False,
     progress: ProgressCallback = ignore_progress,
 ) -> Conversion:
-    """Write the texture of an image, atomically.
+    """Convert the colours of an image and write the result as OpenEXR, atomically.
 
-    Raises `TextureError`, `OutputError`, `OptionError` for encoded floats that should be moved, and `ColourError` for
-    colours that a cube of a scene has no points for, or that lie outside [0, 1] where that is an error.
+    Channels that are not colours pass through, parts and windows stay.
+
+    Parameters
+    ----------
+    converter : Converter
+        An `Uplifter`, or a coat of paint (`uplift.design.mixing.overpaint`).
+    source : path-like
+        OpenEXR, PNG, JPEG or TIFF image.
+    target : path-like
+        OpenEXR file to write.
+    force : bool
+        Whether to replace an existing file.
+    progress : callable
+        Receives a `Progress` of stage ``rows`` after every band.
+
+    Returns
+    -------
+    Conversion
+        Counts, warnings and time.
+
+    Raises
+    ------
+    TextureError
+        The image cannot be read, or has no colour channels.
+    OutputError
+        ``target`` cannot be written, or exists and ``force`` is off.
+    OptionError
+        The image has encoded floats, and the gamut mapping is neither ``clip`` nor ``error``.
+    ColourError
+        A colour lies outside [0, 1] and the gamut mapping is ``error``, or the cube, built for a scene, lacks
+        the nodes for it.
     """
     begin = time.perf_counter()
     with open_image(source) as image:
-        planned = part_layouts(uplifter, image)
-        try:
-            with open_writer(target, [plan.layout for plan in planned], force=force) as writer:
-                counts = _write(uplifter, image, planned, writer, progress)
-        except ColourError as error:
-            raise ColourError(error.problem, path=source, hint=error.hint) from error
-    remarks = (*counts.remarks(uplifter.out_of_gamut), *image.remarks(uplifter.cube.data.sensor))
-    return Conversion(Path(source), Path(target), counts, remarks, time.perf_counter() - begin)
+        layouts = part_layouts(converter, image)
+        with open_writer(target, [each.output for each in layouts], force=force) as writer:
+            counts = _write_parts(converter, image, layouts, writer, progress)
+        mismatches = image.warnings(converter.sensor)
+    warnings = (*counts.warnings(converter.out_of_gamut, source), *mismatches)
+    return Conversion(Path(source), Path(target), counts, warnings, time.perf_counter() - begin)
 
 
-def _write(
-    uplifter: Uplifter, image: Image, planned: list[PartLayout], writer: Writer, progress: ProgressCallback
+def _write_parts(
+    converter: Converter,
+    image: Image,
+    layouts: list[PartLayout],
+    writer: Writer,
+    progress: ProgressCallback,
 ) -> Counts:
     counts, done = Counts(), 0
-    total = sum(plan.part.window.height for plan in planned)
-    for plan in planned:
-        writer.part(plan.part.number)
-        for first, band in _bands(image, plan):
-            values, found = _made(uplifter, plan, band)
-            writer.rows(first, values)
+    total = sum(layout.part.window.height for layout in layouts)
+    for layout in layouts:
+        writer.start_part(layout.part.number)
+        for first, band in _bands(image, layout):
+            values, found = _convert_band(converter, layout, band)
+            writer.write_rows(first, values)
             counts, done = counts + found, done + len(band)
             progress(Progress("rows", done, total))
     return counts
 
 
-def _bands(image: Image, plan: PartLayout) -> Iterator[tuple[int, Values]]:
-    """Bands as they are read, cut so that what is made of them takes `BAND`."""
-    row = plan.part.window.width * len(plan.layout.channels) * 4
-    step = max(BAND // (row * LINES), 1) * LINES
-    for first, band in image.bands(plan.part):
+def _bands(image: Image, layout: PartLayout) -> Iterator[tuple[int, Values]]:
+    """Yield bands whose output takes at most `MAX_BAND_BYTES`, with the number of their first row."""
+    row = layout.part.window.width * len(layout.output.channels) * 4
+    step = max(MAX_BAND_BYTES // (row * ROWS_PER_CHUNK), 1) * ROWS_PER_CHUNK
+    for first, band in image.bands(layout.part):
         for start in range(0, len(band), step):
             yield first + start, band[start : start + step]
 
 
-def _made(uplifter: Uplifter, plan: PartLayout, band: Values) -> tuple[Values, Counts]:
-    """Channels (k, width, N) of the texture, and what was wrong with the colours."""
-    through = band[..., plan.rest]
-    if plan.part.codes:
-        through = through / np.float32(plan.part.codes)
-    if plan.colours is None:
-        return through, Counts()
-    rgb, counts = plan.decoder(band[..., plan.colours])
-    made = [rgb, uplifter.sample(rgb), through]
-    return np.concatenate(made, axis=-1), counts + _missed(uplifter, rgb)
-
-
-def _missed(uplifter: Uplifter, rgb: Floats) -> Counts:
-    """How many colours their spectra may miss, for the reach of reflectances."""
-    if uplifter.misses is None:
-        return Counts()
-    return Counts(missed=int((uplifter.misses(rgb) > uplifter.cube.data.threshold).sum()))
+def _convert_band(converter: Converter, layout: PartLayout, band: Values) -> tuple[Values, Counts]:
+    """Return the channels (k, width, N) to write, and counts of unusual pixels."""
+    others = band[..., layout.others]
+    if layout.part.max_code:
+        others = others / np.float32(layout.part.max_code)
+    if layout.rgb is None:
+        return others, Counts()
+    rgb, decoded = layout.decoder(band[..., layout.rgb])
+    values, converted = converter.convert(rgb)
+    return np.concatenate([*values, others], axis=-1), decoded + converted

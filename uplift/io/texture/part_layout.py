@@ -1,4 +1,4 @@
-"""What becomes of each part of an image: which channels are uplifted, which pass through, how it is written."""
+"""Channel layout: which channels of a part are converted, which pass through, and how the part is written."""
 
 from __future__ import annotations
 
@@ -6,74 +6,79 @@ import time
 from dataclasses import dataclass
 
 from uplift.common.errors import TextureError
-from uplift.io.texture.colours import Decoder, colour_channels, decoder
+from uplift.io.texture.colours import Decoder, RGBChannels, colour_channels, make_decoder
+from uplift.io.texture.converter import Converter
 from uplift.io.texture.source import Image, Part
-from uplift.io.texture.uplifter import Uplifter
-from uplift.io.texture.writer import Layout
+from uplift.io.texture.writer import OutputPart
 
-OWN = ("half", "float", "uint")
-"""Types of OpenEXR."""
-Places = tuple[int, int, int]
-"""Of red, green and blue among a part's channels."""
+OPENEXR_TYPES = ("half", "float", "uint")
 
 
 @dataclass(frozen=True, eq=False)
 class PartLayout:
-    """A part, the places of its red, green and blue, if it has them, and of the channels that pass through."""
+    """Layout of one part.
+
+    Parameters
+    ----------
+    part : Part
+        The part of the image.
+    rgb : tuple of three int, or None
+        Indices of the colour channels, if the part has any.
+    others : tuple of int
+        Indices of the channels that pass through.
+    decoder : Decoder
+        Conversion of the colours to linear RGB.
+    output : OutputPart
+        The part to write.
+    """
 
     part: Part
-    colours: Places | None
-    rest: tuple[int, ...]
+    rgb: RGBChannels | None
+    others: tuple[int, ...]
     decoder: Decoder
-    layout: Layout
+    output: OutputPart
 
 
-def part_layouts(uplifter: Uplifter, image: Image) -> list[PartLayout]:
-    """A plan for every part. Raises `TextureError` where there is nothing to uplift, or no way to."""
-    try:
-        return [_plan(uplifter, image, *each) for each in colour_channels_by_part(image)]
-    except TextureError as error:
-        raise TextureError(error.problem, path=image.path, hint=error.hint) from error
+def part_layouts(converter: Converter, image: Image) -> list[PartLayout]:
+    """Return the layout of every part. Raises `TextureError` for an image without usable colours."""
+    return [_layout(converter, image, part, rgb) for part, rgb in colour_channels_by_part(image)]
 
 
-def colour_channels_by_part(image: Image) -> list[tuple[Part, Places | None]]:
-    """Every part and the places of its colour. Raises `TextureError` where there is none, or no telling which."""
-    try:
-        found = [(part, colour_channels(part)) for part in image.parts]
-    except TextureError as error:
-        raise TextureError(error.problem, path=image.path, hint=error.hint) from error
-    if not any(places for _, places in found):
+def colour_channels_by_part(image: Image) -> list[tuple[Part, RGBChannels | None]]:
+    """Return every part and its colour channels. Raises `TextureError` if no part has any (``no-colour-channels``)."""
+    found = [(part, colour_channels(part)) for part in image.parts]
+    if not any(rgb for _, rgb in found):
         names = ", ".join(dict.fromkeys(name for part in image.parts for name in part.channels))
-        hint = "colour is in R, G and B, or in Y"
-        raise TextureError(f"holds no colour but {names}", path=image.path, hint=hint)
+        raise TextureError(
+            f"colour must be in channels R, G and B, or in Y, got {names}", code="no-colour-channels"
+        )
     return found
 
 
-def _plan(uplifter: Uplifter, image: Image, part: Part, colours: Places | None) -> PartLayout:
-    rest = tuple(index for index in range(len(part.channels)) if colours is None or index not in colours)
-    names = tuple(part.channels[index] for index in rest)
-    kinds = tuple(_exact(part.kinds[index]) for index in rest)
-    if colours is not None:
-        made = (*"RGB", *uplifter.channels)
+def _layout(converter: Converter, image: Image, part: Part, rgb: RGBChannels | None) -> PartLayout:
+    others = tuple(index for index in range(len(part.channels)) if rgb is None or index not in rgb)
+    names = tuple(part.channels[index] for index in others)
+    types = tuple(_lossless_type(part.types[index]) for index in others)
+    if rgb is not None:
+        made = (*"RGB", *converter.channels)
         if taken := set(made) & set(names):
-            hint = "leave it out: the texture would have two"
-            raise TextureError(f"has a channel '{min(taken)}' beside its colour", hint=hint)
-        names, kinds = (*made, *names), (*(uplifter.depth,) * len(made), *kinds)
-    layout = Layout(part.name, part.window, names, kinds, uplifter.header, part.date or _date(image))
-    return PartLayout(
-        part,
-        colours,
-        rest,
-        decoder(uplifter.cube.data.sensor, part, uplifter.encoding, uplifter.out_of_gamut),
-        layout,
-    )
+            raise TextureError(
+                f"channel '{min(taken)}' exists next to the colour and would be written twice",
+                code="duplicate-channel",
+                hint="remove that channel",
+            )
+        names, types = (*made, *names), (*(converter.depth,) * len(made), *types)
+    date = part.date or _modification_date(image)
+    output = OutputPart(part.name, part.window, names, types, converter.header, date)
+    decoder = make_decoder(converter.sensor, part, converter.encoding, converter.out_of_gamut)
+    return PartLayout(part, rgb, others, decoder, output)
 
 
-def _exact(kind: str) -> str:
-    """The type of OpenEXR that holds all values of a type, as 0 to 1."""
-    return kind if kind in OWN else {"uint8": "half"}.get(kind, "float")
+def _lossless_type(name: str) -> str:
+    """Return the OpenEXR type that holds all values of a type; integers become [0, 1]."""
+    return name if name in OPENEXR_TYPES else {"uint8": "half"}.get(name, "float")
 
 
-def _date(image: Image) -> str:
-    """When the image was last changed, as EXIF writes it."""
+def _modification_date(image: Image) -> str:
+    """Return the time of the image's last change as EXIF writes it."""
     return time.strftime("%Y:%m:%d %H:%M:%S", time.gmtime(image.path.stat().st_mtime))

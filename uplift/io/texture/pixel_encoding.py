@@ -1,4 +1,4 @@
-"""What a texture can hold in place of a colour: a spectrum, its moments, or its multipliers."""
+"""Numbers that a pixel of a texture holds: a reflectance spectrum, moments, or multipliers."""
 
 from __future__ import annotations
 
@@ -12,45 +12,102 @@ import numpy as np
 from uplift import models
 from uplift.common.errors import OptionError
 from uplift.io.texture.colours import Floats
-from uplift.lookup import Cube, bulk
+from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined_multipliers
 
-Sample = Callable[[Floats], Floats]
+Sampler = Callable[[Floats], Floats]
 """From linear RGB (…, 3) in [0, 1] to numbers (…, N)."""
 
 
 class PixelEncoding(Protocol):
-    """Numbers per pixel, channels that hold them, and what the header says of them."""
+    """The numbers of a pixel, the channels for them, and their description in the header."""
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Name of the encoding."""
+        ...
 
     @property
     def depths(self) -> tuple[str, ...]:
-        """Types that the numbers may be written in, the default first."""
+        """Types that are precise enough, the default first."""
         ...
 
     def channels(self, cube: Cube) -> tuple[str, ...]:
-        """A name for each number. Raises `OptionError` where the cube has no such numbers."""
+        """Return the channel names.
+
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+
+        Returns
+        -------
+        tuple of str
+            One name per number.
+
+        Raises
+        ------
+        OptionError
+            The cube has no such numbers.
+        """
         ...
 
     def header(self) -> dict[str, str]:
-        """Attributes that the form asks for."""
+        """Return the attributes that the layout requires.
+
+        Returns
+        -------
+        dict
+            Attributes by name.
+        """
         ...
 
     def describe(self, cube: Cube) -> dict[str, Any]:
-        """What the form is, as JSON values."""
+        """Return the encoding as JSON values.
+
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+
+        Returns
+        -------
+        dict
+            ``as``, the name, and the wavelengths of a spectrum.
+        """
         ...
 
-    def sample(self, cube: Cube, threads: int) -> Sample: ...
+    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
+        """Return the function that computes the numbers.
+
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+        threads : int
+            Number of threads.
+
+        Returns
+        -------
+        callable
+            From linear RGB (..., 3), float32 in [0, 1], to numbers (..., N).
+        """
+        ...
 
 
 @dataclass(frozen=True)
 class Spectrum:
-    """Reflectance at wavelengths (nm), by default the cube's: the layout of Fichet, Pacanowski & Wilkie 2021.
+    """Reflectance at wavelengths, a channel ``T.550,000000nm`` each.
 
-    "An OpenEXR Layout for Spectral Images", JCGT 10(3): a channel ``T.550,000000nm`` per wavelength.
+    Parameters
+    ----------
+    wavelengths : tuple of float, optional
+        Ascending wavelengths in nm, by default those of the cube's sensor.
+
+    References
+    ----------
+    A. Fichet, R. Pacanowski, A. Wilkie, "An OpenEXR Layout for Spectral Images", JCGT 10(3), 2021.
     """
 
     wavelengths: tuple[float, ...] | None = None
@@ -58,72 +115,212 @@ class Spectrum:
     depths = ("half", "float")
 
     def channels(self, cube: Cube) -> tuple[str, ...]:
-        at = cube.wavelengths(self.wavelengths)
-        names = tuple("T." + f"{wavelength:.6f}nm".replace(".", ",") for wavelength in at)
-        if (np.diff(at) <= 0).any() or len(set(names)) < len(names):
-            raise OptionError("wavelengths of a spectral image ascend", hint="name each once, in order")
+        """Return the channel names; see `PixelEncoding`.
+
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+
+        Returns
+        -------
+        tuple of str
+            One name per wavelength.
+
+        Raises
+        ------
+        OptionError
+            The wavelengths do not ascend (code ``wavelengths-not-ascending``).
+        """
+        wavelengths = cube.wavelengths(self.wavelengths)
+        names = tuple("T." + f"{wavelength:.6f}nm".replace(".", ",") for wavelength in wavelengths)
+        if (np.diff(wavelengths) <= 0).any() or len(set(names)) < len(names):
+            raise OptionError(
+                "wavelengths of a spectral image must ascend in steps of at least 1e-6 nm",
+                code="wavelengths-not-ascending",
+            )
         return names
 
     def header(self) -> dict[str, str]:
+        """Return the version of the spectral layout.
+
+        Returns
+        -------
+        dict
+            ``spectralLayoutVersion``.
+        """
         return {"spectralLayoutVersion": "1.0"}
 
     def describe(self, cube: Cube) -> dict[str, Any]:
+        """Return the name and the wavelengths.
+
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+
+        Returns
+        -------
+        dict
+            ``as`` and ``wavelengths``.
+        """
         return {"as": self.name, "wavelengths": cube.wavelengths(self.wavelengths).tolist()}
 
-    def sample(self, cube: Cube, threads: int) -> Sample:
+    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
+        """Return the function that computes reflectances.
+
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+        threads : int
+            Number of threads.
+
+        Returns
+        -------
+        callable
+            From linear RGB (..., 3) to reflectances (..., N).
+        """
+        from uplift.lookup import bulk
+
         return bulk.spectra(cube, self.wavelengths, threads=threads)
 
 
+class _Coefficients:
+    """Description that moments and multipliers share: the header of the cube's model is sufficient."""
+
+    name: str
+
+    def header(self) -> dict[str, str]:
+        """Return no attributes.
+
+        Returns
+        -------
+        dict
+            Empty.
+        """
+        return {}
+
+    def describe(self, cube: Cube) -> dict[str, Any]:
+        """Return the name.
+
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+
+        Returns
+        -------
+        dict
+            ``as``.
+        """
+        return {"as": self.name}
+
+
 @dataclass(frozen=True)
-class Moments:
-    """What a moments cube stores: linear in the spectrum, so that textures may be filtered and mip-mapped."""
+class Moments(_Coefficients):
+    """Coefficients of a moments cube. They are linear in the spectrum, so textures can be filtered and mip-mapped."""
 
     name = "moments"
     depths = ("float", "half")
 
     def channels(self, cube: Cube) -> tuple[str, ...]:
+        """Return the channel names; see `PixelEncoding`.
+
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+
+        Returns
+        -------
+        tuple of str
+            ``moment.00`` onwards.
+
+        Raises
+        ------
+        OptionError
+            The cube stores sigmoids (code ``no-moments``).
+        """
         model = cube.data.model
         if not isinstance(model, models.Moments):
             raise OptionError(
-                f"a {model.name} cube has no moments", hint="use --as multipliers, or a moments cube"
+                f"moments need a moments cube, got a {model.name} cube",
+                code="no-moments",
+                hint="write multipliers, or use a moments cube",
             )
         return _numbered("moment", model.count)
 
-    def header(self) -> dict[str, str]:
-        return {}
+    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
+        """Return the function that computes moments.
 
-    def describe(self, cube: Cube) -> dict[str, Any]:
-        return {"as": self.name}
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+        threads : int
+            Number of threads.
 
-    def sample(self, cube: Cube, threads: int) -> Sample:
+        Returns
+        -------
+        callable
+            From linear RGB (..., 3) to moments (..., C).
+        """
+        from uplift.lookup import bulk
+
         return bulk.coefficients(cube, threads=threads)
 
 
 @dataclass(frozen=True)
-class Multipliers:
-    """What a spectrum is evaluated from, of every model; moved to the very colour, for they do not interpolate."""
+class Multipliers(_Coefficients):
+    """Multipliers, from which spectra are evaluated at once. They are refined to the pixel's exact colour.
+
+    Every model has them. They do not interpolate, so textures must not be filtered.
+    """
 
     name = "multipliers"
     depths = ("float",)
 
     def channels(self, cube: Cube) -> tuple[str, ...]:
+        """Return the channel names; see `PixelEncoding`.
+
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+
+        Returns
+        -------
+        tuple of str
+            ``multiplier.00`` onwards.
+        """
         return _numbered("multiplier", cube.data.model.count)
 
-    def header(self) -> dict[str, str]:
-        return {}
+    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
+        """Return the function that computes multipliers.
 
-    def describe(self, cube: Cube) -> dict[str, Any]:
-        return {"as": self.name}
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+        threads : int
+            Number of threads.
 
-    def sample(self, cube: Cube, threads: int) -> Sample:
+        Returns
+        -------
+        callable
+            From linear RGB (..., 3) to multipliers (..., C).
+        """
         refined = partial(refined_multipliers, cube.data)
         width = cube.data.model.count
         return lambda rgb: blockwise(refined, rgb.astype(float), width, np.float32, threads)
 
 
-FORMS: dict[str, Callable[[], PixelEncoding]] = {form.name: form for form in (Spectrum, Moments, Multipliers)}
-"""By name, with their defaults."""
+PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {
+    each.name: each for each in (Spectrum, Moments, Multipliers)
+}
+"""Pixel encodings with their defaults, by name."""
 
 
-def _numbered(what: str, count: int) -> tuple[str, ...]:
-    return tuple(f"{what}.{index:02}" for index in range(count))
+def _numbered(name: str, count: int) -> tuple[str, ...]:
+    return tuple(f"{name}.{index:02}" for index in range(count))

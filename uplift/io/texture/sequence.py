@@ -1,4 +1,4 @@
-"""Many images: each a job of its own, for processes of this machine or those of a Dask cluster."""
+"""Conversion of many images, in the processes of this machine or on a Dask cluster."""
 
 from __future__ import annotations
 
@@ -23,25 +23,50 @@ from uplift.lookup import load
 
 @dataclass(frozen=True)
 class TextureSettings:
-    """What all images of a sequence are made with: parameters of `load` and of `prepare`, small to send.
+    """Settings that all images of a sequence share. They are small enough to send to other processes.
 
-    ``fill`` is whether colours outside the scene that the cube was built for are filled in (`Cube.filled`).
+    Parameters
+    ----------
+    cube : str or None
+        Path of the cube, None for the default cube.
+    pixel_encoding : PixelEncoding
+        Numbers that a pixel holds.
+    depth : {"half", "float"} or None
+        Type of the channels, None for the default of the pixel encoding.
+    encoding : {"auto", "linear", "encoded"}
+        Interpretation of the numbers in images.
+    threads : int
+        Threads per process.
+    fill_missing : bool
+        Whether to add the nodes that a cube built for a scene lacks (`Cube.fill_missing`).
+    out_of_gamut : str
+        Gamut mapping for pixels outside [0, 1].
     """
 
     cube: str | None
-    form: PixelEncoding
+    pixel_encoding: PixelEncoding
     depth: str | None
     encoding: str
     threads: int
-    fill: bool = False
+    fill_missing: bool = False
     out_of_gamut: str = "clip"
 
 
 @dataclass(frozen=True)
 class Job:
-    """One image."""
+    """The conversion of one image.
 
-    recipe: TextureSettings
+    Parameters
+    ----------
+    settings : TextureSettings
+        Settings of the sequence.
+    source, target : Path
+        The image to read and the file to write.
+    force : bool
+        Whether to replace an existing file.
+    """
+
+    settings: TextureSettings
     source: Path
     target: Path
     force: bool = False
@@ -49,38 +74,70 @@ class Job:
 
 @dataclass(frozen=True)
 class Failure:
-    """An image that could not be made, and why."""
+    """An image that could not be converted.
+
+    Parameters
+    ----------
+    source : Path
+        The image.
+    error : UpliftError
+        The reason.
+    """
 
     source: Path
     error: UpliftError
 
 
 @lru_cache(maxsize=1)
-def uplifter_for(recipe: TextureSettings) -> Uplifter:
-    """The uplifter of a recipe, once a process."""
-    cube = load(recipe.cube)
-    if recipe.fill:
-        cube = cube.fill_missing(threads=recipe.threads)
+def uplifter_for(settings: TextureSettings) -> Uplifter:
+    """Return the uplifter of the settings, which each process prepares once.
+
+    Parameters
+    ----------
+    settings : TextureSettings
+        Settings of the sequence.
+
+    Returns
+    -------
+    Uplifter
+        The converter.
+    """
+    cube = load(settings.cube)
+    if settings.fill_missing:
+        cube = cube.fill_missing(threads=settings.threads)
     return prepare(
         cube,
-        recipe.form,
-        depth=recipe.depth,
-        encoding=recipe.encoding,
-        out_of_gamut=recipe.out_of_gamut,
-        threads=recipe.threads,
+        settings.pixel_encoding,
+        depth=settings.depth,
+        encoding=settings.encoding,
+        out_of_gamut=settings.out_of_gamut,
+        threads=settings.threads,
     )
 
 
 def run(job: Job) -> Conversion | Failure:
-    """What became of a job: one bad image stops no others."""
+    """Convert the image of a job. Errors are returned, so that one bad image does not stop the others."""
     try:
-        return convert(uplifter_for(job.recipe), job.source, job.target, force=job.force)
+        return convert(uplifter_for(job.settings), job.source, job.target, force=job.force)
     except UpliftError as error:
         return Failure(job.source, error)
 
 
 def convert_all(jobs: Iterable[Job], executor: Executor) -> Iterator[Conversion | Failure]:
-    """What became of the jobs, as they are finished; what has not begun is given up with the iterator."""
+    """Convert images in parallel. Closing the iterator cancels the jobs that have not started.
+
+    Parameters
+    ----------
+    jobs : iterable of Job
+        The images.
+    executor : Executor
+        Where to run; see `process_executor` and `dask_executor`.
+
+    Yields
+    ------
+    Conversion or Failure
+        Outcomes in order of completion.
+    """
     futures = [executor.submit(run, job) for job in jobs]
     try:
         for future in as_completed(futures):
@@ -91,63 +148,120 @@ def convert_all(jobs: Iterable[Job], executor: Executor) -> Iterator[Conversion 
 
 
 def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
-    """Jobs that are still to be done: all, or with ``resume`` those whose textures are not there, whole and newer.
+    """Return the jobs that remain, and check that their targets can be written.
 
-    Asks before long work whether what is to be done can be written. Raises `OutputError`, and `TextureError`
-    where two images would have one name.
+    Parameters
+    ----------
+    jobs : iterable of Job
+        All jobs.
+    resume : bool
+        Whether to leave out images whose textures are complete, newer than the image, and of the same settings.
+
+    Returns
+    -------
+    list of Job
+        The remaining jobs.
+
+    Raises
+    ------
+    TextureError
+        Two images have the same target (code ``duplicate-target``).
+    OutputError
+        A target cannot be written, or exists.
     """
     jobs = list(jobs)
     for target in {job.target for job in jobs}:
         sources = [os.fspath(job.source) for job in jobs if job.target == target]
         if len(sources) > 1:
             raise TextureError(
-                f"{' and '.join(sources)} would both become {target}", hint="write them to two folders"
+                f"every image needs its own target, got {target} for {' and '.join(sources)}",
+                code="duplicate-target",
+                hint="write them to different folders",
             )
-    todo = [job for job in jobs if not (resume and _is_made(job))]
-    for job in todo:
+    remaining = [job for job in jobs if not (resume and _is_up_to_date(job))]
+    for job in remaining:
         check_output(job.target, force=job.force)
-    return todo
+    return remaining
 
 
-def _is_made(job: Job) -> bool:
-    """Whether the texture of a job is there: newer than its image, by the same recipe, and whole."""
+def _is_up_to_date(job: Job) -> bool:
+    """Return whether the texture is complete, newer than its image, and of the same cube and settings."""
     try:
         if job.target.stat().st_mtime < job.source.stat().st_mtime:
             return False
     except OSError:
         return False
-    header = uplifter_for(job.recipe).header
+    header = uplifter_for(job.settings).header
     try:
         with open_image(job.target) as image:
-            alike = all(image.text(name) == header[name] for name in ("uplift.cube", "uplift.texture"))
+            equal = all(image.header_text(name) == header[name] for name in ("uplift.cube", "uplift.texture"))
     except TextureError:
         return False
-    return alike and is_complete(job.target)
+    return equal and is_complete(job.target)
 
 
 @contextlib.contextmanager
-def processes(count: int) -> Iterator[Executor]:
-    """So many processes of this machine; one is this one. Raises `OptionError`."""
+def process_executor(count: int) -> Iterator[Executor]:
+    """Start processes on this machine; a single one is a thread of the current process.
+
+    Parameters
+    ----------
+    count : int
+        Number of processes, at least 1.
+
+    Yields
+    ------
+    Executor
+        The executor to pass to `convert_all`.
+
+    Raises
+    ------
+    OptionError
+        The number is below 1 (code ``too-few-processes``).
+    """
     if count < 1:
-        raise OptionError(f"{count} processes cannot work", hint="use 1 or more")
-    afresh = multiprocessing.get_context("spawn")  # JAX does not bear being forked
-    with ThreadPoolExecutor(1) if count == 1 else ProcessPoolExecutor(count, mp_context=afresh) as pool:
+        raise OptionError(
+            f"the number of processes must be at least 1, got {count}", code="too-few-processes"
+        )
+    spawn = multiprocessing.get_context("spawn")  # JAX cannot be forked
+    with ThreadPoolExecutor(1) if count == 1 else ProcessPoolExecutor(count, mp_context=spawn) as pool:
         yield pool
 
 
 @contextlib.contextmanager
-def cluster(address: str) -> Iterator[Executor]:
-    """The workers of a Dask cluster, which see the same files. Raises `OptionError`."""
+def dask_executor(address: str) -> Iterator[Executor]:
+    """Connect to a Dask cluster whose workers share the file system.
+
+    Parameters
+    ----------
+    address : str
+        Address of the scheduler, such as ``tcp://10.0.0.5:8786``.
+
+    Yields
+    ------
+    Executor
+        The executor to pass to `convert_all`.
+
+    Raises
+    ------
+    OptionError
+        Dask is not installed (code ``dask-not-installed``), or no scheduler responds (``dask-unreachable``).
+    """
     try:
         import distributed
     except ImportError as error:
         raise OptionError(
-            "clusters need Dask, which is not installed", hint="install it: pip install 'uplift[cluster]'"
+            "clusters need Dask, which is not installed",
+            code="dask-not-installed",
+            hint="install it: pip install 'uplift[cluster]'",
         ) from error
     try:
         client = distributed.Client(address, timeout="10s")
     except (OSError, ValueError) as error:
-        problem = f"no Dask scheduler answers at '{address}'"
-        raise OptionError(problem, hint="start one: dask scheduler") from error
+        raise OptionError(
+            f"no Dask scheduler responds at '{address}'",
+            code="dask-unreachable",
+            hint="start one: dask scheduler",
+        ) from error
     with client:
         yield client.get_executor()

@@ -1,6 +1,6 @@
-"""Images as they lie in files: parts, channels, and rows a band at a time (OpenEXR, PNG, JPEG, TIFF).
+"""Image files as they are: parts, channels, and rows a band at a time (OpenEXR, PNG, JPEG, TIFF).
 
-OpenImageIO reads them all; what a band holds is what the file holds, not converted.
+OpenImageIO reads all formats. Bands hold the numbers of the file, unconverted.
 """
 
 from __future__ import annotations
@@ -16,24 +16,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.errors import TextureError
-from uplift.io.texture.colour_profile import Profile, profile_of
+from uplift.common.errors import ColourError, TextureError, UpliftWarning
+from uplift.io.texture.colour_profile import Profile, read_profile
 
 FORMATS = ("openexr", "png", "jpeg", "tiff")
-BAND = 1 << 25
-"""Bytes that a band is read in, if the file's own blocks of rows are no larger."""
-WHOLE = 2**32 - 1
-"""OpenImageIO takes 32-bit whole numbers to [0, 1] by this."""
-EXACT = 1 << 24
-"""Whole numbers up to this pass through its 32-bit floats."""
-REMEDY = "name an EXR, PNG, JPEG or TIFF image"
+MAX_BAND_BYTES = 1 << 25
+"""Size of a band to read, unless the file's own blocks of rows are larger."""
+UINT32_SCALE = 2**32 - 1
+"""OpenImageIO divides 32-bit integers by this number."""
+MAX_EXACT_INTEGER = 1 << 24
+"""Integers up to this number pass through 32-bit floats."""
+FORMAT_HINT = "use an EXR, PNG, JPEG or TIFF image"
 
 Values = NDArray[Any]
 
 
 @dataclass(frozen=True)
 class Window:
-    """Where the pixels of a part lie, and the display window (x, y, width, height) that they are part of."""
+    """Data window of a part, its display window (x, y, width, height) and its pixel aspect ratio."""
 
     x: int
     y: int
@@ -45,132 +45,169 @@ class Window:
 
 @dataclass(frozen=True)
 class Part:
-    """One part of a file; all but OpenEXR have one.
+    """One part of a file. Files of formats other than OpenEXR have one part.
 
-    ``kinds`` are the channels' types: half, float, uint, uint8, uint16. ``block`` is how many rows are decoded
-    together. ``profile`` is what the file says its RGB are of, if it does; ``date`` likewise.
+    Parameters
+    ----------
+    number : int
+        Index of the part.
+    name : str
+        Name, empty if it has none.
+    window : Window
+        Data and display window.
+    channels : tuple of str
+        Names of the channels.
+    types : tuple of str
+        Types of the channels: half, float, uint, uint8 or uint16.
+    rows_per_block : int
+        Rows that are decoded together.
+    is_tiled : bool
+        Whether the part is stored in tiles.
+    profile : Profile or None
+        The colour space that the file states.
+    date : str or None
+        The date that the file states.
     """
 
     number: int
     name: str
     window: Window
     channels: tuple[str, ...]
-    kinds: tuple[str, ...]
-    block: int
-    tiled: bool
+    types: tuple[str, ...]
+    rows_per_block: int
+    is_tiled: bool
     profile: Profile | None
     date: str | None
 
     @property
-    def codes(self) -> int:
-        """Of a part of 8-bit or 16-bit whole numbers, the largest; 0 for all others."""
-        kinds = set(self.kinds)
-        return {"uint8": 255, "uint16": 65535}.get(kinds.pop(), 0) if len(kinds) == 1 else 0
+    def max_code(self) -> int:
+        """Largest value if all channels are 8-bit or all are 16-bit integers, else 0."""
+        types = set(self.types)
+        return {"uint8": 255, "uint16": 65535}.get(types.pop(), 0) if len(types) == 1 else 0
 
 
 @dataclass(frozen=True, eq=False)
 class Image:
-    """An open file."""
+    """An open image file."""
 
     path: Path
     parts: tuple[Part, ...]
     handle: Any
 
     def bands(self, part: Part) -> Iterator[tuple[int, Values]]:
-        """First row, and rows (k, width, channels): whole numbers as they are if all are, else floats."""
+        """Yield row numbers and rows (k, width, channels): integers if all channels are, else floats."""
         window = part.window
         self.handle.seek_subimage(part.number, 0)
         row = window.width * len(part.channels) * 4
-        step = part.block * max(1, BAND // (row * part.block))
+        step = part.rows_per_block * max(1, MAX_BAND_BYTES // (row * part.rows_per_block))
         for first in range(window.y, window.y + window.height, step):
             yield first, self._band(part, first, min(first + step, window.y + window.height))
 
-    def text(self, name: str) -> str:
-        """A text of the first part's header, empty where there is none."""
+    def header_text(self, name: str) -> str:
+        """Return a text attribute of the first part, empty if it is missing."""
         return str(self.handle.spec(0).get_string_attribute(name))
 
-    def remarks(self, sensor: Sensor) -> tuple[str, ...]:
-        """One for each space that it names that is not the sensor's."""
-        told = []
+    def warnings(self, sensor: Sensor) -> tuple[UpliftWarning, ...]:
+        """Return a warning for every colour space in the file that differs from the sensor's."""
+        problems = []
         for part in self.parts:
-            if part.profile is not None and (what := part.profile.unlike(sensor, codes=bool(part.codes))):
+            if part.profile is None:
+                continue
+            if mismatch := part.profile.mismatch(sensor, encoded=bool(part.max_code)):
                 name = f" ({part.profile.name})" if part.profile.name else ""
-                told.append(f"the image names {what}{name}; its colours are taken for {sensor.space}")
-        return tuple(dict.fromkeys(told))
+                problems.append(f"the image states {mismatch}{name}; its colours are read as {sensor.space}")
+        return tuple(
+            UpliftWarning(problem, code="colour-space-mismatch", path=self.path)
+            for problem in dict.fromkeys(problems)
+        )
 
-    def last(self, part: Part) -> Values:
-        """The last row (1, width, channels). Raises `TextureError` where it is missing."""
+    def last_row(self, part: Part) -> Values:
+        """Return the last row (1, width, channels). Raises `TextureError` if it is missing."""
         self.handle.seek_subimage(part.number, 0)
         end = part.window.y + part.window.height
-        start = end - 1 - (part.window.height - 1) % part.block if part.tiled else end - 1
+        start = end - 1 - (part.window.height - 1) % part.rows_per_block if part.is_tiled else end - 1
         return self._band(part, start, end)[-1:]
 
     def _band(self, part: Part, first: int, end: int) -> Values:
-        if part.codes:
-            return self._read(part, first, end, part.kinds[0])
-        whole = [index for index, kind in enumerate(part.kinds) if kind == "uint"]
-        values = self._read(part, first, end, "double" if whole else "float")
-        for index in whole:
+        if part.max_code:
+            return self._read(part, first, end, part.types[0])
+        integers = [index for index, name in enumerate(part.types) if name == "uint"]
+        values = self._read(part, first, end, "double" if integers else "float")
+        for index in integers:
             numbers = self._read(part, first, end, "uint", index)[..., 0]
-            if numbers.max(initial=0) > EXACT:
-                problem = f"channel '{part.channels[index]}' holds whole numbers beyond {EXACT}"
-                raise TextureError(problem, path=self.path, hint="leave that channel out")
-            values[..., index] = numbers / WHOLE
+            if numbers.max(initial=0) > MAX_EXACT_INTEGER:
+                raise TextureError(
+                    f"integers must be at most {MAX_EXACT_INTEGER}, got {numbers.max()} in channel "
+                    f"'{part.channels[index]}'",
+                    code="integer-too-large",
+                    hint="remove that channel",
+                )
+            values[..., index] = numbers / UINT32_SCALE
         return values
 
-    def _read(self, part: Part, first: int, end: int, kind: str, channel: int | None = None) -> Values:
+    def _read(self, part: Part, first: int, end: int, dtype: str, channel: int | None = None) -> Values:
         import OpenImageIO
 
-        window = part.window
+        window, kind = part.window, OpenImageIO.TypeDesc(dtype)
         channels = (0, len(part.channels)) if channel is None else (channel, channel + 1)
-        if part.tiled:
-            across = (window.x, window.x + window.width)
-            found = self.handle.read_tiles(*across, first, end, 0, 1, *channels, OpenImageIO.TypeDesc(kind))
+        if part.is_tiled:
+            columns = (window.x, window.x + window.width)
+            found = self.handle.read_tiles(*columns, first, end, 0, 1, *channels, kind)
         else:
-            found = self.handle.read_scanlines(first, end, 0, *channels, OpenImageIO.TypeDesc(kind))
-        problem = self.handle.geterror()  # of a JPEG that ends early this is the only sign
+            found = self.handle.read_scanlines(first, end, 0, *channels, kind)
+        problem = self.handle.geterror()  # the only sign of a truncated JPEG
         if found is None or problem:
             raise TextureError(
-                f"rows {first} to {end - 1} cannot be read: {_tidy(problem)}",
-                path=self.path,
-                hint="the file is damaged: make it anew",
+                f"rows {first} to {end - 1} cannot be read: {_one_line(problem)}",
+                code="damaged-image",
+                hint="the file is damaged: write it again",
             )
         return np.asarray(found)
 
 
 @contextlib.contextmanager
 def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
-    """The image in a file. Raises `TextureError` where there is none that can be used."""
+    """Open an image file. A `TextureError` or `ColourError` in the block without a path gets this one.
+
+    Raises
+    ------
+    TextureError
+        The file is missing, damaged, of another format, or has several values per pixel.
+    """
     import OpenImageIO
 
-    path, wishes = Path(path), OpenImageIO.ImageSpec()
-    wishes["oiio:UnassociatedAlpha"] = 1  # colours as they stand, not multiplied by alpha
+    path, config = Path(path), OpenImageIO.ImageSpec()
+    config["oiio:UnassociatedAlpha"] = 1  # keep colours as stored, not multiplied by alpha
     if not path.is_file():
-        raise TextureError("there is no such file", path=path, hint=REMEDY)
-    handle = OpenImageIO.ImageInput.open(os.fspath(path), wishes)
+        raise TextureError("no such file", code="file-not-found", path=path, hint=FORMAT_HINT)
+    handle = OpenImageIO.ImageInput.open(os.fspath(path), config)
     if handle is None:
-        raise TextureError(_tidy(OpenImageIO.geterror()), path=path, hint=REMEDY)
+        problem = _one_line(OpenImageIO.geterror())
+        raise TextureError(problem, code="unreadable-image", path=path, hint=FORMAT_HINT)
     try:
-        if handle.format_name() not in FORMATS:
-            problem = f"is a {handle.format_name()} image"
-            raise TextureError(problem, path=path, hint="make it EXR, PNG, JPEG or TIFF")
-        yield Image(path, tuple(_parts(handle, path)), handle)
+        yield Image(path, tuple(_parts(handle)), handle)
+    except (TextureError, ColourError) as error:
+        error.path = path if error.path is None else error.path
+        raise
     finally:
         handle.close()
 
 
-def _parts(handle: Any, path: Path) -> Iterator[Part]:
+def _parts(handle: Any) -> Iterator[Part]:
+    if handle.format_name() not in FORMATS:
+        problem = f"the format must be EXR, PNG, JPEG or TIFF, got {handle.format_name()}"
+        raise TextureError(problem, code="unsupported-image-format")
     number = 0
     while handle.seek_subimage(number, 0):
-        yield _part(handle.spec(), number, path)
+        yield _part(handle.spec(), number)
         number += 1
-        if handle.format_name() != "openexr":  # pages of a TIFF are other images
+        if handle.format_name() != "openexr":  # pages of a TIFF are separate images
             return
 
 
-def _part(spec: Any, number: int, path: Path) -> Part:
+def _part(spec: Any, number: int) -> Part:
     if spec.deep or spec.depth > 1:
-        raise TextureError("has depth", path=path, hint="flatten it: textures have one value a pixel")
+        raise TextureError("an image must have one value per pixel", code="deep-image", hint="flatten it")
     formats = spec.channelformats or (spec.format,) * spec.nchannels
     display = (spec.full_x, spec.full_y, spec.full_width, spec.full_height)
     aspect = spec.get_float_attribute("PixelAspectRatio", 1.0)
@@ -179,14 +216,13 @@ def _part(spec: Any, number: int, path: Path) -> Part:
         name=spec.get_string_attribute("oiio:subimagename"),
         window=Window(spec.x, spec.y, spec.width, spec.height, display, aspect),
         channels=tuple(spec.channelnames),
-        kinds=tuple(map(str, formats)),
-        block=spec.tile_height or max(spec.get_int_attribute("oiio:RowsPerChunk", 1), 1),
-        tiled=bool(spec.tile_width),
-        profile=profile_of(spec),
+        types=tuple(map(str, formats)),
+        rows_per_block=spec.tile_height or max(spec.get_int_attribute("oiio:RowsPerChunk", 1), 1),
+        is_tiled=bool(spec.tile_width),
+        profile=read_profile(spec),
         date=spec.get_string_attribute("DateTime") or None,
     )
 
 
-def _tidy(message: str) -> str:
-    """One line."""
-    return " ".join(message.split()) or "it is no image that can be read"
+def _one_line(message: str) -> str:
+    return " ".join(message.split()) or "the image cannot be read"

@@ -1,4 +1,4 @@
-"""A cube made ready for textures of one form."""
+"""A cube prepared for textures of one pixel encoding."""
 
 from __future__ import annotations
 
@@ -8,25 +8,38 @@ from dataclasses import dataclass
 from typing import Any
 
 from uplift.colorimetry.gamut import check_method
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.errors import OptionError
 from uplift.io.slices import exr
-from uplift.io.texture.colours import check_encoding
-from uplift.io.texture.pixel_encoding import PixelEncoding, Sample, Spectrum
+from uplift.io.texture.colours import Counts, Floats, check_encoding
+from uplift.io.texture.pixel_encoding import PixelEncoding, Sampler, Spectrum
 from uplift.lattice import Status
-from uplift.lookup import Cube, bulk
+from uplift.lookup import Cube
 
 
 @dataclass(frozen=True, eq=False)
 class Uplifter:
-    """Good for any number of images; ``prepare`` makes it.
+    """A converter of colours to spectra, made by `prepare`, for any number of images.
 
     Parameters
     ----------
-    depth, encoding, out_of_gamut : as `prepare` takes them.
-    channels : names (N,) of what a pixel holds.
-    header : attributes of every texture, which tell what evaluates it.
-    sample : from linear RGB to what a pixel holds.
-    misses : by how much spectra miss their colours at the most; None for a cube without unrealisable points.
+    cube : Cube
+        The cube that uplifts.
+    depth : {"half", "float"}
+        Type of the channels.
+    encoding : {"auto", "linear", "encoded"}
+        Interpretation of the numbers in images.
+    out_of_gamut : str
+        Gamut mapping for pixels outside [0, 1].
+    channels : tuple of str
+        Names (N,) of the numbers of a pixel.
+    header : mapping
+        Attributes of every texture. They suffice to evaluate its spectra.
+    sample : callable
+        From linear RGB (..., 3) to the numbers (..., N) of a pixel.
+    rgb_error : callable or None
+        From linear RGB (..., 3) to the largest error (..., 1) of the spectrum's colour. None if the cube has no
+        unrealisable nodes.
     """
 
     cube: Cube
@@ -35,46 +48,95 @@ class Uplifter:
     out_of_gamut: str
     channels: tuple[str, ...]
     header: Mapping[str, Any]
-    sample: Sample
-    misses: Sample | None
+    sample: Sampler
+    rgb_error: Sampler | None
+
+    @property
+    def sensor(self) -> Sensor:
+        """The cube's sensor."""
+        return self.cube.data.sensor
+
+    def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
+        """Uplift a block of colours.
+
+        Parameters
+        ----------
+        rgb : ndarray of shape (..., 3)
+            Linear RGB in [0, 1], float32.
+
+        Returns
+        -------
+        tuple of ndarray
+            R, G, B (..., 3), and the numbers (..., N) of the pixel encoding.
+        Counts
+            Pixels close to unrealisable colours.
+        """
+        return (rgb, self.sample(rgb)), self._unrealisable(rgb)
+
+    def _unrealisable(self, rgb: Floats) -> Counts:
+        if self.rgb_error is None:
+            return Counts()
+        return Counts(unrealisable=int((self.rgb_error(rgb) > self.cube.data.threshold).sum()))
 
 
 def prepare(
     cube: Cube,
-    form: PixelEncoding | None = None,
+    pixel_encoding: PixelEncoding | None = None,
     *,
     depth: str | None = None,
     encoding: str = "auto",
     out_of_gamut: str = "clip",
     threads: int = 2,
 ) -> Uplifter:
-    """A cube made ready for textures.
+    """Prepare a cube for textures.
 
     Parameters
     ----------
-    form : what textures hold: `Spectrum` (the default), `Moments` or `Multipliers`.
-    depth : half or float; by default what the form is exact enough in.
-    encoding : ``auto`` takes whole numbers for encoded and floats for linear; ``linear``; ``encoded``.
-    out_of_gamut : what becomes of pixels outside [0, 1]: one of `uplift.colorimetry.gamut.METHODS`.
-    threads : that share a band.
+    cube : Cube
+        The cube.
+    pixel_encoding : PixelEncoding, optional
+        `Spectrum` (the default), `Moments` or `Multipliers`.
+    depth : {"half", "float"}, optional
+        Type of the channels, by default the smallest that is precise enough.
+    encoding : {"auto", "linear", "encoded"}
+        Interpretation of the numbers in images; ``auto`` takes integers as encoded, floats as linear.
+    out_of_gamut : str
+        Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+    threads : int
+        Threads that share a band.
+
+    Returns
+    -------
+    Uplifter
+        The converter to pass to `convert`.
 
     Raises
     ------
-    OptionError : a depth that the form does not have, moments of a cube that has none, unclear wavelengths,
-        an unknown encoding or way out of gamut.
+    OptionError
+        The depth is not precise enough (code ``unsupported-depth``), the cube has no moments, the wavelengths do
+        not ascend, or the encoding or gamut mapping is unknown.
     """
-    form = Spectrum() if form is None else form
-    depth = form.depths[0] if depth is None else depth
-    if depth not in form.depths:
-        problem = f"{form.name} are not exact enough as {depth}"
-        raise OptionError(problem, hint=f"use {' or '.join(form.depths)}")
+    pixels = Spectrum() if pixel_encoding is None else pixel_encoding
+    depth = pixels.depths[0] if depth is None else depth
+    if depth not in pixels.depths:
+        raise OptionError(
+            f"depth of {pixels.name} must be {' or '.join(pixels.depths)}, got '{depth}'",
+            code="unsupported-depth",
+            hint="other types are not precise enough",
+        )
     check_encoding(encoding)
     check_method(out_of_gamut)
-    channels = form.channels(cube)
-    asked = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
-    made = json.dumps({**form.describe(cube), **asked})
-    header = {**exr.attributes(cube.data), "uplift.texture": made, **form.header()}
-    beyond = (cube.data.points.status == Status.UNREALISABLE).any()
-    misses = bulk.max_rgb_error(cube, threads=threads) if beyond else None
-    sample = form.sample(cube, threads)
-    return Uplifter(cube, depth, encoding, out_of_gamut, channels, header, sample, misses)
+    channels = pixels.channels(cube)
+    settings = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
+    description = json.dumps({**pixels.describe(cube), **settings})
+    header = {**exr.attributes(cube.data), "uplift.texture": description, **pixels.header()}
+    sampler = pixels.make_sampler(cube, threads)
+    return Uplifter(cube, depth, encoding, out_of_gamut, channels, header, sampler, _rgb_error(cube, threads))
+
+
+def _rgb_error(cube: Cube, threads: int) -> Sampler | None:
+    from uplift.lookup import bulk
+
+    if not (cube.data.points.status == Status.UNREALISABLE).any():
+        return None
+    return bulk.max_rgb_error(cube, threads=threads)

@@ -1,4 +1,4 @@
-"""OpenEXR files written a band of rows at a time, part by part; whole or not at all."""
+"""OpenEXR files written part by part, a band of rows at a time, and atomically."""
 
 from __future__ import annotations
 
@@ -17,30 +17,30 @@ from uplift.io.texture.source import Values, Window, open_image
 
 
 @dataclass(frozen=True)
-class Layout:
-    """A part to be written: ``kinds`` are the channels' types, ``header`` its attributes."""
+class OutputPart:
+    """A part to write: its channels with their types, its header attributes and its date."""
 
     name: str
     window: Window
     channels: tuple[str, ...]
-    kinds: tuple[str, ...]
+    types: tuple[str, ...]
     header: Mapping[str, Any]
     date: str
 
     def spec(self) -> Any:
-        """An `OpenImageIO.ImageSpec`."""
+        """Return the `OpenImageIO.ImageSpec`."""
         import OpenImageIO
 
         window = self.window
-        spec = OpenImageIO.ImageSpec(window.width, window.height, len(self.channels), self.kinds[0])
+        spec = OpenImageIO.ImageSpec(window.width, window.height, len(self.channels), self.types[0])
         spec.channelnames = self.channels
-        if len(set(self.kinds)) > 1:
-            spec.channelformats = tuple(map(OpenImageIO.TypeDesc, self.kinds))
+        if len(set(self.types)) > 1:
+            spec.channelformats = tuple(map(OpenImageIO.TypeDesc, self.types))
         spec.x, spec.y = window.x, window.y
         spec.full_x, spec.full_y, spec.full_width, spec.full_height = window.display
         spec.attribute("PixelAspectRatio", window.aspect)
         spec.attribute("compression", "zip")
-        spec.attribute("DateTime", self.date)  # or it would be now, and no file the same twice
+        spec.attribute("DateTime", self.date)  # the default is now, which makes every file different
         if self.name:
             spec.attribute("oiio:subimagename", self.name)
         for name, value in self.header.items():
@@ -52,66 +52,69 @@ class Layout:
 
 
 class Writer:
-    """Rows in order, from the first of the first part to the last of the last."""
+    """Writer of rows in order, from the first row of the first part to the last row of the last."""
 
-    def __init__(self, path: Path, layouts: Sequence[Layout]) -> None:
+    def __init__(self, path: Path, parts: Sequence[OutputPart]) -> None:
         import OpenImageIO
 
-        self._path, self._specs = path, [layout.spec() for layout in layouts]
+        self._path, self._specs = path, [part.spec() for part in parts]
         handle = OpenImageIO.ImageOutput.create("openexr")
         if handle is None:
             raise OSError(OpenImageIO.geterror())
         self._handle = handle
-        several = len(self._specs) > 1
-        self._check(self._handle.open(os.fspath(path), tuple(self._specs) if several else self._specs[0]))
+        specs = tuple(self._specs) if len(self._specs) > 1 else self._specs[0]
+        self._check(self._handle.open(os.fspath(path), specs))
 
-    def part(self, number: int) -> None:
-        """Go on to a part."""
+    def start_part(self, number: int) -> None:
+        """Start a part."""
         if number:
             spec = self._specs[number]
             self._check(self._handle.open(os.fspath(self._path), spec, "AppendSubimage"))
 
-    def rows(self, first: int, values: Values) -> None:
-        """Rows (k, width, channels) from row ``first``. Raises `OSError`."""
+    def write_rows(self, first: int, values: Values) -> None:
+        """Write rows (k, width, channels) from row ``first``. Raises `OSError`."""
         self._check(self._handle.write_scanlines(first, first + len(values), 0, np.ascontiguousarray(values)))
 
     def close(self) -> None:
+        """Finish the file. Raises `OSError`."""
         self._check(self._handle.close())
 
-    def give_up(self) -> None:
-        """Close what is not whole, whatever becomes of it."""
+    def abort(self) -> None:
+        """Close an incomplete file and ignore errors."""
         self._handle.close()
-        self._handle.geterror()  # or it is said when the process ends
+        self._handle.geterror()  # otherwise it is printed when the process ends
 
-    def _check(self, well: bool) -> None:
-        if not well:
+    def _check(self, ok: bool) -> None:
+        if not ok:
             raise OSError(" ".join(self._handle.geterror().split()))
 
 
 @contextlib.contextmanager
 def open_writer(
-    path: str | os.PathLike[str], layouts: Sequence[Layout], *, force: bool = False
+    path: str | os.PathLike[str], parts: Sequence[OutputPart], *, force: bool = False
 ) -> Iterator[Writer]:
-    """A writer; the file takes its name when all rows are there. Raises `OutputError`."""
+    """Open a writer. The file appears under its name once all rows are written. Raises `OutputError`."""
     with atomic_write(path, force=force) as temporary:
-        writer = Writer(temporary, layouts)
+        writer = Writer(temporary, parts)
         try:
             yield writer
         except BaseException:
-            writer.give_up()
+            writer.abort()
             raise
         writer.close()
-        # Where the last bytes meet a full disk, nothing else tells.
+        # A disk that fills up with the last bytes gives no other sign.
         if not is_complete(temporary):
-            raise OutputError("was not written whole", path=path, hint="make room on the disk")
+            raise OutputError(
+                "the file is incomplete", code="incomplete-write", path=path, hint="free space on the disk"
+            )
 
 
 def is_complete(path: Path) -> bool:
-    """Whether the last rows of all parts can be read."""
+    """Return whether the last rows of all parts can be read."""
     try:
         with open_image(path) as image:
             for part in image.parts:
-                image.last(part)
+                image.last_row(part)
     except TextureError:
         return False
     return True

@@ -41,7 +41,7 @@ class Storage:
 
         NaN where rounding has left moments that no spectrum has.
         """
-        sample = _form(self.form, wavelengths).sample(cube, 1)
+        sample = _form(self.form, wavelengths).make_sampler(cube, 1)
         held = sample(rgb.astype(np.float32)).astype(DEPTHS[self.depth]).astype(float)
         model = cube.data.model
         if self.form == texture.Spectrum.name:
@@ -54,7 +54,9 @@ class Storage:
             return np.full((len(rgb), len(wavelengths)), np.nan)
 
 
-STORAGES = tuple(Storage(name, depth) for name, form in texture.FORMS.items() for depth in form().depths)
+STORAGES = tuple(
+    Storage(name, depth) for name, form in texture.PIXEL_ENCODINGS.items() for depth in form().depths
+)
 
 
 def choose_storage(
@@ -81,4 +83,4 @@ def choose_storage(
 def _form(name: str, wavelengths: Array) -> texture.PixelEncoding:
     if name == texture.Spectrum.name:
         return texture.Spectrum(tuple(wavelengths.tolist()))
-    return texture.FORMS[name]()
+    return texture.PIXEL_ENCODINGS[name]()

@@ -39,7 +39,7 @@ def read_weights(
             raise TextureError(f"is too large: {width} × {height}", path=path, hint=hint)
         values = np.concatenate([band for _, band in image.bands(part)])
     try:
-        return _labelled(part, values, codes, len(names)) if part.codes else _channels(part, values, names)
+        return _labelled(part, values, codes, len(names)) if part.max_code else _channels(part, values, names)
     except TextureError as error:
         raise TextureError(error.problem, path=path, hint=error.hint) from error
 
@@ -66,7 +66,7 @@ def _told(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, int]:
 
 def _labelled(part: Part, values: Values, codes: Mapping[int, int], count: int) -> Weights:
     places = colour_channels(part)
-    if places is None or part.codes != 255:
+    if places is None or part.max_code != 255:
         raise TextureError("holds no 8-bit colours", hint="make it an 8-bit PNG of labels")
     red, green, blue = (values[..., place].astype(np.int32) for place in places)
     found = (red << 16) | (green << 8) | blue
