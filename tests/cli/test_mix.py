@@ -8,7 +8,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-from tests.io.texture.conftest import held, planes, write_exr
+from tests.io.texture.conftest import planes, read_channels, write_exr
 
 BLUE, YELLOW = "#005fa0", "#ffd200"
 
@@ -104,9 +104,9 @@ def test_over_a_painting(run, home, cubes):
     options = ("--cube", cubes / "moments-8-macbeth.uplift", "--over", "in.exr")
     result = run("mix", "#c8342a", *options, "-o", "hidden.exr")
     assert result.stdout == "hidden.exr: 20 pixels painted over\n"
-    assert held(home / "hidden.exr", "RGB").std(axis=(0, 1)).max() < 1e-4
+    assert read_channels(home / "hidden.exr", "RGB").std(axis=(0, 1)).max() < 1e-4
     run("mix", "--dye", "#c8342a", "--thickness", 0, *options, "-o", "bare.exr")
-    np.testing.assert_allclose(held(home / "bare.exr", "RGB"), rgb, atol=1e-5)
+    np.testing.assert_allclose(read_channels(home / "bare.exr", "RGB"), rgb, atol=1e-5)
     assert "painted images are OpenEXR" in run("mix", BLUE, *options, "-o", "o.png", code=2).stderr
     assert "lights make no coat" in run("mix", "--light", BLUE, *options, "-o", "o.exr", code=2).stderr
 

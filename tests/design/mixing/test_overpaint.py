@@ -1,4 +1,4 @@
-"""Coats over images: the plain way beside the banded one, and what else is in the file."""
+"""Painting over images: the banded conversion agrees with a direct computation, other channels pass through."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from tests.io.texture.conftest import channels, held, planes, write_exr
+from tests.helpers import raises
+from tests.io.texture.conftest import channels, planes, read_channels, write_exr
 from uplift.common.errors import ColourError, OptionError, OutputError, TextureError
 from uplift.design.mixing import coats, overpaint
+from uplift.io.texture import convert
 
 
 @pytest.fixture(scope="module")
@@ -19,14 +21,14 @@ def glaze(small_cube):
     from uplift.design.mixing import surface
 
     atlas = small_cube.data.atlas
-    seen = small_cube.reflectance(atlas.rgb[atlas.names.index("red")])
-    face = surface.perpendicular(1.5)
-    return coats.of_paints(coats.palette([coats.paint(seen, surface=face)]), [1], 0.5, face)
+    red = small_cube.reflectance(atlas.rgb[atlas.names.index("red")])
+    oil = surface.perpendicular(1.5)
+    return coats.of_paints(coats.palette([coats.paint(red, surface=oil)]), [1], 0.5, oil)
 
 
 @pytest.fixture(scope="module")
-def brush(small_cube, glaze):
-    return overpaint.ready(small_cube, glaze, {"of": "red"}, threads=1)
+def overpainter(small_cube, glaze):
+    return overpaint.prepare(small_cube, glaze, {"of": "red"}, threads=1)
 
 
 @pytest.fixture
@@ -34,17 +36,17 @@ def image():
     return np.random.default_rng(1).random((6, 5, 3)).astype(np.float32)
 
 
-def test_pixels_are_uplifted_painted_and_seen(small_cube, glaze, brush, image):
+def test_colours_are_those_of_the_coated_spectra(small_cube, glaze, overpainter, image):
     expected = small_cube.data.sensor.rgb(glaze.over(small_cube.reflectance(image)))
-    np.testing.assert_allclose(brush.over(image), expected, atol=2e-6)
+    np.testing.assert_allclose(overpainter.paint(image), expected, atol=2e-6)
 
 
-def test_an_exr_comes_out_with_all_its_channels(brush, image, tmp_path):
+def test_other_channels_of_an_exr_pass_through(overpainter, image, tmp_path):
     alpha = np.linspace(0, 1, 30, dtype=np.float16).reshape(6, 5)
     write_exr(tmp_path / "in.exr", {**planes(image), "A": alpha})
-    painted = overpaint.paint_over(brush, tmp_path / "in.exr", tmp_path / "out.exr")
-    assert (painted.counts.pixels, painted.moved, painted.remarks) == (30, 0, ())
-    np.testing.assert_array_equal(held(tmp_path / "out.exr", "RGB"), brush.over(image))
+    result = convert(overpainter, tmp_path / "in.exr", tmp_path / "out.exr")
+    assert (result.counts.pixels, result.counts.painted_outside, result.warnings) == (30, 0, ())
+    np.testing.assert_array_equal(read_channels(tmp_path / "out.exr", "RGB"), overpainter.paint(image))
     found = channels(tmp_path / "out.exr")
     assert found["R"].dtype == np.float32
     np.testing.assert_array_equal(found["A"], alpha)
@@ -52,59 +54,63 @@ def test_an_exr_comes_out_with_all_its_channels(brush, image, tmp_path):
     assert json.loads(header["uplift.mix"]) == {"of": "red"}
 
 
-def test_codes_are_decoded(small_cube, brush, tmp_path):
+def test_8_bit_images_are_decoded(small_cube, overpainter, tmp_path):
     import matplotlib.image
 
     codes = np.random.default_rng(2).integers(0, 256, (4, 5, 3), dtype=np.uint8)
     matplotlib.image.imsave(tmp_path / "in.png", codes)
-    overpaint.paint_over(brush, tmp_path / "in.png", tmp_path / "out.exr")
-    expected = brush.over(small_cube.decode(codes).astype(np.float32))
-    np.testing.assert_allclose(held(tmp_path / "out.exr", "RGB"), expected, atol=1e-6)
+    convert(overpainter, tmp_path / "in.png", tmp_path / "out.exr")
+    expected = overpainter.paint(small_cube.decode(codes).astype(np.float32))
+    np.testing.assert_allclose(read_channels(tmp_path / "out.exr", "RGB"), expected, atol=1e-6)
 
 
-def test_hiding_paint_leaves_nothing_to_see(small_cube, image):
-    seen = small_cube.reflectance([0.3, 0.2, 0.1])
-    thick = overpaint.ready(small_cube, coats.of_paints(coats.palette([coats.paint(seen)]), [1]), threads=1)
-    np.testing.assert_allclose(thick.over(image), np.broadcast_to([0.3, 0.2, 0.1], image.shape), atol=1e-5)
+def test_opaque_paint_hides_the_image(small_cube, image):
+    paint = coats.paint(small_cube.reflectance([0.3, 0.2, 0.1]))
+    opaque = overpaint.prepare(small_cube, coats.of_paints(coats.palette([paint]), [1]), threads=1)
+    expected = np.broadcast_to([0.3, 0.2, 0.1], image.shape)
+    np.testing.assert_allclose(opaque.paint(image), expected, atol=1e-5)
 
 
-def test_no_paint_leaves_the_painting(small_cube, image):
-    seen = small_cube.reflectance([0.3, 0.2, 0.1])
-    none = coats.of_paints(coats.palette([coats.paint(seen)]), [1], 0.0)
-    np.testing.assert_allclose(overpaint.ready(small_cube, none, threads=1).over(image), image, atol=1e-5)
+def test_a_coat_of_zero_thickness_leaves_the_image(small_cube, image):
+    paint = coats.paint(small_cube.reflectance([0.3, 0.2, 0.1]))
+    none = coats.of_paints(coats.palette([paint]), [1], 0.0)
+    painted = overpaint.prepare(small_cube, none, threads=1).paint(image)
+    np.testing.assert_allclose(painted, image, atol=1e-5)
 
 
-def test_pixels_outside_are_moved_before_and_after_and_that_is_said(small_cube, image, tmp_path):
-    """A dye is as saturated as it is thick."""
-    seen = small_cube.reflectance([[0.9, 0.1, 0.02]])
-    dye = coats.of_dyes(seen, [1], 3.0)
+def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, image, tmp_path):
+    """A thick dye is saturated enough to leave the gamut."""
+    dye = coats.of_dyes(small_cube.reflectance([[0.9, 0.1, 0.02]]), [1], 3.0)
     write_exr(tmp_path / "in.exr", planes(image + 0.5))
-    brush = overpaint.ready(small_cube, dye, threads=1)
-    painted = overpaint.paint_over(brush, tmp_path / "in.exr", tmp_path / "out.exr")
-    assert 0 < painted.counts.outside < 30
-    assert painted.moved > 0
-    first, second = painted.remarks
-    assert f"{painted.counts.outside} of 30 pixels lie outside [0, 1]: scaled" in first
-    assert second == f"{painted.moved} painted pixels lie outside [0, 1]: scaled"
-    found = held(tmp_path / "out.exr", "RGB")
+    overpainter = overpaint.prepare(small_cube, dye, threads=1)
+    result = convert(overpainter, tmp_path / "in.exr", tmp_path / "out.exr")
+    assert 0 < result.counts.outside < 30
+    assert result.counts.painted_outside > 0
+    before, after = result.warnings
+    assert before.code == "pixels-out-of-gamut"
+    assert f"{result.counts.outside} of 30 pixels lie outside [0, 1]: scaled" in before.problem
+    assert after.code == "painted-pixels-out-of-gamut"
+    assert f"{result.counts.painted_outside} painted pixels lie outside [0, 1]: scaled" in after.problem
+    found = read_channels(tmp_path / "out.exr", "RGB")
     assert ((found >= 0) & (found <= 1)).all()
-    strict = overpaint.ready(small_cube, dye, out_of_gamut="error", threads=1)
-    with pytest.raises(ColourError, match=r"in\.exr: linear RGB"):
-        overpaint.paint_over(strict, tmp_path / "in.exr", tmp_path / "strict.exr")
+    strict = overpaint.prepare(small_cube, dye, out_of_gamut="error", threads=1)
+    with pytest.raises(ColourError) as caught:
+        convert(strict, tmp_path / "in.exr", tmp_path / "strict.exr")
+    assert caught.value.path == tmp_path / "in.exr"
     assert not (tmp_path / "strict.exr").exists()
 
 
-def test_bad_input(small_cube, glaze, brush, image, tmp_path):
-    with pytest.raises(OptionError, match="encoding"):
-        overpaint.ready(small_cube, glaze, encoding="srgb")
+def test_invalid_input_raises(small_cube, glaze, overpainter, image, tmp_path):
+    with raises(OptionError, "unknown-encoding"):
+        overpaint.prepare(small_cube, glaze, encoding="srgb")
     with pytest.raises(OptionError, match="out of gamut"):
-        overpaint.ready(small_cube, glaze, out_of_gamut="away")
-    with pytest.raises(TextureError, match="no such file"):
-        overpaint.paint_over(brush, tmp_path / "none.exr", tmp_path / "out.exr")
+        overpaint.prepare(small_cube, glaze, out_of_gamut="away")
+    with raises(TextureError, "file-not-found"):
+        convert(overpainter, tmp_path / "none.exr", tmp_path / "out.exr")
     write_exr(tmp_path / "in.exr", planes(image))
     with pytest.raises(OutputError, match="exists already"):
-        overpaint.paint_over(brush, tmp_path / "in.exr", tmp_path / "in.exr")
+        convert(overpainter, tmp_path / "in.exr", tmp_path / "in.exr")
     write_exr(tmp_path / "z.exr", {"Z": image[..., 0]})
-    with pytest.raises(TextureError, match="holds no colour"):
-        overpaint.paint_over(brush, tmp_path / "z.exr", tmp_path / "out.exr")
+    with raises(TextureError, "no-colour-channels"):
+        convert(overpainter, tmp_path / "z.exr", tmp_path / "out.exr")
     assert not (tmp_path / "out.exr").exists()

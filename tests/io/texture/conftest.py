@@ -1,4 +1,4 @@
-"""Images of every kind, and textures as OpenEXR's own reader sees them."""
+"""Fixtures: image files of all kinds, and textures read by the OpenEXR package."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ import pytest
 from uplift.io import texture
 
 PHOTO = Path(matplotlib.get_data_path()) / "sample_data" / "grace_hopper.jpg"
-AT = (400.0, 430.0, 460.0, 500.0, 540.0, 580.0, 620.0, 660.0, 700.0)
+WAVELENGTHS = (400.0, 430.0, 460.0, 500.0, 540.0, 580.0, 620.0, 660.0, 700.0)
 """nm"""
 
 
 def channels(path, part=0):
-    """(h, w) of every channel."""
+    """Read every channel (h, w) of a part."""
     return {
         name: channel.pixels
         for name, channel in OpenEXR.File(str(path), separate_channels=True).parts[part].channels.items()
     }
 
 
-def held(path, names, part=0):
-    """(h, w, N) of named channels."""
+def read_channels(path, names, part=0):
+    """Read named channels (h, w, N) of a part."""
     found = channels(path, part)
     return np.stack([found[name] for name in names], axis=-1)
 
 
 def write_exr(path, planes, **header):
-    """A part of planes (h, w)."""
+    """Write planes (h, w) as a single part."""
     OpenEXR.File({"type": OpenEXR.scanlineimage, **header}, planes).write(str(path))
     return path
 
@@ -41,7 +41,7 @@ def planes(rgb):
 
 
 def small_tiles():
-    """Of 16 × 16 pixels."""
+    """Describe tiles of 16 × 16 pixels."""
     found = OpenEXR.TileDescription()
     found.xSize = found.ySize = 16
     return found
@@ -49,13 +49,13 @@ def small_tiles():
 
 @pytest.fixture(scope="session")
 def spectral(small_cube):
-    """Nine wavelengths of the ColorChecker cube, as many as coefficients: compiled once for both."""
-    return texture.prepare(small_cube, texture.Spectrum(AT), depth="float", threads=1)
+    """Uplifter for nine wavelengths, as many as coefficients, so that both share one compilation."""
+    return texture.prepare(small_cube, texture.Spectrum(WAVELENGTHS), depth="float", threads=1)
 
 
 @pytest.fixture(scope="session")
 def colours():
-    """(20, 30, 3) linear RGB in [0, 1], float32; corners of the cube among them."""
+    """Linear RGB (20, 30, 3) in [0, 1], float32, with the corners of the RGB cube."""
     rgb = np.random.default_rng(0).random((20, 30, 3)).astype(np.float32)
     rgb[0, :8] = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1]), axis=-1).reshape(8, 3)
     return rgb

@@ -1,4 +1,4 @@
-"""What files say their colours are of, and that it is said when they are of another space."""
+"""Colour spaces that image files state, and warnings about spaces that differ from the cube's."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SRGB_TABLE = struct.pack(">4sII1024H", b"curv", 0, 1024, *SRGB_1024)
 
 
 def d50(space):
-    """Linear RGB of a space of colour-science to XYZ, adapted to D50."""
+    """Return the matrix from linear RGB of a colour-science space to XYZ, adapted to D50."""
     found = colour.RGB_COLOURSPACES[space]
     white = colour.xy_to_XYZ(found.whitepoint)
     adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
@@ -41,7 +41,7 @@ def d50(space):
 
 
 def by_matrix(space, curve):
-    """A display profile of three colorants and a curve."""
+    """Build a display profile of three colorants and a tone curve."""
     tags = {
         name: struct.pack(">4sI3i", b"XYZ ", 0, *(round(65536 * value) for value in column))
         for name, column in zip((b"rXYZ", b"gXYZ", b"bXYZ"), d50(space).T, strict=True)
@@ -50,7 +50,7 @@ def by_matrix(space, curve):
 
 
 def by_table(space):
-    """The same with the curve of sRGB, and a table of what each corner of RGB has for a matrix."""
+    """Build a profile with the sRGB curve, and a lookup table of the corners of RGB for a matrix."""
     corners = np.maximum(np.array(list(itertools.product((0, 1), repeat=3))) @ d50(space).T, 0)
     head = struct.pack(">4sI4B9i2H", b"mft2", 0, 3, 3, 2, 0, *(65536 * np.eye(3, dtype=int)).ravel(), 1024, 2)
     numbers = [*np.tile(SRGB_1024, 3), *(32768 * corners).round().astype(int).ravel(), *(0, 65535) * 3]
@@ -74,39 +74,42 @@ def save(path, data, codes=128):
     return path
 
 
-def remarks(spectral, path):
-    return texture.convert(spectral, path, path.with_suffix(".exr"), force=True).remarks
+def problems(spectral, path):
+    """Convert an image and return the text of its colour-space warnings."""
+    warnings = texture.convert(spectral, path, path.with_suffix(".exr"), force=True).warnings
+    assert {warning.code for warning in warnings} <= {"colour-space-mismatch"}
+    return tuple(warning.problem for warning in warnings)
 
 
-SRGB_TOO = {
+SRGB_PROFILES = {
     "by lcms": ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes(),
     "parameters": by_matrix("sRGB", SRGB_PARA),
     "a table": by_matrix("sRGB", SRGB_TABLE),
 }
 
 
-@pytest.mark.parametrize("data", SRGB_TOO.values(), ids=SRGB_TOO)
+@pytest.mark.parametrize("data", SRGB_PROFILES.values(), ids=SRGB_PROFILES)
 @pytest.mark.parametrize("suffix", ["png", "jpg", "tif"])
-def test_profiles_of_srgb_need_no_remark(data, suffix, spectral, tmp_path):
-    assert remarks(spectral, save(tmp_path / f"a.{suffix}", data)) == ()
+def test_srgb_profiles_trigger_no_warning(data, suffix, spectral, tmp_path):
+    assert problems(spectral, save(tmp_path / f"a.{suffix}", data)) == ()
 
 
-CANNOT = "primaries that cannot be read and a curve that cannot be read"
+UNREADABLE = "unreadable primaries and an unreadable tone curve"
 OTHERS = [
     (by_matrix("Display P3", SRGB_PARA), "other primaries (Display P3)"),
-    (by_table("sRGB"), "primaries that cannot be read (sRGB)"),
-    (by_matrix("Adobe RGB (1998)", GAMMA), "other primaries and another curve (Adobe RGB (1998))"),
-    (by_matrix("sRGB", GAMMA), "another curve (sRGB)"),
-    (by_matrix("sRGB", LINEAR), "another curve (sRGB)"),
-    (by_matrix("sRGB", b"mft2 and so on"), f"{CANNOT} (sRGB)"),
+    (by_table("sRGB"), "unreadable primaries (sRGB)"),
+    (by_matrix("Adobe RGB (1998)", GAMMA), "other primaries and another tone curve (Adobe RGB (1998))"),
+    (by_matrix("sRGB", GAMMA), "another tone curve (sRGB)"),
+    (by_matrix("sRGB", LINEAR), "another tone curve (sRGB)"),
+    (by_matrix("sRGB", b"mft2 and so on"), f"{UNREADABLE} (sRGB)"),
 ]
 
 
 @pytest.mark.parametrize("suffix", ["png", "jpg", "tif"])
-@pytest.mark.parametrize(("data", "told"), OTHERS)
-def test_profiles_of_other_spaces_are_told(suffix, data, told, spectral, tmp_path):
+@pytest.mark.parametrize(("data", "mismatch"), OTHERS)
+def test_profiles_of_other_spaces_trigger_a_warning(suffix, data, mismatch, spectral, tmp_path):
     path = save(tmp_path / f"a.{suffix}", data)
-    assert remarks(spectral, path) == (f"the image names {told}; its colours are taken for sRGB",)
+    assert problems(spectral, path) == (f"the image states {mismatch}; its colours are read as sRGB",)
 
 
 @pytest.mark.parametrize("suffix", ["jpg", "tif"])  # PNG files lose them when they are read
@@ -119,20 +122,23 @@ def test_profiles_of_other_spaces_are_told(suffix, data, told, spectral, tmp_pat
     ],
     ids=["cut short", "of greys", "none"],
 )
-def test_profiles_that_cannot_be_read_are_told(suffix, data, name, spectral, tmp_path):
-    (told,) = remarks(spectral, save(tmp_path / f"a.{suffix}", data))
-    assert told == f"the image names {CANNOT} ({name}); its colours are taken for sRGB"
+def test_unreadable_profiles_trigger_a_warning(suffix, data, name, spectral, tmp_path):
+    (problem,) = problems(spectral, save(tmp_path / f"a.{suffix}", data))
+    assert problem == f"the image states {UNREADABLE} ({name}); its colours are read as sRGB"
 
 
-def test_the_profile_of_a_wide_cube_s_own_space_needs_no_remark(tmp_path):
-    """Adobe RGB's white is adapted to D50 in the profile, and the cube's to its illuminant."""
+def test_the_profile_of_a_wide_gamut_cube_matches_its_space(tmp_path):
+    """The profile adapts white to D50, the cube adapts it to its illuminant."""
     path = save(tmp_path / "a.png", by_matrix("Adobe RGB (1998)", GAMMA))
     handle = OpenImageIO.ImageInput.open(str(path))
-    found = colour_profile.profile_of(handle.spec())
+    found = colour_profile.read_profile(handle.spec())
     handle.close()
-    assert found.unlike(observer.sensor("Adobe RGB (1998)"), codes=True) == ""
-    assert found.unlike(observer.sensor("Adobe RGB (1998)", "A"), codes=True) == ""
-    assert found.unlike(observer.sensor("Display P3"), codes=True) == "other primaries and another curve"
+    assert found.mismatch(observer.sensor("Adobe RGB (1998)"), encoded=True) == ""
+    assert found.mismatch(observer.sensor("Adobe RGB (1998)", "A"), encoded=True) == ""
+    assert (
+        found.mismatch(observer.sensor("Display P3"), encoded=True)
+        == "other primaries and another tone curve"
+    )
 
 
 def chunk(name, data):
@@ -140,31 +146,31 @@ def chunk(name, data):
 
 
 @pytest.mark.parametrize(
-    ("points", "told"),
+    ("points", "mismatch"),
     [
         ((1, 13), None),
         ((12, 13), "other primaries (CICP 12, 13)"),
-        ((9, 16), "other primaries and a curve that cannot be read (CICP 9, 16)"),
-        ((2, 13), "primaries that cannot be read (CICP 2, 13)"),
+        ((9, 16), "other primaries and an unreadable tone curve (CICP 9, 16)"),
+        ((2, 13), "unreadable primaries (CICP 2, 13)"),
     ],
 )
-def test_code_points_of_a_png_are_told(points, told, spectral, tmp_path):
+def test_code_points_of_a_png_are_compared(points, mismatch, spectral, tmp_path):
     path = save(tmp_path / "a.png", None)
     data = path.read_bytes()
     path.write_bytes(data[:33] + chunk(b"cICP", bytes([*points, 0, 1])) + data[33:])
-    expected = () if told is None else (f"the image names {told}; its colours are taken for sRGB",)
-    assert remarks(spectral, path) == expected
+    expected = () if mismatch is None else (f"the image states {mismatch}; its colours are read as sRGB",)
+    assert problems(spectral, path) == expected
 
 
-def test_spoilt_profiles_are_read_as_far_as_they_go():
-    whole = by_matrix("Display P3", SRGB_PARA)
+def test_corrupt_profiles_do_not_raise():
+    intact = by_matrix("Display P3", SRGB_PARA)
     rng = np.random.default_rng(0)
     read = 0
-    for length in rng.integers(0, 2 * len(whole), 300):
-        spoilt = bytearray(whole[:length])
-        for place in rng.integers(0, max(len(spoilt), 1), 8 if spoilt else 0):
-            spoilt[place] = rng.integers(256)
-        found = colour_profile._icc("spoilt", bytes(spoilt))
+    for length in rng.integers(0, 2 * len(intact), 300):
+        corrupt = bytearray(intact[:length])
+        for place in rng.integers(0, max(len(corrupt), 1), 8 if corrupt else 0):
+            corrupt[place] = rng.integers(256)
+        found = colour_profile._read_icc("corrupt", bytes(corrupt))
         assert found.greys is None or found.greys.shape == (256, 3)
         read += found.greys is not None
     assert 0 < read < 300

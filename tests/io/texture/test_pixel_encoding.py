@@ -1,4 +1,4 @@
-"""What textures hold, read by others, evaluates to the image again."""
+"""Pixel encodings: what other readers evaluate from a texture reproduces the image."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import OpenEXR
 import pytest
 
 from tests.helpers import raises, with_points
-from tests.io.texture.conftest import AT, PHOTO, channels, held, planes, write_exr
+from tests.io.texture.conftest import PHOTO, WAVELENGTHS, channels, planes, read_channels, write_exr
 from uplift import models
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, TextureError
 from uplift.io import texture
 
 with warnings.catch_warnings():
@@ -24,7 +24,7 @@ with warnings.catch_warnings():
 
 @pytest.fixture(scope="module")
 def photo(tmp_path_factory, small_cube):
-    """A corner of a photograph as 8-bit PNG, and its linear RGB."""
+    """Crop of a photograph as 8-bit PNG, and its linear RGB."""
     from PIL import Image
 
     path = tmp_path_factory.mktemp("photo") / "photo.png"
@@ -34,9 +34,9 @@ def photo(tmp_path_factory, small_cube):
 
 
 @pytest.mark.filterwarnings("ignore::colour.utilities.ColourRuntimeWarning")
-@pytest.mark.parametrize(("depth", "most"), [("float", 0.02), ("half", 0.1)])
-def test_a_spectral_image_is_the_photograph_to_the_reader_of_colour_science(
-    photo, small_cube, tmp_path, depth, most
+@pytest.mark.parametrize(("depth", "max_error"), [("float", 0.02), ("half", 0.1)])
+def test_colour_science_reads_the_photograph_from_a_spectral_image(
+    photo, small_cube, tmp_path, depth, max_error
 ):
     path, linear = photo
     uplifter = texture.prepare(small_cube, depth=depth)
@@ -50,18 +50,18 @@ def test_a_spectral_image_is_the_photograph_to_the_reader_of_colour_science(
     assert found.min() >= 0
     assert found.max() <= 1
     rgb, _ = components_to_sRGB_Fichet2021({"T": (at, found.astype(float))})
-    assert delta_e_rgb(small_cube.data.sensor, linear, rgb).mean() < most
+    assert delta_e_rgb(small_cube.data.sensor, linear, rgb).mean() < max_error
     expected = small_cube.reflectance(linear)
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6 if depth == "float" else 3e-4)
 
 
 def test_a_spectral_image_has_the_layout_of_the_paper(photo, small_cube, tmp_path):
-    uplifter = texture.prepare(small_cube, texture.Spectrum((*AT[:-2], 1000 / 1.5, 750.5)))
+    uplifter = texture.prepare(small_cube, texture.Spectrum((*WAVELENGTHS[:-2], 1000 / 1.5, 750.5)))
     texture.convert(uplifter, photo[0], tmp_path / "out.exr")
     (part,) = OpenEXR.File(str(tmp_path / "out.exr"), separate_channels=True).parts
     assert part.header["spectralLayoutVersion"] == "1.0"
     assert part.type() == OpenEXR.scanlineimage
-    names = [f"T.{wavelength:.0f},000000nm" for wavelength in AT[:-2]]
+    names = [f"T.{wavelength:.0f},000000nm" for wavelength in WAVELENGTHS[:-2]]
     assert set(part.channels) == {*"RGB", *names, "T.666,666667nm", "T.750,500000nm"}
     assert {channel.pixels.dtype for channel in part.channels.values()} == {np.dtype(np.float16)}
     rgb = np.stack([part.channels[letter].pixels for letter in "RGB"], axis=-1)
@@ -69,16 +69,16 @@ def test_a_spectral_image_has_the_layout_of_the_paper(photo, small_cube, tmp_pat
 
 
 def evaluated(path, prefix):
-    """Reflectance by what the file tells alone."""
+    """Return reflectance as a function of wavelength, from nothing but the file."""
     header = OpenEXR.File(str(path), header_only=True).parts[0].header
     model = models.from_description(json.loads(header["uplift.model"]))
-    values = held(path, [f"{prefix}.{index:02}" for index in range(model.count)]).astype(float)
+    values = read_channels(path, [f"{prefix}.{index:02}" for index in range(model.count)]).astype(float)
     multipliers = model.from_storage(values) if prefix == "moment" else values
     return lambda at: model.squash(multipliers @ model.basis(at).T)
 
 
 @pytest.mark.parametrize("cube", ["small_cube", "small_sigmoid_cube"])
-def test_multipliers_evaluate_to_the_very_colour(cube, photo, tmp_path, request):
+def test_multipliers_evaluate_to_the_exact_colour(cube, photo, tmp_path, request):
     cube = request.getfixturevalue(cube)
     texture.convert(texture.prepare(cube, texture.Multipliers()), photo[0], tmp_path / "out.exr")
     sensor = cube.data.sensor
@@ -92,14 +92,14 @@ def test_moments_are_those_of_the_cube(small_cube, colours, tmp_path):
     texture.convert(texture.prepare(small_cube, texture.Moments()), source, tmp_path / "out.exr")
     names = [f"moment.{index:02}" for index in range(9)]
     expected = small_cube.coefficients(colours)
-    np.testing.assert_allclose(held(tmp_path / "out.exr", names), expected, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(read_channels(tmp_path / "out.exr", names), expected, rtol=0, atol=1e-6)
     at = small_cube.data.sensor.wavelengths
     answer = small_cube.reflectance(colours[1:].astype(float), mode="moments")
     found = evaluated(tmp_path / "out.exr", "moment")(at)[1:]
     assert np.median(np.abs(found - answer)) < 1e-5
 
 
-def test_the_header_tells_which_cube_and_how(spectral, small_cube, colours, tmp_path):
+def test_the_header_identifies_the_cube_and_the_settings(spectral, small_cube, colours, tmp_path):
     texture.convert(spectral, write_exr(tmp_path / "in.exr", planes(colours)), tmp_path / "out.exr")
     header = OpenEXR.File(str(tmp_path / "out.exr"), header_only=True).parts[0].header
     assert header["uplift.space"] == "sRGB"
@@ -107,35 +107,35 @@ def test_the_header_tells_which_cube_and_how(spectral, small_cube, colours, tmp_
     assert len(header["uplift.cube"]) == 64
     assert json.loads(header["uplift.model"]) == small_cube.data.model.describe()
     made = json.loads(header["uplift.texture"])
-    assert made.pop("wavelengths") == list(AT)
+    assert made.pop("wavelengths") == list(WAVELENGTHS)
     assert made == {"as": "spectrum", "depth": "float", "encoding": "auto", "out_of_gamut": "clip"}
     srgb = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]
     np.testing.assert_allclose(header["chromaticities"], srgb, atol=2e-4)
 
 
-def test_what_cannot_be_is_refused(small_cube, small_sigmoid_cube):
-    with pytest.raises(OptionError, match="a sigmoid cube has no moments; use --as multipliers"):
+def test_impossible_settings_raise(small_cube, small_sigmoid_cube):
+    with raises(OptionError, "no-moments"):
         texture.prepare(small_sigmoid_cube, texture.Moments())
-    with pytest.raises(OptionError, match="multipliers are not exact enough as half; use float"):
+    with raises(OptionError, "unsupported-depth"):
         texture.prepare(small_cube, texture.Multipliers(), depth="half")
-    with pytest.raises(OptionError, match="unknown encoding 'log'"):
+    with raises(OptionError, "unknown-encoding"):
         texture.prepare(small_cube, encoding="log")
     with raises(OptionError, "unknown-gamut-mapping"):
         texture.prepare(small_cube, out_of_gamut="squash")
     for unordered in ((500.0, 400.0), (500.0, 500.0), (500.0, 500.0 + 1e-8)):
-        with pytest.raises(OptionError, match="ascend"):
+        with raises(OptionError, "wavelengths-not-ascending"):
             texture.prepare(small_cube, texture.Spectrum(unordered))
     with pytest.raises(OptionError, match="positive numbers in nm"):
         texture.prepare(small_cube, texture.Spectrum((-5.0,)))
 
 
-def test_multipliers_as_half_would_be_wrong(small_cube):
-    """The guard has a reason: near black and white multipliers exceed what half holds."""
+def test_multipliers_exceed_the_range_of_half(small_cube):
+    """Near black and white multipliers exceed the range of half."""
     sample = texture.prepare(small_cube, texture.Multipliers()).sample
     assert np.abs(sample(np.array([[0, 0, 0], [1, 1, 1]], dtype=np.float32))).max() > 65504
 
 
-def test_colours_that_no_reflectance_has_are_counted(small_cube, spectral, colours, tmp_path):
+def test_pixels_near_unrealisable_nodes_are_counted(small_cube, spectral, colours, tmp_path):
     from uplift.lattice import Status
 
     data = small_cube.data
@@ -147,17 +147,17 @@ def test_colours_that_no_reflectance_has_are_counted(small_cube, spectral, colou
     uplifter = texture.prepare(wide, texture.Moments(), threads=1)
     source = write_exr(tmp_path / "in.exr", planes(colours))
     counts = texture.convert(uplifter, source, tmp_path / "out.exr").counts
-    beside = (colours > data.lattice.nodes[-2]).all(axis=-1)
-    assert 0 < counts.missed <= beside.sum()
-    assert "border on colours that no reflectance has" in counts.remarks()[0]
-    assert spectral.misses is None
+    near = (colours > data.lattice.nodes[-2]).all(axis=-1)
+    assert 0 < counts.unrealisable <= near.sum()
+    assert counts.warnings()[0].code == "pixels-unrealisable"
+    assert spectral.rgb_error is None
 
 
-def test_channels_of_the_source_are_no_surprise(colours, spectral, tmp_path):
-    """A file's own spectrum is not mixed with ours."""
-    from uplift.common.errors import TextureError
-
+def test_a_source_with_a_spectral_channel_raises(colours, spectral, tmp_path):
+    """A file's own spectrum is not confused with the texture's."""
     taken = {**planes(colours), spectral.channels[0]: colours[..., 0]}
-    with pytest.raises(TextureError, match=r"in\.exr: has a channel 'T\.400,000000nm' beside its colour"):
+    with raises(TextureError, "duplicate-channel") as caught:
         texture.convert(spectral, write_exr(tmp_path / "in.exr", taken), tmp_path / "out.exr")
-    assert channels(tmp_path / "in.exr")  # still there
+    assert caught.value.path == tmp_path / "in.exr"
+    assert "'T.400,000000nm'" in caught.value.problem
+    assert channels(tmp_path / "in.exr")  # the source is untouched

@@ -1,4 +1,4 @@
-"""Sequences: over processes, on a cluster, and again where they were left."""
+"""Sequences of images: on processes, on a cluster, and resumed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.io.texture.conftest import held, planes, write_exr
+from tests.helpers import raises
+from tests.io.texture.conftest import planes, read_channels, write_exr
 from uplift.common.errors import OptionError, OutputError, TextureError
 from uplift.io import texture
 from uplift.io.texture.sequence import run
@@ -18,19 +19,19 @@ CUBE = "moments-8-macbeth.uplift"
 
 
 @pytest.fixture
-def recipe(repository):
+def sequence_settings(repository):
     return texture.TextureSettings(str(repository / "cubes" / CUBE), texture.Moments(), None, "auto", 1)
 
 
 @pytest.fixture
-def jobs(recipe, colours, tmp_path):
-    """Three frames, the second damaged."""
+def jobs(sequence_settings, colours, tmp_path):
+    """Jobs for three frames, the second damaged."""
     (tmp_path / "out").mkdir()
     for frame in range(3):
         write_exr(tmp_path / f"shot.{frame}.exr", planes(np.roll(colours, frame, axis=0)))
     (tmp_path / "shot.1.exr").write_text("no image")
     return [
-        texture.Job(recipe, tmp_path / f"shot.{frame}.exr", tmp_path / "out" / f"shot.{frame}.exr")
+        texture.Job(sequence_settings, tmp_path / f"shot.{frame}.exr", tmp_path / "out" / f"shot.{frame}.exr")
         for frame in range(3)
     ]
 
@@ -40,17 +41,18 @@ def check(jobs, results, small_cube, colours):
     assert set(by_name) == {job.source.name for job in jobs}
     bad = by_name["shot.1.exr"]
     assert isinstance(bad, texture.Failure)
-    assert "shot.1.exr" in str(bad.error)
+    assert bad.error.code == "unreadable-image"
+    assert bad.error.path == jobs[1].source
     assert not jobs[1].target.exists()
     names = [f"moment.{index:02}" for index in range(9)]
     for frame in (0, 2):
         expected = small_cube.coefficients(np.roll(colours, frame, axis=0))
-        np.testing.assert_allclose(held(jobs[frame].target, names), expected, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(read_channels(jobs[frame].target, names), expected, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_processes(count, jobs, small_cube, colours):
-    with texture.processes(count) as executor:
+    with texture.process_executor(count) as executor:
         check(jobs, texture.convert_all(jobs, executor), small_cube, colours)
 
 
@@ -58,27 +60,30 @@ def test_processes(count, jobs, small_cube, colours):
 def test_a_dask_cluster(jobs, small_cube, colours):
     distributed = pytest.importorskip("distributed")
     options = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
-    with distributed.LocalCluster(**options) as local, texture.cluster(local.scheduler_address) as executor:
+    with (
+        distributed.LocalCluster(**options) as local,
+        texture.dask_executor(local.scheduler_address) as executor,
+    ):
         check(jobs, texture.convert_all(jobs, executor), small_cube, colours)
 
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense://"])
-def test_no_cluster(address, monkeypatch):
+def test_an_unreachable_cluster_raises(address, monkeypatch):
     distributed = pytest.importorskip("distributed")
     client = distributed.Client
     monkeypatch.setattr(distributed, "Client", lambda address, timeout: client(address, timeout="0.2s"))
-    with pytest.raises(OptionError, match="no Dask scheduler answers"), texture.cluster(address):
+    with raises(OptionError, "dask-unreachable"), texture.dask_executor(address):
         pass
 
 
-def test_dask_is_asked_for_where_it_is_missing(monkeypatch):
+def test_missing_dask_raises(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
-    with pytest.raises(OptionError, match="not installed; install it"), texture.cluster("tcp://here:1"):
+    with raises(OptionError, "dask-not-installed"), texture.dask_executor("tcp://here:1"):
         pass
 
 
-def test_what_is_there_newer_and_whole_is_left_out(jobs, recipe):
+def test_resume_leaves_out_complete_newer_textures(jobs):
     run(jobs[0])
     target = jobs[0].target
     assert texture.pending([jobs[0]], resume=True) == []
@@ -99,26 +104,25 @@ def test_what_is_there_newer_and_whole_is_left_out(jobs, recipe):
     assert texture.pending(forced, resume=True) == forced
 
 
-def test_textures_made_otherwise_are_not_left_out(jobs, recipe):
+def test_resume_repeats_textures_of_other_settings(jobs):
     run(jobs[0])
     for change in (
         {"depth": "half"},
         {"encoding": "linear"},
-        {"form": texture.Multipliers()},
+        {"pixel_encoding": texture.Multipliers()},
         {"cube": None},
     ):
-        other = replace(jobs[0], recipe=replace(recipe, **change), force=True)
+        other = replace(jobs[0], settings=replace(jobs[0].settings, **change), force=True)
         assert texture.pending([other], resume=True) == [other]
 
 
-def test_two_images_of_one_name_are_refused(jobs):
+def test_two_images_with_one_target_raise(jobs):
     twice = [jobs[0], replace(jobs[2], target=jobs[0].target)]
-    with pytest.raises(TextureError, match="would both become"):
+    with raises(TextureError, "duplicate-target"):
         texture.pending(twice)
 
 
-def test_what_has_not_begun_is_given_up(jobs):
-    """Whoever stops listening does not pay for the rest."""
+def test_closing_the_iterator_cancels_pending_jobs(jobs):
     with ThreadPoolExecutor(1) as executor:
         results = texture.convert_all([jobs[0]] * 50, executor)
         next(results)
@@ -126,6 +130,6 @@ def test_what_has_not_begun_is_given_up(jobs):
     assert executor._work_queue.qsize() <= 1
 
 
-def test_no_processes_cannot_work():
-    with pytest.raises(OptionError, match="0 processes"), texture.processes(0):
+def test_the_number_of_processes_is_positive():
+    with raises(OptionError, "too-few-processes"), texture.process_executor(0):
         pass

@@ -187,7 +187,9 @@ class Decoder:
             colours = np.where(finite[..., None], colours, clamped)
         mapped = map_to_gamut(colours, self.sensor, self.method)
         not_finite = int((~finite).sum())
-        return self.function(mapped.rgb), Counts(pixels, mapped.count, not_finite, max_change=mapped.max_change)
+        return self.function(mapped.rgb), Counts(
+            pixels, mapped.count, not_finite, max_change=mapped.max_change
+        )
 
 
 def _all_inside(colours: Values) -> bool:
