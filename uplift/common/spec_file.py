@@ -1,0 +1,427 @@
+"""TOML and JSON files checked against pydantic models, with errors that name file, line, key and received value.
+
+A model of such a file derives from `SpecModel`. `read_toml` and `read_json` read a file into a `SpecFile`, whose
+`validate` returns the model or raises the error type of the caller:
+
+    scene.toml:3: lights[1]: unknown illuminant 'D66'; did you mean 'D65', 'D60', 'D50'?
+
+Only modules that read such files import this one: it loads pydantic.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import re
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NoReturn, TypeVar
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter, ValidationError, model_validator
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+from uplift.common.arrays import StrPath
+from uplift.common.errors import UpliftError
+
+__all__ = [
+    "SpecFile",
+    "SpecModel",
+    "format_value",
+    "nearest",
+    "problem",
+    "read_json",
+    "read_toml",
+    "resolves",
+]
+
+MAX_BYTES = 16 << 20
+"""Largest file that is read."""
+MAX_DEPTH = 32
+"""Deepest nesting of tables and lists."""
+MAX_VALUE = 40
+"""Characters of a received value in a message."""
+MAX_PROBLEM = 400
+"""Characters of a message."""
+TYPE_CODES = {
+    "greater_than": "out-of-range",
+    "greater_than_equal": "out-of-range",
+    "less_than": "out-of-range",
+    "less_than_equal": "out-of-range",
+    "finite_number": "out-of-range",
+    "too_short": "too-few-items",
+    "too_long": "too-many-items",
+}
+"""Our codes for pydantic's types of errors; all others are of the wrong type."""
+CONSTRAINTS = {
+    "dict_type": "must be a table",
+    "list_type": "must be a list",
+    "model_type": "must be a table",
+    "string_type": "must be text in quotes",
+    "string_unicode": "must be valid Unicode",
+    "too_short": "must have at least {min_length} items",
+    "too_long": "must have at most {max_length} items",
+}
+"""Constraints in terms of the file where pydantic's messages are in terms of Python."""
+TAG = "~"
+"""First character of the tags of discriminated unions, which are not keys of a file."""
+
+Model = TypeVar("Model")
+Key = str | int
+
+
+class SpecModel(BaseModel):
+    """A table of a spec file: frozen, with an error and a suggestion for unknown keys."""
+
+    model_config = ConfigDict(
+        frozen=True, alias_generator=lambda name: name.replace("_", "-"), arbitrary_types_allowed=True
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_unknown_keys(cls, values: Any) -> Any:
+        if isinstance(values, dict):
+            known = [field.alias or name for name, field in cls.model_fields.items()]
+            for key in values:
+                if key not in known:
+                    raise problem("unknown-key", "unknown key", nearest(key, known), key=key)
+        return values
+
+
+def problem(code: str, text: str, hint: str = "", *, key: Key | None = None) -> PydanticCustomError:
+    """Return the error that a validator of a `SpecModel` raises.
+
+    Parameters
+    ----------
+    code : str
+        Code of the `UpliftError` that is raised in the end.
+    text : str
+        The constraint and the value received.
+    hint : str
+        How to solve the problem.
+    key : str or int, optional
+        Key below the value being validated that the error belongs to.
+
+    Returns
+    -------
+    PydanticCustomError
+        To be raised.
+    """
+    context = {"problem": text, "hint": hint, "code": code, "key": key}
+    return PydanticCustomError("uplift", "{problem}", context)
+
+
+def resolves(look_up: Callable[[Any], Any]) -> AfterValidator:
+    """Return a validator for names that a function must know.
+
+    Parameters
+    ----------
+    look_up : callable
+        Raises `UpliftError` for names that it does not know; its result is ignored.
+
+    Returns
+    -------
+    AfterValidator
+        For use in ``Annotated``. The value stays as it is.
+    """
+
+    def check(value: Any) -> Any:
+        try:
+            look_up(value)
+        except UpliftError as error:
+            raise problem(error.code, error.problem, error.hint) from error
+        return value
+
+    return AfterValidator(check)
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Suggest names similar to an unknown one.
+
+    Parameters
+    ----------
+    name : str
+        The unknown name.
+    known : iterable of str
+        All names that could be meant.
+
+    Returns
+    -------
+    str
+        A question with up to three names, or the first six if none is similar; empty if there are none.
+
+    Examples
+    --------
+    >>> nearest("tolerence", ["textures", "tolerance", "quantile"])
+    "did you mean 'tolerance', 'textures'?"
+    """
+    known = list(known)
+    names = difflib.get_close_matches(str(name)[:100], known, n=3, cutoff=0.4) or known[:6]
+    quoted = ", ".join(f"'{each}'" for each in names)
+    return f"did you mean {quoted}?" if quoted else ""
+
+
+@dataclass(frozen=True)
+class SpecFile:
+    """A parsed file.
+
+    Parameters
+    ----------
+    path : Path
+        Where it lies.
+    text : str
+        Its text, to find the lines of keys.
+    values : mapping
+        Its tables and values.
+    error : type of UpliftError
+        The type of the errors raised.
+    """
+
+    path: Path
+    text: str
+    values: Mapping[str, Any]
+    error: type[UpliftError]
+
+    def validate(self, model: type[Model]) -> Model:
+        """Check the values against a model.
+
+        Parameters
+        ----------
+        model : type
+            A `SpecModel`, or any other type that pydantic validates.
+
+        Returns
+        -------
+        object
+            An instance of the model.
+
+        Raises
+        ------
+        UpliftError
+            For the first value that does not fit, of the type of `error`.
+        """
+        try:
+            return TypeAdapter(model).validate_python(self.values)
+        except ValidationError as error:
+            details = error.errors(include_url=False)[0]
+        self._raise(details)
+
+    def fail(self, keys: Iterable[Key], text: str, *, code: str, hint: str = "") -> NoReturn:
+        """Raise the error for the value at a key path.
+
+        Parameters
+        ----------
+        keys : iterable of str or int
+            Path of the value; empty for the file.
+        text : str
+            The constraint and the value received.
+        code : str
+            Code of the error.
+        hint : str
+            How to solve the problem.
+
+        Raises
+        ------
+        UpliftError
+            Always.
+        """
+        path = tuple(keys)
+        where = f"{_dotted(path)}{' ' if text.startswith('must ') else ': '}" if path else ""
+        line = _find_line(self.text, path)
+        text = _one_line(where + text)
+        raise self.error(text, code=code, path=self.path, line=line, hint=hint)
+
+    def _raise(self, details: ErrorDetails) -> NoReturn:
+        keys = tuple(key for key in details["loc"] if key != "[key]" and not str(key).startswith(TAG))
+        context = details.get("ctx", {})
+        if details["type"] == "uplift":
+            below = () if context["key"] is None else (context["key"],)
+            self.fail(keys + below, context["problem"], code=context["code"], hint=context["hint"])
+        if details["type"] == "missing":
+            self.fail(keys, "required key is missing", code="missing-key", hint="add it")
+        default = re.sub("^(Input|Value) should", "must", details["msg"])
+        constraint = CONSTRAINTS.get(details["type"], default).format_map(context)
+        code = TYPE_CODES.get(details["type"], "wrong-type")
+        self.fail(keys, f"{constraint}, got {format_value(details['input'])}", code=code)
+
+
+def read_toml(path: StrPath, error: type[UpliftError]) -> SpecFile:
+    """Read a TOML file.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+    error : type of UpliftError
+        The type of the errors raised.
+
+    Returns
+    -------
+    SpecFile
+        Its values, not validated yet.
+
+    Raises
+    ------
+    UpliftError
+        For a file that cannot be read, is too large, nests too deeply or is not TOML.
+    """
+    text = _read_text(Path(path), error)
+    try:
+        values = tomllib.loads(text)
+    except RecursionError:
+        raise _too_deep(path, error) from None
+    except ValueError as cause:  # TOMLDecodeError, and integers of too many digits
+        at = re.search(r"at line (\d+)", str(cause))
+        line = int(at[1]) if at else max(len(text.splitlines()), 1)
+        reason = re.sub(r" \(at .*\)$", "", str(cause)).rstrip(".")
+        hint = 'write lines such as key = "value"'
+        raise error(
+            f"not a valid TOML file: {reason}", code="invalid-toml", path=path, line=line, hint=hint
+        ) from cause
+    return _checked(SpecFile(Path(path), text, values, error))
+
+
+def read_json(path: StrPath, error: type[UpliftError]) -> SpecFile:
+    """Read a JSON file that holds an object.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+    error : type of UpliftError
+        The type of the errors raised.
+
+    Returns
+    -------
+    SpecFile
+        Its values, not validated yet.
+
+    Raises
+    ------
+    UpliftError
+        For a file that cannot be read, is too large, nests too deeply or is not a JSON object.
+    """
+    text = _read_text(Path(path), error)
+    try:
+        values = json.loads(text)
+    except RecursionError:
+        raise _too_deep(path, error) from None
+    except ValueError as cause:  # JSONDecodeError, and integers of too many digits
+        line = getattr(cause, "lineno", None)
+        raise error(f"not a valid JSON file: {cause}", code="invalid-json", path=path, line=line) from cause
+    if not isinstance(values, dict):
+        text = f"not a JSON object: {format_value(values)}"
+        raise error(text, code="invalid-json", path=path)
+    return _checked(SpecFile(Path(path), "", values, error))
+
+
+def format_value(value: object) -> str:
+    """Format a received value for a message.
+
+    Parameters
+    ----------
+    value : object
+        Any value of a file.
+
+    Returns
+    -------
+    str
+        Its representation, at most `MAX_VALUE` characters of it.
+    """
+    try:
+        return _shorten(repr(value))
+    except ValueError:  # Python does not print integers of more than 4300 digits
+        return "an integer of thousands of digits"
+
+
+def _one_line(text: str) -> str:
+    """Text without control characters, which keys and values of a file may contain."""
+    text = re.sub(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+", " ", text)
+    return text if len(text) <= MAX_PROBLEM else f"{text[:MAX_PROBLEM]}…"
+
+
+def _shorten(text: str) -> str:
+    return text if len(text) <= MAX_VALUE else f"{text[:MAX_VALUE]}…"
+
+
+def _read_text(path: Path, error: type[UpliftError]) -> str:
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+        if len(data) > MAX_BYTES:
+            raise error(f"must not exceed {MAX_BYTES:,} bytes", code="file-too-large", path=path)
+        return data.decode("utf-8")
+    except FileNotFoundError as cause:
+        raise error("no such file", code="file-not-found", path=path, hint="check the path") from cause
+    except UnicodeDecodeError as cause:
+        raise error("not a UTF-8 text file", code="not-utf8", path=path, hint="save it in UTF-8") from cause
+    except UpliftError:
+        raise
+    except (OSError, ValueError) as cause:  # ValueError for a null byte in the path
+        reason = getattr(cause, "strerror", None) or cause
+        raise error(
+            f"cannot be read: {reason}", code="file-unreadable", path=path, hint="check the path"
+        ) from cause
+
+
+def _checked(file: SpecFile) -> SpecFile:
+    """Refuse what nests deeply: it would exhaust the stack of recursive code."""
+    level: list[Any] = [file.values]
+    for _ in range(MAX_DEPTH):
+        level = [each for value in level for each in _children(value)]
+        if not level:
+            return file
+    raise _too_deep(file.path, file.error)
+
+
+def _children(value: object) -> Iterable[Any]:
+    if isinstance(value, dict):
+        return value.values()
+    return value if isinstance(value, list) else ()
+
+
+def _too_deep(path: StrPath, error: type[UpliftError]) -> UpliftError:
+    text = f"tables and lists must not nest more than {MAX_DEPTH} levels deep"
+    return error(text, code="nesting-too-deep", path=path)
+
+
+def _dotted(keys: tuple[Key, ...]) -> str:
+    """Key path as text: ``apart[2].light``."""
+    text = ""
+    for key in keys:
+        text += f"[{key}]" if isinstance(key, int) else f".{_shorten(key)}" if text else _shorten(key)
+    return text
+
+
+def _find_line(text: str, keys: tuple[Key, ...]) -> int | None:
+    """Line of the key, or of the nearest table around it; None if neither is found."""
+    best, found = 0, None
+    for line, path in _assignments(text):
+        shared = 0
+        while shared < min(len(path), len(keys)) and path[shared] == keys[shared]:
+            shared += 1
+        if shared == min(len(path), len(keys)) and shared > best:
+            best, found = shared, line
+    return found
+
+
+def _assignments(text: str) -> Iterator[tuple[int, tuple[Key, ...]]]:
+    """Line and key path of every table header and assignment that starts a line of TOML."""
+    table: tuple[Key, ...] = ()
+    counts: dict[tuple[Key, ...], int] = {}
+    for line, row in enumerate(text.split("\n"), 1):
+        if header := re.match(r"\s*(\[\[?)([^\]=]+)\]", row):
+            table = _split(header[2])
+            if header[1] == "[[":
+                counts[table] = counts.get(table, -1) + 1
+                table = (*table, counts[table])
+            yield line, table
+        elif assignment := re.match(r"""((?:"[^"]*"|'[^']*'|[^=#"'])+)=""", row):
+            yield line, table + _split(assignment[1])
+
+
+def _split(dotted: str) -> tuple[Key, ...]:
+    """Parts of a dotted TOML key, without quotes."""
+    parts = re.findall(r""""[^"]*"|'[^']*'|[^.\s"']+""", dotted)
+    return tuple(part.strip("\"'") for part in parts)
