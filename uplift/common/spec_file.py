@@ -10,7 +10,6 @@ Only modules that read such files import this one: it loads pydantic.
 
 from __future__ import annotations
 
-import difflib
 import json
 import re
 import tomllib
@@ -23,13 +22,12 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter, Validat
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from uplift.common.arrays import StrPath
-from uplift.common.errors import UpliftError
+from uplift.common.errors import UpliftError, unknown_name
 
 __all__ = [
     "SpecFile",
     "SpecModel",
     "format_value",
-    "nearest",
     "problem",
     "read_json",
     "read_toml",
@@ -85,7 +83,7 @@ class SpecModel(BaseModel):
             known = [field.alias or name for name, field in cls.model_fields.items()]
             for key in values:
                 if key not in known:
-                    raise problem("unknown-key", "unknown key", nearest(key, known), key=key)
+                    raise problem("unknown-key", "unknown key", unknown_name(key, known, "key").hint, key=key)
         return values
 
 
@@ -136,32 +134,6 @@ def resolves(look_up: Callable[[Any], Any]) -> AfterValidator:
     return AfterValidator(check)
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
-    """Suggest names similar to an unknown one.
-
-    Parameters
-    ----------
-    name : str
-        The unknown name.
-    known : iterable of str
-        All names that could be meant.
-
-    Returns
-    -------
-    str
-        A question with up to three names, or the first six if none is similar; empty if there are none.
-
-    Examples
-    --------
-    >>> nearest("tolerence", ["textures", "tolerance", "quantile"])
-    "did you mean 'tolerance', 'textures'?"
-    """
-    known = list(known)
-    names = difflib.get_close_matches(str(name)[:100], known, n=3, cutoff=0.4) or known[:6]
-    quoted = ", ".join(f"'{each}'" for each in names)
-    return f"did you mean {quoted}?" if quoted else ""
-
-
 @dataclass(frozen=True)
 class SpecFile:
     """A parsed file.
@@ -204,8 +176,7 @@ class SpecFile:
         try:
             return TypeAdapter(model).validate_python(self.values)
         except ValidationError as error:
-            details = error.errors(include_url=False)[0]
-        self._raise(details)
+            self._raise(error.errors(include_url=False)[0])
 
     def fail(self, keys: Iterable[Key], text: str, *, code: str, hint: str = "") -> NoReturn:
         """Raise the error for the value at a key path.
