@@ -96,7 +96,8 @@ def public(package: str) -> Iterator[str]:
             yield f"{found.__module__}.{found.__qualname__}"
         if inspect.isclass(found):
             for key, value in vars(found).items():
-                if not key.startswith("_") and (
+                inherited = value.__doc__ is None and inspect.getdoc(getattr(found, key))
+                if not (key.startswith("_") or inherited) and (
                     inspect.isfunction(value) or isinstance(value, property | classmethod)
                 ):
                     yield f"{found.__module__}.{found.__qualname__}.{key}"

@@ -12,7 +12,7 @@ from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.models.sigmoid import published
+from uplift.models.sigmoid import evaluate_unscaled
 
 SIZE = 3
 LEAST, WITHIN = 0.8, 1e-2
@@ -33,7 +33,7 @@ def colour_science(runs: int) -> list[Peer]:
     target = _points(SIZE)
     coefficients, cpu = task.measured(generate, len(target), runs)
     answer = judge(
-        sensor.rgb(published(coefficients, sensor.wavelengths)), target, least=LEAST, within=WITHIN
+        sensor.rgb(evaluate_unscaled(coefficients, sensor.wavelengths)), target, least=LEAST, within=WITHIN
     )
     tool = f"colour-science {version('colour-science')} `LUT3D_Jakob2019`"
     notes = f"a table of size {SIZE}, 3 × {SIZE}³ points; it stops at a ΔE"

@@ -7,7 +7,7 @@ import numpy as np
 from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge, missing
 from uplift.common.arrays import Array
-from uplift.models.sigmoid import published
+from uplift.models.sigmoid import evaluate_unscaled
 
 VARIANT = "scalar_spectral"
 """Of those that know spectra, the one that needs no LLVM."""
@@ -31,7 +31,7 @@ def mitsuba_table(runs: int) -> list[Peer]:
         return np.array([mitsuba.srgb_model_fetch(rgb) for rgb in colours], dtype=float)
 
     coefficients, cpu = task.measured(fetch, len(target), runs)
-    spectra = published(coefficients, sensor.wavelengths)
+    spectra = evaluate_unscaled(coefficients, sensor.wavelengths)
     answer = judge(sensor.rgb(spectra), target, least=LEAST, within=WITHIN)
     rows = coefficients.tolist()
 
@@ -39,7 +39,7 @@ def mitsuba_table(runs: int) -> list[Peer]:
         return np.array([mitsuba.srgb_model_eval(row, wavelengths) for row in rows])
 
     values, evaluation = task.measured(evaluate, len(target), runs)
-    if not np.allclose(values, published(coefficients, np.array(wavelengths)), atol=1e-3):
+    if not np.allclose(values, evaluate_unscaled(coefficients, np.array(wavelengths)), atol=1e-3):
         raise RuntimeError("Mitsuba's coefficients mean something else")
     notes = (
         "no fit: its table, looked up from Python a colour a call (what fitted it is not exposed); "

@@ -1,4 +1,4 @@
-"""The dual of the whole circle, against dense solvers."""
+"""Multipliers of complex moments, compared with dense solvers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from scipy.linalg import toeplitz
 from uplift.models import complex_moments
 
 
-def test_levinson_solves_what_a_dense_solver_solves():
+def test_levinson_agrees_with_a_dense_solver():
     rng = np.random.default_rng(5)
     column = rng.normal(size=(20, 9)) + 1j * rng.normal(size=(20, 9))
     column[:, 0] = 12
@@ -18,7 +18,7 @@ def test_levinson_solves_what_a_dense_solver_solves():
         np.testing.assert_allclose(toeplitz(row) @ q, np.eye(9)[0], atol=1e-12)
 
 
-def test_levinson_says_where_the_matrix_is_not_positive():
+def test_levinson_reports_matrices_that_are_not_positive():
     column = np.array([[1.0, 2.0], [-1.0, 0.1], [2.0, 0.5]], dtype=complex)
     with np.errstate(all="ignore"):
         *_, positive = complex_moments.levinson(column.T)

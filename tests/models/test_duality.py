@@ -1,4 +1,4 @@
-"""Moments and multipliers: the dual of docs/mathematics.md, 4, against definitions and dense solvers."""
+"""Moments and multipliers (docs/mathematics.md, 4), compared with definitions and adaptive integration."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.integrate import quad
 
+from tests.helpers import raises
 from uplift.common.errors import UpliftError
 from uplift.models import duality
 
@@ -16,13 +17,13 @@ small = st.floats(-3, 3)
 
 
 @given(arrays(float, (4, 9), elements=small))
-def test_the_moments_of_the_reconstruction_are_the_moments(multipliers):
+def test_reconstruction_has_the_given_moments(multipliers):
     moments = duality.moments_from_multipliers(multipliers)
     again = duality.moments_from_multipliers(duality.multipliers_from_moments(moments))
     np.testing.assert_allclose(again, moments, atol=1e-12)
 
 
-def test_moments_are_the_integrals_they_are_named_after():
+def test_moments_are_their_defining_integrals():
     multipliers = np.array([[0.3, -1.2, 0.5, 0.1]])
     moments = duality.moments_from_multipliers(multipliers)[0]
     for j, moment in enumerate(moments):
@@ -34,7 +35,7 @@ def test_moments_are_the_integrals_they_are_named_after():
         assert moment == pytest.approx(quad(integrand, -np.pi, 0, epsabs=1e-13)[0], abs=1e-12)
 
 
-def test_a_grey_has_its_reflectance_as_moment_and_nothing_else():
+def test_grey_has_only_a_zeroth_moment():
     multipliers = np.zeros((3, 5))
     multipliers[:, 0] = [-1, 0, 2]
     moments = duality.moments_from_multipliers(multipliers)
@@ -42,8 +43,8 @@ def test_a_grey_has_its_reflectance_as_moment_and_nothing_else():
     np.testing.assert_allclose(moments[:, 1:], 0, atol=1e-15)
 
 
-def test_near_boxes_take_more_nodes_and_are_as_exact():
-    """A nearly black spectrum with one steep peak, against adaptive integration."""
+def test_nearly_box_shaped_spectra_are_as_accurate():
+    """A nearly black spectrum with one steep peak, compared with adaptive integration."""
     multipliers = np.array([[-2e4, 1.3e4, -4e3]])
     moments = duality.moments_from_multipliers(multipliers)[0]
 
@@ -55,7 +56,7 @@ def test_near_boxes_take_more_nodes_and_are_as_exact():
     assert moments[0] == pytest.approx(expected, abs=1e-12)
 
 
-def test_black_and_white_are_taken_in_from_the_boundary():
+def test_black_and_white_are_moved_off_the_boundary():
     moments = np.zeros((2, 9))
     moments[1, 0] = 1
     multipliers = duality.multipliers_from_moments(moments)
@@ -64,7 +65,7 @@ def test_black_and_white_are_taken_in_from_the_boundary():
     np.testing.assert_allclose(reflectance, np.repeat([[0], [1]], 9, axis=1), atol=1e-4)
 
 
-def test_a_box_on_the_boundary_is_taken_in():
+def test_exact_box_is_moved_off_the_boundary():
     """The moments of an exact box, ½ sinc-like, whose Toeplitz matrix is singular."""
     orders = np.arange(1, 9)
     box = np.concatenate([[0.5], np.sin(-orders * np.pi / 2) / (np.pi * orders)])[None]
@@ -74,6 +75,6 @@ def test_a_box_on_the_boundary_is_taken_in():
 
 
 @pytest.mark.parametrize("moments", [[[1.0, 1.0, 1.0]], [[0.5, 2.0, 0.0]], [[np.nan, 0, 0]], [[5.0, 0, 0]]])
-def test_what_no_reflectance_has_is_refused(moments):
-    with pytest.raises(UpliftError, match="not the moments of any reflectance"):
+def test_invalid_moments_raise(moments):
+    with raises(UpliftError, "invalid-moments"):
         duality.multipliers_from_moments(np.array(moments))

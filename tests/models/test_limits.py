@@ -1,4 +1,4 @@
-"""Range, monotony and limits of the models, and storage at every count of moments."""
+"""Range, monotonicity and limits of the models, and storage at every count of moments."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ wide = st.floats(-1e9, 1e9)
 
 @each
 @given(data=st.data())
-def test_every_set_of_multipliers_is_a_reflectance(model, data):
+def test_all_multipliers_give_reflectances(model, data):
     multipliers = data.draw(arrays(float, (3, model.count), elements=wide))
     spectra = evaluate(model, multipliers, GRID)
     assert ((spectra >= 0) & (spectra <= 1)).all()
@@ -26,25 +26,25 @@ def test_every_set_of_multipliers_is_a_reflectance(model, data):
 
 @each
 @given(x=arrays(float, 6, elements=st.floats(-1e12, 1e12)))
-def test_more_is_never_darker(model, x):
+def test_squash_is_increasing(model, x):
     assert (np.diff(model.squash(np.sort(x))) >= -1e-16).all()
     assert (model.slope(x) >= 0).all()
 
 
 @each
-def test_the_limits_are_black_and_white(model):
+def test_limits_are_black_and_white(model):
     np.testing.assert_allclose(model.squash(np.array([-1e9, 1e9])), [0, 1], atol=1e-9)
 
 
 @each
 @given(y=arrays(float, 5, elements=st.floats(1e-6, 1 - 1e-6)))
-def test_unsquash_undoes_squash(model, y):
+def test_unsquash_is_the_inverse_of_squash(model, y):
     np.testing.assert_allclose(model.squash(model.unsquash(y)), y, rtol=1e-9)
 
 
 @settings(max_examples=40)
 @given(st.data(), st.integers(3, 17))
-def test_the_moments_of_the_reconstruction_are_the_moments_at_every_count(data, count):
+def test_reconstruction_has_the_given_moments_at_every_count(data, count):
     model = Moments(count)
     multipliers = data.draw(arrays(float, (4, count), elements=st.floats(-3, 3)))
     stored = model.to_storage(multipliers)

@@ -1,4 +1,4 @@
-"""The step of least change against dense algebra."""
+"""The minimum-norm step compared with dense linear algebra."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def numeric_jacobian(ahead, multipliers, target):
     return np.stack(columns, axis=1)
 
 
-def test_the_step_takes_the_residual_away_with_the_least_change(sensor):
+def test_step_agrees_with_its_formula(sensor):
     """Δp = M⁻¹Jᵀ(J M⁻¹Jᵀ)⁻¹ r, J by differences and the rest by a dense solver."""
     ahead = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
     off = residual(MODEL, ahead, POINTS, TARGETS)
@@ -37,7 +37,7 @@ def test_the_step_takes_the_residual_away_with_the_least_change(sensor):
         np.testing.assert_allclose(jacobian @ dp, r, atol=1e-6)
 
 
-def test_of_all_steps_to_the_colour_it_is_the_smallest_in_the_metric(sensor):
+def test_step_has_no_component_in_the_null_space(sensor):
     ahead = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
     off = residual(MODEL, ahead, POINTS, TARGETS)
     found = minimum_norm_step(MODEL, ahead, POINTS, off, np.zeros(len(POINTS)))
@@ -57,7 +57,7 @@ def test_damping_shortens_the_step(sensor):
     assert (np.linalg.norm(damped, axis=1) < np.linalg.norm(free, axis=1)).all()
 
 
-def test_jax_and_numpy_take_the_same_step(sensor):
+def test_jax_and_numpy_agree(sensor):
     ahead = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
     off = residual(MODEL, ahead, POINTS, TARGETS)
     here = minimum_norm_step(MODEL, ahead, POINTS, off, np.full(len(POINTS), 1e-2))
@@ -81,6 +81,6 @@ def test_solve_3x3_agrees_with_a_dense_solver():
     np.testing.assert_allclose(found, expected, rtol=1e-7)
 
 
-def test_a_singular_matrix_gives_numbers_all_the_same():
+def test_singular_matrices_give_finite_steps():
     singular = np.array([np.zeros((3, 3)), np.ones((3, 3)), np.diag([1.0, 1e-30, 0.0])])
     assert np.isfinite(solve_3x3(lower_half(singular), np.zeros(3), np.full((3, 3), 1e-3))).all()

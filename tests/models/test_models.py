@@ -1,4 +1,4 @@
-"""Laws that every spectrum model keeps."""
+"""Properties of every spectrum model."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from tests.helpers import raises
 from uplift.common.errors import OptionError
 from uplift.models import Moments, Phase, Sigmoid, from_description
-from uplift.models.sigmoid import published
+from uplift.models.sigmoid import evaluate_unscaled
 
 GRID = np.arange(380.0, 781.0, 5.0)
 MODELS = [Moments(3), Moments(9), Moments(17), Moments(9, Phase(warp="vision")), Sigmoid()]
@@ -26,13 +27,13 @@ def random_multipliers(model, rows, scale=2.0):
 
 
 @each
-def test_the_constant_multipliers_make_a_linear_part_of_one(model):
+def test_linear_part_of_constant_multipliers_is_1(model):
     np.testing.assert_allclose(model.basis(GRID) @ model.constant(), 1, atol=1e-15)
 
 
 @each
 @given(x=arrays(float, 5, elements=st.floats(-1e6, 1e6)))
-def test_squash_stays_within_0_and_1_and_is_odd_about_a_half(model, x):
+def test_squash_is_bounded_and_odd_about_one_half(model, x):
     y = model.squash(x)
     assert ((y >= 0) & (y <= 1)).all()
     np.testing.assert_allclose(y + model.squash(-x), 1, atol=1e-15)
@@ -47,7 +48,7 @@ def test_slope_is_the_derivative_of_squash_and_positive(model):
 
 
 @each
-def test_numpy_and_jax_run_the_same_lines(model):
+def test_numpy_and_jax_agree(model):
     x = np.linspace(-5, 5, 11)
     with jax.enable_x64(True):
         for function in (model.squash, model.slope):
@@ -55,7 +56,7 @@ def test_numpy_and_jax_run_the_same_lines(model):
 
 
 @each
-def test_storage_and_back_gives_the_same_spectra(model):
+def test_storage_round_trip_keeps_spectra(model):
     multipliers = random_multipliers(model, 200)
     back = model.from_storage(model.to_storage(multipliers))
     basis = model.basis(GRID)
@@ -70,23 +71,23 @@ def test_storage_keeps_leading_dimensions(model):
 
 
 @each
-def test_a_description_makes_the_model_again(model):
+def test_description_round_trip(model):
     assert from_description(model.describe()) == model
 
 
-def test_an_unknown_description_is_no_model():
+def test_unknown_description_raises():
     with pytest.raises(KeyError):
         from_description({"name": "polynomial"})
 
 
 @pytest.mark.parametrize("count", [-1, 0, 2, 18])
-def test_the_moments_model_takes_3_to_17_coefficients(count):
-    with pytest.raises(OptionError, match="3 to 17"):
+def test_count_of_moments_out_of_range_raises(count):
+    with raises(OptionError, "coefficients-out-of-range"):
         Moments(count)
 
 
-def test_the_sigmoid_is_jakob_and_hanika_s():
-    """Equation 5 of the paper in colour-science's hand: coefficients per nm², nm, 1."""
+def test_sigmoid_agrees_with_colour_science():
+    """Equation 5 of Jakob & Hanika 2019 with coefficients per nm², per nm and 1."""
     model = Sigmoid()
     c0, c1, c2 = 1.3, -0.7, 0.4
     half, middle = 200.0, 580.0
@@ -100,7 +101,7 @@ def test_the_sigmoid_is_jakob_and_hanika_s():
 
 
 @pytest.mark.parametrize("warp", ["none", "vision"])
-def test_phases_run_from_minus_pi_to_0_and_stay_there(warp):
+def test_phases_increase_from_minus_pi_to_0(warp):
     phase = Phase(warp=warp)
     values = phase(np.arange(300.0, 901.0, 5.0))
     assert values[0] == -np.pi
@@ -108,27 +109,27 @@ def test_phases_run_from_minus_pi_to_0_and_stay_there(warp):
     assert (np.diff(phase(GRID)) > 0).all()
 
 
-def test_the_vision_warp_gives_the_middle_more_room():
+def test_vision_warp_expands_the_middle():
     middle = Phase(warp="vision")(np.array([500.0, 600.0]))
     assert np.diff(middle) > 1.5 * np.diff(Phase()(np.array([500.0, 600.0])))
 
 
-def test_bad_phases_are_refused():
-    with pytest.raises(OptionError, match="unknown warp 'eye'"):
+def test_invalid_phases_raise():
+    with raises(OptionError, "unknown-warp"):
         Phase(warp="eye")
-    with pytest.raises(OptionError, match="cannot run from 780"):
+    with raises(OptionError, "invalid-phase-range"):
         Phase(780, 380)
 
 
 @each
-def test_outside_their_range_spectra_are_held_flat(model):
+def test_spectra_are_constant_outside_their_range(model):
     multipliers = random_multipliers(model, 5)
     ends = model.squash(multipliers @ model.basis([300, 380, 780, 900]).T)
     np.testing.assert_array_equal(ends[:, 0], ends[:, 1])
     np.testing.assert_array_equal(ends[:, 2], ends[:, 3])
 
 
-def test_published_sigmoid_is_ours_with_wavelengths_as_they_are(sensor):
+def test_unscaled_sigmoid_agrees_with_the_model(sensor):
     expected = Sigmoid().squash(sensor.wavelengths**2 * 1e-5 - sensor.wavelengths * 1e-2 + 2)
-    found = published(np.array([[1e-5, -1e-2, 2]]), sensor.wavelengths)
+    found = evaluate_unscaled(np.array([[1e-5, -1e-2, 2]]), sensor.wavelengths)
     np.testing.assert_allclose(found, expected[None], atol=1e-12)

@@ -1,4 +1,4 @@
-"""The dual of real moments: the same as that of the whole circle, which knows nothing of mirrors."""
+"""Multipliers of real moments, compared with those of complex moments."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from uplift.models import complex_moments, duality, real_moments
 
 @pytest.mark.parametrize("count", [3, 9, 17])
 @given(values=arrays(float, (5, 17), elements=st.floats(-3, 3)))
-def test_it_is_the_dual_of_the_whole_circle(count, values):
+def test_real_and_complex_arithmetic_agree(count, values):
     moments = duality.moments_from_multipliers(values[:, :count])
     found, valid = real_moments.dual(moments)
     expected, valid_on_circle = complex_moments.dual(moments.astype(complex))
@@ -22,8 +22,8 @@ def test_it_is_the_dual_of_the_whole_circle(count, values):
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * (1 + np.abs(expected).max()))
 
 
-def test_dark_and_light_spectra_come_back():
-    """Near the ends of the zeroth moment, where the tangent is nearly nothing or nearly infinite."""
+def test_dark_and_light_spectra():
+    """Zeroth moments near 0 and 1, where the tangent is nearly 0 or nearly infinite."""
     level = np.array([1e-4, 1e-2, 1 - 1e-2, 1 - 1e-4])
     ripple = 0.3 * level * (1 - level)
     moments = np.stack([level, ripple, ripple / 3, -ripple / 5], axis=1)
@@ -32,12 +32,12 @@ def test_dark_and_light_spectra_come_back():
     np.testing.assert_allclose(duality.moments_from_multipliers(multipliers), moments, atol=1e-12)
 
 
-def test_what_lies_outside_the_moment_space_is_not_valid():
+def test_moments_outside_the_moment_space_are_invalid():
     moments = np.array([[0.5, 0.1, 0.0], [0.5, 0.4, 0.0], [1.5, 0.1, 0.0], [np.nan, 0, 0], [0.0, 0.1, 0.0]])
     assert real_moments.dual(moments)[1].tolist() == [True, False, False, False, False]
 
 
-def test_one_spectrum_alone_is_as_one_of_many():
+def test_spectra_are_independent():
     moments = duality.moments_from_multipliers(np.random.default_rng(4).normal(size=(9, 9)))
     alone = np.concatenate([real_moments.dual(row[None])[0] for row in moments])
     np.testing.assert_allclose(alone, real_moments.dual(moments)[0], rtol=1e-12)

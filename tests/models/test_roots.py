@@ -1,4 +1,4 @@
-"""Moments by roots, against the trapezoid rule where that converges, and back through the dual where it does not."""
+"""Moments by roots, compared with the trapezoid rule where it converges, and by a round trip where it does not."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from uplift.models.roots import moments_by_roots
 
 
 @pytest.mark.parametrize("count", [3, 5, 9])
-def test_they_are_the_moments_that_the_trapezoid_rule_finds(count):
+def test_roots_agree_with_the_trapezoid_rule(count):
     multipliers = np.random.default_rng(count).normal(size=(200, count)) * 5
     found = moments_by_roots(multipliers)
     np.testing.assert_allclose(found, duality.moments_from_multipliers(multipliers), rtol=0, atol=1e-9)
 
 
-def test_a_step_narrower_than_any_rule_s_nodes():
-    """Against adaptive integration that is told where the steps are."""
+def test_steps_narrower_than_the_nodes():
+    """Compared with adaptive integration with break points at the steps."""
     multipliers = np.array([[-0.3e6, 1e6, 0.4e6]])
 
     def integrand(phi, order):
@@ -32,7 +32,7 @@ def test_a_step_narrower_than_any_rule_s_nodes():
 
 
 @pytest.mark.parametrize("level", [-1e5, 0.0, 1e5])
-def test_a_grey_has_no_roots_but_far_away(level):
+def test_grey_has_only_remote_roots(level):
     multipliers = np.zeros((1, 9))
     multipliers[:, 0] = level
     expected = np.zeros((1, 9))
@@ -40,8 +40,8 @@ def test_a_grey_has_no_roots_but_far_away(level):
     np.testing.assert_allclose(moments_by_roots(multipliers), expected, atol=1e-6)
 
 
-def test_boxes_come_back_through_the_dual():
-    """Spectra of two steps within a hundred thousandth of the phase: stored and read, they are themselves."""
+def test_boxes_survive_a_round_trip():
+    """Spectra of two steps within a hundred thousandth of the phase: unchanged by storage."""
     edges = np.random.default_rng(4).uniform(-2.8, -0.3, (50, 2))
     cosine = np.cos(edges)
     # −10⁵ (cos φ − cos φ₁)(cos φ − cos φ₂) as a series of cosines

@@ -181,7 +181,7 @@ def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError
     --------
     >>> error = unknown_name("srbg", ("sRGB", "P3-D65"), "RGB space")
     >>> print(error.code, "|", error)
-    unknown-rgb-space | unknown RGB space 'srbg'; did you mean 'sRGB', 'ACEScg'?
+    unknown-rgb-space | unknown RGB space 'srbg'; did you mean 'sRGB'?
     """
     import difflib
 

@@ -1,4 +1,4 @@
-"""Spectrum models, one a file, behind the interface of `uplift.models.model.Model`."""
+"""Spectrum models: families of reflectance spectra in (0, 1), one per file, behind the interface `Model`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,29 @@ __all__ = ["Model", "Moments", "Phase", "Sigmoid", "evaluate", "from_description
 
 
 def from_description(description: Mapping[str, Any]) -> Model:
-    """The model that ``Model.describe`` described. Raises KeyError or TypeError for anything else."""
+    """Create the model that `Model.describe` described.
+
+    Parameters
+    ----------
+    description : mapping
+        JSON values with the key ``"name"``.
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    KeyError
+        The name is unknown or a key is missing.
+    TypeError
+        A key is unknown or a value has the wrong type.
+
+    Examples
+    --------
+    >>> from_description(Sigmoid().describe())
+    Sigmoid(start=380.0, end=780.0)
+    """
     rest = {key: value for key, value in description.items() if key != "name"}
     if description["name"] == Sigmoid.name:
         return Sigmoid(**rest)

@@ -1,7 +1,8 @@
-"""The arc tangent, most of the cost of a fit: XLA calls the C library's, a number at a time.
+"""The arc tangent, which dominates the cost of a fit.
 
-So for JAX it is a polynomial, which vectorises: seven times quicker, and as exact (tests/models/test_arctan.py).
-numpy, which goes through memory for every term, gains nothing from that, but from small differences of arc tangents.
+XLA calls the scalar function of the C library. A polynomial vectorises: it is seven times faster and as accurate
+(tests/models/test_arctan.py). numpy passes through memory for every term, so there the polynomial gains nothing, but a
+series for small differences of arc tangents does.
 """
 
 from __future__ import annotations
@@ -37,45 +38,45 @@ _POLYNOMIAL = (
 )
 
 NEAR = 1 / 32
-"""Up to here three terms of the arc tangent's own series are exact to 2e-10 of the value."""
+"""Up to this argument, three terms of the Taylor series have a relative error below 2e-10."""
 
 
 def arctan(x: Any) -> Any:
-    """Arc tangent of a numpy or JAX array, which may be differentiated."""
+    """Arc tangent of a numpy or JAX array; differentiable in JAX."""
     xp = x.__array_namespace__()
     return np.arctan(x) if xp is np else _arctan(xp, x)
 
 
 def _arctan(xp: Any, x: Any) -> Any:
-    """Beyond 1, arctan x = ±π/2 + arctan(−1/x)."""
-    beyond = xp.abs(x) > 1
-    t = xp.where(beyond, -1 / xp.where(beyond, x, 1), x)
+    """Evaluate the polynomial; if |x| > 1, by arctan x = ±π/2 + arctan(−1/x)."""
+    large = xp.abs(x) > 1
+    t = xp.where(large, -1 / xp.where(large, x, 1), x)
     u = t * t
     series = _POLYNOMIAL[-1]
     for coefficient in _POLYNOMIAL[-2::-1]:
         series = series * u + coefficient
-    return t * series + xp.where(beyond, xp.copysign(np.pi / 2 * xp.ones_like(x), x), 0)
+    return t * series + xp.where(large, xp.copysign(np.pi / 2 * xp.ones_like(x), x), 0)
 
 
 def arctan_difference(x: Array, change: Array) -> Array:
-    """arctan(x + change) − arctan(x) of numpy arrays (N, n), to 1e-9 of it.
+    """Evaluate arctan(x + change) − arctan(x) of numpy arrays (N, n) to a relative accuracy of 1e-9.
 
-    It is the arc tangent of change / (1 + x (x + change)), nearly always of a small number. Columns where it is not,
-    or where the two lie so far apart that another half turn belongs to it, take both arc tangents.
+    The difference is the arc tangent of change / (1 + x (x + change)), whose argument is usually small. Columns with a
+    large argument, or with a difference of more than π/2, are computed from both arc tangents.
     """
-    with np.errstate(all="ignore"):  # what is no number is far
-        below = x + change
-        below *= x
-        below += 1
-        far = below.min(axis=0) <= 0
-        z = np.divide(change, below, out=below)
+    with np.errstate(all="ignore"):  # NaN counts as far
+        denominator = x + change
+        denominator *= x
+        denominator += 1
+        far = denominator.min(axis=0) <= 0
+        z = np.divide(change, denominator, out=denominator)
         square = z * z
         far |= ~(square.max(axis=0) <= NEAR * NEAR)
-        rise = square / 5
-        rise -= 1 / 3
-        rise *= square
-        rise *= z
-        rise += z
+        difference = square / 5
+        difference -= 1 / 3
+        difference *= square
+        difference *= z
+        difference += z
     if far.any():
-        rise[:, far] = np.arctan(x[:, far] + change[:, far]) - np.arctan(x[:, far])
-    return rise
+        difference[:, far] = np.arctan(x[:, far] + change[:, far]) - np.arctan(x[:, far])
+    return difference

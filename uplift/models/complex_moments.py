@@ -1,7 +1,10 @@
-"""The dual of complex moments, those of a signal on the whole circle (docs/mathematics.md, 4).
+"""Multipliers of complex moments: the moments of a signal on the full circle (docs/mathematics.md, 4).
 
+References
+----------
 Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded signals for spectral
-rendering", ACM TOG 38(4); Markoff 1896 for the duality between bounded and unbounded moment problems.
+rendering", ACM TOG 38(4).
+Markoff 1896, for the duality between bounded and unbounded moment problems.
 """
 
 from __future__ import annotations
@@ -15,13 +18,13 @@ Complex = NDArray[np.complex128]
 
 
 def dual(moments: Complex) -> tuple[Complex, NDArray[np.bool_]]:
-    """Multipliers (n, C) of moments (n, C), the zeroth real, and where (n,) they can be trusted.
+    """Compute multipliers (n, C) of moments (n, C), the zeroth real, and their validity (n,).
 
-    Inside, the order comes first, so that all arithmetic runs along contiguous spectra.
+    Internally the order is the first axis, so that all arithmetic runs along contiguous spectra.
     """
     orders = np.ascontiguousarray(moments.T)
     with np.errstate(all="ignore"):
-        # The dual knows the zeroth moment only up to whole numbers.
+        # The recursion determines the zeroth moment only up to integers.
         bounded = (orders[0].real >= 0) & (orders[0].real <= 1)
         h = _exponential_moments(orders)
         column = h / 2
@@ -44,10 +47,18 @@ def _exponential_moments(moments: Complex) -> Complex:
 
 
 def levinson(column: Complex) -> tuple[Complex, Array, NDArray[np.bool_]]:
-    """Solve T q = e₀ for Hermitian Toeplitz T with first ``column`` (C, n); also say where T is positive.
+    """Solve T q = e₀ for Hermitian Toeplitz matrices T with first ``column`` (C, n), by Levinson's recursion.
 
-    Durbin's form of Levinson's recursion: a solution of order k, padded, and its own mirror image make up one
-    of order k + 1. It comes as (C, n) with q_0 taken out, and 1 / q_0 (n,), which saves a division a number.
+    In Durbin's form, a solution of order k + 1 combines the padded solution of order k with its mirror image.
+
+    Returns
+    -------
+    solution : ndarray, shape (C, n)
+        q / q_0.
+    scale : ndarray, shape (n,)
+        1 / q_0.
+    positive : ndarray of bool, shape (n,)
+        Whether T is positive definite.
     """
     solution = np.zeros_like(column)
     solution[0] = 1

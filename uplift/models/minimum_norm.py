@@ -1,7 +1,7 @@
-"""The step of least change: of all steps that reach a colour, the one that changes the spectrum least.
+"""The minimum-norm step: of all steps that reach a colour, the one that changes the spectrum least.
 
-docs/mathematics.md, 5: Δp = M⁻¹Jᵀ (J M⁻¹Jᵀ + μ tr I)⁻¹ (t − r). Written to the array API: the fit runs it on JAX, the
-refined lookup on numpy.
+Δp = M⁻¹Jᵀ (J M⁻¹Jᵀ + μ tr I)⁻¹ (t − r) (docs/mathematics.md, 5). The functions use the array API: the fit runs them on
+JAX, the refined lookup on numpy.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from uplift.models.model import Model
 
 
 class ForwardMap(NamedTuple):
-    """From multipliers to RGB: arrays alone, so that JAX passes it through as it is."""
+    """Arrays of the map from multipliers to RGB, a pytree for JAX."""
 
     basis: Any
-    """(N, C) linear part of the model."""
+    """Basis of the linear part, shape (N, C)."""
     sensor: Any
-    """(3, N) spectrum to RGB."""
+    """Spectrum to RGB, shape (3, N)."""
     root: Any
-    """(C, C) R, with R Rᵀ = M⁻¹."""
+    """R with R Rᵀ = M⁻¹, shape (C, C)."""
     products: Any
-    """(N, 3·C) sensor × basis R, the constant part of the Jacobian by R⁻¹ p."""
+    """Sensor times basis times R, shape (N, 3·C): the constant part of the Jacobian with respect to R⁻¹ p."""
 
 
 def forward_map(
     model: Model, wavelengths: ArrayLike, sensor: Array, inverse_metric: Array | None = None
 ) -> ForwardMap:
-    """The forward model; without a metric, the model's own smoothness."""
+    """Create the forward map; the metric defaults to the roughness of the model."""
     basis = model.basis(wavelengths)
     root = np.linalg.cholesky(np.diag(1 / model.roughness()) if inverse_metric is None else inverse_metric)
     products = sensor.T[:, :, None] * (basis @ root)[:, None, :]
@@ -41,19 +41,19 @@ def forward_map(
 
 
 def forward_rgb(model: Model, forward_map: ForwardMap, multipliers: Any) -> Any:
-    """Linear RGB (n, 3) of multipliers (n, C)."""
+    """Compute linear RGB (n, 3) of multipliers (n, C)."""
     return matmul_rows(model.squash(matmul_rows(multipliers, forward_map.basis.T)), forward_map.sensor.T)
 
 
 def residual(model: Model, forward_map: ForwardMap, multipliers: Any, target: Any) -> Any:
-    """Target minus RGB, (n, 3), of multipliers (n, C)."""
+    """Compute target minus RGB, (n, 3), of multipliers (n, C)."""
     return target - forward_rgb(model, forward_map, multipliers)
 
 
 def minimum_norm_step(
     model: Model, forward_map: ForwardMap, multipliers: Any, residual: Any, damping: Any
 ) -> Any:
-    """Change of multipliers (n, C) that takes residual (n, 3) away to first order; damping (n,) is μ."""
+    """Compute the change of multipliers (n, C) that cancels residual (n, 3) to first order; damping (n,) is μ."""
     slope = model.slope(matmul_rows(multipliers, forward_map.basis.T))
     jacobian = matmul_rows(slope, forward_map.products).reshape(-1, 3, forward_map.basis.shape[1])
     gram = jacobian @ jacobian.mT
@@ -64,11 +64,11 @@ def minimum_norm_step(
 
 
 def solve_3x3(matrix: Sequence[Sequence[Any]], shift: Any, right: Any) -> tuple[Any, Any, Any]:
-    """Solve (A + shift I) y = b for symmetric positive A, by L D Lᵀ: all numbers are arrays (n,), side by side.
+    """Solve (A + shift I) y = b for n symmetric positive A by L D Lᵀ; all elements are arrays (n,).
 
-    ``matrix`` is the lower half of A, row by row. A pivot that rounding took to zero or below is held at a
-    millionth of an ulp of the trace: the step then is long, never NaN, and the caller's check of the residual
-    turns it down.
+    ``matrix`` is the lower half of A, row by row. A pivot that rounding made zero or negative is replaced by a
+    millionth of an ulp of the trace. The step is then long, never NaN, and the caller's check of the residual rejects
+    it.
     """
     (a00,), (a10, a11), (a20, a21, a22) = matrix
     xp = a00.__array_namespace__()

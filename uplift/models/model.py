@@ -1,4 +1,4 @@
-"""What a spectrum model is: a sigmoid of a linear function of its multipliers (docs/mathematics.md, 2)."""
+"""Interface of spectrum models: a sigmoid of a linear function of the multipliers (docs/mathematics.md, 2)."""
 
 from __future__ import annotations
 
@@ -13,66 +13,198 @@ from uplift.models.matmul import matmul_rows
 
 
 class Model(Protocol):
-    """A family of reflectance spectra g(λ) = squash(basis(λ) · p), every p a valid spectrum in (0, 1).
+    """A family of reflectance spectra g(λ) = squash(basis(λ) · p), where all real p give values in (0, 1).
 
-    The fit works on the multipliers p; a cube stores the coefficients c. ``squash`` and ``slope`` are
-    written to the array API, so that numpy and JAX run the same lines.
+    The fit works on the multipliers p; a cube stores the coefficients c. ``squash`` and ``slope`` use the array API,
+    so that numpy and JAX run the same code.
     """
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Name of the family in cube files.
+
+        Returns
+        -------
+        str
+        """
+        ...
 
     @property
     def count(self) -> int:
-        """Numbers per spectrum, C."""
+        """Number of coefficients per spectrum, C.
+
+        Returns
+        -------
+        int
+        """
         ...
 
     def basis(self, wavelengths: ArrayLike) -> Array:
-        """(N, C) values of the linear part at ``wavelengths`` (nm)."""
+        """Evaluate the basis of the linear part.
+
+        Parameters
+        ----------
+        wavelengths : array_like, shape (N,)
+            Wavelengths in nm.
+
+        Returns
+        -------
+        ndarray, shape (N, C)
+        """
         ...
 
     def squash(self, x: Any) -> Any:
-        """Reflectance in (0, 1) of the linear part; monotone, ½ at 0."""
+        """Map the linear part to reflectance: increasing, ½ at 0.
+
+        Parameters
+        ----------
+        x : array
+            Linear part, of numpy or JAX.
+
+        Returns
+        -------
+        array
+            Reflectance in (0, 1).
+        """
         ...
 
     def slope(self, x: Any) -> Any:
-        """Derivative of ``squash``."""
+        """Evaluate the derivative of `squash`.
+
+        Parameters
+        ----------
+        x : array
+            Linear part, of numpy or JAX.
+
+        Returns
+        -------
+        array
+        """
         ...
 
     def squash_difference(self, x: Array, change: Array) -> Array:
-        """squash(x + change) − squash(x) of (N, n), quicker where little changes. numpy alone."""
+        """Evaluate squash(x + change) − squash(x), faster than two calls of `squash` if changes are small.
+
+        Parameters
+        ----------
+        x, change : ndarray, shape (N, n)
+            Linear part and its change, a column per spectrum.
+
+        Returns
+        -------
+        ndarray, shape (N, n)
+        """
         ...
 
     def unsquash(self, reflectance: Array) -> Array:
-        """The linear part that ``squash`` takes to a reflectance in (0, 1). numpy alone."""
+        """Evaluate the inverse of `squash`.
+
+        Parameters
+        ----------
+        reflectance : ndarray
+            Reflectance in (0, 1).
+
+        Returns
+        -------
+        ndarray
+            Linear part.
+        """
         ...
 
     def constant(self) -> Array:
-        """(C,) multipliers whose linear part is 1 everywhere."""
+        """Return the multipliers whose linear part is 1 at all wavelengths.
+
+        Returns
+        -------
+        ndarray, shape (C,)
+        """
         ...
 
     def roughness(self) -> Array:
-        """(C,) diagonal of the smoothness metric M (docs/mathematics.md, 5)."""
+        """Return the diagonal of the smoothness metric M (docs/mathematics.md, 5).
+
+        Returns
+        -------
+        ndarray, shape (C,)
+        """
         ...
 
     def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = quadrature) -> Array:
-        """Coefficients (…, C) of multipliers (…, C); where they are integrals, by ``quadrature``."""
+        """Convert multipliers to the coefficients that cubes store.
+
+        Parameters
+        ----------
+        multipliers : array_like, shape (..., C)
+            Multipliers.
+        quadrature : callable
+            Integrates spectra, if the coefficients are integrals.
+
+        Returns
+        -------
+        ndarray, shape (..., C)
+        """
         ...
 
     def from_storage(self, coefficients: ArrayLike) -> Array:
-        """Multipliers (…, C) of coefficients (…, C)."""
+        """Convert stored coefficients to multipliers.
+
+        Parameters
+        ----------
+        coefficients : array_like, shape (..., C)
+            Coefficients.
+
+        Returns
+        -------
+        ndarray, shape (..., C)
+        """
         ...
 
     def describe(self) -> dict[str, Any]:
-        """What `uplift.models.from_description` needs to make this model again."""
+        """Describe the model for `uplift.models.from_description`.
+
+        Returns
+        -------
+        dict
+            JSON values.
+        """
         ...
 
 
 def reflectance(model: Model, coefficients: ArrayLike, wavelengths: ArrayLike) -> Array:
-    """Reflectance (n, N) at wavelengths (N,) nm of stored coefficients (n, C), as any reader will see it."""
+    """Evaluate the spectra of stored coefficients.
+
+    Parameters
+    ----------
+    model : Model
+        The spectrum model.
+    coefficients : array_like, shape (n, C)
+        Stored coefficients.
+    wavelengths : array_like, shape (N,)
+        Wavelengths in nm.
+
+    Returns
+    -------
+    ndarray, shape (n, N)
+        Reflectance in [0, 1].
+    """
     return evaluate(model, model.from_storage(coefficients), wavelengths)
 
 
 def evaluate(model: Model, multipliers: Array, wavelengths: ArrayLike) -> Array:
-    """Reflectance (n, N) at wavelengths (N,) nm of multipliers (n, C)."""
+    """Evaluate the spectra of multipliers.
+
+    Parameters
+    ----------
+    model : Model
+        The spectrum model.
+    multipliers : ndarray, shape (n, C)
+        Multipliers.
+    wavelengths : array_like, shape (N,)
+        Wavelengths in nm.
+
+    Returns
+    -------
+    ndarray, shape (n, N)
+        Reflectance in [0, 1].
+    """
     return np.asarray(model.squash(matmul_rows(multipliers, model.basis(wavelengths).T)))

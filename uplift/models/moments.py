@@ -1,7 +1,12 @@
-"""The moments model: bounded maximum-entropy spectra, stored as mirrored trigonometric moments.
+"""The moments model: bounded maximum-entropy spectra, stored as trigonometric moments of the mirrored signal.
 
-Peters et al. 2019 (`uplift.models.duality`). g(φ) = ½ + arctan(p₀ + 2 Σ p_l cos lφ) / π: every real p is a
-valid spectrum, so the fit works on p; c is linear in the spectrum, so that is what cubes store.
+g(φ) = ½ + arctan(p₀ + 2 Σ p_l cos lφ) / π. All real p give a valid spectrum, so the fit works on p. The moments c are
+linear in the spectrum, so cubes store c. `uplift.models.duality` converts between p and c.
+
+References
+----------
+Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded signals for spectral rendering",
+ACM TOG 38(4). docs/mathematics.md, 2 to 4.
 """
 
 from __future__ import annotations
@@ -18,25 +23,51 @@ from uplift.common.errors import OptionError
 from uplift.models import duality
 from uplift.models.arctan import arctan, arctan_difference
 from uplift.models.duality import Quadrature
+from uplift.models.model import Model
 from uplift.models.phase import Phase
 
-FEWEST, MOST = 3, 17
-"""Coefficients: 2 to 16 moments, and the zeroth."""
+MIN_COUNT, MAX_COUNT = 3, 17
+"""Numbers of coefficients: the zeroth and 2 to 16 moments."""
 
 
 @dataclass(frozen=True)
-class Moments:
-    """``count`` coefficients (moments + 1) over a `Phase`."""
+class Moments(Model):
+    """Bounded maximum-entropy spectra of given moments.
+
+    Parameters
+    ----------
+    count : int
+        Number of coefficients, from 3 to 17: the zeroth moment and 2 to 16 others.
+    phase : Phase
+        Map from wavelength to phase.
+
+    Raises
+    ------
+    OptionError
+        The count is out of range.
+
+    References
+    ----------
+    Peters et al. 2019; docs/mathematics.md, 2 to 4.
+
+    Examples
+    --------
+    >>> from uplift.models import evaluate
+    >>> grey = Moments(9).from_storage([0.5] + 8 * [0.0])
+    >>> evaluate(Moments(9), grey[None], [400, 700]).round(12).tolist()
+    [[0.5, 0.5]]
+    """
 
     count: int = 9
     phase: Phase = field(default_factory=Phase)
     name = "moments"
 
     def __post_init__(self) -> None:
-        if not FEWEST <= self.count <= MOST:
+        if not MIN_COUNT <= self.count <= MAX_COUNT:
             raise OptionError(
-                f"{self.count} coefficients are out of range",
-                hint=f"the moments model takes {FEWEST} to {MOST} (moments + 1)",
+                f"coefficients of the moments model must be in [{MIN_COUNT}, {MAX_COUNT}], got {self.count}",
+                code="coefficients-out-of-range",
+                hint="the count includes the zeroth moment",
             )
 
     def basis(self, wavelengths: ArrayLike) -> Array:
@@ -58,7 +89,7 @@ class Moments:
         return np.eye(self.count)[0]
 
     def roughness(self) -> Array:
-        """1 + j²: what a unit of p_j adds to the squares of the value and the slope over φ."""
+        # A unit of p_j adds 1 to the squared value and j² to the squared slope over φ.
         return 1 + np.arange(self.count, dtype=float) ** 2
 
     def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = duality.quadrature) -> Array:
@@ -72,5 +103,6 @@ class Moments:
 
 
 def _by_rows(function: Any, values: ArrayLike) -> Array:
+    """Apply a function of (n, C) to (…, C)."""
     array = np.asarray(values, dtype=float)
     return np.reshape(function(array.reshape(-1, array.shape[-1])), array.shape)

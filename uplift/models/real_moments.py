@@ -1,7 +1,10 @@
-"""The dual of real moments, those of an even signal: half of Levinson's recursion, and no complex number.
+"""Multipliers of real moments: the moments of an even signal, in real arithmetic (docs/mathematics.md, 4).
 
-docs/mathematics.md, 4: the reflection coefficients of the whole circle share one phase there, so that they come from
-a real series, by Schur's algorithm, and the orthogonal polynomials from two real recursions.
+All reflection coefficients share one complex phase. Schur's algorithm therefore yields them from a real series, and the
+orthogonal polynomials follow from two real recursions. This takes half of the operations of Levinson's recursion.
+
+References
+----------
 Schur 1917, "Über Potenzreihen, die im Innern des Einheitskreises beschränkt sind".
 """
 
@@ -14,29 +17,29 @@ from uplift.common.arrays import Array
 
 
 def dual(moments: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Multipliers (n, C) of moments (n, C), and where (n,) they can be trusted.
+    """Compute multipliers (n, C) of moments (n, C), and their validity (n,).
 
-    Inside, the order comes first, so that all arithmetic runs along contiguous spectra.
+    Internally the order is the first axis, so that all arithmetic runs along contiguous spectra.
     """
     orders = np.ascontiguousarray(moments.T)
     zeroth = orders[0]
     with np.errstate(all="ignore"):
-        # The series knows the zeroth moment only up to whole numbers.
+        # The series determines the zeroth moment only up to integers.
         bounded = (zeroth >= 0) & (zeroth <= 1)
         polynomials, scale, positive = _recursion(*_series(orders))
         tangent = np.tan(np.pi / 2 * zeroth)
         polynomials *= np.sqrt(np.stack([tangent, 1 / tangent]) / (2 * scale))
         multipliers = np.empty_like(orders)
-        for lag, found in enumerate(multipliers):
+        for lag, row in enumerate(multipliers):
             first, second = np.einsum("kpn,kpn->pn", polynomials[lag:], polynomials[: len(orders) - lag])
-            found[:] = first - second
+            row[:] = first - second
     return multipliers.T, bounded & positive & np.isfinite(multipliers).all(axis=0)
 
 
 def _series(moments: Array) -> tuple[Array, Array]:
-    """Series (m, n) of sin X / z and of sin(π c₀ + X), X = π Σ_l c_l z^l, of moments (m + 1, n).
+    """Compute the series (m, n) of sin X / z and sin(π c₀ + X), X = π Σ_l c_l z^l, of moments (m + 1, n).
 
-    Both are parts of exp(iX), which follows order by order from its derivative, iX' exp(iX).
+    Both are parts of exp(iX), whose terms follow from its derivative iX' exp(iX), order by order.
     """
     count, spectra = moments.shape
     slopes = np.pi * np.arange(count)[:, None] * moments
@@ -52,9 +55,9 @@ def _series(moments: Array) -> tuple[Array, Array]:
 
 
 def _recursion(upper: Array, lower: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Polynomials A and B (C, 2, n), Π (1 − g²) (n,), and whether (n,) all |g| < 1; g are those of ``upper / lower``.
+    """Compute polynomials A and B (C, 2, n), Π (1 − g²) (n,), and whether (n,) all |g| < 1, of ``upper / lower``.
 
-    Each g is the first term of the quotient; what is left of it is a quotient again, one order shorter.
+    Each g is the first term of the quotient; the remainder is a quotient again, one order shorter.
     """
     count, spectra = upper.shape
     polynomials = np.zeros((count + 1, 2, spectra))
@@ -64,7 +67,7 @@ def _recursion(upper: Array, lower: Array) -> tuple[Array, Array, NDArray[np.boo
         g = upper[0] / lower[0]
         upper, lower = upper[1:] - g * lower[1:], lower[:-1] - g * upper[:-1]
         polynomials[1 : order + 2] += np.stack([g, -g]) * polynomials[order::-1]
-        left = 1 - g * g
-        scale *= left
-        positive &= left > 0
+        factor = 1 - g * g
+        scale *= factor
+        positive &= factor > 0
     return polynomials, scale, positive

@@ -1,8 +1,8 @@
-"""Moments of spectra as steep as boxes, in closed form (docs/mathematics.md, 4).
+"""Moments of nearly box-shaped spectra in closed form (docs/mathematics.md, 4).
 
-The linear part x is a polynomial of degree m in y = cos φ. With the roots y_k of x − i, and ζ_k the root within the
-unit circle of ζ + 1/ζ = 2 y_k, log(1 + ix) is a constant less Σ_j (2/j) Σ_k ζ_k^j cos jφ; its imaginary part is
-π (g − ½).
+The linear part x is a polynomial of degree m in y = cos φ. Let y_k be the roots of x − i, and ζ_k the root of
+ζ + 1/ζ = 2 y_k inside the unit circle. Then log(1 + ix) is a constant minus Σ_j (2/j) Σ_k ζ_k^j cos jφ, and its
+imaginary part is π (g − ½).
 """
 
 from __future__ import annotations
@@ -15,21 +15,20 @@ from uplift.common.arrays import Array
 Complex = NDArray[np.complex128]
 
 MAX_MULTIPLIER = 1e9
-"""Multipliers beyond are held here: the spectra are the same to a billionth, and roots stay off the unit circle."""
-LEAST_LEAD = 1e-14
-"""A leading coefficient this small against the largest is rounding, and is held there: its roots are far away."""
+"""Larger multipliers are scaled down to this: spectra change by a billionth, and roots stay off the unit circle."""
+MIN_LEADING = 1e-14
+"""Smallest leading coefficient relative to the largest; smaller ones are rounding errors with remote roots."""
 
 
 def moments_by_roots(multipliers: Array) -> Array:
-    """Moments (n, C) of the spectra with multipliers (n, C)."""
-    held = multipliers * (
-        MAX_MULTIPLIER / np.maximum(np.abs(multipliers).max(axis=1, keepdims=True), MAX_MULTIPLIER)
-    )
-    series = 2 * held.astype(complex)
-    series[:, 0] = held[:, 0] - 1j
+    """Compute moments (n, C) of the spectra with multipliers (n, C)."""
+    magnitude = np.abs(multipliers).max(axis=1, keepdims=True)
+    limited = multipliers * (MAX_MULTIPLIER / np.maximum(magnitude, MAX_MULTIPLIER))
+    series = 2 * limited.astype(complex)
+    series[:, 0] = limited[:, 0] - 1j
     largest = np.abs(series).max(axis=1)
     lead = series[:, -1]
-    series[:, -1] = np.where(np.abs(lead) < LEAST_LEAD * largest, LEAST_LEAD * largest, lead)
+    series[:, -1] = np.where(np.abs(lead) < MIN_LEADING * largest, MIN_LEADING * largest, lead)
     y = np.linalg.eigvals(_colleague(series))
     root = np.sqrt(y - 1) * np.sqrt(y + 1)
     outer = np.where(np.abs(y + root) >= np.abs(y - root), y + root, y - root)
@@ -43,7 +42,7 @@ def moments_by_roots(multipliers: Array) -> Array:
 
 
 def _colleague(series: Complex) -> Complex:
-    """(n, m, m) matrices whose eigenvalues are the roots of Chebyshev series (n, m + 1), m ≥ 2.
+    """Create the matrices (n, m, m) whose eigenvalues are the roots of Chebyshev series (n, m + 1), m ≥ 2.
 
     Good 1961, "The colleague matrix, a Chebyshev analogue of the companion matrix".
     """
@@ -58,7 +57,7 @@ def _colleague(series: Complex) -> Complex:
 
 
 def _zeroth(lead: Complex, outer: Complex) -> Array:
-    """½ and the constant's argument by π: known up to 2, it lies in [0, 1]."""
+    """½ plus the argument of the constant over π, which is known modulo 2 and lies in [0, 1]."""
     turns = 1 + (np.angle(lead) + np.angle(-outer).sum(axis=1)) / np.pi
     zeroth = turns % 2
     return np.clip(np.where(zeroth > 1.5, zeroth - 2, zeroth), 0, 1)

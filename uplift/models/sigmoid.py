@@ -1,5 +1,7 @@
-"""The sigmoid model: a squashed quadratic of the wavelength, three numbers a spectrum.
+"""The sigmoid model: a squashed quadratic polynomial of the wavelength, three coefficients per spectrum.
 
+References
+----------
 Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", CGF 38(2), eq. 5.
 """
 
@@ -13,14 +15,24 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
 from uplift.models.duality import Quadrature, quadrature
+from uplift.models.model import Model
 
 
 @dataclass(frozen=True)
-class Sigmoid:
-    """g(x) = S(c₀x² + c₁x + c₂), S(t) = ½ + t / (2√(1 + t²)), x = λ taken from [start, end] nm to [−1, 1].
+class Sigmoid(Model):
+    """Spectra g(x) = S(c₀x² + c₁x + c₂) with S(t) = ½ + t / (2√(1 + t²)).
 
-    The scaled wavelength keeps the coefficients alike in size. They are stored as they are. Outside [start, end]
-    the spectrum is held flat: what the fit has not seen, the quadratic would make up.
+    x is the wavelength scaled from [start, end] nm to [−1, 1], which gives the coefficients similar magnitudes. The
+    multipliers are stored unchanged. Outside [start, end] the spectrum is constant, as no data constrain it there.
+
+    Parameters
+    ----------
+    start, end : float
+        Range in nm.
+
+    References
+    ----------
+    Jakob & Hanika 2019, eq. 5.
     """
 
     start: float = 380.0
@@ -62,7 +74,7 @@ class Sigmoid:
         return {"name": self.name, **asdict(self)}
 
 
-def published(coefficients: Array, wavelengths: Array) -> Array:
-    """Reflectances (n, N) by eq. 5 of Jakob & Hanika 2019: coefficients (n, 3) for wavelengths in nm, not scaled."""
+def evaluate_unscaled(coefficients: Array, wavelengths: Array) -> Array:
+    """Evaluate eq. 5 of Jakob & Hanika 2019 for coefficients (n, 3) of wavelengths (N,) in nm, not scaled."""
     x = coefficients @ np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
     return 0.5 + x / (2 * np.sqrt(1 + x * x))

@@ -6,7 +6,7 @@ from uplift.colorimetry.observer import aligned, colour_science
 from uplift.common.arrays import Array
 from uplift.lab.chart.method import Claims, Family, Method, Ready, held, one_by_one, stopwatch
 from uplift.lab.chart.task import Task
-from uplift.models.sigmoid import published
+from uplift.models.sigmoid import evaluate_unscaled
 
 SIZE = 5
 """Of the table, 3 × 5³ points: colour-science fits it in Python, in half a minute. Published tables have 64."""
@@ -32,7 +32,7 @@ def prepare_table(task: Task) -> Ready:
     )
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
-        return published(table.RGB_to_coefficients(rgb), wavelengths)
+        return evaluate_unscaled(table.RGB_to_coefficients(rgb), wavelengths)
 
     return Ready(uplift, table.coefficients.nbytes, seconds)
 

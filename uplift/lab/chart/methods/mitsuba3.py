@@ -11,7 +11,7 @@ import numpy as np
 from uplift.common.arrays import Array
 from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, Ready
 from uplift.lab.chart.task import Task
-from uplift.models.sigmoid import published
+from uplift.models.sigmoid import evaluate_unscaled
 
 VARIANT = "scalar_spectral"
 """Of those that know spectra, the one that needs no LLVM."""
@@ -23,7 +23,7 @@ def prepare(task: Task) -> Ready:
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         coefficients = [mitsuba.srgb_model_fetch(colour) for colour in rgb.tolist()]
-        return published(np.array(coefficients, dtype=float), wavelengths)
+        return evaluate_unscaled(np.array(coefficients, dtype=float), wavelengths)
 
     return Ready(uplift, (Path(mitsuba.__file__).parent / TABLE).stat().st_size, None)
 
