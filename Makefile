@@ -46,10 +46,11 @@ accuracy: $(INSTALLED)
 	$(BIN)/python -m benchmarks.accuracy
 	$(BIN)/python -m tools.render_docs accuracy
 
-# What the design rests on: docs/moments.md and docs/fidelity.md.
+# Measurements behind the design: docs/moments.md and docs/fidelity.md.
 study: $(INSTALLED)
-	$(BIN)/python -m benchmarks.study
+	$(BIN)/python -m benchmarks.moments
 	$(BIN)/python -m benchmarks.fidelity
+	$(BIN)/python -m tools.render_docs moments fidelity
 
 # Where it fails, and how: docs/stability.md.
 stability: $(INSTALLED)

@@ -89,7 +89,7 @@ def table(rows: Iterable[Row], caller: Callable[[], str]) -> str:
 
     The body of the ``call`` block has two lines: the headings, and the pattern of a row.
     """
-    heading, pattern = caller().strip("\n").splitlines()
+    heading, pattern = filter(None, caller().splitlines())
     rule = " | ".join(["---"] * (heading.count(" | ") + 1))
     body = [RowFormatter().vformat(pattern, (), row) for row in rows]
     return "".join(f"| {line} |\n" for line in (heading, rule, *body))

@@ -1,15 +1,15 @@
-"""Between the entries: which kriging, over which distance, in which metric."""
+"""Interpolation between entries: kind, correlation length and metric of the kriging."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import product
+from typing import Any
 
 import numpy as np
 
-from benchmarks.fidelity.materials import SENSOR, Materials, ahead, entries, large, materials
+from benchmarks.fidelity.materials import SENSOR, Materials, entries, forward, large, materials
 from benchmarks.fidelity.start import solved
-from benchmarks.page import table
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array
 from uplift.fit.kriging import LENGTH, krige
@@ -20,104 +20,86 @@ from uplift.models import Moments
 SPLITS = 3
 LENGTHS = (3.0, 4.0, 6.0, 8.0, 10.0, 14.0)
 Predict = Callable[[Array, Array, Array, Array], tuple[Array, Array | None]]
-"""Of colours and deviations known, colours asked, and roughness: deviations there, and the inverse metric."""
+"""From known colours and deviations, queried colours and roughness to deviations there and the inverse metric."""
 
 
-def sections() -> list[str]:
-    return [_lengths(), _designs()]
+def measure() -> dict[str, Any]:
+    """Vary the correlation length, then the kind of kriging."""
+    atlases = ("rawtoaces", "babelcolor", *large()[1:], "macbeth")
+    return {
+        "default_length": LENGTH,
+        "splits": SPLITS,
+        "lengths": [lengths(name, count) for name, count in product(atlases, (9, 17))],
+        "kriging": [kriging(name, label) for name in large() for label in DESIGNS],
+    }
 
 
-def _lengths() -> str:
-    rows = []
-    for name, count in product(("rawtoaces", "babelcolor", *large()[1:], "macbeth"), (9, 17)):
-        some, model = materials(name), Moments(count)
-        own = entries(model, some).multipliers
-        plain = smooth(model, ahead(model))(some.rgb)
-        without = spectrum_errors(solved(model, plain, some.rgb), some.measured).means()
-        cells = [name, str(count)]
-        for length in LENGTHS:
-            _, left_out = krige(rgb_to_lab(SENSOR, some.rgb), own - plain, length)
-            ratio = (
-                spectrum_errors(solved(model, plain + left_out, some.rgb), some.measured).means() / without
-            )
-            cells.append(f"{ratio[1:].mean():.3f} / {ratio[1:].max():.2f}")
-        rows.append(cells)
-    return table(
-        "Between entries: how far an entry is heard",
-        "Every entry left out in turn, its spectrum kriged from the others with correlation exp(−ΔE*ab / length): mean "
-        "over the lights of ΔE00, in shares of ΔE00 without an atlas / the worst light. "
-        f"The default length, {LENGTH:g}, was chosen on rawtoaces and babelcolor: a shorter one hears too little, a "
-        "longer one lets unrelated materials speak for each other.",
-        ["atlas", "coefficients", *(f"{length:g}" for length in LENGTHS)],
-        rows,
-    )
+def lengths(name: str, count: int) -> dict[str, Any]:
+    """Return ΔE00 of left-out entries relative to no atlas, [mean over the lights, worst light], by length."""
+    some, model = materials(name), Moments(count)
+    own = entries(model, some).multipliers
+    plain = smooth(model, forward(model))(some.rgb)
+    without = spectrum_errors(solved(model, plain, some.rgb), some.measured).means()
+    ratios = {}
+    for length in LENGTHS:
+        _, left_out = krige(rgb_to_lab(SENSOR, some.rgb), own - plain, length)
+        spectra = solved(model, plain + left_out, some.rgb)
+        ratio = spectrum_errors(spectra, some.measured).means()[1:] / without[1:]
+        ratios[f"{length:g}"] = [float(ratio.mean()), float(ratio.max())]
+    return {"atlas": name, "coefficients": count, "ratios": ratios}
 
 
-def _designs() -> str:
-    rows = []
-    for name in large():
-        for label, predict in DESIGNS.items():
-            scores = [_score(materials(name), Moments(9), predict, seed) for seed in range(SPLITS)]
-            ratio, ratios = np.mean(scores, axis=0), np.array(scores)[:, 1:].mean(axis=1)
-            rows.append(
-                [name, label, f"{ratio[0]:.3f}", f"{ratio[1:].mean():.3f} ± {ratios.std():.3f}",
-                 f"{ratio[1:].max():.2f}"]
-            )  # fmt: skip
-    return table(
-        "Between entries: which kriging",
-        f"Half of each atlas known, the other half asked, {SPLITS} times; 9 coefficients. In shares of what the same "
-        "model makes without an atlas: rms, mean over the lights of ΔE00 ± its spread over the splits, worst light. "
-        "*Smooth spectra* are those of the start above; a quadratic trend is over cube-root RGB with a Gaussian kernel "
-        "of length 0.1 and nugget 0.1; *metric of the residuals* moves each prior to its colour in the covariance of "
-        "leave-one-out residuals, shrunk to smoothness as 10 entries' worth.",
-        ["atlas", "prior", "rms", "lights", "worst light"],
-        rows,
-    )
+def kriging(name: str, label: str) -> dict[str, Any]:
+    """Return the errors of one half of an atlas predicted from the other, relative to no atlas."""
+    scores = np.array([_score(materials(name), Moments(9), DESIGNS[label], seed) for seed in range(SPLITS)])
+    rms, *lights = scores.mean(axis=0).tolist()
+    spread = {"mean": float(np.mean(lights)), "std": float(scores[:, 1:].mean(axis=1).std())}
+    return {"atlas": name, "prior": label, "rms": rms, "lights": spread, "worst_light": max(lights)}
 
 
 def _score(some: Materials, model: Moments, predict: Predict, seed: int) -> Array:
-    kept, asked = np.array_split(np.random.default_rng(seed).permutation(len(some.rgb)), 2)
+    kept, queried = np.array_split(np.random.default_rng(seed).permutation(len(some.rgb)), 2)
     own = entries(model, some.take(kept)).multipliers
-    plain = smooth(model, ahead(model))
-    offset = 0 if predict in OF_WHOLE else 1
+    plain = smooth(model, forward(model))
+    offset = 0 if predict in OF_MULTIPLIERS else 1
     known = own - offset * plain(some.rgb[kept])
-    deviation, metric = predict(some.rgb[kept], known, some.rgb[asked], model.roughness())
-    start = deviation + offset * plain(some.rgb[asked])
-    answered = solved(model, start, some.rgb[asked], metric)
-    return _ratio(answered, solved(model, plain(some.rgb[asked]), some.rgb[asked]), some.measured[asked])
+    deviation, metric = predict(some.rgb[kept], known, some.rgb[queried], model.roughness())
+    start = deviation + offset * plain(some.rgb[queried])
+    spectra = solved(model, start, some.rgb[queried], metric)
+    return _ratio(spectra, solved(model, plain(some.rgb[queried]), some.rgb[queried]), some.measured[queried])
 
 
-def _ratio(answered: Array, without: Array, measured: Array) -> Array:
-    return spectrum_errors(answered, measured).means() / spectrum_errors(without, measured).means()
+def _ratio(spectra: Array, without: Array, measured: Array) -> Array:
+    return spectrum_errors(spectra, measured).means() / spectrum_errors(without, measured).means()
 
 
-def _chosen(known: Array, values: Array, asked: Array, roughness: Array) -> tuple[Array, None]:
+def _default(known: Array, values: Array, queried: Array, roughness: Array) -> tuple[Array, None]:
     found, _ = krige(rgb_to_lab(SENSOR, known), values)
-    return found(rgb_to_lab(SENSOR, asked)), None
+    return found(rgb_to_lab(SENSOR, queried)), None
 
 
-def _chosen_in_metric(known: Array, values: Array, asked: Array, roughness: Array) -> tuple[Array, Array]:
+def _default_in_metric(known: Array, values: Array, queried: Array, roughness: Array) -> tuple[Array, Array]:
     found, left_out = krige(rgb_to_lab(SENSOR, known), values)
-    return found(rgb_to_lab(SENSOR, asked)), _covariance(values - left_out, roughness)
+    return found(rgb_to_lab(SENSOR, queried)), _covariance(values - left_out, roughness)
 
 
-def _nearest(known: Array, values: Array, asked: Array, roughness: Array) -> tuple[Array, None]:
-    apart = np.linalg.norm(rgb_to_lab(SENSOR, known)[None] - rgb_to_lab(SENSOR, asked)[:, None], axis=-1)
+def _nearest(known: Array, values: Array, queried: Array, roughness: Array) -> tuple[Array, None]:
+    apart = np.linalg.norm(rgb_to_lab(SENSOR, known)[None] - rgb_to_lab(SENSOR, queried)[:, None], axis=-1)
     return values[apart.argmin(axis=1)], None
 
 
-def _nothing(known: Array, values: Array, asked: Array, roughness: Array) -> tuple[Array, None]:
-    return np.zeros((len(asked), values.shape[1])), None
+def _nothing(known: Array, values: Array, queried: Array, roughness: Array) -> tuple[Array, None]:
+    return np.zeros((len(queried), values.shape[1])), None
 
 
-def _trend(known: Array, values: Array, asked: Array, roughness: Array) -> tuple[Array, Array]:
-    found, residuals = _universal(known, values, asked)
+def _trend(known: Array, values: Array, queried: Array, roughness: Array) -> tuple[Array, Array]:
+    found, residuals = _universal(known, values, queried)
     return found, _covariance(residuals, roughness)
 
 
-def _universal(known: Array, values: Array, asked: Array) -> tuple[Array, Array]:
+def _universal(known: Array, values: Array, queried: Array) -> tuple[Array, Array]:
     """Quadratic trend, Gaussian kernel of length 0.1 and nugget 0.1 over cube-root RGB; leave-one-out residuals."""
-    x, y = np.cbrt(known), np.cbrt(asked)
+    x, y = np.cbrt(known), np.cbrt(queried)
     count = len(x)
     trend = _quadratic(x)
     system = np.block([[_gauss(x, x) + 0.1 * np.eye(count), trend], [trend.T, np.zeros((10, 10))]])
@@ -146,27 +128,27 @@ DESIGNS: dict[str, Predict] = {
     "nothing: without an atlas": _nothing,
     "multipliers of the nearest entry": _nearest,
     "multipliers, quadratic trend, metric of the residuals": _trend,
-    "deviation from smooth spectra, simple kriging, the default": _chosen,
-    "the same, metric of the residuals": _chosen_in_metric,
+    "deviation from smooth spectra, simple kriging, the default": _default,
+    "the same, metric of the residuals": _default_in_metric,
 }
-OF_WHOLE = (_nearest, _trend)
-"""Those that predict multipliers, not their deviation from smooth spectra."""
+OF_MULTIPLIERS = (_nearest, _trend)
+"""Designs that predict multipliers, not their deviation from smooth spectra."""
 
 
-def _whole_deviations(kept: Materials, asked: Materials) -> Array:
+def _spectra_deviations(kept: Materials, queried: Materials) -> Array:
     model = Moments(9)
-    plain = smooth(model, ahead(model))
-    before, after = (solved(model, plain(part.rgb), part.rgb) for part in (kept, asked))
+    plain = smooth(model, forward(model))
+    before, after = (solved(model, plain(part.rgb), part.rgb) for part in (kept, queried))
     found, _ = krige(rgb_to_lab(SENSOR, kept.rgb), kept.measured - before)
-    return np.asarray(after + found(rgb_to_lab(SENSOR, asked.rgb)))
+    return np.asarray(after + found(rgb_to_lab(SENSOR, queried.rgb)))
 
 
-def _whole_trend(kept: Materials, asked: Materials) -> Array:
-    return _universal(kept.rgb, kept.measured, asked.rgb)[0]
+def _spectra_trend(kept: Materials, queried: Materials) -> Array:
+    return _universal(kept.rgb, kept.measured, queried.rgb)[0]
 
 
 LIMITS: dict[str, Callable[[Materials, Materials], Array]] = {
-    "81 samples, deviations kriged as here": _whole_deviations,
-    "81 samples, quadratic trend": _whole_trend,
+    "81 samples, deviations kriged as here": _spectra_deviations,
+    "81 samples, quadratic trend": _spectra_trend,
 }
-"""Kriging of whole spectra, neither bounded nor compact, nor of the very colour."""
+"""Kriging of complete spectra, which is neither bounded nor compact, and not exact in colour."""

@@ -1,28 +1,28 @@
-"""Whole cubes, 32³: entries at their own colours, half an atlas for the other half, errors stated, smoothness."""
+"""Cubes of 32³: entries at their own colours, holdout tests, standard errors, seeds and smoothness."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
 import uplift
 from benchmarks.fidelity.between import LIMITS
 from benchmarks.fidelity.materials import (
-    HEAD,
-    JUDGED_ON,
     SENSOR,
+    TESTED_ON,
     Materials,
-    ahead,
+    as_record,
     entries,
+    errors,
+    forward,
     large,
     materials,
-    row,
     spectra,
     spectra_of,
 )
-from benchmarks.page import table
 from uplift import fit
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
@@ -39,13 +39,29 @@ COUNTS = (9, 13, 17)
 SPLITS = 3
 
 
-def sections() -> list[str]:
-    found = {
+Splits = dict[tuple[str, int], tuple[HoldoutSplit, ...]]
+
+
+def measure() -> dict[str, Any]:
+    """Build the cubes and evaluate them."""
+    splits: Splits = {
         (name, count): holdout(spectra(name), SPLITS, dim=DIM, coefficients=count)
         for name in large()
         for count in COUNTS
     }
-    return [_own(), _halves(found), _targets(found), _stated(found), _seeds(), _smoothness()]
+    return {
+        "dim": DIM,
+        "entries": [row for name in (*TESTED_ON, "rawtoaces") for row in at_entries(name)],
+        "halves": [row for key in splits for row in halves(*key, splits[key])],
+        "shares": [shares(*key, splits[key]) for key in splits],
+        "standard_errors": standard_errors(splits),
+        "seed_starts": [row for name in large() for row in seed_starts(name)],
+        "smoothness": [
+            neighbour_steps(name, count)
+            for name in (None, "macbeth", "rawtoaces", *large()[2:])
+            for count in (9, 17)
+        ],
+    }
 
 
 def build(name: str | None, **options: object) -> Cube:
@@ -54,164 +70,125 @@ def build(name: str | None, **options: object) -> Cube:
         return uplift.build(spectra(name) if name else None, **{"dim": DIM, **options})
 
 
-def _own() -> str:
-    rows = []
-    for name in (*JUDGED_ON, "rawtoaces"):
-        some = materials(name)
-        for label, cube in {
-            "9 coefficients": build(name),
-            "17 coefficients": build(name, coefficients=17),
-            "9, without the atlas": build(None),
-            "sigmoid": build(name, model="sigmoid"),
-        }.items():
-            rows.append([name, *row(label, cube.reflectance(some.rgb), some)])
-    return table(
-        "Atlas entries asked at their own colours",
-        f"Cubes of {DIM}³. Entries are nodes of the lattice: what is left is what the coefficients lose.",
-        ["atlas", "cube", *HEAD],
-        rows,
-    )
+def at_entries(name: str) -> Iterator[dict[str, Any]]:
+    """Yield the errors of cubes at the colours of their entries."""
+    some = materials(name)
+    for label, cube in {
+        "9 coefficients": build(name),
+        "17 coefficients": build(name, coefficients=17),
+        "9, without the atlas": build(None),
+        "sigmoid": build(name, model="sigmoid"),
+    }.items():
+        yield {"atlas": name, "cube": label, **errors(cube.reflectance(some.rgb), some)}
 
 
-def _halves(found: dict[tuple[str, int], tuple[HoldoutSplit, ...]]) -> str:
-    rows = []
-    for (name, count), splits in found.items():
-        for method in splits[0].errors:
-            means = np.array([split.errors[method].means() for split in splits])
-            cells = [
-                f"{mean:.3f} ± {spread:.3f}" for mean, spread in zip(means.mean(0), means.std(0), strict=True)
-            ]
-            rows.append([name, str(count), method, *cells])
-        if count == COUNTS[-1]:
-            for label, predict in LIMITS.items():
-                limit = np.mean([_limit(name, predict, seed) for seed in range(SPLITS)], axis=0)
-                rows.append([name, "", f"*limit:* {label}", *(f"{value:.3f}" for value in limit)])
-    return table(
-        "Half of an atlas for the other half",
-        f"Cubes of {DIM}³ from one half, asked at the colours of the other; {SPLITS} splits, ± their spread. "
-        "*Limits* krige whole spectra, in the way of this page's prior and in that of the quadratic trend: 81 samples "
-        "for every colour, which neither stay within [0, 1] nor have the colour.",
-        ["atlas", "coefficients", "cube", *HEAD],
-        rows,
-    )
+def halves(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> Iterator[dict[str, Any]]:
+    """Yield the errors of every method at the held-out half, and the limits once per atlas."""
+    for method in splits[0].errors:
+        means = np.array([split.errors[method].means() for split in splits])
+        mean, std = as_record(means.mean(axis=0)), as_record(means.std(axis=0))
+        both = {key: {"mean": mean["errors"][key], "std": std["errors"][key]} for key in mean["errors"]}
+        rms = {"mean": mean["rms"], "std": std["rms"]}
+        yield {"atlas": name, "coefficients": count, "cube": method, "rms": rms, "errors": both}
+    if count == COUNTS[-1]:
+        for label, predict in LIMITS.items():
+            limit = np.mean([_limit(name, predict, seed) for seed in range(SPLITS)], axis=0)
+            yield {"atlas": name, "coefficients": None, "cube": f"*limit:* {label}", **as_record(limit)}
 
 
 def _limit(name: str, predict: Callable[[Materials, Materials], Array], seed: int) -> Array:
     some = materials(name)
-    kept, asked = np.array_split(np.random.default_rng(seed).permutation(len(some.rgb)), 2)
-    return spectrum_errors(predict(some.take(kept), some.take(asked)), some.measured[asked]).means()
+    kept, queried = np.array_split(np.random.default_rng(seed).permutation(len(some.rgb)), 2)
+    return spectrum_errors(predict(some.take(kept), some.take(queried)), some.measured[queried]).means()
 
 
-def _targets(found: dict[tuple[str, int], tuple[HoldoutSplit, ...]]) -> str:
+def shares(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> dict[str, Any]:
+    """Return the errors relative to the sigmoid, and the light under which the atlas helps least."""
+    ours, sigmoid, plain = (
+        np.array([split.errors[method].means() for split in splits]).mean(axis=0)
+        for method in ("half the atlas", "sigmoid", "without an atlas")
+    )
+    share, against = as_record(ours / sigmoid), as_record(ours / plain)["errors"]
+    worst = max(against, key=against.__getitem__)
+    return {
+        "atlas": name,
+        "coefficients": count,
+        "rms": share["rms"],
+        "A": share["errors"]["A"],
+        "FL11": share["errors"]["FL11"],
+        "worst": {"ratio": against[worst], "light": worst},
+    }
+
+
+def standard_errors(splits: Splits) -> list[dict[str, Any]]:
+    """Return actual and predicted errors as roots of mean squares, overall and by quartile of the predicted ones."""
+    others = {(f"macbeth, queried for {name}", 9): (_across("macbeth", name),) for name in large()}
     rows = []
-    for (name, count), splits in found.items():
-        ours, sigmoid, plain = (
-            np.array([split.errors[method].means() for split in splits]).mean(axis=0)
-            for method in ("half the atlas", "sigmoid", "without an atlas")
+    for (name, count), parts in (splits | others).items():
+        actual, predicted = (
+            np.concatenate([getattr(split, part) for split in parts]) for part in ("real", "stated")
         )
-        share, against = ours / sigmoid, ours / plain
-        worst = HEAD[1 + int(against[1:].argmax())]
+        found = calibration(actual, predicted)
+        quartiles = np.array_split(predicted.argsort(kind="stable"), 4)
         rows.append(
-            [
-                name,
-                str(count),
-                f"{share[0]:.2f}",
-                f"{share[1]:.2f}",
-                f"{share[4]:.2f}",
-                f"{against[1:].max():.2f} ({worst})",
-            ]
+            {
+                "atlas": name,
+                "coefficients": count,
+                "all": [_root_mean_square(actual), _root_mean_square(predicted)],
+                "within_1": found.within_one,
+                "within_2": found.within_two,
+                "quartiles": [
+                    [_root_mean_square(actual[part]), _root_mean_square(predicted[part])]
+                    for part in quartiles
+                ],
+            }
         )
-    return table(
-        "The same in shares",
-        "Of the sigmoid's rms and ΔE00; and the light that the atlas helps least under, in shares of ΔE00 without one.",
-        ["atlas", "coefficients", "rms", "A", "FL11", "least helped"],
-        rows,
-    )
+    return rows
 
 
-def _stated(found: dict[tuple[str, int], tuple[HoldoutSplit, ...]]) -> str:
-    rows = []
-    strangers = {(f"macbeth, asked for {name}", 9): (_across("macbeth", name),) for name in large()}
-    for (name, count), splits in (found | strangers).items():
-        real, stated = (
-            np.concatenate([getattr(split, part) for split in splits]) for part in ("real", "stated")
-        )
-        said = calibration(real, stated)
-        quarters = [
-            f"{_root(real[part]):.2f} / {_root(stated[part]):.2f}"
-            for part in np.array_split(stated.argsort(kind="stable"), 4)
-        ]
-        shares = (f"{said.within_one:.0%}", f"{said.within_two:.0%}")
-        rows.append([name, str(count), f"{said.real:.2f} / {said.stated:.2f}", *shares, *quarters])
-    return table(
-        "Standard errors that cubes state, and real ones",
-        "ΔE00 under A of the half that the cube has not seen, as roots of mean squares: real / stated; how many of the "
-        "real errors lie within one and within two stated ones; and the same for the four quarters of the colours, "
-        "from those that the cube is most sure of to those that it is least sure of.",
-        ["atlas", "coefficients", "all", "within 1", "within 2", "surest", "second", "third", "least sure"],
-        rows,
-    )
-
-
-def _across(known: str, asked: str) -> HoldoutSplit:
-    """A cube of one atlas asked for another."""
-    cube, some = build(known), materials(asked)
-    answered = cube.reflectance(some.rgb)
+def _across(known: str, queried: str) -> HoldoutSplit:
+    """Query a cube of one atlas for the colours of another."""
+    cube, some = build(known), materials(queried)
+    found = cube.reflectance(some.rgb)
     light = observer.light(cube.data.error_illuminant)
-    return HoldoutSplit({}, delta_e_spectra(light, answered, some.measured), cube.standard_error(some.rgb))
+    return HoldoutSplit({}, delta_e_spectra(light, found, some.measured), cube.standard_error(some.rgb))
 
 
 def _root(errors: Array) -> float:
     return float(np.sqrt((errors**2).mean()))
 
 
-def _seeds() -> str:
-    """Cubes whose seeds start from their entries, or from the prior as all other points do."""
-    rows = []
-    for name in large():
-        some, model = materials(name), Moments(9)
-        kept, asked = np.array_split(np.random.default_rng(0).permutation(len(some.rgb)), 2)
-        found = entries(model, some.take(kept))
-        lattice = Lattice(observer.axis_nodes("srgb", DIM))
-        problem = fit.Problem(model, ahead(model), lattice)
-        prior = fit.fit_prior(problem, SENSOR, found, observer.light("A"))
-        seeds = fit.seed(lattice, found.rgb)
-        nobody = fit.Seeds(seeds.points[:0], seeds.entry[:0], seeds.primary[:0], ())
-        for label, chosen in {"their entries, the default": seeds, "the prior": nobody}.items():
-            fitted = fit.fit_lattice(problem, chosen, found.multipliers, prior)
-            points = model.from_storage(fitted.coefficients)
-            for asks, part in {"the other half": asked, "the half it knows": kept}.items():
-                corners, weights = lattice.corners(some.rgb[part])
-                around = spectra_of(model, points[corners.ravel()]).reshape(*corners.shape, -1)
-                answered = (weights[..., None] * around).sum(axis=1)
-                rows.append([name, label, asks, *row("", answered, some.take(part))[1:]])
-    return table(
-        "What seeds start from",
-        f"The lattice alone, {DIM}³, 9 coefficients, entries not yet nodes of it. From the prior, the lattice says a "
-        "little more about materials unknown; from their entries, seeds keep known ones in the whole voxel around "
-        "their colour, where paintings have their shades.",
-        ["atlas", "seeds start from", "asked", *HEAD],
-        rows,
-    )
+def _root_mean_square(values: Array) -> float:
+    return float(np.sqrt((values**2).mean()))
 
 
-def _smoothness() -> str:
-    rows = []
-    for name in (None, "macbeth", "rawtoaces", *large()[2:]):
-        for count in (9, 17):
-            steps = smoothness(build(name, coefficients=count).data).differences
-            rows.append(
-                [
-                    name or "none",
-                    str(count),
-                    f"{steps.mean():.4f}",
-                    f"{np.quantile(steps, 0.99):.3f}",
-                    f"{steps.max():.3f}",
-                ]
-            )
-    return table(
-        "Smoothness of the lattice",
-        f"rms difference between the spectra of neighbouring points along the axes, {DIM}³: mean, 99 % and largest.",
-        ["atlas", "coefficients", "mean", "99 %", "largest"],
-        rows,
-    )
+def seed_starts(name: str) -> Iterator[dict[str, Any]]:
+    """Yield the errors of lattices whose seeds start from their entries, or from the prior as other nodes do."""
+    some, model = materials(name), Moments(9)
+    kept, queried = np.array_split(np.random.default_rng(0).permutation(len(some.rgb)), 2)
+    fitted_entries = entries(model, some.take(kept))
+    lattice = Lattice(observer.axis_nodes("srgb", DIM))
+    problem = fit.Problem(model, forward(model), lattice)
+    prior = fit.fit_prior(problem, SENSOR, fitted_entries, observer.light("A"))
+    seeds = fit.seed(lattice, fitted_entries.rgb)
+    none = fit.Seeds(seeds.points[:0], seeds.entry[:0], seeds.primary[:0], ())
+    for label, chosen in {"their entries, the default": seeds, "the prior": none}.items():
+        fitted = fit.fit_lattice(problem, chosen, fitted_entries.multipliers, prior)
+        nodes = model.from_storage(fitted.coefficients)
+        for half, rows in {"the other half": queried, "the known half": kept}.items():
+            corners, weights = lattice.corners(some.rgb[rows])
+            around = spectra_of(model, nodes[corners.ravel()]).reshape(*corners.shape, -1)
+            found = (weights[..., None] * around).sum(axis=1)
+            yield {"atlas": name, "start": label, "queried": half, **errors(found, some.take(rows))}
+
+
+def neighbour_steps(name: str | None, count: int) -> dict[str, Any]:
+    """Return the rms difference between the spectra of neighbouring nodes."""
+    steps = smoothness(build(name, coefficients=count).data).differences
+    return {
+        "atlas": name or "none",
+        "coefficients": count,
+        "mean": float(steps.mean()),
+        "p99": float(np.quantile(steps, 0.99)),
+        "max": float(steps.max()),
+    }

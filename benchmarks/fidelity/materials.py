@@ -1,4 +1,4 @@
-"""Atlases for the study: what choices are made on, and what they are judged on."""
+"""Atlases of the study: those used for design choices, and those used only for testing."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT
 from uplift import fit
 from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import observer
@@ -21,16 +22,16 @@ from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_map
 
 CHOSEN_ON = ("rawtoaces", "babelcolor", "pmc", "tcs", "vs")
-"""Atlases that choices are made on."""
-JUDGED_ON = ("macbeth", "cie2017")
+"""Atlases used for design choices."""
+TESTED_ON = ("macbeth", "cie2017")
 MUNSELL = ROOT / "out" / "munsell.csv"
-"""The 1,269 chips of the Munsell book, if `make munsell` has brought them: they are not ours to pass on."""
+"""The 1,269 chips of the Munsell book, if `make munsell` has fetched them: they cannot be redistributed."""
 SENSOR = observer.sensor()
 
 
 @dataclass(frozen=True, eq=False)
 class Materials:
-    """Reflectances (E, 81) and linear sRGB (E, 3) of the entries that sRGB holds, no colour twice."""
+    """Reflectances (E, 81) and linear sRGB (E, 3) of the entries inside sRGB, without duplicate colours."""
 
     name: str
     measured: Array
@@ -57,12 +58,12 @@ def materials(name: str) -> Materials:
 
 
 def large() -> tuple[str, ...]:
-    """Atlases that are worth halving."""
+    """Return the atlases that are large enough to split."""
     return ("rawtoaces", "cie2017", *(["munsell"] if MUNSELL.exists() else []))
 
 
 @cache
-def ahead(model: Model) -> ForwardMap:
+def forward(model: Model) -> ForwardMap:
     return forward_map(model, SENSOR.wavelengths, SENSOR.matrix)
 
 
@@ -72,18 +73,22 @@ def entries(
     lights: Sequence[str] = uplift.pipeline.options.Options.lights,
     weights: fit.Weights = fit.objective.BALANCED,
 ) -> fit.FittedEntries:
-    shine = [observer.light(name) for name in lights]
-    return fit.fit_entries(model, ahead(model), some.measured, some.rgb, shine, shine[1], 1e-6, weights)
+    illuminants = [observer.light(name) for name in lights]
+    return fit.fit_entries(
+        model, forward(model), some.measured, some.rgb, illuminants, illuminants[1], 1e-6, weights
+    )
 
 
 def spectra_of(model: Model, multipliers: Array) -> Array:
-    return np.asarray(model.squash(multipliers @ ahead(model).basis.T))
+    return np.asarray(model.squash(multipliers @ forward(model).basis.T))
 
 
-def row(name: str, answered: Array, some: Materials, digits: int = 3) -> list[str]:
-    """Name, mean rms and mean ΔE00 under each light, as cells."""
-    rms, *delta_e = spectrum_errors(answered, some.measured).means()
-    return [name, f"{rms:.4f}", *(f"{value:.{digits}f}" for value in delta_e)]
+def errors(spectra: Array, some: Materials) -> dict[str, Any]:
+    """Return the mean rms and the mean ΔE00 under each light."""
+    return as_record(spectrum_errors(spectra, some.measured).means())
 
 
-HEAD = ["rms", *HELD_OUT_LIGHTS]
+def as_record(means: Array) -> dict[str, Any]:
+    """Convert the order of `spectrum_errors` to names."""
+    rms, *delta_e = np.asarray(means).tolist()
+    return {"rms": rms, "errors": dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True))}

@@ -1,11 +1,13 @@
-"""Without an atlas: where a colour's fit starts, the metric it moves in, and the phase."""
+"""Cubes without an atlas: start of the fit, metric of its steps, and phase."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
-from benchmarks.fidelity.materials import HEAD, JUDGED_ON, SENSOR, ahead, large, materials, row
-from benchmarks.page import table
+from benchmarks.fidelity.materials import SENSOR, errors, forward, large, materials
 from uplift.common.arrays import Array
 from uplift.fit.smooth import BRIGHTENING, GREY, smooth
 from uplift.fit.solve import solve
@@ -24,49 +26,49 @@ DARK = np.array(
         (0.1, 0.05, 0),
     ]
 )
-NINTIETH = 76
-"""Sample of 760 nm."""
+AT_760 = 76
+"""Index of the sample at 760 nm."""
 
 
-def sections() -> list[str]:
-    names = dict.fromkeys(("rawtoaces", "cie2017", *large()))
-    return [_starts(tuple(names)), *(_models(name) for name in names)]
+def measure() -> dict[str, Any]:
+    """Compare starts, then metrics and phases."""
+    names = tuple(dict.fromkeys(("rawtoaces", "cie2017", *large())))
+    return {
+        "colours": {name: len(materials(name).rgb) for name in names},
+        "brightening": BRIGHTENING,
+        "grey": GREY,
+        "starts": starts(names),
+        "metrics": [row for name in names for row in metrics(name)],
+    }
 
 
 def solved(model: Model, start: Array, rgb: Array, metric: Array | None = None) -> Array:
-    """Spectra (n, N) of linear RGB (n, 3) by steps of least change from ``start`` (n, C)."""
-    map_ahead = forward_map(model, SENSOR.wavelengths, SENSOR.matrix, metric)
-    found = solve(model, map_ahead, start, rgb, tolerance=1e-7, passes=24)
-    return np.asarray(model.squash(found.multipliers @ map_ahead.basis.T))
+    """Return spectra (n, N) of linear RGB (n, 3) by minimum-norm steps from ``start`` (n, C)."""
+    forward_rgb = forward_map(model, SENSOR.wavelengths, SENSOR.matrix, metric)
+    found = solve(model, forward_rgb, start, rgb, tolerance=1e-7, passes=24)
+    return np.asarray(model.squash(found.multipliers @ forward_rgb.basis.T))
 
 
-def _starts(names: tuple[str, ...]) -> str:
+def starts(names: tuple[str, ...]) -> list[dict[str, Any]]:
+    """Return errors relative to the sigmoid: rms, mean ΔE00 over the lights, and the worst light."""
     sigmoid = {
         name: _means(solved(Sigmoid(), np.zeros((len(materials(name).rgb), 3)), materials(name).rgb), name)
         for name in names
     }
     rows = []
     for label, start in _variants().items():
-        cells = [label, f"{solved(NINE, start(DARK), DARK)[:, NINTIETH].max():.2f}"]
+        ratios = {}
         for name in names:
-            ratio = (
-                _means(solved(NINE, start(materials(name).rgb), materials(name).rgb), name) / sigmoid[name]
-            )
-            cells.append(f"{ratio[0]:.2f} / {ratio[1:].mean():.2f} / {ratio[1:].max():.2f}")
-        rows.append(cells)
-    return table(
-        "Without an atlas: where a fit starts",
-        "9 coefficients, steps of least change from each start. Per atlas, in shares of what the sigmoid makes of the "
-        "same colours: rms / mean over the lights of ΔE00 / the worst light. *760 nm* is the highest reflectance there "
-        "of six dark saturated colours. A colour is brightened by max(x)^b and started from a grey of the power g "
-        f"of its mean; the default is b = {BRIGHTENING:g}, g = {GREY:.2g}. Chosen on rawtoaces.",
-        ["start", "760 nm", *names],
-        rows,
-    )
+            rgb = materials(name).rgb
+            ratio = _means(solved(NINE, start(rgb), rgb), name) / sigmoid[name]
+            ratios[name] = [float(ratio[0]), float(ratio[1:].mean()), float(ratio[1:].max())]
+        at_760 = float(solved(NINE, start(DARK), DARK)[:, AT_760].max())
+        rows.append({"start": label, "at_760": at_760, "ratios": ratios})
+    return rows
 
 
-def _variants() -> dict:
-    found = {"grey of ½": lambda rgb: np.zeros((len(rgb), 9))}
+def _variants() -> dict[str, Callable[[Array], Array]]:
+    variants: dict[str, Callable[[Array], Array]] = {"grey of ½": lambda rgb: np.zeros((len(rgb), 9))}
     for b, g in (
         (0, 0.5),
         (0, GREY),
@@ -79,15 +81,16 @@ def _variants() -> dict:
         (0.7, GREY),
         (1, GREY),
     ):
-        found[f"b = {b:g}, g = {g:.2g}"] = smooth(NINE, ahead(NINE), b, g)
-    return found
+        variants[f"b = {b:g}, g = {g:.2g}"] = smooth(NINE, forward(NINE), b, g)
+    return variants
 
 
-def _means(answered: Array, name: str) -> Array:
-    return spectrum_errors(answered, materials(name).measured).means()
+def _means(spectra: Array, name: str) -> Array:
+    return spectrum_errors(spectra, materials(name).measured).means()
 
 
-def _models(name: str) -> str:
+def metrics(name: str) -> list[dict[str, Any]]:
+    """Return the errors with other metrics and phases, each from smooth spectra."""
     some = materials(name)
     squared = 1 + np.arange(9.0) ** 2
     choices: list[tuple[str, Model, Array | None]] = [
@@ -103,11 +106,6 @@ def _models(name: str) -> str:
     rows = []
     for label, model, metric in choices:
         start = smooth(model, forward_map(model, SENSOR.wavelengths, SENSOR.matrix, metric))(some.rgb)
-        rows.append(row(label, solved(model, start, some.rgb, metric), some))
-    judged = ", which no choice was made on" if name in JUDGED_ON or name == "munsell" else ""
-    return table(
-        f"Without an atlas: metric and phase on {name}",
-        f"{len(some.rgb)} colours{judged}: rms, and mean ΔE00 under each light.",
-        ["model", *HEAD],
-        rows,
-    )
+        row = errors(solved(model, start, some.rgb, metric), some)
+        rows.append({"atlas": name, "model": label, **row})
+    return rows

@@ -1,0 +1,48 @@
+"""Crowding: lattice size that an atlas needs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from benchmarks.fidelity.materials import SENSOR, entries, forward, large, materials
+from uplift import fit
+from uplift.colorimetry import observer
+from uplift.fit.lattice_size import DIMS, lattice_error
+from uplift.lattice import Lattice
+from uplift.models import Moments
+from uplift.pipeline.options import AXES, Options
+
+TOLERANCES = (0.5, 1.0)
+MODEL = Moments(9)
+LIGHTS = [observer.light(name) for name in Options.lights]
+
+
+def measure() -> dict[str, Any]:
+    """Measure the lattice alone, and the choices of ``--dim auto``."""
+    crowding, choices = [], []
+    for name in ("macbeth", *large()):
+        fitted = entries(MODEL, materials(name))
+        crowding += [lattice_errors(name, axis, fitted) for axis in AXES]
+        choices += [automatic(name, fitted, tolerance) for tolerance in TOLERANCES]
+    return {"lights": list(Options.lights), "crowding": crowding, "lattice_choices": choices}
+
+
+def lattice_errors(name: str, axis: str, fitted: fit.FittedEntries) -> dict[str, Any]:
+    """Return the median error at the entries, and how many exceed the smaller tolerance, by dim."""
+    errors = {}
+    for dim in DIMS[1::2]:
+        problem = fit.Problem(MODEL, forward(MODEL), Lattice(observer.axis_nodes(axis, dim)))
+        found = lattice_error(problem, SENSOR.wavelengths, LIGHTS, fitted)
+        errors[str(dim)] = {"median": float(np.median(found)), "over": int((found > TOLERANCES[0]).sum())}
+    return {"atlas": name, "entries": len(fitted.rgb), "axis": axis, "errors": errors}
+
+
+def automatic(name: str, fitted: fit.FittedEntries, tolerance: float) -> dict[str, Any]:
+    """Return the lattice that ``--dim auto`` chooses."""
+    problem = fit.Problem(MODEL, forward(MODEL), Lattice(observer.axis_nodes("srgb", 2)))
+    axis, dim, over = fit.choose_lattice(
+        problem, SENSOR.wavelengths, LIGHTS, fitted, observer.axis_nodes, AXES, tolerance
+    )
+    return {"atlas": name, "tolerance": tolerance, "dim": dim, "axis": axis, "entries_over": over}
