@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import uplift
-from benchmarks.study_tables import STORED, read_thesis, within
+from benchmarks.moments import FLOATS, max_moments, read_thesis
 from uplift.atlas import Atlas, read_atlas
 from uplift.common.errors import AtlasError, OptionError
 from uplift.lab.study.moments import ALL_ATLASES, MAX_MOMENTS, MEASURES, study_moments
@@ -31,7 +31,7 @@ def whole_study(repository):
 def errors(request, macbeth_study, whole_study):
     """Mean errors of the ColorChecker and of everything by technique, floats and measure."""
     found = whole_study if request.param == ALL_ATLASES else macbeth_study
-    return lambda technique, floats, measure=0: found.of(technique, within(technique, floats)).mean[measure]
+    return lambda technique, floats, measure=0: found.of(technique, max_moments(technique, floats)).mean[measure]
 
 
 @pytest.mark.parametrize("technique", TECHNIQUES, ids=lambda technique: technique.short)
@@ -56,7 +56,7 @@ def test_nothing_kept_is_a_grey_far_from_the_colours(macbeth_study):
 
 
 def test_mirroring_wins(errors):
-    for floats in STORED:
+    for floats in FLOATS:
         best = min(TECHNIQUES, key=lambda technique: errors(technique, floats))
         assert best.mirrored, floats
     for floats in (9, 13, 16):
@@ -81,10 +81,10 @@ def test_the_page_s_words_on_warp_and_shape(whole_study):
     assert set(range(2, 15)) == set(floats[ahead[:, 1, 0]])
     assert ahead[8, 0, 1:-1].all()
     rms = [
-        [whole_study.of(one, within(one, floats)).mean[-1] for one in TECHNIQUES] for floats in (9, 13, 16)
+        [whole_study.of(one, max_moments(one, floats)).mean[-1] for one in TECHNIQUES] for floats in (9, 13, 16)
     ]
     assert all(min(row[2:]) > 3 * min(row[:2]) for row in rms)
-    assert not ahead[[floats - 1 for floats in STORED], 0, -1].any()
+    assert not ahead[[floats - 1 for floats in FLOATS], 0, -1].any()
 
 
 def test_the_page_s_words_on_the_thesis(whole_study):
