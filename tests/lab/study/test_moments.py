@@ -31,7 +31,9 @@ def whole_study(repository):
 def errors(request, macbeth_study, whole_study):
     """Mean errors of the ColorChecker and of everything by technique, floats and measure."""
     found = whole_study if request.param == ALL_ATLASES else macbeth_study
-    return lambda technique, floats, measure=0: found.of(technique, max_moments(technique, floats)).mean[measure]
+    return lambda technique, floats, measure=0: found.of(technique, max_moments(technique, floats)).mean[
+        measure
+    ]
 
 
 @pytest.mark.parametrize("technique", TECHNIQUES, ids=lambda technique: technique.short)
@@ -81,7 +83,8 @@ def test_the_page_s_words_on_warp_and_shape(whole_study):
     assert set(range(2, 15)) == set(floats[ahead[:, 1, 0]])
     assert ahead[8, 0, 1:-1].all()
     rms = [
-        [whole_study.of(one, max_moments(one, floats)).mean[-1] for one in TECHNIQUES] for floats in (9, 13, 16)
+        [whole_study.of(one, max_moments(one, floats)).mean[-1] for one in TECHNIQUES]
+        for floats in (9, 13, 16)
     ]
     assert all(min(row[2:]) > 3 * min(row[:2]) for row in rms)
     assert not ahead[[floats - 1 for floats in FLOATS], 0, -1].any()
