@@ -1,4 +1,4 @@
-"""The ColorChecker: its measured spectra, the RGB that it is painted with, and where its patches lie."""
+"""The ColorChecker: measured spectra, painted RGB, and the layout of the patches."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
@@ -23,7 +23,7 @@ BACKGROUND = 0.03
 class Chart:
     """24 patches: ``measured`` (24, N) reflectances at ``wavelengths`` (N,) nm, ``painted`` (24, 3) linear sRGB.
 
-    ``outside`` (24,) tells which colours sRGB does not hold: they are painted clipped.
+    ``outside`` (24,) marks the colours outside sRGB, which are painted clipped.
     """
 
     names: tuple[str, ...]
@@ -34,6 +34,7 @@ class Chart:
 
 
 def chart() -> Chart:
+    """Read the shipped ColorChecker."""
     sensor: Sensor = observer.sensor()
     spectra = read_atlas(MACBETH)
     measured = on_grid(spectra, sensor.wavelengths)
@@ -55,14 +56,14 @@ class Layout:
         return COLUMNS * pitch + self.gap, ROWS * pitch + self.gap
 
     def corners(self) -> Iterator[tuple[int, int]]:
-        """Top left pixel (x, y) of each patch."""
+        """Yield the top left pixel (x, y) of each patch."""
         pitch = self.patch + self.gap
         for row in range(ROWS):
             for column in range(COLUMNS):
                 yield self.gap + column * pitch, self.gap + row * pitch
 
     def patches(self, inset: int = 0) -> Iterator[tuple[slice, slice]]:
-        """Rows and columns of the pixels of each patch but for ``inset`` pixels along its edges."""
+        """Yield the rows and columns of each patch, without ``inset`` pixels along its edges."""
         for x, y in self.corners():
             yield (
                 slice(y + inset, y + self.patch - inset),

@@ -1,4 +1,4 @@
-"""The charts side by side: a row a light, a column a way to uplift."""
+"""The rendered charts: one row per light, one column per method."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from uplift.common.arrays import Array
 from uplift.viz.figure import new_figure, write_png
 
 INSET = 0.3
-"""Share of a patch's width to each side of the truth in its middle."""
+"""Margin around the reference square in the middle of a patch, as a share of its width."""
 WIDTH, HEIGHT = 10.5, 7.6
 
 
@@ -23,38 +23,38 @@ def draw(
     images: Mapping[tuple[str, str], Array],
     captions: Mapping[tuple[str, str], str],
     lights: Sequence[str],
-    ways: Sequence[str],
+    methods: Sequence[str],
     layout: Layout,
     path: Path,
 ) -> None:
-    """Write XYZ ``images`` by light and way, the first way being the truth, which each other shows in its patches.
+    """Draw XYZ ``images`` by light and method; the first method is the reference, shown inside the patches of all.
 
-    Every light's white is taken to the screen's by Bradford adaptation.
+    The white of each light is adapted to the white of the screen (Bradford).
     """
     figure = new_figure(WIDTH, HEIGHT)
-    grid = figure.subplots(len(lights), len(ways), squeeze=False)
-    truth = ways[0]
+    grid = figure.subplots(len(lights), len(methods), squeeze=False)
+    reference = methods[0]
     for row, light in enumerate(lights):
         to_screen = sensor(illuminant=light).xyz_to_rgb.T
-        for column, way in enumerate(ways):
-            axes, image = grid[row, column], images[light, way].copy()
+        for column, method in enumerate(methods):
+            axes, image = grid[row, column], images[light, method].copy()
             for place in layout.patches(round(INSET * layout.patch)):
-                image[place] = images[light, truth][place]
+                image[place] = images[light, reference][place]
             axes.imshow(
                 to_display_codes(_binned(image) @ to_screen, SRGB).astype(np.uint8), interpolation="nearest"
             )
             axes.set_xticks([])
             axes.set_yticks([])
             axes.spines[:].set_visible(False)
-            axes.set_xlabel(captions[light, way], fontsize=9, color="0.3")
+            axes.set_xlabel(captions[light, method], fontsize=9, color="0.3")
             if row == 0:
-                axes.set_title(way, fontsize=11, pad=8)
+                axes.set_title(method, fontsize=11, pad=8)
             if column == 0:
                 axes.set_ylabel(light, fontsize=11, labelpad=8)
     write_png(figure, path, force=True)
 
 
 def _binned(image: Array) -> Array:
-    """Four pixels as one, for half the noise."""
+    """Average blocks of 2 × 2 pixels, which halves the noise."""
     height, width, count = image.shape
     return np.asarray(image.reshape(height // 2, 2, width // 2, 2, count).mean(axis=(1, 3)))

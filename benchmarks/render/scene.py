@@ -1,4 +1,4 @@
-"""The chart as a scene of Mitsuba's, lit evenly from everywhere, rendered to XYZ."""
+"""The chart as a Mitsuba scene under uniform illumination, rendered to XYZ."""
 
 from __future__ import annotations
 
@@ -13,33 +13,34 @@ from uplift.common.arrays import Array
 from uplift.io.mitsuba import register
 
 VARIANT = "scalar_spectral"
-"""Of those that know spectra, the one that needs no LLVM."""
+"""The spectral variant that does not need LLVM."""
 CIE_Y_INTEGRAL = 106.856895
-"""By which Mitsuba's film divides, so that a radiance of 1 everywhere has Y = 1."""
+"""Mitsuba divides by it, so that a constant radiance of 1 has Y = 1."""
 
 
 def start() -> None:
+    """Select the variant and register the plug-in."""
     mi.set_variant(VARIANT)
     register()
 
 
 def measured(chart: Chart) -> list[dict[str, Any]]:
-    """The truth: every patch has the spectrum that was measured."""
+    """Return the measured spectra of the patches: the reference."""
     return [_regular(chart.wavelengths, spectrum) for spectrum in chart.measured]
 
 
 def built_in(chart: Chart) -> list[dict[str, Any]]:
-    """RGB as any scene of Mitsuba's has them, uplifted by Mitsuba."""
+    """Return the RGB of the patches, which Mitsuba uplifts."""
     return [{"type": "rgb", "value": rgb} for rgb in chart.painted.tolist()]
 
 
 def from_cube(chart: Chart, cube: str) -> list[dict[str, Any]]:
-    """The same RGB, uplifted by a cube."""
+    """Return the RGB of the patches, which a cube uplifts."""
     return [{"type": "uplift", "cube": cube, "rgb": rgb} for rgb in chart.painted.tolist()]
 
 
 def render(reflectances: list[dict[str, Any]], illuminant: str, layout: Layout, spp: int, seed: int) -> Array:
-    """XYZ (height, width, 3) of the chart; a perfect reflector has that of `Light.white`."""
+    """Return XYZ (height, width, 3) of the chart; a perfect reflector has the XYZ of `Light.white`."""
     scene = mi.load_dict(_scene(reflectances, illuminant, layout))
     return np.array(mi.render(scene, spp=spp, seed=seed), dtype=float)
 
@@ -56,7 +57,7 @@ def _scene(reflectances: list[dict[str, Any]], illuminant: str, layout: Layout) 
     behind = _square({"type": "uniform", "value": BACKGROUND}, [0, 0, -1e-3], [width, height, 1])
     return {
         "type": "scene",
-        # Light comes from everywhere alike, so that only wavelengths are left to chance.
+        # With uniform illumination only the wavelengths are random.
         "integrator": {"type": "direct", "bsdf_samples": 1, "emitter_samples": 0},
         "light": {"type": "constant", "radiance": _light(illuminant)},
         "camera": _camera(width, height),

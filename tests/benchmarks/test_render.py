@@ -1,4 +1,4 @@
-"""The rendered ColorChecker, small and noisy: what is drawn where, and that the truth is the truth."""
+"""The rendered ColorChecker, small and noisy: layout, reference, errors."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ def painted():
 
 @pytest.fixture(scope="module")
 def renders(painted, repository):
-    """Every way under every light, but that Mitsuba's own stands for cubes other than the stored one."""
+    """All methods under all lights; Mitsuba's own uplift stands in for the cubes that are not stored."""
     scene.start()
-    ways = {
-        demo.TRUTH: scene.measured(painted),
-        **dict.fromkeys((demo.BUILT_IN, demo.PLAIN, demo.ATLAS_17), scene.built_in(painted)),
+    methods = {
+        demo.REFERENCE: scene.measured(painted),
+        **dict.fromkeys((demo.MITSUBA, demo.PLAIN, demo.ATLAS_17), scene.built_in(painted)),
         demo.ATLAS: scene.from_cube(painted, str(repository / "cubes" / "moments-8-macbeth.uplift")),
     }
-    return demo.render(ways, LAYOUT, SPP)
+    return demo.render(methods, LAYOUT, SPP)
 
 
-def test_patches_are_24_and_apart():
+def test_24_patches_do_not_overlap():
     width, height = LAYOUT.size
     image = np.zeros((height, width))
     for place in LAYOUT.patches():
@@ -43,42 +43,47 @@ def test_patches_are_24_and_apart():
     assert sum(image[place].size for place in LAYOUT.patches(inset=1)) == 24 * (LAYOUT.patch - 2) ** 2
 
 
-def test_srgb_holds_all_but_cyan(painted):
+def test_only_cyan_is_outside_srgb(painted):
     assert [name for name, outside in zip(painted.names, painted.outside, strict=True) if outside] == ["cyan"]
     assert painted.painted.min() == 0
 
 
-def test_the_truth_is_what_the_spectra_integrate_to(painted, renders):
+def test_reference_equals_the_integral_of_the_measured_spectra(painted, renders):
     for name in demo.LIGHTS:
         expected = painted.measured @ light(name).xyz.T
-        found = LAYOUT.means(renders.images[name, demo.TRUTH])
+        found = LAYOUT.means(renders.images[name, demo.REFERENCE])
         np.testing.assert_allclose(found.mean(axis=0), expected.mean(axis=0), rtol=0.03)
         np.testing.assert_allclose(found[:, 1], expected[:, 1], rtol=0.1)
 
 
-def test_the_atlas_tells(painted, renders):
+def test_cube_with_atlas_has_less_than_half_the_error_of_mitsuba(painted, renders):
     for name in demo.LIGHTS[1:]:
-        ours, own = (renders.apart[name, way][~painted.outside].mean() for way in (demo.ATLAS, demo.BUILT_IN))
-        assert ours < own / 2
+        cube, mitsuba = (
+            renders.delta_e[name, method][~painted.outside].mean() for method in (demo.ATLAS, demo.MITSUBA)
+        )
+        assert cube < mitsuba / 2
 
 
-def test_patches_lie_where_the_layout_says(renders):
-    image = renders.images["D65", demo.TRUTH]
+def test_patches_are_where_the_layout_places_them(renders):
+    image = renders.images["D65", demo.REFERENCE]
     means = LAYOUT.means(image)
     for place, mean in zip(LAYOUT.patches(), means, strict=True):
         assert image[place][..., 1].std() < 0.1 * mean[1]
 
 
-def test_the_page_says_what_was_found(painted, renders):
-    text = demo.introduction(painted, renders, LAYOUT, SPP)
-    ratio = renders.apart["A", demo.BUILT_IN].mean() / renders.apart["A", demo.ATLAS].mean()
-    assert f"{ratio:.1f} times under A" in text
-    assert f"{16 * SPP:,} samples" in text
-    assert demo.patches_table(painted, renders).count("\n| ") == 2 + 24
-    assert f"{renders.apart['FL11', demo.AGAIN].mean():.2f}" in demo.means_table(painted, renders)
+def test_figures_summarise_the_errors(painted, renders):
+    figures = demo.figures(painted, renders)
+    mitsuba, cube = (renders.delta_e["A", method] for method in (demo.MITSUBA, demo.ATLAS))
+    (ratio,) = [row for row in figures["ratios"] if row["light"] == "A"]
+    assert ratio["all"] == pytest.approx(mitsuba.mean() / cube.mean())
+    assert ratio["in_gamut"] > ratio["all"]
+    assert [row["patch"] for row in figures["patches"]] == list(painted.names)
+    assert figures["patches"][3]["A"] == {"mitsuba": mitsuba[3], "cube": cube[3]}
+    (noise,) = [row for row in figures["means"] if row["method"] == demo.OTHER_SEED]
+    assert noise["FL11"][0] == pytest.approx(renders.delta_e["FL11", demo.OTHER_SEED].mean())
 
 
-def test_the_picture(renders, tmp_path):
+def test_picture_is_written_as_png(renders, tmp_path):
     captions = dict.fromkeys(renders.images, "mean ΔE00")
-    draw(renders.images, captions, demo.LIGHTS, demo.SHOWN, LAYOUT, tmp_path / "charts.png")
+    draw(renders.images, captions, demo.LIGHTS, demo.DRAWN, LAYOUT, tmp_path / "charts.png")
     assert (tmp_path / "charts.png").read_bytes().startswith(b"\x89PNG")
