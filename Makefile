@@ -97,6 +97,7 @@ dial: $(INSTALLED)
 # How near the factor model of palettes comes, and the examples: docs/palette.md and its pictures.
 palette: $(INSTALLED)
 	$(BIN)/python -m benchmarks.palette
+	$(BIN)/python -m tools.render_docs palette
 
 # Meyer's tables anew, and what few wavelengths cost: docs/wavelengths.md.
 wavelengths: $(INSTALLED)

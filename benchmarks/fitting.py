@@ -115,7 +115,7 @@ def _fit_once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float]
     phases = ("begin", "entries", "prior", "lattice", "storing", "errors")
     laps = {phase: marks[phase] - marks[last] for last, phase in pairwise(phases)}
     laps |= {"whole": marks["lattice"] - marks["begin"], "wall": wall}
-    return laps, _worst(problem, sensor.wavelengths, sensor.matrix, fitted.coefficients)
+    return laps, _worst(problem, sensor.wavelengths, sensor.matrix, fitted.points.coefficients)
 
 
 def _worst(problem: fit.Problem, wavelengths: Array, matrix: Array, coefficients: Array) -> float:

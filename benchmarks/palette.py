@@ -1,17 +1,29 @@
-"""``make palette``: how near the factor model comes, and the examples → docs/palette.md and its pictures."""
+"""Accuracy of the palette's factor model, and pictures of the examples: ``make palette``.
+
+Writes docs/data/palette.json and the pictures of docs/palette.
+"""
 
 from __future__ import annotations
 
 import warnings
+from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import palette_tables as tables
-from benchmarks.page import write
-from benchmarks.palette_introduction import INTRODUCTION
-from benchmarks.palette_ways import BOUNCES, DRAWN, LIGHTS, Product, Ways, by_factors, by_rgb, ways
-from benchmarks.timing import ROOT
+from benchmarks.light_paths import (
+    BOUNCES,
+    LIGHTS,
+    SAMPLES,
+    LightPaths,
+    Product,
+    by_factors,
+    by_matrices,
+    by_rgb,
+    light_paths,
+    unsharpened,
+)
+from benchmarks.record import ROOT, write
 from uplift.colorimetry import observer
 from uplift.design.palette import (
     FactorModel,
@@ -26,59 +38,65 @@ from uplift.design.palette import (
 FOLDER = ROOT / "docs" / "palette"
 EXAMPLES = ("metamers", "vanish", "light", "constant")
 COUNTS = (5, 6, 7, 8, 9)
+DEFAULT = 7
 
 
 def main() -> None:
+    """Draw the examples, measure and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     sensor = observer.sensor()
     models = {count: standard_model(sensor, count) for count in COUNTS}
     for name in EXAMPLES:
-        _draw(name, models[7])
-    measured = ways(sensor)
-    specs = {name: (FOLDER / f"{name}.toml").read_text(encoding="utf-8") for name in EXAMPLES}
-    introduction = INTRODUCTION.format(**specs, **_figures(measured, models))
-    sections = [tables.by_bounces(measured, models), tables.by_light(measured, models)]
-    print(write("palette", introduction, sections))
-
-
-def _draw(name: str, model: FactorModel) -> None:
-    found = design(read_palette(FOLDER / f"{name}.toml"), model)
-    plot_matrix(found, matrix(found), FOLDER / f"{name}-matrix.png", force=True)
-    plot_spectra(found, FOLDER / f"{name}-spectra.png", force=True)
-
-
-def _figures(measured: Ways, models: dict[int, FactorModel]) -> dict[str, str]:
-    """The numbers that the words name."""
-    rgb, seven, eight = (
-        _by_light(measured, product)
-        for product in (by_rgb(measured.sensor), by_factors(models[7]), by_factors(models[8]))
+        draw(name, models[DEFAULT])
+    paths = light_paths(sensor)
+    products = {"RGB": by_rgb(sensor)}
+    for count, model in models.items():
+        products[f"factor model, m = {count}"] = by_factors(model)
+        products[f"Λ model, m = {count}"] = by_matrices(model)
+    products[f"m = {DEFAULT}, not sharpened"] = unsharpened(models[DEFAULT])
+    write(
+        "palette",
+        "make palette",
+        spectra=len(paths.reflectances[1]),
+        samples=SAMPLES,
+        reflections=by_bounces(paths, products),
+        lights=[by_light(paths, light, models) for light in LIGHTS],
     )
-    ratios = {light: rgb[light] / seven[light] for light in LIGHTS}
-    short = [light for light in LIGHTS if ratios[light] < 5]
-    worst = min(ratios, key=ratios.__getitem__)
 
-    def mean(errors: dict[str, float]) -> float:
-        return float(np.mean(list(errors.values())))
 
-    return {
-        "better": f"{mean(rgb) / mean(seven):.1f}",
-        "factor": f"{mean(seven):.2f}",
-        "rgb": f"{mean(rgb):.2f}",
-        "entries": str(len(measured.met[1])),
-        "worst": " and ".join(short) or "none",
-        "worst_factor": f"{ratios[worst]:.1f}",
-        "worst_eight": f"{rgb[worst] / eight[worst]:.1f}",
-        "eight": f"{mean(rgb) / mean(eight):.1f}",
-        "drawn": f"{DRAWN:,}",
+def draw(name: str, model: FactorModel) -> None:
+    """Design an example and plot its matrix and spectra."""
+    palette = design(read_palette(FOLDER / f"{name}.toml"), model)
+    plot_matrix(palette, matrix(palette), FOLDER / f"{name}-matrix.png", force=True)
+    plot_spectra(palette, FOLDER / f"{name}-spectra.png", force=True)
+
+
+def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[dict[str, Any]]:
+    """Return mean ΔE00 and 95th percentile by number of reflections, and the gain over RGB."""
+    rows = []
+    for name, product in products.items():
+        errors = {k: np.concatenate([paths.errors(product, light, k) for light in LIGHTS]) for k in BOUNCES}
+        pairs = {str(k): [float(one.mean()), float(np.percentile(one, 95))] for k, one in errors.items()}
+        rows.append(
+            {"product": name, "errors": pairs, "all": float(np.mean([one[0] for one in pairs.values()]))}
+        )
+    return [row | {"gain": rows[0]["all"] / row["all"]} for row in rows]
+
+
+def by_light(paths: LightPaths, light: str, models: dict[int, FactorModel]) -> dict[str, Any]:
+    """Return mean ΔE00 under a light over all numbers of reflections."""
+    products = {
+        "rgb": by_rgb(paths.sensor),
+        "factor": by_factors(models[DEFAULT]),
+        "lambda": by_matrices(models[DEFAULT]),
+        "factor_8": by_factors(models[8]),
     }
-
-
-def _by_light(measured: Ways, product: Product) -> dict[str, float]:
-    """Mean ΔE00 under each light, over all numbers of reflections."""
-    return {
-        light: float(np.mean([measured.errors(product, light, k).mean() for k in BOUNCES]))
-        for light in LIGHTS
+    means = {
+        name: float(np.mean([paths.errors(product, light, k).mean() for k in BOUNCES]))
+        for name, product in products.items()
     }
+    gains = {"gain": means["rgb"] / means["factor"], "gain_8": means["rgb"] / means["factor_8"]}
+    return {"light": light, **means, **gains}
 
 
 if __name__ == "__main__":

@@ -174,7 +174,7 @@ def seed_starts(name: str) -> Iterator[dict[str, Any]]:
     none = fit.Seeds(seeds.points[:0], seeds.entry[:0], seeds.primary[:0], ())
     for label, chosen in {"their entries, the default": seeds, "the prior": none}.items():
         fitted = fit.fit_lattice(problem, chosen, fitted_entries.multipliers, prior)
-        nodes = model.from_storage(fitted.coefficients)
+        nodes = model.from_storage(fitted.points.coefficients)
         for half, rows in {"the other half": queried, "the known half": kept}.items():
             corners, weights = lattice.corners(some.rgb[rows])
             around = spectra_of(model, nodes[corners.ravel()]).reshape(*corners.shape, -1)

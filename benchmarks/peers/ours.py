@@ -30,7 +30,7 @@ def _lattice(name: str, count: int, dim: int, runs: int) -> Peer:
 
     def whole() -> Array:
         prior = fit.fit_prior(problem, sensor, none, reference)
-        return fit.fit_lattice(problem, seeds, none.multipliers, prior).coefficients
+        return fit.fit_lattice(problem, seeds, none.multipliers, prior).points.coefficients
 
     whole()  # compiles
     stored, cpu = task.measured(whole, lattice.size, runs)

@@ -1,4 +1,4 @@
-"""Ways of light over the shipped atlases, one to four reflections, and their colours by every kind of product."""
+"""Light paths of one to four reflections over the shipped atlases, and their colours by every kind of product."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Sensor
@@ -18,40 +18,40 @@ from uplift.design.palette.lights import illuminant
 
 LIGHTS = ("D65", "D50", "A", "E", "FL2", "FL7", "FL11", "LED-B3", "HP1")
 BOUNCES = (1, 2, 3, 4)
-DRAWN = 2000
-"""Ways of two and more reflections; of one, every material."""
+SAMPLES = 2000
+"""Random paths of two and more reflections; those of one are all materials."""
 
 Product = Callable[[Array, Array], Array]
-"""A power (N,) and the reflectances (n, k, N) that it meets → linear RGB (n, 3)."""
+"""From a power (N,) and the reflectances (n, k, N) along paths to linear RGB (n, 3)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Ways:
-    """``powers`` (L, N) of the lights, and for every number of reflections the reflectances (n, k, N) met."""
+class LightPaths:
+    """``powers`` (N,) by light, and the ``reflectances`` (n, k, N) along paths by number of reflections k."""
 
     sensor: Sensor
     powers: dict[str, Array]
-    met: dict[int, Array]
+    reflectances: dict[int, Array]
 
     def errors(self, product: Product, light: str, bounces: int) -> Array:
-        """ΔE00 (n) of a product's colours against those of whole spectra, both exposed to mid-grey."""
-        power, met = self.powers[light], self.met[bounces]
+        """Return ΔE00 (n,) between a product's colours and those of complete spectra, both exposed to mid-grey."""
+        power, met = self.powers[light], self.reflectances[bounces]
         full = (power * met.prod(axis=1)) @ screen_matrix(self.sensor).T
         gain = exposure(self.sensor, full)[:, None]
         return delta_e_rgb(self.sensor, gain * full, gain * product(power, met))
 
 
-def ways(sensor: Sensor) -> Ways:
+def light_paths(sensor: Sensor) -> LightPaths:
     atlases = read_atlas(*sorted((ROOT / "atlases").glob("*.txt")))
     materials = on_grid(atlases, sensor.wavelengths)
     draw = np.random.default_rng(2004)
-    rows = {k: draw.integers(0, len(materials), (DRAWN, k)) for k in BOUNCES[1:]}
+    rows = {k: draw.integers(0, len(materials), (SAMPLES, k)) for k in BOUNCES[1:]}
     met = {1: materials[:, None]} | {k: materials[row] for k, row in rows.items()}
-    return Ways(sensor, {name: illuminant(sensor, name) for name in LIGHTS}, met)
+    return LightPaths(sensor, {name: illuminant(sensor, name) for name in LIGHTS}, met)
 
 
 def by_rgb(sensor: Sensor) -> Product:
-    """RGB products, each surface's RGB being that under a flat white (Bergner, eq. 9–12)."""
+    """Return RGB products with the surfaces' RGB under a flat white (Bergner et al. 2004, eq. 9–12)."""
     screen = screen_matrix(sensor)
     white = screen.sum(axis=1)
     return lambda power, met: ((met @ screen.T) / white).prod(axis=1) * (screen @ power)
@@ -62,7 +62,7 @@ def by_factors(model: FactorModel) -> Product:
 
 
 def unsharpened(model: FactorModel) -> Product:
-    """The same component by component in the principal basis: what sharpening is for."""
+    """Return products of components in the principal basis, without sharpening."""
     back = np.linalg.inv(model.transform).T
 
     def product(power: Array, met: Array) -> Array:
@@ -73,7 +73,7 @@ def unsharpened(model: FactorModel) -> Product:
 
 
 def by_matrices(model: FactorModel) -> Product:
-    """The Λ model, the light being the first factor and within the span."""
+    """Return products of the Λ model; the light is the first factor, within the span."""
     linear = LinearModel(model)
     return lambda power, met: model.rgb(
         linear.product(model.reflectance(power), *np.moveaxis(model.reflectance(met), 1, 0))
