@@ -1,4 +1,4 @@
-"""Gaussian quadrature for sampled weights: known rules, a plain oracle, exactness, orders that do not exist."""
+"""Gaussian quadrature for sampled weights: known rules, an exact oracle, polynomial exactness, undefined orders."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import legendre
 
+from tests.helpers import raises
 from uplift.common.errors import OptionError
 from uplift.scene.quadrature import QuadratureRule, UndefinedRule, gauss_rule, interpolatory_rule
 
 POINTS = np.arange(380.0, 771.0)
 BELL = np.exp(-(((POINTS - 560) / 40) ** 2))
 OPPONENT = (POINTS - 545) * BELL
-"""Of both signs."""
+"""Masses of both signs."""
 
 
 def _rule(points: np.ndarray, masses: np.ndarray, order: int) -> QuadratureRule:
@@ -26,7 +27,7 @@ def _rule(points: np.ndarray, masses: np.ndarray, order: int) -> QuadratureRule:
 
 
 def _moment_error(rule: QuadratureRule, points: np.ndarray, masses: np.ndarray, degree: int) -> float:
-    """Largest error over Legendre polynomials up to ``degree``, against the masses' own size."""
+    """Largest error over Legendre polynomials up to ``degree``, relative to the sum of the absolute masses."""
     middle, half = (points[0] + points[-1]) / 2, (points[-1] - points[0]) / 2
     exact = masses @ legendre.legvander((points - middle) / half, degree)
     found = rule.weights @ legendre.legvander((rule.nodes - middle) / half, degree)
@@ -34,7 +35,7 @@ def _moment_error(rule: QuadratureRule, points: np.ndarray, masses: np.ndarray, 
 
 
 @pytest.mark.parametrize("order", [1, 2, 5, 16, 40])
-def test_of_a_legendre_rule_as_masses_comes_the_smaller_legendre_rule(order: int) -> None:
+def test_legendre_rule_as_masses_gives_the_smaller_legendre_rule(order: int) -> None:
     points, masses = legendre.leggauss(100)
     nodes, weights = legendre.leggauss(order)
     rule = _rule(points, masses, order)
@@ -43,7 +44,7 @@ def test_of_a_legendre_rule_as_masses_comes_the_smaller_legendre_rule(order: int
 
 
 @pytest.mark.parametrize("order", [1, 3, 8, 20])
-def test_is_exact_up_to_degree_2n_minus_1_and_no_further(order: int) -> None:
+def test_rule_is_exact_to_degree_2n_minus_1_and_no_further(order: int) -> None:
     rule = _rule(POINTS, BELL, order)
     assert len(rule) == order
     assert (rule.weights > 0).all()
@@ -53,14 +54,14 @@ def test_is_exact_up_to_degree_2n_minus_1_and_no_further(order: int) -> None:
 
 
 @pytest.mark.parametrize("order", [2, 4])
-def test_masses_of_both_signs_are_as_exact(order: int) -> None:
+def test_rule_for_masses_of_both_signs_is_exact(order: int) -> None:
     rule = _rule(POINTS, OPPONENT, order)
     assert rule.weights.min() < 0 < rule.weights.max()
     assert _moment_error(rule, POINTS, OPPONENT, 2 * order - 1) < 1e-11
 
 
 def _exact_nodes(points: list[int], masses: list[int], order: int) -> np.ndarray:
-    """Roots of the orthogonal polynomial from its moments, in fractions: slow, and without rounding."""
+    """Roots of the orthogonal polynomial from its moments, by elimination in fractions."""
     moments = [
         sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True)) for k in range(2 * order)
     ]
@@ -79,14 +80,14 @@ def _exact_nodes(points: list[int], masses: list[int], order: int) -> np.ndarray
     st.lists(st.integers(-9, 9), min_size=6, max_size=12).filter(lambda m: sum(map(bool, m)) > 4),
     st.integers(1, 4),
 )
-def test_agrees_with_fractions_wherever_the_order_exists(masses: list[int], order: int) -> None:
+def test_nodes_agree_with_elimination_in_fractions(masses: list[int], order: int) -> None:
     points = list(range(len(masses)))
     found = gauss_rule(points, masses, order)
     if isinstance(found, UndefinedRule):
         return
     expected = np.sort_complex(_exact_nodes(points, masses, order))
     gap = np.diff(found.nodes).min() if order > 1 else 1.0
-    if gap > 1e-2:  # where two nodes nearly meet, np.roots is the worse of the two
+    if gap > 1e-2:  # np.roots is inaccurate for nearly double roots
         np.testing.assert_allclose(found.nodes, expected, atol=1e-5)
 
 
@@ -99,49 +100,51 @@ def test_agrees_with_fractions_wherever_the_order_exists(masses: list[int], orde
         ([-4, -12, 12, -2], 2, "coincide"),
     ],
 )
-def test_says_why_an_order_is_undefined(masses: list[int], order: int, reason: str) -> None:
+def test_undefined_order_states_its_reason(masses: list[int], order: int, reason: str) -> None:
     found = gauss_rule(range(len(masses)), masses, order)
     assert isinstance(found, UndefinedRule)
     assert found.order == order
     assert reason in found.reason
 
 
-def test_an_order_past_an_undefined_one_exists() -> None:
+def test_order_above_an_undefined_one_exists() -> None:
     rule = _rule(np.array([0, 1, 2, 3]), np.array([1, 1, -1, -1]), 2)
     assert isinstance(gauss_rule([0, 1, 2, 3], [1, 1, -1, -1], 1), UndefinedRule)
     np.testing.assert_allclose(rule.nodes, 1.5 + np.array([-1, 1]) * np.sqrt(1.75), atol=1e-12)
 
 
 @pytest.mark.parametrize("nodes", [[560.0], [631.4, 490.9, 557.7], np.linspace(400, 700, 12)])
-def test_given_nodes_are_exact_below_their_number(nodes: list[float]) -> None:
+def test_interpolatory_rule_is_exact_below_its_number_of_nodes(nodes: list[float]) -> None:
     rule = interpolatory_rule(nodes, POINTS, BELL)
     np.testing.assert_array_equal(rule.nodes, np.sort(nodes))
     assert _moment_error(rule, POINTS, BELL, len(nodes) - 1) < 1e-12
 
 
-def test_scale_and_shift_go_with_the_points_and_masses() -> None:
+def test_rule_is_equivariant_to_scale_and_shift() -> None:
     rule, moved = _rule(POINTS, OPPONENT, 4), _rule(POINTS * 1e-9 - 1, OPPONENT * 1e6, 4)
     np.testing.assert_allclose(moved.nodes, rule.nodes * 1e-9 - 1, rtol=1e-12)
     np.testing.assert_allclose(moved.weights, rule.weights * 1e6, rtol=1e-6)
 
 
 @pytest.mark.parametrize(
-    ("points", "masses", "order"),
+    ("points", "masses", "order", "code"),
     [
-        ([1, 2, 3], [1, 1], 1),
-        ([1, 3, 2], [1, 1, 1], 1),
-        ([1, 2, 3], [0, 0, 0], 1),
-        ([1, 2, 3], [1, np.nan, 1], 1),
-        ([1, 2, 3], [1, 1, 1], 0),
-        ([1, 2, 3], [1, 0, 1], 3),
-        ([], [], 1),
+        ([1, 2, 3], [1, 1], 1, "invalid-points"),
+        ([1, 3, 2], [1, 1, 1], 1, "invalid-points"),
+        ([1, 2, 3], [0, 0, 0], 1, "invalid-masses"),
+        ([1, 2, 3], [1, np.nan, 1], 1, "invalid-masses"),
+        ([], [], 1, "invalid-masses"),
+        ([1, 2, 3], [1, 1, 1], 0, "order-out-of-range"),
+        ([1, 2, 3], [1, 0, 1], 3, "order-out-of-range"),
     ],
 )
-def test_refuses_what_is_no_weight(points: list[float], masses: list[float], order: int) -> None:
-    with pytest.raises(OptionError, match="; "):
+def test_invalid_measures_and_orders_raise(
+    points: list[float], masses: list[float], order: int, code: str
+) -> None:
+    with raises(OptionError, code):
         gauss_rule(points, masses, order)
 
 
-def test_refuses_nodes_that_coincide() -> None:
-    with pytest.raises(OptionError, match="coincide"):
+def test_duplicate_nodes_raise() -> None:
+    with raises(OptionError, "duplicate-node"):
         interpolatory_rule([500, 500], POINTS, BELL)

@@ -1,1 +1,3 @@
-"""What a scene needs: the smallest cube, the fewest wavelengths, the cheapest representation."""
+"""Choices for the rendering of a scene: smallest cube, fewest wavelengths, cheapest representation, quadrature."""
+
+__all__: list[str] = []

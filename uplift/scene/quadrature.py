@@ -1,12 +1,12 @@
-"""Gaussian quadrature for weights given as samples, also such as change sign.
+"""Gaussian quadrature for weight functions given as samples, including functions that change sign.
 
-A weight is a discrete measure: points and their masses. For a function sampled evenly the masses are its
-samples (times the step, where the scale of the rule's weights matters).
+The weight function is a discrete measure: points and their masses. For an evenly sampled function the masses are its
+samples, multiplied by the step where the scale of the weights matters.
 
-The usual recurrence breaks down where a lower order has no polynomial. So the weight is written in polynomials
-that are orthonormal to its absolute value (Stieltjes' procedure), and the nodes are the generalised eigenvalues
-of two such matrices; for masses of one sign that is the method of Golub & Welsch 1969, "Calculation of Gauss
-quadrature rules".
+The common three-term recurrence fails where a lower order has no orthogonal polynomial. Here the measure is expanded
+in polynomials that are orthonormal with respect to its absolute value (Stieltjes procedure), and the nodes are the
+generalised eigenvalues of two such matrices. For masses of one sign this is the method of Golub & Welsch 1969,
+"Calculation of Gauss quadrature rules", Mathematics of Computation 23.
 """
 
 from __future__ import annotations
@@ -16,26 +16,29 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 from numpy.polynomial import chebyshev
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
-Array = NDArray[np.float64]
+__all__ = ["QuadratureRule", "UndefinedRule", "gauss_rule", "interpolatory_rule"]
 
-SINGULAR = 1e-11
-"""Singular values up to this share of the largest are rounding."""
-APART = 1e-7
-"""Nodes this close, and imaginary parts this small, are rounding (as a share of half the points' range)."""
+SINGULAR_TOLERANCE = 1e-11
+"""Singular values below this fraction of the largest count as zero."""
+NODE_TOLERANCE = 1e-7
+"""Distances between nodes and imaginary parts below this fraction of half the range count as zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class QuadratureRule:
-    """``Σ weights · f(nodes)`` stands for ``Σ masses · f(points)``.
+    """``sum(weights * f(nodes))`` approximates ``sum(masses * f(points))``.
 
     Parameters
     ----------
-    nodes : (n,) ascending, within the points.
-    weights : (n,) of either sign where the masses are.
+    nodes : ndarray, shape (n,)
+        Nodes in ascending order, within the range of the points.
+    weights : ndarray, shape (n,)
+        Weights, of both signs where the masses are.
     """
 
     nodes: Array
@@ -47,12 +50,14 @@ class QuadratureRule:
 
 @dataclass(frozen=True, eq=False)
 class UndefinedRule:
-    """An order that the weight has no rule of, and why.
+    """An order for which the measure has no rule.
 
     Parameters
     ----------
-    order : the number of nodes asked for.
-    reason : in words.
+    order : int
+        Number of nodes.
+    reason : str
+        Explanation for a message.
     """
 
     order: int
@@ -60,39 +65,76 @@ class UndefinedRule:
 
 
 def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRule | UndefinedRule:
-    """The rule of ``order`` nodes that is exact for every polynomial of degree below ``2 · order``.
+    """Compute the rule of ``order`` nodes that is exact for polynomials of degree below ``2 * order``.
 
-    Masses of one sign have a rule of every order up to their number; masses of both signs lack those orders
-    that have no orthogonal polynomial, or whose nodes are not real, coincide, or lie outside the points.
+    Masses of one sign have a rule of every order up to their number. Masses of both signs have no rule of an order
+    without orthogonal polynomial, or whose nodes are complex, coincide, or lie outside the points.
+
+    Parameters
+    ----------
+    points : array_like, shape (N,)
+        Points in ascending order.
+    masses : array_like, shape (N,)
+        Mass at each point, finite, not all 0.
+    order : int
+        Number of nodes, 1 to the number of masses that are not 0.
+
+    Returns
+    -------
+    QuadratureRule or UndefinedRule
+        The rule, or the reason why there is none.
 
     Raises
     ------
-    OptionError : points that do not ascend, masses of another number, an order out of range, or no masses.
+    OptionError
+        The points, the masses or the order are invalid.
+
+    Examples
+    --------
+    >>> gauss_rule([-1, 0, 1], [1, 1, 1], 2).nodes.round(4)
+    array([-0.8165,  0.8165])
     """
     points, masses = _checked(points, masses)
     used = masses != 0
     if not 1 <= order <= used.sum():
-        raise OptionError(f"no rule of order {order}", hint=f"ask for 1 to {used.sum()}")
+        raise OptionError(
+            f"order must be in [1, {used.sum()}], got {order}",
+            code="order-out-of-range",
+            hint="an order needs as many masses that are not 0",
+        )
     x, masses = _to_unit(points, points)[used], masses[used]
-    basis = _orthonormal(x, np.abs(masses), order)
+    basis = _orthonormal_basis(x, np.abs(masses), order)
     signed = basis * np.sign(masses)[:, None]
     gram = basis.T @ signed
-    if np.linalg.svd(gram, compute_uv=False).min() <= SINGULAR:
+    if np.linalg.svd(gram, compute_uv=False).min() <= SINGULAR_TOLERANCE:
         return UndefinedRule(order, "no polynomial of that order is orthogonal")
     return _solve(gram, basis.T @ (x[:, None] * signed), np.abs(masses).sum(), points)
 
 
 def interpolatory_rule(nodes: ArrayLike, points: ArrayLike, masses: ArrayLike) -> QuadratureRule:
-    """The rule at given ``nodes`` (n,) that is exact for every polynomial of degree below n.
+    """Compute the rule at given nodes that is exact for polynomials of degree below their number.
+
+    Parameters
+    ----------
+    nodes : array_like, shape (n,)
+        Distinct nodes.
+    points, masses : array_like, shape (N,)
+        The measure, as in `gauss_rule`.
+
+    Returns
+    -------
+    QuadratureRule
+        The rule, its nodes in ascending order.
 
     Raises
     ------
-    OptionError : as `gauss_rule` does, or nodes that coincide.
+    OptionError
+        The points or the masses are invalid, or two nodes coincide.
     """
     points, masses = _checked(points, masses)
     nodes = np.sort(np.asarray(nodes, dtype=float))
     if np.any(np.diff(nodes) == 0):
-        raise OptionError("two nodes coincide", hint="name each node once")
+        raise OptionError("nodes must be distinct", code="duplicate-node", hint="give each node once")
     degree = len(nodes) - 1
     values = chebyshev.chebvander(_to_unit(nodes, points), degree)
     moments = masses @ chebyshev.chebvander(_to_unit(points, points), degree)
@@ -100,51 +142,58 @@ def interpolatory_rule(nodes: ArrayLike, points: ArrayLike, masses: ArrayLike) -
 
 
 def _solve(gram: Array, position: Array, total: float, points: Array) -> QuadratureRule | UndefinedRule:
-    """Nodes and weights from the weight's inner products of the basis, and those with x between."""
+    """Nodes and weights from the inner products of the basis, without and with a factor x, under the measure."""
     values, vectors = scipy.linalg.eig(position, gram)
     order = len(gram)
-    if np.abs(values.imag).max() > APART:
+    if np.abs(values.imag).max() > NODE_TOLERANCE:
         return UndefinedRule(order, "its nodes are not real")
     ascending = np.argsort(values.real)
     unit, vectors = values.real[ascending], vectors.real[:, ascending]
-    if order > 1 and np.diff(unit).min() <= APART:
+    if order > 1 and np.diff(unit).min() <= NODE_TOLERANCE:
         return UndefinedRule(order, "two of its nodes coincide")
     nodes = _from_unit(unit, points)
-    outside = nodes[np.abs(unit) > 1 + APART]
+    outside = nodes[np.abs(unit) > 1 + NODE_TOLERANCE]
     if len(outside):
-        return UndefinedRule(
-            order, f"a node lies at {outside[0]:.1f}, outside {points[0]:g} to {points[-1]:g}"
-        )
-    # A vector is 0 at all nodes but its own; the first polynomial of the basis is the constant 1/√total.
-    seen = gram @ vectors
-    return QuadratureRule(nodes, total * seen[0] ** 2 / (vectors * seen).sum(axis=0))
+        reason = f"a node lies at {outside[0]:.1f}, outside {points[0]:g} to {points[-1]:g}"
+        return UndefinedRule(order, reason)
+    # An eigenvector vanishes at all nodes but its own; the first polynomial of the basis is the constant 1/√total.
+    products = gram @ vectors
+    return QuadratureRule(nodes, total * products[0] ** 2 / (vectors * products).sum(axis=0))
 
 
 def _checked(points: ArrayLike, masses: ArrayLike) -> tuple[Array, Array]:
     points, masses = (np.array(values, dtype=float) for values in (points, masses))
     if points.ndim != 1 or points.shape != masses.shape or not np.all(np.diff(points) > 0):
-        raise OptionError("points and masses do not match", hint="give ascending points and one mass each")
+        raise OptionError(
+            f"points must ascend and have a mass each, got shapes {points.shape} and {masses.shape}",
+            code="invalid-points",
+            hint="sort the points",
+        )
     if not (np.isfinite(points).all() and np.isfinite(masses).all() and masses.any()):
-        raise OptionError("the masses are nothing, or not all numbers", hint="give finite masses, not all 0")
+        raise OptionError(
+            "points and masses must be finite, and not all masses 0",
+            code="invalid-masses",
+            hint="remove NaN and infinity",
+        )
     return points, masses
 
 
-def _orthonormal(x: Array, masses: Array, count: int) -> Array:
-    """(N, count) the polynomials of degree 0, 1, … at x, times √masses: orthonormal columns.
+def _orthonormal_basis(x: Array, masses: Array, count: int) -> Array:
+    """Polynomials of degree 0, 1, … at x, times √masses: orthonormal columns (N, count).
 
-    Each is made orthogonal to all before it, twice: the three-term recurrence alone forgets the early ones.
+    Each is orthogonalised twice against all lower ones, as the three-term recurrence loses orthogonality.
     """
     columns = np.sqrt(masses / masses.sum())[:, None]
     for _ in range(count - 1):
-        new = x * columns[:, -1]
+        column = x * columns[:, -1]
         for _ in range(2):
-            new = new - columns @ (columns.T @ new)
-        columns = np.column_stack([columns, new / np.linalg.norm(new)])
+            column = column - columns @ (columns.T @ column)
+        columns = np.column_stack([columns, column / np.linalg.norm(column)])
     return columns
 
 
 def _to_unit(x: Array, points: Array) -> Array:
-    """The points' range on [−1, 1], where powers stay tame."""
+    """Map the range of the points to [−1, 1], which keeps powers well scaled."""
     return (2 * x - points[0] - points[-1]) / max(points[-1] - points[0], np.finfo(float).tiny)
 
 
