@@ -92,7 +92,8 @@ def public(package: str) -> Iterator[str]:
     module = importlib.import_module(package)
     for name in getattr(module, "__all__", ()):
         found = getattr(module, name)
-        if inspect.isclass(found) or inspect.isfunction(found):
+        protocol = getattr(found, "_is_protocol", False)
+        if (inspect.isclass(found) and not protocol) or inspect.isfunction(found):
             yield f"{found.__module__}.{found.__qualname__}"
         if inspect.isclass(found):
             for key, value in vars(found).items():

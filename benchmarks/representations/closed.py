@@ -12,8 +12,8 @@ from uplift.common.arrays import Array
 from uplift.lab.comparison.measure import judge
 from uplift.lab.comparison.scene import Scene
 from uplift.lab.comparison.statistics import Statistics
-from uplift.scene.representations import composite
-from uplift.scene.representations.composite import ENHANCED_THRESHOLD, Composite
+from uplift.scene.representations import enhanced_riemann
+from uplift.scene.representations.composite import Composite
 from uplift.scene.representations.dense import TABLE_STRIDE, wavelengths, xyz_weights
 from uplift.scene.representations.riemann_sums import riemann_sums
 from uplift.scene.representations.samples import SampleRepresentation
@@ -38,7 +38,7 @@ class Closed:
 def both(scene: Scene) -> list[Closed]:
     """Plain and enhanced sums by both readings, under every set of lights."""
     pairs: list[tuple[Any, Any]] = [(riemann_sums(count), closed(count)) for count in COUNTS]
-    pairs += [(composite.enhanced_riemann(count), enhanced(count)) for count in COUNTS]
+    pairs += [(enhanced_riemann.enhanced_riemann(count), enhanced(count)) for count in COUNTS]
     return [
         Closed(part.name, one.name, judge(one, scene, part), judge(other, scene, part))
         for part in scene.sets
@@ -59,7 +59,9 @@ def enhanced(count: int) -> Composite:
     """The enhanced sums over the same cells; a spike on a border meets the mean of both."""
     inside = _cells(count)
     family = "enhanced Riemann sums, closed cells"
-    return Composite(f"RE{count}", family, closed(count), inside / inside.sum(axis=0), ENHANCED_THRESHOLD)
+    return Composite(
+        f"RE{count}", family, closed(count), inside / inside.sum(axis=0), enhanced_riemann.THRESHOLD
+    )
 
 
 def _cells(count: int) -> Array:

@@ -6,8 +6,9 @@ import pytest
 
 from uplift.lab.comparison.filters import NONE, tune
 from uplift.lab.comparison.measure import judge
+from uplift.scene.representations.filtered_point_sampling import filtered_point_samples
 from uplift.scene.representations.filters import COARSE_STRIDE, candidates
-from uplift.scene.representations.point_sampling import filtered_point_samples, point_samples
+from uplift.scene.representations.point_sampling import point_samples
 
 
 @pytest.fixture(scope="module")

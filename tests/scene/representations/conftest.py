@@ -1,4 +1,4 @@
-"""Spectra that representations hold."""
+"""Fixtures: the ColorChecker scene and every representation of it."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ def checker() -> Scene:
 
 @pytest.fixture(scope="session")
 def every(checker):
-    """Every representation, by name."""
+    """Every representation by name."""
     return {one.name: one for one in all_representations(checker.powers, checker.surfaces)}
 
 
 @pytest.fixture
 def lit(checker):
-    """A function of a light's name: its powers (24, 401), once for every patch."""
+    """Function of the name of a light that returns its powers (24, 401), one row per patch."""
 
     def lit(name):
         part = next(part for part in checker.sets if name in part.lights)

@@ -1,4 +1,4 @@
-"""Spikes, Fourier coefficients, and the models that are made of both."""
+"""Spikes, Fourier coefficients, and the composite models."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
-from uplift.scene.representations.composite import enhanced_riemann, sun_composite
 from uplift.scene.representations.dense import hat_functions, wavelengths, xyz_weights
+from uplift.scene.representations.enhanced_riemann import enhanced_riemann
 from uplift.scene.representations.fourier_coefficients import fourier_coefficients
 from uplift.scene.representations.spikes import split_spikes
+from uplift.scene.representations.sun_composite import sun_composite
 
 TABLES = arrays(float, (2, 81), elements=st.floats(0, 100, width=32))
 
@@ -26,30 +28,30 @@ def dense(table):
 
 @settings(max_examples=25)
 @given(TABLES, st.sampled_from([0.1, 0.2, 0.3]))
-def test_the_smooth_part_is_the_largest_that_is_nowhere_too_steep(table, threshold):
+def test_smooth_part_is_the_largest_with_limited_gradient(table, threshold):
     rest, spikes = split_spikes(dense(table), threshold)
-    apart = np.abs(np.arange(81)[:, None] - np.arange(81))
+    distance = np.abs(np.arange(81)[:, None] - np.arange(81))
     steepest = threshold * table.max(axis=1)[:, None, None]
-    oracle = (table[:, None, :] + steepest * apart).min(axis=2)
+    oracle = (table[:, None, :] + steepest * distance).min(axis=2)
     scale = max(table.max(), 1)
     np.testing.assert_allclose(rest[:, ::5], oracle, atol=2e-9 * scale)
     whole = rest[:, ::5].copy()
-    whole[:, spikes.places] += spikes.heights
+    whole[:, spikes.positions] += spikes.heights
     np.testing.assert_allclose(whole, table, atol=1e-12 * scale)
     assert (spikes.heights >= 0).all()
     np.testing.assert_array_equal(spikes.storage, 2 * (spikes.heights > 0).sum(axis=1))
 
 
-def test_the_lines_of_mercury_are_spikes_and_daylight_has_none():
+def test_mercury_lines_are_spikes_and_daylight_has_none():
     lines, none = (
         split_spikes(observer.illuminant_spd(name, step=1.0)[None], 0.3)[1] for name in ("FL2", "C")
     )
-    assert observer.grid()[lines.places].tolist() == [405, 435, 545]
-    assert none.places.size == 0
+    assert observer.grid()[lines.positions].tolist() == [405, 435, 545]
+    assert none.positions.size == 0
 
 
 @pytest.mark.parametrize("count", [1, 5, 15])
-def test_coefficients_are_those_of_the_thesis(count):
+def test_fourier_coefficients_equal_equation_4_7(count):
     table = np.random.default_rng(6).random((2, 81))
     phase = np.arange(1, 81) * 2 * np.pi / 80
     found = fourier_coefficients(count).encode_light(dense(table))
@@ -63,7 +65,7 @@ def test_coefficients_are_those_of_the_thesis(count):
 
 
 @pytest.mark.parametrize("count", [3, 7])
-def test_a_product_of_waves_keeps_its_own_low_frequencies(count):
+def test_product_of_fourier_series_is_not_aliased(count):
     one, rng = fourier_coefficients(count), np.random.default_rng(7)
     first, second = rng.random((2, 4, count))
     whole = (first @ one.waves) * (second @ one.waves)
@@ -72,26 +74,27 @@ def test_a_product_of_waves_keeps_its_own_low_frequencies(count):
     np.testing.assert_allclose(one.multiply(first, second), kept, atol=1e-12)
 
 
-def test_waves_come_in_pairs():
-    with pytest.raises(OptionError, match="take an odd number"):
-        fourier_coefficients(4)
+@pytest.mark.parametrize("count", [-1, 0, 4])
+def test_even_number_of_fourier_coefficients_raises(count):
+    with raises(OptionError, "even-coefficients"):
+        fourier_coefficients(count)
 
 
 @pytest.mark.parametrize("make", [sun_composite, enhanced_riemann])
-def test_a_spike_goes_through_a_product_exactly_where_the_rest_is_even(make):
-    one = replace(make(7), threshold=1e-9)  # so that no stump of it stays with the rest
+def test_spikes_multiply_exactly_on_constant_spectra(make):
+    one = replace(make(7), threshold=1e-9)  # all of a spike belongs to the spikes
     light, surface = np.full((1, 81), 2.0), np.full((1, 81), 0.25)
     light[0, 40] += 30.0
     surface[0, 60] += 0.5
     surface[0, 40] += 0.6
     found = one.multiply(one.encode_light(dense(light)), one.encode_surface(dense(surface)))
-    assert found.spikes.places.tolist() == [40, 60]
+    assert found.spikes.positions.tolist() == [40, 60]
     np.testing.assert_allclose(one.xyz(found), dense(light * surface) @ xyz_weights(), rtol=1e-6)
     assert one.storage(found).tolist() == [7 + 4]
 
 
-def test_without_spikes_the_enhanced_sums_are_riemann_sums(every):
+def test_enhanced_sums_of_a_smooth_spectrum_are_riemann_sums(every):
     even = 0.5 + 0.3 * np.sin(wavelengths() / 60)[None]
     enhanced_code, plain = (every[name].encode_surface(even) for name in ("RE16", "RS16"))
     np.testing.assert_allclose(enhanced_code.smooth, plain, atol=1e-3)
-    assert enhanced_code.spikes.places.size == 0
+    assert enhanced_code.spikes.positions.size == 0

@@ -1,12 +1,19 @@
-"""Low-pass filters and the conversion of sampling rates."""
+"""Low-pass filters and sampling-rate conversion."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from uplift.scene.representations.filters import COARSE_STRIDE, EXTENTS, KINDS, Filter, candidates, conversion
-from uplift.scene.representations.point_sampling import filtered_point_samples
+from uplift.scene.representations.filtered_point_sampling import filtered_point_samples
+from uplift.scene.representations.filters import (
+    COARSE_STRIDE,
+    EXTENTS,
+    KINDS,
+    Filter,
+    candidates,
+    resampling_matrix,
+)
 
 SOME = [
     Filter("box", 5),
@@ -20,8 +27,8 @@ SOME = [
 ]
 
 
-def slowly(taps, up, down, count, spectrum):
-    """The conversion as the thesis's listing has it: zeros between the samples, the filter, every M-th kept."""
+def reference_conversion(taps, up, down, count, spectrum):
+    """Conversion as in the listing of the thesis: insert zeros, filter, keep every M-th sample."""
     dense = np.zeros((len(spectrum) - 1) * up + 1)
     dense[::up] = spectrum
     smoothed = np.convolve(dense, taps * up, mode="full")[len(taps) // 2 :]
@@ -30,15 +37,15 @@ def slowly(taps, up, down, count, spectrum):
 
 @pytest.mark.parametrize("low_pass", SOME, ids=lambda one: one.kind)
 @pytest.mark.parametrize(("count", "up", "down"), [(4, 3, 80), (8, 7, 80), (16, 3, 16)])
-def test_it_is_the_textbook_s_conversion(low_pass, count, up, down):
+def test_resampling_equals_the_listing_of_the_thesis(low_pass, count, up, down):
     spectrum = np.random.default_rng(8).random(81)
-    expected = slowly(low_pass.taps(up), up, down, count, spectrum)
-    np.testing.assert_allclose(conversion(low_pass, count) @ spectrum, expected, atol=1e-12)
+    expected = reference_conversion(low_pass.taps(up), up, down, count, spectrum)
+    np.testing.assert_allclose(resampling_matrix(low_pass, count) @ spectrum, expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("low_pass", SOME, ids=lambda one: one.kind)
-def test_inside_an_even_spectrum_stays_as_it_is(low_pass):
-    inner = (conversion(low_pass, 16) @ np.ones(81))[4:12]
+def test_constant_spectrum_is_unchanged_away_from_the_ends(low_pass):
+    inner = (resampling_matrix(low_pass, 16) @ np.ones(81))[4:12]
     np.testing.assert_allclose(inner, 1, atol=0.06)
 
 
@@ -53,21 +60,21 @@ def test_inside_an_even_spectrum_stays_as_it_is(low_pass):
         (Filter("lanczos", 9, (2.0,)), lambda x: np.sinc(2 * x) * np.sinc(x)),
     ],
 )
-def test_windows_are_those_of_the_thesis(low_pass, formula):
+def test_windows_equal_the_formulas_of_the_thesis(low_pass, formula):
     taps = low_pass.taps(3)
     x = np.linspace(-1, 1, len(taps) + 2)[1:-1]
     np.testing.assert_allclose(taps, formula(x) / formula(x).sum(), atol=1e-12)
 
 
 @pytest.mark.parametrize(("b", "c"), [(1 / 3, 1 / 3), (1, 0), (0, 0.5), (-0.4, 1)])
-def test_mitchell_s_pieces_meet_and_sum_to_one(b, c):
+def test_pieces_of_the_mitchell_filter_meet_and_sum_to_one(b, c):
     taps = Filter("mitchell", 21, (b, c)).taps(31)
     scaled = taps / taps.sum() * len(taps) / 4
     assert np.abs(np.diff(scaled)).max() < 0.05 * (1 + abs(b) + abs(c))
     assert scaled[len(taps) // 2] == pytest.approx((6 - 2 * b) / 6, rel=0.02)
 
 
-def test_the_search_tries_every_combination_once():
+def test_candidates_are_every_combination_once():
     for kind, made in KINDS.items():
         tried = candidates(kind)
         sizes = [len(values) for values in made.choices.values()]
@@ -75,12 +82,12 @@ def test_the_search_tries_every_combination_once():
         assert set(candidates(kind, COARSE_STRIDE)) < set(tried)
 
 
-def test_every_filter_of_the_search_is_made_of_numbers():
+def test_candidates_have_finite_matrices():
     for kind in KINDS:
         for low_pass in candidates(kind, COARSE_STRIDE):
-            assert np.isfinite(conversion(low_pass, 16)).all(), low_pass.name
+            assert np.isfinite(resampling_matrix(low_pass, 16)).all(), low_pass.name
 
 
-def test_names_tell_the_parameters():
+def test_names_contain_the_parameters():
     assert filtered_point_samples(16, SOME[4]).name == "PS16 mitchell(19, b=-0.4, c=1)"
     assert filtered_point_samples(8, SOME[0]).name == "PS8 box(5)"

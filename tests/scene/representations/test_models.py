@@ -1,4 +1,4 @@
-"""Moments, the sigmoid, the linear model and hero wavelengths."""
+"""Trigonometric moments, sigmoid, linear model and hero wavelengths."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from uplift.scene.representations.sigmoid import fit_sigmoids
 from uplift.scene.representations.trigonometric_moments import trigonometric_moments
 
 
-def test_moments_are_the_integrals(checker):
+def test_moments_equal_the_integrals(checker):
     found = trigonometric_moments(9).encode_surface(checker.surfaces)
     exact = Technique(mirrored=True, warped=False).moments(checker.surfaces, wavelengths(), 8)
     np.testing.assert_allclose(found, exact, atol=2e-5)
 
 
-def test_a_sigmoid_is_found_again():
+def test_fit_recovers_sigmoids():
     known = np.array([[-1.0, 2.0, 0.5], [3.0, -1.0, -2.0], [0.3, 0.2, 0.1]])
     table = evaluate(Sigmoid(), known, grid())
     np.testing.assert_allclose(evaluate(Sigmoid(), fit_sigmoids(Sigmoid(), table), grid()), table, atol=1e-6)
 
 
-def test_black_and_white_have_sigmoids_too():
+def test_sigmoids_approach_black_and_white():
     table = np.array([np.zeros(81), np.ones(81)])
     np.testing.assert_allclose(evaluate(Sigmoid(), fit_sigmoids(Sigmoid(), table), grid()), table, atol=0.01)
 
 
-def test_a_linear_model_of_all_components_is_exact(checker, lit):
+def test_linear_model_of_all_components_is_exact(checker, lit):
     power, surfaces = checker.powers[:1], checker.surfaces[:5]
     model = linear_model(6, power, surfaces)  # five products and the light
     light = model.encode_light(np.tile(power, (5, 1)))
@@ -42,7 +42,7 @@ def test_a_linear_model_of_all_components_is_exact(checker, lit):
     np.testing.assert_allclose(model.basis.T @ model.basis, np.eye(6), atol=1e-12)
 
 
-def test_it_does_worse_with_what_it_was_not_made_from(checker, lit):
+def test_linear_model_has_errors_outside_its_scene(checker, lit):
     model = linear_model(6, checker.powers[:1], checker.surfaces[:5])
     surfaces = checker.surfaces[5:10]
     found = model.xyz(model.multiply(model.encode_light(lit("A")[:5]), model.encode_surface(surfaces)))
@@ -50,20 +50,20 @@ def test_it_does_worse_with_what_it_was_not_made_from(checker, lit):
 
 
 @pytest.mark.parametrize("paths", [1, 8])
-def test_heroes_are_a_quarter_apart_and_stratified(paths):
+def test_hero_wavelengths_are_a_quarter_apart_and_stratified(paths):
     drawn = HeroWavelengths(paths).wavelengths(500)
     assert drawn.shape == (500, 4 * paths)
     assert drawn.min() >= 380
     assert drawn.max() <= 780
     low, high = np.tanh(0.0072 * (np.array([380, 780]) - 538))
     shares = (np.tanh(0.0072 * (drawn - 538)) - low) / (high - low)
-    # Each row has as many in each quarter, and so in each stratum of a quarter.
+    # Each row has equal numbers in each quarter, and so in each stratum of a quarter.
     strata = np.floor(shares * 4 * paths + 1e-9).clip(0, 4 * paths - 1).astype(int)
     quarters = np.sort(strata // paths, axis=1)
     np.testing.assert_array_equal(quarters, np.tile(np.repeat(range(4), paths), (500, 1)))
 
 
-def test_heroes_are_right_in_the_mean_and_nearer_with_more_paths(checker):
+def test_hero_wavelengths_are_unbiased_and_variance_falls_with_paths(checker):
     power = checker.powers[:1] * checker.surfaces[:1]
     spread = []
     for paths in (1, 8):
@@ -75,5 +75,5 @@ def test_heroes_are_right_in_the_mean_and_nearer_with_more_paths(checker):
     assert spread[1] < spread[0] / 8**0.5
 
 
-def test_the_same_pixels_draw_the_same_numbers():
+def test_hero_wavelengths_are_reproducible():
     np.testing.assert_array_equal(HeroWavelengths(2).wavelengths(5), HeroWavelengths(2).wavelengths(5))

@@ -1,4 +1,4 @@
-"""What holds for every representation."""
+"""Properties of every representation."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ NAMES = [
     *(f"HW{4 * paths}" for paths in PATHS),
 ]
 EXACT = [name for name in NAMES if not name.startswith(("LM", "HW", "PF"))]
-"""Linear models hold their own scene alone, hero wavelengths are random, filters find nothing beyond the ends."""
+"""All but linear models of a scene, random hero wavelengths, and filters that count values past the ends as 0."""
 
 
-def test_these_are_all(every):
+def test_registry_is_complete(every):
     assert set(every) == set(NAMES)
     assert len({(one.family, one.name) for one in every.values()}) == len(NAMES)
 
 
 @pytest.mark.parametrize("name", EXACT)
-def test_a_grey_under_an_even_light_is_exact(every, name):
+def test_grey_under_constant_light_is_exact(every, name):
     one = every[name]
     greys = np.array([[0.2], [0.5], [0.9]]) * np.ones(401)
     light = one.encode_light(np.full((3, 401), 2.0))
@@ -35,15 +35,15 @@ def test_a_grey_under_an_even_light_is_exact(every, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_twice_the_light_is_twice_the_colour(every, checker, lit, name):
+def test_colour_is_linear_in_the_light(every, checker, lit, name):
     one, surfaces = every[name], every[name].encode_surface(checker.surfaces)
     once, twice = (one.xyz(one.multiply(one.encode_light(k * lit("FL11")), surfaces)) for k in (1, 2))
     np.testing.assert_allclose(twice, 2 * once, rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if not name.startswith("HW")])
-def test_every_row_is_by_itself(every, checker, lit, name):
-    """But those of hero wavelengths: there a row is a pixel with random numbers of its own."""
+def test_rows_are_independent(every, checker, lit, name):
+    """Hero wavelengths are omitted: a row is a pixel with its own random numbers."""
     one = every[name]
     whole = one.xyz(one.multiply(one.encode_light(lit("FL2")), one.encode_surface(checker.surfaces)))
     part = one.xyz(one.multiply(one.encode_light(lit("FL2")[5:7]), one.encode_surface(checker.surfaces[5:7])))
@@ -51,7 +51,7 @@ def test_every_row_is_by_itself(every, checker, lit, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_light_can_meet_a_second_surface(every, checker, lit, name):
+def test_product_can_be_multiplied_again(every, checker, lit, name):
     one, surfaces = every[name], every[name].encode_surface(checker.surfaces)
     once = one.multiply(one.encode_light(lit("A")), surfaces)
     twice = one.xyz(one.multiply(once, surfaces))
@@ -63,14 +63,14 @@ def test_light_can_meet_a_second_surface(every, checker, lit, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_number_in_the_name_is_what_a_smooth_spectrum_takes(every, name):
+def test_number_in_the_name_is_the_storage_of_a_smooth_spectrum(every, name):
     stored = every[name].storage(every[name].encode_surface(np.full((2, 401), 0.4)))
     count = int(name[2:])
     np.testing.assert_array_equal(stored, count**2 if name.startswith("LM") else count)
 
 
 @pytest.mark.parametrize("family", ["PS", "PF", "RS", "GQ"])
-def test_more_numbers_are_nearer_under_smooth_light(every, checker, lit, family):
+def test_error_falls_with_size_under_smooth_light(every, checker, lit, family):
     dense = (lit("A") * checker.surfaces) @ xyz_weights()
     worst = []
     for count in SIZES:

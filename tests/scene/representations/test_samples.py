@@ -1,11 +1,17 @@
-"""Point samples, Riemann sums and Gaussian quadrature against slow ways to the same."""
+"""Point samples, Riemann sums and Gaussian quadrature against direct computations."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from uplift.scene.representations.dense import hat_functions, interp_spectra, wavelengths, xyz_weights
+from uplift.scene.representations.dense import (
+    hat_functions,
+    interp_rows,
+    interpolation_matrix,
+    wavelengths,
+    xyz_weights,
+)
 from uplift.scene.representations.gauss_quadrature import gauss_samples
 from uplift.scene.representations.point_sampling import point_samples, sample_points
 from uplift.scene.representations.riemann_sums import cell_overlaps, riemann_sums
@@ -14,7 +20,7 @@ RANDOM = np.random.default_rng(5).random((3, 401))
 
 
 @pytest.mark.parametrize("count", [4, 9, 32])
-def test_points_are_linear_interpolation_there_and_back(count):
+def test_point_samples_are_linear_interpolation_both_ways(count):
     samples, places = point_samples(count), np.linspace(380, 780, count)
     assert sample_points(count)[[0, -1]].tolist() == [380, 780]
     taken = samples.encode_light(RANDOM)
@@ -24,19 +30,19 @@ def test_points_are_linear_interpolation_there_and_back(count):
 
 
 @pytest.mark.parametrize("count", [4, 7, 32])
-def test_cells_share_every_nanometre_out(count):
+def test_cells_partition_the_range(count):
     shares = cell_overlaps(count)
     np.testing.assert_allclose(shares.sum(axis=0), 1)
     np.testing.assert_allclose(shares.sum(axis=1), 401 / count)
 
 
 @pytest.mark.parametrize("count", [4, 16])
-def test_riemann_sums_are_means(count):
+def test_riemann_sums_are_means_of_cells(count):
     fine = np.repeat(RANDOM, 16 * count, axis=1)  # 401 · 16 · count samples fill the cells evenly
     means = fine.reshape(len(RANDOM), count, -1).mean(axis=2)
     np.testing.assert_allclose(riemann_sums(count).encode_surface(RANDOM), means, rtol=1e-12)
-    seen = np.repeat(xyz_weights(), 16 * count, axis=0).reshape(count, -1, 3).sum(axis=1) / (16 * count)
-    np.testing.assert_allclose(riemann_sums(count).weights, seen, rtol=1e-12)
+    weights = np.repeat(xyz_weights(), 16 * count, axis=0).reshape(count, -1, 3).sum(axis=1) / (16 * count)
+    np.testing.assert_allclose(riemann_sums(count).weights, weights, rtol=1e-12)
 
 
 @pytest.mark.parametrize("count", [4, 8, 16])
@@ -45,22 +51,22 @@ def test_quadrature_is_exact_for_polynomials(count):
     rule = gauss_samples(count)
     for degree in range(count):
         power = np.polynomial.chebyshev.chebval(x, np.eye(degree + 1)[-1])[None]
-        # What lies between the dense samples is linear, so nearly.
+        # Spectra are linear between dense samples, so the rule is only approximate.
         np.testing.assert_allclose(rule.xyz(rule.encode_light(power)), power @ xyz_weights(), atol=1e-3)
 
 
-def test_quadrature_samples_where_the_eye_sees():
+def test_quadrature_nodes_lie_in_the_visible_range():
     nodes = wavelengths() @ gauss_samples(8).encoder
     assert 400 < nodes.min() < 440
     assert 650 < nodes.max() < 760
 
 
-def test_reading_between_samples():
-    places = np.array([380.0, 380.25, 555.5, 780.0])
-    expected = [np.interp(places, wavelengths(), row) for row in RANDOM]
-    np.testing.assert_allclose(interp_spectra(RANDOM, places), expected, rtol=1e-12)
-    np.testing.assert_allclose(interp_spectra(RANDOM, np.tile(places, (3, 1))), expected, rtol=1e-12)
+def test_interpolation_equals_numpy():
+    points = np.array([380.0, 380.25, 555.5, 780.0])
+    expected = [np.interp(points, wavelengths(), row) for row in RANDOM]
+    np.testing.assert_allclose(RANDOM @ interpolation_matrix(points), expected, rtol=1e-12)
+    np.testing.assert_allclose(interp_rows(RANDOM, np.tile(points, (3, 1))), expected, rtol=1e-12)
 
 
-def test_hats_share_one_out():
+def test_hat_functions_sum_to_one():
     np.testing.assert_allclose(hat_functions([380, 400, 555.5, 780]).sum(axis=0), 1)

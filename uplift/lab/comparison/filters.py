@@ -18,8 +18,9 @@ from uplift.lab.comparison.measure import judge
 from uplift.lab.comparison.scene import LightSet, Scene
 from uplift.lab.comparison.statistics import Statistics
 from uplift.scene.representations.dense import TABLE_STRIDE
-from uplift.scene.representations.filters import FINE_STRIDE, KINDS, Filter, candidates, conversion
-from uplift.scene.representations.point_sampling import filtered_point_samples, point_samples
+from uplift.scene.representations.filtered_point_sampling import filtered_point_samples
+from uplift.scene.representations.filters import FINE_STRIDE, KINDS, Filter, candidates, resampling_matrix
+from uplift.scene.representations.point_sampling import point_samples
 
 COUNTS = (4, 8, 16)
 """As the thesis has them."""
@@ -75,7 +76,7 @@ def _best(tried: Sequence[Filter], count: int, scene: Scene) -> list[Filter]:
     judges = [_judge(scene, part, count) for part in scene.sets]
     means = np.empty((len(tried), len(judges)))
     for row, low_pass in enumerate(tried):
-        encoder = conversion(low_pass, count).T
+        encoder = resampling_matrix(low_pass, count).T
         means[row] = [judge(encoder) for judge in judges]
     return [tried[int(row)] for row in means.argmin(axis=0)]
 

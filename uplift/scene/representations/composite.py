@@ -1,8 +1,7 @@
-"""Composite models: a smooth part in few numbers, and the spikes upon it. Sun's (CS) and Kment's (RE).
+"""Composite models: a smooth part in few coefficients, and spikes.
 
 Sun, Drew & Fracchia 1999, "Representing spectral functions by a composite model of smooth and spiky components for
-efficient full-spectrum photorealism": Fourier coefficients. Kment 2011, 5.5: Riemann sums in their place, "enhanced
-Riemann summations". The thresholds of the segmentation are those of Kment 2011, 6.1.
+efficient full-spectrum photorealism"; Kment 2011, section 5.5.
 """
 
 from __future__ import annotations
@@ -13,16 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.scene.representations import fourier_coefficients, riemann_sums
-from uplift.scene.representations.dense import TABLE_STRIDE
 from uplift.scene.representations.representation import Representation
-from uplift.scene.representations.spikes import Spikes, split_spikes, spread, triangles
-
-SUN_THRESHOLD, ENHANCED_THRESHOLD = 0.3, 0.2
+from uplift.scene.representations.spikes import Spikes, heights_at, spike_xyz, split_spikes
 
 
-class Parts(NamedTuple):
-    """A code: that of the smooth part, (n, C), and the spikes."""
+class CompositeCode(NamedTuple):
+    """Code (n, C) of the smooth part, and the spikes."""
 
     smooth: Array
     spikes: Spikes
@@ -30,10 +25,20 @@ class Parts(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Composite:
-    """Spikes steeper than ``threshold`` beside the smooth part as ``smooth`` holds it.
+    """Smooth part in another representation, and spikes steeper than a threshold.
 
-    ``decoder`` (C, 81) takes codes of the smooth part to the 5 nm table. In a product a spike meets what the other
-    spectrum has at its place: its spike, and there its smooth part.
+    In a product, a spike meets the spike and the smooth part of the other spectrum at its position.
+
+    Parameters
+    ----------
+    name, family : str
+        See `Representation`.
+    smooth : Representation
+        Representation of the smooth part, whose codes are arrays (n, C).
+    decoder : ndarray, shape (C, 81)
+        ``code @ decoder`` is the smooth part at 5 nm.
+    threshold : float
+        Largest relative gradient of the smooth part between samples of the 5 nm table.
     """
 
     name: str
@@ -42,37 +47,23 @@ class Composite:
     decoder: Array
     threshold: float
 
-    def encode_light(self, power: Array) -> Parts:
+    def encode_light(self, power: Array) -> CompositeCode:
         rest, spikes = split_spikes(power, self.threshold)
-        return Parts(self.smooth.encode_light(rest), spikes)
+        return CompositeCode(self.smooth.encode_light(rest), spikes)
 
-    def encode_surface(self, reflectance: Array) -> Parts:
+    def encode_surface(self, reflectance: Array) -> CompositeCode:
         rest, spikes = split_spikes(reflectance, self.threshold)
-        return Parts(self.smooth.encode_surface(rest), spikes)
+        return CompositeCode(self.smooth.encode_surface(rest), spikes)
 
-    def multiply(self, light: Parts, surface: Parts) -> Parts:
-        places = np.union1d(light.spikes.places, surface.spikes.places)
-        one, other = spread(light.spikes, places), spread(surface.spikes, places)
-        below_one, below_other = (parts.smooth @ self.decoder[:, places] for parts in (light, surface))
-        heights = one * (below_other + other) + below_one * other
-        return Parts(self.smooth.multiply(light.smooth, surface.smooth), Spikes(places, heights))
+    def multiply(self, light: CompositeCode, surface: CompositeCode) -> CompositeCode:
+        positions = np.union1d(light.spikes.positions, surface.spikes.positions)
+        of_light, of_surface = heights_at(light.spikes, positions), heights_at(surface.spikes, positions)
+        below_light, below_surface = (code.smooth @ self.decoder[:, positions] for code in (light, surface))
+        heights = of_light * (below_surface + of_surface) + below_light * of_surface
+        return CompositeCode(self.smooth.multiply(light.smooth, surface.smooth), Spikes(positions, heights))
 
-    def xyz(self, light: Parts) -> Array:
-        return self.smooth.xyz(light.smooth) + light.spikes.heights @ triangles()[light.spikes.places]
+    def xyz(self, light: CompositeCode) -> Array:
+        return self.smooth.xyz(light.smooth) + light.spikes.heights @ spike_xyz()[light.spikes.positions]
 
-    def storage(self, code: Parts) -> Array:
+    def storage(self, code: CompositeCode) -> Array:
         return self.smooth.storage(code.smooth) + code.spikes.storage
-
-
-def sun_composite(count: int) -> Composite:
-    """Sun's, with ``count`` real Fourier coefficients."""
-    waves = fourier_coefficients.fourier_coefficients(count)
-    return Composite(f"CS{count}", "Sun's composite", waves, waves.waves[:, ::TABLE_STRIDE], SUN_THRESHOLD)
-
-
-def enhanced_riemann(count: int) -> Composite:
-    """Kment's, with ``count`` Riemann sums; a spike meets the mean of the cell that it lies in."""
-    means = riemann_sums.cell_overlaps(count)[:, ::TABLE_STRIDE]
-    return Composite(
-        f"RE{count}", "enhanced Riemann sums", riemann_sums.riemann_sums(count), means, ENHANCED_THRESHOLD
-    )

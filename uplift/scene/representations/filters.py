@@ -1,12 +1,12 @@
-"""Low-pass filters for sampling-rate conversion by L/M: what a spectrum goes through before it is point sampled.
+"""Low-pass filters for sampling-rate conversion by L/M, applied to a spectrum before point sampling.
 
-Kment 2011, 4.4 (the conversion) and 4.5 (the filters, eq. 4.13–4.19). The 81 samples of the 5 nm table are taken L
-times as dense with zeros between, filtered, and every M-th is kept: L/M = (n − 1)/80, so that the ends stay where
-point sampling has them. What lies outside 380–780 nm counts as 0 (6.1).
+Kment 2011, section 4.4 (conversion) and section 4.5, eq. 4.13–4.19 (filters). The 81 samples of the 5 nm table are
+upsampled L times with zeros, filtered, and every M-th sample is kept. L/M = (n − 1)/80, so that the ends remain those
+of point sampling. Values outside 380–780 nm count as 0 (section 6.1).
 
-Where the text leaves a choice open: ``extent``, an odd number, is the samples of the table that a filter reaches
-over; x runs from −1 to 1 across it, −2 to 2 for Mitchell, whatever the extent. Lanczos is the windowed sinc of Pharr
-& Humphreys 2004, which the text cites: τ cycles of sinc under the main lobe of another.
+Choices that the text leaves open: ``extent``, an odd number, is the number of table samples that a filter covers. x
+runs from −1 to 1 across it, −2 to 2 for Mitchell, at any extent. Lanczos is the windowed sinc of Pharr & Humphreys
+2004, cited in the text: τ cycles of sinc under the main lobe of another.
 """
 
 from __future__ import annotations
@@ -24,14 +24,24 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 
 EXTENTS = range(3, 22, 2)
-"""As the thesis has tried them."""
+"""Extents tried in the thesis."""
 FINE_STRIDE, COARSE_STRIDE = 1, 5
-"""Of the choices for a parameter a search tries every so many."""
+"""A search tries every first or every fifth choice of each parameter."""
 
 
 @dataclass(frozen=True)
 class FilterKind:
-    """A family of filters: ``window`` takes an odd number of taps and the parameters, whose ``choices`` are tried."""
+    """A family of filters.
+
+    Parameters
+    ----------
+    title : str
+        Name for tables.
+    window : callable
+        Function of an odd number of taps and the parameters.
+    choices : mapping
+        Values that a search tries, by the name of the parameter.
+    """
 
     title: str
     window: Callable[..., Array]
@@ -40,7 +50,7 @@ class FilterKind:
 
 @dataclass(frozen=True)
 class Filter:
-    """A filter with its parameters: a ``kind`` of `KINDS`, the samples it reaches over, and what the kind asks for."""
+    """A filter: the name of its kind in `KINDS`, its extent in samples of the table, and the parameters of the kind."""
 
     kind: str
     extent: int
@@ -48,31 +58,32 @@ class Filter:
 
     @property
     def name(self) -> str:
+        """Kind, extent and parameters, such as ``gaussian(7, α=0.5)``."""
         named = zip(KINDS[self.kind].choices, self.parameters, strict=True)
         return f"{self.kind}({', '.join([str(self.extent), *(f'{key}={value:g}' for key, value in named)])})"
 
-    def taps(self, up: int) -> Array:
-        """An odd number of taps that sum to 1, ``up`` to a sample of the table."""
-        taps = KINDS[self.kind].window(2 * (self.extent * up // 2) + 1, *self.parameters)
+    def taps(self, upsampling: int) -> Array:
+        """Compute an odd number of taps with sum 1, ``upsampling`` per sample of the table."""
+        taps = KINDS[self.kind].window(2 * (self.extent * upsampling // 2) + 1, *self.parameters)
         return np.asarray(taps / taps.sum())
 
 
-def conversion(low_pass: Filter, count: int) -> Array:
-    """(count, 81) what takes the 5 nm table to ``count`` samples."""
+def resampling_matrix(low_pass: Filter, count: int) -> Array:
+    """Matrix (count, 81) that maps the 5 nm table to ``count`` filtered samples."""
     size = len(observer.grid())
     rate = Fraction(count - 1, size - 1)
     taps = low_pass.taps(rate.numerator)
     return np.asarray(resample_poly(np.eye(size), rate.numerator, rate.denominator, axis=0, window=taps))
 
 
-def candidates(kind: str, every: int = FINE_STRIDE) -> list[Filter]:
-    """The filters of a kind that a search tries: of each parameter every so many of the choices."""
-    choices = [values[::every] for values in KINDS[kind].choices.values()]
-    return [Filter(kind, extent, values) for extent in EXTENTS[::every] for values in product(*choices)]
+def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
+    """Filters of a kind for a grid search over every ``stride``-th choice of each parameter."""
+    choices = [values[::stride] for values in KINDS[kind].choices.values()]
+    return [Filter(kind, extent, values) for extent in EXTENTS[::stride] for values in product(*choices)]
 
 
-def _inside(window: Callable[..., Array], taps: int, *parameters: float) -> Array:
-    """A window of scipy without the zeros at its ends, which would make the filter narrower than its extent."""
+def _without_ends(window: Callable[..., Array], taps: int, *parameters: float) -> Array:
+    """Remove the zeros at the ends of a window of scipy, which would narrow the filter."""
     return np.asarray(window(taps + 2, *parameters)[1:-1])
 
 
@@ -96,7 +107,7 @@ def _mitchell(taps: int, b: float, c: float) -> Array:
 
 
 def _lanczos(taps: int, tau: float) -> Array:
-    return np.sinc(tau * _x(taps)) * _inside(windows.lanczos, taps)
+    return np.sinc(tau * _x(taps)) * _without_ends(windows.lanczos, taps)
 
 
 _TAU = np.round(np.arange(0.05, 3.001, 0.05), 2).tolist()
@@ -110,7 +121,7 @@ KINDS: dict[str, FilterKind] = {
     "gaussian": FilterKind("Gaussian", _gaussian, {"α": _ALPHA}),
     "mitchell": FilterKind("Mitchell", _mitchell, {"b": _CUBIC, "c": _CUBIC}),
     "lanczos": FilterKind("Lanczos", _lanczos, {"τ": _TAU}),
-    "hann": FilterKind("Hann", functools.partial(_inside, windows.hann), {}),
-    "hamming": FilterKind("Hamming", functools.partial(_inside, windows.hamming), {}),
+    "hann": FilterKind("Hann", functools.partial(_without_ends, windows.hann), {}),
+    "hamming": FilterKind("Hamming", functools.partial(_without_ends, windows.hamming), {}),
 }
-"""In the order of tables A.1 and A.2."""
+"""Kinds by name, in the order of tables A.1 and A.2."""

@@ -1,9 +1,9 @@
-"""The first Fourier coefficients of a spectrum: the smooth part of Sun's composite model.
+"""Fourier coefficients of a spectrum: the smooth part of Sun's composite model.
 
-Kment 2011, 4.3 and 5.4: 380–780 nm is the period, so that a spectrum whose ends differ has a jump there. ``count``
-real numbers are a_0 to a_m and b_1 to b_m. Where the text leaves a choice open: coefficients are those of eq. 4.7
-over the 5 nm table, with the mean of both ends where they meet; a product, made point by point as the text has it,
-keeps as many coefficients as went into it.
+Kment 2011, sections 4.3 and 5.4. The period is 380–780 nm, so a spectrum whose ends differ has a jump there. The
+``count`` real numbers are a_0 to a_m and b_1 to b_m. Choices that the text leaves open: the coefficients are those of
+eq. 4.7 over the 5 nm table, with the mean of both ends where they meet. A product, computed point by point as in the
+text, keeps as many coefficients as its factors have.
 """
 
 from __future__ import annotations
@@ -21,34 +21,40 @@ from uplift.scene.representations.samples import row_sizes
 
 @dataclass(frozen=True, eq=False)
 class FourierCoefficients:
-    """Coefficients (n, C) of ``waves`` (C, 401); ``resampled`` (C, K) has them at as many points as a product needs.
+    """Coefficients (n, C) of a real Fourier basis.
 
-    A product of two such spectra has twice the highest frequency. At 2C points in the period none of it is taken
-    for a lower one (the "Shannon theorem" of the text).
+    The product of two such spectra has twice the highest frequency. At 2C points in the period none of it is aliased
+    to a lower one (the "Shannon theorem" of the text).
+
+    Parameters
+    ----------
+    count : int
+        Number of coefficients C.
+    waves : ndarray, shape (C, 401)
+        Basis functions at the dense wavelengths.
+    product_waves : ndarray, shape (C, 2C)
+        Basis functions at the points of a product.
     """
 
     count: int
     waves: Array
-    resampled: Array
+    product_waves: Array
+    family = "Fourier coefficients"
 
     @property
     def name(self) -> str:
         return f"F{self.count}"
 
-    @property
-    def family(self) -> str:
-        return "Fourier coefficients"
-
     def encode_light(self, power: Array) -> Array:
         periodic = power[:, :-1:TABLE_STRIDE].copy()
         periodic[:, 0] = (power[:, 0] + power[:, -1]) / 2
-        return _analysed(periodic, self.waves[:, :-1:TABLE_STRIDE])
+        return _analyse(periodic, self.waves[:, :-1:TABLE_STRIDE])
 
     def encode_surface(self, reflectance: Array) -> Array:
         return self.encode_light(reflectance)
 
     def multiply(self, light: Array, surface: Array) -> Array:
-        return _analysed((light @ self.resampled) * (surface @ self.resampled), self.resampled)
+        return _analyse((light @ self.product_waves) * (surface @ self.product_waves), self.product_waves)
 
     def xyz(self, light: Array) -> Array:
         return light @ (self.waves @ xyz_weights())
@@ -58,24 +64,25 @@ class FourierCoefficients:
 
 
 def fourier_coefficients(count: int) -> FourierCoefficients:
-    """``count`` real coefficients, an odd number. Raises `OptionError`."""
+    """Make the representation by ``count`` real coefficients, an odd number. Raises `OptionError`."""
     if count < 1 or count % 2 == 0:
         raise OptionError(
-            f"{count} Fourier coefficients are no mean with pairs of waves", hint="take an odd number"
+            f"number of Fourier coefficients must be odd and positive, got {count}",
+            code="even-coefficients",
+            hint="a mean and pairs of cosine and sine are an odd number",
         )
-    phase = 2 * np.pi * (wavelengths() - START) / (END - START)
-    return FourierCoefficients(
-        count, _waves(phase, count), _waves(2 * np.pi * np.arange(2 * count) / (2 * count), count)
-    )
+    dense = 2 * np.pi * (wavelengths() - START) / (END - START)
+    product = np.pi * np.arange(2 * count) / count
+    return FourierCoefficients(count, _waves(dense, count), _waves(product, count))
 
 
 def _waves(phase: Array, count: int) -> Array:
-    """(count, K) of 1, cos, sin, cos 2, sin 2, … at phases (K,)."""
+    """Basis (count, K) of 1, cos φ, sin φ, cos 2φ, sin 2φ, … at phases (K,)."""
     orders = np.arange(1, count // 2 + 1)[:, None]
     pairs = np.stack([np.cos(orders * phase), np.sin(orders * phase)], axis=1)
     return np.concatenate([np.ones((1, len(phase))), pairs.reshape(-1, len(phase))])
 
 
-def _analysed(values: Array, waves: Array) -> Array:
-    """Coefficients (n, C) of values (n, K), evenly spaced over a period, in waves (C, K)."""
+def _analyse(values: Array, waves: Array) -> Array:
+    """Coefficients (n, C) of values (n, K) at K evenly spaced points of a period, for waves (C, K)."""
     return np.asarray(values @ waves.T / (waves**2).sum(axis=1))

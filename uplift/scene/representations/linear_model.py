@@ -1,9 +1,9 @@
-"""The linear model (LM) of Peercy 1993, "Linear color representations for full speed spectral rendering".
+"""Linear model (LM) of Peercy 1993, "Linear color representations for full speed spectral rendering".
 
-Its basis is that of the scene itself: the first principal components, about the origin, of every product of the
-scene's lights with its surfaces, and of the lights. A light is its n coordinates; a surface is an n × n matrix, what
-it does to lights of that space. Whoever asks for spectra that the basis was not made from has to expect more error:
-the prior knowledge for which Kment 2011, 5.4 leaves linear models out.
+Its basis belongs to a scene: the first principal components, about the origin, of every product of its lights with its
+surfaces, and of the lights. A light is n coordinates. A surface is the n × n matrix by which it acts on lights of that
+space. Spectra that the basis was not made from have larger errors. Kment 2011, section 5.4, omits linear models because
+they need this prior knowledge.
 """
 
 from __future__ import annotations
@@ -22,14 +22,11 @@ class LinearModel:
     """Coordinates in an orthonormal ``basis`` (401, n)."""
 
     basis: Array
+    family = "linear model (PCA)"
 
     @property
     def name(self) -> str:
         return f"LM{self.basis.shape[1]}"
-
-    @property
-    def family(self) -> str:
-        return "linear model (PCA)"
 
     def encode_light(self, power: Array) -> Array:
         return power @ self.basis
@@ -48,10 +45,10 @@ class LinearModel:
 
 
 def linear_model(count: int, lights: Array, surfaces: Array) -> LinearModel:
-    """``count`` components of a scene of lights (L, 401) and surfaces (E, 401); all lights count alike."""
+    """Compute ``count`` components of a scene of lights (L, 401), normalised to equal Y, and surfaces (E, 401)."""
     scatter = np.zeros((lights.shape[1],) * 2)
     for power in lights / (lights @ xyz_weights()[:, 1:2]):
-        sent = np.concatenate([surfaces * power, power[None]])
-        scatter += sent.T @ sent
+        radiance = np.concatenate([surfaces * power, power[None]])
+        scatter += radiance.T @ radiance
     _, vectors = np.linalg.eigh(scatter)
     return LinearModel(vectors[:, ::-1][:, :count])

@@ -1,4 +1,4 @@
-"""What a representation of spectra is: lights and surfaces are encoded, a surface turns light into light."""
+"""Protocol of spectral representations."""
 
 from __future__ import annotations
 
@@ -8,38 +8,93 @@ from uplift.common.arrays import Array
 
 
 class Representation(Protocol):
-    """A way to hold spectra, after Kment 2011, 5.4.
+    """Encoding of spectra that a renderer can multiply (Kment 2011, section 5.4).
 
-    A code holds many spectra, a row each; what is light stays light through a ``product``, so that it can meet the
-    next surface. Row r of a light meets row r of the surfaces.
+    A code holds n spectra. The product of a light and surfaces is again a light, which may meet the next surface.
+    Row r of a light meets row r of the surfaces.
     """
 
     @property
     def name(self) -> str:
-        """Short, as the thesis abbreviates it: PS16."""
+        """Abbreviation of the thesis with the number of coefficients, such as ``PS16``."""
         ...
 
     @property
     def family(self) -> str:
-        """What it is called whatever its size."""
+        """Name of the method without its size."""
         ...
 
     def encode_light(self, power: Array) -> Any:
-        """The code of relative powers (n, 401), as `dense.wavelengths` has them."""
+        """Encode spectral powers.
+
+        Parameters
+        ----------
+        power : ndarray, shape (n, 401)
+            Relative powers at the wavelengths of `dense.wavelengths`.
+
+        Returns
+        -------
+        object
+            The code, of a type that belongs to the representation.
+        """
         ...
 
     def encode_surface(self, reflectance: Array) -> Any:
-        """The code of reflectances (n, 401)."""
+        """Encode reflectances.
+
+        Parameters
+        ----------
+        reflectance : ndarray, shape (n, 401)
+            Reflectances at the wavelengths of `dense.wavelengths`.
+
+        Returns
+        -------
+        object
+            The code, of a type that belongs to the representation.
+        """
         ...
 
     def multiply(self, light: Any, surface: Any) -> Any:
-        """The code of the light that the surfaces send back."""
+        """Compute the light that surfaces reflect.
+
+        Parameters
+        ----------
+        light, surface : object
+            Codes of `encode_light` or `multiply`, and of `encode_surface`, with as many rows.
+
+        Returns
+        -------
+        object
+            Code of a light.
+        """
         ...
 
     def xyz(self, light: Any) -> Array:
-        """XYZ (n, 3) of a light, as `dense.observed` weighs it."""
+        """Compute the colours of lights.
+
+        Parameters
+        ----------
+        light : object
+            Code of a light.
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+            XYZ in the units of `dense.xyz_weights`.
+        """
         ...
 
     def storage(self, code: Any) -> Array:
-        """(n,) numbers stored for each spectrum of a light or of surfaces."""
+        """Count the numbers stored per spectrum.
+
+        Parameters
+        ----------
+        code : object
+            Code of a light or of surfaces.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Number of coefficients in each row.
+        """
         ...

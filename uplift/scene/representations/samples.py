@@ -1,4 +1,4 @@
-"""Representations by n numbers that are multiplied one by one: what differs is how they are taken and weighed."""
+"""Base of representations by n samples that are multiplied one by one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,17 @@ from uplift.models.matmul import matmul_rows
 
 @dataclass(frozen=True, eq=False)
 class SampleRepresentation:
-    """Lights and surfaces alike are ``spectra @ encoder`` (401, n), a light's XYZ is ``code @ weights`` (n, 3)."""
+    """Linear encoding, the same for lights and surfaces.
+
+    Parameters
+    ----------
+    name, family : str
+        See `Representation`.
+    encoder : ndarray, shape (401, n)
+        ``spectra @ encoder`` is the code.
+    weights : ndarray, shape (n, 3)
+        ``code @ weights`` is the XYZ of a light.
+    """
 
     name: str
     family: str
@@ -23,7 +33,7 @@ class SampleRepresentation:
         return np.asarray(matmul_rows(power, self.encoder))
 
     def encode_surface(self, reflectance: Array) -> Array:
-        return np.asarray(matmul_rows(reflectance, self.encoder))
+        return self.encode_light(reflectance)
 
     def multiply(self, light: Array, surface: Array) -> Array:
         return light * surface
@@ -36,5 +46,5 @@ class SampleRepresentation:
 
 
 def row_sizes(code: Array) -> Array:
-    """(n,) numbers in each row of a code that is one array."""
+    """Numbers per row (n,) of a code that is a single array."""
     return np.full(len(code), float(code[0].size))

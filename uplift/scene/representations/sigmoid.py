@@ -1,7 +1,7 @@
-"""The sigmoid (SG) of Jakob & Hanika 2019: three numbers a reflectance (`uplift.models.sigmoid`).
+"""Sigmoid (SG) of Jakob & Hanika 2019: three coefficients per reflectance (`uplift.models.sigmoid`).
 
-They are fitted by Levenberg & Marquardt's method, as an upsampler would: to the reflectance's colour under D65, and
-where that leaves anything open, or cannot be had, to its values at 5 nm.
+The coefficients are fitted by the Levenberg–Marquardt method to the colour of the reflectance under D65. Its values at
+5 nm, with a small weight, determine the fit where the colour does not or cannot be met.
 """
 
 from __future__ import annotations
@@ -11,18 +11,18 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from uplift.colorimetry import observer
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.common.arrays import Array
 from uplift.models import Sigmoid
 from uplift.models.model import evaluate
 from uplift.scene.representations.dense import TABLE_STRIDE
 from uplift.scene.representations.table import TabulatedProducts
 
-LIGHT = "D65"
-SHAPE = 1e-4
-"""What an error at one wavelength counts beside one of the colour."""
-STEPS = 20
-EASE, EAGER, FIRST = 10.0, 0.3, 1e-3
-"""The damping of the first step, and what it grows and falls by after a bad and after a good one."""
+SHAPE_WEIGHT = 1e-4
+"""Weight of the residual at one wavelength relative to that of the colour."""
+ITERATIONS = 20
+FIRST_DAMPING, INCREASE, DECREASE = 1e-3, 10.0, 0.3
+"""Damping of the first iteration, and its factors after a rejected and after an accepted step."""
 
 
 @dataclass(frozen=True)
@@ -38,25 +38,23 @@ class SigmoidCoefficients(TabulatedProducts):
 
 
 def fit_sigmoids(model: Sigmoid, table: Array) -> Array:
-    """Coefficients (n, 3) for reflectances (n, 81)."""
-    light, basis = observer.light(LIGHT), model.basis(observer.grid())
-    measure = np.concatenate([light.xyz / light.white[:, None], SHAPE * np.eye(len(basis))])
+    """Fit coefficients (n, 3) to reflectances (n, 81)."""
+    light, basis = observer.light(DEFAULT_ILLUMINANT), model.basis(observer.grid())
+    measurement = np.concatenate([light.xyz / light.white[:, None], SHAPE_WEIGHT * np.eye(len(basis))])
 
-    def misses(found: Array) -> Array:
-        return (evaluate(model, found, observer.grid()) - table) @ measure.T
+    def residuals(coefficients: Array) -> Array:
+        return (evaluate(model, coefficients, observer.grid()) - table) @ measurement.T
 
-    found = np.zeros((len(table), model.count))
-    damping = np.full((len(table), 1, 1), FIRST)
-    missed = misses(found)
-    for _ in range(STEPS):
-        slope = measure @ (model.slope(found @ basis.T)[:, :, None] * basis)
-        square = slope.transpose(0, 2, 1) @ slope
-        scale = damping * np.einsum("nii->ni", square)[:, :, None] * np.eye(model.count)
-        tried = (
-            found - np.linalg.solve(square + scale, slope.transpose(0, 2, 1) @ missed[:, :, None])[:, :, 0]
-        )
-        missed_then = misses(tried)
-        better = (missed_then**2).sum(axis=1) < (missed**2).sum(axis=1)
-        found[better], missed[better] = tried[better], missed_then[better]
-        damping *= np.where(better, EAGER, EASE)[:, None, None]
-    return found
+    coefficients = np.zeros((len(table), model.count))
+    damping = np.full((len(table), 1, 1), FIRST_DAMPING)
+    residual = residuals(coefficients)
+    for _ in range(ITERATIONS):
+        jacobian = measurement @ (model.slope(coefficients @ basis.T)[:, :, None] * basis)
+        gram = jacobian.mT @ jacobian
+        scale = damping * np.einsum("nii->ni", gram)[:, :, None] * np.eye(model.count)
+        trial = coefficients - np.linalg.solve(gram + scale, jacobian.mT @ residual[:, :, None])[:, :, 0]
+        trial_residual = residuals(trial)
+        accepted = (trial_residual**2).sum(axis=1) < (residual**2).sum(axis=1)
+        coefficients[accepted], residual[accepted] = trial[accepted], trial_residual[accepted]
+        damping *= np.where(accepted, DECREASE, INCREASE)[:, None, None]
+    return coefficients

@@ -1,9 +1,9 @@
-"""Spikes and the smooth spectrum beneath them: segmentation by relative gradient.
+"""Decomposition of a spectrum into a smooth part and spikes by the relative gradient.
 
-Deville, Merzouk, Cazier & Paul 1994, "Spectral data modeling for a lighting application", as Kment 2011, 5.4 has it.
-Where the text leaves a choice open: the gradient is that between two samples of the 5 nm table, relative to the
-highest sample of the spectrum; the smooth part is the largest spectrum below the given one that is nowhere steeper
-than the threshold, and the spikes are what stands above it.
+Deville, Merzouk, Cazier & Paul 1994, "Spectral data modeling for a lighting application", as described in Kment 2011,
+section 5.4. Choices that the text leaves open: the gradient is that between two samples of the 5 nm table, relative to
+the highest sample of the spectrum. The smooth part is the largest spectrum below the given one that is nowhere steeper
+than the threshold. The spikes are the difference.
 """
 
 from __future__ import annotations
@@ -18,47 +18,48 @@ from uplift.common.arrays import Array, Indices
 from uplift.scene.representations.dense import TABLE_STRIDE, hat_functions, xyz_weights
 
 NOISE = 1e-9
-"""Of the highest sample: rounding leaves as much above the smooth part."""
-FLOATS = 2
-"""Stored of a spike: where it is, and how high."""
+"""Heights below this fraction of the highest sample are rounding."""
+NUMBERS_PER_SPIKE = 2
+"""A position and a height."""
 
 
 class Spikes(NamedTuple):
-    """``heights`` (n, P) at ``places`` (P,), numbers of samples of the 5 nm table; 0 where a spectrum has no spike."""
+    """Heights (n, P) of spikes at ``positions`` (P,), indices of the 5 nm table; 0 where a spectrum has no spike."""
 
-    places: Indices
+    positions: Indices
     heights: Array
 
     @property
     def storage(self) -> Array:
-        """(n,) numbers that the spikes of each spectrum take."""
-        return FLOATS * (self.heights != 0).sum(axis=1, dtype=float)
+        """Numbers (n,) stored for the spikes of each spectrum."""
+        return NUMBERS_PER_SPIKE * (self.heights != 0).sum(axis=1, dtype=float)
 
 
 def split_spikes(spectra: Array, threshold: float) -> tuple[Array, Spikes]:
-    """The smooth part (n, 401) of dense spectra (n, 401), linear in 5 nm, and the spikes upon it."""
+    """Split dense spectra (n, 401) into a smooth part (n, 401), linear between 5 nm, and spikes."""
     table = spectra[:, ::TABLE_STRIDE]
-    steepest = threshold * table.max(axis=1, keepdims=True)
+    highest = table.max(axis=1)
+    step = threshold * highest
     smooth = table.copy()
-    # Whatever is too steep for its neighbour is cut down to it; one sweep each way settles all.
-    for place in range(1, smooth.shape[1]):
-        smooth[:, place] = np.minimum(smooth[:, place], smooth[:, place - 1] + steepest[:, 0])
-    for place in reversed(range(smooth.shape[1] - 1)):
-        smooth[:, place] = np.minimum(smooth[:, place], smooth[:, place + 1] + steepest[:, 0])
+    # Limit the gradient by one sweep in each direction.
+    for index in range(1, smooth.shape[1]):
+        smooth[:, index] = np.minimum(smooth[:, index], smooth[:, index - 1] + step)
+    for index in reversed(range(smooth.shape[1] - 1)):
+        smooth[:, index] = np.minimum(smooth[:, index], smooth[:, index + 1] + step)
     heights = table - smooth
-    heights[heights < NOISE * table.max(axis=1, keepdims=True)] = 0
-    places = np.flatnonzero(heights.any(axis=0))
-    return (table - heights) @ hat_functions(observer.grid()), Spikes(places, heights[:, places])
+    heights[heights < NOISE * highest[:, None]] = 0
+    positions = np.flatnonzero(heights.any(axis=0))
+    return (table - heights) @ hat_functions(observer.grid()), Spikes(positions, heights[:, positions])
 
 
-def spread(spikes: Spikes, places: Indices) -> Array:
-    """Their heights (n, Q) at ``places`` (Q,), which hold all of theirs."""
-    heights = np.zeros((len(spikes.heights), len(places)))
-    heights[:, np.searchsorted(places, spikes.places)] = spikes.heights
+def heights_at(spikes: Spikes, positions: Indices) -> Array:
+    """Heights (n, Q) at ``positions`` (Q,), a superset of those of the spikes."""
+    heights = np.zeros((len(spikes.heights), len(positions)))
+    heights[:, np.searchsorted(positions, spikes.positions)] = spikes.heights
     return heights
 
 
 @functools.cache
-def triangles() -> Array:
-    """(81, 3) XYZ of a spike of height 1 at each place: a triangle as wide as linear interpolation makes it."""
+def spike_xyz() -> Array:
+    """XYZ (81, 3) of a spike of height 1 at each position: a triangle as wide as linear interpolation makes it."""
     return hat_functions(observer.grid()) @ xyz_weights()

@@ -1,19 +1,20 @@
-"""Lights as renderers hold them beside compact reflectances: the 5 nm table, at which surfaces are evaluated."""
+"""Lights as 5 nm tables, for representations that compress reflectances only."""
 
 from __future__ import annotations
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.models.model import Model, reflectance
-from uplift.scene.representations.dense import TABLE_STRIDE, hat_functions, xyz_weights
+from uplift.scene.representations.dense import TABLE_STRIDE
 from uplift.scene.representations.samples import row_sizes
+from uplift.scene.representations.spikes import spike_xyz
 
 
 class TabulatedProducts:
-    """What models of reflectance share: only ``surface`` is compact, lights and products are (n, 81).
+    """Base of models of reflectance: lights and products are tables (n, 81).
 
-    A product evaluates the model at the 81 wavelengths of the light. It is not made a model again: no renderer does,
-    and the sigmoid could not hold it.
+    A product evaluates the model at the 81 wavelengths of the light. It is not encoded again: no renderer does so, and
+    the sigmoid could not represent it.
     """
 
     model: Model
@@ -25,7 +26,7 @@ class TabulatedProducts:
         return light * reflectance(self.model, surface, observer.grid())
 
     def xyz(self, light: Array) -> Array:
-        return light @ (hat_functions(observer.grid()) @ xyz_weights())
+        return light @ spike_xyz()
 
     def storage(self, code: Array) -> Array:
         return row_sizes(code)

@@ -1,7 +1,7 @@
 """Trigonometric moments (TM) of reflectances, mirrored, as cubes store them (`uplift.models.moments`).
 
-Peters et al. 2019, "Using moments to represent bounded signals for spectral rendering". These are the plain moments
-of the spectrum, not coefficients fitted to its colours as those of cubes are: docs/fidelity.md has what that gains.
+Peters et al. 2019, "Using moments to represent bounded signals for spectral rendering". These are the moments of the
+spectrum itself. The coefficients of cubes are fitted to colours as well; docs/fidelity.md shows the difference.
 """
 
 from __future__ import annotations
@@ -20,17 +20,14 @@ from uplift.scene.representations.table import TabulatedProducts
 
 @dataclass(frozen=True)
 class TrigonometricMoments(TabulatedProducts):
-    """As many coefficients as ``model`` has: the zeroth moment and those above it."""
+    """The zeroth moment and those above it, as many as ``model`` has coefficients."""
 
     model: Moments
+    family = "trigonometric moments"
 
     @property
     def name(self) -> str:
         return f"TM{self.model.count}"
-
-    @property
-    def family(self) -> str:
-        return "trigonometric moments"
 
     def encode_surface(self, reflectance: Array) -> Array:
         phase = self.model.phase(wavelengths())
@@ -41,5 +38,5 @@ class TrigonometricMoments(TabulatedProducts):
 
 
 def trigonometric_moments(count: int) -> TrigonometricMoments:
-    """``count`` coefficients."""
+    """Make the representation by ``count`` coefficients."""
     return TrigonometricMoments(Moments(count))
