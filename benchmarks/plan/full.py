@@ -1,4 +1,4 @@
-"""The independent computation: a plan's own lines as processes, textures read by OpenEXR, seen by colour-science."""
+"""Independent check of a plan: its command lines as processes, textures read by OpenEXR, colours by colour-science."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ import numpy as np
 import OpenEXR
 
 import uplift
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT
 from uplift import models
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
@@ -27,25 +27,31 @@ from uplift.common.arrays import Array
 from uplift.scene.plan.colours import ColourSet
 
 with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # of its optional parts
+    warnings.simplefilter("ignore")  # about optional dependencies
     import colour
 
 BIN = Path(sys.executable).parent
-BEST = ("--dim", "128", "--moments", "16")
+REFERENCE = ("--dim", "128", "--coefficients", "17")
 ROWS = 1 << 15
-"""Spectra seen at a time."""
+"""Spectra per block."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A picture, an atlas, lights, a tolerance."""
+    """A picture, an atlas, lights and a tolerance."""
 
     picture: str
     atlas: str
     lights: tuple[str, ...]
     tolerance: float
 
+    @property
+    def stem(self) -> str:
+        """Name of the scene file without its extension."""
+        return f"{Path(self.picture).stem}-{self.tolerance:g}"
+
     def scene(self) -> str:
+        """Return the text of the scene file."""
         return (
             f'textures = ["{self.picture}"]\natlases = ["{self.atlas}"]\n'
             f"lights = {json.dumps(self.lights)}\ntolerance = {self.tolerance}\n"
@@ -53,18 +59,19 @@ class Case:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
-    """A plan as its file has it, CPU seconds it took, and ΔE00 by the independent computation, by group and light."""
+class CheckedPlan:
+    """The content of a plan file, the CPU seconds it took, and independent ΔE00 by group and light."""
 
     case: Case
     plan: dict[str, Any]
     seconds: float
-    apart: dict[tuple[str, str], Array]
+    delta_e: dict[tuple[str, str], Array]
 
 
-def found(folder: Path, case: Case) -> Found:
+def check_plan(folder: Path, case: Case) -> CheckedPlan:
+    """Plan a scene, run the command lines of the plan, and compute the errors of what they write."""
     shutil.copy(ROOT / "atlases" / case.atlas, folder)
-    stem = f"{Path(case.picture).stem}-{case.tolerance:g}"
+    stem = case.stem
     (folder / f"{stem}.toml").write_text(case.scene(), encoding="utf-8")
     begin = _cpu()
     _run(folder, f"uplift plan {stem}.toml --force")
@@ -74,13 +81,13 @@ def found(folder: Path, case: Case) -> Found:
     build, _, texture = plan["lines"]
     _run(folder, f"{build} --force")
     _run(folder, f"{texture} --force")
-    best = _best(folder, case)
-    apart = dict(_pixels(folder, case, plan, best)) | dict(_materials(folder, case, plan))
-    return Found(case, plan, seconds, apart)
+    reference = _reference(folder, case)
+    delta_e = dict(_pixels(folder, case, plan, reference)) | dict(_materials(folder, case, plan))
+    return CheckedPlan(case, plan, seconds, delta_e)
 
 
 def _cpu() -> float:
-    """CPU seconds of all processes that have been run."""
+    """Return the CPU seconds of all child processes so far."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -91,36 +98,36 @@ def _run(folder: Path, line: str) -> None:
     subprocess.run([str(BIN / words[0]), *words[1:]], **quiet)
 
 
-def _best(folder: Path, case: Case) -> Path:
-    """The texture of the best cube, at all wavelengths; made once for the same picture, atlas and lights."""
+def _reference(folder: Path, case: Case) -> Path:
+    """Return the texture by the reference cube at all wavelengths, written once per picture, atlas and lights."""
     stem = "-".join([Path(case.picture).stem, Path(case.atlas).stem, *case.lights])
-    path = folder / f"best-{stem}.exr"
+    path = folder / f"reference-{stem}.exr"
     if not path.exists():
-        # The cube's lights are those of the plan's cube: the build illuminant and the scene's.
+        # The same lights as the cube of the plan: the build illuminant and those of the scene.
         lights = " ".join(f"--light {name}" for name in dict.fromkeys(("D65", *case.lights)))
-        words = f"--atlas {case.atlas} {lights} --scene {case.picture} {' '.join(BEST)} -o {stem}.uplift"
+        words = f"--atlas {case.atlas} {lights} --scene {case.picture} {' '.join(REFERENCE)} -o {stem}.uplift"
         _run(folder, f"uplift build {words}")
         _run(folder, f"uplift texture {case.picture} {path.name} --cube {stem}.uplift --depth float")
     return path
 
 
 def _pixels(
-    folder: Path, case: Case, plan: dict[str, Any], best: Path
+    folder: Path, case: Case, plan: dict[str, Any], reference: Path
 ) -> Iterator[tuple[tuple[str, str], Array]]:
     stem = Path(case.picture).stem
-    planned, wanted = _held(folder / f"{stem}-uplifted.exr"), _held(best)
-    cube = uplift.load(folder / f"{stem}-{case.tolerance:g}.uplift")
+    planned, expected = _pixel_values(folder / f"{stem}-uplifted.exr"), _pixel_values(reference)
+    cube = uplift.load(folder / f"{case.stem}.uplift")
     for light in case.lights:
         blocks = []
         for first in range(0, len(planned), ROWS):
             rows = slice(first, first + ROWS)
-            seen = _rendered(_spectra(plan, cube.data.model, planned[rows]), plan, light)
-            blocks.append(_difference(_integrated(wanted[rows], light), seen, light))
+            rendered = _rendered(_spectra(plan, cube.data.model, planned[rows]), plan, light)
+            blocks.append(_difference(_integrated(expected[rows], light), rendered, light))
         yield ("textures", light), np.concatenate(blocks)
 
 
 def _materials(folder: Path, case: Case, plan: dict[str, Any]) -> Iterator[tuple[tuple[str, str], Array]]:
-    """The atlas's entries, asked of a cube of the same options that has their points."""
+    """Yield the errors of the atlas entries, from a cube with the same options that has their nodes."""
     sensor = observer.sensor()
     measured = resample(read_atlas(folder / case.atlas), sensor.wavelengths).values
     rgb = sensor.rgb(measured)
@@ -131,35 +138,35 @@ def _materials(folder: Path, case: Case, plan: dict[str, Any]) -> Iterator[tuple
         cube = uplift.build(folder / case.atlas, scene=ColourSet(rgb), **options)
     answered = cube.reflectance(rgb, plan["rendering"]["wavelengths"])
     for light in case.lights:
-        seen = _rendered(answered, plan, light)
-        yield ("materials", light), _difference(_integrated(measured, light), seen, light)
+        rendered = _rendered(answered, plan, light)
+        yield ("materials", light), _difference(_integrated(measured, light), rendered, light)
 
 
-def _held(path: Path) -> Array:
-    """(pixels, N) numbers of a texture but for its RGB, as OpenEXR reads them."""
+def _pixel_values(path: Path) -> Array:
+    """Return all channels of a texture except RGB, (pixels, N)."""
     channels = OpenEXR.File(os.fspath(path), separate_channels=True).channels()
     names = sorted(name for name in channels if name.startswith(("T.", "moment.", "multiplier.")))
     return np.stack([channels[name].pixels.ravel() for name in names], axis=-1)
 
 
-def _spectra(plan: dict[str, Any], model: models.Model, held: Array) -> Array:
-    """Reflectances at the plan's wavelengths."""
-    at, numbers = plan["rendering"]["wavelengths"], held.astype(float)
+def _spectra(plan: dict[str, Any], model: models.Model, values: Array) -> Array:
+    """Return reflectances at the wavelengths of the plan."""
+    wavelengths, numbers = plan["rendering"]["wavelengths"], values.astype(float)
     if plan["texture"]["form"] == "spectrum":
         return numbers
-    made = models.reflectance if plan["texture"]["form"] == "moments" else models.evaluate
-    return made(model, numbers, at)
+    evaluate = models.reflectance if plan["texture"]["form"] == "moments" else models.evaluate
+    return evaluate(model, numbers, wavelengths)
 
 
 def _rendered(reflectances: Array, plan: dict[str, Any], light: str) -> Array:
-    """XYZ (n, 3): light by wavelength times reflectance, summed with the weights."""
+    """Return XYZ (n, 3): the weighted sum of light times reflectance."""
     rendering = plan["rendering"]
     radiance = reflectances * np.array(rendering["powers"][light])
     return radiance @ np.array(rendering["to_xyz"])
 
 
 def _integrated(reflectances: Array, light: str) -> Array:
-    """XYZ (n, 3) by colour-science, white at Y = 1."""
+    """Return XYZ (n, 3) by colour-science; white has Y = 1."""
     shape = colour.SpectralShape(380, 780, 5)
     cmfs = colour.MSDS_CMFS[observer.DEFAULT_OBSERVER].copy().align(shape)
     illuminant = colour.SDS_ILLUMINANTS[light].copy().align(shape)
@@ -169,9 +176,9 @@ def _integrated(reflectances: Array, light: str) -> Array:
     return np.asarray(found) / 100
 
 
-def _difference(wanted: Array, seen: Array, light: str) -> Array:
-    """ΔE00 (n,) by colour-science."""
+def _difference(expected: Array, rendered: Array, light: str) -> Array:
+    """Return ΔE00 (n,) by colour-science."""
     white = colour.XYZ_to_xy(_integrated(np.ones((1, 81)), light)[0])
     return np.asarray(
-        colour.delta_E(*(colour.XYZ_to_Lab(xyz, white) for xyz in (wanted, seen)), method="CIE 2000")
+        colour.delta_E(*(colour.XYZ_to_Lab(xyz, white) for xyz in (expected, rendered)), method="CIE 2000")
     )
