@@ -1,1 +1,1 @@
-"""The light dial in a browser: ``make dial`` writes docs/palette-dial.md and the pictures in docs/palette-dial."""
+"""The relighting viewer in a browser: frame rates and pictures."""

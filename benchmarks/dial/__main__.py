@@ -1,6 +1,6 @@
-"""The light dial in a browser: ``make dial`` → docs/palette-dial.md and its pictures.
+"""The relighting viewer in a browser: ``make dial`` writes docs/data/palette-dial.json and the pictures of the page.
 
-Frames are counted while the dial moves at each of them. The picture is held against numpy before.
+Frames are counted while the dial moves at every frame. Before that, the picture is compared with NumPy.
 """
 
 from __future__ import annotations
@@ -15,9 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.browser import Browser, browser
-from benchmarks.dial.introduction import INTRODUCTION
-from benchmarks.page import table, write
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT, write
 from uplift.colorimetry.srgb import encode
 from uplift.design.palette import Design, design, read_palette, standard_model
 from uplift.design.palette.relight_viewer.cutaway import cutaway
@@ -27,9 +25,11 @@ from uplift.lab.timing import Spread, environment, spread
 
 FOLDER = ROOT / "docs" / "palette-dial"
 TASKS = ((5, 512), (7, 512), (9, 512), (7, 1024))
-"""Coefficients a pixel, and pixels a side."""
+"""Coefficients per pixel, and pixels per side."""
 RUNS, SECONDS = 5, 3.0
 WINDOW = (1240, 1440)
+CURVE_STEPS = 1 << 16
+"""Entries of the table of the sRGB curve in screen.js."""
 MOVE = """(async seconds => {
   const next = requestAnimationFrame.bind(window), script = [];
   window.requestAnimationFrame = frame => next(now => {
@@ -49,18 +49,11 @@ MOVE = """(async seconds => {
   window.requestAnimationFrame = next;
   return [frames, 1000 * frames / (performance.now() - begin), script.sort((a, b) => a - b)[script.length >> 1]];
 })"""
-WORDS = (
-    "The dial moves at every frame, of which the browser shows sixty a second at most. *Script* is the time that one "
-    "takes in the page's own code, *CPU* what all of the browser's processes spend on it, drawing in software. "
-    f"Median (least–most) of {RUNS} runs of {SECONDS:g} s; CPU time depends least on what else the machine does, "
-    "and a core to itself shows a thousand frames divided by it. "
-    "*Error* is the largest of any pixel against numpy, in 8-bit codes."
-)
 
 
 @dataclass(frozen=True)
 class Row:
-    """Frames a second, milliseconds of script and of CPU a frame, error in 8-bit codes, bytes of the page."""
+    """Frames per second, milliseconds of script and of CPU per frame, error in 8-bit codes, size of the page."""
 
     coefficients: int
     side: int
@@ -68,34 +61,39 @@ class Row:
     script: Spread
     cpu: Spread
     error: int
-    size: int
+    megabytes: float
 
 
 def main() -> None:
+    """Measure, take the pictures and store."""
     with tempfile.TemporaryDirectory() as folder, browser() as tab:
         tab.window(*WINDOW)
-        _show(tab, Path(folder) / "page.html")
-        rows = [_row(tab, Path(folder) / "page.html", *task) for task in TASKS]
-        where = environment() | _browser(tab)
-    head = [
-        "coefficients",
-        "pixels",
-        "frames a second",
-        "script, ms a frame",
-        "CPU, ms a frame",
-        "error",
-        "page, MB",
-    ]
-    told = [_told(row) for row in rows]
-    print(write("palette-dial", INTRODUCTION, [table("Frames a second", WORDS, head, told)], where))
+        path = Path(folder) / "page.html"
+        _take_pictures(tab, path)
+        rows = [_measure(tab, path, *task) for task in TASKS]
+        product = tab.call("Browser.getVersion")["product"]
+    write(
+        "palette-dial",
+        "make dial",
+        precision="full",
+        environment={
+            **environment(),
+            "browser": product,
+            "load": f"{os.getloadavg()[1]:.0f} processes on average",
+        },
+        curve_steps=CURVE_STEPS,
+        runs=RUNS,
+        seconds=SECONDS,
+        rows=rows,
+    )
 
 
-def _show(tab: Browser, path: Path) -> None:
-    """The page's pictures: whole, and its picture under each light."""
-    shown = _shown(7, 512)
-    path.write_text(page(shown), encoding="utf-8")
+def _take_pictures(tab: Browser, path: Path) -> None:
+    """Take screenshots of the page, and of its picture under each light."""
+    view = _view(7, 512)
+    path.write_text(page(view), encoding="utf-8")
     tab.open(path)
-    for number, name in enumerate(shown.lights.names, start=1):
+    for number, name in enumerate(view.lights.names, start=1):
         _press(tab, str(number))
         tab.canvas("picture")
         (FOLDER / f"{name}.jpg").write_bytes(tab.screenshot(".view", scale=0.5))
@@ -106,68 +104,49 @@ def _show(tab: Browser, path: Path) -> None:
     (FOLDER / "page.jpg").write_bytes(tab.screenshot())
 
 
-def _browser(tab: Browser) -> dict[str, str]:
-    return {
-        "browser": f"{tab.call('Browser.getVersion')['product']}, no graphics card",
-        "meanwhile": f"{os.getloadavg()[1]:.0f} processes wanted the cores on average, the browser's own among them",
-    }
-
-
 def _press(tab: Browser, key: str) -> None:
     tab.evaluate(
         f"document.getElementById('dial').dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'}}))"
     )
 
 
-def _row(tab: Browser, path: Path, coefficients: int, side: int) -> Row:
-    shown = _shown(coefficients, side)
-    path.write_text(page(shown), encoding="utf-8")
+def _measure(tab: Browser, path: Path, coefficients: int, side: int) -> Row:
+    view = _view(coefficients, side)
+    path.write_text(page(view), encoding="utf-8")
     tab.open(path)
-    error = _error(tab, shown)
-    measured = [_moved(tab) for _ in range(RUNS + 1)][1:]
+    error = _error(tab, view)
+    measured = [_move_dial(tab) for _ in range(RUNS + 1)][1:]
     assert tab.errors == [], tab.errors
     frames, script, cpu = (spread(list(column)) for column in zip(*measured, strict=True))
-    return Row(coefficients, side, frames, script, cpu, error, path.stat().st_size)
+    return Row(coefficients, side, frames, script, cpu, error, path.stat().st_size / 1e6)
 
 
-def _moved(tab: Browser) -> tuple[float, float, float]:
-    """Frames a second, and milliseconds of script and of CPU a frame."""
+def _move_dial(tab: Browser) -> tuple[float, float, float]:
+    """Return frames per second, and milliseconds of script and of CPU per frame."""
     begin = tab.cpu()
     frames, rate, script = tab.evaluate(f"{MOVE}({SECONDS})")
     return rate, script, 1000 * (tab.cpu() - begin) / frames
 
 
 @functools.cache
-def _designed(coefficients: int) -> Design:
+def _design(coefficients: int) -> Design:
     palette = dataclasses.replace(read_palette(FOLDER / "engine.toml"), count=coefficients)
     return design(palette, standard_model(palette.sensor, coefficients))
 
 
-def _shown(coefficients: int, side: int) -> Relighting:
-    found = _designed(coefficients)
+def _view(coefficients: int, side: int) -> Relighting:
+    found = _design(coefficients)
     return relighting("engine", found, cutaway(len(found.palette.materials), side))
 
 
-def _error(tab: Browser, shown: Relighting) -> int:
-    """The largest difference to numpy under equal parts of all lights, in 8-bit codes."""
+def _error(tab: Browser, view: Relighting) -> int:
+    """Return the largest difference from NumPy under equal parts of all lights, in 8-bit codes."""
     _press(tab, "0")
-    seen, lights = tab.canvas("picture")[..., :3], len(shown.lights.names)
-    wanted = np.rint(255 * encode(shown.rgb(np.full(lights, 1 / lights))))
-    error = int(np.abs(seen - wanted).max())
+    drawn, lights = tab.canvas("picture")[..., :3], len(view.lights.names)
+    expected = np.rint(255 * encode(view.rgb(np.full(lights, 1 / lights))))
+    error = int(np.abs(drawn - expected).max())
     assert error <= 1, f"{error} codes off"
     return error
-
-
-def _told(row: Row) -> list[str]:
-    return [
-        str(row.coefficients),
-        f"{row.side} × {row.side}",
-        f"{row.frames:.0f}",
-        f"{row.script:.1f}",
-        f"{row.cpu:.0f}",
-        str(row.error),
-        f"{row.size / 1e6:.1f}",
-    ]
 
 
 if __name__ == "__main__":
