@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from uplift.common.errors import Diagnostic
 
-HINTS: dict[str, str] = {}
+HINTS: dict[str, str] = {
+    "file-exists": "use --force to replace it, or choose another name",
+}
 """Hint by code of an error or a warning."""
 
 

@@ -129,9 +129,9 @@ def test_existing_files_are_replaced_by_force_alone(run, refuse, home):
 @pytest.mark.parametrize(
     ("args", "problem"),
     [
-        (("-o", "none/cube"), "none/cube: there is no folder"),
-        (("-o", "."), ".: is no regular file; name a file"),
-        (("-o", ""), ".: is no regular file; name a file"),
+        (("-o", "none/cube"), "none/cube: the folder"),
+        (("-o", "."), ".: is not a regular file; name a file"),
+        (("-o", ""), ".: is not a regular file; name a file"),
         (("-o", "x" * 300), "xxx"),
         (("--dim", "1"), "a lattice of dim 1 has no cells; use --dim 2 or more"),
         (("--dim", "0"), "a lattice of dim 0 has no cells"),

@@ -130,5 +130,5 @@ def test_bad_input_is_refused(run, refuse, home, macbeth):
     assert "did you mean 'FL2'" in refuse("chart", "--recommend", "--delta-e", 1, "--light", "FL12")
     assert "none.csv: cannot be read" in refuse("chart", "--from", "none.csv")
     (home / "file").write_text("mine")
-    assert "cannot be made" in refuse("chart", "--atlas", macbeth, "-o", "file")
+    assert "cannot be created" in refuse("chart", "--atlas", macbeth, "-o", "file")
     assert "go with --recommend" in run("chart", "--time-ns", 100, code=2).stderr

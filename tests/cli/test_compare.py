@@ -84,7 +84,7 @@ def test_bad_input_is_refused(run, refuse, home, macbeth):
     assert "did you mean 'FL2'" in refuse("compare", "--atlas", macbeth, "--light", "F2")
     assert "a target of 0 is none" in refuse("compare", "--atlas", macbeth, "--target", 0)
     (home / "file").write_text("mine")
-    assert "cannot be made" in refuse("compare", "--atlas", macbeth, "-o", "file")
+    assert "cannot be created" in refuse("compare", "--atlas", macbeth, "-o", "file")
     (home / "out").mkdir()
     (home / "out" / "compare.csv").write_text("mine")
     assert "exists already; use --force" in refuse("compare", "--atlas", macbeth, "-o", "out")

@@ -69,5 +69,5 @@ def test_nothing_is_replaced_unasked(run, refuse, home, cube):
 def test_bad_input(refuse, home, cube):
     assert "no such file" in refuse("export", "missing.uplift", "cube.csv")
     assert "use 2 to 256" in refuse("export", cube, "cube.coeff", "--res", "1")
-    assert "there is no folder" in refuse("export", cube, "missing/cube.csv")
+    assert "does not exist" in refuse("export", cube, "missing/cube.csv")
     assert [path.name for path in home.iterdir()] == [cube]

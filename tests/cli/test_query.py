@@ -387,8 +387,8 @@ def test_plots_are_replaced_by_force_alone(run, refuse, home, table):
 
 
 def test_plots_that_cannot_be_written_are_refused_before_the_answer(refuse, home):
-    assert "there is no folder" in refuse("query", "#cc3319", "--plot", "none/red.png")
-    assert "is no regular file" in refuse("query", "#cc3319", "--plot", home)
+    assert "does not exist" in refuse("query", "#cc3319", "--plot", "none/red.png")
+    assert "is not a regular file" in refuse("query", "#cc3319", "--plot", home)
     assert "cannot be written" in refuse("query", "#cc3319", "--plot", "x" * 300)
 
 

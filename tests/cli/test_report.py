@@ -97,7 +97,7 @@ def test_bad_input_is_refused_and_nothing_written(refuse, home, cube):
     assert refuse("report", "text.uplift").startswith("text.uplift: ")
     assert refuse("report", cube, "--light", "D66").startswith("unknown illuminant 'D66'; did you mean")
     assert refuse("report", cube, "--atlas", "none.txt").startswith("none.txt: cannot be read")
-    assert "there is no folder" in refuse("report", cube, "-o", "nowhere/page.html")
+    assert "does not exist" in refuse("report", cube, "-o", "nowhere/page.html")
     assert {path.name for path in home.iterdir()} == before
 
 

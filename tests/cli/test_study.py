@@ -104,8 +104,8 @@ def test_bad_input_is_refused(refuse, home, tcs):
     )
     assert "a second atlas is called 'tcs'" in refuse("study", "moments", "--atlas", tcs, "--atlas", tcs)
     (home / "file").write_text("mine")
-    assert refuse("study", "moments", "--atlas", tcs, "-o", "file").startswith("file: cannot be made: ")
-    assert "cannot be made" in refuse("study", "moments", "--atlas", tcs, "-o", "none/out")
+    assert refuse("study", "moments", "--atlas", tcs, "-o", "file").startswith("file: cannot be created: ")
+    assert "cannot be created" in refuse("study", "moments", "--atlas", tcs, "-o", "none/out")
 
 
 def test_a_study_is_named(run):

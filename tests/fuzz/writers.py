@@ -105,7 +105,7 @@ def _full_disk(tally: Tally, path: Path, count: int, *, limit: bool) -> None:
         told = (
             done.returncode == 1
             and "cannot be written" in done.stderr
-            and "the old file is intact" in done.stderr
+            and "an existing file is unchanged" in done.stderr
         )
         intact = path.read_bytes() == b"old" * (number % 2) and os.listdir(path.parent).count(path.name) == 1
         litter = [name for name in os.listdir(path.parent) if name.endswith(".part")]

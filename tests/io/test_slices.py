@@ -152,7 +152,11 @@ def test_an_existing_file_is_replaced_by_force_alone(tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "problem"),
-    [("slices.png", "slices are OpenEXR"), ("slices", "slices are OpenEXR"), ("no/slices.exr", "no folder")],
+    [
+        ("slices.png", "slices are OpenEXR"),
+        ("slices", "slices are OpenEXR"),
+        ("no/slices.exr", "does not exist"),
+    ],
 )
 def test_names_that_cannot_be(tmp_path, name, problem):
     with pytest.raises(OutputError, match=problem):

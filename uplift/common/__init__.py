@@ -1,1 +1,1 @@
-"""What every layer needs: array types, errors, atomic writing of files, threads of linear algebra."""
+"""Shared basics of all layers: array types, errors, atomic file writing, CSV text, progress events, BLAS threads."""

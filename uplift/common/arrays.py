@@ -1,4 +1,4 @@
-"""Array types that signatures use, and the type of paths."""
+"""Types of arrays and paths in signatures."""
 
 from __future__ import annotations
 
@@ -12,5 +12,5 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 Values = NDArray[Any]
-"""float64 or float32."""
+"""Array of float64 or float32."""
 StrPath = str | os.PathLike[str]

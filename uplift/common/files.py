@@ -1,4 +1,8 @@
-"""Files that are whole or not there: written beside their place, then renamed into it."""
+"""Atomic writing: a file is complete or absent.
+
+A writer fills a temporary file in the same folder, then renames it. A lock on the temporary file distinguishes a live
+writer from a killed one, whose file the next writer to the same path removes.
+"""
 
 from __future__ import annotations
 
@@ -11,80 +15,167 @@ import threading
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from uplift.common.arrays import StrPath
 from uplift.common.errors import OutputError
 
 try:
     import fcntl
-except ImportError:  # not on Windows: there, what a killed process leaves stays until somebody removes it
+except ImportError:  # Windows: temporary files of killed processes stay
     fcntl = None  # type: ignore[assignment]
 
+__all__ = ["atomic_write", "check_folder", "check_output", "write_text"]
+
 SUFFIX = ".part"
-"""Of files that are being written."""
+"""Suffix of temporary files."""
 
 _UMASK = threading.Lock()
 
 
-def check_output(path: str | os.PathLike[str], *, force: bool = False) -> Path:
-    """The path, if it can be written. Raises `OutputError`; asks before long work, not after."""
+def check_output(path: StrPath, *, force: bool = False) -> Path:
+    """Check that a file can be written, before long work rather than after it.
+
+    Parameters
+    ----------
+    path : path-like
+        The file to write.
+    force : bool
+        Accept an existing file.
+
+    Returns
+    -------
+    Path
+        The path.
+
+    Raises
+    ------
+    OutputError
+        The path cannot be written, or exists and ``force`` is false.
+    """
     if os.fspath(path) == "-":
         raise OutputError(
-            "stands for standard output, which takes no files",
+            "stands for standard output, which cannot hold a file",
+            code="standard-output",
             path=path,
-            hint="name a file, or give the whole path of one that is called so",
+            hint="give a file name, or ./- for a file of this name",
         )
     path = Path(path)
     mode = _mode(path)
     if mode is not None and not stat.S_ISREG(mode):
-        raise OutputError("is no regular file", path=path, hint="name a file to write to")
+        raise OutputError(
+            "is not a regular file", code="not-a-regular-file", path=path, hint="name a file to write to"
+        )
     if mode is not None and not force:
-        raise OutputError("exists already", path=path, hint="use --force to replace it, or another name")
+        raise OutputError(
+            "exists already",
+            code="file-exists",
+            path=path,
+            hint="pass force=True to replace it, or choose another name",
+        )
     folder = path.resolve().parent
     if not folder.is_dir():
-        raise OutputError(f"there is no folder {folder}", path=path, hint="make it first")
+        raise OutputError(
+            f"the folder {folder} does not exist", code="folder-missing", path=path, hint="create it first"
+        )
     if not os.access(folder, os.W_OK):
-        raise OutputError(f"no permission to write in {folder}", path=path, hint="choose another place")
+        raise OutputError(
+            f"no permission to write in {folder}",
+            code="no-permission",
+            path=path,
+            hint="choose another folder",
+        )
     return path
 
 
-def _mode(path: Path) -> int | None:
-    """What stands at the path, None for nothing. Raises `OutputError` for names that no file can have."""
-    try:
-        return path.stat().st_mode
-    except (FileNotFoundError, NotADirectoryError):
-        return None
-    except (OSError, ValueError) as error:  # too long a name, a NUL in it, links in a circle
-        raise OutputError(f"cannot be written: {error}", path=path, hint="choose another name") from error
+def check_folder(path: StrPath, names: Iterable[str], *, force: bool = False) -> Path:
+    """Create a folder if necessary, and check that files can be written in it.
 
+    Parameters
+    ----------
+    path : path-like
+        The folder. Its parent must exist.
+    names : iterable of str
+        Names of the files.
+    force : bool
+        Accept existing files.
 
-def check_folder(path: str | os.PathLike[str], names: Iterable[str], *, force: bool = False) -> Path:
-    """The folder, made if it is not there, with room for files of these names. Raises `OutputError`."""
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    OutputError
+        The folder cannot be created, or a file fails `check_output`.
+    """
     folder = Path(path)
     try:
         folder.mkdir(exist_ok=True)
     except OSError as error:
         raise OutputError(
-            f"cannot be made: {error.strerror}", path=folder, hint="name a folder to write to"
+            f"cannot be created: {error.strerror}",
+            code="folder-not-created",
+            path=folder,
+            hint="name a folder to write to",
         ) from error
     for name in names:
         check_output(folder / name, force=force)
     return folder
 
 
-def write_text(text: str, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write text as it is, atomically. Raises `OutputError`."""
+def write_text(text: str, path: StrPath, *, force: bool = False) -> None:
+    """Write text as UTF-8 with LF line ends, atomically.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    path : path-like
+        The file to write.
+    force : bool
+        Replace an existing file.
+
+    Raises
+    ------
+    OutputError
+        As `atomic_write`.
+    """
     with atomic_write(path, force=force) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
 @contextlib.contextmanager
-def atomic_write(path: str | os.PathLike[str], *, force: bool = False) -> Iterator[Path]:
-    """A temporary path in the same folder; renamed to ``path`` if the block ends well, removed if not.
+def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
+    """Provide a temporary path that is renamed to ``path`` if the block succeeds, and removed if it fails.
 
-    Of several at once to one path the last to end has it, whole. A link is kept, what it leads to replaced. What
-    killed processes left half-written beside ``path`` is removed; what others are writing now is locked, and stays.
+    With concurrent writers the last one to finish wins. A symbolic link is kept and its target replaced. Temporary
+    files of killed writers to the same path are removed; those of live writers are locked and stay.
 
-    Raises `OutputError` where the path cannot be written, the disk is full, or the file exists and
-    ``force`` is off.
+    Parameters
+    ----------
+    path : path-like
+        The file to write.
+    force : bool
+        Replace an existing file.
+
+    Yields
+    ------
+    Path
+        Temporary file in the same folder.
+
+    Raises
+    ------
+    OutputError
+        The path cannot be written, the disk is full, or the file exists and ``force`` is false.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with atomic_write(Path(folder) / "notes.txt") as temporary:
+    ...         _ = temporary.write_text("complete")
+    ...     print((Path(folder) / "notes.txt").read_text())
+    complete
     """
     path = check_output(path, force=force)
     target = path.resolve()
@@ -93,37 +184,49 @@ def atomic_write(path: str | os.PathLike[str], *, force: bool = False) -> Iterat
         _remove_stale(target.parent, prefix)
         handle, temporary = _reserve(target.parent, prefix)
     except OSError as error:
-        raise _cannot_write(path, error) from error
+        raise _write_error(path, error) from error
     try:
         yield temporary
-        _settle(temporary)
+        _flush(temporary)
         os.replace(temporary, target)
     except OutputError:
         raise
     except OSError as error:
-        raise _cannot_write(path, error) from error
+        raise _write_error(path, error) from error
     finally:
         temporary.unlink(missing_ok=True)
         if fcntl is not None:
             os.close(handle)
 
 
+def _mode(path: Path) -> int | None:
+    """Return the mode of a file, None if there is none. Raise `OutputError` for impossible names."""
+    try:
+        return path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except (OSError, ValueError) as error:  # too long, with NUL, or a loop of links
+        raise OutputError(
+            f"cannot be written: {error}", code="invalid-file-name", path=path, hint="choose another name"
+        ) from error
+
+
 def _reserve(folder: Path, prefix: str) -> tuple[int, Path]:
-    """A new file, locked for as long as its descriptor is open."""
+    """Create a temporary file that is locked as long as its descriptor is open."""
     while True:
         handle, name = tempfile.mkstemp(prefix=prefix, suffix=SUFFIX, dir=folder)
         if fcntl is None:
-            os.close(handle)  # Windows renames no open file
+            os.close(handle)  # Windows cannot rename an open file
             return handle, Path(name)
-        with contextlib.suppress(OSError):  # file systems without locks: nobody finds it stale there either
+        with contextlib.suppress(OSError):  # without locks, no other writer finds the file stale either
             fcntl.flock(handle, fcntl.LOCK_EX)
         if os.fstat(handle).st_nlink:
             return handle, Path(name)
-        os.close(handle)  # somebody took it for stale before it was locked
+        os.close(handle)  # another writer removed it as stale before it was locked
 
 
 def _remove_stale(folder: Path, prefix: str) -> None:
-    """Remove the temporary files of ``prefix`` that nobody holds: their writers were killed."""
+    """Remove temporary files that no process has locked: their writers were killed."""
     if fcntl is None:
         return
     name = re.compile(re.escape(prefix) + "[a-z0-9_]{8}" + re.escape(SUFFIX))
@@ -133,9 +236,9 @@ def _remove_stale(folder: Path, prefix: str) -> None:
             path.unlink()
 
 
-def _settle(temporary: Path) -> None:
-    """On the disk, with the permissions of any new file, before it takes the name."""
-    with _UMASK:  # a process has one, and asking for it changes it
+def _flush(temporary: Path) -> None:
+    """Write the file to disk with the permissions of a new file, before the rename."""
+    with _UMASK:  # reading the umask of the process changes it for a moment
         umask = os.umask(0)
         os.umask(umask)
     temporary.chmod(0o666 & ~umask)
@@ -143,7 +246,10 @@ def _settle(temporary: Path) -> None:
         os.fsync(file.fileno())
 
 
-def _cannot_write(path: Path, error: OSError) -> OutputError:
+def _write_error(path: Path, error: OSError) -> OutputError:
     return OutputError(
-        f"cannot be written: {error.strerror or error}", path=path, hint="the old file is intact"
+        f"cannot be written: {error.strerror or error}",
+        code="cannot-write",
+        path=path,
+        hint="an existing file is unchanged",
     )

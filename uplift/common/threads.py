@@ -1,4 +1,4 @@
-"""Threads of linear algebra: matrices are small here, so that threads would wait for one another."""
+"""Threads of linear algebra."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from contextlib import contextmanager
 
 @contextmanager
 def single_threaded_blas() -> Iterator[None]:
-    """Also the same bytes whatever the threads: sums that BLAS shares out are rounded by how many there are.
+    """Limit BLAS to one thread.
 
-    Threads of XLA stay: they share out rows, not sums.
+    The matrices of this package are small, so threads would wait for each other. Results then also do not depend on the
+    number of threads, which changes the rounding of sums. The threads of XLA are not affected: they distribute rows.
     """
-    import scipy.linalg  # noqa: F401  it brings a BLAS of its own, and only what is there can be told
+    import scipy.linalg  # noqa: F401  loads its own BLAS, and only loaded libraries can be limited
     from threadpoolctl import threadpool_limits
 
     with threadpool_limits(1, user_api="blas"):
