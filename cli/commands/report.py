@@ -140,7 +140,7 @@ def _summary(assessment: Assessment) -> str:
     """Return the main numbers on one line."""
     from uplift.viz.format import pluralise
 
-    parts = [f"{pluralise(assessment.failures.missed, 'node')} over the threshold"]
+    parts = [f"{pluralise(assessment.failures.over_threshold, 'node')} over the threshold"]
     if assessment.entries is not None:
         entries = assessment.entries
         parts.append(pluralise(len(entries.names), "entry", "entries"))
@@ -150,7 +150,7 @@ def _summary(assessment: Assessment) -> str:
     if assessment.calibration is not None:
         calibration = assessment.calibration
         parts.append(
-            f"rms under {assessment.data.error_illuminant} {calibration.real:.2f}, predicted {calibration.stated:.2f}"
+            f"rms under {assessment.data.error_illuminant} {calibration.actual:.2f}, predicted {calibration.predicted:.2f}"
         )
     if assessment.crowding is not None:
         parts.append(pluralise(len(assessment.crowding.entries.names), "crowded entry", "crowded entries"))

@@ -55,7 +55,6 @@ def held_out(
 
 
 def _records(results: Results) -> list[dict[str, Any]]:
-    from dataclasses import asdict
 
     import numpy as np
 
@@ -69,7 +68,7 @@ def _records(results: Results) -> list[dict[str, Any]]:
             record = {"atlas": name, "cube": method, "colours": len(splits[0].real), "rms": rms}
             records.append(record | dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True)))
         errors = pooled_calibration(splits)
-        records[-len(splits[0].errors)]["standard_error"] = errors and asdict(errors)
+        records[-len(splits[0].errors)]["standard_error"] = errors and errors.to_json()
     return records
 
 

@@ -64,7 +64,7 @@ def test_another_atlas_judges_colours_that_the_cube_has_not_seen(run, repository
     assert found["standard_error"]["calibration"]["count"] == len(found["entries"])
     told = run("report", cube, *SMALL, "--atlas", other).stdout
     assert ", under A " in told
-    assert " stated (root mean squares), " in told
+    assert " predicted (root mean squares), " in told
 
 
 def test_the_cube_s_own_atlas_may_be_named(run, macbeth, cubes, home):

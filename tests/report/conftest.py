@@ -1,4 +1,4 @@
-"""Cubes judged, each once a run."""
+"""Assessed cubes, shared by the session."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ def macbeth(repository):
 
 @pytest.fixture(scope="session")
 def judged(small_cube, macbeth):
-    """The stored ColorChecker cube of dim 8, by its own entries."""
+    """Assessment of the stored ColorChecker cube of dim 8 by its own entries."""
     return assess(small_cube, "small.uplift", 58624, macbeth, ("D65", "A", "FL11"))
 
 
 @pytest.fixture(scope="session")
 def crowded_cube(macbeth):
-    """The ColorChecker in a lattice too small for it."""
+    """Cube of the ColorChecker on a lattice too small for it."""
     with pytest.warns(uplift.UpliftWarning):
         return uplift.build(macbeth, dim=4, coefficients=5)
 
 
 @pytest.fixture(scope="session")
 def lossy_cube(small_cube):
-    """A cube of two entries, of one colour: the second is never answered."""
+    """Cube of two entries of one colour: no colour returns the second."""
     atlas = small_cube.data.atlas
     table = AtlasTable(
         ("grey", "über"),

@@ -1,4 +1,4 @@
-"""The numbers of a report, against slow and plain ways to find them."""
+"""Numbers of an assessment against slow reference implementations."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import uplift
-from tests.helpers import with_points
+from tests.helpers import raises, with_points
 from uplift.atlas import on_grid
 from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.colorimetry.observer import display_sensors, light
@@ -22,8 +22,8 @@ from uplift.models import reflectance
 from uplift.report.assessment import assess
 from uplift.report.calibration import Calibration, calibration
 from uplift.report.crowding import crowding
-from uplift.report.failures import NAMED, failures
-from uplift.report.fidelity import entries, from_other_atlas, from_own_atlas, from_stored_entries
+from uplift.report.failures import MAX_LISTED, failures
+from uplift.report.fidelity import entry_errors, from_other_atlas, from_own_atlas, from_stored_entries
 from uplift.report.round_trip import COLOURS, round_trips
 from uplift.report.smoothness import smoothness
 from uplift.viz.histogram import histogram, linear_edges, log_edges
@@ -38,7 +38,7 @@ def delta_e(first, second, name):
     return colour.delta_E(*labs, method="CIE 2000")
 
 
-def test_every_entry_s_errors(judged, small_cube, macbeth):
+def test_entry_errors_match_colour_science(judged, small_cube, macbeth):
     measured = dict(zip(macbeth.names, on_grid(macbeth, small_cube.data.sensor.wavelengths), strict=True))
     atlas = small_cube.data.atlas
     found = judged.entries
@@ -46,17 +46,17 @@ def test_every_entry_s_errors(judged, small_cube, macbeth):
     for row, name in enumerate(found.names):
         own = atlas.names.index(name)
         answered = small_cube.reflectance(atlas.rgb[own])
-        assert found.answered[row] == pytest.approx(answered, abs=1e-12)
+        assert found.answer[row] == pytest.approx(answered, abs=1e-12)
         assert found.rms[row] == pytest.approx(np.sqrt(np.mean((answered - measured[name]) ** 2)), rel=1e-9)
-        assert found.real[row] == pytest.approx(delta_e(answered, measured[name], "A"), abs=1e-6)
-        assert found.stated[row] == pytest.approx(atlas.error[own], abs=1e-12)
-        assert found.reach[row] == atlas.half_width[own]
-        for column, seen in enumerate(judged.lights):
-            expected = delta_e(answered, measured[name], seen.illuminant)
+        assert found.actual[row] == pytest.approx(delta_e(answered, measured[name], "A"), abs=1e-6)
+        assert found.predicted[row] == pytest.approx(atlas.error[own], abs=1e-12)
+        assert found.half_width[row] == atlas.half_width[own]
+        for column, sensor in enumerate(judged.lights):
+            expected = delta_e(answered, measured[name], sensor.illuminant)
             assert found.delta_e[row, column] == pytest.approx(expected, abs=1e-6)
 
 
-def test_the_worst_comes_first(judged):
+def test_entries_are_sorted_worst_first(judged):
     worst = judged.entries.delta_e.max(axis=1)
     assert (np.diff(worst) <= 0).all()
     assert judged.entries.worst.tolist() == worst.tolist()
@@ -64,7 +64,7 @@ def test_the_worst_comes_first(judged):
 
 
 def mixture(data, rgb):
-    """What the eight corners around ``rgb`` (3,) make of it, corner by corner."""
+    """Trilinear interpolation of the lattice spectra at ``rgb`` (3,), corner by corner."""
     low = [max(i for i, node in enumerate(data.lattice.nodes[:-1]) if node <= value) for value in rgb]
     total = np.zeros(len(data.sensor.wavelengths))
     for step in itertools.product((0, 1), repeat=3):
@@ -80,70 +80,70 @@ def mixture(data, rgb):
     return total
 
 
-def test_what_the_lattice_by_itself_makes_of_entries(judged, small_cube, macbeth):
+def test_lattice_errors_match_trilinear_interpolation(judged, small_cube, macbeth):
     data, found = small_cube.data, judged.entries
     measured = dict(zip(macbeth.names, on_grid(macbeth, data.sensor.wavelengths), strict=True))
     for row, name in enumerate(found.names):
         expected = mixture(data, found.rgb[row])
         assert found.lattice[row] == pytest.approx(expected, abs=1e-12)
-        missed = [delta_e(expected, measured[name], seen.illuminant) for seen in judged.lights]
+        missed = [delta_e(expected, measured[name], sensor.illuminant) for sensor in judged.lights]
         assert found.delta_e_lattice[row] == pytest.approx(missed, abs=1e-6)
         assert found.worst_lattice[row] == pytest.approx(max(missed), abs=1e-6)
         assert found.rms_lattice[row] == pytest.approx(np.sqrt(np.mean((expected - measured[name]) ** 2)))
     assert (found.worst_lattice > found.worst + 0.1).any()
 
 
-def test_at_the_faces_of_its_box_an_entry_is_no_longer_felt(judged, small_cube):
-    """Codes are a way: that many from the entry's colour the answer is the lattice's, half as many it is not."""
+def test_answers_outside_an_entry_box_are_those_of_the_lattice(judged, small_cube):
+    """At ``half_width_codes`` from the entry the answer is the lattice's, at half that distance it is not."""
     data, found = small_cube.data, judged.entries
     row = int((found.worst_lattice - found.worst).argmax())
     codes = small_cube.encode(found.rgb[row])
-    assert (codes > found.codes[row]).all()
+    assert (codes > found.half_width_codes[row]).all()
     apart = []
     for share in (0.5, 1.0):
-        rgb = small_cube.decode(codes - [share * found.codes[row], 0, 0])
+        rgb = small_cube.decode(codes - [share * found.half_width_codes[row], 0, 0])
         apart.append(np.abs(small_cube.reflectance(rgb) - mixture(data, rgb)).max())
     assert apart[1] < 0.02 * apart[0]
     # With the lattice spaced like the codes, a step is about the same number of them everywhere.
-    assert found.codes == pytest.approx(found.reach * 255 / 7, rel=0.15)
+    assert found.half_width_codes == pytest.approx(found.half_width * 255 / 7, rel=0.15)
 
 
-def test_entries_of_another_atlas_have_nothing_stored(small_cube, repository):
+def test_entries_of_another_atlas_have_no_lattice_errors(small_cube, repository):
     other = uplift.read_atlas(repository / "atlases" / "babelcolor.txt")
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "A"))
     assert not found.own
     assert found.sources == ("babelcolor.txt",)
-    own = ("lattice", "delta_e_lattice", "rms_lattice", "worst_lattice", "reach", "codes")
+    own = ("lattice", "delta_e_lattice", "rms_lattice", "worst_lattice", "half_width", "half_width_codes")
     assert {getattr(found.entries, name) for name in own} == {None}
-    assert sorted((*found.entries.names, *found.outside)) == sorted(other.names)
+    assert sorted((*found.entries.names, *found.out_of_gamut)) == sorted(other.names)
     name = found.entries.names[0]
     (measured,) = on_grid(uplift.Atlas((other.entries[other.names.index(name)],)), small_cube.wavelengths())
     assert found.entries.rgb[0] == pytest.approx(small_cube.data.sensor.rgb(measured), abs=1e-12)
     assert found.entries.delta_e[0, 1] == pytest.approx(
-        delta_e(found.entries.answered[0], measured, "A"), abs=1e-6
+        delta_e(found.entries.answer[0], measured, "A"), abs=1e-6
     )
 
 
-def test_the_cube_s_own_atlas_is_known_by_its_content(judged, small_cube, macbeth):
+def test_own_atlas_is_recognised_by_its_content(judged, small_cube, macbeth):
     assert judged.own
-    assert judged.outside == ("cyan",)
+    assert judged.out_of_gamut == ("cyan",)
     assert from_own_atlas(small_cube.data, macbeth).names == from_other_atlas(small_cube.data, macbeth).names
 
 
-def test_no_atlas_no_entries(small_sigmoid_cube):
+def test_without_an_atlas_there_are_no_entries(small_sigmoid_cube):
     found = assess(small_sigmoid_cube, "sigmoid.uplift", 1, None, ("A",))
     assert (found.entries, found.delta_e, found.crowding, found.sources) == (None, {}, None, ())
     assert (found.standard_error, found.calibration) == (None, None)
 
 
-def test_an_atlas_that_the_space_does_not_hold_gives_no_entries(small_cube, hostile):
+def test_atlas_outside_the_space_gives_no_entries(small_cube, hostile):
     laser = dataclasses.replace(hostile, entries=hostile.entries[1:])
     found = assess(small_cube, "small.uplift", 1, laser, ("A",))
     assert found.entries is None
-    assert found.outside == laser.names
+    assert found.out_of_gamut == laser.names
 
 
-def test_round_trips_are_the_same_colours_every_time(small_cube):
+def test_round_trips_use_the_same_colours_every_time(small_cube):
     found = round_trips(small_cube)
     assert found.keys() == MODES.keys()
     assert {len(values) for values in found.values()} == {COLOURS}
@@ -154,7 +154,7 @@ def test_round_trips_are_the_same_colours_every_time(small_cube):
 
 
 @pytest.mark.parametrize("model", ["moments", "sigmoid"])
-def test_smoothness_by_loops(model):
+def test_smoothness_matches_explicit_loops(model):
     data = uplift.build(dim=4, model=model, **({"coefficients": 5} if model == "moments" else {})).data
     spectra = reflectance(data.model, data.points.coefficients, data.sensor.wavelengths).reshape(4, 4, 4, -1)
     expected = {}
@@ -171,9 +171,9 @@ def test_smoothness_by_loops(model):
     }
 
 
-def test_crowding_by_brute_force(crowded_cube):
+def test_crowding_matches_brute_force(crowded_cube):
     data, lights = crowded_cube.data, display_sensors(("A",), crowded_cube.data.sensor.observer)
-    found = crowding(data, entries(crowded_cube, from_stored_entries(data), lights))
+    found = crowding(data, entry_errors(crowded_cube, from_stored_entries(data), lights))
     nodes, names = data.lattice.nodes, data.atlas.names
     steps = np.interp(data.atlas.rgb, nodes, np.arange(len(nodes)))
     expected = {}
@@ -181,7 +181,7 @@ def test_crowding_by_brute_force(crowded_cube):
         apart = {other: np.abs(steps[row] - steps[i]).max() for i, other in enumerate(names) if i != row}
         if min(apart.values()) <= 1:
             expected[name] = min(apart.values())
-    listed = dict(zip(found.entries.names, found.apart, strict=True))
+    listed = dict(zip(found.entries.names, found.distances, strict=True))
     assert listed == pytest.approx(expected)
     for name, other in zip(found.entries.names, found.nearest, strict=True):
         apart = np.abs(steps[names.index(name)] - steps[names.index(other)]).max()
@@ -191,7 +191,7 @@ def test_crowding_by_brute_force(crowded_cube):
     assert found.lost == ()
 
 
-def test_two_in_a_voxel_crowd(crowded_cube):
+def test_two_entries_of_one_cell_are_close(crowded_cube):
     data = crowded_cube.data
     cells = [tuple(cell) for cell in data.lattice.cell(data.atlas.rgb)[0].tolist()]
     sharing = {name for name, cell in zip(data.atlas.names, cells, strict=True) if cells.count(cell) > 1}
@@ -200,21 +200,20 @@ def test_two_in_a_voxel_crowd(crowded_cube):
     assert sharing <= set(found.entries.names)
 
 
-def test_an_entry_whose_colour_an_earlier_one_has_is_lost(lossy_cube):
+def test_entry_with_the_colour_of_an_earlier_one_is_lost(lossy_cube):
     found = assess(lossy_cube, "lossy.uplift", 1, None, ("A",)).crowding
     assert found.lost == (("über", "grey"),)
     assert set(found.entries.names) == {"grey", "über"}
-    assert (found.apart.tolist(), set(found.nearest)) == ([0, 0], {"grey", "über"})
-    reach = dict(
-        zip(found.entries.names, zip(found.entries.reach, found.entries.codes, strict=True), strict=True)
-    )
-    assert reach["über"] == (0, 0)
-    assert reach["grey"][0] == 0.5
-    assert reach["grey"][1] > 10
+    assert (found.distances.tolist(), set(found.nearest)) == ([0, 0], {"grey", "über"})
+    widths = zip(found.entries.half_width, found.entries.half_width_codes, strict=True)
+    half_width = dict(zip(found.entries.names, widths, strict=True))
+    assert half_width["über"] == (0, 0)
+    assert half_width["grey"][0] == 0.5
+    assert half_width["grey"][1] > 10
 
 
 @pytest.mark.parametrize("count", [0, 1])
-def test_one_entry_crowds_nobody(lossy_cube, count):
+def test_single_entry_has_no_close_entries(lossy_cube, count):
     atlas = lossy_cube.data.atlas
     few = {field.name: getattr(atlas, field.name)[:count] for field in dataclasses.fields(atlas)}
     cube = Cube(dataclasses.replace(lossy_cube.data, atlas=AtlasTable(**few)))
@@ -222,49 +221,50 @@ def test_one_entry_crowds_nobody(lossy_cube, count):
     assert found is None if count == 0 else (found.entries.names, found.lost) == ((), ())
 
 
-def test_standard_errors_against_colours_unseen(small_cube, repository):
+def test_calibration_against_an_unknown_atlas(small_cube, repository):
     other = uplift.read_atlas(repository / "atlases" / "cie2017.txt")
     found = assess(small_cube, "small.uplift", 1, other, ("D65",))
-    squares, stated, one, two = [], [], 0, 0
+    squares, errors, one, two = [], [], 0, 0
     for entry in other.entries:
         (measured,) = on_grid(uplift.Atlas((entry,)), small_cube.wavelengths())
         rgb = small_cube.data.sensor.rgb(measured)
         if rgb.min() < 0 or rgb.max() > 1:
             continue
-        real = delta_e(small_cube.reflectance(rgb), measured, "A")
+        actual = delta_e(small_cube.reflectance(rgb), measured, "A")
         error = float(small_cube.standard_error(rgb))
-        squares.append(real**2)
-        stated.append(error**2)
-        one += real <= error
-        two += real <= 2 * error
+        squares.append(actual**2)
+        errors.append(error**2)
+        one += actual <= error
+        two += actual <= 2 * error
     count = len(squares)
-    expected = ((sum(squares) / count) ** 0.5, (sum(stated) / count) ** 0.5, one / count, two / count)
-    told = found.calibration
-    assert (told.real, told.stated, told.within_one, told.within_two) == pytest.approx(expected, abs=1e-6)
-    assert told.count == count == len(found.entries.names)
-    assert told.real > told.stated  # a ColorChecker knows little of these
+    expected = ((sum(squares) / count) ** 0.5, (sum(errors) / count) ** 0.5, one / count, two / count)
+    measured = found.calibration
+    found_numbers = (measured.actual, measured.predicted, measured.within_one, measured.within_two)
+    assert found_numbers == pytest.approx(expected, abs=1e-6)
+    assert measured.count == count == len(found.entries.names)
+    assert measured.actual > measured.predicted  # these materials are unlike the ColorChecker
 
 
-def test_a_cube_is_not_judged_by_what_it_has_learnt_from(judged, plain_cube, macbeth):
+def test_own_entries_give_no_calibration(judged, plain_cube, macbeth):
     assert judged.calibration is None
     assert judged.standard_error.counts.sum() == 512
     assert judged.standard_error.mean == pytest.approx(judged.facts["mean_standard_error"])
     unknowing = assess(plain_cube, "plain.uplift", 1, macbeth, ("A",))
     assert (unknowing.standard_error, unknowing.facts["mean_standard_error"]) == (None, None)
-    assert (calibration(unknowing.entries.real, unknowing.entries.stated), unknowing.calibration) == (
+    assert (calibration(unknowing.entries.actual, unknowing.entries.predicted), unknowing.calibration) == (
         None,
         None,
     )
 
 
 @pytest.mark.parametrize(
-    ("real", "stated", "verdict"), [(1, 1, 0), (1.2, 1, 0), (1.3, 1, 1), (1, 1.3, -1), (0, 0, 0)]
+    ("actual", "predicted", "verdict"), [(1, 1, 0), (1.2, 1, 0), (1.3, 1, 1), (1, 1.3, -1), (0, 0, 0)]
 )
-def test_a_verdict_needs_a_difference(real, stated, verdict):
-    assert Calibration(10, real, stated, 0.5, 0.9).verdict == verdict
+def test_verdict_tolerates_small_differences(actual, predicted, verdict):
+    assert Calibration(10, actual, predicted, 0.5, 0.9).verdict == verdict
 
 
-def test_entries_that_nobody_measured_are_held_against_what_is_stored(crowded_cube, hostile):
+def test_without_measurements_entries_are_compared_with_stored_spectra(crowded_cube, hostile):
     found = assess(crowded_cube, "small.uplift", 1, hostile, ("D65", "A"))
     assert not found.own
     assert found.crowding.entries.worst == pytest.approx(
@@ -273,19 +273,19 @@ def test_entries_that_nobody_measured_are_held_against_what_is_stored(crowded_cu
     assert found.crowding.entries.worst_lattice[0] > 1
 
 
-def test_failures_name_the_worst(spoilt, small_cube):
-    assert failures(small_cube.data).missed == 0
+def test_failures_list_the_worst_points_first(spoilt, small_cube):
+    assert failures(small_cube.data).over_threshold == 0
     found = failures(spoilt.data)
-    assert (found.missed, found.points.tolist()) == (2, [300, 100])
+    assert (found.over_threshold, found.worst_points.tolist()) == (2, [300, 100])
     assert found.counts["unfitted"] == 2
     assert found.left_out == ("cyan",)
     nothing = dataclasses.replace(
         with_points(spoilt.data, distance=np.full(512, np.nan, np.float32)), provenance={}
     )
-    assert (failures(nothing).missed, len(failures(nothing).points)) == (512, NAMED)
+    assert (failures(nothing).over_threshold, len(failures(nothing).worst_points)) == (512, MAX_LISTED)
 
 
-def test_histograms_lose_nothing():
+def test_histogram_counts_every_value():
     values = np.array([0.0, 1e-12, 3e-7, 0.2, 0.2, 5.0])
     for edges in (log_edges(values, 1e-9), linear_edges(values)):
         found = histogram(values, edges)
@@ -298,27 +298,27 @@ def test_histograms_lose_nothing():
 
 
 @pytest.mark.parametrize("value", [0.0, 1e-15, 1.0, 0.024, 24.0, 777.0])
-def test_edges_hold_any_values(value):
+def test_edges_contain_any_value(value):
     for edges in (log_edges([value], 1e-9), linear_edges([value])):
         assert len(edges) >= 2
         assert (np.diff(edges) > 0).all()
         assert edges[-1] >= value * (1 - 1e-9)
 
 
-def test_each_light_once_and_white_is_white_under_all():
+def test_lights_are_unique_and_white_is_white_under_each():
     lights = display_sensors((*REPORT_LIGHTS, "d65", "A"), colour.MSDS_CMFS["cie_2_1931"].name)
-    assert [seen.illuminant for seen in lights] == list(REPORT_LIGHTS)
-    for seen in lights:
-        assert hex_codes(seen.rgb(np.ones((1, 81)))) == ["#ffffff"]
-        assert hex_codes(seen.rgb(np.zeros((1, 81)))) == ["#000000"]
+    assert [sensor.illuminant for sensor in lights] == list(REPORT_LIGHTS)
+    for sensor in lights:
+        assert hex_codes(sensor.rgb(np.ones((1, 81)))) == ["#ffffff"]
+        assert hex_codes(sensor.rgb(np.zeros((1, 81)))) == ["#000000"]
 
 
-def test_an_unknown_light_is_refused(small_cube):
-    with pytest.raises(UnknownNameError, match="unknown illuminant 'D66'; did you mean"):
+def test_unknown_light_is_an_error(small_cube):
+    with raises(UnknownNameError, "unknown-illuminant"):
         assess(small_cube, "small.uplift", 1, None, ("D65", "D66"))
 
 
-def test_a_cube_without_a_history_can_be_judged(small_cube, macbeth):
+def test_cube_without_provenance_can_be_assessed(small_cube, macbeth):
     silent = Cube(dataclasses.replace(small_cube.data, provenance={}))
     found = assess(silent, "small.uplift", 1, macbeth, ("A",))
     assert not found.own

@@ -1,4 +1,4 @@
-"""A stored cube against its rebuilding: what passes, and that everything else fails."""
+"""Comparison of a stored cube with a rebuilt one: what passes, and that all else fails."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import colour
 import numpy as np
 import pytest
 
-from tests.helpers import with_points
+from tests.helpers import raises, with_points
 from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError
@@ -30,33 +30,33 @@ def with_point(data, name, point, value):
     return with_points(data, **{name: array})
 
 
-def test_a_cube_equals_itself(data):
+def test_cube_equals_itself(data):
     found = compare(PATH, data, data)
     assert found.failures == ()
     assert set(found.measures.values()) == {0.0}
     assert found.stored_counts == found.rebuilt_counts == data.points.counts()
 
 
-def test_one_nudged_coefficient_fails_and_says_where(data):
+def test_changed_coefficient_fails_the_spectra(data):
     nudged = with_point(data, "coefficients", (300, 4), data.points.coefficients[300, 4] + 1e-3)
     found = compare(PATH, data, nudged)
     assert "spectra_max" in found.failures
     assert "spectra_rms" in found.failures
-    assert "rgb" not in found.failures  # what is stored of it has not changed
+    assert "rgb" not in found.failures  # the stored RGB has not changed
     assert "status" not in found.failures
 
 
-def test_a_nudge_by_rounding_passes(data):
+def test_rounding_error_passes(data):
     nudged = with_point(data, "coefficients", (300, 4), data.points.coefficients[300, 4] * (1 + 1e-14))
     assert compare(PATH, data, nudged).failures == ()
 
 
-def test_one_nudged_colour_fails(data):
+def test_changed_colour_fails(data):
     nudged = with_point(data, "rgb", (300, 1), data.points.rgb[300, 1] + 2 * LIMITS["rgb"])
     assert compare(PATH, data, nudged).failures == ("rgb",)
 
 
-def test_one_other_status_fails(data):
+def test_changed_status_fails(data):
     assert data.points.status[300] != Status.UNFITTED
     found = compare(PATH, data, with_point(data, "status", 300, Status.UNFITTED))
     assert found.failures == ("status",)
@@ -64,7 +64,7 @@ def test_one_other_status_fails(data):
 
 
 @pytest.mark.parametrize("name", LIMITS)
-def test_every_measure_fails_above_its_limit_and_as_nan(name):
+def test_measures_fail_above_their_limits_and_as_nan(name):
     measures = dict.fromkeys(LIMITS, 0.0)
     for value, failures in [
         (LIMITS[name], ()),
@@ -75,7 +75,7 @@ def test_every_measure_fails_above_its_limit_and_as_nan(name):
         assert Comparison(PATH, measures | {name: value}, {}, {}).failures == failures
 
 
-def test_a_nan_in_the_spectra_fails(data):
+def test_nan_in_the_spectra_fails(data):
     sensor = dataclasses.replace(data.sensor, wavelengths=np.full(81, np.nan))
     failures = compare(PATH, data, dataclasses.replace(data, sensor=sensor)).failures
     assert {"spectra_max", "spectra_rms", "delta_e_A"} <= set(failures)
@@ -100,8 +100,9 @@ def test_measures_are_the_largest_and_the_rms(data):
         assert measures[f"delta_e_{name}"] == pytest.approx(expected, abs=1e-9)
 
 
-def test_another_lattice_cannot_be_compared(data):
+def test_different_lattice_is_an_error(data):
     for nodes in (np.linspace(0, 1, 8), np.linspace(0, 1, 5)):
         other = dataclasses.replace(data, lattice=Lattice(nodes))
-        with pytest.raises(CubeFileError, match=r"cube\.uplift: has another lattice .*; build it anew"):
+        with raises(CubeFileError, "lattice-mismatch") as caught:
             compare(PATH, data, other)
+        assert caught.value.path == PATH

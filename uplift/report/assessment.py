@@ -1,4 +1,4 @@
-"""How good a cube is, in numbers: everything that `uplift report` shows, before anybody shows it."""
+"""Quality of a cube: errors of its lattice, of random colours and of atlas entries."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from uplift.report.failures import Failures, failures
 from uplift.report.fidelity import (
     EntryErrors,
     EntryQuery,
-    entries,
+    entry_errors,
     from_other_atlas,
     from_own_atlas,
     from_stored_entries,
@@ -31,32 +31,57 @@ from uplift.report.smoothness import smoothness
 from uplift.report.summary import summary
 from uplift.viz.histogram import Histogram, histogram, linear_edges, log_edges
 
-EXACT = 1e-9
-"""Distances and differences below this are rounding, and stand together in the lowest bin."""
-SAME = 1e-4
-"""rms difference of reflectance that nobody would call a step."""
+MIN_ERROR = 1e-9
+"""Smaller distances and ΔE00 are rounding errors and are counted in the lowest bin."""
+MIN_STEP = 1e-4
+"""Smaller rms differences of reflectance are counted in the lowest bin."""
 
 
 @dataclass(frozen=True, eq=False)
 class Assessment:
-    """A cube judged.
+    """Quality of one cube.
 
     Parameters
     ----------
-    name, size : the cube's file, base name and bytes.
-    data, facts : the cube, and what ``uplift info`` tells of it.
-    distance : of the lattice points, max |linear RGB|.
-    round_trips : ΔE00 of random colours under the cube's illuminant, for each mode of lookup.
-    standard_error : of the lattice points, ΔE00 under ``data.error_illuminant``; None where the cube has none.
-    smoothness, steepest : rms between neighbouring points, and linear RGB (2, 3) of the two farthest apart.
-    lights : what the entries are seen under.
-    sources : the files that ``entries`` come from; ``own`` if the cube was built from these.
-    entries : None where there is no measured spectrum to judge by.
-    delta_e : their ΔE00 under each light, by name.
-    outside, absent : entries of ``sources`` that the cube's space does not hold, or a sparse cube has no points for.
-    calibration : how far the cube's standard errors hold for ``entries``; None if these are ``own``.
-    crowding : of the cube's own entries, None if it has none; errors are against the measured spectra if
-        ``own``, against the stored ones if not.
+    name : str
+        Base name of the cube's file.
+    size : int
+        Bytes of the file.
+    data : CubeData
+        The cube.
+    facts : dict
+        The result of `summary`.
+    failures : Failures
+        Points over the threshold and missing entries.
+    distance : Histogram
+        Fitting distance of the lattice points, max |linear RGB|.
+    round_trips : dict of str to Histogram
+        ΔE00 of random colours under the cube's illuminant, by mode of lookup.
+    standard_error : Histogram or None
+        Standard errors of the lattice points, ΔE00 under ``data.error_illuminant``; None if the cube has none.
+    smoothness : Histogram
+        rms difference of reflectance between neighbouring points.
+    steepest : ndarray, shape (2, 3)
+        Linear RGB of the two neighbours that differ most.
+    lights : tuple of Sensor
+        Display sensors of the lights under which entries are compared.
+    sources : tuple of str
+        Names of the files that the measured spectra come from.
+    own : bool
+        Whether the cube was built from these files.
+    entries : EntryErrors or None
+        Errors of the entries; None without a measured spectrum to compare with.
+    delta_e : dict of str to Histogram
+        ΔE00 of the entries by name of the light.
+    out_of_gamut : tuple of str
+        Entries of ``sources`` outside the cube's RGB space.
+    not_covered : tuple of str
+        Entries of ``sources`` for which a sparse cube has no points.
+    calibration : Calibration or None
+        Actual against predicted errors; None if the cube was built from the entries or has no standard errors.
+    crowding : Crowding or None
+        Close entries of the cube, None if it has no entries. Errors are relative to the measured spectra if ``own``,
+        otherwise relative to the stored ones.
     """
 
     name: str
@@ -74,75 +99,100 @@ class Assessment:
     own: bool
     entries: EntryErrors | None
     delta_e: dict[str, Histogram]
-    outside: tuple[str, ...]
-    absent: tuple[str, ...]
+    out_of_gamut: tuple[str, ...]
+    not_covered: tuple[str, ...]
     calibration: Calibration | None
     crowding: Crowding | None
 
 
 def assess(
-    cube: Cube, name: str, size: int, spectra: Atlas | None, lights: Sequence[str] = REPORT_LIGHTS
+    cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequence[str] = REPORT_LIGHTS
 ) -> Assessment:
-    """Judge a cube by its own lattice, and by measured spectra if there are any.
+    """Assess a cube by its own lattice and, if given, by measured spectra.
 
-    ``spectra`` that the cube was built from (by digest) are its own entries; all others are colours that it
-    has not seen. Raises `UnknownNameError` for a light that the tables do not hold.
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    name : str
+        Base name of its file.
+    size : int
+        Bytes of the file.
+    atlas : Atlas or None
+        Measured spectra. If the cube was built from these files, judged by their digests, they are its own entries;
+        otherwise they are unknown to it and show whether its standard errors hold.
+    lights : sequence of str, default REPORT_LIGHTS
+        Names of the lights under which entries are compared.
+
+    Returns
+    -------
+    Assessment
+        All numbers of a report.
+
+    Raises
+    ------
+    UnknownNameError
+        If a light is not in the tables.
     """
     data = cube.data
-    seen = display_sensors(lights, data.sensor.observer)
-    own = spectra is not None and _built_from(data, spectra)
-    question = _question(cube, spectra, own)
-    found = None if question is None or not question.names else entries(cube, question, seen)
-    steps, distances = smoothness(data), data.points.distance[data.points.present]
-    errors = None if data.points.standard_error is None else data.points.standard_error[data.points.present]
+    sensors = display_sensors(lights, data.sensor.observer)
+    own = atlas is not None and _built_from(data, atlas)
+    query = _entry_query(cube, atlas, own)
+    errors = None if query is None or not query.names else entry_errors(cube, query, sensors)
+    present = data.points.present
+    steps, distances = smoothness(data), data.points.distance[present]
+    standard_errors = None if data.points.standard_error is None else data.points.standard_error[present]
     return Assessment(
         name=name,
         size=size,
         data=data,
         facts=summary(data),
         failures=failures(data),
-        distance=histogram(distances, log_edges(distances, EXACT)),
-        round_trips=_together(round_trips(cube), lambda values: log_edges(values, EXACT)),
-        standard_error=None if errors is None else histogram(errors, linear_edges(errors)),
-        smoothness=histogram(steps.differences, log_edges(steps.differences, SAME)),
+        distance=histogram(distances, log_edges(distances, MIN_ERROR)),
+        round_trips=_comparable(round_trips(cube), lambda values: log_edges(values, MIN_ERROR)),
+        standard_error=None
+        if standard_errors is None
+        else histogram(standard_errors, linear_edges(standard_errors)),
+        smoothness=histogram(steps.differences, log_edges(steps.differences, MIN_STEP)),
         steepest=steps.steepest,
-        lights=seen,
-        sources=() if spectra is None else tuple(source.name for source in spectra.sources),
+        lights=sensors,
+        sources=() if atlas is None else tuple(source.name for source in atlas.sources),
         own=own,
-        entries=found,
-        delta_e={} if found is None else _together(_by_light(found, seen), linear_edges),
-        outside=() if question is None else question.outside,
-        absent=() if question is None else question.absent,
-        calibration=None if own or found is None else calibration(found.real, found.stated),
-        crowding=_crowding(cube, found if own else None, seen),
+        entries=errors,
+        delta_e={} if errors is None else _comparable(_by_light(errors, sensors), linear_edges),
+        out_of_gamut=() if query is None else query.out_of_gamut,
+        not_covered=() if query is None else query.not_covered,
+        calibration=None if own or errors is None else calibration(errors.actual, errors.predicted),
+        crowding=_crowding(cube, errors if own else None, sensors),
     )
 
 
-def _built_from(data: CubeData, spectra: Atlas) -> bool:
-    """Whether the cube says that it was built from these very files."""
+def _built_from(data: CubeData, atlas: Atlas) -> bool:
+    """Return whether the cube records the digests of all files of the atlas."""
     recorded = {str(source.get("digest")) for source in data.provenance.get("atlases", ())}
-    given = {source.digest for source in spectra.sources}
+    given = {source.digest for source in atlas.sources}
     return bool(given) and given <= recorded
 
 
-def _question(cube: Cube, spectra: Atlas | None, own: bool) -> EntryQuery | None:
-    if spectra is None or not spectra.entries:
+def _entry_query(cube: Cube, atlas: Atlas | None, own: bool) -> EntryQuery | None:
+    if atlas is None or not atlas.entries:
         return None
-    return (from_own_atlas(cube.data, spectra) if own else from_other_atlas(cube.data, spectra)).to(cube)
+    query = from_own_atlas(cube.data, atlas) if own else from_other_atlas(cube.data, atlas)
+    return query.answerable_by(cube)
 
 
 def _crowding(cube: Cube, measured: EntryErrors | None, lights: tuple[Sensor, ...]) -> Crowding | None:
-    stored = from_stored_entries(cube.data).to(cube)
+    stored = from_stored_entries(cube.data).answerable_by(cube)
     if not stored.names:
         return None
-    return crowding(cube.data, entries(cube, stored, lights) if measured is None else measured)
+    return crowding(cube.data, entry_errors(cube, stored, lights) if measured is None else measured)
 
 
-def _by_light(found: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Array]:
-    return {seen.illuminant: found.delta_e[:, column] for column, seen in enumerate(lights)}
+def _by_light(errors: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Array]:
+    return {sensor.illuminant: errors.delta_e[:, column] for column, sensor in enumerate(lights)}
 
 
-def _together(values: dict[str, Array], edges: Callable[[Array], Array]) -> dict[str, Histogram]:
-    """Distributions over the same edges, so that the eye can compare them."""
-    shared = edges(np.concatenate(list(values.values())))
-    return {name: histogram(array, shared) for name, array in values.items()}
+def _comparable(values: dict[str, Array], edges: Callable[[Array], Array]) -> dict[str, Histogram]:
+    """Histograms with common edges."""
+    common = edges(np.concatenate(list(values.values())))
+    return {name: histogram(array, common) for name, array in values.items()}

@@ -1,4 +1,4 @@
-"""Entries that stand close to others: the nearer, the smaller the box in which answers lead over to their spectra."""
+"""Entries close to others: the closer they are, the smaller their entry boxes."""
 
 from __future__ import annotations
 
@@ -10,58 +10,74 @@ from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
 from uplift.report.fidelity import EntryErrors
 
-CLOSE = 1 + 1e-9
-"""Lattice steps within which another entry crowds; two in a voxel are never farther apart."""
+MAX_DISTANCE = 1 + 1e-9
+"""Lattice steps; two entries of one cell are never farther apart."""
 
 
 @dataclass(frozen=True, eq=False)
 class Crowding:
-    """The crowded of a cube's own entries, those first that the lattice by itself makes the worst of.
+    """Entries of a cube that have another one within a lattice step, largest error of the lattice first.
 
     Parameters
     ----------
-    entries : k of them.
-    nearest, apart : (k) name of the nearest other entry, and (k,) lattice steps to it along the axis that has most.
-    lost : entries that no colour is answered with, and for each the entry of the same colour that is.
+    entries : EntryErrors
+        Errors of the k close entries.
+    nearest : tuple of str
+        Name of the nearest other entry, for each of the k.
+    distances : ndarray, shape (k,)
+        Lattice steps to the nearest other entry, along the axis on which they differ most.
+    lost : tuple of (str, str)
+        Entries that no colour returns because another one has the same colour, and the name of the other.
     """
 
     entries: EntryErrors
     nearest: tuple[str, ...]
-    apart: Array
+    distances: Array
     lost: tuple[tuple[str, str], ...]
 
 
 def crowding(data: CubeData, entries: EntryErrors) -> Crowding:
-    """Who stands within a lattice step of whom; ``entries`` are some or all of the cube's own."""
+    """Find the entries that have another one within a lattice step.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    entries : EntryErrors
+        Errors of some or all of its own entries.
+
+    Returns
+    -------
+    Crowding
+        The close entries among them.
+    """
     assert entries.worst_lattice is not None
     names = data.atlas.names
-    nearest, apart = _nearest(data.lattice.steps_along(data.atlas.rgb))
-    place = {name: row for row, name in enumerate(names)}
-    rows = np.array([place[name] for name in entries.names])
+    nearest, distances = _nearest(data.lattice.steps_along(data.atlas.rgb))
+    row_of = {name: row for row, name in enumerate(names)}
+    rows = np.array([row_of[name] for name in entries.names])
     order = np.argsort(-entries.worst_lattice, kind="stable")
-    kept = order[apart[rows[order]] <= CLOSE]
+    kept = order[distances[rows[order]] <= MAX_DISTANCE]
     return Crowding(
         entries.take(kept),
         tuple(names[other] for other in nearest[rows[kept]]),
-        apart[rows[kept]],
+        distances[rows[kept]],
         _lost(data),
     )
 
 
 def _nearest(steps: Array) -> tuple[Indices, Array]:
-    """The nearest other row (n,) of steps (n, 3), and how far (n,) it is; infinitely where there is no other."""
+    """Index of the nearest other row of ``steps`` (n, 3), and its maximum-norm distance, infinite for n < 2."""
     from scipy.spatial import KDTree
 
     if len(steps) < 2:
         return np.zeros(len(steps), dtype=np.int64), np.full(len(steps), np.inf)
-    apart, found = KDTree(steps).query(steps, k=2, p=np.inf)
-    # A row finds itself first, or after another of the same colour.
-    return np.where(found[:, 0] == np.arange(len(steps)), found[:, 1], found[:, 0]), apart[:, 1]
+    distances, rows = KDTree(steps).query(steps, k=2, p=np.inf)
+    # The first of the two is the row itself, unless another has the same colour.
+    return np.where(rows[:, 0] == np.arange(len(steps)), rows[:, 1], rows[:, 0]), distances[:, 1]
 
 
 def _lost(data: CubeData) -> tuple[tuple[str, str], ...]:
     names, rows = data.atlas.names, np.flatnonzero(data.atlas.half_width == 0)
-    pinned = data.entry_boxes(data.atlas.rgb[rows])
-    return tuple(
-        (names[rows[row]], names[other]) for row, other in zip(pinned.rows, pinned.entry, strict=True)
-    )
+    hits = data.entry_boxes(data.atlas.rgb[rows])
+    return tuple((names[rows[row]], names[other]) for row, other in zip(hits.rows, hits.entry, strict=True))

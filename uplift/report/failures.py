@@ -1,4 +1,4 @@
-"""What went wrong in a cube: points over the threshold, steps that mended some, entries that are not in it."""
+"""Failures of a build: points over the threshold, the steps that improved some, entries not in the cube."""
 
 from __future__ import annotations
 
@@ -11,36 +11,58 @@ from uplift.common.arrays import Indices
 from uplift.cube import CubeData
 from uplift.lattice import Status
 
-NAMED = 24
-"""Points over the threshold that are named, worst first."""
+MAX_LISTED = 24
+"""Points over the threshold that a report lists."""
 
 
 @dataclass(frozen=True, eq=False)
 class Failures:
-    """``missed`` lattice points over the threshold; the worst of them in ``points`` (k,), by number.
+    """Failures that a cube records.
 
-    ``improvements`` are the steps of the improvement pass, ``left_out`` the entries outside the space,
-    ``skipped`` those that the atlas reader could not use.
+    Parameters
+    ----------
+    counts : dict of str to int
+        Lattice points by status.
+    over_threshold : int
+        Number of lattice points over the threshold.
+    worst_points : ndarray of int, shape (k,)
+        Indices of the worst of these, worst first.
+    improvements : tuple of dict
+        Steps of the improvement pass.
+    left_out : tuple of str
+        Entries outside the RGB space.
+    skipped : tuple of str
+        Entries that the atlas reader could not use.
     """
 
     counts: dict[str, int]
-    missed: int
-    points: Indices
+    over_threshold: int
+    worst_points: Indices
     improvements: tuple[dict[str, Any], ...]
     left_out: tuple[str, ...]
     skipped: tuple[str, ...]
 
 
 def failures(data: CubeData) -> Failures:
-    """What a cube has recorded of its failures."""
-    failed = np.isin(data.points.status, (Status.UNFITTED, Status.UNREALISABLE))
-    rows = np.flatnonzero(failed | ~(data.points.distance <= data.threshold))
-    worst = rows[np.argsort(-data.points.distance[rows], kind="stable")][:NAMED]
-    recorded = data.provenance
+    """Collect the failures that a cube records.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+
+    Returns
+    -------
+    Failures
+        Counts and names.
+    """
+    points, recorded = data.points, data.provenance
+    failed = np.isin(points.status, (Status.UNFITTED, Status.UNREALISABLE))
+    rows = np.flatnonzero(failed | ~(points.distance <= data.threshold))
     return Failures(
-        counts=data.points.counts(),
-        missed=len(rows),
-        points=worst,
+        counts=points.counts(),
+        over_threshold=len(rows),
+        worst_points=rows[np.argsort(-points.distance[rows], kind="stable")][:MAX_LISTED],
         improvements=tuple(recorded.get("improvements", ())),
         left_out=tuple(recorded.get("left_out", ())),
         skipped=tuple(recorded.get("skipped", ())),

@@ -1,4 +1,4 @@
-"""What a cube answers, beside what was measured: the error of every atlas entry."""
+"""Errors of a cube at the colours of atlas entries."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from uplift.atlas import Atlas, resample
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.cube import CubeData
 from uplift.lookup import Cube
 from uplift.lookup.interpolate import lattice_spectra
@@ -21,164 +21,260 @@ from uplift.models import reflectance
 
 @dataclass(frozen=True, eq=False)
 class EntryQuery:
-    """Colours to ask a cube for, and the spectra that would be the best answers.
+    """Colours to query, and the spectra that would be the best answers.
 
     Parameters
     ----------
-    names : (E) of the entries.
-    rgb : (E, 3) linear, within [0, 1].
-    wanted : (E, N) reflectances on the sensor's wavelengths.
-    rows : (E,) of the cube's own atlas table; None for entries that it was not built from.
-    outside : names of the entries that the cube's space does not hold.
-    absent : names of those that a sparse cube has no points for.
+    names : tuple of str
+        Names of E entries.
+    rgb : ndarray, shape (E, 3)
+        Linear RGB in [0, 1].
+    target : ndarray, shape (E, N)
+        Reflectances at the sensor's wavelengths.
+    rows : ndarray of int, shape (E,), or None
+        Rows of the cube's atlas table; None for entries that it was not built from.
+    out_of_gamut : tuple of str
+        Names of the entries outside the cube's RGB space.
+    not_covered : tuple of str
+        Names of the entries for which a sparse cube has no points.
     """
 
     names: tuple[str, ...]
     rgb: Array
-    wanted: Array
+    target: Array
     rows: Indices | None
-    outside: tuple[str, ...] = ()
-    absent: tuple[str, ...] = ()
+    out_of_gamut: tuple[str, ...] = ()
+    not_covered: tuple[str, ...] = ()
 
-    def to(self, cube: Cube) -> EntryQuery:
-        """The part of it that a cube can answer: all, but for sparse cubes."""
-        held = cube.holds(self.rgb)
-        names = [
-            tuple(name for name, kept in zip(self.names, held, strict=True) if kept == w) for w in (1, 0)
-        ]
-        rows = None if self.rows is None else self.rows[held]
-        return EntryQuery(names[0], self.rgb[held], self.wanted[held], rows, self.outside, names[1])
+    def answerable_by(self, cube: Cube) -> EntryQuery:
+        """Keep the entries that a cube has points for.
+
+        Parameters
+        ----------
+        cube : Cube
+            A cube, perhaps a sparse one.
+
+        Returns
+        -------
+        EntryQuery
+            The covered entries; the names of all others are in ``not_covered``.
+        """
+        covered = cube.holds(self.rgb)
+        names, not_covered = _partition(self.names, covered)
+        rows = None if self.rows is None else self.rows[covered]
+        return EntryQuery(
+            names, self.rgb[covered], self.target[covered], rows, self.out_of_gamut, not_covered
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class EntryErrors:
-    """E entries asked at their own RGB, worst first: by the largest ΔE00 under any of L lights.
+    """Errors of E entries at their own RGB, worst first: by the largest ΔE00 under any of L lights.
 
     Parameters
     ----------
-    wanted, answered : (E, N) reflectances: as measured, and as the cube answers.
-    delta_e : (E, L) ΔE00 of ``answered`` against ``wanted``.
-    rms : (E,) rms over wavelength of ``answered`` against ``wanted``.
-    real, stated : (E,) ΔE00 of ``answered`` against ``wanted`` under the cube's reference light, and the cube's
-        standard error at ``rgb``; None where it has none.
-    cells : (E, 3) lowest corner of the voxel, as a position along the axes.
-
-    Of the cube's own entries alone, None for all others:
-
-    lattice : (E, N) what the lattice by itself, entries aside, makes of ``rgb``: answers beside the entry lead
-        over to it.
-    delta_e_lattice, rms_lattice : (E, L) and (E,) of ``lattice`` against ``wanted``.
-    reach : (E,) lattice steps to the faces of the box around the entry; 0 where it is never answered.
-    codes : (E,) 8-bit codes to the nearest pair of these faces, those at the lattice's edge aside.
+    names : tuple of str
+        Names of the entries.
+    rgb : ndarray, shape (E, 3)
+        Linear RGB.
+    target : ndarray, shape (E, N)
+        Reflectances as measured or, without measurements, as stored.
+    answer : ndarray, shape (E, N)
+        Reflectances that the cube returns.
+    delta_e : ndarray, shape (E, L)
+        ΔE00 between ``answer`` and ``target``.
+    rms : ndarray, shape (E,)
+        rms difference over wavelength between ``answer`` and ``target``.
+    actual : ndarray, shape (E,)
+        ΔE00 between ``answer`` and ``target`` under the cube's error illuminant.
+    predicted : ndarray, shape (E,), or None
+        Standard error of the cube at ``rgb``; None if it has none.
+    cells : ndarray of int, shape (E, 3)
+        Position of the lowest corner of the cell along the axes.
+    lattice : ndarray, shape (E, N), or None
+        Reflectances interpolated from the lattice without the entries. This and all further fields are None for
+        entries that the cube was not built from.
+    delta_e_lattice : ndarray, shape (E, L), or None
+        ΔE00 between ``lattice`` and ``target``.
+    rms_lattice : ndarray, shape (E,), or None
+        rms difference between ``lattice`` and ``target``.
+    half_width : ndarray, shape (E,), or None
+        Lattice steps from the entry to the faces of its box; 0 if no colour returns the entry.
+    half_width_codes : ndarray, shape (E,), or None
+        The same in 8-bit codes, to the nearest pair of faces.
     """
 
     names: tuple[str, ...]
     rgb: Array
-    wanted: Array
-    answered: Array
+    target: Array
+    answer: Array
     delta_e: Array
     rms: Array
-    real: Array
-    stated: Array | None
+    actual: Array
+    predicted: Array | None
     cells: Indices
     lattice: Array | None = None
     delta_e_lattice: Array | None = None
     rms_lattice: Array | None = None
-    reach: Array | None = None
-    codes: Array | None = None
+    half_width: Array | None = None
+    half_width_codes: Array | None = None
 
     @property
     def worst(self) -> Array:
-        """(E,) largest ΔE00 under any light."""
+        """Return the largest ΔE00 under any light, (E,)."""
         return self.delta_e.max(axis=1)
 
     @property
     def worst_lattice(self) -> Array | None:
-        """(E,) the same of the lattice by itself."""
+        """Return the largest ΔE00 of the lattice under any light, (E,), or None."""
         return None if self.delta_e_lattice is None else self.delta_e_lattice.max(axis=1)
 
     def take(self, rows: ArrayLike) -> EntryErrors:
-        """The entries of rows (k,), in that order."""
+        """Select entries.
+
+        Parameters
+        ----------
+        rows : array_like of int, shape (k,)
+            Their rows, in the new order.
+
+        Returns
+        -------
+        EntryErrors
+            The selected entries.
+        """
         order = np.asarray(rows, dtype=np.int64)
-        changed: dict[str, Any] = {
+        selected: dict[str, Any] = {
             field.name: value[order]
             for field in fields(self)
             if isinstance(value := getattr(self, field.name), np.ndarray)
         }
-        return replace(self, names=tuple(self.names[row] for row in order), **changed)
+        return replace(self, names=tuple(self.names[row] for row in order), **selected)
 
 
-def from_own_atlas(data: CubeData, spectra: Atlas) -> EntryQuery:
-    """The entries that the cube is constrained by, with their measured spectra."""
-    measured = resample(spectra, data.sensor.wavelengths).values
-    place = {name: row for row, name in enumerate(data.atlas.names)}
-    kept = [row for row, name in enumerate(spectra.names) if name in place]
-    rows = np.array([place[spectra.names[row]] for row in kept], dtype=np.int64)
-    outside = tuple(name for name in spectra.names if name not in place)
-    return EntryQuery(
-        tuple(spectra.names[row] for row in kept), data.atlas.rgb[rows], measured[kept], rows, outside
-    )
+def from_own_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
+    """Query the entries that the cube was built from; targets are the measured spectra.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    atlas : Atlas
+        The atlas that it was built from.
+
+    Returns
+    -------
+    EntryQuery
+        The entries of the cube; those that it left out are out of gamut.
+    """
+    measured = resample(atlas, data.sensor.wavelengths).values
+    row_of = {name: row for row, name in enumerate(data.atlas.names)}
+    in_cube = np.array([name in row_of for name in atlas.names], dtype=bool)
+    names, out_of_gamut = _partition(atlas.names, in_cube)
+    rows = np.array([row_of[name] for name in names], dtype=np.int64)
+    return EntryQuery(names, data.atlas.rgb[rows], measured[in_cube], rows, out_of_gamut)
 
 
-def from_other_atlas(data: CubeData, spectra: Atlas) -> EntryQuery:
-    """Entries that the cube was not built from, those that its space holds."""
-    measured = resample(spectra, data.sensor.wavelengths).values
+def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
+    """Query entries that the cube was not built from.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    atlas : Atlas
+        Other measurements.
+
+    Returns
+    -------
+    EntryQuery
+        The entries inside the cube's RGB space.
+    """
+    measured = resample(atlas, data.sensor.wavelengths).values
     rgb = data.sensor.rgb(measured)
     inside = data.sensor.contains(rgb)
-    names = [
-        tuple(name for name, held in zip(spectra.names, inside, strict=True) if held == wanted)
-        for wanted in (True, False)
-    ]
-    return EntryQuery(names[0], np.clip(rgb[inside], 0, 1), measured[inside], None, names[1])
+    names, out_of_gamut = _partition(atlas.names, inside)
+    return EntryQuery(names, np.clip(rgb[inside], 0, 1), measured[inside], None, out_of_gamut)
 
 
 def from_stored_entries(data: CubeData) -> EntryQuery:
-    """The cube's own entries where nobody has the measurements: their stored spectra stand in."""
-    atlas = data.atlas
-    spectra = reflectance(data.model, atlas.coefficients, data.sensor.wavelengths)
-    return EntryQuery(atlas.names, atlas.rgb, spectra, np.arange(len(atlas.names)))
+    """Query the cube's own entries; without measurements, targets are the stored spectra.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+
+    Returns
+    -------
+    EntryQuery
+        All entries of the cube.
+    """
+    table = data.atlas
+    stored = reflectance(data.model, table.coefficients, data.sensor.wavelengths)
+    return EntryQuery(table.names, table.rgb, stored, np.arange(len(table.names)))
 
 
-def entries(cube: Cube, question: EntryQuery, lights: tuple[Sensor, ...]) -> EntryErrors:
-    """The errors of a cube, asked in its default mode. ``question`` has one entry at least."""
-    data, wanted = cube.data, question.wanted
-    answered = cube.reflectance(question.rgb)
-    found = EntryErrors(
-        names=question.names,
-        rgb=question.rgb,
-        wanted=wanted,
-        answered=answered,
-        delta_e=_under(lights, answered, wanted),
-        rms=_rms(answered, wanted),
-        real=delta_e_spectra(light(data.error_illuminant, data.sensor.observer), answered, wanted),
-        stated=cube.standard_error(question.rgb),
-        cells=data.lattice.cell(question.rgb)[0],
+def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> EntryErrors:
+    """Compare the answers of a cube in its default mode with the targets of a query.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    query : EntryQuery
+        At least one entry, all covered by the cube.
+    lights : tuple of Sensor
+        Sensors of the lights to compare under.
+
+    Returns
+    -------
+    EntryErrors
+        Errors, worst first.
+    """
+    data, target = cube.data, query.target
+    answer = cube.reflectance(query.rgb)
+    errors = EntryErrors(
+        names=query.names,
+        rgb=query.rgb,
+        target=target,
+        answer=answer,
+        delta_e=_delta_e(lights, answer, target),
+        rms=_rms(answer, target),
+        actual=delta_e_spectra(light(data.error_illuminant, data.sensor.observer), answer, target),
+        predicted=cube.standard_error(query.rgb),
+        cells=data.lattice.cell(query.rgb)[0],
     )
-    if question.rows is not None:
-        found = _own(cube, found, question.rows, lights)
-    return found.take(np.lexsort((-found.rms, -found.worst)))
+    if query.rows is not None:
+        errors = _with_lattice_errors(cube, errors, query.rows, lights)
+    return errors.take(np.lexsort((-errors.rms, -errors.worst)))
 
 
-def _own(cube: Cube, found: EntryErrors, rows: Indices, lights: tuple[Sensor, ...]) -> EntryErrors:
-    """What can be said of those entries alone that lie in rows (E,) of the cube's atlas table."""
+def _with_lattice_errors(
+    cube: Cube, errors: EntryErrors, rows: Indices, lights: tuple[Sensor, ...]
+) -> EntryErrors:
+    """Add the fields that only the cube's own entries have; ``rows`` (E,) are those of its atlas table."""
     data = cube.data
-    lattice = lattice_spectra(data, found.rgb, data.sensor.wavelengths)
-    low, middle, high = (
-        cube.encode(rgb[rows])
-        for rgb in (data.entry_boxes.faces[0], data.atlas.rgb, data.entry_boxes.faces[1])
-    )
+    lattice = lattice_spectra(data, errors.rgb, data.sensor.wavelengths)
+    low_faces, high_faces = data.entry_boxes.faces
+    low, centre, high = (cube.encode(rgb[rows]) for rgb in (low_faces, data.atlas.rgb, high_faces))
     return replace(
-        found,
+        errors,
         lattice=lattice,
-        delta_e_lattice=_under(lights, lattice, found.wanted),
-        rms_lattice=_rms(lattice, found.wanted),
-        reach=data.atlas.half_width[rows],
-        codes=np.maximum(high - middle, middle - low).min(axis=1),
+        delta_e_lattice=_delta_e(lights, lattice, errors.target),
+        rms_lattice=_rms(lattice, errors.target),
+        half_width=data.atlas.half_width[rows],
+        half_width_codes=np.maximum(high - centre, centre - low).min(axis=1),
     )
 
 
-def _under(lights: tuple[Sensor, ...], first: Array, second: Array) -> Array:
-    return np.stack([delta_e_spectra(seen.light, first, second) for seen in lights], axis=1)
+def _partition(names: tuple[str, ...], mask: Mask) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names where the mask (E,) is true, and names where it is false."""
+    pairs = list(zip(names, mask.tolist(), strict=True))
+    return tuple(name for name, true in pairs if true), tuple(name for name, true in pairs if not true)
+
+
+def _delta_e(lights: tuple[Sensor, ...], first: Array, second: Array) -> Array:
+    return np.stack([delta_e_spectra(sensor.light, first, second) for sensor in lights], axis=1)
 
 
 def _rms(first: Array, second: Array) -> Array:

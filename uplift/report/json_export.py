@@ -1,10 +1,9 @@
-"""An assessment as JSON values: the numbers of the page, for machines."""
+"""An assessment as JSON values: the numbers of the page, for programs."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -17,122 +16,138 @@ from uplift.report.round_trip import SEED
 from uplift.viz.histogram import Histogram
 
 
-def to_json(found: Assessment) -> dict[str, Any]:
-    """Plain values; what is not finite is None, so that every JSON reader takes it."""
+def to_json(assessment: Assessment) -> dict[str, Any]:
+    """Convert an assessment to JSON values.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        The assessment of a cube.
+
+    Returns
+    -------
+    dict
+        Plain values; numbers that are not finite are None, as JSON has no notation for them.
+    """
+    data = assessment.data
     return _plain(
         {
-            "cube": found.name,
-            "bytes": found.size,
-            "build": found.facts,
-            "failures": _failures(found),
-            "fitting_distance": _histogram(found.distance),
+            "cube": assessment.name,
+            "bytes": assessment.size,
+            "build": assessment.facts,
+            "failures": _failures(assessment),
+            "fitting_distance": _histogram(assessment.distance),
             "round_trip": {
-                "colours": found.round_trips["spectra"].counts.sum(),
+                "colours": assessment.round_trips["spectra"].counts.sum(),
                 "seed": SEED,
-                "illuminant": found.data.sensor.illuminant,
-                "delta_e_2000": {mode: _histogram(part) for mode, part in found.round_trips.items()},
+                "illuminant": data.sensor.illuminant,
+                "delta_e_2000": {mode: _histogram(each) for mode, each in assessment.round_trips.items()},
             },
-            "standard_error": _standard_error(found),
-            "smoothness": {**_histogram(found.smoothness), "steepest": found.steepest},
-            "lights": [seen.illuminant for seen in found.lights],
+            "standard_error": _standard_error(assessment),
+            "smoothness": {**_histogram(assessment.smoothness), "steepest": assessment.steepest},
+            "lights": [sensor.illuminant for sensor in assessment.lights],
             "atlas": {
-                "files": found.sources,
-                "own": found.own,
-                "outside": found.outside,
-                "absent": found.absent,
+                "files": assessment.sources,
+                "own": assessment.own,
+                "outside": assessment.out_of_gamut,
+                "absent": assessment.not_covered,
             },
-            "delta_e_2000": {light: _histogram(part) for light, part in found.delta_e.items()},
-            "entries": [] if found.entries is None else _entries(found.entries, found.lights),
-            "crowding": _crowding(found),
+            "delta_e_2000": {light: _histogram(each) for light, each in assessment.delta_e.items()},
+            "entries": [] if assessment.entries is None else _entries(assessment.entries, assessment.lights),
+            "crowding": _crowding(assessment),
         }
     )
 
 
-def _failures(found: Assessment) -> dict[str, Any]:
-    failed, data = found.failures, found.data
+def swatches(errors: EntryErrors, sensor: Sensor) -> list[tuple[str, ...]]:
+    """``#rrggbb`` of every entry under a light: target, answer and, for the cube's own entries, the lattice."""
+    spectra = [each for each in (errors.target, errors.answer, errors.lattice) if each is not None]
+    return list(zip(*(hex_codes(sensor.rgb(each)) for each in spectra), strict=True))
+
+
+def _failures(assessment: Assessment) -> dict[str, Any]:
+    failures, data = assessment.failures, assessment.data
     return {
-        "status": failed.counts,
-        "over_threshold": failed.missed,
+        "status": failures.counts,
+        "over_threshold": failures.over_threshold,
         "worst": [
             {
                 "rgb": data.lattice.points[point],
                 "lattice_rgb": data.points.rgb[point],
                 "distance": data.points.distance[point],
             }
-            for point in failed.points
+            for point in failures.worst_points
         ],
-        "improvements": failed.improvements,
-        "left_out": failed.left_out,
-        "skipped": failed.skipped,
+        "improvements": failures.improvements,
+        "left_out": failures.left_out,
+        "skipped": failures.skipped,
     }
 
 
-def _standard_error(found: Assessment) -> dict[str, Any]:
+def _standard_error(assessment: Assessment) -> dict[str, Any]:
+    errors, calibration = assessment.standard_error, assessment.calibration
     return {
-        "light": found.data.error_illuminant,
-        "delta_e_2000": None if found.standard_error is None else _histogram(found.standard_error),
-        "calibration": None if found.calibration is None else asdict(found.calibration),
+        "light": assessment.data.error_illuminant,
+        "delta_e_2000": None if errors is None else _histogram(errors),
+        "calibration": None if calibration is None else calibration.to_json(),
     }
 
 
-def _crowding(found: Assessment) -> dict[str, Any] | None:
-    if (crowding := found.crowding) is None:
+def _crowding(assessment: Assessment) -> dict[str, Any] | None:
+    if (crowding := assessment.crowding) is None:
         return None
-    listed = zip(_entries(crowding.entries, found.lights), crowding.nearest, crowding.apart, strict=True)
+    entries = _entries(crowding.entries, assessment.lights)
     return {
-        "against": "measured" if found.own else "stored",
+        "against": "measured" if assessment.own else "stored",
         "lost": [{"name": name, "same_colour": other} for name, other in crowding.lost],
-        "entries": [entry | {"nearest": other, "apart": apart} for entry, other, apart in listed],
+        "entries": [
+            entry | {"nearest": other, "apart": distance}
+            for entry, other, distance in zip(entries, crowding.nearest, crowding.distances, strict=True)
+        ],
     }
 
 
-def _histogram(part: Histogram) -> dict[str, Any]:
+def _histogram(values: Histogram) -> dict[str, Any]:
     return {
-        "mean": part.mean,
-        "median": part.median,
-        "p95": part.p95,
-        "max": part.largest,
-        "edges": part.edges,
-        "counts": part.counts,
+        "mean": values.mean,
+        "median": values.median,
+        "p95": values.p95,
+        "max": values.largest,
+        "edges": values.edges,
+        "counts": values.counts,
     }
 
 
-def _entries(found: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, Any]]:
-    names = [seen.illuminant for seen in lights]
-
-    def by_light(values: Any) -> dict[str, Any] | None:
-        return None if values is None else dict(zip(names, values, strict=True))
+def _entries(errors: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, Any]]:
+    names = [sensor.illuminant for sensor in lights]
+    codes = {sensor.illuminant: swatches(errors, sensor) for sensor in lights}
 
     def at(values: Any, row: int) -> Any:
         return None if values is None else values[row]
 
-    shown = {seen.illuminant: swatches(found, seen) for seen in lights}
+    def by_light(values: Any, row: int) -> dict[str, Any] | None:
+        return None if values is None else dict(zip(names, values[row], strict=True))
+
     return [
         {
             "name": name,
-            "rgb": found.rgb[row],
-            "cell": found.cells[row],
-            "delta_e_2000": by_light(found.delta_e[row]),
-            "delta_e_2000_lattice": by_light(at(found.delta_e_lattice, row)),
-            "rms": found.rms[row],
-            "rms_lattice": at(found.rms_lattice, row),
-            "delta_e_2000_reference": found.real[row],
-            "standard_error": at(found.stated, row),
-            "reach": at(found.reach, row),
-            "reach_codes": at(found.codes, row),
+            "rgb": errors.rgb[row],
+            "cell": errors.cells[row],
+            "delta_e_2000": by_light(errors.delta_e, row),
+            "delta_e_2000_lattice": by_light(errors.delta_e_lattice, row),
+            "rms": errors.rms[row],
+            "rms_lattice": at(errors.rms_lattice, row),
+            "delta_e_2000_reference": errors.actual[row],
+            "standard_error": at(errors.predicted, row),
+            "reach": at(errors.half_width, row),
+            "reach_codes": at(errors.half_width_codes, row),
             "srgb": {
-                light: dict(zip(("wanted", "answered", "lattice"), codes[row], strict=False))
-                for light, codes in shown.items()
+                light: dict(zip(("wanted", "answered", "lattice"), each[row], strict=False))
+                for light, each in codes.items()
             },
         }
-        for row, name in enumerate(found.names)
+        for row, name in enumerate(errors.names)
     ]
-
-
-def swatches(found: EntryErrors, seen: Sensor) -> list[tuple[str, ...]]:
-    """``#rrggbb`` of every entry under a light: as wanted, as answered, and by the lattice alone if it is own."""
-    parts = [part for part in (found.wanted, found.answered, found.lattice) if part is not None]
-    return list(zip(*(hex_codes(seen.rgb(part)) for part in parts), strict=True))
 
 
 def _plain(value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""A stored cube against its rebuilding: does this version still make what was stored? (`uplift check`)"""
+"""Comparison of a stored cube with a rebuilt one: whether this version reproduces stored cubes."""
 
 from __future__ import annotations
 
@@ -20,17 +20,26 @@ from uplift.models import reflectance
 LIMITS = {"rgb": 1e-6, "spectra_max": 1e-5, "spectra_rms": 1e-7} | {
     f"delta_e_{name}": 1e-4 for name in REGRESSION_LIGHTS
 }
-"""What may differ between machines: some hundred times what other instruction sets were seen to change
-(docs/stability-determinism.json). Within one machine nothing differs, whatever the threads."""
-UNSETTLED = 1e-3
-"""Linear RGB from the boundary of what reflectances reach, where wide spaces have points: their spectra are nearly
-boxes, and many that meet the colour as well; rounding takes its pick."""
+"""Largest differences allowed between machines: some hundred times the effect of other instruction sets
+(docs/stability-determinism.json). On one machine there are none, whatever the number of threads."""
+BOUNDARY_MARGIN = 1e-3
+"""Linear RGB within the object-colour solid. Points of wide gamuts nearer to its boundary have spectra close to box
+functions, and many of these meet the colour equally well: rounding decides between them."""
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A stored cube and its rebuilding. ``measures`` as in `LIMITS`, of settled points; ``counts`` of their status,
-    and of all that are unfitted, stored and rebuilt."""
+    """Differences between a stored cube and a rebuilt one.
+
+    Parameters
+    ----------
+    path : Path
+        File of the stored cube.
+    measures : dict of str to float
+        Largest differences by the names in `LIMITS`, over the points whose spectra are well determined.
+    stored_counts, rebuilt_counts : dict of str to int
+        Number of these points by status, and of all unfitted points.
+    """
 
     path: Path
     measures: dict[str, float]
@@ -39,43 +48,64 @@ class Comparison:
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """What is over its limit (NaN is), or differs at all where nothing may."""
+        """Return the measures over their limits or NaN, and ``status`` if the counts differ."""
         over = [name for name, value in self.measures.items() if not value <= LIMITS[name]]
         return (*over, *(["status"] if self.stored_counts != self.rebuilt_counts else []))
 
 
 def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
-    """Compare all points but the unsettled. Raises `CubeFileError` where the two have no points in common."""
+    """Compare a stored cube with a rebuilt one.
+
+    Parameters
+    ----------
+    path : Path
+        File of the stored cube.
+    stored, rebuilt : CubeData
+        The cubes.
+
+    Returns
+    -------
+    Comparison
+        The differences, and whether they are within the limits.
+
+    Raises
+    ------
+    CubeFileError
+        If the lattices differ.
+    """
     if not np.array_equal(stored.lattice.nodes, rebuilt.lattice.nodes):
-        raise CubeFileError("has another lattice than its options say", path=path, hint="build it anew")
-    settled = _settled(stored) & (stored.points.present | rebuilt.points.present)
+        raise CubeFileError(
+            "its lattice is not the one that its options give",
+            code="lattice-mismatch",
+            path=path,
+            hint="build the cube again",
+        )
+    compared = _well_determined(stored) & (stored.points.present | rebuilt.points.present)
     first, second = (
-        reflectance(data.model, data.points.coefficients[settled], data.sensor.wavelengths)
+        reflectance(data.model, data.points.coefficients[compared], data.sensor.wavelengths)
         for data in (stored, rebuilt)
     )
     difference = np.abs(first - second)
     measures = {
-        "rgb": float(np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[settled].max()),
+        "rgb": float(np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared].max()),
         "spectra_max": float(difference.max()),
         "spectra_rms": float(np.sqrt((difference**2).mean())),
     }
     for name in REGRESSION_LIGHTS:
         measures[f"delta_e_{name}"] = _largest_delta_e(name, stored.sensor.observer, first, second)
-    return Comparison(path, measures, *(_counts(data, settled) for data in (stored, rebuilt)))
+    return Comparison(path, measures, _counts(stored, compared), _counts(rebuilt, compared))
 
 
-def _settled(data: CubeData) -> Mask:
-    """Points (n,) whose spectra are the same on any machine; all, where the space holds no unrealisable point."""
+def _well_determined(data: CubeData) -> Mask:
+    """Points (n,) whose spectra do not depend on the machine: all, if the space has no unrealisable points."""
     if Status.UNREALISABLE not in data.points.status:
         return np.ones(data.lattice.size, dtype=bool)
-    return np.asarray(solid(data.sensor.matrix).signed_distance(data.lattice.points) < -UNSETTLED)
+    return np.asarray(solid(data.sensor.matrix).signed_distance(data.lattice.points) < -BOUNDARY_MARGIN)
 
 
-def _counts(data: CubeData, settled: Mask) -> dict[str, int]:
-    unfitted = int((data.points.status == Status.UNFITTED).sum())
-    return replace(data.points, status=data.points.status[settled]).counts() | {
-        Status.UNFITTED.label: unfitted
-    }
+def _counts(data: CubeData, compared: Mask) -> dict[str, int]:
+    counts = replace(data.points, status=data.points.status[compared]).counts()
+    return counts | {Status.UNFITTED.label: int((data.points.status == Status.UNFITTED).sum())}
 
 
 def _largest_delta_e(name: str, observer: str, first: Array, second: Array) -> float:

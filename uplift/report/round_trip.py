@@ -1,4 +1,4 @@
-"""Random colours that go through a cube and come back."""
+"""Round trips RGB → spectrum → RGB of random colours."""
 
 from __future__ import annotations
 
@@ -11,23 +11,32 @@ from uplift.lookup import MODES, Cube
 
 COLOURS = 4096
 SEED = 20200617
-"""Of the random colours: the same for every report, so that reports compare."""
+"""All reports use the same random colours, so that they can be compared."""
 
 
 def round_trips(cube: Cube) -> dict[str, Array]:
-    """ΔE00 (n,) under the cube's illuminant between random linear RGB and what comes back, for each mode."""
-    asked, sensor = _random(cube.data), cube.data.sensor
-    asked = asked[cube.holds(asked)]
-    return {
-        mode: delta_e_rgb(sensor, asked, sensor.rgb(cube.reflectance(asked, mode=mode))) for mode in MODES
-    }
+    """Compute the round-trip errors of random colours.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (n,)
+        ΔE00 under the cube's illuminant, by mode of lookup.
+    """
+    rgb, sensor = _random_rgb(cube.data), cube.data.sensor
+    rgb = rgb[cube.holds(rgb)]
+    return {mode: delta_e_rgb(sensor, rgb, sensor.rgb(cube.reflectance(rgb, mode=mode))) for mode in MODES}
 
 
-def _random(data: CubeData) -> Array:
-    """Linear RGB (n, 3), even in the cube or, where it is sparse, in its complete cells."""
+def _random_rgb(data: CubeData) -> Array:
+    """Linear RGB (n, 3), uniform in the cube or, if it is sparse, in its complete cells."""
     random = np.random.default_rng(SEED)
-    asked = random.random((COLOURS, 3))
+    rgb = random.random((COLOURS, 3))
     if data.complete_cells is None:
-        return asked
+        return rgb
     low = data.lattice.position(random.choice(np.flatnonzero(data.complete_cells), COLOURS))
-    return data.lattice.nodes[low] + asked * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])
+    return data.lattice.nodes[low] + rgb * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])

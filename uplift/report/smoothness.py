@@ -1,4 +1,4 @@
-"""How fast spectra change from one lattice point to the next."""
+"""Differences between the spectra of neighbouring lattice points."""
 
 from __future__ import annotations
 
@@ -12,17 +12,19 @@ from uplift.cube import CubeData
 from uplift.models import reflectance
 
 NO_PAIR = -1.0
-"""In place of a difference, where a neighbour is absent."""
+"""Placeholder for a difference to an absent point."""
 
 
 @dataclass(frozen=True, eq=False)
 class Smoothness:
-    """rms over wavelength between the spectra of neighbours along an axis.
+    """rms differences over wavelength between the spectra of neighbours along an axis.
 
     Parameters
     ----------
-    differences : (k,) of every pair of neighbours, in units of reflectance.
-    steepest : (2, 3) linear RGB of the two lattice points that differ most.
+    differences : ndarray, shape (k,)
+        Difference of every pair of neighbours, in units of reflectance.
+    steepest : ndarray, shape (2, 3)
+        Linear RGB of the pair that differs most.
     """
 
     differences: NDArray[np.float32]
@@ -30,42 +32,55 @@ class Smoothness:
 
 
 def smoothness(data: CubeData) -> Smoothness:
-    """Every pair once. Works plane by plane of equal red: two planes of spectra are in memory at a time."""
+    """Compare the spectra of all neighbours, each pair once.
+
+    The lattice is processed by planes of equal red: spectra of two planes are in memory at a time.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+
+    Returns
+    -------
+    Smoothness
+        The differences, and the largest one.
+    """
     parts: list[NDArray[np.float32]] = []
     largest = NO_PAIR
     pair: tuple[tuple[int, ...], ...] = ()
-    before: Array | None = None
+    previous: Array | None = None
     for red in range(data.lattice.dim):
         plane = _plane(data, red)
-        for axis, (first, second) in enumerate(_neighbours(before, plane)):
-            apart = np.nan_to_num(np.sqrt(((second - first) ** 2).mean(axis=-1)), nan=NO_PAIR)
-            parts.append(apart[apart != NO_PAIR].astype(np.float32))
-            if apart.max() > largest:
-                largest = float(apart.max())
-                pair = _pair(axis, red, np.unravel_index(int(apart.argmax()), apart.shape))
-        before = plane
+        for axis, (first, second) in enumerate(_neighbours(previous, plane)):
+            rms = np.nan_to_num(np.sqrt(((second - first) ** 2).mean(axis=-1)), nan=NO_PAIR)
+            parts.append(rms[rms != NO_PAIR].astype(np.float32))
+            if rms.max() > largest:
+                largest = float(rms.max())
+                pair = _positions(axis, red, np.unravel_index(int(rms.argmax()), rms.shape))
+        previous = plane
     return Smoothness(np.concatenate(parts), data.lattice.nodes[np.array(pair)])
 
 
 def _plane(data: CubeData, red: int) -> Array:
-    """(dim, dim, N) spectra of the lattice points of one red, green first; NaN where absent."""
-    dim, at = data.lattice.dim, data.sensor.wavelengths
+    """Spectra (dim, dim, N) of the points of one red, green first; NaN if absent."""
+    dim, wavelengths = data.lattice.dim, data.sensor.wavelengths
     rows = slice(red * dim**2, (red + 1) * dim**2)
-    there = data.points.present[rows]
-    plane = np.full((dim**2, len(at)), np.nan)
-    plane[there] = reflectance(data.model, data.points.coefficients[rows][there], at)
+    present = data.points.present[rows]
+    plane = np.full((dim**2, len(wavelengths)), np.nan)
+    plane[present] = reflectance(data.model, data.points.coefficients[rows][present], wavelengths)
     return plane.reshape(dim, dim, -1)
 
 
-def _neighbours(before: Array | None, plane: Array) -> list[tuple[Array, Array]]:
-    """Pairs along blue and green within a plane, and along red to the plane before."""
+def _neighbours(previous: Array | None, plane: Array) -> list[tuple[Array, Array]]:
+    """Pairs along blue and green within a plane, and along red to the previous plane."""
     within = [(plane[:, :-1], plane[:, 1:]), (plane[:-1], plane[1:])]
-    return within if before is None else [*within, (before, plane)]
+    return within if previous is None else [*within, (previous, plane)]
 
 
-def _pair(axis: int, red: int, place: tuple[np.intp, ...]) -> tuple[tuple[int, ...], ...]:
+def _positions(axis: int, red: int, index: tuple[np.intp, ...]) -> tuple[tuple[int, ...], ...]:
     """Positions (red, green, blue) of two neighbours; ``axis`` 0 is blue, 1 green, 2 red."""
-    green, blue = (int(index) for index in place)
+    green, blue = (int(part) for part in index)
     first = [red, green, blue]
     second = list(first)
     if axis == 2:

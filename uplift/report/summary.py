@@ -1,4 +1,4 @@
-"""The facts of a cube in JSON values: what 'uplift info' tells."""
+"""Facts about a cube as JSON values."""
 
 from __future__ import annotations
 
@@ -10,31 +10,39 @@ from uplift.cube import CubeData, digest
 
 
 def summary(data: CubeData) -> dict[str, Any]:
-    """Plain facts, most general first; distances are max |linear RGB|, standard errors ΔE00 under ``reference``.
+    """Summarise a cube, most general facts first.
 
-    ``points`` are those that are present, of dim³.
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+
+    Returns
+    -------
+    dict
+        JSON values. ``points`` counts the points present, of dim³; distances are max |linear RGB|; standard errors
+        are ΔE00 under ``reference``.
     """
-    there = data.points.present
+    points = data.points
+    present, errors = points.present, points.standard_error
     return {
         "model": data.model.describe(),
         "coefficients": data.model.count,
         "dim": data.lattice.dim,
-        "points": int(np.count_nonzero(there)),
+        "points": int(np.count_nonzero(present)),
         "lattice_points": data.lattice.size,
         "space": data.sensor.space,
         "illuminant": data.sensor.illuminant,
         "observer": data.sensor.observer,
         "threshold": data.threshold,
-        "worst_distance": float(data.points.distance.max()),
-        "mean_distance": float(data.points.distance[there].mean(dtype=np.float64)),
+        "worst_distance": float(points.distance.max()),
+        "mean_distance": float(points.distance[present].mean(dtype=np.float64)),
         "reference": data.error_illuminant,
-        "mean_standard_error": None
-        if data.points.standard_error is None
-        else float(data.points.standard_error[there].mean(dtype=np.float64)),
-        "status": data.points.counts(),
+        "mean_standard_error": None if errors is None else float(errors[present].mean(dtype=np.float64)),
+        "status": points.counts(),
         "entries": list(data.atlas.names),
-        "debug": data.points.round is not None,
-        "rounds": None if data.points.round is None else int(data.points.round.max()) + 1,
+        "debug": points.round is not None,
+        "rounds": None if points.round is None else int(points.round.max()) + 1,
         "provenance": dict(data.provenance),
         "digest": digest(data),
     }

@@ -69,6 +69,6 @@ def test_stated_errors_by_hand():
             HoldoutSplit({"": nothing}, np.array([5.0, 9.0]), None),
         ]
     )
-    assert (found.count, found.stated, found.within_one, found.within_two) == (2, 2, 0.5, 1)
-    assert found.real == pytest.approx(5**0.5)
+    assert (found.count, found.predicted, found.within_one, found.within_two) == (2, 2, 0.5, 1)
+    assert found.actual == pytest.approx(5**0.5)
     assert pooled_calibration([HoldoutSplit({"": nothing}, np.zeros(2), None)]) is None
