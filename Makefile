@@ -80,6 +80,7 @@ display: $(INSTALLED)
 # Mixtures: ramps, who breaks which criterion, times: docs/mixing.md.
 mixing: $(INSTALLED)
 	$(BIN)/python -m benchmarks.mixing
+	$(BIN)/python -m tools.render_docs mixing
 
 # What cubes for a scene save: docs/scenes.md.
 scenes: pictures

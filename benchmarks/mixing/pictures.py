@@ -1,4 +1,4 @@
-"""Ramps of every way of mixing, and coats of growing thickness, as PNG."""
+"""Ramps of the mixing models, and coats of increasing thickness, as PNG."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ DRAWN = (
     "phosphors",
     "product",
 )
-"""Filters and products are given the shares as thickness, so that a ramp ends at its colours."""
+"""Shares are the thickness of filters and products, so that a ramp ends at its colours."""
 
 
 def draw(cube: Cube, folder: Path) -> None:
-    """One picture a pair, and one of coats."""
+    """Write a picture for each pair of colours, and one of coats."""
     folder.mkdir(exist_ok=True)
     for name, pair in PAIRS.items():
         rgb = np.array([colour(cube, word) for word in pair])
@@ -45,9 +45,9 @@ def draw(cube: Cube, folder: Path) -> None:
 
 
 def colour(cube: Cube, word: str) -> Array:
-    """Linear RGB (3,) of an entry or of '#rrggbb'."""
+    """Return the linear RGB (3,) of an entry or of '#rrggbb'."""
     if word.startswith("#"):
-        return cube.decode([int(word[place : place + 2], 16) for place in (1, 3, 5)])
+        return cube.decode([int(word[i : i + 2], 16) for i in (1, 3, 5)])
     return np.asarray(cube.data.atlas.rgb[cube.data.atlas.names.index(word)], dtype=float)
 
 
@@ -58,18 +58,20 @@ def _ramps(cube: Cube, rgb: Array) -> list[Strip]:
 
 
 def _coats(cube: Cube) -> list[Strip]:
-    """Half a strip on white, half on black, each of doubling thickness."""
+    """Return strips of paints on white and on black and of dyes, with doubling thickness."""
     thickness = [0, *(2.0 ** np.arange(-4, 3))]
     spectra = cube.reflectance(np.array([colour(cube, word) for word in ("#b01030", "#ffd200", "#005fa0")]))
     strips = []
     for name, spectrum in zip(("red", "yellow", "blue"), spectra, strict=True):
         paint = coats.palette([coats.paint(spectrum)])
         for ground, on in ((1.0, "white"), (0.0, "black")):
-            seen = [coats.of_paints(paint, [1], x).over(np.full(81, ground)) for x in thickness]
+            layers = [coats.of_paints(paint, [1], x).over(np.full(81, ground)) for x in thickness]
             title = f"{name} paint on {on}, {', '.join(f'{x:.3g}' for x in thickness)} units thick"
-            strips.append(_strip(cube, title, cube.data.sensor.rgb(seen)))
-        seen = [coats.of_dyes(spectrum[None], [1], x).over(1.0) for x in thickness]
-        strips.append(_strip(cube, f"{name} dye on white, as thick", cube.data.sensor.rgb(seen)))
+            strips.append(_strip(cube, title, cube.data.sensor.rgb(layers)))
+        layers = [coats.of_dyes(spectrum[None], [1], x).over(1.0) for x in thickness]
+        strips.append(
+            _strip(cube, f"{name} dye on white, the same thicknesses", cube.data.sensor.rgb(layers))
+        )
     return strips
 
 

@@ -1,14 +1,14 @@
-"""What a mixture takes; answers are checked before they are timed."""
+"""CPU times of mixtures; results are checked before timing."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 
-from benchmarks.mixing_pictures import colour
-from benchmarks.page import table
+from benchmarks.mixing.pictures import colour
 from uplift.colorimetry.observer import colour_science
 from uplift.common.arrays import Array
 from uplift.design.mixing import coats, hsl, kubelka_munk, overpaint
@@ -22,36 +22,44 @@ RUNS = 5
 CHECKED = 20
 
 
-def mixtures(cube: Cube) -> str:
-    """Nanoseconds of a mixture of two, through RGB and between spectra."""
+def measure(cube: Cube) -> dict[str, Any]:
+    """Time mixtures, and operations on images."""
+    return {
+        "runs": RUNS,
+        "mixtures": MIXTURES,
+        "pixels": PIXELS,
+        "colours": COLOURS,
+        "mixture_times": mixtures(cube),
+        "pixel_times": images(cube),
+    }
+
+
+def mixtures(cube: Cube) -> list[dict[str, Any]]:
+    """Return nanoseconds per mixture of two, from RGB to RGB and between spectra."""
     rng = np.random.default_rng(0)
     rgb, parts = rng.random((MIXTURES, 2, 3)), rng.random((MIXTURES, 2)) + 0.1
     spectra = cube.reflectance(rgb)
     rows = []
     for mixer in mixers(cube):
-        between = SPECTRAL.get(mixer.name)
         _check(mixer.mix, rgb, parts)
-        whole = _ns(partial(mixer.mix, rgb, parts), MIXTURES)
-        alone = f"{_ns(partial(between[1], spectra, parts), MIXTURES):,.0f}" if between else "–"
-        rows.append([mixer.title, f"{whole:,.0f}", alone])
-    words = (
-        f"Nanoseconds of CPU for a mixture of two, of {MIXTURES:,} at once on one thread: median "
-        f"(least–most) of {RUNS} runs. From RGB to RGB both colours are uplifted first, which is most of it;"
-        " between spectra they are there, at 81 wavelengths."
-    )
-    return table("What a mixture takes", words, ["", "RGB to RGB", "between spectra"], rows)
+        between = SPECTRAL.get(mixer.name)
+        spectral = _ns(partial(between[1], spectra, parts), MIXTURES) if between else None
+        rows.append(
+            {"mixer": mixer.title, "rgb": _ns(partial(mixer.mix, rgb, parts), MIXTURES), "spectra": spectral}
+        )
+    return rows
 
 
 def _check(mix: Callable[[Array, Array], Array], rgb: Array, parts: Array) -> None:
-    """All at once give what each gives by itself."""
+    """Raise `RuntimeError` unless a batch gives the same results as single mixtures."""
     found = mix(rgb[:CHECKED], parts[:CHECKED])
     expected = np.array([mix(one, share) for one, share in zip(rgb[:CHECKED], parts[:CHECKED], strict=True)])
     if not np.allclose(found, expected, atol=1e-9):
-        raise RuntimeError("a wrong answer is not worth timing")
+        raise RuntimeError("wrong result: nothing to time")
 
 
-def images(cube: Cube) -> str:
-    """A coat over an image, and HSL to RGB."""
+def images(cube: Cube) -> list[dict[str, Any]]:
+    """Return nanoseconds of a coat over an image, and of HSL to RGB."""
     rng = np.random.default_rng(0)
     red = coats.palette([coats.paint(cube.reflectance(colour(cube, "red")))])
     coat = coats.of_paints(red, [1], 0.5)
@@ -59,21 +67,20 @@ def images(cube: Cube) -> str:
     image = rng.random((PIXELS, 3)).astype(np.float32)
     expected = cube.data.sensor.rgb(coat.over(cube.reflectance(image[:CHECKED])))
     if np.abs(brush.paint(image)[:CHECKED] - expected).max() > 1e-5:
-        raise RuntimeError("a wrong answer is not worth timing")
+        raise RuntimeError("wrong result: nothing to time")
     colours = rng.random((COLOURS, 3))
     peer = colour_science().HSL_to_RGB
     if not np.allclose(hsl.to_rgb(colours), peer(colours)):
-        raise RuntimeError("a wrong answer is not worth timing")
+        raise RuntimeError("wrong result: nothing to time")
     spectra = cube.reflectance(image[:MIXTURES])
     paint = partial(_over, red, spectra)
-    rows = [
-        ["a coat over a painting, RGB to RGB", _told(_ns(lambda: brush.paint(image), PIXELS))],
-        ["K–M layer made and laid on a ground, 81 wavelengths", _told(_ns(paint, MIXTURES))],
-        ["HSL to RGB (5.3.5)", _told(_ns(lambda: hsl.to_rgb(colours), COLOURS))],
-        ["HSL to RGB, colour-science", _told(_ns(lambda: peer(colours), COLOURS))],
-    ]
-    words = f"The same for each of {PIXELS:,} pixels, {MIXTURES:,} layers of different thickness, {COLOURS:,} colours."
-    return table("What a pixel takes", words, ["", "ns"], rows)
+    operations: dict[str, tuple[Callable[[], object], int]] = {
+        "coat over a painting, RGB to RGB": (lambda: brush.paint(image), PIXELS),
+        "Kubelka–Munk layer on a ground, 81 wavelengths": (paint, MIXTURES),
+        "HSL to RGB (5.3.5)": (lambda: hsl.to_rgb(colours), COLOURS),
+        "HSL to RGB, colour-science": (lambda: peer(colours), COLOURS),
+    }
+    return [{"operation": name, "ns": _ns(function, count)} for name, (function, count) in operations.items()]
 
 
 def _over(paint: Pigment, grounds: Array) -> Array:
@@ -82,11 +89,7 @@ def _over(paint: Pigment, grounds: Array) -> Array:
 
 
 def _ns(function: Callable[[], object], count: int) -> Spread:
-    """CPU nanoseconds each, warm."""
+    """Return CPU nanoseconds per item, warm."""
     function()
     _, cpu = timed(function, RUNS)
     return cpu.scaled(1e9 / count)
-
-
-def _told(spread: Spread) -> str:
-    return f"{spread:,.0f}"

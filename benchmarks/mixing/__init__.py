@@ -1,0 +1,1 @@
+"""Mixing models: criteria, accuracy of the assumed scattering, times and pictures."""
