@@ -1,1 +1,1 @@
-"""What becomes of colours that no screen shows: ``make display`` writes docs/display.md and its picture."""
+"""Gamut mapping of colours outside sRGB: hue shifts, lightness, times, and a picture."""

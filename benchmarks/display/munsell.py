@@ -1,7 +1,7 @@
-"""Chips of the Munsell book that sRGB cannot show, and how far colours lie from those of a chip's hue.
+"""Munsell chips outside sRGB, and the distance of colours from those of the hue of a chip.
 
-The renotation (Newhall, Nickerson & Judd 1943) as colour-science has it: chips that were made and seen, not
-extrapolated ones. Hue and lightness are what observers found equal, which no space of the ways knows.
+The renotation (Newhall, Nickerson & Judd 1943) as in colour-science, without extrapolated chips. Its hues and lightnesses
+were judged equal by observers, independently of the colour spaces of the gamut mappings.
 """
 
 from __future__ import annotations
@@ -17,32 +17,32 @@ from uplift.colorimetry.gamut import SRGB, Primaries, conversion
 from uplift.common.arrays import Array
 
 BRIGHTEST, DARKEST = 9, 2
-"""Values between which hues are well known."""
+"""Munsell values between which hues are well known."""
 STEP = 0.25
-"""Of chroma, along a line of one hue and value."""
+"""Step of chroma along a line of constant hue and value."""
 WHITE = SRGB.rgb_to_xyz.sum(axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class Chips:
-    """Linear sRGB (n, 3) and hues (n,) of the chips outside; x, y (k, 2) of each hue and value, from grey outwards."""
+    """Linear sRGB (n, 3) and hues (n,) of the chips outside; x, y (k, 2) by hue and value, from grey outwards."""
 
     rgb: Array
     hues: tuple[str, ...]
     lines: dict[tuple[str, float], Array]
 
-    def off_hue(self, shown: Array) -> Array:
-        """ΔE00 (n,) from linear sRGB (n, 3), shown for the chips, to the nearest colour of the chip's hue as light."""
-        light = (shown @ SRGB.rgb_to_xyz.T)[:, 1]
+    def hue_shift(self, mapped: Array) -> Array:
+        """Return ΔE00 (n,) between mapped linear sRGB (n, 3) and the nearest colour of the hue at equal luminance."""
+        light = (mapped @ SRGB.rgb_to_xyz.T)[:, 1]
         values = np.clip(colour.notation.munsell_value_ASTMD1535(100 * light), 1, 9)
         nearest = [
-            delta_e_2000(_lab_of(self._line(hue, value), y), seen).min()
-            for hue, value, y, seen in zip(self.hues, values, light, _lab(shown), strict=True)
+            delta_e_2000(_lab_of(self._line(hue, value), y), colour_lab).min()
+            for hue, value, y, colour_lab in zip(self.hues, values, light, _lab(mapped), strict=True)
         ]
         return np.array(nearest)
 
     def _line(self, hue: str, value: float) -> Array:
-        """Between those of the values below and above, at the same chroma."""
+        """Interpolate between the lines of the values below and above, at equal chroma."""
         low = min(int(value), 8)
         below, above = self.lines[hue, low], self.lines[hue, low + 1]
         count = min(len(below), len(above))
@@ -50,21 +50,23 @@ class Chips:
 
 
 def chips() -> Chips:
-    """Those that sRGB cannot show; white is the screen's, by Bradford adaptation from illuminant C."""
+    """Return the chips outside sRGB; illuminant C is adapted to the white of the screen (Bradford)."""
     c = tuple(colour.CCS_ILLUMINANTS["CIE 1931 2 Degree Standard Observer"]["C"])
     to_srgb = conversion(Primaries(SRGB.red, SRGB.green, SRGB.blue, c), SRGB)
     from_xyz = to_srgb @ np.linalg.inv(Primaries(SRGB.red, SRGB.green, SRGB.blue, c).rgb_to_xyz)
     real = {name for name, _ in colour.MUNSELL_COLOURS["Munsell Colours Real"]}
-    book = colour.MUNSELL_COLOURS["Munsell Colours All"]  # lines go on beyond the chips
+    book = colour.MUNSELL_COLOURS["Munsell Colours All"]  # lines extend beyond the real chips
     names = [name for name, _ in book]
     xyz = colour.xyY_to_XYZ(np.array([xyY for _, xyY in book]) / [1, 1, 100])
     rgb = xyz @ from_xyz.T
-    asked = [
+    outside = [
         row
         for row, name in enumerate(names)
         if name in real and DARKEST <= name[1] <= BRIGHTEST and ((rgb[row] < 0) | (rgb[row] > 1)).any()
     ]
-    return Chips(rgb[asked], tuple(names[row][0] for row in asked), _lines(names, rgb @ SRGB.rgb_to_xyz.T))
+    return Chips(
+        rgb[outside], tuple(names[row][0] for row in outside), _lines(names, rgb @ SRGB.rgb_to_xyz.T)
+    )
 
 
 def _lines(names: list[tuple[str, float, float]], xyz: Array) -> dict[tuple[str, float], Array]:
@@ -88,7 +90,7 @@ def _lab(rgb: Array) -> Array:
     return lab(rgb @ SRGB.rgb_to_xyz.T, WHITE)
 
 
-def apart(chips: Chips, shown: Array) -> tuple[Array, Array]:
-    """ΔE00 (n,) and |ΔL*| (n,) from the chips to what is shown for them."""
-    asked, seen = _lab(chips.rgb), _lab(shown)
-    return delta_e_2000(asked, seen), np.abs(asked[:, 0] - seen[:, 0])
+def differences(chips: Chips, mapped: Array) -> tuple[Array, Array]:
+    """Return ΔE00 (n,) and |ΔL*| (n,) between the chips and their mapped colours."""
+    original, lab_mapped = _lab(chips.rgb), _lab(mapped)
+    return delta_e_2000(original, lab_mapped), np.abs(original[:, 0] - lab_mapped[:, 0])

@@ -1,4 +1,4 @@
-"""Spheres of colours that sRGB cannot show, in a light too bright for it, as each way shows them."""
+"""Spheres of colours outside sRGB under a bright light, as each method maps them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from uplift.common.arrays import Array
 from uplift.viz.figure import new_figure, write_png
 
 REC_2020 = Primaries((0.708, 0.292), (0.170, 0.797), (0.131, 0.046), (0.3127, 0.3290))
-WAYS = tuple(way for way in METHODS if way != "error")
+MAPPINGS = tuple(method for method in METHODS if method != "error")
 RADIUS = 43
 """Pixels."""
 HUES = (
@@ -25,25 +25,25 @@ HUES = (
     (0, 0, 1),
     (0.8, 0, 0.9),
 )
-"""Linear Rec. 2020, of what is painted."""
+"""Linear Rec. 2020 of the spheres."""
 LIGHT, HIGHLIGHT = 1.3, 3.0
 
 
 def draw(path: Path) -> None:
-    """Write the picture: a column a way; above spheres, below all hues from dark to too bright."""
+    """Write the picture: one column per method, spheres above, all hues from dark to too bright below."""
     figure = new_figure(15, 3.4)
     rows = [spheres(), sweep()]
-    grid = figure.subplots(2, len(WAYS), gridspec_kw={"height_ratios": [len(row) for row in rows]})
-    for column, way in enumerate(WAYS):
-        grid[0, column].set_title(way, fontsize=17, pad=8)
+    grid = figure.subplots(2, len(MAPPINGS), gridspec_kw={"height_ratios": [len(row) for row in rows]})
+    for column, method in enumerate(MAPPINGS):
+        grid[0, column].set_title(method, fontsize=17, pad=8)
         for axes, image in zip(grid[:, column], rows, strict=True):
-            axes.imshow(encode(map_to_gamut(image, SRGB, way).rgb), interpolation="antialiased")
+            axes.imshow(encode(map_to_gamut(image, SRGB, method).rgb), interpolation="antialiased")
             axes.set_axis_off()
     write_png(figure, path, force=True)
 
 
 def spheres() -> Array:
-    """(h, w, 3) linear sRGB, much of it outside [0, 1]: paint, and a highlight of the light's own colour."""
+    """Return linear sRGB (h, w, 3), partly outside [0, 1]: paint with highlights in the colour of the light."""
     side = 2 * RADIUS + 8
     y, x = np.mgrid[:side, :side] - (side - 1) / 2
     inside = x**2 + y**2 < RADIUS**2
@@ -62,7 +62,7 @@ def spheres() -> Array:
 
 
 def sweep() -> Array:
-    """(h, w, 3) linear sRGB: hues of Rec. 2020 from left to right, brighter upwards, to three times what is white."""
+    """Return linear sRGB (h, w, 3): hues of Rec. 2020 from left to right, brighter upwards, up to three times white."""
     height, width = 2 * RADIUS, 8 * RADIUS + 32
     hue = np.linspace(0, 6, width)
     pure = np.clip(np.abs((hue[:, None] + [3, 1, 5]) % 6 - 3) - 1, 0, 1)

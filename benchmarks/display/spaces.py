@@ -1,4 +1,4 @@
-"""Perceptual spaces that colours could be desaturated in, by colour-science: which keeps hues, and which is smooth?"""
+"""Perceptual spaces of colour-science in which colours could be desaturated: preservation of hue, smoothness."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ NEARLY = 1e-4
 XYZ = Callable[[Array], Any]
 WHITE = np.array(SRGB.white)
 ACESCG = Primaries((0.713, 0.293), (0.165, 0.83), (0.128, 0.044), SRGB.white)
-"""With the white of sRGB, which the spaces of colour-science are asked for."""
+"""With the white of sRGB, for which the spaces of colour-science are defined."""
 
 
 @dataclass(frozen=True)
 class Space:
-    """XYZ under D65 to lightness and two opponents, and back."""
+    """Conversion from XYZ under D65 to lightness and two opponent coordinates, and back."""
 
     name: str
     of: XYZ
@@ -41,8 +41,8 @@ SPACES = (
 )
 
 
-def desaturated(space: Space, rgb: Array) -> Array:
-    """Linear sRGB (n, 3) at constant lightness and hue of a space, as far as it must."""
+def desaturate(space: Space, rgb: Array) -> Array:
+    """Reduce the chroma of linear sRGB (n, 3) at constant lightness and hue of a space until it is in gamut."""
     found = np.asarray(space.of(rgb @ SRGB.rgb_to_xyz.T))
     white = np.asarray(space.of(SRGB.rgb_to_xyz.sum(axis=1)))[0]
     found[:, 0] = np.clip(found[:, 0], 0, white)
@@ -54,8 +54,8 @@ def desaturated(space: Space, rgb: Array) -> Array:
     return np.clip(_at(space, found, inner, SRGB), 0, 1)
 
 
-def hollow(space: Space, gamut: Primaries, count: int = 24) -> float:
-    """How far lines from grey to the surface of [0, 1]³ leave it on the way, at the most, in linear RGB."""
+def concavity(space: Space, gamut: Primaries, count: int = 24) -> float:
+    """Return how far lines from grey to the surface of [0, 1]³ leave the cube at most, in linear RGB."""
     u, v = (part.ravel() for part in np.meshgrid(*[np.linspace(0, 1, count)] * 2))
     sides = [np.insert(np.stack([u, v], 1), axis, end, axis=1) for axis in range(3) for end in (0.0, 1.0)]
     found = np.asarray(space.of(np.concatenate(sides) @ gamut.rgb_to_xyz.T))
@@ -63,7 +63,7 @@ def hollow(space: Space, gamut: Primaries, count: int = 24) -> float:
 
 
 def _at(space: Space, found: Array, share: Array | float, gamut: Primaries) -> Array:
-    """Linear RGB of so much of the chroma."""
+    """Return linear RGB with a share of the chroma."""
     less = np.concatenate([found[:, :1], share * found[:, 1:]], axis=1)
     return np.asarray(space.back(less)) @ np.linalg.inv(gamut.rgb_to_xyz).T
 
