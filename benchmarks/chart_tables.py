@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from benchmarks.page import table
 from uplift.lab.chart.panels import PANELS
-from uplift.lab.chart.table import Chart, Row, State
+from uplift.lab.chart.table import Chart, MethodResult, State
 from uplift.viz.format import format_build_time, format_error, format_size, format_time
 
 ERRORS = ("round_trip", "A", "FL2", "FL7", "FL11", "LED-B3", "rms", "own_lights")
@@ -59,7 +59,7 @@ def undrawn(chart: Chart) -> str:
     )
 
 
-def _cells(row: Row) -> list[str]:
+def _cells(row: MethodResult) -> list[str]:
     numbers = row.numbers
     trip = " / ".join(format_error(numbers[f"round_trip_{kind}"]) for kind in ("mean", "p99", "max"))
     return [
@@ -76,7 +76,7 @@ def _cells(row: Row) -> list[str]:
     ]
 
 
-def _spread(row: Row, kind: str) -> str:
+def _spread(row: MethodResult, kind: str) -> str:
     if f"{kind}_ns" not in row.numbers:
         return ""
     median, least, most = (format_time(row.numbers[f"{kind}_ns{end}"]) for end in ("", "_least", "_most"))

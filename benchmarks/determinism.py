@@ -25,7 +25,7 @@ import uplift
 from benchmarks.timing import ROOT
 from uplift.atlas import Atlas
 from uplift.lab.timing import environment
-from uplift.report.regression import LIMITS, compare
+from uplift.report.regression import LIMITS, compare_rebuilt
 
 Row = dict[str, Any]
 PATH = ROOT / "docs" / "stability-determinism.json"
@@ -188,7 +188,7 @@ def _rows(setting: Setting, base: Path, folder: Path) -> list[Row]:
     rows = []
     for number, case in enumerate(CASES):
         one, other = base / f"{number}.uplift", folder / f"{number}.uplift"
-        comparison = compare(other, uplift.load(one).data, uplift.load(other).data)
+        comparison = compare_rebuilt(other, uplift.load(one).data, uplift.load(other).data)
         rows.append(
             {
                 "setting": setting.name,

@@ -9,7 +9,7 @@ import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.lab.comparison.measure import judge
+from uplift.lab.comparison.measure import error_statistics
 from uplift.lab.comparison.scene import Scene
 from uplift.lab.comparison.statistics import Statistics
 from uplift.scene.representations import enhanced_riemann
@@ -40,7 +40,7 @@ def both(scene: Scene) -> list[Closed]:
     pairs: list[tuple[Any, Any]] = [(riemann_sums(count), closed(count)) for count in COUNTS]
     pairs += [(enhanced_riemann.enhanced_riemann(count), enhanced(count)) for count in COUNTS]
     return [
-        Closed(part.name, one.name, judge(one, scene, part), judge(other, scene, part))
+        Closed(part.name, one.name, error_statistics(one, scene, part), error_statistics(other, scene, part))
         for part in scene.sets
         for one, other in pairs
     ]

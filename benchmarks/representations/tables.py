@@ -8,7 +8,7 @@ from benchmarks.page import table
 from benchmarks.representations.closed import Closed
 from benchmarks.representations.thesis import Printed
 from uplift.lab.comparison.filters import NONE, Tuned
-from uplift.lab.comparison.measure import Comparison, Row
+from uplift.lab.comparison.measure import Comparison, RepresentationResult
 from uplift.lab.comparison.recommend import cheapest
 from uplift.lab.comparison.statistics import HEADINGS, Statistics
 from uplift.lab.comparison.style import heading
@@ -46,7 +46,7 @@ def _cheapest(found: Comparison, lights: str, target: float) -> str:
     return "<br>".join(told)
 
 
-def _named(row: Row | None) -> str:
+def _named(row: RepresentationResult | None) -> str:
     return f"{row.name} ({row.floats:.3g}, {row.light_floats:.3g})" if row else "none"
 
 

@@ -14,7 +14,7 @@ from ..params.options import force_option
 from ..startup import enable_jit_cache, use_one_blas_thread
 
 if TYPE_CHECKING:
-    from uplift.lab.chart.recommend import Wish
+    from uplift.lab.chart.recommend import Requirement
     from uplift.lab.chart.table import Chart
 
 FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
@@ -95,9 +95,9 @@ def command(
     enable_jit_cache()
     use_one_blas_thread()
     if recommend:
-        from uplift.lab.chart.recommend import Wish
+        from uplift.lab.chart.recommend import Requirement
 
-        _recommend(source, Wish(time_ns, delta_e, light, atlas_materials))
+        _recommend(source, Requirement(time_ns, delta_e, light, atlas_materials))
         return
     if atlas_materials or any(value is not None for value in (time_ns, delta_e, light)):
         raise click.UsageError("--time-ns, --delta-e, --light and --atlas-materials require --recommend.")
@@ -110,7 +110,7 @@ def command(
     click.echo(f"{folder}: {', '.join(FILES)}", err=True)
 
 
-def _recommend(source: str | None, wish: Wish) -> None:
+def _recommend(source: str | None, wish: Requirement) -> None:
     from uplift.lab.chart.recommend import recommend, shipped
     from uplift.viz.format import format_error, format_size, format_time
 

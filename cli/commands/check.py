@@ -13,7 +13,7 @@ from ..params.options import atlas_folders_option, format_option, quiet_option, 
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
-    from uplift.report.regression import Comparison
+    from uplift.report.regression import RebuildDifference
 
 
 @click.command("check")
@@ -43,14 +43,14 @@ def command(
     enable_jit_cache()
     from uplift.lookup import load
     from uplift.pipeline.rebuild import rebuild
-    from uplift.report.regression import compare
+    from uplift.report.regression import compare_rebuilt
 
     from ..output.progress import build_progress
 
     stored = {Path(file): load(file) for file in files}
     with build_progress(quiet=quiet, verbose=verbose) as progress:
         rebuilt = {path: rebuild(cube, path, folders, progress=progress) for path, cube in stored.items()}
-    comparisons = [compare(path, cube.data, rebuilt[path].data) for path, cube in stored.items()]
+    comparisons = [compare_rebuilt(path, cube.data, rebuilt[path].data) for path, cube in stored.items()]
     if style == "json":
         click.echo(json_text([_object(comparison) for comparison in comparisons]))
     elif not quiet:
@@ -63,7 +63,7 @@ def command(
         click.echo(f"{path}: replaced", err=True)
 
 
-def _object(comparison: Comparison) -> dict[str, object]:
+def _object(comparison: RebuildDifference) -> dict[str, object]:
     return {
         "cube": str(comparison.path),
         "passed": not comparison.failures,
@@ -73,7 +73,7 @@ def _object(comparison: Comparison) -> dict[str, object]:
     }
 
 
-def _table(comparisons: Sequence[Comparison]) -> None:
+def _table(comparisons: Sequence[RebuildDifference]) -> None:
     from rich.table import Table
 
     from uplift.report.regression import LIMITS
@@ -93,7 +93,7 @@ def _table(comparisons: Sequence[Comparison]) -> None:
     console().print(table)
 
 
-def _row(comparison: Comparison) -> list[str]:
+def _row(comparison: RebuildDifference) -> list[str]:
     from rich.markup import escape
 
     from uplift.report.regression import LIMITS

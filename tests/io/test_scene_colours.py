@@ -21,7 +21,7 @@ from uplift.lattice import Status
 from uplift.lookup import MODES, Cube, bulk
 from uplift.lookup.nodes import around
 from uplift.pipeline.rebuild import rebuild
-from uplift.report.regression import compare
+from uplift.report.regression import compare_rebuilt
 
 
 @pytest.fixture(scope="module")
@@ -256,7 +256,7 @@ def test_in_a_wide_space_colours_come_back_where_they_can(tmp_path):
 def test_it_is_made_again_without_its_images(scene_cube):
     again = rebuild(scene_cube, "photo.uplift", [ATLASES])
     assert digest(again.data) == digest(scene_cube.data)
-    assert compare("photo.uplift", scene_cube.data, again.data).failures == ()
+    assert compare_rebuilt("photo.uplift", scene_cube.data, again.data).failures == ()
     assert again.data.provenance["scene"][0]["name"] == PHOTO.name
 
 
@@ -265,7 +265,7 @@ def test_a_point_that_is_missing_is_found(scene_cube):
     fewer = with_absent_points(
         data, data.points.present & (np.arange(data.lattice.size) != np.flatnonzero(data.points.present)[-1])
     )
-    failures = compare("photo.uplift", data, fewer).failures
+    failures = compare_rebuilt("photo.uplift", data, fewer).failures
     assert {"spectra_max", "status"} <= set(failures)
 
 

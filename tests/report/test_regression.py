@@ -14,7 +14,7 @@ from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError
 from uplift.lattice import Lattice, Status
-from uplift.report.regression import LIMITS, Comparison, compare
+from uplift.report.regression import LIMITS, RebuildDifference, compare_rebuilt
 
 PATH = Path("cube.uplift")
 
@@ -31,7 +31,7 @@ def with_point(data, name, point, value):
 
 
 def test_cube_equals_itself(data):
-    found = compare(PATH, data, data)
+    found = compare_rebuilt(PATH, data, data)
     assert found.failures == ()
     assert set(found.measures.values()) == {0.0}
     assert found.stored_counts == found.rebuilt_counts == data.points.counts()
@@ -39,7 +39,7 @@ def test_cube_equals_itself(data):
 
 def test_changed_coefficient_fails_the_spectra(data):
     nudged = with_point(data, "coefficients", (300, 4), data.points.coefficients[300, 4] + 1e-3)
-    found = compare(PATH, data, nudged)
+    found = compare_rebuilt(PATH, data, nudged)
     assert "spectra_max" in found.failures
     assert "spectra_rms" in found.failures
     assert "rgb" not in found.failures  # the stored RGB has not changed
@@ -48,17 +48,17 @@ def test_changed_coefficient_fails_the_spectra(data):
 
 def test_rounding_error_passes(data):
     nudged = with_point(data, "coefficients", (300, 4), data.points.coefficients[300, 4] * (1 + 1e-14))
-    assert compare(PATH, data, nudged).failures == ()
+    assert compare_rebuilt(PATH, data, nudged).failures == ()
 
 
 def test_changed_colour_fails(data):
     nudged = with_point(data, "rgb", (300, 1), data.points.rgb[300, 1] + 2 * LIMITS["rgb"])
-    assert compare(PATH, data, nudged).failures == ("rgb",)
+    assert compare_rebuilt(PATH, data, nudged).failures == ("rgb",)
 
 
 def test_changed_status_fails(data):
     assert data.points.status[300] != Status.UNFITTED
-    found = compare(PATH, data, with_point(data, "status", 300, Status.UNFITTED))
+    found = compare_rebuilt(PATH, data, with_point(data, "status", 300, Status.UNFITTED))
     assert found.failures == ("status",)
     assert found.rebuilt_counts["unfitted"] == found.stored_counts["unfitted"] + 1
 
@@ -72,12 +72,12 @@ def test_measures_fail_above_their_limits_and_as_nan(name):
         (float("nan"), (name,)),
         (float("inf"), (name,)),
     ]:
-        assert Comparison(PATH, measures | {name: value}, {}, {}).failures == failures
+        assert RebuildDifference(PATH, measures | {name: value}, {}, {}).failures == failures
 
 
 def test_nan_in_the_spectra_fails(data):
     sensor = dataclasses.replace(data.sensor, wavelengths=np.full(81, np.nan))
-    failures = compare(PATH, data, dataclasses.replace(data, sensor=sensor)).failures
+    failures = compare_rebuilt(PATH, data, dataclasses.replace(data, sensor=sensor)).failures
     assert {"spectra_max", "spectra_rms", "delta_e_A"} <= set(failures)
 
 
@@ -88,7 +88,7 @@ def test_measures_are_the_largest_and_the_rms(data):
         data.model.squash(data.model.from_storage(cube.points.coefficients) @ data.model.basis(at).T)
         for cube in (data, other)
     )
-    measures = compare(PATH, data, other).measures
+    measures = compare_rebuilt(PATH, data, other).measures
     assert measures["spectra_max"] == np.abs(first - second).max()
     assert measures["spectra_rms"] == pytest.approx(np.sqrt(np.mean((first - second) ** 2)), rel=1e-12)
     for name in REGRESSION_LIGHTS:
@@ -104,5 +104,5 @@ def test_different_lattice_is_an_error(data):
     for nodes in (np.linspace(0, 1, 8), np.linspace(0, 1, 5)):
         other = dataclasses.replace(data, lattice=Lattice(nodes))
         with raises(CubeFileError, "lattice-mismatch") as caught:
-            compare(PATH, data, other)
+            compare_rebuilt(PATH, data, other)
         assert caught.value.path == PATH

@@ -28,7 +28,7 @@ functions, and many of these meet the colour equally well: rounding decides betw
 
 
 @dataclass(frozen=True)
-class Comparison:
+class RebuildDifference:
     """Differences between a stored cube and a rebuilt one.
 
     Parameters
@@ -53,7 +53,7 @@ class Comparison:
         return (*over, *(["status"] if self.stored_counts != self.rebuilt_counts else []))
 
 
-def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
+def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildDifference:
     """Compare a stored cube with a rebuilt one.
 
     Parameters
@@ -93,7 +93,7 @@ def compare(path: Path, stored: CubeData, rebuilt: CubeData) -> Comparison:
     }
     for name in REGRESSION_LIGHTS:
         measures[f"delta_e_{name}"] = _largest_delta_e(name, stored.sensor.observer, first, second)
-    return Comparison(path, measures, _counts(stored, compared), _counts(rebuilt, compared))
+    return RebuildDifference(path, measures, _counts(stored, compared), _counts(rebuilt, compared))
 
 
 def _well_determined(data: CubeData) -> Mask:

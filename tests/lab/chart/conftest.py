@@ -7,8 +7,8 @@ import pytest
 
 from uplift.atlas import read_atlas
 from uplift.colorimetry.lights import CHART_LIGHTS
-from uplift.lab.chart.method import Family, Method, Ready
-from uplift.lab.chart.table import Chart, Row, State
+from uplift.lab.chart.method import Family, Method, PreparedMethod
+from uplift.lab.chart.table import Chart, MethodResult, State
 from uplift.lab.chart.task import Effort, task
 
 FACTS = dict.fromkeys(("machine", "versions", "commit", "colours", "spectra", "effort"), "stated")
@@ -41,7 +41,7 @@ def method_of():
     """A method that answers with a function of RGB and wavelengths."""
 
     def method_of(uplift, **fields):
-        return Method("test", "Test", lambda task: Ready(uplift, 8), **fields)
+        return Method("test", "Test", lambda task: PreparedMethod(uplift, 8), **fields)
 
     return method_of
 
@@ -58,7 +58,7 @@ def row_of():
             ("mode", "ask", "note", "why", "build"), ""
         )
         plain = {"family": "Mallett 2019", "source": "a test", "state": State.MEASURED, "numbers": numbers}
-        return Row(**({"method": name} | texts | plain | fields))
+        return MethodResult(**({"method": name} | texts | plain | fields))
 
     return row_of
 

@@ -9,7 +9,7 @@ import pytest
 from uplift_cli.main import main
 
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.lab.chart.recommend import Wish, recommend, shipped
+from uplift.lab.chart.recommend import Requirement, recommend, shipped
 
 
 @pytest.fixture
@@ -26,13 +26,13 @@ def chart(row_of, chart_of):
 @pytest.mark.parametrize(
     ("wish", "name"),
     [
-        (Wish(time_ns=100), "good"),
-        (Wish(time_ns=60), "rough"),
-        (Wish(time_ns=1e6, light="FL11"), "better"),
-        (Wish(delta_e=0.5, light="FL11"), "good"),
-        (Wish(delta_e=0.3, light="D65"), "better"),
-        (Wish(delta_e=10, own=True), "rough"),
-        (Wish(time_ns=100, delta_e=1), "good"),
+        (Requirement(time_ns=100), "good"),
+        (Requirement(time_ns=60), "rough"),
+        (Requirement(time_ns=1e6, light="FL11"), "better"),
+        (Requirement(delta_e=0.5, light="FL11"), "good"),
+        (Requirement(delta_e=0.3, light="D65"), "better"),
+        (Requirement(delta_e=10, own=True), "rough"),
+        (Requirement(time_ns=100, delta_e=1), "good"),
     ],
 )
 def test_the_quickest_that_is_near_enough_or_the_nearest_that_is_quick_enough(chart, wish, name):
@@ -42,12 +42,12 @@ def test_the_quickest_that_is_near_enough_or_the_nearest_that_is_quick_enough(ch
 @pytest.mark.parametrize(
     ("wish", "message"),
     [
-        (Wish(time_ns=10), "no cube answers in 10 ns per RGB; the quickest, rough, takes 50 ns"),
+        (Requirement(time_ns=10), "no cube answers in 10 ns per RGB; the quickest, rough, takes 50 ns"),
         (
-            Wish(delta_e=0.1, light="A"),
+            Requirement(delta_e=0.1, light="A"),
             "within ΔE00 0.1 under A, for unseen materials; the nearest, no better, has 0.199",
         ),
-        (Wish(delta_e=0.3, time_ns=100), "the nearest, good, has 0.5"),
+        (Requirement(delta_e=0.3, time_ns=100), "the nearest, good, has 0.5"),
     ],
 )
 def test_what_cannot_be_had_is_refused_with_what_comes_closest(chart, wish, message):
@@ -57,25 +57,25 @@ def test_what_cannot_be_had_is_refused_with_what_comes_closest(chart, wish, mess
 
 def test_a_chart_without_cubes_has_nothing_to_recommend(row_of, chart_of):
     with pytest.raises(OptionError, match="has no cube"):
-        recommend(chart_of(row_of("peer", 1, 1)), Wish(time_ns=100))
+        recommend(chart_of(row_of("peer", 1, 1)), Requirement(time_ns=100))
 
 
 @pytest.mark.parametrize("limit", [0, -1, float("nan"), float("inf")])
 def test_limits_are_positive_numbers(limit):
     for field in ("time_ns", "delta_e"):
         with pytest.raises(OptionError, match="a limit is no positive number"):
-            Wish(**{field: limit})
+            Requirement(**{field: limit})
 
 
 def test_a_wish_needs_a_limit_and_a_light_of_the_chart():
     with pytest.raises(OptionError, match="nothing is wished for"):
-        Wish()
+        Requirement()
     with pytest.raises(UnknownNameError, match="did you mean 'FL11'"):
-        Wish(delta_e=1, light="FL111")
+        Requirement(delta_e=1, light="FL111")
 
 
 def test_the_shipped_chart_recommends_what_can_be_built():
-    found = recommend(shipped(), Wish(time_ns=1e5))
+    found = recommend(shipped(), Requirement(time_ns=1e5))
     assert found.numbers["time_ns"] <= 1e5
     name, *arguments = shlex.split(found.build)[1:]
     with click.Context(main, **main.context_settings) as context:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from uplift.lab.comparison.filters import NONE, tune
-from uplift.lab.comparison.measure import judge
+from uplift.lab.comparison.measure import error_statistics
 from uplift.scene.representations.filtered_point_sampling import filtered_point_samples
 from uplift.scene.representations.filters import COARSE_STRIDE, candidates
 from uplift.scene.representations.point_sampling import point_samples
@@ -24,7 +24,7 @@ def tuned(checker):
 def test_none_that_was_tried_is_better(checker, tuned, lights, kind):
     (part,) = [part for part in checker.sets if part.name == lights]
     means = {
-        one: judge(filtered_point_samples(16, one), checker, part).mean
+        one: error_statistics(filtered_point_samples(16, one), checker, part).mean
         for one in candidates(kind, COARSE_STRIDE)
     }
     best = tuned[lights, kind]
@@ -34,7 +34,7 @@ def test_none_that_was_tried_is_better(checker, tuned, lights, kind):
 
 def test_without_a_filter_it_is_point_sampling(checker, tuned):
     for part in checker.sets:
-        assert tuned[part.name, NONE].statistics == judge(point_samples(16), checker, part)
+        assert tuned[part.name, NONE].statistics == error_statistics(point_samples(16), checker, part)
         assert tuned[part.name, NONE].told == ""
 
 

@@ -12,7 +12,7 @@ from tests.conftest import MACBETH
 from tests.lab.comparison.conftest import EFFORT
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import AtlasError, UnknownNameError, UpliftError
-from uplift.lab.comparison.measure import compare, judge
+from uplift.lab.comparison.measure import compare, error_statistics
 from uplift.lab.comparison.scene import FEW, scene
 from uplift.lab.comparison.statistics import HEADINGS, statistics
 from uplift.scene.representations.dense import xyz_weights
@@ -23,7 +23,7 @@ from uplift.scene.representations.samples import SampleRepresentation
 def test_the_dense_data_itself_has_no_error(checker):
     dense = SampleRepresentation("dense", "dense", np.eye(401), xyz_weights())
     for part in checker.sets:
-        assert max(judge(dense, checker, part)) < 1e-9
+        assert max(error_statistics(dense, checker, part)) < 1e-9
 
 
 def test_errors_are_those_of_one_product_after_another(checker):
@@ -36,7 +36,9 @@ def test_errors_are_those_of_one_product_after_another(checker):
             )
             pair = (lab(samples.xyz(product)[0], white), lab((power * surface) @ xyz_weights(), white))
             apart.append(float(delta_e_2000(*pair)))
-    assert tuple(judge(samples, checker, part)) == pytest.approx(tuple(statistics(apart)), rel=1e-9)
+    assert tuple(error_statistics(samples, checker, part)) == pytest.approx(
+        tuple(statistics(apart)), rel=1e-9
+    )
 
 
 def test_what_is_no_number_is_refused(checker):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from uplift.common.errors import OptionError
-from uplift.lab.comparison.measure import Comparison, Row
+from uplift.lab.comparison.measure import Comparison, RepresentationResult
 from uplift.lab.comparison.recommend import cheapest, nearest
 from uplift.lab.comparison.statistics import Statistics
 from uplift.lab.timing import Spread
@@ -13,7 +13,7 @@ from uplift.lab.timing import Spread
 
 def row(name, high, floats, light_floats=8.0, ns=5.0, lights="smooth"):
     found = Statistics(high / 2, 0.1, high / 2, 0.0, high / 3, high / 1.5, high)
-    return Row(name, "made up", lights, found, floats, light_floats, Spread(ns, ns, ns, 3))
+    return RepresentationResult(name, "made up", lights, found, floats, light_floats, Spread(ns, ns, ns, 3))
 
 
 ROWS = (

@@ -13,7 +13,7 @@ from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.arrays import Array
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, Uplift
-from uplift.lab.chart.table import Chart, Row, State
+from uplift.lab.chart.table import Chart, MethodResult, State
 from uplift.lab.chart.task import Task
 from uplift.lab.chart.timing import batch_times, single_times
 from uplift.lab.study.held_out import spectrum_errors
@@ -51,7 +51,7 @@ def measure(
     return Chart({**where, **task.facts, "effort": told}, tuple(rows))
 
 
-def measure_one(family: Family, method: Method, task: Task) -> Row:
+def measure_one(family: Family, method: Method, task: Task) -> MethodResult:
     """A method's row; what is broken or missing has no times."""
     state, why, numbers = State.MEASURED, "", {}
     try:
@@ -64,7 +64,7 @@ def measure_one(family: Family, method: Method, task: Task) -> Row:
         state, why = State.MISSING, str(error)
     except BrokenError as error:
         state, why = State.BROKEN, str(error)
-    return Row(
+    return MethodResult(
         method=method.name,
         title=method.title,
         label=method.label or method.title,

@@ -34,7 +34,7 @@ class Claims:
 
 
 @dataclass(frozen=True, eq=False)
-class Ready:
+class PreparedMethod:
     """A method ready to be asked: what it holds in bytes, and the CPU seconds that making that took.
 
     ``seconds`` is 0 where there is nothing to make, None where it was made elsewhere.
@@ -63,7 +63,7 @@ class Method:
 
     name: str
     title: str
-    prepare: Callable[[Task], Ready]
+    prepare: Callable[[Task], PreparedMethod]
     claims: Claims = field(default_factory=Claims)
     batch: bool = True
     usual: bool = True
@@ -104,6 +104,6 @@ def one_by_one(spectrum: Callable[[Array], tuple[Array, Array]]) -> Uplift:
     return uplift
 
 
-def held(arrays: Mapping[str, Array] | tuple[Array, ...]) -> int:
+def nbytes(arrays: Mapping[str, Array] | tuple[Array, ...]) -> int:
     """Bytes of arrays."""
     return sum(array.nbytes for array in (arrays.values() if isinstance(arrays, Mapping) else arrays))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.legend import OTHER, colours
 from uplift.lab.chart.panels import PANELS, Panel
-from uplift.lab.chart.table import Chart, Row, State
+from uplift.lab.chart.table import Chart, MethodResult, State
 from uplift.report.page_parts import note, right, table
 from uplift.viz.document import Told, document, family_boxes, footer
 from uplift.viz.format import format_build_time, format_error, format_size, format_time
@@ -72,7 +72,7 @@ def _table(chart: Chart) -> Markup:
     return element("section", element("h2", "Every method"), told, table(headings, lines, "sortable"))
 
 
-def _cells(row: Row) -> list[Markup]:
+def _cells(row: MethodResult) -> list[Markup]:
     numbers = row.numbers
     shown = [
         ("time_ns", format_time(numbers["time_ns"])),
@@ -98,11 +98,11 @@ def _footer(chart: Chart) -> Markup:
     return footer(chart.facts, dict.fromkeys(f"{row.family}: {row.source}" for row in chart.rows))
 
 
-def _told(row: Row) -> Told:
+def _told(row: MethodResult) -> Told:
     return {"title": row.title, "family": row.family, "lines": _lines(row)}
 
 
-def _lines(row: Row) -> list[tuple[str, str]]:
+def _lines(row: MethodResult) -> list[tuple[str, str]]:
     numbers = row.numbers
     if row.state != State.MEASURED:
         return []

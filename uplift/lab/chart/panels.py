@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from uplift.colorimetry.lights import CHART_LIGHTS
-from uplift.lab.chart.table import Chart, Row
+from uplift.lab.chart.table import Chart, MethodResult
 from uplift.viz.format import format_build_time, format_error, format_time
 
 FLOORS = {"time_ns": 1.0, "build_s": 1e-3}
@@ -26,28 +26,28 @@ class Panel:
     across: str = "time_ns"
     whiskers: bool = False
 
-    def point(self, row: Row) -> tuple[float, float] | None:
+    def point(self, row: MethodResult) -> tuple[float, float] | None:
         """Where a method stands; None where that is not known."""
         time, error = row.numbers.get(self.across), row.numbers.get(f"{self.error}_mean")
         if time is None or error is None:
             return None
         return max(time, FLOORS[self.across]), max(error, LEAST)
 
-    def told(self, row: Row) -> tuple[str, str]:
+    def told(self, row: MethodResult) -> tuple[str, str]:
         """Time and mean error, to be read."""
         time = row.numbers[self.across]
         told = format_build_time(time) if self.across == "build_s" else format_time(time)
         return told, format_error(row.numbers[f"{self.error}_mean"])
 
-    def reach(self, row: Row) -> tuple[float, float]:
+    def reach(self, row: MethodResult) -> tuple[float, float]:
         """The 99 % and the largest error."""
         return max(row.numbers[f"{self.error}_p99"], LEAST), max(row.numbers[f"{self.error}_max"], LEAST)
 
-    def front(self, chart: Chart) -> tuple[Row, ...]:
+    def front(self, chart: Chart) -> tuple[MethodResult, ...]:
         """The Pareto front, fastest first: who is slower than another on it is notably nearer."""
         points = {row: self.point(row) for row in chart.measured}
         known = {row: point for row, point in points.items() if point is not None}
-        found: list[Row] = []
+        found: list[MethodResult] = []
         for row in sorted(known, key=lambda row: known[row]):
             if not found or known[row][1] < NOTABLE * known[found[-1]][1]:
                 found.append(row)

@@ -12,7 +12,7 @@ from uplift.common.arrays import Array
 from uplift.common.files import write_text
 from uplift.lab.chart.legend import ALONE, FRONT, OTHER, SHAPES, WHISKER, colours, legend, width
 from uplift.lab.chart.panels import AXES, FLOORS, LEAST, PANELS, Panel
-from uplift.lab.chart.table import Chart, Row
+from uplift.lab.chart.table import Chart, MethodResult
 from uplift.viz.figure import STYLE, new_figure, to_svg, write_png
 from uplift.viz.format import format_time
 from uplift.viz.markup import Markup
@@ -83,7 +83,7 @@ def _time(panel: Panel, value: float) -> str:
     return format_time(value * 1e9) if value > FLOORS["build_s"] else "nothing\nto build"
 
 
-def _drawn(panel: Panel, chart: Chart) -> list[tuple[int, Row]]:
+def _drawn(panel: Panel, chart: Chart) -> list[tuple[int, MethodResult]]:
     """Rows with their numbers, ours first and so below the others."""
     rows = [
         (number, row) for number, row in enumerate(chart.rows) if row in chart.measured and panel.point(row)
@@ -91,7 +91,7 @@ def _drawn(panel: Panel, chart: Chart) -> list[tuple[int, Row]]:
     return sorted(rows, key=lambda pair: not pair[1].build)
 
 
-def _draw_row(axes: Any, panel: Panel, row: Row, name: str, *, color: str, ahead: bool) -> None:
+def _draw_row(axes: Any, panel: Panel, row: MethodResult, name: str, *, color: str, ahead: bool) -> None:
     (x, mean), alone = panel.point(row) or (1, 1), "batch_ns" not in row.numbers
     if panel.whiskers:
         p99, most = panel.reach(row)

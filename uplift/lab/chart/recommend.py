@@ -8,7 +8,7 @@ from importlib.resources import files
 from uplift.colorimetry.lights import CHART_LIGHTS, DEFAULT_ILLUMINANT
 from uplift.common.errors import OptionError, unknown_name
 from uplift.lab.chart.panels import NOTABLE
-from uplift.lab.chart.table import Chart, Row, parse_chart
+from uplift.lab.chart.table import Chart, MethodResult, parse_chart
 from uplift.viz.format import format_error, format_time
 
 MEASURED = "measured.csv"
@@ -20,7 +20,7 @@ def shipped() -> Chart:
 
 
 @dataclass(frozen=True)
-class Wish:
+class Requirement:
     """What answers may cost, in ns per RGB, and how far they may be off: mean ΔE00 under a light.
 
     Without a light, under all that were measured; ``own`` asks for materials of the atlas itself, not for unseen ones.
@@ -57,7 +57,7 @@ class Wish:
         return f"{where}, for {'materials of the atlas' if self.own else 'unseen materials'}"
 
 
-def recommend(chart: Chart, wish: Wish) -> Row:
+def recommend(chart: Chart, wish: Requirement) -> MethodResult:
     """Of the cubes measured the quickest that is near enough; where only time is limited, as near as any in that time.
 
     Raises `OptionError` where nothing measured is, with what comes closest.
@@ -66,10 +66,10 @@ def recommend(chart: Chart, wish: Wish) -> Row:
     if not cubes:
         raise OptionError("the chart has no cube with such numbers", hint="measure one with 'uplift chart'")
 
-    def time(row: Row) -> float:
+    def time(row: MethodResult) -> float:
         return row.numbers["time_ns"]
 
-    def error(row: Row) -> float:
+    def error(row: MethodResult) -> float:
         return row.numbers[wish.error]
 
     quick = [row for row in cubes if wish.time_ns is None or time(row) <= wish.time_ns]

@@ -26,7 +26,7 @@ class State(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Row:
+class MethodResult:
     """A method and what was found of it.
 
     ``why`` tells what is broken or missing. ``numbers``: ``bytes``, ``build_s``; ``batch_ns`` and ``single_ns`` per
@@ -55,15 +55,15 @@ class Chart:
     """Rows, and the ``facts`` that hold for all of them."""
 
     facts: Mapping[str, str]
-    rows: tuple[Row, ...]
+    rows: tuple[MethodResult, ...]
 
     @property
-    def measured(self) -> tuple[Row, ...]:
+    def measured(self) -> tuple[MethodResult, ...]:
         """Those that are drawn."""
         return tuple(row for row in self.rows if row.state == State.MEASURED)
 
 
-TEXTS = tuple(field.name for field in fields(Row) if field.name != "numbers")
+TEXTS = tuple(field.name for field in fields(MethodResult) if field.name != "numbers")
 
 
 def csv_text(chart: Chart) -> str:
@@ -102,14 +102,14 @@ def parse_chart(text: str, path: str | os.PathLike[str]) -> Chart:
     return Chart({name: lines[0][name] for name in FACTS}, rows)
 
 
-def _row(line: dict[str, str]) -> Row:
+def _row(line: dict[str, str]) -> MethodResult:
     if None in line or None in line.values():
         raise ValueError("a line is longer or shorter than the first")
     texts = {name: line[name] for name in TEXTS if name != "state"}
     numbers = {name: float(line[name]) for name in line if name not in (*TEXTS, *FACTS) and line[name]}
     if not all(map(math.isfinite, numbers.values())):
         raise ValueError(f"'{line['method']}' has a number that is none")
-    return Row(**texts, state=State(line["state"]), numbers=numbers)
+    return MethodResult(**texts, state=State(line["state"]), numbers=numbers)
 
 
 def _unreadable(path: str | os.PathLike[str], problem: str) -> ChartFileError:

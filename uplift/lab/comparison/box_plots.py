@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from uplift.lab.comparison.measure import Comparison, Row
+from uplift.lab.comparison.measure import Comparison, RepresentationResult
 from uplift.lab.comparison.style import colour, heading
 from uplift.viz.figure import GREY, INK, PALE, new_figure
 
@@ -26,7 +26,7 @@ def draw(found: Comparison) -> Any:
     return figure
 
 
-def _draw_panel(axes: Any, title: str, rows: Sequence[Row]) -> None:
+def _draw_panel(axes: Any, title: str, rows: Sequence[RepresentationResult]) -> None:
     drawn = axes.bxp([_box(row) for row in rows], showfliers=False, patch_artist=True, widths=0.62)
     for number, row in enumerate(rows):
         drawn["boxes"][number].set(facecolor=colour(row.family), edgecolor="none", alpha=0.85)
@@ -48,7 +48,7 @@ def _draw_panel(axes: Any, title: str, rows: Sequence[Row]) -> None:
     axes.spines[["left", "bottom"]].set_color(GREY)
 
 
-def _box(row: Row) -> dict[str, Any]:
+def _box(row: RepresentationResult) -> dict[str, Any]:
     """The quartiles, the median within, and whiskers to the quantiles of 2.5 and 97.5 %."""
     found = row.statistics
     return {

@@ -12,7 +12,7 @@ import numpy as np
 from uplift.common.arrays import Array
 from uplift.lab.chart.legend import FRONT, PLAIN
 from uplift.lab.chart.legend import STYLE as KEY
-from uplift.lab.comparison.measure import Comparison, Row
+from uplift.lab.comparison.measure import Comparison, RepresentationResult
 from uplift.lab.comparison.style import colour, families, heading
 from uplift.viz.figure import new_figure
 from uplift.viz.format import format_time
@@ -31,7 +31,7 @@ class Cost:
     """What is drawn across: its title, a row's, how it is told, and where; without ``ticks`` at powers of ten."""
 
     title: str
-    of: Callable[[Row], float]
+    of: Callable[[RepresentationResult], float]
     told: Callable[[float], str]
     ticks: tuple[float, ...] = ()
 
@@ -82,20 +82,22 @@ def numbered(found: Comparison) -> dict[str, int]:
     return {name: number for number, name in enumerate(dict.fromkeys(row.name for row in found.rows))}
 
 
-def _point(row: Row, cost: Cost) -> tuple[float, float]:
+def _point(row: RepresentationResult, cost: Cost) -> tuple[float, float]:
     return max(cost.of(row), 1.0), max(row.statistics.q97_5, LEAST)
 
 
-def front(rows: Sequence[Row], cost: Cost) -> list[Row]:
+def front(rows: Sequence[RepresentationResult], cost: Cost) -> list[RepresentationResult]:
     """The Pareto front, the cheapest first: who costs more than another on it is nearer."""
-    found: list[Row] = []
+    found: list[RepresentationResult] = []
     for row in sorted(rows, key=lambda row: _point(row, cost)):
         if not found or _point(row, cost)[1] < _point(found[-1], cost)[1]:
             found.append(row)
     return found
 
 
-def _draw_panel(axes: Any, title: str, cost: Cost, rows: Sequence[Row], gids: dict[str, str]) -> None:
+def _draw_panel(
+    axes: Any, title: str, cost: Cost, rows: Sequence[RepresentationResult], gids: dict[str, str]
+) -> None:
     set_up(axes, f"{heading(title)}, ΔE00 of 97.5 %", cost.title)
     if cost.ticks:
         axes.set_xticks(cost.ticks)
@@ -118,12 +120,12 @@ def _draw_panel(axes: Any, title: str, cost: Cost, rows: Sequence[Row], gids: di
     axes.plot(*_stairs(axes, cost, rows).T, scalex=False, zorder=1, **FRONT)
 
 
-def _stairs(axes: Any, cost: Cost, rows: Sequence[Row]) -> Array:
+def _stairs(axes: Any, cost: Cost, rows: Sequence[RepresentationResult]) -> Array:
     points = np.array([_point(row, cost) for row in front(rows, cost)])
     return pareto_steps(points, axes.get_xlim()[1])
 
 
-def _label(axes: Any, cost: Cost, rows: Sequence[Row], gids: dict[str, str]) -> None:
+def _label(axes: Any, cost: Cost, rows: Sequence[RepresentationResult], gids: dict[str, str]) -> None:
     ahead = front(rows, cost)
     names = [
         Name(row.name, _point(row, cost), colour(row.family), row in ahead, f"label-{gids[row.name]}")

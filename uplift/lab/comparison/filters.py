@@ -14,7 +14,7 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.arrays import Array
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.comparison.measure import judge
+from uplift.lab.comparison.measure import error_statistics
 from uplift.lab.comparison.scene import LightSet, Scene
 from uplift.lab.comparison.statistics import Statistics
 from uplift.scene.representations.dense import TABLE_STRIDE
@@ -58,14 +58,14 @@ def tune(
     The search tries ``every`` so many of the choices for each parameter.
     """
     found = [
-        Tuned(NONE, count, part.name, None, judge(point_samples(count), scene, part))
+        Tuned(NONE, count, part.name, None, error_statistics(point_samples(count), scene, part))
         for count in counts
         for part in scene.sets
     ]
     tasks = list(product(kinds, counts))
     for done, (kind, count) in enumerate(tasks, 1):
         for part, low_pass in zip(scene.sets, _best(candidates(kind, every), count, scene), strict=True):
-            best = judge(filtered_point_samples(count, low_pass), scene, part)
+            best = error_statistics(filtered_point_samples(count, low_pass), scene, part)
             found.append(Tuned(kind, count, part.name, low_pass, best))
         progress(Progress("filters", done, len(tasks)))
     return tuple(found)
@@ -77,12 +77,12 @@ def _best(tried: Sequence[Filter], count: int, scene: Scene) -> list[Filter]:
     means = np.empty((len(tried), len(judges)))
     for row, low_pass in enumerate(tried):
         encoder = resampling_matrix(low_pass, count).T
-        means[row] = [judge(encoder) for judge in judges]
+        means[row] = [error_statistics(encoder) for error_statistics in judges]
     return [tried[int(row)] for row in means.argmin(axis=0)]
 
 
 def _judge(scene: Scene, part: LightSet, count: int) -> Callable[[Array], float]:
-    """From what takes the 5 nm table to samples, (81, count), to the mean ΔE00: `judge`, quicker."""
+    """From what takes the 5 nm table to samples, (81, count), to the mean ΔE00: `error_statistics`, quicker."""
     surfaces, lights = scene.surfaces[:, ::TABLE_STRIDE], part.powers[:, ::TABLE_STRIDE]
     reference, weights = scene.reference(part), point_samples(count).weights
 

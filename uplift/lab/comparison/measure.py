@@ -31,7 +31,7 @@ QUICK = Effort(runs=3, lap=0.005, rows=256)
 
 
 @dataclass(frozen=True)
-class Row:
+class RepresentationResult:
     """A representation under a set of lights.
 
     Parameters
@@ -57,9 +57,9 @@ class Comparison:
 
     facts: Mapping[str, str]
     sets: Mapping[str, str]
-    rows: tuple[Row, ...]
+    rows: tuple[RepresentationResult, ...]
 
-    def of(self, name: str) -> tuple[Row, ...]:
+    def of(self, name: str) -> tuple[RepresentationResult, ...]:
         """The rows of a set."""
         return tuple(row for row in self.rows if row.lights == name)
 
@@ -108,7 +108,7 @@ def errors(
     return apart
 
 
-def judge(representation: Representation, scene: Scene, part: LightSet) -> Statistics:
+def error_statistics(representation: Representation, scene: Scene, part: LightSet) -> Statistics:
     """The errors of a representation under a set of lights, and no cost. Raises `UpliftError`."""
     surfaces = representation.encode_surface(scene.surfaces)
     return statistics(errors(representation, surfaces, part, scene, scene.reference(part)))
@@ -116,9 +116,9 @@ def judge(representation: Representation, scene: Scene, part: LightSet) -> Stati
 
 def _row(
     representation: Representation, surfaces: Any, part: LightSet, scene: Scene, reference: Array, ns: Spread
-) -> Row:
+) -> RepresentationResult:
     apart = errors(representation, surfaces, part, scene, reference)
-    return Row(
+    return RepresentationResult(
         name=representation.name,
         family=representation.family,
         lights=part.name,

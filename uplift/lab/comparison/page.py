@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from uplift.lab.comparison.cost import numbered
 from uplift.lab.comparison.filters import Tuned
-from uplift.lab.comparison.measure import Comparison, Row
+from uplift.lab.comparison.measure import Comparison, RepresentationResult
 from uplift.lab.comparison.statistics import HEADINGS, Statistics
 from uplift.lab.comparison.style import families, heading
 from uplift.report.page_parts import note, right, table
@@ -48,7 +48,7 @@ def _lead(found: Comparison) -> str:
     )
 
 
-def _ranked(title: str, rows: Sequence[Row]) -> Markup:
+def _ranked(title: str, rows: Sequence[RepresentationResult]) -> Markup:
     told = note("Ranked by mean ΔE00. Click a heading to sort.")
     headings = [element("th", "representation"), *map(right, (*HEADINGS, "floats", "of a light", "product"))]
     return element(
@@ -56,7 +56,7 @@ def _ranked(title: str, rows: Sequence[Row]) -> Markup:
     )
 
 
-def _cells(row: Row) -> list[Markup]:
+def _cells(row: RepresentationResult) -> list[Markup]:
     floats = [number(f"{value:.1f}", data_value=f"{value:.6g}") for value in (row.floats, row.light_floats)]
     time = number(format_time(row.ns.median), data_value=f"{row.ns.median:.6g}")
     name = element("td", row.name, element("small", row.family), class_="name")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from uplift.common.errors import OptionError
-from uplift.lab.comparison.measure import Comparison, Row
+from uplift.lab.comparison.measure import Comparison, RepresentationResult
 
 
 def check_target(target: float) -> float:
@@ -15,7 +15,7 @@ def check_target(target: float) -> float:
     return target
 
 
-def cheapest(found: Comparison, lights: str, target: float) -> Row | None:
+def cheapest(found: Comparison, lights: str, target: float) -> RepresentationResult | None:
     """Under a set of lights, of all whose 97.5 % quantile stays within the target the one that stores least of a
     surface, then of a light, then the nearest; None where none stays within it. Raises `OptionError`.
 
@@ -25,6 +25,6 @@ def cheapest(found: Comparison, lights: str, target: float) -> Row | None:
     return min(near, key=lambda row: (row.floats, row.light_floats, row.statistics.q97_5), default=None)
 
 
-def nearest(found: Comparison, lights: str) -> Row:
+def nearest(found: Comparison, lights: str) -> RepresentationResult:
     """The one whose 97.5 % quantile is least."""
     return min(found.of(lights), key=lambda row: row.statistics.q97_5)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from uplift.lab.comparison.measure import Row
+from uplift.lab.comparison.measure import RepresentationResult
 
 COLOURS = {
     "point sampling": "#1f6fb4",
@@ -27,7 +27,7 @@ def colour(family: str) -> str:
     return COLOURS.get(family, OTHER)
 
 
-def families(rows: Iterable[Row]) -> dict[str, str]:
+def families(rows: Iterable[RepresentationResult]) -> dict[str, str]:
     """Those of the rows, with their colours, in the order of `COLOURS`."""
     there = {row.family for row in rows}
     named = [family for family in COLOURS if family in there]

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from uplift.lab.comparison.filters import Tuned
-from uplift.lab.comparison.measure import Comparison, Row
+from uplift.lab.comparison.measure import Comparison, RepresentationResult
 
 
 def records(found: Comparison) -> list[dict[str, Any]]:
@@ -24,7 +24,7 @@ def filter_records(tuned: Iterable[Tuned]) -> list[dict[str, Any]]:
     ]
 
 
-def _record(row: Row) -> dict[str, Any]:
+def _record(row: RepresentationResult) -> dict[str, Any]:
     return {
         "lights": row.lights,
         "representation": row.name,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from uplift.colorimetry.observer import aligned, colour_science
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import Claims, Family, Method, Ready, held, one_by_one, stopwatch
+from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbytes, one_by_one, stopwatch
 from uplift.lab.chart.task import Task
 from uplift.models.sigmoid import evaluate_unscaled
 
@@ -12,7 +12,7 @@ SIZE = 5
 """Of the table, 3 × 5³ points: colour-science fits it in Python, in half a minute. Published tables have 64."""
 
 
-def prepare_direct(task: Task) -> Ready:
+def prepare_direct(task: Task) -> PreparedMethod:
     convert = colour_science().recovery.XYZ_to_sd_Jakob2019
     cmfs, light = aligned(task.sensor)
 
@@ -20,10 +20,10 @@ def prepare_direct(task: Task) -> Ready:
         found = convert(task.sensor.xyz(rgb), cmfs, light)
         return found.wavelengths, found.values
 
-    return Ready(one_by_one(spectrum), held((cmfs.values, light.values)))
+    return PreparedMethod(one_by_one(spectrum), nbytes((cmfs.values, light.values)))
 
 
-def prepare_table(task: Task) -> Ready:
+def prepare_table(task: Task) -> PreparedMethod:
     colour = colour_science()
     table = colour.recovery.LUT3D_Jakob2019()
     space = colour.RGB_COLOURSPACES[task.sensor.space]
@@ -34,7 +34,7 @@ def prepare_table(task: Task) -> Ready:
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         return evaluate_unscaled(table.RGB_to_coefficients(rgb), wavelengths)
 
-    return Ready(uplift, table.coefficients.nbytes, seconds)
+    return PreparedMethod(uplift, table.coefficients.nbytes, seconds)
 
 
 FAMILIES = (

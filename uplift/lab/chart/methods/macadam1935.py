@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import Claims, Family, Method, Ready, held, stopwatch
+from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbytes, stopwatch
 from uplift.lab.chart.task import Task
 
 STEPS, HALVINGS = 6, 4
@@ -125,9 +125,9 @@ def boxes(sensor: Sensor) -> Boxes:
     return Boxes(sensor, weights, below, starts, cKDTree(chromaticity(_xyz(weights, below, starts))))
 
 
-def prepare(task: Task) -> Ready:
+def prepare(task: Task) -> PreparedMethod:
     made, seconds = stopwatch(lambda: boxes(task.sensor))
-    return Ready(made, held((made.weights, made.below, made.starts, made.tree.data)), seconds)
+    return PreparedMethod(made, nbytes((made.weights, made.below, made.starts, made.tree.data)), seconds)
 
 
 FAMILIES = (

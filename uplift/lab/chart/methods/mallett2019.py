@@ -9,18 +9,18 @@ import numpy as np
 
 from uplift.colorimetry.observer import colour_science
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import Claims, Family, Method, Ready
+from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod
 from uplift.lab.chart.task import Task
 
 
-def prepare(task: Task) -> Ready:
+def prepare(task: Task) -> PreparedMethod:
     primaries = colour_science().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
     values = np.ascontiguousarray(primaries.values.T)
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         return rgb @ np.stack([np.interp(wavelengths, primaries.wavelengths, row) for row in values])
 
-    return Ready(uplift, values.nbytes)
+    return PreparedMethod(uplift, values.nbytes)
 
 
 FAMILIES = (

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from uplift.colorimetry.observer import aligned, colour_science
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import Claims, Family, Method, Ready, held, one_by_one
+from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbytes, one_by_one
 from uplift.lab.chart.task import Task
 
 STEP = 10.0
 """nm; twice as many unknowns take three times as long."""
 
 
-def prepare(task: Task) -> Ready:
+def prepare(task: Task) -> PreparedMethod:
     convert = colour_science().recovery.XYZ_to_sd_Meng2015
     cmfs, light = aligned(task.sensor, step=STEP)
 
@@ -19,7 +19,7 @@ def prepare(task: Task) -> Ready:
         found = convert(task.sensor.xyz(rgb), cmfs, light)
         return found.wavelengths, found.values
 
-    return Ready(one_by_one(spectrum), held((cmfs.values, light.values)))
+    return PreparedMethod(one_by_one(spectrum), nbytes((cmfs.values, light.values)))
 
 
 FAMILIES = (

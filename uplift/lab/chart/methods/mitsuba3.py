@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, Ready
+from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, PreparedMethod
 from uplift.lab.chart.task import Task
 from uplift.models.sigmoid import evaluate_unscaled
 
@@ -18,14 +18,14 @@ VARIANT = "scalar_spectral"
 TABLE = Path("data", "srgb.coeff")
 
 
-def prepare(task: Task) -> Ready:
+def prepare(task: Task) -> PreparedMethod:
     mitsuba = _mitsuba()
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         coefficients = [mitsuba.srgb_model_fetch(colour) for colour in rgb.tolist()]
         return evaluate_unscaled(np.array(coefficients, dtype=float), wavelengths)
 
-    return Ready(uplift, (Path(mitsuba.__file__).parent / TABLE).stat().st_size, None)
+    return PreparedMethod(uplift, (Path(mitsuba.__file__).parent / TABLE).stat().st_size, None)
 
 
 def _mitsuba() -> Any:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from uplift.colorimetry.observer import aligned, colour_science
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import Family, Method, Ready, held, one_by_one
+from uplift.lab.chart.method import Family, Method, PreparedMethod, nbytes, one_by_one
 from uplift.lab.chart.task import Task
 
 
-def prepare(task: Task) -> Ready:
+def prepare(task: Task) -> PreparedMethod:
     otsu = colour_science().recovery.otsu2018
     shape = otsu.SPECTRAL_SHAPE_OTSU2018
     cmfs, light = aligned(task.sensor, shape.start, shape.end, shape.interval)
@@ -18,7 +18,7 @@ def prepare(task: Task) -> Ready:
         return found.wavelengths, found.values
 
     data = (otsu.BASIS_FUNCTIONS_OTSU2018, otsu.CLUSTER_MEANS_OTSU2018, otsu.SELECTOR_ARRAY_OTSU2018)
-    return Ready(one_by_one(spectrum), held(data))
+    return PreparedMethod(one_by_one(spectrum), nbytes(data))
 
 
 FAMILIES = (

@@ -9,14 +9,14 @@ import numpy as np
 
 from uplift.colorimetry.observer import colour_science
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import Claims, Family, Method, Ready
+from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod
 from uplift.lab.chart.task import Task
 
 SECONDARIES, PRIMARIES = ("cyan", "magenta", "yellow"), ("red", "green", "blue")
 """By the component that is least, and by that which is most."""
 
 
-def prepare(task: Task) -> Ready:
+def prepare(task: Task) -> PreparedMethod:
     table = colour_science().recovery.SDS_SMITS1999
     centres = table["white"].wavelengths
     white, secondaries, primaries = (
@@ -33,7 +33,7 @@ def prepare(task: Task) -> Ready:
         )
         return bins @ _linear(wavelengths, centres)
 
-    return Ready(uplift, white.nbytes + secondaries.nbytes + primaries.nbytes)
+    return PreparedMethod(uplift, white.nbytes + secondaries.nbytes + primaries.nbytes)
 
 
 def _linear(wavelengths: Array, centres: Array) -> Array:

@@ -9,7 +9,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import Claims, Family, Method, Ready, Uplift, held, stopwatch
+from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, Uplift, nbytes, stopwatch
 from uplift.lab.chart.task import Task
 from uplift.lookup import MODES, Cube
 from uplift.models import Moments, Sigmoid
@@ -88,11 +88,11 @@ def _cube(task: Task, recipe: Recipe) -> tuple[Cube, float]:
     return cube, seconds
 
 
-def _prepare(task: Task, recipe: Recipe, asking: Asking) -> Ready:
+def _prepare(task: Task, recipe: Recipe, asking: Asking) -> PreparedMethod:
     cube, seconds = _cube(task, recipe)
     if asking.mode == "bulk":
         sampler, more = stopwatch(lambda: _sampler(cube, task.sensor.wavelengths))
-        return Ready(sampler[0], sampler[1], seconds + more)
+        return PreparedMethod(sampler[0], sampler[1], seconds + more)
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         found: Array = cube.reflectance(rgb, wavelengths, asking.mode, dtype=asking.dtype)
@@ -100,7 +100,7 @@ def _prepare(task: Task, recipe: Recipe, asking: Asking) -> Ready:
 
     data = cube.data
     arrays = (data.points.coefficients, data.lattice.nodes, data.atlas.rgb, data.atlas.coefficients)
-    return Ready(uplift, held(arrays), seconds)
+    return PreparedMethod(uplift, nbytes(arrays), seconds)
 
 
 def _sampler(cube: Cube, at: Array) -> tuple[Uplift, int]:
