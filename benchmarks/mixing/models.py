@@ -12,7 +12,7 @@ from benchmarks.mixing.pictures import colour
 from benchmarks.record import ROOT
 from uplift.common.arrays import Array
 from uplift.design.mixing import kubelka_munk, pigments, surface
-from uplift.design.mixing.criteria import CRITERIA, SHARES, Verdict, judge
+from uplift.design.mixing.criteria import CRITERIA, SHARES, CriterionResult, evaluate
 from uplift.design.mixing.mixers import mixers
 from uplift.design.mixing.pigments import Pigment
 from uplift.lookup import Cube
@@ -29,15 +29,15 @@ def criteria(cube: Cube) -> dict[str, Any]:
     coloured = atlas[np.ptp(atlas, axis=1) > 0.1 * atlas.max(axis=1)]
     rows = []
     for mixer in mixers(cube):
-        verdicts = judge(mixer, cube.data.sensor, coloured)
+        verdicts = evaluate(mixer, cube.data.sensor, coloured)
         rows.append({"mixer": mixer.title, "verdicts": [verdict_record(verdict) for verdict in verdicts]})
     titles = [{"title": one.title, "measure": one.measure, "limit": one.limit} for one in CRITERIA]
     return {"patches": len(coloured), "criteria_titles": titles, "criteria": rows}
 
 
-def verdict_record(verdict: Verdict) -> dict[str, Any]:
+def verdict_record(verdict: CriterionResult) -> dict[str, Any]:
     """Return whether a criterion holds, and the measured value."""
-    return {"obeys": bool(verdict.obeys), "value": float(verdict.value) + 0.0}
+    return {"obeys": bool(verdict.passed), "value": float(verdict.value) + 0.0}
 
 
 def gradings(cube: Cube) -> dict[str, Any]:
@@ -68,7 +68,7 @@ def _error(name: str, p: float | None) -> float:
     paints = _sets()[name]
     pairs = np.array(list(itertools.combinations(range(len(paints.absorption)), 2)))
     expected = _hiding_mixtures(Pigment(paints.absorption[pairs], paints.scattering[pairs]))
-    reflectances = kubelka_munk.hiding(paints)[pairs]
+    reflectances = kubelka_munk.opaque_reflectance(paints)[pairs]
     return float(np.sqrt(np.mean((_mixtures(reflectances, p) - expected) ** 2)))
 
 
@@ -76,11 +76,11 @@ def _mixtures(reflectances: Array, p: float | None) -> Array:
     """Mix reflectances (…, 2, N) at the shares of the criteria; None for p averages them."""
     if p is None:
         return np.stack([np.tensordot(reflectances, share, axes=(-2, 0)) for share in SHARES])
-    return _hiding_mixtures(pigments.of_hiding(reflectances, p))
+    return _hiding_mixtures(pigments.from_opaque(reflectances, p))
 
 
 def _hiding_mixtures(pair: Pigment) -> Array:
-    return np.stack([kubelka_munk.hiding(pair.mixed(share)) for share in SHARES])
+    return np.stack([kubelka_munk.opaque_reflectance(pair.mix(share)) for share in SHARES])
 
 
 def _greens(cube: Cube, p: float | None) -> list[dict[str, Any]]:
@@ -100,7 +100,7 @@ def surface_record(index: float) -> dict[str, float]:
     """Return the reflectance at normal incidence (9.3), for diffuse light (10.9), and for diffuse light from inside."""
     return {
         "index": index,
-        "perpendicular": float(surface.fresnel(index)),
-        "diffuse": float(surface.diffuse(index)),
-        "internal": float(surface.inside(index)),
+        "perpendicular": float(surface.fresnel_reflectance(index)),
+        "diffuse": float(surface.diffuse_reflectance(index)),
+        "internal": float(surface.internal_reflectance(index)),
     }

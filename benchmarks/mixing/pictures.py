@@ -63,12 +63,12 @@ def _coats(cube: Cube) -> list[Strip]:
     spectra = cube.reflectance(np.array([colour(cube, word) for word in ("#b01030", "#ffd200", "#005fa0")]))
     strips = []
     for name, spectrum in zip(("red", "yellow", "blue"), spectra, strict=True):
-        paint = coats.palette([coats.paint(spectrum)])
+        paint = coats.stack([coats.pigment_from_reflectance(spectrum)])
         for ground, on in ((1.0, "white"), (0.0, "black")):
-            layers = [coats.of_paints(paint, [1], x).over(np.full(81, ground)) for x in thickness]
+            layers = [coats.from_pigments(paint, [1], x).over(np.full(81, ground)) for x in thickness]
             title = f"{name} paint on {on}, {', '.join(f'{x:.3g}' for x in thickness)} units thick"
             strips.append(_strip(cube, title, cube.data.sensor.rgb(layers)))
-        layers = [coats.of_dyes(spectrum[None], [1], x).over(1.0) for x in thickness]
+        layers = [coats.from_dyes(spectrum[None], [1], x).over(1.0) for x in thickness]
         strips.append(
             _strip(cube, f"{name} dye on white, the same thicknesses", cube.data.sensor.rgb(layers))
         )

@@ -61,8 +61,8 @@ def _check(mix: Callable[[Array, Array], Array], rgb: Array, parts: Array) -> No
 def images(cube: Cube) -> list[dict[str, Any]]:
     """Return nanoseconds of a coat over an image, and of HSL to RGB."""
     rng = np.random.default_rng(0)
-    red = coats.palette([coats.paint(cube.reflectance(colour(cube, "red")))])
-    coat = coats.of_paints(red, [1], 0.5)
+    red = coats.stack([coats.pigment_from_reflectance(cube.reflectance(colour(cube, "red")))])
+    coat = coats.from_pigments(red, [1], 0.5)
     brush = overpaint.prepare(cube, coat, threads=1)
     image = rng.random((PIXELS, 3)).astype(np.float32)
     expected = cube.data.sensor.rgb(coat.over(cube.reflectance(image[:CHECKED])))
@@ -85,7 +85,7 @@ def images(cube: Cube) -> list[dict[str, Any]]:
 
 def _over(paint: Pigment, grounds: Array) -> Array:
     thickness = np.linspace(0.01, 3, len(grounds))
-    return kubelka_munk.layer(paint.mixed([1]), thickness).over(grounds)
+    return kubelka_munk.layer(paint.mix([1]), thickness).over(grounds)
 
 
 def _ns(function: Callable[[], object], count: int) -> Spread:

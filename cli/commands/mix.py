@@ -125,14 +125,14 @@ def command(
       uplift mix '#c8342a/#401008' --thickness 0.4 --over painting.exr -o painted.exr
     """
     from uplift.common.files import check_output
-    from uplift.design.mixing.surface import INCIDENT
+    from uplift.design.mixing.surface import INCIDENCES
     from uplift.lookup import load
 
     _check_usage(kind, ground, over, output, swatches)
     for path in filter(None, (swatches, output)):
         check_output(path, force=force)
     cube = load(cube_path)
-    medium = _medium(thickness, INCIDENT[incidence](refractive_index), km_constants)
+    medium = _medium(thickness, INCIDENCES[incidence](refractive_index), km_constants)
     resolver = make_resolver(cube, atlases, cube.wavelengths(parse_wavelengths(wavelengths)))
     ingredients = resolver.ingredients(words)
     if over is not None and output is not None:

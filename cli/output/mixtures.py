@@ -60,12 +60,12 @@ def mix(
     import numpy as np
 
     from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.design.mixing.recipes import mixed, ramp
+    from uplift.design.mixing.recipes import mix, ramp
 
     sensor = resolver.cube.data.sensor
     parts = np.array([one.parts for one in ingredients])
     amounts = np.concatenate([parts[None], ramp(parts, steps)])
-    spectra = mixed(
+    spectra = mix(
         kind, library_ingredients(ingredients), amounts, medium, resolver.spectrum(ground or "white")
     )
     count = len(sensor.wavelengths)

@@ -26,11 +26,11 @@ def make_brush(
     """Mix a coat and prepare it at the wavelengths of the cube's sensor."""
     enable_jit_cache()
     from uplift.design.mixing.overpaint import prepare
-    from uplift.design.mixing.recipes import coat
+    from uplift.design.mixing.recipes import make_coat
 
     count = len(cube.data.sensor.wavelengths)
     parts = [one.parts for one in ingredients]
-    mixture = coat(kind, library_ingredients(ingredients, count), parts, medium)
+    mixture = make_coat(kind, library_ingredients(ingredients, count), parts, medium)
     recipe = {"kind": kind, "of": [[one.parts, one.name] for one in ingredients], **asdict(medium)}
     return prepare(cube, mixture, recipe, encoding=encoding, out_of_gamut=method)
 

@@ -1,4 +1,4 @@
-"""Spectra, pigments and colours that the laws are tried on."""
+"""Fixtures: random spectra, pigments and colours."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def rng():
 
 @pytest.fixture
 def spectra(rng):
-    """(4, 3, 7): three spectra of each of four mixtures, 0 and 1 among them."""
+    """Spectra (4, 3, 7): three for each of four mixtures, with values of 0 and 1."""
     found = rng.random((4, 3, 7))
     found[0, 0, :2] = 0, 1
     return found
@@ -23,13 +23,13 @@ def spectra(rng):
 
 @pytest.fixture
 def parts(rng):
-    """(4, 3)"""
+    """Parts (4, 3)."""
     return rng.random((4, 3))
 
 
 @pytest.fixture
 def paint(rng):
-    """K and S over five decades, none and both 0 among them."""
+    """Pigments with K and S over five decades, including zeros."""
     K, S = 10 ** rng.uniform(-4, 1, (2, 60))
     K[:2], S[1:3] = 0, 0
     return Pigment(K, S)
@@ -37,7 +37,7 @@ def paint(rng):
 
 @pytest.fixture(scope="session")
 def paints(small_cube):
-    """Linear RGB (n, 3) of the ColorChecker's coloured patches, by name."""
+    """Linear RGB (3,) of the ColorChecker's coloured patches, by name."""
     atlas = small_cube.data.atlas
     return {
         name: rgb for name, rgb in zip(atlas.names, atlas.rgb, strict=True) if np.ptp(rgb) > 0.1 * rgb.max()

@@ -1,4 +1,4 @@
-"""The criteria of 10.4: obeyed by the models that should, and able to fail."""
+"""Criteria of Fishkin 1983, 10.4: which models pass them, and that every criterion can fail."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from uplift.design.mixing import criteria, kubelka_munk, pigments
-from uplift.design.mixing.criteria import CRITERIA, judge
+from uplift.design.mixing.criteria import CRITERIA, evaluate
 from uplift.design.mixing.mixers import Mixer, mixers
 
 SELF, CHROMATICITY, DARKER, HUE, LIGHTER, GREY, GREEN = range(len(CRITERIA))
-OBEYED = {
+EXPECTED = {
     "pigments": {SELF, DARKER, LIGHTER, GREEN},
     "pigments in oil": {SELF, DARKER, LIGHTER},
     "pigments, one constant": {SELF, DARKER, LIGHTER, GREEN},
@@ -22,28 +22,28 @@ OBEYED = {
     "ryb": {SELF, CHROMATICITY, DARKER, HUE, LIGHTER, GREEN},
     "phosphors": {DARKER, GREEN},
 }
-"""What each model, by what it is, must obey."""
+"""Criteria that each model passes by its construction."""
 
 
 @pytest.fixture(scope="module")
-def verdicts(small_cube, paints):
+def results(small_cube, paints):
     colours = np.array(list(paints.values()))
-    return {one.name: judge(one, small_cube.data.sensor, colours) for one in mixers(small_cube)}
+    return {one.name: evaluate(one, small_cube.data.sensor, colours) for one in mixers(small_cube)}
 
 
-@pytest.mark.parametrize("name", OBEYED)
-def test_models_obey_what_they_should(verdicts, name):
-    obeyed = {place for place, verdict in enumerate(verdicts[name]) if verdict.obeys}
-    assert obeyed >= OBEYED[name]
+@pytest.mark.parametrize("name", EXPECTED)
+def test_models_pass_the_expected_criteria(results, name):
+    passed = {index for index, result in enumerate(results[name]) if result.passed}
+    assert passed >= EXPECTED[name]
 
 
-def test_every_model_is_judged(verdicts):
-    assert set(verdicts) == set(OBEYED)
-    assert all(np.isfinite(verdict.value) for found in verdicts.values() for verdict in found)
+def test_every_model_is_evaluated(results):
+    assert set(results) == set(EXPECTED)
+    assert all(np.isfinite(result.value) for found in results.values() for result in found)
 
 
 @pytest.mark.parametrize(
-    ("mix", "broken"),
+    ("mix", "failed"),
     [
         (lambda rgb, parts: np.full((*parts.shape[:-1], 3), 0.5), {SELF, DARKER, GREEN}),
         (
@@ -53,28 +53,28 @@ def test_every_model_is_judged(verdicts):
         (lambda rgb, parts: (parts @ rgb)[..., [1, 2, 0]], {CHROMATICITY, HUE}),
     ],
 )
-def test_every_criterion_can_be_broken(small_cube, paints, mix, broken):
-    found = judge(Mixer("", "", mix), small_cube.data.sensor, np.array(list(paints.values())))
-    assert broken <= {place for place, verdict in enumerate(found) if not verdict.obeys}
+def test_every_criterion_can_fail(small_cube, paints, mix, failed):
+    found = evaluate(Mixer("", "", mix), small_cube.data.sensor, np.array(list(paints.values())))
+    assert failed <= {index for index, result in enumerate(found) if not result.passed}
 
 
 def test_blue_and_yellow_of_an_atlas_are_green(small_cube, paints):
-    """Kubelka and Munk, spectra uplifted by a cube of the ColorChecker."""
+    """Kubelka–Munk mixture of spectra from a ColorChecker cube."""
     pair = np.stack([paints["blue"], paints["yellow"]])
     spectra = small_cube.reflectance(pair)
     red, green, blue = small_cube.data.sensor.rgb(
-        kubelka_munk.hiding(pigments.of_hiding(spectra).mixed([1, 1]))
+        kubelka_munk.opaque_reflectance(pigments.from_opaque(spectra).mix([1, 1]))
     )
     assert green > 1.05 * max(red, blue)
     average = pair.mean(axis=0)
     assert average[1] < average[0]
 
 
-def test_a_turn_is_measured_as_an_angle(small_cube):
+def test_hue_difference_is_an_angle(small_cube):
     sensor = small_cube.data.sensor
     red, cyan = np.array([1.0, 0, 0]), np.array([0, 1.0, 1.0])
-    assert criteria._turn(sensor, red, red) == pytest.approx(0, abs=1e-9)
-    assert criteria._turn(sensor, red, cyan) == pytest.approx(180, abs=1e-6)
-    assert criteria._turn(sensor, red, np.array([1, 0.5, 0])) == pytest.approx(
-        criteria._turn(sensor, np.array([1, 0.5, 0]), red)
+    assert criteria._hue_difference(sensor, red, red) == pytest.approx(0, abs=1e-9)
+    assert criteria._hue_difference(sensor, red, cyan) == pytest.approx(180, abs=1e-6)
+    assert criteria._hue_difference(sensor, red, np.array([1, 0.5, 0])) == pytest.approx(
+        criteria._hue_difference(sensor, np.array([1, 0.5, 0]), red)
     )

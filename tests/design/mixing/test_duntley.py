@@ -1,4 +1,4 @@
-"""Duntley: his equations integrated, and what they come to for two constants, for dyes, and in thick layers."""
+"""Duntley's theory: agreement with numerical integration, and limits: two constants, dyes, thick layers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NONE = np.zeros(2)
 
 
 def integrated(beam, diffuse, X):
-    """R and T of one wavelength, the differential equations solved numerically."""
+    """Return R and T at one wavelength from a numerical solution of the differential equations."""
     mu = beam.absorption + beam.backward + beam.forward
     K, B = diffuse.absorption, diffuse.backward
 
@@ -39,14 +39,14 @@ def at(flux, place):
 
 
 @pytest.mark.parametrize("place", [0, 1])
-def test_the_differential_equations_are_solved(place):
+def test_the_differential_equations_are_satisfied(place):
     found = duntley.layer(BEAM, DIFFUSE, 1.3)
     R, T = integrated(at(BEAM, place), at(DIFFUSE, place), 1.3)
     assert found.reflectance[place] == pytest.approx(R, abs=1e-7)
     assert found.transmittance[place] == pytest.approx(T, abs=1e-7)
 
 
-def test_forward_scattering_of_diffuse_light_plays_no_part():
+def test_forward_scattering_of_diffuse_light_has_no_effect():
     more = Flux(DIFFUSE.absorption, DIFFUSE.backward, 5 * DIFFUSE.forward)
     np.testing.assert_array_equal(
         duntley.layer(BEAM, DIFFUSE, 1.0).reflectance, duntley.layer(BEAM, more, 1.0).reflectance
@@ -70,8 +70,8 @@ def test_thick_layers():
     np.testing.assert_allclose(found.transmittance, 0, atol=1e-12)
 
 
-def test_light_that_is_diffuse_at_once_is_the_two_constant_theory():
-    """P' → 0 and Q' → 1: the beam is scattered on long before it meets anything else."""
+def test_strong_forward_scattering_gives_the_two_constant_theory():
+    """P' → 0 and Q' → 1: the beam becomes diffuse before anything else happens."""
     beam = Flux(BEAM.absorption, BEAM.backward, np.full(2, 1e7))
     P, Q = duntley._sources(beam, DIFFUSE)
     np.testing.assert_allclose(P, 0, atol=1e-6)
@@ -83,8 +83,8 @@ def test_light_that_is_diffuse_at_once_is_the_two_constant_theory():
 
 
 @pytest.mark.parametrize("off", [0, 1e-14, 1e-9, 1e-7, 1e-5, 3e-5])
-def test_where_the_denominator_vanishes_it_stays_finite_and_smooth(off):
-    """μ = γ: the beam dies out as fast as diffuse light does."""
+def test_the_result_is_smooth_where_the_denominator_vanishes(off):
+    """μ = γ: the beam decays as fast as diffuse light."""
     gamma = np.sqrt(DIFFUSE.absorption * (DIFFUSE.absorption + 2 * DIFFUSE.backward))
     forward = np.array([0.5, 0.3])
     beam = Flux(gamma - forward - 0.1 + off, np.full(2, 0.1), forward)
@@ -94,7 +94,7 @@ def test_where_the_denominator_vanishes_it_stays_finite_and_smooth(off):
     assert found.transmittance[0] == pytest.approx(T, abs=1e-7)
 
 
-def test_energy_never_grows(rng):
+def test_energy_is_not_created(rng):
     beam, diffuse = (Flux(*10 ** rng.uniform(-3, 1, (3, 200))) for _ in range(2))
     for X in (0.01, 1.0, 30.0):
         found = duntley.layer(beam, diffuse, X)
@@ -103,7 +103,7 @@ def test_energy_never_grows(rng):
         assert (found.reflectance + found.transmittance <= 1 + 1e-9).all()
 
 
-def test_nothing_at_all_lets_all_through():
+def test_an_empty_layer_transmits_everything():
     found = duntley.layer(Flux(NONE, NONE, NONE), Flux(NONE, NONE, NONE), 3.0)
     np.testing.assert_array_equal(found.transmittance, 1)
     np.testing.assert_array_equal(found.reflectance, 0)

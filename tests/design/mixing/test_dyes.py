@@ -1,20 +1,21 @@
-"""Dyes: (9.4) and (9.7) against rays counted one by one, and their limits."""
+"""Dyes: eq. 9.4 and 9.7 agree with sums over single passes, and have the right limits."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from tests.helpers import raises
 from uplift.common.errors import OptionError
 from uplift.design.mixing import dyes, filters, kubelka_munk, surface
 from uplift.design.mixing.pigments import Pigment
 
 T = np.array([0.0, 0.05, 0.5, 0.9, 1.0])
-OIL = surface.perpendicular(1.5)
+OIL = surface.normal_incidence(1.5)
 
 
 def rays_in_contact(transmittance, ground, rho, inside):
-    """What leaves at each visit to the surface, summed (9.6)."""
+    """Sum the light that leaves at each pass (9.6)."""
     light, total = (1 - rho) * np.ones_like(transmittance), rho
     for _ in range(500):
         light = light * transmittance * ground * transmittance
@@ -23,7 +24,7 @@ def rays_in_contact(transmittance, ground, rho, inside):
 
 
 def rays_in_a_plate(transmittance, rho):
-    """Reflected and transmitted, bounce by bounce."""
+    """Sum reflected and transmitted light over passes."""
     inside = (1 - rho) * np.ones_like(transmittance)
     up, down = rho, 0.0
     for _ in range(500):
@@ -34,22 +35,24 @@ def rays_in_a_plate(transmittance, rho):
 
 
 @pytest.mark.parametrize("ground", [0.0, 0.3, 1.0])
-@pytest.mark.parametrize("of", [OIL, surface.overcast(1.66), surface.Surface(0.04, 0.04), surface.NONE])
-def test_in_contact_every_ray_is_counted(of, ground):
+@pytest.mark.parametrize(
+    "of", [OIL, surface.diffuse_incidence(1.66), surface.Surface(0.04, 0.04), surface.NO_SURFACE]
+)
+def test_reflectance_on_a_ground_is_the_sum_over_passes(of, ground):
     expected = rays_in_contact(T, ground, of.outside, of.inside)
-    np.testing.assert_allclose(dyes.in_contact(T, ground, of), expected, atol=1e-12)
+    np.testing.assert_allclose(dyes.reflectance_on_ground(T, ground, of), expected, atol=1e-12)
 
 
-def test_the_printed_closed_form_makes_light():
-    """(9.7) as printed lacks the ground in its numerator: 24 times what falls on it."""
+def test_the_printed_closed_form_creates_energy():
+    """Eq. 9.7 as printed lacks the ground in its numerator: R is 24."""
     rho, ground = 0.04, 1.0
     printed = rho + (1 - rho) ** 2 / (rho * (1 - T**2 * ground * rho))
     assert (printed > 20).all()
-    assert (dyes.in_contact(T, ground, surface.Surface(rho, rho)) <= 1).all()
+    assert (dyes.reflectance_on_ground(T, ground, surface.Surface(rho, rho)) <= 1).all()
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.04, 0.5])
-def test_in_a_plate_every_ray_is_counted(rho):
+def test_reflectance_of_a_plate_is_the_sum_over_passes(rho):
     found = dyes.plate(T, rho)
     up, down = rays_in_a_plate(T, rho)
     np.testing.assert_allclose(found.reflectance, up)
@@ -64,10 +67,10 @@ def test_a_clear_plate_reflects_on_both_sides():
 def test_a_dye_is_paint_that_does_not_scatter():
     K = np.array([0.1, 1, 5])
     painted = kubelka_munk.layer(Pigment(K, np.zeros(3)), 0.7).over(0.8)
-    np.testing.assert_allclose(dyes.in_contact(dyes.transmittance(K, thickness=0.7), 0.8), painted)
+    np.testing.assert_allclose(dyes.reflectance_on_ground(dyes.transmittance(K, thickness=0.7), 0.8), painted)
 
 
-def test_concentration_and_thickness_are_one():
+def test_concentration_and_thickness_are_equivalent():
     K = np.array([0.2, 3])
     np.testing.assert_allclose(dyes.transmittance(K, 2, 3), dyes.transmittance(K, 6, 1))
     np.testing.assert_allclose(dyes.transmittance(K, 0), 1)
@@ -76,33 +79,33 @@ def test_concentration_and_thickness_are_one():
     )
 
 
-def test_absorption_and_back():
+def test_absorption_round_trip():
     np.testing.assert_allclose(dyes.transmittance(dyes.absorption(T)), np.maximum(T, dyes.DARKEST))
     assert np.isfinite(dyes.absorption(0.0))
 
 
-@pytest.mark.parametrize("of", [surface.NONE, OIL])
-def test_the_colour_on_white_comes_back(of):
-    seen = np.array([0.05, 0.3, 1.0])
-    through = dyes.transmittance(dyes.of_reflectance(seen, of))
-    np.testing.assert_allclose(dyes.in_contact(through, 1.0, of), seen)
+@pytest.mark.parametrize("of", [surface.NO_SURFACE, OIL])
+def test_reflectance_on_white_round_trip(of):
+    measured = np.array([0.05, 0.3, 1.0])
+    through = dyes.transmittance(dyes.from_reflectance(measured, of))
+    np.testing.assert_allclose(dyes.reflectance_on_ground(through, 1.0, of), measured)
 
 
 def test_a_mixture_is_a_stack_of_its_parts(spectra, parts):
-    """Beer: dyes side by side in one layer are as filters one behind the other."""
+    """Beer's law: dyes in one layer act as a stack of filters."""
     K = dyes.absorption(spectra)
-    found = dyes.transmittance(dyes.mixed(K, parts))
+    found = dyes.transmittance(dyes.mix(K, parts))
     shares = parts / parts.sum(axis=-1, keepdims=True)
-    np.testing.assert_allclose(found, filters.stacked(np.maximum(spectra, dyes.DARKEST), shares))
+    np.testing.assert_allclose(found, filters.stack(np.maximum(spectra, dyes.DARKEST), shares))
 
 
 def test_mixing_with_itself_changes_nothing(spectra):
     K = dyes.absorption(spectra[:, [0, 0]])
-    np.testing.assert_allclose(dyes.mixed(K, [3, 2]), K[:, 0])
+    np.testing.assert_allclose(dyes.mix(K, [3, 2]), K[:, 0])
 
 
-def test_negative_amounts_are_refused():
-    with pytest.raises(OptionError, match="concentration -1"):
+def test_invalid_amounts_raise():
+    with raises(OptionError, "invalid-concentration"):
         dyes.transmittance([1], -1)
-    with pytest.raises(OptionError, match="thickness nan"):
+    with raises(OptionError, "invalid-thickness"):
         dyes.transmittance([1], 1, float("nan"))

@@ -1,4 +1,4 @@
-"""HSL and back: the thesis's algorithm against the standard one it replaces, and against the standard library."""
+"""HSL: agreement with the 1979 algorithm and with the standard library."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from uplift.design.mixing import hsl
 
 
 def core_1979(h, s, l):  # noqa: E741
-    """The standard algorithm that 5.3.3 reprints, in degrees."""
+    """Convert HSL to RGB by the algorithm of 1979 (Fishkin 1983, 5.3.3), in degrees."""
 
     def value(low, high, hue):
         hue %= 360
@@ -24,10 +24,10 @@ def core_1979(h, s, l):  # noqa: E741
 
     high = l * (1 + s) if l <= 0.5 else l + s - l * s
     low = 2 * l - high
-    return [value(low, high, 360 * h + turn) for turn in (120, 0, -120)]
+    return [value(low, high, 360 * h + offset) for offset in (120, 0, -120)]
 
 
-def test_it_gives_what_the_standard_algorithm_gives(rng):
+def test_conversion_agrees_with_the_1979_algorithm(rng):
     random = rng.random((2000, 3))
     ends = np.stack(np.meshgrid(np.arange(13) / 12, [0, 0.3, 1], [0, 0.5, 0.7, 1]), axis=-1).reshape(-1, 3)
     for colours in (random, ends):
@@ -35,7 +35,7 @@ def test_it_gives_what_the_standard_algorithm_gives(rng):
         np.testing.assert_allclose(hsl.to_rgb(colours), expected, atol=1e-12)
 
 
-def test_there_and_back(rng):
+def test_round_trip(rng):
     rgb = np.concatenate([rng.random((500, 3)), rng.integers(0, 3, (500, 3)) / 2])
     found = hsl.from_rgb(rgb)
     assert ((found >= 0) & (found <= 1)).all()

@@ -22,8 +22,8 @@ def glaze(small_cube):
 
     atlas = small_cube.data.atlas
     red = small_cube.reflectance(atlas.rgb[atlas.names.index("red")])
-    oil = surface.perpendicular(1.5)
-    return coats.of_paints(coats.palette([coats.paint(red, surface=oil)]), [1], 0.5, oil)
+    oil = surface.normal_incidence(1.5)
+    return coats.from_pigments(coats.stack([coats.pigment_from_reflectance(red, surface=oil)]), [1], 0.5, oil)
 
 
 @pytest.fixture(scope="module")
@@ -65,22 +65,22 @@ def test_8_bit_images_are_decoded(small_cube, overpainter, tmp_path):
 
 
 def test_opaque_paint_hides_the_image(small_cube, image):
-    paint = coats.paint(small_cube.reflectance([0.3, 0.2, 0.1]))
-    opaque = overpaint.prepare(small_cube, coats.of_paints(coats.palette([paint]), [1]), threads=1)
+    paint = coats.pigment_from_reflectance(small_cube.reflectance([0.3, 0.2, 0.1]))
+    opaque = overpaint.prepare(small_cube, coats.from_pigments(coats.stack([paint]), [1]), threads=1)
     expected = np.broadcast_to([0.3, 0.2, 0.1], image.shape)
     np.testing.assert_allclose(opaque.paint(image), expected, atol=1e-5)
 
 
 def test_a_coat_of_zero_thickness_leaves_the_image(small_cube, image):
-    paint = coats.paint(small_cube.reflectance([0.3, 0.2, 0.1]))
-    none = coats.of_paints(coats.palette([paint]), [1], 0.0)
+    paint = coats.pigment_from_reflectance(small_cube.reflectance([0.3, 0.2, 0.1]))
+    none = coats.from_pigments(coats.stack([paint]), [1], 0.0)
     painted = overpaint.prepare(small_cube, none, threads=1).paint(image)
     np.testing.assert_allclose(painted, image, atol=1e-5)
 
 
 def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, image, tmp_path):
     """A thick dye is saturated enough to leave the gamut."""
-    dye = coats.of_dyes(small_cube.reflectance([[0.9, 0.1, 0.02]]), [1], 3.0)
+    dye = coats.from_dyes(small_cube.reflectance([[0.9, 0.1, 0.02]]), [1], 3.0)
     write_exr(tmp_path / "in.exr", planes(image + 0.5))
     overpainter = overpaint.prepare(small_cube, dye, threads=1)
     result = convert(overpainter, tmp_path / "in.exr", tmp_path / "out.exr")
@@ -103,7 +103,7 @@ def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, im
 def test_invalid_input_raises(small_cube, glaze, overpainter, image, tmp_path):
     with raises(OptionError, "unknown-encoding"):
         overpaint.prepare(small_cube, glaze, encoding="srgb")
-    with pytest.raises(OptionError, match="out of gamut"):
+    with raises(OptionError, "unknown-gamut-mapping"):
         overpaint.prepare(small_cube, glaze, out_of_gamut="away")
     with raises(TextureError, "file-not-found"):
         convert(overpainter, tmp_path / "none.exr", tmp_path / "out.exr")

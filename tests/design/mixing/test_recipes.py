@@ -1,106 +1,110 @@
-"""Mixtures by kind, and coats on grounds."""
+"""Mixtures by kind of component, and coats on grounds."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from uplift.common.errors import ColourError, OptionError, UpliftWarning
+from tests.helpers import raises, warns
+from uplift.common.errors import ColourError, OptionError
 from uplift.design.mixing import coats, kubelka_munk, recipes, surface
-from uplift.design.mixing.recipes import Ingredients, Medium, coat, mixed, ramp
+from uplift.design.mixing.recipes import Ingredients, Medium, make_coat, mix, ramp
 
 WHITE = np.ones(5)
-OIL, OVERCAST = surface.perpendicular(1.5), surface.overcast(1.5)
+OIL, DIFFUSE = surface.normal_incidence(1.5), surface.diffuse_incidence(1.5)
 
 
 @pytest.fixture
 def two(rng):
-    """Two spectra, none darker than the surface of oil."""
+    """Two spectra, not darker than the surface of oil."""
     return Ingredients(rng.uniform(0.1, 0.9, (2, 5)), (None, None))
 
 
 @pytest.mark.parametrize("kind", recipes.COATS)
 @pytest.mark.parametrize(
-    "medium", [Medium(), Medium(surface=OIL), Medium(surface=OVERCAST), Medium(grading=0)]
+    "medium", [Medium(), Medium(surface=OIL), Medium(surface=DIFFUSE), Medium(grading=0)]
 )
-def test_one_colour_alone_is_itself(two, kind, medium):
-    for parts, expected in (([1, 0], two.seen[0]), ([0, 3], two.seen[1])):
-        np.testing.assert_allclose(mixed(kind, two, parts, medium, WHITE), expected, rtol=1e-9)
+def test_a_single_colour_is_unchanged(two, kind, medium):
+    for parts, expected in (([1, 0], two.spectra[0]), ([0, 3], two.spectra[1])):
+        np.testing.assert_allclose(mix(kind, two, parts, medium, WHITE), expected, rtol=1e-9)
 
 
 @pytest.mark.parametrize("kind", recipes.COATS)
-@pytest.mark.parametrize("face", [surface.NONE, OIL, OVERCAST])
-def test_no_thickness_leaves_the_ground(two, rng, kind, face):
+@pytest.mark.parametrize("face", [surface.NO_SURFACE, OIL, DIFFUSE])
+def test_thickness_0_leaves_the_ground(two, rng, kind, face):
     ground = rng.uniform(0.1, 1, 5)
-    np.testing.assert_allclose(mixed(kind, two, [1, 1], Medium(0.0, face), ground), ground)
+    np.testing.assert_allclose(mix(kind, two, [1, 1], Medium(0.0, face), ground), ground)
 
 
-@pytest.mark.parametrize("face", [surface.NONE, OIL, OVERCAST])
-def test_thick_paint_hides_any_ground(two, face):
-    hiding = mixed("pigment", two, [1, 1], Medium(surface=face), 0.0)
-    np.testing.assert_allclose(mixed("pigment", two, [1, 1], Medium(1e6, face), WHITE), hiding)
+@pytest.mark.parametrize("face", [surface.NO_SURFACE, OIL, DIFFUSE])
+def test_thick_paint_hides_the_ground(two, face):
+    opaque = mix("pigment", two, [1, 1], Medium(surface=face), 0.0)
+    np.testing.assert_allclose(mix("pigment", two, [1, 1], Medium(1e6, face), WHITE), opaque)
 
 
-def test_paint_seen_on_white_and_black_is_seen_so_again(rng):
-    layer = kubelka_munk.layer(coats.paint(rng.uniform(0.2, 0.8, 5)), 1.0)
-    white, black = OIL.seen(layer.over(1.0)), OIL.seen(layer.over(0.0))
-    given = Ingredients(white[None], (black,))
+def test_paint_measured_on_white_and_black_round_trip(rng):
+    layer = kubelka_munk.layer(coats.pigment_from_reflectance(rng.uniform(0.2, 0.8, 5)), 1.0)
+    white, black = OIL.apply(layer.over(1.0)), OIL.apply(layer.over(0.0))
+    ingredients = Ingredients(white[None], (black,))
     for ground, expected in ((1.0, white), (0.04, black)):
-        found = mixed("pigment", given, [2], Medium(1.0, OIL), ground)
+        found = mix("pigment", ingredients, [2], Medium(1.0, OIL), ground)
         np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 
 def test_filters_and_lights(two):
-    np.testing.assert_allclose(mixed("filter", two, [2, 1], Medium(), 0.0), two.seen[0] ** 2 * two.seen[1])
-    np.testing.assert_allclose(mixed("light", two, [2, 1], Medium(), 0.0), 2 * two.seen[0] + two.seen[1])
+    np.testing.assert_allclose(
+        mix("filter", two, [2, 1], Medium(), 0.0), two.spectra[0] ** 2 * two.spectra[1]
+    )
+    np.testing.assert_allclose(mix("light", two, [2, 1], Medium(), 0.0), 2 * two.spectra[0] + two.spectra[1])
 
 
 def test_many_proportions_at_once(two):
     parts = ramp([2, 1], 4)
-    found = mixed("pigment", two, parts, Medium(0.5), WHITE)
+    found = mix("pigment", two, parts, Medium(0.5), WHITE)
     assert found.shape == (4, 5)
-    np.testing.assert_allclose(found[1], mixed("pigment", two, parts[1], Medium(0.5), WHITE))
+    np.testing.assert_allclose(found[1], mix("pigment", two, parts[1], Medium(0.5), WHITE))
 
 
 def test_ramps():
     np.testing.assert_allclose(ramp([2, 1], 3), [[2, 0], [1, 0.5], [0, 1]])
     np.testing.assert_allclose(ramp([1, 4, 1], 5)[:, 1], [0, 2, 4, 2, 0])
     assert ramp([1], 5).shape == (0, 1)
-    with pytest.raises(OptionError, match="ramp of 1"):
+    with raises(OptionError, "too-few-steps"):
         ramp([1, 1], 1)
 
 
 @pytest.mark.parametrize(
-    ("kind", "medium", "on_black", "problem"),
+    ("kind", "medium", "on_black", "code"),
     [
-        ("paint", Medium(), None, "unknown kind of mixture 'paint'"),
-        ("filter", Medium(2.0), None, "have no thickness"),
-        ("light", Medium(surface=OIL), None, "have no thickness"),
-        ("light", Medium(), WHITE, "colour on black"),
-        ("dye", Medium(), WHITE, "dyes have no colour on black"),
-        ("dye", Medium(-1.0), None, "thickness -1.0"),
-        ("pigment", Medium(float("inf")), None, "thickness inf"),
-        ("pigment", Medium(grading=-1), None, "grading -1"),
+        ("paint", Medium(), None, "unknown-mixture"),
+        ("filter", Medium(2.0), None, "medium-not-applicable"),
+        ("light", Medium(surface=OIL), None, "medium-not-applicable"),
+        ("light", Medium(), WHITE, "medium-not-applicable"),
+        ("dye", Medium(), WHITE, "dye-on-black"),
+        ("dye", Medium(-1.0), None, "invalid-thickness"),
+        ("pigment", Medium(float("inf")), None, "invalid-thickness"),
+        ("pigment", Medium(grading=-1), None, "invalid-grading"),
     ],
 )
-def test_what_makes_no_sense_is_refused(two, kind, medium, on_black, problem):
-    given = Ingredients(two.seen, (on_black, None))
-    with pytest.raises(OptionError, match=problem):
-        mixed(kind, given, [1, 1], medium, WHITE)
+def test_inapplicable_settings_raise(two, kind, medium, on_black, code):
+    ingredients = Ingredients(two.spectra, (on_black, None))
+    with raises(OptionError, code):
+        mix(kind, ingredients, [1, 1], medium, WHITE)
 
 
-def test_what_is_darker_than_its_surface_is_told_of(two):
-    dark = Ingredients(np.stack([two.seen[0], np.full(5, 0.03)]), (None, None))
-    with pytest.warns(UpliftWarning, match="1 of 2 colours are in part darker than the surface"):
-        found = mixed("pigment", dark, [0, 1], Medium(surface=OIL), WHITE)
+def test_colours_darker_than_the_surface_trigger_a_warning(two):
+    dark = Ingredients(np.stack([two.spectra[0], np.full(5, 0.03)]), (None, None))
+    with warns("darker-than-surface") as caught:
+        found = mix("pigment", dark, [0, 1], Medium(surface=OIL), WHITE)
+    assert caught[0].problem.startswith("1 of 2 colours ")
     np.testing.assert_allclose(found, 0.04, atol=1e-4)
 
 
-def test_lights_make_no_coat(two):
-    with pytest.raises(OptionError, match="lights make no coat"):
-        coat("light", two, [1, 1], Medium())
+def test_a_coat_of_lights_raises(two):
+    with raises(OptionError, "unknown-coat"):
+        make_coat("light", two, [1, 1], Medium())
 
 
-def test_paint_lighter_on_black_is_refused():
-    with pytest.raises(ColourError, match="lighter on the darker"):
-        coats.paint(np.full(5, 0.2), np.full(5, 0.5))
+def test_paint_lighter_on_black_raises():
+    with raises(ColourError, "layer-too-opaque"):
+        coats.pigment_from_reflectance(np.full(5, 0.2), np.full(5, 0.5))

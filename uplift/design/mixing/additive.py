@@ -1,6 +1,10 @@
-"""Additive mixture (8.1–8.3): lights upon one another, and dots too small to be told apart.
+"""Additive mixture: superposed lights, and dots too small to resolve.
 
-Both are linear, so that they may be reckoned in spectra, in XYZ and in linear RGB alike (Grassmann).
+Both are linear. Results are therefore the same in spectra, XYZ and linear RGB (Grassmann's law).
+
+References
+----------
+K. Fishkin, *Applying Color Science to Computer Graphics*, Berkeley 1983, eq. 8.1–8.3.
 """
 
 from __future__ import annotations
@@ -8,14 +12,40 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
-from uplift.design.mixing.validation import amounts, shares, summed
+from uplift.design.mixing.validation import as_amounts, as_shares, weighted_sum
 
 
-def lights(spectra: ArrayLike, strengths: ArrayLike) -> Array:
-    """(…, N) of lights (…, n, N) shone on one another, each ``strengths`` (…, n) times itself (8.1, 8.2)."""
-    return summed(spectra, amounts(strengths))
+def add_lights(spectra: ArrayLike, strengths: ArrayLike) -> Array:
+    """Superpose lights (eq. 8.1, 8.2).
+
+    Parameters
+    ----------
+    spectra : array_like of shape (..., n, N)
+        Spectral power of each light.
+    strengths : array_like of shape (..., n)
+        Factors of at least 0.
+
+    Returns
+    -------
+    ndarray of shape (..., N)
+        Spectral power of the sum.
+    """
+    return weighted_sum(spectra, as_amounts(strengths))
 
 
-def dots(spectra: ArrayLike, parts: ArrayLike) -> Array:
-    """(…, N) of surfaces (…, n, N) that cover ``parts`` (…, n) of a whole (8.3): their mean."""
-    return summed(spectra, shares(parts))
+def average_areas(spectra: ArrayLike, parts: ArrayLike) -> Array:
+    """Average small dots by the areas that they cover (eq. 8.3).
+
+    Parameters
+    ----------
+    spectra : array_like of shape (..., n, N)
+        Reflectance of each kind of dot.
+    parts : array_like of shape (..., n)
+        Areas in any unit.
+
+    Returns
+    -------
+    ndarray of shape (..., N)
+        Mean reflectance.
+    """
+    return weighted_sum(spectra, as_shares(parts))

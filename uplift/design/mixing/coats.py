@@ -1,7 +1,7 @@
-"""A coat of paint or dye under its surface, ready to be laid on any ground: a colour, or a painting.
+"""Coats of paint or dye under a surface, for any ground: a uniform colour or the pixels of an image.
 
-Reflectances are as they are seen, surface included: a coat of no thickness leaves its ground as it was. A ground darker
-than the surface alone is taken for black beneath it.
+All reflectances include the surface. A coat of thickness 0 therefore leaves its ground unchanged. Grounds darker than
+the surface alone are treated as black beneath it.
 """
 
 from __future__ import annotations
@@ -15,62 +15,147 @@ from numpy.typing import ArrayLike
 from uplift.common.arrays import Array
 from uplift.design.mixing import dyes, kubelka_munk
 from uplift.design.mixing.layers import Layer
-from uplift.design.mixing.pigments import GRADING, Pigment, of_hiding, on_two_grounds
-from uplift.design.mixing.surface import NONE, Surface
-from uplift.design.mixing.validation import length
+from uplift.design.mixing.pigments import GRADING, Pigment, from_black_and_white, from_opaque
+from uplift.design.mixing.surface import NO_SURFACE, Surface
+from uplift.design.mixing.validation import as_length
 
 
 @dataclass(frozen=True, eq=False)
 class Coat:
-    """A layer (…, N) beneath a surface."""
+    """A layer beneath a surface.
+
+    Parameters
+    ----------
+    layer : Layer
+        Optical properties (..., N) of paint or dye.
+    surface : Surface
+        Surface of the vehicle.
+    """
 
     layer: Layer
-    surface: Surface = NONE
+    surface: Surface = NO_SURFACE
 
     def over(self, ground: ArrayLike) -> Array:
-        """Reflectance (…, N) on a ground (…, N), both as seen."""
-        return self.surface.seen(self.layer.over(_beneath(self.surface, ground)))
+        """Return the reflectance of the coat on a ground.
+
+        Parameters
+        ----------
+        ground : array_like of shape (..., N)
+            Reflectance of the ground, surface included.
+
+        Returns
+        -------
+        ndarray of shape (..., N)
+            Reflectance, surface included.
+        """
+        return self.surface.apply(self.layer.over(_internal(self.surface, ground)))
 
 
-def of_dyes(spectra: ArrayLike, parts: ArrayLike, thickness: float = 1.0, surface: Surface = NONE) -> Coat:
-    """``parts`` (…, n) of dyes that on white, one unit thick, are seen with reflectances (n, N)."""
-    mixture = dyes.mixed(dyes.of_reflectance(spectra, surface), parts)
-    through = dyes.transmittance(mixture, thickness=thickness)
-    return Coat(Layer(np.zeros_like(through), through), surface)
-
-
-def of_paints(
-    paints: Pigment, parts: ArrayLike, thickness: float | None = None, surface: Surface = NONE
+def from_dyes(
+    spectra: ArrayLike, parts: ArrayLike, thickness: float = 1.0, surface: Surface = NO_SURFACE
 ) -> Coat:
-    """``parts`` (…, n) of paints (n, N), ``thickness`` units thick, or thick enough to hide what is beneath."""
-    mixture = paints.mixed(parts)
+    """Make a coat of dyes.
+
+    Parameters
+    ----------
+    spectra : array_like of shape (n, N)
+        Reflectance of each dye on white, one unit thick, surface included.
+    parts : array_like of shape (..., n)
+        Amounts of the dyes.
+    thickness : float
+        Thickness in the same units.
+    surface : Surface
+        Surface of the vehicle.
+
+    Returns
+    -------
+    Coat
+        The coat.
+    """
+    mixture = dyes.mix(dyes.from_reflectance(spectra, surface), parts)
+    transmittance = dyes.transmittance(mixture, thickness=thickness)
+    return Coat(Layer(np.zeros_like(transmittance), transmittance), surface)
+
+
+def from_pigments(
+    paints: Pigment, parts: ArrayLike, thickness: float | None = None, surface: Surface = NO_SURFACE
+) -> Coat:
+    """Make a coat of paints.
+
+    Parameters
+    ----------
+    paints : Pigment
+        Absorption and scattering (n, N) of the paints; see `stack`.
+    parts : array_like of shape (..., n)
+        Amounts of the paints.
+    thickness : float, optional
+        Thickness in units of 1/K and 1/S, by default opaque.
+    surface : Surface
+        Surface of the vehicle.
+
+    Returns
+    -------
+    Coat
+        The coat.
+    """
+    mixture = paints.mix(parts)
     if thickness is None:
-        hiding = kubelka_munk.hiding(mixture)
-        return Coat(Layer(hiding, np.zeros_like(hiding)), surface)
-    return Coat(kubelka_munk.layer(mixture, length(thickness)), surface)
+        reflectance = kubelka_munk.opaque_reflectance(mixture)
+        return Coat(Layer(reflectance, np.zeros_like(reflectance)), surface)
+    return Coat(kubelka_munk.layer(mixture, as_length(thickness)), surface)
 
 
-def paint(
-    seen: ArrayLike,
+def pigment_from_reflectance(
+    reflectance: ArrayLike,
     on_black: ArrayLike | None = None,
     *,
-    surface: Surface = NONE,
+    surface: Surface = NO_SURFACE,
     grading: float = GRADING,
 ) -> Pigment:
-    """A paint from the reflectance (N,) it is ``seen`` with: hiding, or a unit thick on white and on black.
+    """Derive absorption and scattering of a paint from its reflectance, surface included.
 
-    Raises `ColourError` where no paint has both; what is raised by `pigments.of_hiding`.
+    Parameters
+    ----------
+    reflectance : array_like of shape (N,)
+        Reflectance of the opaque paint; with ``on_black``, of one unit of thickness on white.
+    on_black : array_like of shape (N,), optional
+        Reflectance of one unit of thickness on black.
+    surface : Surface
+        Surface of the vehicle.
+    grading : float
+        Exponent p of the assumed scattering S = R^p of opaque paint.
+
+    Returns
+    -------
+    Pigment
+        Absorption and scattering (N,).
+
+    Raises
+    ------
+    ColourError
+        No paint has both reflectances; see `pigments.from_black_and_white`.
     """
-    white = _beneath(surface, seen)
+    internal = _internal(surface, reflectance)
     if on_black is None:
-        return of_hiding(white, grading)
-    return on_two_grounds(_beneath(surface, on_black), white)
+        return from_opaque(internal, grading)
+    return from_black_and_white(_internal(surface, on_black), internal)
 
 
-def palette(paints: Sequence[Pigment]) -> Pigment:
-    """Paints (N,) side by side, as (n, N)."""
+def stack(paints: Sequence[Pigment]) -> Pigment:
+    """Stack paints (N,) into one array of paints (n, N).
+
+    Parameters
+    ----------
+    paints : sequence of Pigment
+        The paints.
+
+    Returns
+    -------
+    Pigment
+        Absorption and scattering (n, N).
+    """
     return Pigment(np.stack([one.absorption for one in paints]), np.stack([one.scattering for one in paints]))
 
 
-def _beneath(surface: Surface, seen: ArrayLike) -> Array:
-    return np.clip(surface.beneath(seen), 0, 1)
+def _internal(surface: Surface, reflectance: ArrayLike) -> Array:
+    return np.clip(surface.remove(reflectance), 0, 1)

@@ -1,19 +1,23 @@
-"""Duntley's eight constants: the beam that comes in and the diffuse light within fare differently.
+"""Duntley's theory with eight constants: collimated incident light and diffuse light within a layer differ.
 
-S. Q. Duntley 1942, J. Opt. Soc. Am. 32(2); 10.8. Of the beam, K' is absorbed per unit thickness, B' scattered back
-and F' on; of diffuse light K, B and F; S' = B' + F' and S = B + F make eight names. F has no part in the answer:
-what diffuse light scatters on stays what it was. With μ = K' + B' + F' and γ² = K (K + 2B), the beam e^−μx feeds
-two diffuse fluxes,
+Per unit thickness, a fraction K' of the beam is absorbed, B' is scattered backward and F' forward. The constants of
+diffuse light are K, B and F. The other two constants are S' = B' + F' and S = B + F. F does not affect the result, as
+forward-scattered diffuse light stays diffuse. With μ = K' + B' + F' and γ² = K (K + 2B), the beam e^−μx feeds two
+diffuse fluxes,
 
     t' = F' e^−μx − (K + B) t + B s,    −s' = B' e^−μx − (K + B) s + B t,    t(0) = 0,  s(X) = 0.
 
-−Q' e^−μx and −P' e^−μx are one solution, and what is left is Kubelka and Munk's with S = B, on which Q' falls from
-above and P' e^−μX from below. So, with their r and τ of the layer,
+−Q' e^−μx and −P' e^−μx are a particular solution. The rest is Kubelka and Munk's solution with S = B, for the incident
+fluxes Q' from above and P' e^−μX from below. With the reflectance r and transmittance τ of that layer,
 
     R = Q' r + P' e^−μX τ − P',    T = Q' τ + P' e^−μX r − (Q' − 1) e^−μX,
 
-which is (10.8) as printed. P' and Q' have μ² − γ² below; where that is 0 both limits exist, and are taken from both
-sides.
+which is eq. 10.8 of Fishkin 1983. The denominator of P' and Q' is μ² − γ². Both limits exist where it vanishes. There
+the mean of values on both sides is taken.
+
+References
+----------
+S. Q. Duntley, J. Opt. Soc. Am. 32(2), 1942.
 """
 
 from __future__ import annotations
@@ -27,49 +31,73 @@ from uplift.design.mixing import kubelka_munk
 from uplift.design.mixing.layers import Layer
 from uplift.design.mixing.pigments import Pigment
 
-NEAR = 1e-5
-"""How near, in parts, μ and γ may come before the mean of both sides is taken: it is off by the square."""
+MIN_RELATIVE_GAP = 1e-5
+"""Relative difference of μ and γ below which the mean of both sides is taken; its error is the square of this."""
 
 
 @dataclass(frozen=True, eq=False)
 class Flux:
-    """Of light, per unit thickness: ``absorption``, scattering ``backward`` and ``forward``, (…, N) each."""
+    """Constants of a kind of light, per unit thickness.
+
+    Parameters
+    ----------
+    absorption, backward, forward : ndarray of shape (..., N)
+        Fractions that are absorbed, scattered backward and scattered forward.
+    """
 
     absorption: Array
     backward: Array
     forward: Array
 
+    @property
+    def attenuation(self) -> Array:
+        """Sum of all three (..., N)."""
+        return self.absorption + self.backward + self.forward
+
 
 def layer(beam: Flux, diffuse: Flux, thickness: float) -> Layer:
-    """What of a beam comes out above, as diffuse light (R), and below, the rest of it included (T) (10.8)."""
-    mu = beam.absorption + beam.backward + beam.forward
+    """Return the optical properties of a layer for collimated light (eq. 10.8).
+
+    Parameters
+    ----------
+    beam, diffuse : Flux
+        Constants of the incident beam and of diffuse light.
+    thickness : float
+        Thickness, in the units of the constants.
+
+    Returns
+    -------
+    Layer
+        Diffuse reflectance on black, and total transmittance of the beam.
+    """
+    mu = beam.attenuation
     gamma = np.sqrt(diffuse.absorption * (diffuse.absorption + 2 * diffuse.backward))
-    step = NEAR * np.maximum(mu, gamma)
+    step = MIN_RELATIVE_GAP * np.maximum(mu, gamma)
     close = np.abs(mu - gamma) < step
-    off = np.where(close, 2 * step, 0.0)
-    above, below = (_layer(_moved(beam, side * off), diffuse, thickness) for side in (1, -1))
+    offset = np.where(close, 2 * step, 0.0)
+    above, below = (_layer(_absorb_more(beam, side * offset), diffuse, thickness) for side in (1, -1))
     return Layer((above.reflectance + below.reflectance) / 2, (above.transmittance + below.transmittance) / 2)
 
 
-def _moved(beam: Flux, by: Array) -> Flux:
-    return Flux(beam.absorption + by, beam.backward, beam.forward)
+def _absorb_more(beam: Flux, offset: Array) -> Flux:
+    return Flux(beam.absorption + offset, beam.backward, beam.forward)
 
 
 def _layer(beam: Flux, diffuse: Flux, thickness: float) -> Layer:
-    within = kubelka_munk.layer(Pigment(diffuse.absorption, diffuse.backward), thickness)
-    r, tau = within.reflectance, within.transmittance
-    beam_left = np.exp(-(beam.absorption + beam.backward + beam.forward) * thickness)
+    inner = kubelka_munk.layer(Pigment(diffuse.absorption, diffuse.backward), thickness)
+    r, tau = inner.reflectance, inner.transmittance
+    unscattered = np.exp(-beam.attenuation * thickness)
     P, Q = _sources(beam, diffuse)
-    return Layer(Q * r + P * beam_left * tau - P, Q * tau + P * beam_left * r - (Q - 1) * beam_left)
+    return Layer(Q * r + P * unscattered * tau - P, Q * tau + P * unscattered * r - (Q - 1) * unscattered)
 
 
 def _sources(beam: Flux, diffuse: Flux) -> tuple[Array, Array]:
-    """P' and Q'; a beam that is not scattered feeds nothing."""
+    """Return P' and Q', which are 0 for a beam that is not scattered."""
     K, B = diffuse.absorption, diffuse.backward
     K1, B1, F1 = beam.absorption, beam.backward, beam.forward
     S1 = B1 + F1
-    below = (K1 + S1) ** 2 - K * (K + 2 * B)
-    safe = np.where(below == 0, 1, below)
+    denominator = (K1 + S1) ** 2 - K * (K + 2 * B)
+    safe = np.where(denominator == 0, 1, denominator)
     P = ((K - K1) * B1 + (B - B1) * S1) / safe
     Q = ((K + K1) * F1 + (B + F1) * S1) / safe
     return np.where(S1 > 0, P, 0), np.where(S1 > 0, Q, 0)

@@ -1,7 +1,11 @@
-"""A layer that reflects and lets through, alike from both sides; on a ground, and on another layer.
+"""A symmetric layer that reflects and transmits light, on a ground or on another layer.
 
-Light goes to and fro between the two: a geometric series (Stokes 1862; P. Kubelka 1954, "New contributions to the
-optics of intensely light-scattering materials, part II", J. Opt. Soc. Am. 44, eq. 1–4).
+Light travels back and forth between the two, which sums to a geometric series.
+
+References
+----------
+G. G. Stokes, 1862; P. Kubelka, "New contributions to the optics of intensely light-scattering materials, part II",
+J. Opt. Soc. Am. 44, 1954, eq. 1–4.
 """
 
 from __future__ import annotations
@@ -13,26 +17,58 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
 
-LEAST = np.finfo(float).tiny
+TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """``reflectance`` on a black ground and ``transmittance``, both (…, N); their sum is 1 at most."""
+    """Optical properties of a layer, the same from both sides.
+
+    Parameters
+    ----------
+    reflectance : ndarray of shape (..., N)
+        Reflectance on a black ground.
+    transmittance : ndarray of shape (..., N)
+        Transmittance. The sum of both is at most 1.
+    """
 
     reflectance: Array
     transmittance: Array
 
     def over(self, ground: ArrayLike) -> Array:
-        """Reflectance (…, N) on a ground of reflectance (…, N)."""
+        """Return the reflectance on a ground.
+
+        Parameters
+        ----------
+        ground : array_like of shape (..., N)
+            Reflectance of the ground.
+
+        Returns
+        -------
+        ndarray of shape (..., N)
+            Reflectance of both.
+        """
         ground = np.asarray(ground, dtype=float)
-        return self.reflectance + self.transmittance**2 * ground / self._leaving(ground)
+        return self.reflectance + self.transmittance**2 * ground / self._escaping(ground)
 
-    def upon(self, lower: Layer) -> Layer:
-        """This layer and one beneath it, as one. It is alike from both sides only if both are of one material."""
-        leaving = self._leaving(lower.reflectance)
-        return Layer(self.over(lower.reflectance), self.transmittance * lower.transmittance / leaving)
+    def stack_on(self, lower: Layer) -> Layer:
+        """Combine this layer with one beneath it.
 
-    def _leaving(self, below: Array) -> Array:
-        """What of the light between does not come back; 0 only where no light gets there."""
-        return np.maximum(1 - self.reflectance * below, LEAST)
+        The result is symmetric only if both layers are of the same material.
+
+        Parameters
+        ----------
+        lower : Layer
+            The layer beneath.
+
+        Returns
+        -------
+        Layer
+            Optical properties of both, from above.
+        """
+        escaping = self._escaping(lower.reflectance)
+        return Layer(self.over(lower.reflectance), self.transmittance * lower.transmittance / escaping)
+
+    def _escaping(self, below: Array) -> Array:
+        """Return the fraction of the light in between that leaves per pass; 0 only where no light gets there."""
+        return np.maximum(1 - self.reflectance * below, TINY)

@@ -1,4 +1,4 @@
-"""Every way of mixing RGB by name, to be set side by side: through a cube's spectra, and the heuristics without."""
+"""All mixing models of RGB by name: spectral ones, by uplifting with a cube, and RGB heuristics."""
 
 from __future__ import annotations
 
@@ -12,63 +12,83 @@ from uplift.design.mixing import additive, amy, dyes, filters, kubelka_munk, pho
 from uplift.lookup import Cube
 
 Mix = Callable[[Array, Array], Array]
-"""From what is mixed (n, K) and parts (…, n) to the mixture (…, K)."""
+"""From components (n, K) and parts (…, n) to the mixture (…, K)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Mixer:
-    """``mix`` takes linear RGB (n, 3) and parts (…, n) to linear RGB (…, 3), which may leave the space."""
+    """A mixing model.
+
+    Parameters
+    ----------
+    name : str
+        Name for programs.
+    title : str
+        Name for readers.
+    mix : callable
+        From linear RGB (n, 3) and parts (..., n) to linear RGB (..., 3), which may leave the gamut.
+    """
 
     name: str
     title: str
     mix: Mix
 
 
-OIL = surface.perpendicular(1.5)
+def _mix_in_oil(spectra: Array, parts: Array) -> Array:
+    internal = np.clip(OIL.remove(spectra), 0, 1)
+    return OIL.apply(kubelka_munk.opaque_reflectance(pigments.from_opaque(internal).mix(parts)))
+
+
+def _mix_dyes(spectra: Array, parts: Array) -> Array:
+    absorption = dyes.mix(dyes.from_reflectance(spectra), parts)
+    return dyes.reflectance_on_ground(dyes.transmittance(absorption), 1.0)
+
+
+OIL = surface.normal_incidence(1.5)
 SPECTRAL: dict[str, tuple[str, Mix]] = {
     "pigments": (
         "Kubelka–Munk, S = √R",
-        lambda spectra, parts: kubelka_munk.hiding(pigments.of_hiding(spectra).mixed(parts)),
+        lambda spectra, parts: kubelka_munk.opaque_reflectance(pigments.from_opaque(spectra).mix(parts)),
     ),
-    "pigments in oil": (
-        "Kubelka–Munk, S = √R, in oil (index 1.5)",
-        lambda spectra, parts: OIL.seen(
-            kubelka_munk.hiding(pigments.of_hiding(np.clip(OIL.beneath(spectra), 0, 1)).mixed(parts))
-        ),
-    ),
+    "pigments in oil": ("Kubelka–Munk, S = √R, in oil (index 1.5)", _mix_in_oil),
     "pigments, one constant": (
         "Kubelka–Munk, S = 1",
-        lambda spectra, parts: kubelka_munk.hiding(pigments.of_hiding(spectra, 0).mixed(parts)),
+        lambda spectra, parts: kubelka_munk.opaque_reflectance(pigments.from_opaque(spectra, 0).mix(parts)),
     ),
     "pigments, Amy": (
         "Amy's approximation",
-        lambda spectra, parts: amy.hiding(pigments.of_hiding(spectra).mixed(parts)),
+        lambda spectra, parts: amy.opaque_reflectance(pigments.from_opaque(spectra).mix(parts)),
     ),
-    "dyes": (
-        "dyes on white",
-        lambda spectra, parts: dyes.in_contact(
-            dyes.transmittance(dyes.mixed(dyes.of_reflectance(spectra), parts)), 1.0
-        ),
-    ),
-    "filters": ("filters", filters.stacked),
+    "dyes": ("dyes on white", _mix_dyes),
+    "filters": ("filters", filters.stack),
 }
-"""From spectra to a spectrum."""
+"""Models of spectra (title, function), by name."""
 
 RGB: dict[str, tuple[str, Mix]] = {
-    "average": ("average of RGB", additive.dots),
-    "product": ("product of RGB", filters.stacked),
-    "ryb": ("RYB-HSL", lambda rgb, parts: ryb.mixed(np.clip(rgb, 0, 1), parts)),
+    "average": ("average of RGB", additive.average_areas),
+    "product": ("product of RGB", filters.stack),
+    "ryb": ("RYB-HSL", lambda rgb, parts: ryb.mix(np.clip(rgb, 0, 1), parts)),
 }
-"""Without spectra: (8.3), (9.2) and 10.4."""
+"""Models of RGB (title, function), by name: Fishkin 1983, eq. 8.3, 9.2 and section 10.4."""
 
 
 def mixers(cube: Cube) -> tuple[Mixer, ...]:
-    """All of them; the spectral ones uplift by ``cube``, and answer under its illuminant."""
-    ours = [Mixer(name, title, _through(cube, mix)) for name, (title, mix) in SPECTRAL.items()]
-    theirs = [Mixer(name, title, mix) for name, (title, mix) in RGB.items()]
-    screen = phosphors.monitor()
-    return (*ours, *theirs, Mixer("phosphors", "phosphor curves", screen.filtered))
+    """Return all mixing models.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube that uplifts RGB for the spectral models. Results are under its illuminant.
+
+    Returns
+    -------
+    tuple of Mixer
+        Spectral models, RGB heuristics, and phosphor curves.
+    """
+    spectral = [Mixer(name, title, _uplifted(cube, mix)) for name, (title, mix) in SPECTRAL.items()]
+    heuristics = [Mixer(name, title, mix) for name, (title, mix) in RGB.items()]
+    return (*spectral, *heuristics, Mixer("phosphors", "phosphor curves", phosphors.make_monitor().mix))
 
 
-def _through(cube: Cube, mix: Mix) -> Mix:
+def _uplifted(cube: Cube, mix: Mix) -> Mix:
     return lambda rgb, parts: cube.data.sensor.rgb(mix(cube.reflectance(rgb), parts))

@@ -1,7 +1,7 @@
-"""The thesis's spectra (chapter 7): a colour's curve is the sum of the monitor's phosphors that show it (7.1).
+"""Phosphor curves as spectra (Fishkin 1983, chapter 7).
 
-Taken for transmittances they are multiplied as filters (9.1), and the monitor's RGB that matches what is left is
-the answer.
+The curve of a colour is the sum of the monitor's phosphor spectra that display it (eq. 7.1). Curves are treated as
+transmittances and multiplied as filters (eq. 9.1). The result is the monitor RGB that matches the product.
 """
 
 from __future__ import annotations
@@ -18,22 +18,59 @@ from uplift.design.mixing import filters
 
 @dataclass(frozen=True, eq=False)
 class Monitor:
-    """``curves`` (3, N) of red, green and blue at full drive; ``back`` (3, N) takes a curve to its RGB."""
+    """A display with three primaries.
+
+    Parameters
+    ----------
+    curves : ndarray of shape (3, N)
+        Spectra of red, green and blue at full drive.
+    to_rgb : ndarray of shape (3, N)
+        Matrix from a curve to its RGB.
+    """
 
     curves: Array
-    back: Array
+    to_rgb: Array
 
-    def filtered(self, rgb: ArrayLike, thickness: ArrayLike) -> Array:
-        """RGB (…, 3), not below 0, of filters of RGB (…, n, 3), ``thickness`` (…, n) each."""
+    def mix(self, rgb: ArrayLike, thickness: ArrayLike) -> Array:
+        """Mix colours as filters.
+
+        Parameters
+        ----------
+        rgb : array_like of shape (..., n, 3)
+            Linear RGB of the filters.
+        thickness : array_like of shape (..., n)
+            Their thickness.
+
+        Returns
+        -------
+        ndarray of shape (..., 3)
+            Linear RGB, at least 0.
+        """
         curves = np.asarray(rgb, dtype=float) @ self.curves
-        return np.maximum(filters.stacked(curves, thickness) @ self.back.T, 0)
+        return np.maximum(filters.stack(curves, thickness) @ self.to_rgb.T, 0)
 
 
-def monitor(primaries: str = observer.CRT, white: str = "D65") -> Monitor:
-    """A monitor by the name of its primaries, set to a white; its white's curve ends at 1 where it is highest.
+def make_monitor(primaries: str = observer.CRT, white: str = "D65") -> Monitor:
+    """Make a monitor of named primaries.
 
-    That is the scaling that 7.2 asks for: none of the curves is above 1, so that none makes light. Raises
-    `UnknownNameError`.
+    The curve of white is scaled to a maximum of 1 (Fishkin 1983, section 7.2), so that no curve amplifies light.
+
+    Parameters
+    ----------
+    primaries : str
+        Name of a display in colour-science.
+    white : str
+        Name of the illuminant that full drive matches.
+
+    Returns
+    -------
+    Monitor
+        The monitor.
+
+    Raises
+    ------
+    UnknownNameError
+        A name is unknown.
     """
     phosphors = observer.display_primaries(primaries).T
     matching = observer.matching_functions()

@@ -1,11 +1,16 @@
-"""What paints are made of: absorption K and scattering S, measured, or supposed from one reflectance.
+"""Absorption K and scattering S of paints, from measured reflectances.
 
-Mixtures have the means of both (D. R. Duncan 1940, Proc. Phys. Soc. 52; 10.7). From reflectances on two grounds
-both follow. From that of hiding paint, R, follows K/S alone (10.6, where the thesis prints 1 − R² for (1 − R)²),
-and S has to be supposed: S = R^p. With p = 0 it is the same everywhere, the single-constant theory, in which a
-trace of a dark paint rules every mixture. Paints that have been measured scatter less where they are dark: the
-larger p, up to some 0.8, the nearer their mixtures come, but the sooner blue and yellow give grey. The default, p =
-½, is a compromise; docs/mixing.md measures.
+Mixtures average both (eq. 10.7). Reflectances on two grounds determine both. The reflectance R of opaque paint
+determines K/S only (eq. 10.6, where Fishkin 1983 prints 1 − R² for (1 − R)²), so S must be assumed: S = R^p.
+
+- p = 0, equal scattering, is the single-constant theory. A trace of a dark paint dominates every mixture.
+- Measured dark paints scatter less. Larger p, up to 0.8, predicts their mixtures better, but makes blue and yellow
+  grey.
+- p = ½, the default, is a compromise; see docs/mixing.md.
+
+References
+----------
+D. R. Duncan, Proc. Phys. Soc. 52, 1940; Fishkin 1983, eq. 10.6, 10.7.
 """
 
 from __future__ import annotations
@@ -17,77 +22,153 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError
-from uplift.design.mixing.validation import length, shares, summed
+from uplift.design.mixing.validation import as_length, as_shares, weighted_sum
 
 GRADING = 0.5
-"""p of S = R^p."""
+"""Exponent p of S = R^p."""
 DARKEST = 1e-4
-"""Least reflectance that K and S are told from; K has no limit below."""
+"""Smallest reflectance that K and S are derived from; K diverges at 0."""
 SLACK = 1e-3
-"""By how much measurements on two grounds may contradict one another, as rounding does."""
-OPAQUE = 1e-3
-"""Least transmittance from which K and S can be told apart."""
+"""Contradiction between measurements on two grounds that is accepted as rounding."""
+MIN_TRANSMITTANCE = 1e-3
+"""Smallest transmittance at which K and S can be separated."""
 
 
 @dataclass(frozen=True, eq=False)
 class Pigment:
-    """``absorption`` K and ``scattering`` S (…, N), per unit thickness, not negative."""
+    """Absorption and scattering of paint.
+
+    Parameters
+    ----------
+    absorption, scattering : ndarray of shape (..., N)
+        K and S per unit thickness, at least 0.
+    """
 
     absorption: Array
     scattering: Array
 
-    def mixed(self, parts: ArrayLike) -> Pigment:
-        """The mixture (…, N) of ``parts`` (…, n) of pigments (…, n, N) (10.7). Raises `OptionError`."""
-        weights = shares(parts)
-        return Pigment(summed(self.absorption, weights), summed(self.scattering, weights))
+    def mix(self, parts: ArrayLike) -> Pigment:
+        """Mix the pigments along the last axis but one (eq. 10.7).
+
+        Parameters
+        ----------
+        parts : array_like of shape (..., n)
+            Amounts of the pigments (..., n, N).
+
+        Returns
+        -------
+        Pigment
+            The mixture (..., N).
+
+        Raises
+        ------
+        OptionError
+            A part is negative or not finite, or all are 0 (code ``invalid-parts``).
+        """
+        weights = as_shares(parts)
+        return Pigment(weighted_sum(self.absorption, weights), weighted_sum(self.scattering, weights))
 
 
 def absorption_over_scattering(reflectance: ArrayLike) -> Array:
-    """K/S (…) of hiding paint of reflectance (…) in (0, 1] (10.6, turned round)."""
+    """Return K/S of opaque paint (eq. 10.6).
+
+    Parameters
+    ----------
+    reflectance : array_like of shape (...)
+        Reflectance in (0, 1].
+
+    Returns
+    -------
+    ndarray of shape (...)
+        K/S.
+    """
     R = np.asarray(reflectance, dtype=float)
     return (1 - R) ** 2 / (2 * R)
 
 
-def of_hiding(reflectance: ArrayLike, grading: float = GRADING) -> Pigment:
-    """K and S = R^``grading`` of hiding paint of reflectance R (…, N) in [0, 1], or `DARKEST` if that is more."""
+def from_opaque(reflectance: ArrayLike, grading: float = GRADING) -> Pigment:
+    """Derive K and S = R^p from the reflectance of opaque paint.
+
+    Parameters
+    ----------
+    reflectance : array_like of shape (..., N)
+        Reflectance in [0, 1]; values below `DARKEST` are raised to it.
+    grading : float
+        Exponent p, at least 0.
+
+    Returns
+    -------
+    Pigment
+        Absorption and scattering (..., N).
+    """
     R = np.clip(np.asarray(reflectance, dtype=float), DARKEST, 1)
-    S = R ** length(grading, "grading")
+    S = R ** as_length(grading, "grading")
     return Pigment(S * absorption_over_scattering(R), S)
 
 
-def on_two_grounds(
-    first: ArrayLike,
-    second: ArrayLike,
+def from_black_and_white(
+    on_black: ArrayLike,
+    on_white: ArrayLike,
     grounds: tuple[ArrayLike, ArrayLike] = (0.0, 1.0),
     thickness: float = 1.0,
 ) -> Pigment:
-    """K and S of paint ``thickness`` thick, from reflectances (…, N) on two ``grounds``, by default black and white.
+    """Derive K and S from reflectances on two grounds.
 
-    On a ground g the paint has R = R₀ + T² g / (1 − R₀ g), linear in R₀ and T² − R₀² once multiplied out. Of R₀ and
-    T, with the absorptance A = 1 − R₀ − T: cosh γX = 1 + A (A + 2R₀) / 2T, SX = γX R₀ / (T sinh γX) and KX = γX A
-    (1 − R₀ + T) / (2T sinh γX), which have no differences of like numbers for S → 0 or K → 0.
+    Paint on a ground g has R = R₀ + T² g / (1 − R₀ g), which is linear in R₀ and T² − R₀² once multiplied out. With
+    the absorptance A = 1 − R₀ − T: cosh γX = 1 + A (A + 2R₀) / 2T, SX = γX R₀ / (T sinh γX) and
+    KX = γX A (1 − R₀ + T) / (2T sinh γX). These forms do not cancel for S → 0 or K → 0.
 
-    Raises `ColourError` where no paint has these reflectances, or it hides the ground; `OptionError` for equal
-    grounds.
+    Parameters
+    ----------
+    on_black, on_white : array_like of shape (..., N)
+        Reflectances on the first and the second ground.
+    grounds : pair of array_like of shape (..., N)
+        Reflectances of the grounds, by default perfect black and perfect white.
+    thickness : float
+        Thickness X, greater than 0.
+
+    Returns
+    -------
+    Pigment
+        Absorption and scattering (..., N).
+
+    Raises
+    ------
+    ColourError
+        The layer is too opaque, or lighter on the darker ground (code ``layer-too-opaque``), or no paint has these
+        reflectances (``impossible-paint``).
+    OptionError
+        The grounds are equal or the thickness is 0 (code ``equal-grounds``, ``invalid-thickness``).
     """
     g1, g2 = (np.asarray(ground, dtype=float) for ground in grounds)
-    R1, R2 = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
+    R1, R2 = np.asarray(on_black, dtype=float), np.asarray(on_white, dtype=float)
+    if not (np.abs(g2 - g1) > SLACK).all():
+        raise OptionError("K and S need two different grounds", code="equal-grounds")
+    if not as_length(thickness):
+        raise OptionError("thickness must be greater than 0, got 0", code="invalid-thickness")
     determinant = g2 - g1 + g1 * g2 * (R1 - R2)
-    if not (np.abs(g2 - g1) > SLACK).all() or not length(thickness):
-        raise OptionError("K and S need two grounds, and some paint", hint="measure on black and on white")
     R0 = (R1 * g2 - R2 * g1) / determinant
-    through = ((1 + R1 * g1) * R2 - (1 + R2 * g2) * R1) / determinant + R0**2
-    T = np.sqrt(np.maximum(through, 0))
-    if not (T > OPAQUE).all():
-        raise ColourError("hides the ground, or is lighter on the darker", hint="measure a thinner layer")
+    squared = ((1 + R1 * g1) * R2 - (1 + R2 * g2) * R1) / determinant + R0**2
+    T = np.sqrt(np.maximum(squared, 0))
+    if not (T > MIN_TRANSMITTANCE).all():
+        raise ColourError(
+            "the layer hides the ground, or is lighter on the darker ground",
+            code="layer-too-opaque",
+            hint="measure a thinner layer",
+        )
     if not ((R0 >= -SLACK) & (R0 + T <= 1 + SLACK)).all():
-        raise ColourError("no paint has these reflectances on these grounds", hint="check which is on which")
-    return _of_layer(np.maximum(R0, 0), T, thickness)
+        raise ColourError(
+            "no paint has these reflectances on these grounds",
+            code="impossible-paint",
+            hint="check the order of the grounds",
+        )
+    return _from_layer(np.maximum(R0, 0), T, thickness)
 
 
-def _of_layer(R0: Array, T: Array, thickness: float) -> Pigment:
+def _from_layer(R0: Array, T: Array, thickness: float) -> Pigment:
     A = np.maximum(1 - R0 - T, 0)
-    more = A * (A + 2 * R0) / (2 * T)  # cosh γX − 1
-    sinh = np.sqrt(more * (more + 2))
-    ratio = np.where(sinh > 0, np.log1p(more + sinh) / np.where(sinh > 0, sinh, 1), 1) / (T * thickness)
+    cosh_minus_1 = A * (A + 2 * R0) / (2 * T)
+    sinh = np.sqrt(cosh_minus_1 * (cosh_minus_1 + 2))
+    safe = np.where(sinh > 0, sinh, 1)
+    ratio = np.where(sinh > 0, np.log1p(cosh_minus_1 + sinh) / safe, 1) / (T * thickness)
     return Pigment(ratio * A * (1 - R0 + T) / 2, ratio * R0)

@@ -1,4 +1,4 @@
-"""From what is mixed to a mixture, by kind: pigments, dyes, filters or lights, in any number of proportions at once."""
+"""Mixtures by kind of component: pigments, dyes, filters or lights, for many proportions at once."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from uplift.common.errors import OptionError, UpliftWarning
 from uplift.design.mixing import additive, coats, filters
 from uplift.design.mixing.coats import Coat
 from uplift.design.mixing.pigments import GRADING
-from uplift.design.mixing.surface import NONE, Surface
-from uplift.design.mixing.validation import amounts
+from uplift.design.mixing.surface import NO_SURFACE, Surface
+from uplift.design.mixing.validation import as_amounts
 
 COATS = ("pigment", "dye")
 KINDS = (*COATS, "filter", "light")
@@ -23,86 +23,173 @@ KINDS = (*COATS, "filter", "light")
 
 @dataclass(frozen=True, eq=False)
 class Ingredients:
-    """``seen`` (n, N): pigments when they hide, dyes a unit thick on white; what filters let through, lights give.
+    """Spectra of the components of a mixture.
 
-    ``on_black`` (N,) of those pigments that are given a unit thick on white and on black instead.
+    Parameters
+    ----------
+    spectra : ndarray of shape (n, N)
+        Reflectance of opaque pigments, reflectance of dyes one unit thick on white, transmittance of filters, or
+        power of lights.
+    on_black : tuple of n ndarray of shape (N,), or None
+        Reflectance on black of the pigments that ``spectra`` gives on white, one unit thick. None for the others.
     """
 
-    seen: Array
+    spectra: Array
     on_black: tuple[Array | None, ...]
 
 
 @dataclass(frozen=True)
 class Medium:
-    """``thickness`` in units, None for the kind's own; the vehicle's ``surface``, that of air for none.
+    """Properties of a coat.
 
-    ``grading`` of pigments' scattering, as `pigments` has it.
+    Parameters
+    ----------
+    thickness : float, optional
+        Thickness in units, by default opaque for pigments and 1 for dyes.
+    surface : Surface
+        Surface of the vehicle.
+    grading : float
+        Exponent of the pigments' scattering; see `uplift.design.mixing.pigments`.
     """
 
     thickness: float | None = None
-    surface: Surface = NONE
+    surface: Surface = NO_SURFACE
     grading: float = GRADING
 
 
-def coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium) -> Coat:
-    """A coat of ``parts`` (…, n) of pigments, hiding if no thickness is given, or of dyes, by default a unit thick.
+def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium) -> Coat:
+    """Make a coat of pigments or dyes.
 
-    An `UpliftWarning` tells of colours darker than the surface. Raises `OptionError` for other kinds, and `ColourError`
-    for pigments that cannot be.
+    Parameters
+    ----------
+    kind : {"pigment", "dye"}
+        Kind of the components.
+    ingredients : Ingredients
+        Spectra of the components.
+    parts : array_like of shape (..., n)
+        Amounts of the components.
+    medium : Medium
+        Properties of the coat.
+
+    Returns
+    -------
+    Coat
+        The coat.
+
+    Raises
+    ------
+    OptionError
+        The kind makes no coat (code ``unknown-coat``), or a dye has a colour on black (``dye-on-black``).
+    ColourError
+        No paint has the reflectances of a pigment.
+
+    Warns
+    -----
+    UpliftWarning
+        Colours are darker than the surface alone (code ``darker-than-surface``).
     """
     if kind not in COATS:
-        raise OptionError(f"{kind}s make no coat", hint=f"use {' or '.join(COATS)}")
+        raise OptionError(f"a coat must be of {' or '.join(COATS)}, got '{kind}'", code="unknown-coat")
     _warn_of_dark(ingredients, medium.surface)
     if kind == "dye":
         if any(one is not None for one in ingredients.on_black):
-            raise OptionError("dyes have no colour on black", hint="give their colour on white alone")
+            raise OptionError(
+                "dyes must not have a colour on black",
+                code="dye-on-black",
+                hint="pass their colour on white only",
+            )
         thickness = 1.0 if medium.thickness is None else medium.thickness
-        return coats.of_dyes(ingredients.seen, parts, thickness, medium.surface)
+        return coats.from_dyes(ingredients.spectra, parts, thickness, medium.surface)
     paints = [
-        coats.paint(seen, on_black, surface=medium.surface, grading=medium.grading)
-        for seen, on_black in zip(ingredients.seen, ingredients.on_black, strict=True)
+        coats.pigment_from_reflectance(spectrum, on_black, surface=medium.surface, grading=medium.grading)
+        for spectrum, on_black in zip(ingredients.spectra, ingredients.on_black, strict=True)
     ]
-    return coats.of_paints(coats.palette(paints), parts, medium.thickness, medium.surface)
+    return coats.from_pigments(coats.stack(paints), parts, medium.thickness, medium.surface)
 
 
 def _warn_of_dark(ingredients: Ingredients, surface: Surface) -> None:
-    """What is seen with less than the surface throws back cannot be beneath it."""
-    given = [*ingredients.seen, *(one for one in ingredients.on_black if one is not None)]
-    dark = sum(bool((surface.beneath(one) < -SLACK).any()) for one in given)
+    spectra = [*ingredients.spectra, *(one for one in ingredients.on_black if one is not None)]
+    dark = sum(bool((surface.remove(one) < -SLACK).any()) for one in spectra)
     if dark:
-        told = (
-            f"{dark} of {len(given)} colours are in part darker than the surface alone: taken for black there"
+        problem = (
+            f"{dark} of {len(spectra)} colours are partly darker than the surface alone; they are treated as "
+            "black there"
         )
-        warnings.warn(told, UpliftWarning, stacklevel=3)
+        warnings.warn(UpliftWarning(problem, code="darker-than-surface"), stacklevel=3)
 
 
-def mixed(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, ground: ArrayLike) -> Array:
-    """Spectra (…, N) of ``parts`` (…, n): coats on a ``ground`` (N,), thickness of filters, strength of lights.
+def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, ground: ArrayLike) -> Array:
+    """Mix components.
 
-    Raises `OptionError` for unknown kinds and for a medium that the kind has not; what is raised by `coat`.
+    Parameters
+    ----------
+    kind : {"pigment", "dye", "filter", "light"}
+        Kind of the components.
+    ingredients : Ingredients
+        Spectra of the components.
+    parts : array_like of shape (..., n)
+        Amounts of pigments or dyes, thickness of filters, or strength of lights.
+    medium : Medium
+        Properties of a coat; the default for filters and lights.
+    ground : array_like of shape (N,)
+        Reflectance of the ground beneath a coat.
+
+    Returns
+    -------
+    ndarray of shape (..., N)
+        Spectra of the mixtures.
+
+    Raises
+    ------
+    OptionError
+        The kind is unknown (code ``unknown-mixture``), or filters or lights have a medium
+        (``medium-not-applicable``).
     """
     if kind in COATS:
-        return coat(kind, ingredients, parts, medium).over(ground)
+        return make_coat(kind, ingredients, parts, medium).over(ground)
     if kind not in KINDS:
-        raise OptionError(f"unknown kind of mixture '{kind}'", hint=f"use one of {', '.join(KINDS)}")
+        raise OptionError(f"a mixture must be of {', '.join(KINDS)}, got '{kind}'", code="unknown-mixture")
     if medium != Medium() or any(one is not None for one in ingredients.on_black):
         raise OptionError(
-            f"{kind}s have no thickness, surface, or colour on black",
-            hint="leave them out: parts of filters are their thickness",
+            f"{kind}s must not have a thickness, a surface or a colour on black",
+            code="medium-not-applicable",
+            hint="leave them out; parts of filters are their thickness",
         )
-    mix = filters.stacked if kind == "filter" else additive.lights
-    return mix(ingredients.seen, parts)
+    function = filters.stack if kind == "filter" else additive.add_lights
+    return function(ingredients.spectra, parts)
 
 
 def ramp(parts: ArrayLike, steps: int) -> Array:
-    """(steps, n): from all of the first ingredient to all of the last, through those between; ``parts`` (n,).
+    """Return proportions from the first component alone, through the others, to the last alone.
 
-    (0, 1) where there is only one. Raises `OptionError` for less than two steps.
+    Parameters
+    ----------
+    parts : array_like of shape (n,)
+        Amounts at which each component stands alone.
+    steps : int
+        Number of steps, at least 2.
+
+    Returns
+    -------
+    ndarray of shape (steps, n)
+        Parts of each step. The shape is (0, 1) for a single component.
+
+    Raises
+    ------
+    OptionError
+        There are fewer than two steps (code ``too-few-steps``).
+
+    Examples
+    --------
+    >>> ramp([2, 1], 3)
+    array([[2. , 0. ],
+           [1. , 0.5],
+           [0. , 1. ]])
     """
     if steps < 2:
-        raise OptionError(f"a ramp of {steps} steps", hint="give 2 or more")
-    ends = np.diag(amounts(parts))
+        raise OptionError(f"a ramp must have at least 2 steps, got {steps}", code="too-few-steps")
+    ends = np.diag(as_amounts(parts))
     if len(ends) < 2:
         return np.empty((0, len(ends)))
-    at, places = np.linspace(0, len(ends) - 1, steps), np.arange(len(ends))
-    return np.stack([np.interp(at, places, column) for column in ends.T], axis=-1)
+    positions, stops = np.linspace(0, len(ends) - 1, steps), np.arange(len(ends))
+    return np.stack([np.interp(positions, stops, column) for column in ends.T], axis=-1)

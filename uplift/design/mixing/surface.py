@@ -1,8 +1,13 @@
-"""The surface between air and vehicle: what it throws back of the light that comes, and of the light that leaves.
+"""Reflection at the surface between air and the vehicle of a paint.
 
-Outside, light falls perpendicularly (Fresnel, 9.3) or from everywhere (Duntley, 10.9); inside it is diffuse.
-Saunderson's correction (10.10) leads from a reflectance as Kubelka and Munk have it, inside, to the one that is
-seen, and back.
+Incident light is collimated and perpendicular (Fresnel; Fishkin 1983, eq. 9.3) or diffuse (Duntley, eq. 10.9). Light
+within is diffuse. Saunderson's correction (eq. 10.10) converts between the internal reflectance, as in Kubelka and
+Munk's theory, and the measured one.
+
+References
+----------
+S. Q. Duntley, J. Opt. Soc. Am. 32(2), 1942; J. L. Saunderson, J. Opt. Soc. Am. 32, 1942; D. B. Judd, "Fresnel
+reflection of diffusely incident light", J. Res. NBS 29, 1942.
 """
 
 from __future__ import annotations
@@ -16,18 +21,38 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
 
-def fresnel(index: float) -> float:
-    """Reflectance of a perpendicular beam (9.3), from either side; ``index`` of refraction against air's, 1 or more."""
-    return ((_index(index) - 1) / (index + 1)) ** 2
+def fresnel_reflectance(index: float) -> float:
+    """Return the reflectance of a perpendicular beam, from either side (eq. 9.3).
 
+    Parameters
+    ----------
+    index : float
+        Refractive index relative to air, at least 1.
 
-def diffuse(index: float) -> float:
-    """Reflectance of light from everywhere, falling on the denser side: Fresnel's, integrated (10.9).
-
-    S. Q. Duntley 1942, J. Opt. Soc. Am. 32(2). The thesis prints 8n + 1² where 6 (n + 1)² belongs; the tests
-    integrate.
+    Returns
+    -------
+    float
+        Reflectance, 0.04 for an index of 1.5.
     """
-    n = _index(index)
+    return ((_check_index(index) - 1) / (index + 1)) ** 2
+
+
+def diffuse_reflectance(index: float) -> float:
+    """Return the reflectance of diffuse light incident from air: Fresnel's, integrated (Duntley 1942, eq. 10.9).
+
+    Fishkin 1983 prints 8n + 1² for 6 (n + 1)². The tests integrate Fresnel's equations.
+
+    Parameters
+    ----------
+    index : float
+        Refractive index relative to air, at least 1.
+
+    Returns
+    -------
+    float
+        Reflectance, 0.092 for an index of 1.5.
+    """
+    n = _check_index(index)
     if n == 1:
         return 0.0
     n2, n4 = n**2, n**4
@@ -40,17 +65,38 @@ def diffuse(index: float) -> float:
     )
 
 
-def inside(index: float) -> float:
-    """Reflectance of diffuse light from within: all beyond the critical angle, 1 − (1 − ρ) / n².
+def internal_reflectance(index: float) -> float:
+    """Return the reflectance of diffuse light from within, 1 − (1 − ρ) / n², total reflection included (Judd 1942).
 
-    D. B. Judd 1942, "Fresnel reflection of diffusely incident light", J. Res. NBS 29: 0.596 for an index of 1.5.
+    Parameters
+    ----------
+    index : float
+        Refractive index relative to air, at least 1.
+
+    Returns
+    -------
+    float
+        Reflectance, 0.596 for an index of 1.5.
     """
-    return 1 - (1 - diffuse(index)) / index**2
+    return 1 - (1 - diffuse_reflectance(index)) / index**2
 
 
 @dataclass(frozen=True)
 class Surface:
-    """Reflectance of what comes from outside, and of diffuse light from inside, both in [0, 1)."""
+    """Reflectances of a surface.
+
+    Parameters
+    ----------
+    outside : float
+        Reflectance of incident light, in [0, 1).
+    inside : float
+        Reflectance of diffuse light from within, in [0, 1).
+
+    Raises
+    ------
+    OptionError
+        A reflectance is outside [0, 1) (code ``invalid-surface``).
+    """
 
     outside: float = 0.0
     inside: float = 0.0
@@ -58,39 +104,89 @@ class Surface:
     def __post_init__(self) -> None:
         for value in (self.outside, self.inside):
             if not 0 <= value < 1:
-                raise OptionError(f"a surface that reflects {value}", hint="give numbers from 0 to below 1")
+                raise OptionError(
+                    f"reflectance of a surface must be in [0, 1), got {value}", code="invalid-surface"
+                )
 
-    def seen(self, beneath: ArrayLike) -> Array:
-        """Reflectance (…) from outside, of what has reflectance (…) ``beneath`` the surface (10.10)."""
-        beneath = np.asarray(beneath, dtype=float)
-        through = (1 - self.outside) * (1 - self.inside)
-        return self.outside + through * beneath / (1 - self.inside * beneath)
+    def apply(self, internal: ArrayLike) -> Array:
+        """Return the reflectance measured through the surface (Saunderson's correction, eq. 10.10).
 
-    def beneath(self, seen: ArrayLike) -> Array:
-        """Back: (10.10) solved for the reflectance beneath. Below 0 where less is seen than the surface throws back."""
-        rest = np.asarray(seen, dtype=float) - self.outside
+        Parameters
+        ----------
+        internal : array_like of shape (...)
+            Reflectance beneath the surface.
+
+        Returns
+        -------
+        ndarray of shape (...)
+            Measured reflectance.
+        """
+        internal = np.asarray(internal, dtype=float)
+        transmitted = (1 - self.outside) * (1 - self.inside)
+        return self.outside + transmitted * internal / (1 - self.inside * internal)
+
+    def remove(self, measured: ArrayLike) -> Array:
+        """Return the reflectance beneath the surface (inverse of eq. 10.10).
+
+        Parameters
+        ----------
+        measured : array_like of shape (...)
+            Measured reflectance.
+
+        Returns
+        -------
+        ndarray of shape (...)
+            Internal reflectance, negative where the measured one is below that of the surface alone.
+        """
+        rest = np.asarray(measured, dtype=float) - self.outside
         return rest / ((1 - self.outside) * (1 - self.inside) + self.inside * rest)
 
 
-NONE = Surface()
-"""Vehicle and air alike, or reflectances that are meant without it."""
+NO_SURFACE = Surface()
+"""A vehicle with the refractive index of air, or internal reflectances."""
 
 
-def perpendicular(index: float) -> Surface:
-    """Light falls on the surface perpendicularly."""
-    return Surface(fresnel(index), inside(index))
+def normal_incidence(index: float) -> Surface:
+    """Return the surface for perpendicular incident light.
+
+    Parameters
+    ----------
+    index : float
+        Refractive index relative to air, at least 1.
+
+    Returns
+    -------
+    Surface
+        The surface.
+    """
+    return Surface(fresnel_reflectance(index), internal_reflectance(index))
 
 
-def overcast(index: float) -> Surface:
-    """Light falls on the surface from everywhere."""
-    return Surface(diffuse(index), inside(index))
+def diffuse_incidence(index: float) -> Surface:
+    """Return the surface for diffuse incident light.
+
+    Parameters
+    ----------
+    index : float
+        Refractive index relative to air, at least 1.
+
+    Returns
+    -------
+    Surface
+        The surface.
+    """
+    return Surface(diffuse_reflectance(index), internal_reflectance(index))
 
 
-INCIDENT = {"perpendicular": perpendicular, "diffuse": overcast}
-"""How light falls, by name."""
+INCIDENCES = {"perpendicular": normal_incidence, "diffuse": diffuse_incidence}
+"""Surfaces by the kind of incident light."""
 
 
-def _index(index: float) -> float:
+def _check_index(index: float) -> float:
     if not (np.isfinite(index) and index >= 1):
-        raise OptionError(f"index of refraction {index}", hint="give 1 or more: 1.5 is linseed oil")
+        raise OptionError(
+            f"refractive index must be finite and at least 1, got {index}",
+            code="invalid-refractive-index",
+            hint="linseed oil has 1.5",
+        )
     return index

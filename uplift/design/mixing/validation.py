@@ -1,4 +1,4 @@
-"""Amounts of what is mixed, checked; sums and means over them."""
+"""Validation of amounts, and weighted sums of spectra."""
 
 from __future__ import annotations
 
@@ -9,30 +9,33 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
 
-def amounts(parts: ArrayLike) -> Array:
-    """Parts (…, n) as floats. Raises `OptionError` for negative ones and NaN."""
+def as_amounts(parts: ArrayLike) -> Array:
+    """Return parts (…, n) as floats. Raises `OptionError` (``invalid-parts``) unless finite and not negative."""
     array = np.asarray(parts, dtype=float)
     if array.ndim == 0 or not (np.isfinite(array) & (array >= 0)).all():
-        raise OptionError("parts of a mixture are numbers from 0 up", hint="give one for each colour")
+        raise OptionError(
+            f"parts of a mixture must be a sequence of finite numbers of at least 0, got {array.tolist()}",
+            code="invalid-parts",
+        )
     return array
 
 
-def shares(parts: ArrayLike) -> Array:
-    """Parts (…, n) that sum to 1. Raises `OptionError`, also where there is nothing to share."""
-    array = amounts(parts)
+def as_shares(parts: ArrayLike) -> Array:
+    """Return parts (…, n) scaled to sum 1. Raises `OptionError` (``invalid-parts``), also if all are 0."""
+    array = as_amounts(parts)
     total = array.sum(axis=-1, keepdims=True)
     if not (total > 0).all():
-        raise OptionError("a mixture of no parts", hint="give some part more than 0")
+        raise OptionError("some part of a mixture must be greater than 0", code="invalid-parts")
     return np.asarray(array / total)
 
 
-def length(value: float, what: str = "thickness") -> float:
-    """A finite number from 0 up. Raises `OptionError`."""
+def as_length(value: float, name: str = "thickness") -> float:
+    """Return a finite number of at least 0. Raises `OptionError` (``invalid-`` and the name)."""
     if not (np.isfinite(value) and value >= 0):
-        raise OptionError(f"{what} {value} is no number from 0 up", hint="0 is none, 1 the unit")
+        raise OptionError(f"{name} must be finite and at least 0, got {value}", code=f"invalid-{name}")
     return float(value)
 
 
-def summed(spectra: ArrayLike, weights: Array) -> Array:
-    """Spectra (…, n, N) weighted (…, n) and summed: (…, N)."""
+def weighted_sum(spectra: ArrayLike, weights: Array) -> Array:
+    """Return the sum (…, N) of spectra (…, n, N) with weights (…, n)."""
     return np.asarray((weights[..., None, :] @ np.asarray(spectra, dtype=float))[..., 0, :])
