@@ -95,8 +95,8 @@ def _fit_once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float]
         marks[phase] = time.process_time()
 
     def progress(done: Progress) -> None:
-        if done.stage == "fit":
-            mark("lattice")
+        if done.stage in ("fit", "store"):
+            mark("lattice" if done.stage == "fit" else "storing")
 
     wall = time.perf_counter()
     mark("begin")
@@ -108,8 +108,6 @@ def _fit_once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float]
     prior = fit.fit_prior(problem, sensor, entries, observer.light("A"))
     mark("prior")
     fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, progress)
-    mark("storing")
-    prior.standard_errors(problem)
     mark("errors")
     wall = time.perf_counter() - wall
     phases = ("begin", "entries", "prior", "lattice", "storing", "errors")

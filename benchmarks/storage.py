@@ -20,7 +20,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
 from uplift.fit.grow import grow
-from uplift.fit.store import LOSS
+from uplift.fit.store import MAX_LOSS
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, Sigmoid, evaluate
 from uplift.models.minimum_norm import forward_map
@@ -45,7 +45,7 @@ NOTES = (
     f"Lattices of {DIM}³ points without an atlas. RGB: the largest change of any point's linear RGB by rounding "
     f"its coefficients; ΔE00: the largest change under {LIGHT}.",
     "No spectrum: points whose rounded coefficients are the moments of no reflectance.",
-    f"Points that lose end more than {LOSS:g} of the threshold of {THRESHOLD:g} further from their colours in "
+    f"Points that lose end more than {MAX_LOSS:g} of the threshold of {THRESHOLD:g} further from their colours in "
     "single precision. The rule: where there is none, a cube has float32, otherwise float64; every build decides "
     "for itself, as its file's reader would (`fit/store.py`).",
     "More moments do not ask for more digits. Wide spaces do: their saturated colours have spectra as steep as "
@@ -75,7 +75,7 @@ def _rows() -> Iterator[list[str]]:
             _spectra(model, sensor, coefficients.astype(kind)) for kind in (np.float16, np.float32)
         )
         missed = np.abs(sensor.rgb(single) - problem.goal(np.arange(len(single)))).max(axis=1)
-        lost = int((missed > distance + LOSS * THRESHOLD).sum())
+        lost = int((missed > distance + MAX_LOSS * THRESHOLD).sum())
         yield [
             space,
             model.name,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchmarks.fidelity.materials import SENSOR, ahead, entries, large, materials
+from benchmarks.fidelity.materials import ahead, entries, large, materials
 from benchmarks.page import table
 from uplift import fit
 from uplift.colorimetry import observer
@@ -15,6 +15,7 @@ from uplift.models import Moments
 from uplift.pipeline.options import AXES, Options
 
 WITHIN = (0.5, 1.0)
+TOLERANCE = fit.solver_tolerance(Options.threshold)
 
 
 def sections() -> list[str]:
@@ -25,8 +26,8 @@ def sections() -> list[str]:
         for axis in AXES:
             cells = []
             for dim in DIMS[1::2]:
-                problem = fit.Problem(model, ahead(model), Lattice(observer.axis_nodes(axis, dim)))
-                errors = lattice_error(problem, SENSOR.wavelengths, lights, found)
+                lattice = Lattice(observer.axis_nodes(axis, dim))
+                errors = lattice_error(model, ahead(model), TOLERANCE, lattice, lights, found)
                 cells.append(f"{np.median(errors):.2f} / {int((errors > WITHIN[0]).sum())}")
             rows.append([f"{name} ({len(found.rgb)})", axis, *cells])
         chosen = [_auto(model, found, lights, within) for within in WITHIN]
@@ -45,8 +46,7 @@ def sections() -> list[str]:
 
 
 def _auto(model: Moments, found: fit.FittedEntries, lights: list[Light], within: float) -> str:
-    problem = fit.Problem(model, ahead(model), Lattice(observer.axis_nodes("srgb", 2)))
     axis, dim, lost = fit.choose_lattice(
-        problem, SENSOR.wavelengths, lights, found, observer.axis_nodes, AXES, within
+        model, ahead(model), TOLERANCE, lights, found, observer.axis_nodes, AXES, within
     )
     return f"{within:g}: {dim}³ {axis}" + (f", {lost} over" if lost else "")

@@ -164,12 +164,12 @@ def test_bad_input_is_refused_before_building(refuse, monkeypatch, home, args, p
 
 
 def test_the_dim_proposed_is_one_that_fits(refuse):
-    from uplift.pipeline.build_cube import Options, check_size
+    from uplift.pipeline.options import check_memory
 
-    dim = int(refuse("build", "--dim", "100000").split("use --dim ")[1].split()[0])
-    check_size(Options(dim=dim))
+    dim = int(refuse("build", "--dim", "100000").split("use dim=")[1].split()[0])
+    check_memory(Options(dim=dim))
     with pytest.raises(uplift.UpliftError, match="needs about"):
-        check_size(Options(dim=dim + 1))
+        check_memory(Options(dim=dim + 1))
 
 
 def test_without_a_terminal_there_is_no_progress_bar(home):

@@ -39,10 +39,10 @@ def test_it_comes_back_bit_by_bit_and_takes_no_more_than_it_must(data, tmp_path)
 def test_points_of_cells_and_cells_of_points():
     lattice, cells = Lattice(np.linspace(0, 1, 4)), np.zeros(64, dtype=bool)
     cells[lattice.index(np.array([[0, 1, 2], [2, 2, 2]]))] = True
-    points = lattice.corners_of(cells)
+    points = lattice.corner_points(cells)
     assert points.sum() == 16
-    np.testing.assert_array_equal(lattice.cells_of(points), cells)
-    assert lattice.cells_of(np.ones(64, dtype=bool)).sum() == 27
+    np.testing.assert_array_equal(lattice.complete_cells(points), cells)
+    assert lattice.complete_cells(np.ones(64, dtype=bool)).sum() == 27
 
 
 def unsorted(tensors, metadata):

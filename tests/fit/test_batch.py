@@ -54,6 +54,6 @@ def test_several_devices_build_the_same_cube(repository, tmp_path):
         [sys.executable, "-W", "ignore", "-c", SEVERAL, macbeth, path], env=os.environ | flags, check=True
     )
     one, several = build(macbeth, dim=9).data, load(path).data
-    np.testing.assert_allclose(several.coefficients, one.coefficients, rtol=0, atol=1e-9)
-    np.testing.assert_allclose(several.standard_error, one.standard_error, rtol=1e-6)
-    np.testing.assert_array_equal(several.status, one.status)
+    np.testing.assert_allclose(several.points.coefficients, one.points.coefficients, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(several.points.standard_error, one.points.standard_error, rtol=1e-6)
+    np.testing.assert_array_equal(several.points.status, one.points.status)

@@ -10,10 +10,10 @@ from hypothesis.extra.numpy import arrays
 
 from uplift.colorimetry import observer
 from uplift.fit import Prior, Problem, fit_lattice, seed
-from uplift.fit.grow import NOT_FITTED, grow
+from uplift.fit.grow import grow
 from uplift.fit.improve import improve
 from uplift.fit.smooth import smooth
-from uplift.lattice import Lattice, Status
+from uplift.lattice import NOT_FITTED, Lattice, Status
 from uplift.models import Moments, Sigmoid, reflectance
 from uplift.models.minimum_norm import forward_map, residual
 
@@ -43,10 +43,10 @@ def missed(model, sensor, lattice, coefficients):
 @given(arrays(float, st.tuples(st.integers(0, 6), st.just(3)), elements=st.floats(0.02, 0.98), unique=True))
 def test_any_set_of_seeds_fits_the_lattice(sensor, rgb):
     fit = fitted(MODEL, sensor, LATTICE, rgb)
-    assert missed(MODEL, sensor, LATTICE, fit.coefficients).max() <= 1e-4
-    assert fit.distance.max() <= 1e-4
-    assert Status.UNFITTED not in fit.status
-    assert np.isfinite(fit.coefficients).all()
+    assert missed(MODEL, sensor, LATTICE, fit.points.coefficients).max() <= 1e-4
+    assert fit.points.distance.max() <= 1e-4
+    assert Status.UNFITTED not in fit.points.status
+    assert np.isfinite(fit.points.coefficients).all()
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -56,7 +56,7 @@ def test_any_set_of_seeds_fits_the_lattice(sensor, rgb):
 def test_tiny_lattices_are_fitted_to_their_corners(model, dim, sensor):
     lattice = Lattice(observer.axis_nodes("srgb", dim))
     fit = fitted(model, sensor, lattice)
-    assert missed(model, sensor, lattice, fit.coefficients).max() <= 1e-4
+    assert missed(model, sensor, lattice, fit.points.coefficients).max() <= 1e-4
 
 
 def test_points_that_fail_from_their_start_are_taken_from_their_neighbours(sensor):
@@ -72,14 +72,14 @@ def test_points_that_fail_from_their_start_are_taken_from_their_neighbours(senso
     fitted = grown.round != NOT_FITTED
     assert fitted.sum() > 300
     assert (grown.round[fitted & (steps > 0)] >= steps[fitted & (steps > 0)]).sum() > 300
-    assert [done.number for done in rounds] == list(range(len(rounds)))
-    assert rounds[-1].fitted == fitted.sum()
+    assert [done.step for done in rounds] == list(range(len(rounds)))
+    assert rounds[-1].done == fitted.sum()
     assert all(done.total == LATTICE.size for done in rounds)
 
 
 def test_from_the_prior_everything_is_fitted_at_once(sensor):
     fit = fitted(MODEL, sensor, LATTICE)
-    assert (fit.round == 0).all()
+    assert (fit.points.round == 0).all()
     assert fit.improvements == ()
 
 
@@ -90,11 +90,11 @@ def test_an_unrealisable_colour_is_left_unfitted_and_said_to_be(sensor):
     fit = fitted(MODEL, wide, lattice)
     green = int(lattice.index(np.array([0, 2, 0])))
     grey = int(lattice.index(np.array([1, 1, 1])))
-    assert fit.status[green] == Status.UNFITTED
-    assert fit.status[grey] == Status.REGULAR
-    assert np.isfinite(fit.coefficients).all()
+    assert fit.points.status[green] == Status.UNFITTED
+    assert fit.points.status[grey] == Status.REGULAR
+    assert np.isfinite(fit.points.coefficients).all()
     assert len(fit.improvements) == 5
-    assert fit.improvements[0].tried > fit.improvements[0].mended
+    assert fit.improvements[0].tried > fit.improvements[0].fixed
 
 
 def test_improvement_mends_points_from_a_hopeless_start(sensor):
@@ -109,15 +109,15 @@ def test_improvement_mends_points_from_a_hopeless_start(sensor):
         np.abs(residual(MODEL, ahead, stuck, LATTICE.points)).max(axis=1), distance, atol=1e-12
     )
     by_name = {step.step: step for step in steps}
-    assert by_name["more iterations"].mended == 1  # black itself
-    assert by_name["from grey"].mended > 300
+    assert by_name["more iterations"].fixed == 1  # black itself
+    assert by_name["from grey"].fixed > 300
 
 
 def test_improvement_leaves_what_is_well_alone(sensor):
     ahead = ahead_of(MODEL, sensor)
     fit = fitted(MODEL, sensor, LATTICE)
-    multipliers = MODEL.from_storage(fit.coefficients)
+    multipliers = MODEL.from_storage(fit.points.coefficients)
     again = multipliers.copy()
-    steps = improve(Problem(MODEL, ahead, LATTICE), again, np.minimum(fit.distance, 1e-6))
+    steps = improve(Problem(MODEL, ahead, LATTICE), again, np.minimum(fit.points.distance, 1e-6))
     np.testing.assert_array_equal(again, multipliers)
     assert steps == ()

@@ -63,5 +63,5 @@ def test_work_in_blocks_is_work_at_once(monkeypatch):
     found, _ = krige(PLACES, DEVIATIONS)
     asked = RNG.uniform(-20, 60, (50, 3))
     whole = found(asked)
-    monkeypatch.setattr("uplift.fit.kriging.BLOCK", 25)
+    monkeypatch.setattr("uplift.fit.kriging.BLOCK_NUMBERS", 25)
     np.testing.assert_allclose(found(asked), whole, rtol=1e-12, atol=1e-15)

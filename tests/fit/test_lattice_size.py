@@ -25,14 +25,14 @@ def stage(sensor):
     spectra = spectra[sensor.contains(sensor.rgb(spectra))]
     lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3")]
     entries = fit.fit_entries(model, ahead, spectra, sensor.rgb(spectra), lights, lights[1], 1e-6)
-    return fit.Problem(model, ahead, Lattice(observer.axis_nodes("srgb", 32))), lights, entries
+    return (model, ahead, 1e-6), lights, entries
 
 
 def test_what_the_trial_says_is_what_the_cube_does(stage, sensor, macbeth_cube):
     """The fixture's cube has dim 32: asked for its corners' mixture at the entries, pins aside."""
-    problem, lights, entries = stage
-    trial = lattice_error(problem, sensor.wavelengths, lights, entries)
+    solver, lights, entries = stage
     data = macbeth_cube.data
+    trial = lattice_error(*solver, data.lattice, lights, entries)
     corners, weights = data.lattice.corners(entries.rgb)
     spectra = reflectance(data.model, data.points.coefficients[corners.ravel()], sensor.wavelengths)
     answered = (weights[..., None] * spectra.reshape(*corners.shape, -1)).sum(axis=1)
@@ -41,10 +41,10 @@ def test_what_the_trial_says_is_what_the_cube_does(stage, sensor, macbeth_cube):
     np.testing.assert_allclose(trial, plain, atol=1e-3)
 
 
-def test_the_smallest_with_room_is_chosen(stage, sensor):
-    problem, lights, entries = stage
+def test_the_smallest_lattice_that_keeps_all_entries_is_chosen(stage):
+    solver, lights, entries = stage
     spacing, dim, lost = choose_lattice(
-        problem, sensor.wavelengths, lights, entries, observer.axis_nodes, ("srgb", "linear"), 0.5
+        *solver, lights, entries, observer.axis_nodes, ("srgb", "linear"), 0.5
     )
     assert lost == 0
     assert dim in DIMS
@@ -52,8 +52,7 @@ def test_the_smallest_with_room_is_chosen(stage, sensor):
     for size in smaller[-1:]:
         for axis in ("srgb", "linear"):
             lattice = Lattice(observer.axis_nodes(axis, size))
-            trial = fit.Problem(problem.model, problem.forward, lattice)
-            assert lattice_error(trial, sensor.wavelengths, lights, entries).max() > 0.5
+            assert lattice_error(*solver, lattice, lights, entries).max() > 0.5
     assert spacing in ("srgb", "linear")
 
 

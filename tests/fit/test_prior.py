@@ -10,7 +10,7 @@ from uplift import fit
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.fit.prior import FEWEST
+from uplift.fit.prior import MIN_ENTRIES
 from uplift.lattice import Lattice
 from uplift.models import Moments
 from uplift.models.minimum_norm import forward_map
@@ -64,7 +64,7 @@ def test_far_from_all_entries_the_start_is_the_smooth_one(problem, sensor, mater
 
 
 def test_too_few_entries_tell_nothing_of_errors(problem, sensor, materials):
-    for count, tells in ((0, False), (1, False), (FEWEST - 1, False), (FEWEST, True)):
+    for count, tells in ((0, False), (1, False), (MIN_ENTRIES - 1, False), (MIN_ENTRIES, True)):
         prior = fit.fit_prior(problem, sensor, some(materials, np.arange(count)), LIGHT)
         errors = prior.standard_error(np.full((1, 3), 0.3))
         assert (errors is not None) == tells

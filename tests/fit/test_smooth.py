@@ -38,7 +38,7 @@ def test_a_dark_saturated_colour_stays_dark_where_the_eye_is_blind(ahead):
     model = Moments(9)
 
     def at_760(start):
-        found = solve(model, ahead, start, DARK, tolerance=1e-6, passes=192)
+        found = solve(model, ahead, start, DARK, tolerance=1e-6, max_passes=192)
         assert found.distance.max() <= 1e-6
         return model.squash(found.multipliers @ ahead.basis.T)[:, 76]
 

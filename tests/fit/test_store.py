@@ -10,7 +10,7 @@ import pytest
 
 from uplift import fit
 from uplift.colorimetry import observer
-from uplift.fit.store import LOSS, store
+from uplift.fit.store import MAX_LOSS, store
 from uplift.lattice import Lattice
 from uplift.models import Moments
 from uplift.models.minimum_norm import forward_map
@@ -42,12 +42,12 @@ def test_single_precision_where_it_costs_nothing(problem):
     stored = store(problem, multipliers.copy(), here, lambda done: None)
     assert stored.coefficients.dtype == np.float32
     np.testing.assert_allclose(stored.distance, distance(problem, stored.coefficients), atol=1e-6)
-    assert (stored.distance <= here + LOSS * problem.threshold).all()
+    assert (stored.distance <= here + MAX_LOSS * problem.threshold).all()
 
 
 def test_double_precision_where_single_would_lose(problem, monkeypatch):
     """With a threshold so small that even rounding counts, found in the last block: all are judged again."""
-    monkeypatch.setattr(sys.modules[store.__module__], "BLOCK", 256)
+    monkeypatch.setattr(sys.modules[store.__module__], "BLOCK_POINTS", 256)
     strict = replace(problem, threshold=1e-7)
     multipliers = greys(problem, np.concatenate([np.full(DIM**3 - 9, 0.5), np.linspace(0.9, 0.99, 9)]))
     coefficients = problem.model.to_storage(multipliers)
@@ -59,7 +59,7 @@ def test_double_precision_where_single_would_lose(problem, monkeypatch):
 
 
 def test_every_block_is_told_of(problem, monkeypatch):
-    monkeypatch.setattr(sys.modules[store.__module__], "BLOCK", 256)
+    monkeypatch.setattr(sys.modules[store.__module__], "BLOCK_POINTS", 256)
     told = []
     store(problem, greys(problem, np.full(DIM**3, 0.5)), np.full(DIM**3, np.inf), told.append)
-    assert [done.stored for done in told] == [256, 512, 729]
+    assert [done.done for done in told] == [256, 512, 729]

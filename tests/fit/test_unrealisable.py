@@ -51,7 +51,7 @@ def test_goals_are_the_targets_or_the_nearest():
     wide = observer.sensor("ITU-R BT.2020")
     model, lattice = Moments(9), Lattice(observer.axis_nodes("srgb", 5))
     beyond = unrealisable(lattice, wide, 1e-4)
-    problem = Problem(model, forward_map(model, wide.wavelengths, wide.matrix), lattice, beyond=beyond)
+    problem = Problem(model, forward_map(model, wide.wavelengths, wide.matrix), lattice, unrealisable=beyond)
     points = np.arange(lattice.size)[::-1]
     expected = lattice.points.copy()
     expected[beyond.points] = beyond.nearest

@@ -16,11 +16,11 @@ from tests.io.texture.conftest import PHOTO, WAVELENGTHS, planes, write_exr
 from tests.sparse_cubes import near_black, with_absent_points
 from uplift.common.errors import ColourError, CubeFileError, OptionError, TextureError, UpliftWarning
 from uplift.cube import AtlasTable, digest
-from uplift.io.scene_colours import Images, StoredScene, cells_touched
+from uplift.io.scene_colours import Images, cells_touched
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube, bulk
 from uplift.lookup.nodes import around
-from uplift.pipeline.rebuild import rebuild
+from uplift.pipeline.rebuild import StoredScene, rebuild
 from uplift.report.regression import compare_rebuilt
 
 
@@ -41,7 +41,9 @@ def photo_colours(scene_cube):
 
 def points_of(cube, *paths, encoding="auto", out_of_gamut="clip"):
     data = cube.data
-    return Images(paths, encoding, out_of_gamut).points(data.entry_boxes, data.sensor, lambda done: None)
+    return Images(paths, encoding, out_of_gamut).required_points(
+        data.entry_boxes, data.sensor, lambda done: None
+    )
 
 
 def test_images_of_another_space_are_remarked_on(small_cube, tmp_path):
@@ -131,7 +133,7 @@ def asked_in(data, cell, count=400):
     share[: count // 2] = np.clip(np.round(share[: count // 2] * 1.5 - 0.25, 1), 0, 1 - 1e-12)
     low = data.lattice.position(np.array(cell))
     rgb = data.lattice.nodes[low] + share * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])
-    return rgb[(data.lattice.lowest(rgb) == low).all(axis=1)]
+    return rgb[(data.lattice.lowest_corner(rgb) == low).all(axis=1)]
 
 
 def missing(data, needs):
@@ -148,9 +150,9 @@ def missing(data, needs):
 @pytest.mark.parametrize("name", ["small_cube", "macbeth_cube"])
 def test_every_colour_of_a_cell_has_what_it_needs(request, name):
     data = request.getfixturevalue(name).data
-    assert missing(data, data.entry_boxes.needs) == 0
+    assert missing(data, data.entry_boxes.required_points) == 0
     assert (
-        missing(data, data.lattice.corners_of) > 0
+        missing(data, data.lattice.corner_points) > 0
     )  # the cell's corners are not enough: entries ask elsewhere
 
 
@@ -162,7 +164,7 @@ def test_entries_on_a_node_have_faces_on_nodes_that_rounding_may_cross(plain_cub
     )
     data = replace(data, atlas=one)
     assert data.entry_boxes.cells[0].size
-    assert missing(data, data.entry_boxes.needs) == 0
+    assert missing(data, data.entry_boxes.required_points) == 0
 
 
 def test_colours_beside_a_face_touch_both_cells(small_cube):
@@ -170,7 +172,7 @@ def test_colours_beside_a_face_touch_both_cells(small_cube):
     node = lattice.nodes[3]
     beside = cells_touched(lattice, np.array([[node - 1e-8, 0.3, 0.3]]))
     assert {tuple(position) for position in lattice.position(beside)} == {
-        (red, *lattice.lowest(np.array([0.3, 0.3]))) for red in (2, 3)
+        (red, *lattice.lowest_corner(np.array([0.3, 0.3]))) for red in (2, 3)
     }
     assert len(cells_touched(lattice, np.array([[node + 1e-3, 0.3, 0.3]]))) == 1
 
@@ -271,7 +273,7 @@ def test_a_point_that_is_missing_is_found(scene_cube):
 
 def test_points_of_another_lattice_are_refused(scene_cube, plain_cube):
     with pytest.raises(OptionError, match="those of dim 32"):
-        StoredScene(scene_cube.data).points(
+        StoredScene(scene_cube.data).required_points(
             plain_cube.data.entry_boxes, plain_cube.data.sensor, lambda done: None
         )
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from uplift.lattice import Lattice
-from uplift.lattice.box_widths import FARTHEST, half_widths
+from uplift.lattice.box_widths import MAX_HALF_WIDTH, half_widths
 
 LATTICE = Lattice(np.linspace(0, 1, 9) ** 2)
 colours = arrays(float, st.tuples(st.integers(0, 12), st.just(3)), elements=st.floats(0, 1))
@@ -16,8 +16,8 @@ colours = arrays(float, st.tuples(st.integers(0, 12), st.just(3)), elements=st.f
 
 @given(colours)
 def test_no_two_boxes_overlap(rgb):
-    reaches, steps = half_widths(LATTICE, rgb), LATTICE.steps_along(rgb)
-    assert ((reaches >= 0) & (reaches <= FARTHEST)).all()
+    reaches, steps = half_widths(LATTICE, rgb), LATTICE.to_steps(rgb)
+    assert ((reaches >= 0) & (reaches <= MAX_HALF_WIDTH)).all()
     for first in range(len(rgb)):
         for second in range(first):
             if reaches[first] and reaches[second]:
@@ -27,8 +27,8 @@ def test_no_two_boxes_overlap(rgb):
 
 def test_of_one_colour_only_the_first_is_kept():
     rgb = np.array([[0.2, 0.2, 0.2], [0.2, 0.2, 0.2], [0.9, 0.9, 0.9], [0.2, 0.2, 0.2]])
-    assert half_widths(LATTICE, rgb).tolist() == [FARTHEST, 0, FARTHEST, 0]
+    assert half_widths(LATTICE, rgb).tolist() == [MAX_HALF_WIDTH, 0, MAX_HALF_WIDTH, 0]
 
 
 def test_a_lone_entry_reaches_a_whole_step():
-    assert half_widths(LATTICE, np.array([[0.3, 0.4, 0.5]])).tolist() == [FARTHEST]
+    assert half_widths(LATTICE, np.array([[0.3, 0.4, 0.5]])).tolist() == [MAX_HALF_WIDTH]

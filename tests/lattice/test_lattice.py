@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from tests.helpers import raises
 from uplift.common.errors import OptionError
 from uplift.lattice import Lattice, Status
 
@@ -52,7 +53,7 @@ def test_neighbours_are_those_within_one_step():
 
 @pytest.mark.parametrize("nodes", [[0.0], [0.0, 0.0], [1.0, 0.0], [[0.0, 1.0]], [0.0, np.nan]])
 def test_nodes_must_increase(nodes):
-    with pytest.raises(OptionError, match="at least 2 increasing nodes"):
+    with raises(OptionError, "nodes-not-increasing"):
         Lattice(np.array(nodes))
 
 

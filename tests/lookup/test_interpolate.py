@@ -177,10 +177,10 @@ def test_on_the_way_through_an_entry_nothing_jumps(macbeth_cube):
     grid = stored_spectra(data, data.sensor.wavelengths).reshape(*(lattice.dim,) * 3, -1)
     fastest = max(np.sqrt((np.diff(grid, axis=axis) ** 2).mean(axis=-1)).max() for axis in range(3))
     ways = np.random.default_rng(0).uniform(-1, 1, (len(data.atlas.names), 3))
-    for middle, way in zip(lattice.steps_along(data.atlas.rgb), ways, strict=True):
+    for middle, way in zip(lattice.to_steps(data.atlas.rgb), ways, strict=True):
         path = middle + np.linspace(-1.5, 1.5, 301)[:, None] * way / np.abs(way).max()
         path = path[((path >= 0) & (path < lattice.dim)).all(axis=1)]
-        found = macbeth_cube.reflectance(lattice.at_steps(path))
+        found = macbeth_cube.reflectance(lattice.from_steps(path))
         assert np.sqrt((np.diff(found, axis=0) ** 2).mean(axis=1)).max() / 0.01 <= fastest
 
 

@@ -50,7 +50,7 @@ def test_both_cells_of_a_face_answer_it_alike(small_cube, face):
     below, end = low.copy(), fraction.copy()
     below[0, axis], end[0, axis] = node - 1, 1
     upper, lower = (
-        weighted_sum(data.points.coefficients, *data.lattice.around(cell, part))
+        weighted_sum(data.points.coefficients, *data.lattice.cell_corners(cell, part))
         for cell, part in ((low, fraction), (below, end))
     )
     np.testing.assert_allclose(lower, upper, rtol=0, atol=1e-15)

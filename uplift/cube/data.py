@@ -90,4 +90,4 @@ class CubeData:
     @cached_property
     def complete_cells(self) -> Mask | None:
         """(n,) True for cells with eight present corners, by the number of the lowest. None if no point is absent."""
-        return None if self.points.present.all() else self.lattice.cells_of(self.points.present)
+        return None if self.points.present.all() else self.lattice.complete_cells(self.points.present)

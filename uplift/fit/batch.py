@@ -1,4 +1,4 @@
-"""Batches of few shapes, so that little is compiled, over all devices that JAX has."""
+"""Batches of few shapes, so that XLA compiles rarely, over all devices that JAX has."""
 
 from __future__ import annotations
 
@@ -15,34 +15,44 @@ if TYPE_CHECKING:
     from uplift.common.arrays import Array
 
 CPU_BATCH_ROWS, ACCELERATOR_BATCH_ROWS = (2048, 64), (1 << 17, 4096)
-"""Rows of a batch on each device: what the cache of a core holds or keeps a GPU busy, and a size for small rounds."""
+"""Rows per device: a large batch that fills a core's cache or keeps a GPU busy, and a small one for short rounds."""
 
 
-def batches(rows: Indices, smaller: int = 4) -> Iterator[tuple[Indices, Indices]]:
-    """Split ``rows``; with each part, the part with its last row repeated up to the size of a batch.
+def batches(rows: Indices, max_small: int = 4) -> Iterator[tuple[Indices, Indices]]:
+    """Split rows into large batches and a remainder.
 
-    Parts are of the larger size as long as they fill it; the rest is too, or up to so many of the ``smaller`` size.
+    Parameters
+    ----------
+    rows : ndarray of int, shape (n,)
+        Row numbers.
+    max_small : int, default 4
+        The remainder is split into at most this many small batches; a longer one becomes a large batch.
+
+    Yields
+    ------
+    batch : ndarray of int
+        Row numbers of one batch.
+    padded : ndarray of int
+        The same, with the last row repeated up to the fixed size of the batch.
     """
     devices = len(jax.devices())
-    large, small = (
-        devices * size
-        for size in (CPU_BATCH_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_BATCH_ROWS)
-    )
-    whole = len(rows) // large * large
-    size = large if len(rows) - whole > smaller * small else small
-    for first, last, width in ((0, whole, large), (whole, len(rows), size)):
+    sizes = CPU_BATCH_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_BATCH_ROWS
+    large, small = (devices * size for size in sizes)
+    filled = len(rows) // large * large
+    remainder = large if len(rows) - filled > max_small * small else small
+    for first, last, width in ((0, filled, large), (filled, len(rows), remainder)):
         for begin in range(first, last, width):
-            part = rows[begin : min(begin + width, last)]
-            yield part, np.concatenate([part, np.full(width - len(part), part[-1])])
+            batch = rows[begin : min(begin + width, last)]
+            yield batch, np.concatenate([batch, np.full(width - len(batch), batch[-1])])
 
 
 def shard(array: Array) -> Any:
-    """An array whose rows are a batch, shared out over the devices."""
+    """Distribute the rows of a batch over the devices."""
     return _place(array, "rows") if len(jax.devices()) > 1 else array
 
 
 def replicate(constants: Any) -> Any:
-    """Constants of a computation, on every device."""
+    """Copy the constants of a computation to every device."""
     return _place(constants)
 
 

@@ -1,4 +1,7 @@
-"""Atlas entries as spectra of the model: measured shape, exact colour, other lights (docs/mathematics.md, 6)."""
+"""Fit atlas entries by the spectrum model: exact colour, close spectrum and colours under other lights.
+
+docs/mathematics.md, 6.
+"""
 
 from __future__ import annotations
 
@@ -15,24 +18,35 @@ from uplift.fit.solve import solve
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap
 
-PASSES = 32
+MAX_PASSES = 32
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FittedEntries:
     """Atlas entries as spectra of the model.
 
     Parameters
     ----------
-    rgb, measured : (E, 3) linear RGB and (E, N) reflectances.
-    multipliers : (E, C).
-    error : (E,) ΔE00 between measurement and model under the reference light.
+    rgb : ndarray, shape (E, 3)
+        Linear RGB.
+    measured : ndarray, shape (E, N)
+        Measured reflectances at the wavelengths of the sensor.
+    multipliers : ndarray, shape (E, C)
+        Multipliers of the fitted spectra.
+    error : ndarray, shape (E,)
+        ΔE00 between measured and fitted spectrum.
     """
 
     rgb: Array
     measured: Array
     multipliers: Array
     error: Array
+
+    def __len__(self) -> int:
+        return len(self.rgb)
+
+    def __repr__(self) -> str:
+        return f"FittedEntries({len(self)} entries, {self.multipliers.shape[-1]} multipliers each)"
 
 
 def fit_entries(
@@ -41,25 +55,45 @@ def fit_entries(
     measured: Array,
     rgb: Array,
     lights: Sequence[Light],
-    reference: Light,
+    error_light: Light,
     tolerance: float,
     weights: Weights = BALANCED,
 ) -> FittedEntries:
-    """Fit measured reflectances (E, N) on the sensor's wavelengths.
+    """Fit measured reflectances by the spectrum model.
 
-    ``rgb`` (E, 3) is met to ``tolerance``; the spectrum and its colours under ``lights`` as well as they can be.
+    Parameters
+    ----------
+    model : Model
+        Spectrum model.
+    forward : ForwardMap
+        Map from multipliers to the RGB of the sensor.
+    measured : ndarray, shape (E, N)
+        Reflectances at the wavelengths of ``forward``.
+    rgb : ndarray, shape (E, 3)
+        Linear RGB of the entries, met to ``tolerance``.
+    lights : sequence of Light
+        Lights under which the colours of the entries should be kept.
+    error_light : Light
+        Light of `FittedEntries.error`.
+    tolerance : float
+        Largest residual in linear RGB.
+    weights : Weights, optional
+        Weights of the terms of the objective.
+
+    Returns
+    -------
+    FittedEntries
+        Multipliers and errors.
     """
-    from scipy.optimize import (
-        least_squares,
-    )  # by MINPACK, an entry at a time: 3 ms each, and nothing to compile
+    # MINPACK takes 3 ms per entry, and compiles nothing.
+    from scipy.optimize import least_squares
 
     goal = objective(model, forward.basis, lights, weights)
     start = np.zeros((len(measured), model.count))
     for row, spectrum in enumerate(measured):
-        found = least_squares(
+        start[row] = least_squares(
             goal.residuals, start[row], lambda p, _: goal.jacobian(p), method="lm", args=(spectrum,)
-        )
-        start[row] = found.x
-    multipliers = solve(model, forward, start, rgb, tolerance=tolerance, passes=PASSES).multipliers
+        ).x
+    multipliers = solve(model, forward, start, rgb, tolerance=tolerance, max_passes=MAX_PASSES).multipliers
     spectra = np.asarray(model.squash(multipliers @ forward.basis.T))
-    return FittedEntries(rgb, measured, multipliers, delta_e_spectra(reference, spectra, measured))
+    return FittedEntries(rgb, measured, multipliers, delta_e_spectra(error_light, spectra, measured))

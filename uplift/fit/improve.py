@@ -1,21 +1,22 @@
-"""The improvement pass for points that growth left over the threshold (Tódová 2020, 3.1.4).
+"""The improvement pass for points that growth left over the threshold (Tódová 2020, section 3.1.4).
 
-The thesis nudged Ceres out of local minima in moment space. In multipliers the first step, more iterations,
-mends nearly every realisable point; starting over from grey mends points whose neighbours were black or white,
-where the gradient vanishes; the thesis's own steps stay for the colours nobody has met yet.
+The thesis moves Ceres out of local minima in moment space. In multipliers, the first step (more iterations) fixes
+nearly every realisable point. A start from grey fixes points whose neighbours were black or white, where the gradient
+vanishes. The steps of the thesis remain for the rest.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from uplift.common.arrays import Array, Indices
 from uplift.fit.problem import Problem
 
-PASSES = 192
+MAX_PASSES = 192
 NUDGE = 0.5
 EXTREME = 100.0
 """Linear part of a nearly white (+) or nearly black (−) spectrum."""
@@ -23,68 +24,88 @@ EXTREME = 100.0
 
 @dataclass(frozen=True)
 class Improvement:
-    """One step of the pass: points over the threshold that it was tried on, and how many of them it mended."""
+    """One step of the improvement pass.
+
+    Parameters
+    ----------
+    step : str
+        Name of the step.
+    tried : int
+        Points over the threshold before it.
+    fixed : int
+        Points of these that are within the threshold after it.
+    """
 
     step: str
     tried: int
-    mended: int
+    fixed: int
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the entry of the provenance.
+
+        Returns
+        -------
+        dict
+            ``step``, ``tried``, and ``mended``, the key of ``fixed`` in cube files.
+        """
+        return {"step": self.step, "tried": self.tried, "mended": self.fixed}
 
 
 Start = Callable[[Array, Array], Array]
-"""Multipliers (k, C) to begin from, of the best so far (k, C) and the way (k, C) to white or black, if nearer."""
+"""From the best multipliers so far (k, C), and multipliers (k, C) of the nearer of white and black, to a start."""
 
 
-def _onwards(best: Array, way: Array) -> Array:
+def _more_iterations(best: Array, extreme: Array) -> Array:
     return best
 
 
-def _grey(best: Array, way: Array) -> Array:
+def _grey(best: Array, extreme: Array) -> Array:
     return np.zeros_like(best)
 
 
-def _constant_nudged(best: Array, way: Array) -> Array:
-    return best + NUDGE * way
+def _constant_nudged(best: Array, extreme: Array) -> Array:
+    return best + NUDGE * extreme
 
 
-def _all_nudged(best: Array, way: Array) -> Array:
-    """The same nudges for every point and every run: alternating, as no direction is better founded."""
+def _all_nudged(best: Array, extreme: Array) -> Array:
+    """Alternating nudges, the same for every point and every run: no direction is better justified than another."""
     return best + NUDGE * (-1.0) ** np.arange(best.shape[1])
 
 
-def _extreme(best: Array, way: Array) -> Array:
-    return EXTREME * way
+def _white_or_black(best: Array, extreme: Array) -> Array:
+    return EXTREME * extreme
 
 
 STEPS: dict[str, Start] = {
-    "more iterations": _onwards,
+    "more iterations": _more_iterations,
     "from grey": _grey,
     "constant multiplier nudged": _constant_nudged,
     "all multipliers nudged": _all_nudged,
-    "from white or black": _extreme,
+    "from white or black": _white_or_black,
 }
 
 
 def improve(problem: Problem, multipliers: Array, distance: Array) -> tuple[Improvement, ...]:
-    """Better the multipliers (n, C) and distances (n,) of the points, in place, and say what each step did.
+    """Improve multipliers (n, C) and distances (n,) in place.
 
-    Each step takes the points on that are over the threshold still; none gets worse.
+    Each step tries the points that are still over the threshold; no distance increases.
     """
     done = []
     for name, start in STEPS.items():
         points = problem.points[distance[problem.points] > problem.threshold]
         if not points.size:
             break
-        begin = start(multipliers[points], _way(problem, points))
-        found = problem.solve(problem.goal(points), begin, PASSES)
+        begin = start(multipliers[points], _nearer_extreme(problem, points))
+        found = problem.solve(problem.goal(points), begin, MAX_PASSES)
         better = found.distance < distance[points]
         multipliers[points[better]] = found.multipliers[better]
         distance[points[better]] = found.distance[better]
-        mended = int((distance[points] <= problem.threshold).sum())
-        done.append(Improvement(name, len(points), mended))
+        fixed = int((distance[points] <= problem.threshold).sum())
+        done.append(Improvement(name, len(points), fixed))
     return tuple(done)
 
 
-def _way(problem: Problem, points: Indices) -> Array:
-    """Multipliers (k, C) of a linear part of +1 for targets nearer to white, −1 for those nearer to black."""
-    toward = np.where(problem.goal(points).mean(axis=1) >= 0.5, 1.0, -1.0)
-    return toward[:, None] * problem.model.constant()
+def _nearer_extreme(problem: Problem, points: Indices) -> Array:
+    """Multipliers (k, C) of a linear part of +1 for goals nearer to white, −1 for those nearer to black."""
+    sign = np.where(problem.goal(points).mean(axis=1) >= 0.5, 1.0, -1.0)
+    return sign[:, None] * problem.model.constant()

@@ -1,9 +1,9 @@
-"""How many lattice points an atlas needs: what the lattice alone makes of the entries, before they are pinned."""
+"""The smallest lattice that keeps every atlas entry, judged by the lattice without entry boxes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,56 +11,97 @@ from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.fit.entries import FittedEntries
-from uplift.fit.problem import Problem
 from uplift.fit.seed import seed
-from uplift.lattice import Lattice
-from uplift.models import evaluate
+from uplift.fit.solve import solve
+from uplift.lattice import Lattice, weighted_sum
+from uplift.models import Model
+from uplift.models.matmul import matmul_rows
+from uplift.models.minimum_norm import ForwardMap
 
 DIMS = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128)
-"""Sizes to choose from."""
-PASSES = 32
+"""Candidates."""
+MAX_PASSES = 32
+
+
+class LatticeChoice(NamedTuple):
+    """The lattice that `choose_lattice` returns."""
+
+    axis: str
+    """Spacing of the axis nodes."""
+    dim: int
+    """Points along each axis."""
+    lost: int
+    """Entries over the tolerance."""
 
 
 def lattice_error(
-    problem: Problem, wavelengths: Array, lights: Sequence[Light], entries: FittedEntries
+    model: Model,
+    forward: ForwardMap,
+    tolerance: float,
+    lattice: Lattice,
+    lights: Sequence[Light],
+    entries: FittedEntries,
 ) -> Array:
-    """ΔE00 (E,), the largest under ``lights``, between each entry's spectrum and the lattice's at its colour.
+    """Largest ΔE00 (E,) under ``lights`` between each entry's spectrum and the lattice at its colour.
 
-    Solves the corners of the entries' voxels alone, as a whole fit would.
+    Only the corners of the entries' cells are fitted.
     """
-    lattice, seeds = problem.lattice, seed(problem.lattice, entries.rgb)
-    target = lattice.points[seeds.points]
-    found = problem.solve(target, entries.multipliers[seeds.entry], PASSES).multipliers
-    spectra = evaluate(problem.model, found, wavelengths)
+    seeds = seed(lattice, entries.rgb)
+    start, target = entries.multipliers[seeds.entry], lattice.points[seeds.points]
+    found = solve(model, forward, start, target, tolerance=tolerance, max_passes=MAX_PASSES).multipliers
+    spectra, own = (
+        np.asarray(model.squash(matmul_rows(each, forward.basis.T))) for each in (found, entries.multipliers)
+    )
     corners, weights = lattice.corners(entries.rgb)
     order = np.argsort(seeds.points)
-    place = order[np.searchsorted(seeds.points, corners, sorter=order)]
-    answered = sum(weights[:, corner, None] * spectra[place[:, corner]] for corner in range(8))
-    own = evaluate(problem.model, entries.multipliers, wavelengths)
-    return np.max([delta_e_spectra(light, answered, own) for light in lights], axis=0)
+    rows = order[np.searchsorted(seeds.points, corners, sorter=order)]
+    answers = weighted_sum(spectra, rows, weights)
+    return np.max([delta_e_spectra(light, answers, own) for light in lights], axis=0)
 
 
 def choose_lattice(
-    problem: Problem,
-    wavelengths: Array,
+    model: Model,
+    forward: ForwardMap,
+    tolerance: float,
     lights: Sequence[Light],
     entries: FittedEntries,
-    nodes: Callable[[str, int], Array],
-    spacings: Iterable[str],
-    within: float,
-) -> tuple[str, int, int]:
-    """Spacing and dim of the smallest lattice that keeps every entry, and how many it does not keep.
+    axis_nodes: Callable[[str, int], Array],
+    axes: Iterable[str],
+    max_error: float,
+) -> LatticeChoice:
+    """Choose the smallest lattice that keeps every entry.
 
-    An entry is kept if its `lattice_error` is ``within``; where no lattice keeps them all, the smallest of those
-    that keep the most.
+    Parameters
+    ----------
+    model : Model
+        Spectrum model.
+    forward : ForwardMap
+        Map from multipliers to the RGB of the sensor.
+    tolerance : float
+        Largest residual of the solver in linear RGB.
+    lights : sequence of Light
+        Lights under which errors are computed.
+    entries : FittedEntries
+        Atlas entries.
+    axis_nodes : callable
+        From the name of a spacing and dim to the axis nodes (dim,).
+    axes : iterable of str
+        Spacings to try, preferred ones first.
+    max_error : float
+        An entry is kept if its `lattice_error` is at most this ΔE00.
+
+    Returns
+    -------
+    LatticeChoice
+        The smallest lattice that keeps all entries or, if there is none, the smallest that keeps the most.
     """
-    trials = []
+    axes, trials = tuple(axes), []
     for dim in DIMS:
-        for spacing in spacings:
-            lattice = Lattice(nodes(spacing, dim))
-            errors = lattice_error(replace(problem, lattice=lattice), wavelengths, lights, entries)
-            trials.append((int((errors > within).sum()), dim, spacing))
-        if not min(trials)[0]:
+        for axis in axes:
+            lattice = Lattice(axis_nodes(axis, dim))
+            errors = lattice_error(model, forward, tolerance, lattice, lights, entries)
+            trials.append(LatticeChoice(axis, dim, int((errors > max_error).sum())))
+        best = min(trials, key=lambda trial: (trial.lost, trial.dim))
+        if not best.lost:
             break
-    lost, dim, spacing = min(trials, key=lambda trial: trial[:2])
-    return spacing, dim, lost
+    return best

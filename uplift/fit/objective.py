@@ -1,4 +1,4 @@
-"""What the fit of an atlas entry minds: the measured shape, and its colours under other lights, as least squares."""
+"""Least-squares objective for one atlas entry: the measured spectrum, and its colours under several lights."""
 
 from __future__ import annotations
 
@@ -13,17 +13,23 @@ from uplift.common.arrays import Array
 from uplift.models import Model
 
 ENDS = 8
-"""An end of the spectrum is this part of it: 50 nm of 380–780."""
+"""Each end of the spectrum is this part of it: 50 nm of 380–780."""
 FLATNESS = 1e-5
-"""Keeps multipliers finite where neither the spectrum nor the lights have a say."""
+"""Weight that keeps multipliers finite where neither the spectrum nor the lights constrain them."""
 
 
 @dataclass(frozen=True)
 class Weights:
-    """What a fit of an entry minds beside the rms difference of the spectra: docs/fidelity.md compares.
+    """Weights of the objective, relative to the root-mean-square difference of the spectra (docs/fidelity.md).
 
-    ``lights`` is what a unit of CIE L*a*b* under a light weighs; ``ends`` what the two ends of the spectrum weigh
-    against its middle; ``curvature`` what its second difference weighs.
+    Parameters
+    ----------
+    lights : float, default 0.03
+        Weight of a unit of CIE L*a*b* under a light.
+    ends : float, default 1
+        Weight of the two ends of the spectrum relative to its middle.
+    curvature : float, default 0
+        Weight of the second difference.
     """
 
     lights: float = 0.03
@@ -36,10 +42,22 @@ BALANCED = Weights()
 
 @dataclass(frozen=True, eq=False)
 class Objective:
-    """Residuals of a measured reflectance (N,), and their derivative.
+    """Residuals of the fit of a measured reflectance (N,), and their derivative.
 
-    ``basis`` (N, C) is the model's; ``rows`` (R, N) weigh a difference of spectra; ``lights`` (L, 3, N) give XYZ,
-    ``whites`` (L, 3) that of the perfect reflector; ``weight`` is that of a unit of L*a*b*.
+    Parameters
+    ----------
+    model : Model
+        Spectrum model.
+    basis : ndarray, shape (N, C)
+        Basis of the model.
+    rows : ndarray, shape (R, N)
+        Weights of a difference of spectra.
+    lights : ndarray, shape (L, 3, N)
+        Maps from spectra to XYZ.
+    whites : ndarray, shape (L, 3)
+        XYZ of the perfect reflector.
+    weight : float
+        Weight of a unit of CIE L*a*b*.
     """
 
     model: Model
@@ -50,36 +68,36 @@ class Objective:
     weight: float
 
     def residuals(self, multipliers: Array, measured: Array) -> Array:
-        """(R + 3 L + C,) of multipliers (C,)."""
+        """Residuals (R + 3 L + C,) of multipliers (C,)."""
         spectrum = self.model.squash(self.basis @ multipliers)
-        apart = self._colours(spectrum) - self._colours(measured)
+        difference = self._lab(spectrum) - self._lab(measured)
         return np.concatenate(
-            [self.rows @ (spectrum - measured), self.weight * apart.ravel(), FLATNESS * multipliers]
+            [self.rows @ (spectrum - measured), self.weight * difference.ravel(), FLATNESS * multipliers]
         )
 
     def jacobian(self, multipliers: Array) -> Array:
-        """(R + 3 L + C, C) derivative of the residuals, whatever was measured."""
+        """Derivative (R + 3 L + C, C) of the residuals; it does not depend on the measurement."""
         x = self.basis @ multipliers
         change = self.model.slope(x)[:, None] * self.basis
-        opponents = lab_jacobian(self.lights @ self.model.squash(x), self.whites)
-        colours = (opponents @ (self.lights @ change)).reshape(-1, len(multipliers))
+        to_lab = lab_jacobian(self.lights @ self.model.squash(x), self.whites)
+        colours = (to_lab @ (self.lights @ change)).reshape(-1, len(multipliers))
         return np.concatenate(
             [self.rows @ change, self.weight * colours, FLATNESS * np.eye(len(multipliers))]
         )
 
-    def _colours(self, spectrum: Array) -> Array:
+    def _lab(self, spectrum: Array) -> Array:
         return lab(self.lights @ spectrum, self.whites)
 
 
 def objective(model: Model, basis: Array, lights: Sequence[Light], weights: Weights) -> Objective:
-    """The objective on the wavelengths of ``basis`` (N, C) and of the lights."""
+    """Make the objective at the wavelengths of ``basis`` (N, C) and of the lights."""
     matrices = np.stack([light.xyz for light in lights])
     whites = np.stack([light.white for light in lights])
     return Objective(model, basis, shape_rows(len(basis), weights), matrices, whites, weights.lights)
 
 
 def shape_rows(count: int, weights: Weights) -> Array:
-    """(R, N) what weighs a difference of spectra (N,), so that the squares of its R products sum to a mean square."""
+    """Weights (R, N) of a difference of spectra (N,): the squares of its R products sum to a weighted mean square."""
     share = np.ones(count)
     share[: count // ENDS] = share[-(count // ENDS) :] = weights.ends
     value = np.diag(np.sqrt(share / share.sum()))

@@ -1,4 +1,4 @@
-"""The prior: what is believed of a colour's spectrum before it is fitted, and how far that can be trusted."""
+"""The prior: the spectrum expected at a colour before it is fitted, and the standard error of that expectation."""
 
 from __future__ import annotations
 
@@ -17,18 +17,30 @@ from uplift.fit.smooth import TABLE, Smooth, smooth
 from uplift.fit.unrealisable import unrealisable
 from uplift.models import evaluate
 
-FEWEST = 8
-"""Entries that it takes to say anything of errors."""
-PASSES = 32
+MIN_ENTRIES = 8
+"""Entries needed to estimate errors."""
+MAX_PASSES = 32
 MARGIN = 1e-3
-"""Linear RGB that starts of unrealisable colours keep from the boundary, where spectra turn into boxes."""
-BLOCK = 1 << 15
-"""Points worked on at a time."""
+"""Linear RGB between the starts of unrealisable colours and the boundary, where spectra become boxes."""
+BLOCK_POINTS = 1 << 15
+"""Points processed at a time."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Prior:
-    """Smooth spectra and, with an atlas, how its entries deviate from them."""
+    """Smooth spectra and, with an atlas, the interpolated deviation of its entries from them.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        RGB space of the colours.
+    smooth : Smooth
+        Smooth spectra.
+    kriging : Kriging, optional
+        Deviation of the atlas entries; None without an atlas.
+    uncertainty : Uncertainty, optional
+        Expected errors; None for an atlas of fewer than 8 entries.
+    """
 
     sensor: Sensor
     smooth: Smooth
@@ -36,41 +48,77 @@ class Prior:
     uncertainty: Uncertainty | None = None
 
     def __call__(self, rgb: Array) -> Array:
-        """Multipliers (n, C) to start from at linear RGB (n, 3); at an entry's colour, the entry's own."""
+        """Multipliers (n, C) to start from at linear RGB (n, 3); at the colour of an entry, those of the entry."""
         start = self.smooth(rgb)
         return start if self.kriging is None else start + self.kriging(rgb_to_lab(self.sensor, rgb))
 
     def standard_error(self, rgb: Array) -> Array | None:
-        """ΔE00 (n,) by which answers at linear RGB (n, 3) miss measurements, as a root mean square.
+        """Return the root-mean-square error expected between answers and measurements.
 
-        None where there are too few entries to learn it from.
+        Parameters
+        ----------
+        rgb : ndarray, shape (n, 3)
+            Linear RGB.
+
+        Returns
+        -------
+        ndarray, shape (n,), or None
+            ΔE00; None if the atlas is too small to estimate it.
         """
         return None if self.uncertainty is None else self.uncertainty(rgb_to_lab(self.sensor, rgb))
 
     def standard_errors(self, problem: Problem) -> NDArray[np.float32] | None:
-        """`standard_error` (n,) of the points of a problem, block by block; 0 of points not wanted."""
+        """Return the standard error of every lattice point.
+
+        Parameters
+        ----------
+        problem : Problem
+            The lattice and its active points.
+
+        Returns
+        -------
+        ndarray of float32, shape (dim³,), or None
+            ΔE00, 0 at inactive points; None if the atlas is too small to estimate it.
+        """
         if self.uncertainty is None:
             return None
-        lattice, wanted = problem.lattice, problem.points
+        lattice, active = problem.lattice, problem.points
         errors = np.zeros(lattice.size, dtype=np.float32)
-        for first in range(0, len(wanted), BLOCK):
-            points = wanted[first : first + BLOCK]
+        for first in range(0, len(active), BLOCK_POINTS):
+            points = active[first : first + BLOCK_POINTS]
             errors[points] = self.standard_error(lattice.target(points))
         return errors
 
 
-def fit_prior(problem: Problem, sensor: Sensor, entries: FittedEntries, light: Light) -> Prior:
-    """Learn from the atlas; errors are ΔE00 under ``light``. Sums round alike in whatever order the entries come."""
-    plain = smooth(problem.model, problem.forward, beyond=unrealisable(TABLE, sensor, MARGIN))
-    if not len(entries.rgb):
-        return Prior(sensor, plain)
+def fit_prior(problem: Problem, sensor: Sensor, entries: FittedEntries, error_light: Light) -> Prior:
+    """Fit the prior to atlas entries. The order of the entries does not change the rounding of sums.
+
+    Parameters
+    ----------
+    problem : Problem
+        Spectrum model and solver.
+    sensor : Sensor
+        RGB space of the colours.
+    entries : FittedEntries
+        Atlas entries.
+    error_light : Light
+        Light of the standard errors.
+
+    Returns
+    -------
+    Prior
+        The prior.
+    """
+    start = smooth(problem.model, problem.forward, outside=unrealisable(TABLE, sensor, MARGIN))
+    if not len(entries):
+        return Prior(sensor, start)
     order = np.lexsort(entries.rgb.T)
     entries = FittedEntries(*(getattr(entries, key.name)[order] for key in fields(FittedEntries)))
-    places = rgb_to_lab(sensor, entries.rgb)
-    kriging, without = krige(places, entries.multipliers - plain(entries.rgb))
-    if len(entries.rgb) < FEWEST:
-        return Prior(sensor, plain, kriging)
-    left_out = problem.solve(entries.rgb, plain(entries.rgb) + without, PASSES).multipliers
+    locations = rgb_to_lab(sensor, entries.rgb)
+    kriging, deviations = krige(locations, entries.multipliers - start(entries.rgb))
+    if len(entries) < MIN_ENTRIES:
+        return Prior(sensor, start, kriging)
+    left_out = problem.solve(entries.rgb, start(entries.rgb) + deviations, MAX_PASSES).multipliers
     spectra = evaluate(problem.model, left_out, sensor.wavelengths)
-    missed = delta_e_spectra(light, spectra, entries.measured)
-    return Prior(sensor, plain, kriging, uncertainty(places, missed, entries.error))
+    errors = delta_e_spectra(error_light, spectra, entries.measured)
+    return Prior(sensor, start, kriging, uncertainty(locations, errors, entries.error))

@@ -1,4 +1,4 @@
-"""What is to be fitted, and how well: the constants of a whole fit."""
+"""The constants of a fit: model, lattice, threshold, and the points to be fitted."""
 
 from __future__ import annotations
 
@@ -15,45 +15,100 @@ from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap
 
 
-@dataclass(frozen=True, eq=False)
-class Problem:
-    """A model and its forward map, the lattice, and the largest |linear RGB| a point may miss its goal by.
+def solver_tolerance(threshold: float) -> float:
+    """Return the residual at which the solver stops: the last steps converge quadratically and cost little.
 
-    ``wanted`` (k,), ascending, are the points to be fitted; None for all.
+    Parameters
+    ----------
+    threshold : float
+        Largest fitting distance of a fitted point.
+
+    Returns
+    -------
+    float
+        Residual in linear RGB.
+    """
+    return threshold / 100
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Problem:
+    """The problem of fitting lattice points.
+
+    Parameters
+    ----------
+    model : Model
+        Spectrum model.
+    forward : ForwardMap
+        Map from multipliers to the RGB of the sensor.
+    lattice : Lattice
+        The lattice.
+    threshold : float, default 1e-4
+        Largest fitting distance, in linear RGB, of a fitted point.
+    unrealisable : Unrealisable, optional
+        Points that are fitted to another colour than their target.
+    active_points : ndarray of int, shape (k,), optional
+        Numbers of the points to be fitted, ascending. All points by default.
     """
 
     model: Model
     forward: ForwardMap
     lattice: Lattice
     threshold: float = 1e-4
-    beyond: Unrealisable = NONE
-    wanted: Indices | None = None
+    unrealisable: Unrealisable = NONE
+    active_points: Indices | None = None
 
     @cached_property
     def points(self) -> Indices:
         """Numbers of the points to be fitted, ascending."""
-        return np.arange(self.lattice.size) if self.wanted is None else self.wanted
+        return np.arange(self.lattice.size) if self.active_points is None else self.active_points
 
     @property
     def absent(self) -> Mask:
-        """(dim³,) which points are not to be fitted."""
+        """(dim³,) True for points that are not to be fitted."""
         absent = np.ones(self.lattice.size, dtype=bool)
         absent[self.points] = False
         return absent
 
     @property
     def tolerance(self) -> float:
-        """What the solver goes on to: the last steps converge quadratically and cost little."""
-        return self.threshold / 100
+        """Residual at which the solver stops."""
+        return solver_tolerance(self.threshold)
 
     def goal(self, points: Indices) -> Array:
-        """Linear RGB (k, 3) to fit points (k,) to: their targets or, where no reflectance has those, the nearest."""
+        """Return the colours that points are fitted to.
+
+        Parameters
+        ----------
+        points : ndarray of int, shape (k,)
+            Point numbers.
+
+        Returns
+        -------
+        ndarray, shape (k, 3)
+            Linear RGB: the target or, for unrealisable points, the nearest realisable colour.
+        """
         goal = self.lattice.target(points)
-        place = np.searchsorted(self.beyond.points, points)
-        found = np.append(self.beyond.points, -1)[place] == points
-        goal[found] = self.beyond.nearest[place[found]]
+        row = np.searchsorted(self.unrealisable.points, points)
+        found = np.append(self.unrealisable.points, -1)[row] == points
+        goal[found] = self.unrealisable.nearest[row[found]]
         return goal
 
-    def solve(self, target: Array, start: Array, passes: int) -> Solution:
-        """Multipliers ``start`` (k, C) moved to linear RGB ``target`` (k, 3)."""
-        return solve(self.model, self.forward, start, target, tolerance=self.tolerance, passes=passes)
+    def solve(self, target: Array, start: Array, max_passes: int) -> Solution:
+        """Solve for multipliers that have given colours.
+
+        Parameters
+        ----------
+        target : ndarray, shape (k, 3)
+            Linear RGB.
+        start : ndarray, shape (k, C)
+            Multipliers to start from.
+        max_passes : int
+            Limit of the number of passes.
+
+        Returns
+        -------
+        Solution
+            Multipliers and their distances.
+        """
+        return solve(self.model, self.forward, start, target, tolerance=self.tolerance, max_passes=max_passes)

@@ -1,4 +1,4 @@
-"""The integrals that a cube stores, compiled."""
+"""The integrals from multipliers to stored moments, compiled."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from uplift.fit.batch import batches, replicate, shard
 from uplift.models.arctan import arctan
 from uplift.models.duality import quadrature
 
-MOST_NODES = 256
-"""Rules of more nodes, which few spectra need, are not worth compiling."""
+MAX_NODES = 256
+"""Larger rules, which few spectra need, are not worth compiling."""
 
 
 def quadrature_jit(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
-    """`uplift.models.duality.quadrature`, several times quicker."""
-    if len(analysis) > MOST_NODES + 1:
+    """Compute `uplift.models.duality.quadrature`, several times faster."""
+    if len(analysis) > MAX_NODES + 1:
         return quadrature(multipliers, synthesis, analysis)
     moments = np.empty((len(multipliers), analysis.shape[1]))
     with jax.enable_x64(True):

@@ -1,4 +1,4 @@
-"""Seeding: every atlas entry takes the eight corners of its voxel, nearest first (Tódová 2020, 3.1.2)."""
+"""Seeding: every atlas entry takes the eight corners of its cell, nearest first (Tódová 2020, section 3.1.2)."""
 
 from __future__ import annotations
 
@@ -8,19 +8,33 @@ from typing import NamedTuple
 import numpy as np
 
 from uplift.common.arrays import Array, Indices, Mask
-from uplift.lattice import Lattice
+from uplift.lattice import CORNERS, Lattice
 
 
 class Collision(NamedTuple):
-    """Two entries with the same primary lattice point; ``kept`` has it, being nearer."""
+    """Two entries with the same nearest lattice point."""
 
     kept: int
+    """Row of the entry that owns the point, being closer."""
     lost: int
+    """Row of the other entry."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Seeds:
-    """Lattice points (S,), the entry each is based on (S,), and whether it is that entry's primary point (S,)."""
+    """Lattice points that start from atlas entries.
+
+    Parameters
+    ----------
+    points : ndarray of int, shape (S,)
+        Point numbers.
+    entry : ndarray of int, shape (S,)
+        Row of the entry that each point starts from.
+    primary : ndarray of bool, shape (S,)
+        True for the point nearest to its entry.
+    collisions : tuple of Collision
+        Entries without a primary point.
+    """
 
     points: Indices
     entry: Indices
@@ -29,20 +43,32 @@ class Seeds:
 
 
 def seed(lattice: Lattice, rgb: Array) -> Seeds:
-    """Share the lattice out among entries of linear RGB (E, 3), all within [0, 1].
+    """Assign lattice points to atlas entries, independently of the order of the entries.
 
-    Primary points first, each to the entry nearest to it. Then round after round one more corner for
-    every entry, its nearest free one: the thesis's "better approach". The order of the atlas has no say.
+    Every entry gets its nearest point, unless a closer entry owns it. Then, in rounds, every entry gets the nearest
+    free corner of its cell: the "better approach" of the thesis.
+
+    Parameters
+    ----------
+    lattice : Lattice
+        The lattice.
+    rgb : ndarray, shape (E, 3)
+        Linear RGB of the entries, in [0, 1].
+
+    Returns
+    -------
+    Seeds
+        The assignment.
     """
     corners, _ = lattice.corners(rgb)
-    apart = np.linalg.norm(lattice.points[corners] - rgb[:, None, :], axis=-1)
-    by_distance = np.argsort(apart, axis=1, kind="stable")
+    distance = np.linalg.norm(lattice.points[corners] - rgb[:, None, :], axis=-1)
+    by_distance = np.argsort(distance, axis=1, kind="stable")
     queue = np.take_along_axis(corners, by_distance, axis=1)
-    nearest = np.take_along_axis(apart, by_distance, axis=1)[:, 0]
+    nearest = np.take_along_axis(distance, by_distance, axis=1)[:, 0]
     order = np.lexsort([*rgb.T, nearest])
-    owner, collisions = _share_primaries(queue, order)
+    owner, collisions = _assign_primaries(queue, order)
     primaries = len(owner)
-    for _ in range(8):
+    for _ in CORNERS:
         for entry in order:
             free = next((int(point) for point in queue[entry] if point not in owner), None)
             if free is not None:
@@ -55,7 +81,8 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
     )
 
 
-def _share_primaries(queue: Indices, order: Indices) -> tuple[dict[int, int], tuple[Collision, ...]]:
+def _assign_primaries(queue: Indices, order: Indices) -> tuple[dict[int, int], tuple[Collision, ...]]:
+    """Entries by their nearest points, and the entries that lost theirs."""
     owner: dict[int, int] = {}
     collisions = []
     for entry in order:

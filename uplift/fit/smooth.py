@@ -1,8 +1,9 @@
-"""The spectrum a colour gets where no measurement has a say: smooth, and dark where the colour is dark.
+"""Smooth spectra for colours that no measurement constrains; dark where the colour is dark.
 
-Multipliers know no end of slope: from them alone, a dark red rises to a reflectance of 1 as soon as the eye stops
-seeing it. So a colour x starts from a brighter one, x' = x / k with k = √max(x), solved from a grey by steps of
-least change, its spectrum dimmed by k (docs/mathematics.md, 7; docs/fidelity.md has the measurements).
+Multipliers have no upper bound on slope: from them alone, a dark red rises to a reflectance of 1 outside the range of
+the colour-matching functions. So a colour x starts from a brighter one, x' = x / k with k = √max(x). It is solved from
+a grey by minimum-norm steps, and its spectrum is scaled by k (docs/mathematics.md, 7; measurements in
+docs/fidelity.md).
 """
 
 from __future__ import annotations
@@ -20,19 +21,31 @@ from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap
 
 BRIGHTENING = 0.5
-"""Power of max(x) that a colour is divided by: 0 leaves it as it is, 1 makes it as bright as can be."""
+"""Power of max(x) that a colour is divided by: 0 leaves it unchanged, 1 makes it as bright as possible."""
 GREY = 2 / 3
-"""Power of the mean of x' that is the reflectance of the grey to start from."""
+"""Power of the mean of x' that gives the reflectance of the grey to start from."""
 TABLE = Lattice(np.linspace(0, 1, 17) ** 2)
-DARKEST = 1e-4
-LIGHTEST = 0.98
+MIN_LEVEL = 1e-4
+MAX_LEVEL = 0.98
 NO_FREEDOM = 3
-"""Coefficients that the colour alone determines."""
+"""Number of coefficients that the colour alone determines."""
 
 
 @dataclass(frozen=True, eq=False)
 class Smooth:
-    """Multipliers to start from. ``coefficients`` (17³, C) of brightened colours; None where no table is needed."""
+    """Start of a fit without measurements.
+
+    Parameters
+    ----------
+    model : Model
+        Spectrum model.
+    table : Lattice
+        Lattice of brightened colours.
+    coefficients : ndarray, shape (17³, C), optional
+        Coefficients at the points of the table; None where no table is needed.
+    brightening, grey : float
+        Powers, see `BRIGHTENING` and `GREY`.
+    """
 
     model: Model
     table: Lattice
@@ -41,10 +54,10 @@ class Smooth:
     grey: float = GREY
 
     def __call__(self, rgb: Array) -> Array:
-        """Multipliers (n, C) of linear RGB (n, 3) in [0, 1]: nearly that colour, for the solver to finish."""
+        """Multipliers (n, C) of nearly the colours (n, 3), linear RGB in [0, 1], for the solver to finish."""
         if self.coefficients is None:
             return _grey(self.model, rgb, self.grey)
-        factor = np.maximum(rgb.max(axis=1), DARKEST)[:, None] ** self.brightening
+        factor = np.maximum(rgb.max(axis=1), MIN_LEVEL)[:, None] ** self.brightening
         bright = weighted_sum(self.coefficients, *self.table.corners(np.minimum(rgb / factor, 1)))
         return self.model.from_storage(factor * bright)
 
@@ -54,20 +67,21 @@ def smooth(
     forward: ForwardMap,
     brightening: float = BRIGHTENING,
     grey: float = GREY,
-    beyond: Unrealisable = NONE,
+    outside: Unrealisable = NONE,
 ) -> Smooth:
-    """Solve the table: brightened colours, each from its grey; in place of those ``beyond`` reflectances the nearest.
+    """Solve the table: brightened colours, each from its grey.
 
-    Solved for what no reflectance has, multipliers end anywhere, and take what lies between with them.
+    Unrealisable points of the table (``outside``) are solved for the nearest realisable colours: their own multipliers
+    would be arbitrary, and would spoil the interpolation between points.
     """
     if model.count == NO_FREEDOM:
         return Smooth(model, TABLE, None, brightening, grey)
     goal = TABLE.points.copy()
-    goal[beyond.points] = beyond.nearest
-    found = solve(model, forward, _grey(model, goal, grey), goal, tolerance=1e-5, passes=8)
+    goal[outside.points] = outside.nearest
+    found = solve(model, forward, _grey(model, goal, grey), goal, tolerance=1e-5, max_passes=8)
     return Smooth(model, TABLE, model.to_storage(found.multipliers, quadrature_jit), brightening, grey)
 
 
 def _grey(model: Model, rgb: Array, power: float) -> Array:
-    level = np.clip(rgb.mean(axis=1) ** power, DARKEST, LIGHTEST)
+    level = np.clip(rgb.mean(axis=1) ** power, MIN_LEVEL, MAX_LEVEL)
     return model.unsquash(level)[:, None] * model.constant()

@@ -1,6 +1,6 @@
-"""Many small least-squares problems at once: multipliers that reach their colours (docs/mathematics.md, 5).
+"""Solve many small least-squares problems: multipliers whose spectra have given colours (docs/mathematics.md, 5).
 
-Points travel in batches of fixed shapes, a few damped steps a pass; those that have arrived leave.
+Problems are solved in batches of fixed shapes, a few damped steps per pass. Converged problems leave the batch.
 """
 
 from __future__ import annotations
@@ -19,57 +19,76 @@ from uplift.models.minimum_norm import ForwardMap, minimum_norm_step, residual
 from uplift.models.roots import MAX_MULTIPLIER
 
 STEPS, MORE_STEPS = 2, 8
-"""Damped steps a pass: of many points most have arrived after two; of few it costs more to ask than to go on."""
+"""Damped steps per pass. Of many problems most converge within two; with few, the overhead of a pass dominates."""
 FEW = 1024
-"""As many points are few."""
-SMALLER = 12
-"""Small batches that together take less than a large one, which goes on for as long as its last point does."""
+"""Number of problems up to which a pass takes `MORE_STEPS`."""
+MAX_SMALL_BATCHES = 12
+"""Small batches that are cheaper than a large one, which runs until its last problem converges."""
 FIRST_DAMPING = 1e-6
-"""μ at the start; a quarter of it after a step that helped, four times after one that did not."""
+"""Initial μ; divided by four after a successful step, multiplied by four after a rejected one."""
+MIN_GAIN, PATIENCE = 1e-3, 8
+"""A problem is abandoned after `PATIENCE` consecutive passes that each reduce its distance by less than `MIN_GAIN`.
 
-
-GAIN, PATIENCE = 1e-3, 8
-"""A point leaves when this many passes on end have each brought less than this share of its distance.
-
-Unrealisable points, of which wide gamuts have many, would otherwise stay to the last pass.
+Otherwise unrealisable points, frequent in wide gamuts, would remain until the last pass.
 """
 
 State = tuple[jax.Array, jax.Array, jax.Array, jax.Array]
-"""Steps taken, multipliers, damping, residual."""
+"""Step count, multipliers, damping, residual."""
 
 
 class Solution(NamedTuple):
-    """Multipliers (n, C) and their distance (n,), max |target − RGB|."""
+    """Result of `solve`."""
 
     multipliers: Array
+    """(n, C) multipliers."""
     distance: Array
+    """(n,) max |target − RGB|."""
 
 
 def solve(
-    model: Model, forward: ForwardMap, start: Array, target: Array, *, tolerance: float, passes: int
+    model: Model, forward: ForwardMap, start: Array, target: Array, *, tolerance: float, max_passes: int
 ) -> Solution:
-    """Move multipliers ``start`` (n, C) to linear RGB ``target`` (n, 3), to ``tolerance`` where it can be had.
+    """Solve for multipliers that have given colours.
 
-    No point ends further from its target than it began. That some do not converge is no error: the
-    distance says so.
+    No distance increases. Failure to converge is not an error: the distance reports it.
+
+    Parameters
+    ----------
+    model : Model
+        Spectrum model.
+    forward : ForwardMap
+        Map from multipliers to RGB.
+    start : ndarray, shape (n, C)
+        Multipliers to start from.
+    target : ndarray, shape (n, 3)
+        Linear RGB.
+    tolerance : float
+        Distance at which a problem is solved.
+    max_passes : int
+        Limit of the number of passes.
+
+    Returns
+    -------
+    Solution
+        Multipliers and their distances.
     """
     multipliers, damping = start.copy(), np.full(len(start), FIRST_DAMPING)
     distance = np.full(len(start), np.inf)
     stale = np.zeros(len(start), dtype=np.int64)
-    left = np.arange(len(start))
+    pending = np.arange(len(start))
     with jax.enable_x64(True):
         constants = replicate(forward)
-        for _ in range(passes):
-            before = distance[left]
-            steps = MORE_STEPS if len(left) <= FEW else STEPS
-            for rows, padded in batches(left, SMALLER):
+        for _ in range(max_passes):
+            before = distance[pending]
+            steps = MORE_STEPS if len(pending) <= FEW else STEPS
+            for rows, padded in batches(pending, MAX_SMALL_BATCHES):
                 batch = (shard(array[padded]) for array in (multipliers, damping, target))
                 found = _advance(model, constants, *batch, tolerance, steps)
-                for whole, part in zip((multipliers, damping, distance), found, strict=True):
-                    whole[rows] = np.asarray(part)[: len(rows)]
-            stale[left] = np.where(distance[left] > (1 - GAIN) * before, stale[left] + 1, 0)
-            left = left[(distance[left] > tolerance) & (stale[left] < PATIENCE)]
-            if not left.size:
+                for array, part in zip((multipliers, damping, distance), found, strict=True):
+                    array[rows] = np.asarray(part)[: len(rows)]
+            stale[pending] = np.where(distance[pending] > (1 - MIN_GAIN) * before, stale[pending] + 1, 0)
+            pending = pending[(distance[pending] > tolerance) & (stale[pending] < PATIENCE)]
+            if not pending.size:
                 break
     return Solution(multipliers, distance)
 
@@ -84,19 +103,19 @@ def _advance(
     tolerance: float,
     steps: int,
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Up to ``steps`` damped steps; a step counts only where it lowers the squared distance."""
+    """Take up to ``steps`` damped steps; a step is accepted where it reduces the squared distance."""
 
     def damped_step(state: State) -> State:
-        count, here, damping, off = state
-        there = here + minimum_norm_step(model, forward, here, off, damping)
-        off_there = residual(model, forward, there, target)
-        better = ((off_there**2).sum(axis=1) < (off**2).sum(axis=1)) & (
-            abs(there).max(axis=1) <= MAX_MULTIPLIER
+        count, current, damping, off = state
+        trial = current + minimum_norm_step(model, forward, current, off, damping)
+        trial_off = residual(model, forward, trial, target)
+        better = ((trial_off**2).sum(axis=1) < (off**2).sum(axis=1)) & (
+            abs(trial).max(axis=1) <= MAX_MULTIPLIER
         )
         active = abs(off).max(axis=1) > tolerance
-        move = (better & active)[:, None]
+        accept = (better & active)[:, None]
         damping = jnp.where(better, damping / 4, damping * 4)
-        return count + 1, jnp.where(move, there, here), damping, jnp.where(move, off_there, off)
+        return count + 1, jnp.where(accept, trial, current), damping, jnp.where(accept, trial_off, off)
 
     def unfinished(state: State) -> jax.Array:
         count, *_, off = state

@@ -1,4 +1,4 @@
-"""What a cube stores of a fit, and how near its colours come: judged by what any reader will see."""
+"""Convert multipliers to stored coefficients, and evaluate the colours of what is stored."""
 
 from __future__ import annotations
 
@@ -18,27 +18,30 @@ from uplift.fit.quadrature_jit import quadrature_jit
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_rgb
 
-BLOCK = 1 << 15
-"""Points worked on at a time."""
+BLOCK_POINTS = 1 << 15
+"""Points processed at a time."""
 SINGLE: np.dtype[Any] = np.dtype(np.float32)
 DOUBLE: np.dtype[Any] = np.dtype(np.float64)
-LOSS = 0.1
-"""Share of the threshold that single precision may add to a point's distance; docs/stability.md."""
+MAX_LOSS = 0.1
+"""Share of the threshold that single precision may add to the distance of a point; docs/stability.md."""
 
 
 class StoredPoints(NamedTuple):
-    """Coefficients (n, C), the linear RGB (n, 3) that they have, and max |goal − RGB| (n,); 0 if not wanted."""
+    """Result of `store`; all 0 at inactive points."""
 
     coefficients: NDArray[Any]
+    """(n, C) float32 or float64."""
     rgb: NDArray[np.float32]
+    """(n, 3) linear RGB of the coefficients."""
     distance: NDArray[np.float32]
+    """(n,) max |goal − RGB|."""
 
 
 def store(problem: Problem, multipliers: Array, distance: Array, progress: ProgressCallback) -> StoredPoints:
-    """The multipliers (n, C) of the points as coefficients, which are as far (n,) from their goals.
+    """Convert multipliers (n, C) with distances (n,) to coefficients.
 
-    float32, if that is as good for every point, or float64 for all. The multipliers give their place: large
-    lattices have no room for both.
+    The coefficients are float32 if that is accurate enough for every point, else float64 for all. The array of
+    multipliers is overwritten, as memory for both may not suffice.
     """
     model, size, kind, points = problem.model, len(multipliers), SINGLE, problem.points
     stored = StoredPoints(
@@ -47,24 +50,24 @@ def store(problem: Problem, multipliers: Array, distance: Array, progress: Progr
     for done, block in _blocks(points):
         stored.coefficients[block] = model.to_storage(multipliers[block], quadrature_jit)
         _evaluate(problem, stored, block, kind)
-        if kind == SINGLE and (stored.distance[block] > distance[block] + LOSS * problem.threshold).any():
+        if kind == SINGLE and (stored.distance[block] > distance[block] + MAX_LOSS * problem.threshold).any():
             kind = DOUBLE
-            for _, again in _blocks(points[:done]):
-                _evaluate(problem, stored, again, kind)
+            for _, earlier in _blocks(points[:done]):
+                _evaluate(problem, stored, earlier, kind)
         progress(Progress("store", done, len(points)))
     return stored._replace(coefficients=stored.coefficients.astype(kind, copy=False))
 
 
 def _evaluate(problem: Problem, stored: StoredPoints, block: Indices, kind: np.dtype[Any]) -> None:
-    """RGB and distance of points (k,), as whoever reads its coefficients in that type will find them."""
+    """Set RGB and distance of points (k,) from their coefficients, rounded to the type that is stored."""
     rgb = rgb_of(problem, problem.model.from_storage(stored.coefficients[block].astype(kind)))
     stored.rgb[block], stored.distance[block] = rgb, np.abs(problem.goal(block) - rgb).max(axis=1)
 
 
 def _blocks(points: Indices) -> Iterator[tuple[int, Indices]]:
-    """Points done after it, and a block of them."""
-    for first in range(0, len(points), BLOCK):
-        block = points[first : first + BLOCK]
+    """Blocks of points, each with the number of points up to its end."""
+    for first in range(0, len(points), BLOCK_POINTS):
+        block = points[first : first + BLOCK_POINTS]
         yield first + len(block), block
 
 
@@ -74,11 +77,11 @@ def rgb_of(problem: Problem, multipliers: Array) -> Array:
     with jax.enable_x64(True):
         forward = replicate(problem.forward)
         for rows, padded in batches(np.arange(len(multipliers))):
-            found = _reached(problem.model, forward, shard(multipliers[padded]))
+            found = _forward_rgb(problem.model, forward, shard(multipliers[padded]))
             rgb[rows] = np.asarray(found)[: len(rows)]
     return rgb
 
 
 @partial(jax.jit, static_argnums=0)
-def _reached(model: Model, forward: ForwardMap, multipliers: jax.Array) -> jax.Array:
+def _forward_rgb(model: Model, forward: ForwardMap, multipliers: jax.Array) -> jax.Array:
     return forward_rgb(model, forward, multipliers)

@@ -1,4 +1,4 @@
-"""Lattice points whose colours no reflectance has, as wide RGB spaces have many, and what is fitted in their stead."""
+"""Unrealisable lattice points, frequent in wide gamuts, and the realisable colours that replace them in the fit."""
 
 from __future__ import annotations
 
@@ -11,15 +11,21 @@ from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Indices
 from uplift.lattice import CORNERS, Lattice
 
-BLOCK = 1 << 15
-"""Points worked on at a time."""
+BLOCK_POINTS = 1 << 15
+"""Points processed at a time."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Unrealisable:
-    """Such points (k,), ascending, and the nearest realisable linear RGB (k, 3) to each.
+    """Lattice points whose colour no reflectance has.
 
-    Nearest on the straight line to the grey of the same luminance: the hue stays, the chroma goes down.
+    Parameters
+    ----------
+    points : ndarray of int, shape (k,)
+        Point numbers, ascending.
+    nearest : ndarray, shape (k, 3)
+        Nearest realisable linear RGB on the straight line to the grey of the same luminance. It has the same hue and
+        less chroma.
     """
 
     points: Indices
@@ -30,26 +36,40 @@ NONE = Unrealisable(np.zeros(0, dtype=np.int64), np.zeros((0, 3)))
 
 
 def unrealisable(
-    lattice: Lattice, sensor: Sensor, margin: float, wanted: Indices | None = None
+    lattice: Lattice, sensor: Sensor, margin: float, active_points: Indices | None = None
 ) -> Unrealisable:
-    """The unrealisable points of a lattice, or of those ``wanted`` (k,), ascending.
+    """Find the unrealisable points of a lattice.
 
-    Their nearest colours keep ``margin`` (linear RGB) from the boundary. On the boundary itself are spectra of
-    steps between 0 and 1 (MacAdam 1935), which no smooth model reaches.
+    Parameters
+    ----------
+    lattice : Lattice
+        The lattice.
+    sensor : Sensor
+        RGB space, illuminant and observer.
+    margin : float
+        Linear RGB between the nearest colours and the boundary of the object-colour solid. The spectra on the boundary
+        are steps between 0 and 1 (MacAdam 1935), which no smooth model has.
+    active_points : ndarray of int, shape (k,), optional
+        Points to test, ascending. All by default.
+
+    Returns
+    -------
+    Unrealisable
+        The points, and the nearest realisable colours.
     """
     limits = solid(sensor.matrix)
     if limits.contains(CORNERS.astype(float)).all():
-        return NONE  # the solid is convex, so it holds what lies between as well
+        return NONE  # the solid is convex: it contains everything between the corners
+    active = np.arange(lattice.size) if active_points is None else active_points
     points, nearest = [NONE.points], [NONE.nearest]
-    asked = np.arange(lattice.size) if wanted is None else wanted
-    for first in range(0, len(asked), BLOCK):
-        block = asked[first : first + BLOCK]
+    for first in range(0, len(active), BLOCK_POINTS):
+        block = active[first : first + BLOCK_POINTS]
         outside = block[~limits.contains(lattice.target(block))]
         target = lattice.target(outside)
         grey = np.clip(sensor.xyz(target)[:, 1:2], 0, 1).repeat(3, axis=1)
-        way = target - grey
-        inward = margin / np.maximum(np.abs(way).max(axis=1), margin)
+        chroma = target - grey
+        inward = margin / np.maximum(np.abs(chroma).max(axis=1), margin)
         share = np.maximum(limits.ray_fraction(grey, target) - inward, 0)
         points.append(outside)
-        nearest.append(grey + share[:, None] * way)
+        nearest.append(grey + share[:, None] * chroma)
     return Unrealisable(np.concatenate(points), np.concatenate(nearest))

@@ -1,14 +1,13 @@
-"""A scene: the colours that are to be answered, and the lattice points that they need. No more need be built."""
+"""The colours of images as a scene: `uplift.build` fits only the lattice points that answer them."""
 
 from __future__ import annotations
 
 import hashlib
-import os
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -17,109 +16,152 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback
-from uplift.cube import CubeData
 from uplift.io.texture.colours import check_encoding, make_decoder
 from uplift.io.texture.part_layout import colour_channels_by_part
 from uplift.io.texture.source import open_image
-from uplift.lattice import CORNERS, Lattice
-from uplift.lattice.entry_boxes import MARGIN, EntryBoxes
+from uplift.lattice import CORNERS, EntryBoxes, Lattice
+from uplift.lattice.entry_boxes import MARGIN
 
-BLOCK = 1 << 16
-"""Pixels looked at at a time."""
-
-
-class Scene(Protocol):
-    """What `uplift.build` asks of a scene."""
-
-    def points(self, pins: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        """Which points (dim³,) of the lattice, with entries as pins, its colours need."""
-        ...
-
-    def describe(self) -> list[dict[str, Any]]:
-        """Where its colours come from, in JSON values."""
-        ...
+BLOCK_PIXELS = 1 << 16
+"""Pixels decoded at a time."""
 
 
 @dataclass(frozen=True)
 class Images:
-    """The colours of images, decoded as `uplift.io.texture.prepare` does; only the cells around them are kept."""
+    """A scene of images; implements `uplift.lattice.SceneLike`. Memory holds the cells of the colours only.
+
+    Parameters
+    ----------
+    paths : tuple of Path
+        Images, at least one.
+    encoding : str, default "auto"
+        Encoding of the pixels, as for `uplift.io.texture.convert_texture`.
+    out_of_gamut : str, default "clip"
+        Gamut mapping of linear RGB outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+
+    Raises
+    ------
+    OptionError
+        No images (``scene-without-colours``), or an unknown encoding or gamut mapping.
+    """
 
     paths: tuple[Path, ...]
     encoding: str = "auto"
     out_of_gamut: str = "clip"
 
-    def points(self, pins: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        """Raises `OptionError`, `TextureError`, and `ColourError` for colours outside [0, 1] that are an error.
-
-        An `UpliftWarning` names images that say they are of another space.
-        """
+    def __post_init__(self) -> None:
         check_encoding(self.encoding)
         check_method(self.out_of_gamut)
-        cells = np.zeros(pins.lattice.size, dtype=bool)
+        if not self.paths:
+            raise _no_colours()
+
+    def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
+        """Return the lattice points that answer the colours of the images; see `SceneLike`.
+
+        Parameters
+        ----------
+        boxes : EntryBoxes
+            Entry boxes, and the lattice that they lie in.
+        sensor : Sensor
+            RGB space of the cube.
+        progress : callable
+            Called with a `Progress` event of stage ``"images"`` before each image.
+
+        Returns
+        -------
+        ndarray of bool, shape (dim³,)
+            Mask of points.
+
+        Raises
+        ------
+        TextureError
+            An image that cannot be read.
+        ColourError
+            A colour out of gamut, with ``out_of_gamut="error"``.
+
+        Warns
+        -----
+        UpliftWarning
+            An image in another RGB space.
+        """
+        cells = np.zeros(boxes.lattice.size, dtype=bool)
         for done, path in enumerate(self.paths):
             progress(Progress("images", done, len(self.paths)))
             for rgb in self.colours(path, sensor):
-                cells[cells_touched(pins.lattice, rgb)] = True
+                cells[cells_touched(boxes.lattice, rgb)] = True
         if not cells.any():
-            raise OptionError(
-                "a scene without images has no colours", hint="name one, or build without a scene"
-            )
-        return pins.needs(cells)
+            raise _no_colours()
+        return boxes.required_points(cells)
 
     def describe(self) -> list[dict[str, Any]]:
-        read = {"encoding": self.encoding, "out_of_gamut": self.out_of_gamut}
-        return [{"name": path.name, "digest": file_digest(path), **read} for path in self.paths]
+        """Return name and digest of each image, and how it was decoded.
+
+        Returns
+        -------
+        list of dict
+            JSON values, one dictionary per image.
+        """
+        decoding = {"encoding": self.encoding, "out_of_gamut": self.out_of_gamut}
+        return [{"name": path.name, "digest": file_digest(path), **decoding} for path in self.paths]
 
     def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
-        """Linear RGB (n, 3) in [0, 1] of an image, block by block."""
+        """Read the colours of an image block by block.
+
+        Parameters
+        ----------
+        path : Path
+            One of the images.
+        sensor : Sensor
+            RGB space of the colours.
+
+        Yields
+        ------
+        ndarray, shape (n, 3)
+            Linear RGB in [0, 1].
+        """
         with open_image(path) as image:
             for warning in image.warnings(sensor):
                 warnings.warn(warning, stacklevel=5)
-            for part, places in colour_channels_by_part(image):
-                if places is None:
+            for part, channels in colour_channels_by_part(image):
+                if channels is None:
                     continue
                 decode = make_decoder(sensor, part, self.encoding, self.out_of_gamut)
                 for _, band in image.bands(part):
                     pixels = band.reshape(-1, band.shape[-1])
-                    for first in range(0, len(pixels), BLOCK):
-                        yield decode(pixels[first : first + BLOCK, places])[0].astype(float)
-
-
-@dataclass(frozen=True, eq=False)
-class StoredScene:
-    """The very points of a cube that was built for a scene: no image is needed to make it again."""
-
-    data: CubeData
-
-    def points(self, pins: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        """Raises `OptionError`."""
-        if self.data.lattice.dim != pins.lattice.dim:
-            raise OptionError(f"the scene's points are those of dim {self.data.lattice.dim}")
-        return self.data.points.present
-
-    def describe(self) -> list[dict[str, Any]]:
-        return list(self.data.provenance["scene"])
-
-
-SceneLike = Scene | str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
-
-
-def as_scene(given: SceneLike) -> Scene:
-    """Images by their paths, or a scene as it is."""
-    if isinstance(given, str | os.PathLike):
-        return Images((Path(given),))
-    return Images(tuple(map(Path, given))) if isinstance(given, Sequence) else given
+                    for first in range(0, len(pixels), BLOCK_PIXELS):
+                        yield decode(pixels[first : first + BLOCK_PIXELS, channels])[0].astype(float)
 
 
 def cells_touched(lattice: Lattice, rgb: Array) -> Array:
-    """Numbers of the cells that linear RGB (n, 3) lie in, or on the face of: rounding decides which."""
-    low, high = lattice.lowest(rgb - MARGIN), lattice.lowest(rgb + MARGIN)
-    between = (low != high).any(axis=1)
-    beside = np.where(CORNERS[:, None, :] == 1, high[between], low[between]).reshape(-1, 3)
-    return np.concatenate([lattice.index(low), lattice.index(beside)])
+    """Return the cells around colours, and those within rounding error of them.
+
+    Parameters
+    ----------
+    lattice : Lattice
+        The lattice.
+    rgb : ndarray, shape (n, 3)
+        Linear RGB.
+
+    Returns
+    -------
+    ndarray of int, shape (m,)
+        Cell numbers, with repetitions.
+    """
+    low, high = lattice.lowest_corner(rgb - MARGIN), lattice.lowest_corner(rgb + MARGIN)
+    on_face = (low != high).any(axis=1)
+    adjacent = np.where(CORNERS[:, None, :] == 1, high[on_face], low[on_face]).reshape(-1, 3)
+    return np.concatenate([lattice.index(low), lattice.index(adjacent)])
 
 
 def file_digest(path: Path) -> str:
-    """sha256 (hex) of a file."""
+    """Return the SHA-256 digest of a file in hexadecimal."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def _no_colours() -> OptionError:
+    return OptionError(
+        "a scene must have at least one image with colours, got none",
+        code="scene-without-colours",
+        hint="name an image, or build without a scene",
+    )

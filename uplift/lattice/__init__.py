@@ -1,8 +1,21 @@
-"""The lattice over RGB: axes, nodes, cells, neighbours, and the boxes around atlas entries."""
+"""The lattice over RGB: nodes, cells, neighbours, the boxes around atlas entries, and the table of its points."""
 
 from __future__ import annotations
 
+from uplift.lattice.entry_boxes import BoxHits, EntryBoxes
 from uplift.lattice.lattice import CORNERS, Lattice, weighted_sum
 from uplift.lattice.point_table import NO_ENTRY, NOT_FITTED, PointTable, Status
+from uplift.lattice.scene import SceneLike
 
-__all__ = ["CORNERS", "NOT_FITTED", "NO_ENTRY", "Lattice", "PointTable", "Status", "weighted_sum"]
+__all__ = [
+    "CORNERS",
+    "NOT_FITTED",
+    "NO_ENTRY",
+    "BoxHits",
+    "EntryBoxes",
+    "Lattice",
+    "PointTable",
+    "SceneLike",
+    "Status",
+    "weighted_sum",
+]

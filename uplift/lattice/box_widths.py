@@ -1,33 +1,43 @@
-"""How far around its colour an atlas entry leads answers over to its own spectrum (docs/mathematics.md, 8)."""
+"""Widths of the boxes around atlas entries (docs/mathematics.md, 8)."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.lattice import Lattice
+from uplift.lattice.lattice import Lattice
 
-FARTHEST = 1.0
-"""Lattice steps, for an entry by itself."""
-SAME = 1e-6
-"""Steps at which two entries have the same colour, so that only one of them can be answered."""
+MAX_HALF_WIDTH = 1.0
+"""Lattice steps: the half width of an entry box without other entries nearby."""
+SAME_COLOUR = 1e-6
+"""Lattice steps. Entries that are closer have the same colour, and only the first of them is used."""
 
 
 def half_widths(lattice: Lattice, rgb: Array) -> Array:
-    """Lattice steps (E,) to the faces of the box around each entry of linear RGB (E, 3).
+    """Return the half widths of entry boxes.
 
-    Half the way to the nearest other entry at the most, so that no two boxes overlap; 0 for an entry whose
-    colour an earlier one has.
+    No two boxes overlap: a box extends at most half the distance to the nearest other entry.
+
+    Parameters
+    ----------
+    lattice : Lattice
+        The lattice that the boxes lie in.
+    rgb : ndarray, shape (E, 3)
+        Linear RGB of the entries.
+
+    Returns
+    -------
+    ndarray, shape (E,)
+        Lattice steps, 0 to 1. 0 for an entry whose colour an earlier entry has.
     """
     from scipy.spatial import KDTree
 
     if len(rgb) < 2:
-        return np.full(len(rgb), FARTHEST)
-    steps = lattice.steps_along(rgb)
-    tree = KDTree(steps)
-    earlier = {later for _, later in tree.query_pairs(SAME, p=np.inf)}
-    kept = np.array([row not in earlier for row in range(len(rgb))])
-    found = np.zeros(len(rgb))
-    apart = KDTree(steps[kept]).query(steps[kept], k=2, p=np.inf)[0][:, 1]
-    found[kept] = np.minimum(FARTHEST, apart / 2)
-    return found
+        return np.full(len(rgb), MAX_HALF_WIDTH)
+    steps = lattice.to_steps(rgb)
+    unique = np.ones(len(rgb), dtype=bool)
+    unique[[later for _, later in KDTree(steps).query_pairs(SAME_COLOUR, p=np.inf)]] = False
+    widths = np.zeros(len(rgb))
+    nearest = KDTree(steps[unique]).query(steps[unique], k=2, p=np.inf)[0][:, 1]
+    widths[unique] = np.minimum(MAX_HALF_WIDTH, nearest / 2)
+    return widths

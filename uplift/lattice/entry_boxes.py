@@ -1,9 +1,9 @@
-"""Atlas entries as extra nodes: asked at its colour, a cube answers with the entry's own spectrum.
+"""Boxes around atlas entries: a query at the colour of an entry returns the spectrum of the entry.
 
-Around every entry lies a box (`uplift.lattice.box_widths`), no two of which overlap. A colour x within
-one is a mixture of the entry's colour e and of the point y where the ray from e through x leaves the box, x = (1 − t) e + t y. The
-answer mixes the spectra of e and y alike: it has the very colour x, stays within [0, 1], meets the lattice at the
-box's faces and the entry in its middle. numpy alone.
+Each entry has a box of half widths given by `uplift.lattice.box_widths`; no two boxes overlap. A colour x inside a box
+is x = (1 − t) e + t y, with the entry's colour e and the point y where the ray from e through x leaves the box. The
+answer mixes the spectra at e and y by the same weights. It has exactly the colour x and stays within [0, 1]. It equals
+the lattice on the faces of the box, and the entry at its centre. Needs numpy only.
 """
 
 from __future__ import annotations
@@ -16,108 +16,150 @@ from typing import NamedTuple
 import numpy as np
 
 from uplift.common.arrays import Array, Indices, Mask
-from uplift.lattice import Lattice
+from uplift.lattice.lattice import Lattice
+from uplift.lattice.point_table import NO_ENTRY
 
-AROUND = np.array(list(product((-1, 0, 1), repeat=3)))
-"""(27, 3) steps to the cells that a box may touch: it reaches a step at the most."""
-NO_ENTRY = -1
+CELL_BLOCK = np.array(list(product((-1, 0, 1), repeat=3)))
+"""(27, 3) steps to the cells that a box can touch: its half width is at most one step."""
 MARGIN = 1e-6
-"""Linear RGB by which rounding, to float32 too, may take a colour across the face of a cell."""
+"""Linear RGB by which rounding, to float32 too, can move a colour across the face of a cell."""
 
 
 class BoxHits(NamedTuple):
-    """Colours in boxes, k of those asked."""
+    """The k of n colours that lie in boxes."""
 
     rows: Indices
-    """(k,) which they are."""
+    """(k,) row numbers of the colours."""
     entry: Indices
-    """(k,) the entry in whose box they lie."""
-    share: Array
-    """(k,) the lattice's share in the answer; the rest is the entry's."""
-    away: Array
-    """(k, 3) linear RGB to ask the lattice for."""
+    """(k,) row of the entry whose box contains the colour."""
+    lattice_weight: Array
+    """(k,) weight of the lattice in the answer, 0 to 1; the entry has the rest."""
+    exit_rgb: Array
+    """(k, 3) linear RGB of the point at which the lattice is evaluated."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EntryBoxes:
-    """Entries at linear RGB (E, 3) whose boxes reach so many lattice steps (E,)."""
+    """Boxes around atlas entries in a lattice.
+
+    Parameters
+    ----------
+    lattice : Lattice
+        The lattice that the boxes lie in.
+    rgb : ndarray, shape (E, 3)
+        Linear RGB of the entries, the centres of the boxes.
+    half_width : ndarray, shape (E,)
+        Half widths in lattice steps, 0 to 1; 0 for no box.
+    """
 
     lattice: Lattice
     rgb: Array
-    reach: Array
+    half_width: Array
+
+    def __repr__(self) -> str:
+        return f"EntryBoxes({np.count_nonzero(self.half_width)} boxes in {self.lattice})"
 
     @cached_property
     def faces(self) -> tuple[Array, Array]:
-        """Linear RGB of the lowest and of the highest corner (E, 3) of each box, cut off at the lattice's edge."""
-        steps, reach = self.lattice.steps_along(self.rgb), self.reach[:, None]
-        return self.lattice.at_steps(steps - reach), self.lattice.at_steps(steps + reach)
+        """Linear RGB (E, 3) of the lowest and of the highest corner of each box, clipped to the lattice."""
+        steps, half = self.lattice.to_steps(self.rgb), self.half_width[:, None]
+        return self.lattice.from_steps(steps - half), self.lattice.from_steps(steps + half)
 
     @cached_property
     def cells(self) -> tuple[Indices, Indices]:
-        """Numbers of the cells that boxes touch, ascending, and the entry of each such box."""
-        low, high = (self.lattice.cell(face)[0] for face in self.faces)
-        cells = self.lattice.cell(self.rgb)[0][:, None, :] + AROUND
-        touched = ((cells >= low[:, None]) & (cells <= high[:, None])).all(axis=-1) & (self.reach > 0)[
-            :, None
-        ]
+        """Numbers of the cells that boxes touch, ascending, and the entry of each of these boxes."""
+        low, high = (self.lattice.lowest_corner(face)[:, None] for face in self.faces)
+        cells = self.lattice.lowest_corner(self.rgb)[:, None] + CELL_BLOCK
+        touched = ((cells >= low) & (cells <= high)).all(axis=-1) & (self.half_width > 0)[:, None]
         entry, _ = np.nonzero(touched)
         number = self.lattice.index(cells[touched])
         order = np.argsort(number, kind="stable")
         return number[order], entry[order]
 
     @cached_property
-    def touched(self) -> Mask:
-        """(dim³,) whether a box touches a cell, by its number.
-
-        Memory that is never written to is never taken, so this is cheap for the largest lattice.
-        """
+    def touched_cells(self) -> Mask:
+        """(dim³,) True for cells that a box touches. Untouched pages of the array take no memory."""
         touched = np.zeros(self.lattice.size, dtype=bool)
         touched[self.cells[0]] = True
         return touched
 
-    def needs(self, cells: Mask) -> Mask:
-        """Which lattice points (dim³,) answers take for colours in ``cells`` (dim³,), wherever these are in them.
+    def required_points(self, cells: Mask) -> Mask:
+        """Return the lattice points needed to answer any colour in a set of cells.
 
-        The corners of the cells and, where a box touches one, of all that the box touches: a colour in the box is
-        answered from any point of its faces. Rounding may take that point across a face.
+        They are the corners of the cells and, where a box touches one, the corners of all cells that the box
+        touches: a colour in the box is answered from a point on its faces, within `MARGIN`.
+
+        Parameters
+        ----------
+        cells : ndarray of bool, shape (dim³,)
+            Mask of cells.
+
+        Returns
+        -------
+        ndarray of bool, shape (dim³,)
+            Mask of points.
         """
-        dim = self.lattice.dim
-        asked = cells.reshape(dim, dim, dim)
-        found = asked.copy()
-        low, high = self.lattice.lowest(self.faces[0] - MARGIN), self.lattice.lowest(self.faces[1] + MARGIN)
-        for entry in np.flatnonzero(self.reach > 0):
+        requested = cells.reshape(self.lattice.shape)
+        required = requested.copy()
+        low = self.lattice.lowest_corner(self.faces[0] - MARGIN)
+        high = self.lattice.lowest_corner(self.faces[1] + MARGIN)
+        for entry in np.flatnonzero(self.half_width > 0):
             box = tuple(slice(low[entry, axis], high[entry, axis] + 1) for axis in range(3))
-            if asked[box].any():
-                found[box] = True
-        return self.lattice.corners_of(found.ravel())
+            if requested[box].any():
+                required[box] = True
+        return self.lattice.corner_points(required.ravel())
 
-    def __call__(self, rgb: Array) -> BoxHits:
-        """Those of linear RGB (n, 3) that lie in a box."""
-        return self.within(rgb, self.lattice.index(self.lattice.cell(rgb)[0]))
+    def find(self, rgb: Array) -> BoxHits:
+        """Find the colours that lie in boxes.
 
-    def within(self, rgb: Array, cell: Indices) -> BoxHits:
-        """The same, for who knows the numbers (n,) of their cells."""
+        Parameters
+        ----------
+        rgb : ndarray, shape (n, 3)
+            Linear RGB.
+
+        Returns
+        -------
+        BoxHits
+            The colours inside boxes, and the weights that answer them.
+        """
+        return self.find_in_cells(rgb, self.lattice.index(self.lattice.lowest_corner(rgb)))
+
+    def find_in_cells(self, rgb: Array, cell: Indices) -> BoxHits:
+        """Find the colours that lie in boxes, given their cells.
+
+        Parameters
+        ----------
+        rgb : ndarray, shape (n, 3)
+            Linear RGB.
+        cell : ndarray of int, shape (n,)
+            Number of the cell that contains each colour.
+
+        Returns
+        -------
+        BoxHits
+            The colours inside boxes, and the weights that answer them.
+        """
         rows, entry = self._boxes(rgb, cell)
-        middle = self.rgb[entry]
-        ray = rgb[rows] - middle
+        centre = self.rgb[entry]
+        ray = rgb[rows] - centre
         low, high = (face[entry] for face in self.faces)
-        room = np.where(ray > 0, high - middle, middle - low)
-        share = np.divide(np.abs(ray), room, out=np.zeros_like(ray), where=ray != 0).max(axis=1)
-        away, moved = rgb[rows], share > 0
-        away[moved] = np.clip(middle[moved] + ray[moved] / share[moved, None], 0, 1)
-        return BoxHits(rows, entry, share, away)
+        room = np.where(ray > 0, high - centre, centre - low)
+        weight = np.divide(np.abs(ray), room, out=np.zeros_like(ray), where=ray != 0).max(axis=1)
+        exit_rgb, moved = rgb[rows], weight > 0
+        exit_rgb[moved] = np.clip(centre[moved] + ray[moved] / weight[moved, None], 0, 1)
+        return BoxHits(rows, entry, weight, exit_rgb)
 
     def _boxes(self, rgb: Array, cell: Indices) -> tuple[Indices, Indices]:
-        """Which (k,) of linear RGB (n, 3) lie in a box, and the entries (k,) of those."""
-        near = np.flatnonzero(self.touched[cell])
+        """Rows (k,) of the colours (n, 3) that lie in a box, and the entries (k,) of the boxes."""
+        near = np.flatnonzero(self.touched_cells[cell])
         found = np.full(len(near), NO_ENTRY)
         cells, entries = self.cells
         first, last = (np.searchsorted(cells, cell[near], side=side) for side in ("left", "right"))
         low, high = self.faces
         for turn in range(int((last - first).max(initial=0))):
             rows = np.flatnonzero(first + turn < last)
-            candidate, asked = entries[first[rows] + turn], rgb[near[rows]]
-            inside = ((asked >= low[candidate]) & (asked <= high[candidate])).all(axis=1)
+            candidate, colour = entries[first[rows] + turn], rgb[near[rows]]
+            inside = ((colour >= low[candidate]) & (colour <= high[candidate])).all(axis=1)
             found[rows[inside]] = candidate[inside]
-        held = found != NO_ENTRY
-        return near[held], found[held]
+        hit = found != NO_ENTRY
+        return near[hit], found[hit]

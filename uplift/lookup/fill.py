@@ -29,7 +29,7 @@ def missing_points(data: CubeData, rgb: Array | None = None) -> Indices:
     if rgb is not None:
         asked = np.zeros(data.lattice.size, dtype=bool)
         asked[cells(data, rgb)] = True
-        absent &= data.lattice.corners_of(asked)
+        absent &= data.lattice.corner_points(asked)
     return np.flatnonzero(absent)
 
 

@@ -59,8 +59,8 @@ def around(data: CubeData, rgb: Array) -> Nodes:
     low, fraction, pinned = _asked(data, rgb)
     if data.complete_cells is not None:
         require(data.complete_cells[data.lattice.index(low)], rgb)
-    points, weights = data.lattice.around(low, fraction)
-    return Nodes(points, weights, pinned.rows, pinned.entry, pinned.share)
+    points, weights = data.lattice.cell_corners(low, fraction)
+    return Nodes(points, weights, pinned.rows, pinned.entry, pinned.lattice_weight)
 
 
 def holds(data: CubeData, rgb: Array) -> Mask:
@@ -89,6 +89,6 @@ def _asked(data: CubeData, rgb: Array) -> tuple[Indices, Array, BoxHits]:
     """Lowest corner (n, 3) and fraction (n, 3) of the cells that the lattice is asked in, and what lies in boxes."""
     lattice = data.lattice
     low, fraction = lattice.cell(rgb)
-    pinned = data.entry_boxes.within(rgb, lattice.index(low))
-    low[pinned.rows], fraction[pinned.rows] = lattice.cell(pinned.away)
+    pinned = data.entry_boxes.find_in_cells(rgb, lattice.index(low))
+    low[pinned.rows], fraction[pinned.rows] = lattice.cell(pinned.exit_rgb)
     return low, fraction, pinned

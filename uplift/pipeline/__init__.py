@@ -1,7 +1,10 @@
-"""The order of a build: options in, cube out; and a recorded build repeated."""
+"""The order of a build: options in, cube out; and the repetition of a recorded build."""
 
 from __future__ import annotations
 
 from uplift.pipeline.build_cube import build
+from uplift.pipeline.options import Options
+from uplift.pipeline.provenance import recorded_atlas
+from uplift.pipeline.rebuild import rebuild
 
-__all__ = ["build"]
+__all__ = ["Options", "build", "rebuild", "recorded_atlas"]

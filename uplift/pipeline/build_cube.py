@@ -1,4 +1,4 @@
-"""The whole order: atlas → seeds → lattice → cube. The only module that knows all stages."""
+"""The order of a build: atlas → fitted entries → lattice → prior → fitted points → cube."""
 
 from __future__ import annotations
 
@@ -7,193 +7,286 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
-from typing import Any
+from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 
 from uplift import fit
 from uplift.atlas import Atlas, on_grid, read_atlas
-from uplift.colorimetry import observer
+from uplift.colorimetry import observer as observers
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices, StrPath
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.threads import single_threaded_blas
 from uplift.cube import AtlasTable, CubeData
-from uplift.io.scene_colours import Scene, SceneLike, as_scene
-from uplift.lattice import Lattice
-from uplift.lattice.entry_boxes import EntryBoxes
+from uplift.lattice import EntryBoxes, Lattice, SceneLike
+from uplift.lattice.box_widths import half_widths
 from uplift.lookup import Cube
-from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_map
-from uplift.pipeline.options import AUTO, AXES, Options, check_size
+from uplift.pipeline.options import AUTO, AXES, ModelName, Options, check_memory
 
-NAMED = 6
+MAX_NAMES = 6
 """Entries that a warning names."""
+ERROR_ILLUMINANT = "A"
+"""Illuminant of standard errors."""
+STACK_LEVEL = 5
+"""Frames between a warning and the caller of `build`, whose decorator adds two."""
 
-REFERENCE = "A"
-"""The light that standard errors are stated under."""
-
-AtlasLike = Atlas | str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None
+AtlasLike = Atlas | StrPath | Sequence[StrPath] | None
 
 
 @single_threaded_blas()
 def build(
     atlas: AtlasLike = None,
     *,
-    scene: SceneLike | None = None,
+    dim: int | Literal["auto"] = 32,
+    model: ModelName = "moments",
+    coefficients: int = 9,
+    warp: Literal["none", "vision"] = "none",
+    axis: Literal["srgb", "linear"] = "srgb",
+    space: str = "sRGB",
+    illuminant: str = DEFAULT_ILLUMINANT,
+    observer: str = observers.DEFAULT_OBSERVER,
+    lights: Sequence[str] = SCENE_LIGHTS,
+    threshold: float = 1e-4,
+    auto_tolerance: float = 0.5,
+    debug: bool = False,
+    scene: SceneLike | StrPath | Sequence[StrPath] | None = None,
     progress: ProgressCallback = ignore_progress,
-    **options: Any,
 ) -> Cube:
-    """Build a cube, constrained by measured spectra if any are given.
+    """Build a spectral uplifting cube, constrained by measured spectra if an atlas is given.
 
     Parameters
     ----------
-    atlas : spectra, or the file or files that hold them; None for a cube without constraints.
-    scene : images, or a `uplift.io.scene_colours.Scene`, for whose colours alone to fit points; None for all.
-    progress : called with a `Progress` now and then, in stages "images", "fit" and "store".
-    options : the fields of `Options`, by name.
+    atlas : Atlas, path-like or sequence of path-like, optional
+        Measured spectra, or the files that contain them. Without an atlas all spectra are smooth.
+    dim : int or {"auto"}, default 32
+        Lattice points along each axis, at least 2. ``"auto"`` chooses the smallest lattice, and its axis, that
+        keeps every atlas entry within ``auto_tolerance``.
+    model : {"moments", "sigmoid"}, default "moments"
+        Spectrum model: bounded trigonometric moments, or the sigmoid of a quadratic.
+    coefficients : int, default 9
+        Coefficients per spectrum of the moment model, 3 to 17: the number of moments plus one. The sigmoid has 3.
+    warp : {"none", "vision"}, default "none"
+        Map from wavelengths to the phase of the moments. ``"vision"`` resolves wavelengths by the sensitivity
+        of the eye.
+    axis : {"srgb", "linear"}, default "srgb"
+        Spacing of the axis nodes: equal steps of the sRGB encoding, or of linear RGB.
+    space : str, default "sRGB"
+        RGB space of queries, by its name in colour-science.
+    illuminant : str, default "D65"
+        Illuminant under which reflectances have their RGB.
+    observer : str, default "CIE 1931 2 Degree Standard Observer"
+        Colour-matching functions, by their name in colour-science.
+    lights : sequence of str, default ("D65", "A", "FL2", "FL11", "LED-B3")
+        Illuminants under which fitted atlas entries must keep their measured colours.
+    threshold : float, default 1e-4
+        Largest |target − stored| of a fitted lattice point in linear RGB, in (0, 0.1].
+    auto_tolerance : float, default 0.5
+        With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the lattice.
+    debug : bool, default False
+        Store the round of growth in which each point was fitted.
+    scene : SceneLike, path-like or sequence of path-like, optional
+        Images, or another set of colours. Only the lattice points that answer these colours are fitted.
+    progress : callable, optional
+        Called with `Progress` events of the stages ``"images"``, ``"fit"`` and ``"store"``.
+
+    Returns
+    -------
+    Cube
+        The cube, ready for queries; `Cube.save` writes it.
 
     Raises
     ------
-    UpliftError : an atlas that cannot be read, an unknown name, an option outside its range.
+    AtlasError
+        An atlas file that cannot be read.
+    OptionError
+        An option outside its range.
+    UnknownNameError
+        An unknown space, illuminant, observer, model or axis.
 
     Warns
     -----
-    UpliftWarning : naming every entry that is left out, clipped, or crowded, and images of another space.
+    UpliftWarning
+        Entries out of gamut (``entry-out-of-gamut``), with the colour of another entry (``entry-duplicate``) or
+        close to another entry (``entry-crowded``).
+
+    Examples
+    --------
+    >>> import uplift
+    >>> cube = uplift.build(dim=3, coefficients=5)
+    >>> cube.reflectance([1.0, 1.0, 1.0], [450, 550, 650]).round(3)
+    array([1., 1., 1.])
     """
-    chosen = Options(**options)
-    model = chosen.spectrum_model()
-    sensor = observer.sensor(chosen.space, chosen.illuminant, chosen.observer)
-    spectra = _read(atlas)
-    names, rgb, measured = _in_gamut(spectra, sensor)
-    lights = [observer.light(name, chosen.observer) for name in chosen.lights]
-    reference = observer.light(REFERENCE, chosen.observer)
-
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
-    entries = fit.fit_entries(model, ahead, measured, rgb, lights, reference, chosen.threshold / 100)
-    axis, dim = _room(chosen, model, ahead, sensor, lights, entries)
-    check_size(replace(chosen, dim=dim))
-    lattice = Lattice(observer.axis_nodes(axis, dim))
-    reach = fit.half_widths(lattice, rgb)
-    seen = None if scene is None else as_scene(scene)
-    wanted = (
-        None
-        if seen is None
-        else np.flatnonzero(seen.points(EntryBoxes(lattice, rgb, reach), sensor, progress))
+    options = Options(
+        dim=dim,
+        model=model,
+        coefficients=coefficients,
+        warp=warp,
+        axis=axis,
+        space=space,
+        illuminant=illuminant,
+        observer=observer,
+        lights=tuple(lights),
+        threshold=threshold,
+        auto_tolerance=auto_tolerance,
+        debug=debug,
     )
-    beyond = fit.unrealisable(lattice, sensor, chosen.threshold / 2, wanted)
-    problem = fit.Problem(model, ahead, lattice, chosen.threshold, beyond, wanted)
+    check_memory(options)
+    colours = None if scene is None else _as_scene(scene)
+    sensor = observers.sensor(space, illuminant, observer)
+    spectrum_model = options.spectrum_model()
+    forward = forward_map(spectrum_model, sensor.wavelengths, sensor.matrix)
+    scene_lights = [observers.light(name, observer) for name in options.lights]
+    error_light = observers.light(ERROR_ILLUMINANT, observer)
+
+    atlas = _as_atlas(atlas)
+    names, rgb, measured = _entries_in_gamut(atlas, sensor)
+    tolerance = fit.solver_tolerance(threshold)
+    entries = fit.fit_entries(spectrum_model, forward, measured, rgb, scene_lights, error_light, tolerance)
+
+    options = _with_dim(options, forward, scene_lights, entries)
+    lattice = Lattice(observers.axis_nodes(options.axis, int(options.dim)))
+    boxes = EntryBoxes(lattice, rgb, half_widths(lattice, rgb))
     seeds = fit.seed(lattice, rgb)
-    table = AtlasTable(names, rgb, model.to_storage(entries.multipliers), reach, entries.error)
-    _warn_of_crowding(seeds, table)
-    prior = fit.fit_prior(problem, sensor, entries, reference)
+    _warn_of_crowding(names, boxes, seeds)
+
+    active = None if colours is None else np.flatnonzero(colours.required_points(boxes, sensor, progress))
+    problem = _problem(options, forward, lattice, sensor, active)
+    prior = fit.fit_prior(problem, sensor, entries, error_light)
     fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, progress)
-    provenance = _provenance(replace(chosen, axis=axis, dim=dim), spectra, names, seen, fitted)
-    return Cube(_cube_data(problem, sensor, fitted, table, provenance, debug=chosen.debug))
 
-
-def _room(
-    chosen: Options,
-    model: Model,
-    ahead: ForwardMap,
-    sensor: Sensor,
-    lights: list[Light],
-    entries: fit.FittedEntries,
-) -> tuple[str, int]:
-    """Axis and dim as asked for or, if so asked, the smallest that has room for the atlas."""
-    if chosen.dim != AUTO:
-        return chosen.axis, chosen.dim
-    problem = fit.Problem(model, ahead, Lattice(observer.axis_nodes(chosen.axis, 2)), chosen.threshold)
-    axis, dim, lost = fit.choose_lattice(
-        problem, sensor.wavelengths, lights, entries, observer.axis_nodes, AXES, chosen.within
-    )
-    if lost:
-        _warn(
-            f"no dim up to {fit.DIMS[-1]} keeps every entry within ΔE00 {chosen.within:g}: {lost} of "
-            f"{len(entries.rgb)} stand too close to others; dim {dim} keeps the most"
+    stored = spectrum_model.to_storage(entries.multipliers)
+    return Cube(
+        CubeData(
+            model=spectrum_model,
+            lattice=lattice,
+            sensor=sensor,
+            threshold=threshold,
+            atlas=AtlasTable(names, rgb, stored, boxes.half_width, entries.error),
+            points=fitted.points if debug else replace(fitted.points, round=None),
+            error_illuminant=ERROR_ILLUMINANT,
+            provenance=_provenance(options, atlas, names, colours, fitted),
         )
-    return axis, dim
-
-
-def _cube_data(
-    problem: fit.Problem,
-    sensor: Sensor,
-    fitted: fit.Fit,
-    atlas: AtlasTable,
-    provenance: dict[str, Any],
-    *,
-    debug: bool,
-) -> CubeData:
-    return CubeData(
-        model=problem.model,
-        lattice=problem.lattice,
-        sensor=sensor,
-        threshold=problem.threshold,
-        atlas=atlas,
-        points=fitted.points if debug else replace(fitted.points, round=None),
-        error_illuminant=REFERENCE,
-        provenance=provenance,
     )
 
 
-def _read(atlas: AtlasLike) -> Atlas:
-    if isinstance(atlas, Atlas):
-        return atlas
+def _as_atlas(atlas: AtlasLike) -> Atlas:
     if atlas is None:
         return Atlas()
+    if isinstance(atlas, Atlas):
+        return atlas
     return read_atlas(atlas) if isinstance(atlas, str | os.PathLike) else read_atlas(*atlas)
 
 
-def _in_gamut(spectra: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Array, Array]:
-    """Names, linear RGB (E, 3) and reflectances (E, N) of the entries within the space; the rest is named."""
-    measured = on_grid(spectra, sensor.wavelengths)
+def _as_scene(scene: SceneLike | StrPath | Sequence[StrPath]) -> SceneLike:
+    """Paths as `uplift.io.scene_colours.Images`, imported only for them: a build without images needs no image code."""
+    if isinstance(scene, str | os.PathLike | Sequence):
+        from uplift.io.scene_colours import Images
+
+        paths = [scene] if isinstance(scene, str | os.PathLike) else scene
+        return Images(tuple(Path(path) for path in paths))
+    return scene
+
+
+def _entries_in_gamut(atlas: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Array, Array]:
+    """Names, linear RGB (E, 3) and reflectances (E, N) of the entries in gamut, with a warning for each other."""
+    measured = on_grid(atlas, sensor.wavelengths)
     rgb = sensor.rgb(measured)
     inside = sensor.contains(rgb)
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
-        _warn(f"entry '{spectra.names[row]}' is left out: its colour ({values}) lies outside {sensor.space}")
-    names = tuple(name for name, kept in zip(spectra.names, inside, strict=True) if kept)
+        _warn(
+            f"left out: its colour must lie within {sensor.space}, got linear RGB ({values})",
+            "entry-out-of-gamut",
+            atlas.names[row],
+        )
+    names = tuple(name for name, kept in zip(atlas.names, inside, strict=True) if kept)
     return names, np.clip(rgb[inside], 0, 1), measured[inside]
 
 
-def _warn_of_crowding(seeds: fit.Seeds, atlas: AtlasTable) -> None:
-    same = [atlas.names[row] for row in np.flatnonzero(atlas.half_width == 0)]
-    if same:
+def _with_dim(
+    options: Options, forward: ForwardMap, lights: Sequence[Light], entries: fit.FittedEntries
+) -> Options:
+    """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits into memory."""
+    if options.dim != AUTO:
+        return options
+    choice = fit.choose_lattice(
+        options.spectrum_model(),
+        forward,
+        fit.solver_tolerance(options.threshold),
+        lights,
+        entries,
+        observers.axis_nodes,
+        AXES,
+        options.auto_tolerance,
+    )
+    if choice.lost:
         _warn(
-            f"{_some(same)} left out: an earlier entry has the same colour, and a cube answers a colour once"
+            f"no dim up to {fit.DIMS[-1]} keeps every entry within ΔE00 {options.auto_tolerance:g}: "
+            f"{choice.lost} of {len(entries.rgb)} are too close to others; dim {choice.dim} keeps the most",
+            "no-dim-keeps-all-entries",
         )
-    crowded = [
-        atlas.names[collision.lost] for collision in seeds.collisions if atlas.half_width[collision.lost]
-    ]
+    options = replace(options, axis=choice.axis, dim=choice.dim)
+    check_memory(options)
+    return options
+
+
+def _problem(
+    options: Options, forward: ForwardMap, lattice: Lattice, sensor: Sensor, active: Indices | None
+) -> fit.Problem:
+    outside = fit.unrealisable(lattice, sensor, options.threshold / 2, active)
+    return fit.Problem(
+        options.spectrum_model(),
+        forward,
+        lattice,
+        options.threshold,
+        unrealisable=outside,
+        active_points=active,
+    )
+
+
+def _warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: fit.Seeds) -> None:
+    duplicates = [names[row] for row in np.flatnonzero(boxes.half_width == 0).tolist()]
+    if duplicates:
+        _warn(
+            f"{_listed(duplicates)} left out: an earlier entry has the same colour, which has only one answer",
+            "entry-duplicate",
+        )
+    crowded = [names[collision.lost] for collision in seeds.collisions if boxes.half_width[collision.lost]]
     if crowded:
         _warn(
-            f"{_some(crowded)} crowded: nearer entries have the nearest lattice point. Asked at their own colours "
-            "all entries are exact, beside them less so; --dim auto finds a dim with room, 'uplift report' tells more"
+            f"{_listed(crowded)} crowded: closer entries own the nearest lattice point. Queries at the entries' own "
+            "colours stay exact, queries near them are less accurate",
+            "entry-crowded",
+            hint='use dim="auto" for a lattice that is large enough, or see the report of the cube',
         )
 
 
-def _some(names: list[str]) -> str:
+def _listed(names: Sequence[str]) -> str:
     """'entry 'a' is', 'entries 'a', 'b', 'c' and 12 more are'."""
-    shown = ", ".join(f"'{name}'" for name in names[:NAMED])
-    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    shown = ", ".join(f"'{name}'" for name in names[:MAX_NAMES])
+    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
     return f"entry {shown} is" if len(names) == 1 else f"entries {shown}{more} are"
 
 
-def _warn(message: str) -> None:
-    warnings.warn(message, UpliftWarning, stacklevel=5)
+def _warn(problem: str, code: str, entry: str | None = None, hint: str = "") -> None:
+    warnings.warn(UpliftWarning(problem, code=code, entry=entry, hint=hint), stacklevel=STACK_LEVEL)
 
 
 def _provenance(
-    options: Options, spectra: Atlas, names: tuple[str, ...], scene: Scene | None, fitted: fit.Fit
+    options: Options, atlas: Atlas, names: tuple[str, ...], scene: SceneLike | None, fitted: fit.LatticeFit
 ) -> dict[str, Any]:
-    """How the cube was made, in JSON values."""
+    """How the cube was built, in JSON values."""
     return {
         "uplift": version("uplift"),
         "options": asdict(options) | {"lights": list(options.lights)},
-        "atlases": [{"name": source.name, "digest": source.digest} for source in spectra.sources],
-        "left_out": [name for name in spectra.names if name not in names],
-        "skipped": [entry.name for entry in spectra.skipped],
-        "improvements": [asdict(step) for step in fitted.improvements],
+        "atlases": [{"name": source.name, "digest": source.digest} for source in atlas.sources],
+        "left_out": [name for name in atlas.names if name not in names],
+        "skipped": [entry.name for entry in atlas.skipped],
+        "improvements": [step.to_json() for step in fitted.improvements],
         **({} if scene is None else {"scene": scene.describe()}),
     }

@@ -1,4 +1,4 @@
-"""The measurements behind a cube, found again by what it recorded of them: names and digests."""
+"""Find the atlas files of a cube by the names and digests that it recorded."""
 
 from __future__ import annotations
 
@@ -12,48 +12,77 @@ from uplift.common.arrays import StrPath
 from uplift.common.errors import CubeFileError, UpliftWarning
 from uplift.cube import CubeData
 
+REBUILD = "build the cube again"
+"""Hint for cubes whose build cannot be repeated."""
+
 
 def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = ()) -> Atlas | None:
-    """The atlas that the cube read from ``path`` was built from; None where it was built without.
+    """Read the atlas that a cube was built from. Warnings of the first build are not repeated.
 
-    Its files are looked for by name and digest in ``folders``, beside the cube, in the working folder, and
-    in the ``atlases`` folders in and beside these. What the first build warned of is not said again.
+    The files are searched by name and digest in ``folders``, next to the cube, in the working folder, and in the
+    folder ``atlases`` in or next to each of these.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    path : path-like
+        File that ``data`` was read from.
+    folders : iterable of path-like, optional
+        Folders to search first.
+
+    Returns
+    -------
+    Atlas or None
+        The measured spectra; None for a cube without an atlas.
 
     Raises
     ------
-    CubeFileError : the cube does not say what it was built from, or a file is not to be found.
+    CubeFileError
+        The cube does not record its atlas, or a file is missing or has changed.
     """
     try:
         sources = [(str(source["name"]), str(source["digest"])) for source in data.provenance["atlases"]]
     except (KeyError, TypeError) as error:
         raise missing_provenance(path) from error
-    return _read_all(path, sources, _places(path, folders))
+    if not sources:
+        return None
+    candidates = _search_path(path, folders)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        return read_atlas(*(_find(path, name, digest, candidates) for name, digest in sources))
 
 
 def missing_provenance(path: StrPath) -> CubeFileError:
-    """The error for a cube that did not record its making."""
-    return CubeFileError("does not say how it was made", path=path, hint="build it anew")
+    """Make the error for a cube that does not record its options.
+
+    Parameters
+    ----------
+    path : path-like
+        The cube file.
+
+    Returns
+    -------
+    CubeFileError
+        The error to raise.
+    """
+    return CubeFileError(
+        "does not record how it was built", code="missing-provenance", path=path, hint=REBUILD
+    )
 
 
-def _places(path: StrPath, folders: Iterable[StrPath]) -> list[Path]:
-    roots = [*(Path(folder) for folder in folders), Path(path).resolve().parent, Path.cwd()]
-    return [place for root in roots for place in (root, root / "atlases", root.parent / "atlases")]
+def _search_path(path: StrPath, folders: Iterable[StrPath]) -> list[Path]:
+    roots = [*map(Path, folders), Path(path).resolve().parent, Path.cwd()]
+    return [folder for root in roots for folder in (root, root / "atlases", root.parent / "atlases")]
 
 
-def _read_all(path: StrPath, sources: Sequence[tuple[str, str]], places: Sequence[Path]) -> Atlas | None:
-    if not sources:
-        return None
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)
-        return read_atlas(*(_find(path, name, digest, places) for name, digest in sources))
-
-
-def _find(path: StrPath, name: str, digest: str, places: Sequence[Path]) -> Path:
-    candidates = [place / name for place in places if (place / name).is_file()]
+def _find(path: StrPath, name: str, digest: str, folders: Sequence[Path]) -> Path:
+    candidates = [folder / name for folder in folders if (folder / name).is_file()]
     for candidate in candidates:
         if read_document(candidate).digest == digest:
             return candidate
-    problem = f"its atlas '{name}' " + (
-        f"has changed ({candidates[0]})" if candidates else "is not to be found"
-    )
-    raise CubeFileError(problem, path=path, hint="name the folder with --atlas-dir, or build the cube anew")
+    hint = "pass the folder that contains it, or build the cube again"
+    if candidates:
+        problem = f"its atlas '{name}' has changed ({candidates[0]})"
+        raise CubeFileError(problem, code="atlas-changed", path=path, hint=hint)
+    raise CubeFileError(f"its atlas '{name}' was not found", code="atlas-not-found", path=path, hint=hint)

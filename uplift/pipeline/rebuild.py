@@ -1,17 +1,49 @@
-"""A cube made again from what it recorded of its making."""
+"""Repeat a build from the options and atlas files that a cube recorded."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
 
-from uplift.common.arrays import StrPath
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import CubeFileError, OptionError, UnknownNameError, UpliftWarning
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.io.scene_colours import StoredScene
+from uplift.cube import CubeData
+from uplift.lattice import EntryBoxes
 from uplift.lookup import Cube
-from uplift.pipeline import build
-from uplift.pipeline.provenance import missing_provenance, recorded_atlas
+from uplift.pipeline.build_cube import build
+from uplift.pipeline.options import recorded_options
+from uplift.pipeline.provenance import REBUILD, missing_provenance, recorded_atlas
+
+
+@dataclass(frozen=True, eq=False)
+class StoredScene:
+    """The scene of a cube that was built for images: its present points replace the images.
+
+    Parameters
+    ----------
+    data : CubeData
+        A sparse cube.
+    """
+
+    data: CubeData
+
+    def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
+        """Return the points that are present in the cube; see `SceneLike`."""
+        dim = self.data.lattice.dim
+        if dim != boxes.lattice.dim:
+            raise OptionError(
+                f"the points of a stored scene need dim {dim}, got {boxes.lattice.dim}",
+                code="scene-dim-mismatch",
+            )
+        return self.data.points.present
+
+    def describe(self) -> list[dict[str, Any]]:
+        """Return the sources that the cube recorded; see `SceneLike`."""
+        return list(self.data.provenance["scene"])
 
 
 def rebuild(
@@ -21,27 +53,46 @@ def rebuild(
     *,
     progress: ProgressCallback = ignore_progress,
 ) -> Cube:
-    """The cube that this version makes from the options recorded in ``stored``, read from ``path``.
+    """Build a cube again with the options that it recorded. Warnings of the first build are not repeated.
 
-    Its atlases are looked for as `recorded_atlas` does; of a scene the stored points tell all.
+    Parameters
+    ----------
+    stored : Cube
+        The cube.
+    path : path-like
+        File that ``stored`` was read from.
+    folders : iterable of path-like, optional
+        Folders to search for atlas files first; see `recorded_atlas`.
+    progress : callable, optional
+        Called with `Progress` events; see `uplift.build`.
+
+    Returns
+    -------
+    Cube
+        The new cube.
 
     Raises
     ------
-    CubeFileError : the cube does not say how it was made, or an atlas is not to be found.
+    CubeFileError
+        The cube does not record its options, was filled from another cube, or an atlas file is missing or changed.
     """
     try:
-        options = dict(stored.data.provenance["options"])
-        options["lights"] = tuple(options["lights"])
+        options = recorded_options(dict(stored.data.provenance["options"]))
     except (KeyError, TypeError, ValueError) as error:
         raise missing_provenance(path) from error
     if "filled" in stored.data.provenance:
-        raise CubeFileError("is filled from another cube", path=path, hint="check it as it was before")
+        raise CubeFileError(
+            "was filled from another cube and cannot be rebuilt",
+            code="cube-filled",
+            path=path,
+            hint="rebuild the cube that was filled",
+        )
     atlas = recorded_atlas(stored.data, path, folders)
     scene = StoredScene(stored.data) if "scene" in stored.data.provenance else None
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)  # the first build has said it all
+        warnings.simplefilter("ignore", UpliftWarning)
         try:
             return build(atlas, scene=scene, progress=progress, **options)
         except (TypeError, OptionError, UnknownNameError) as error:
-            problem = f"was made with options unknown here ({error})"
-            raise CubeFileError(problem, path=path, hint="build it anew") from error
+            problem = f"records options that this version does not have ({error})"
+            raise CubeFileError(problem, code="unknown-recorded-options", path=path, hint=REBUILD) from error

@@ -53,7 +53,7 @@ def crowding(data: CubeData, entries: EntryErrors) -> Crowding:
     """
     assert entries.worst_lattice is not None
     names = data.atlas.names
-    nearest, distances = _nearest(data.lattice.steps_along(data.atlas.rgb))
+    nearest, distances = _nearest(data.lattice.to_steps(data.atlas.rgb))
     row_of = {name: row for row, name in enumerate(names)}
     rows = np.array([row_of[name] for name in entries.names])
     order = np.argsort(-entries.worst_lattice, kind="stable")
@@ -79,5 +79,5 @@ def _nearest(steps: Array) -> tuple[Indices, Array]:
 
 def _lost(data: CubeData) -> tuple[tuple[str, str], ...]:
     names, rows = data.atlas.names, np.flatnonzero(data.atlas.half_width == 0)
-    hits = data.entry_boxes(data.atlas.rgb[rows])
+    hits = data.entry_boxes.find(data.atlas.rgb[rows])
     return tuple((names[rows[row]], names[other]) for row, other in zip(hits.rows, hits.entry, strict=True))

@@ -94,7 +94,7 @@ def test_a_face_is_the_same_from_both_of_its_cells(small_cube, axis):
     spectra = uplift.models.reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)
 
     def answer(low, fraction):
-        points, weights = data.lattice.around(low, fraction)
+        points, weights = data.lattice.cell_corners(low, fraction)
         return np.einsum("nk,nkw->nw", weights, spectra[points])
 
     below, above = fraction.copy(), fraction.copy()

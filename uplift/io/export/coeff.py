@@ -105,7 +105,7 @@ def _fit(data: CubeData, scale: Array) -> tuple[NDArray[np.float32], float]:
         for level in levels:
             rgb = _points(scale[level], res)
             goal = around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
-            start = solve(model, ahead, start, goal, tolerance=TOLERANCE, passes=PASSES).multipliers
+            start = solve(model, ahead, start, goal, tolerance=TOLERANCE, max_passes=PASSES).multipliers
             if level == middle:
                 grey = start
             stored = _per_nanometre(model, start).astype(np.float32)

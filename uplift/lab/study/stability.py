@@ -20,6 +20,7 @@ from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS, PointwiseProb
 from uplift.lattice import Lattice, Status
 from uplift.models import Moments, Sigmoid
 from uplift.pipeline import build
+from uplift.pipeline.options import ModelName
 
 UPLIFT = "uplift"
 SOLVERS = (UPLIFT, IN_MOMENTS, IN_MULTIPLIERS)
@@ -30,7 +31,7 @@ NO_ATLAS = "none"
 class RunConfig:
     """One build. ``solver`` is `UPLIFT`, or what the thesis's least squares solve in."""
 
-    model: str = Moments.name
+    model: ModelName = "moments"
     coefficients: int = 9
     dim: int = 17
     space: str = "sRGB"

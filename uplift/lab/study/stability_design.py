@@ -50,8 +50,8 @@ class DesignSpace:
     @property
     def techniques(self) -> tuple[RunConfig, ...]:
         """One setting for every model and count of coefficients."""
-        found = [RunConfig(Moments.name, count) for count in self.coefficients if Moments.name in self.models]
-        return (*found, *[RunConfig(Sigmoid.name, 3)] * (Sigmoid.name in self.models))
+        found = [RunConfig("moments", count) for count in self.coefficients if Moments.name in self.models]
+        return (*found, *[RunConfig("sigmoid", 3)] * (Sigmoid.name in self.models))
 
     def base(self, **preferred: Any) -> dict[str, Any]:
         """What a grid holds fast: the preferred values where they are among those chosen, else the nearest."""
@@ -122,7 +122,7 @@ def solver_runs(axes: DesignSpace) -> tuple[RunConfig, ...]:
     if Moments.name not in axes.models or SPACES[0] not in axes.spaces:
         return ()
     return tuple(
-        RunConfig(Moments.name, count, dim, solver=solver)
+        RunConfig("moments", count, dim, solver=solver)
         for dim in axes.peer_dims
         for count in COMPARED
         if count in axes.coefficients

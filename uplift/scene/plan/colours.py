@@ -104,8 +104,8 @@ class ColourSet:
 
     rgb: Array
 
-    def points(self, pins: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        return pins.needs(occupied_cells(pins.lattice, self.rgb))
+    def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
+        return boxes.required_points(occupied_cells(boxes.lattice, self.rgb))
 
     def describe(self) -> list[dict[str, Any]]:
         return []

@@ -61,4 +61,4 @@ def choose_lattice(context: PlanContext, question: EvaluationSet, limit: float, 
 def points_needed(context: PlanContext, axis: str, dim: int) -> int:
     """About how many points the textures' colours need: those around one of each kind."""
     grid = Lattice(observer.axis_nodes(axis, dim))
-    return int(grid.corners_of(occupied_cells(grid, context.colours.colour_bins)).sum())
+    return int(grid.corner_points(occupied_cells(grid, context.colours.colour_bins)).sum())

@@ -13,6 +13,7 @@ from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, Upli
 from uplift.lab.chart.task import Task
 from uplift.lookup import MODES, Cube
 from uplift.models import Moments, Sigmoid
+from uplift.pipeline.options import ModelName
 
 DIMS = (8, 16, 32, 64)
 COUNTS = (3, 5, 9, 13, 17)
@@ -24,7 +25,7 @@ EXACT = Claims(round_trip=0.01)
 class Recipe:
     """What a cube is built from."""
 
-    model: str
+    model: ModelName
     count: int
     dim: int
     atlas: bool
@@ -135,7 +136,7 @@ def _quick(recipe: Recipe, asking: Asking) -> bool:
     return plain and recipe.dim in ((16,) if recipe.atlas else (16, 64))
 
 
-def _methods(model: str, counts: tuple[int, ...], atlas: bool) -> Iterator[Method]:
+def _methods(model: ModelName, counts: tuple[int, ...], atlas: bool) -> Iterator[Method]:
     for recipe in (Recipe(model, count, dim, atlas) for count in counts for dim in DIMS):
         for asking in ASKINGS:
             exact = asking.mode in ("spectra", "bulk") or (asking.mode == "refined" and model == Moments.name)
@@ -153,14 +154,14 @@ def _methods(model: str, counts: tuple[int, ...], atlas: bool) -> Iterator[Metho
             )
 
 
-def _family(title: str, colour: str, model: str, counts: tuple[int, ...], *, atlas: bool) -> Family:
+def _family(title: str, colour: str, model: ModelName, counts: tuple[int, ...], *, atlas: bool) -> Family:
     methods = tuple(_methods(model, counts, atlas))
     return Family(f"uplift, {title}", "this package", colour, methods)
 
 
 FAMILIES = (
-    _family("moments with atlas", "#0b3c8c", Moments.name, COUNTS, atlas=True),
-    _family("moments", "#4f9be8", Moments.name, COUNTS, atlas=False),
-    _family("sigmoid with atlas", "#0a6b60", Sigmoid.name, (3,), atlas=True),
-    _family("sigmoid", "#3dbfa9", Sigmoid.name, (3,), atlas=False),
+    _family("moments with atlas", "#0b3c8c", "moments", COUNTS, atlas=True),
+    _family("moments", "#4f9be8", "moments", COUNTS, atlas=False),
+    _family("sigmoid with atlas", "#0a6b60", "sigmoid", (3,), atlas=True),
+    _family("sigmoid", "#3dbfa9", "sigmoid", (3,), atlas=False),
 )
