@@ -13,7 +13,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
@@ -43,6 +43,8 @@ MAX_VALUE = 40
 MAX_PROBLEM = 400
 """Characters of a message."""
 TYPE_CODES = {
+    "literal_error": "invalid-value",
+    "unexpected_keyword_argument": "unknown-key",
     "greater_than": "out-of-range",
     "greater_than_equal": "out-of-range",
     "less_than": "out-of-range",
@@ -53,11 +55,13 @@ TYPE_CODES = {
 }
 """Our codes for pydantic's types of errors; all others are of the wrong type."""
 CONSTRAINTS = {
+    "dataclass_type": "must be a table",
     "dict_type": "must be a table",
     "list_type": "must be a list",
     "model_type": "must be a table",
     "string_type": "must be text in quotes",
     "string_unicode": "must be valid Unicode",
+    "unexpected_keyword_argument": "unknown key",
     "too_short": "must have at least {min_length} items",
     "too_long": "must have at most {max_length} items",
 }
@@ -73,13 +77,16 @@ class SpecModel(BaseModel):
     """A table of a spec file: frozen, with an error and a suggestion for unknown keys."""
 
     model_config = ConfigDict(
-        frozen=True, alias_generator=lambda name: name.replace("_", "-"), arbitrary_types_allowed=True
+        extra="forbid",
+        frozen=True,
+        alias_generator=lambda name: name.replace("_", "-"),
+        arbitrary_types_allowed=True,
     )
 
     @model_validator(mode="before")
     @classmethod
     def _refuse_unknown_keys(cls, values: Any) -> Any:
-        if isinstance(values, dict):
+        if isinstance(values, dict) and cls.model_config.get("extra") == "forbid":
             known = [field.alias or name for name, field in cls.model_fields.items()]
             for key in values:
                 if key not in known:
@@ -144,7 +151,7 @@ class SpecFile:
         Where it lies.
     text : str
         Its text, to find the lines of keys.
-    values : mapping
+    values : dict
         Its tables and values.
     error : type of UpliftError
         The type of the errors raised.
@@ -152,16 +159,18 @@ class SpecFile:
 
     path: Path
     text: str
-    values: Mapping[str, Any]
+    values: dict[str, Any]
     error: type[UpliftError]
 
-    def validate(self, model: type[Model]) -> Model:
+    def validate(self, model: type[Model], hint: str = "") -> Model:
         """Check the values against a model.
 
         Parameters
         ----------
         model : type
             A `SpecModel`, or any other type that pydantic validates.
+        hint : str
+            Hint of errors that have none of their own.
 
         Returns
         -------
@@ -176,7 +185,7 @@ class SpecFile:
         try:
             return TypeAdapter(model).validate_python(self.values)
         except ValidationError as error:
-            self._raise(error.errors(include_url=False)[0])
+            self._raise(error.errors(include_url=False)[0], hint)
 
     def fail(self, keys: Iterable[Key], text: str, *, code: str, hint: str = "") -> NoReturn:
         """Raise the error for the value at a key path.
@@ -197,24 +206,35 @@ class SpecFile:
         UpliftError
             Always.
         """
-        path = tuple(keys)
+        path = self._existing(keys)
         where = f"{_dotted(path)}{' ' if text.startswith('must ') else ': '}" if path else ""
         line = _find_line(self.text, path)
         text = _one_line(where + text)
         raise self.error(text, code=code, path=self.path, line=line, hint=hint)
 
-    def _raise(self, details: ErrorDetails) -> NoReturn:
-        keys = tuple(key for key in details["loc"] if key != "[key]" and not str(key).startswith(TAG))
+    def _existing(self, keys: Iterable[Key]) -> tuple[Key, ...]:
+        """Key path without what pydantic adds for unions, keys of tables, and values that are made lists."""
+        path: list[Key] = []
+        value: Any = self.values
+        for key in keys:
+            is_key = isinstance(value, dict) and key != "[key]" and not str(key).startswith(TAG)
+            if is_key or (isinstance(value, list) and isinstance(key, int)):
+                path.append(key)
+                value = value.get(key) if isinstance(value, dict) else value[key]
+        return tuple(path)
+
+    def _raise(self, details: ErrorDetails, hint: str) -> NoReturn:
+        keys = details["loc"]
         context = details.get("ctx", {})
         if details["type"] == "uplift":
             below = () if context["key"] is None else (context["key"],)
-            self.fail(keys + below, context["problem"], code=context["code"], hint=context["hint"])
+            self.fail(keys + below, context["problem"], code=context["code"], hint=context["hint"] or hint)
         if details["type"] == "missing":
-            self.fail(keys, "required key is missing", code="missing-key", hint="add it")
+            self.fail(keys, "required key is missing", code="missing-key", hint=hint or "add it")
         default = re.sub("^(Input|Value) should", "must", details["msg"])
         constraint = CONSTRAINTS.get(details["type"], default).format_map(context)
         code = TYPE_CODES.get(details["type"], "wrong-type")
-        self.fail(keys, f"{constraint}, got {format_value(details['input'])}", code=code)
+        self.fail(keys, f"{constraint}, got {format_value(details['input'])}", code=code, hint=hint)
 
 
 def read_toml(path: StrPath, error: type[UpliftError]) -> SpecFile:
@@ -280,10 +300,16 @@ def read_json(path: StrPath, error: type[UpliftError]) -> SpecFile:
         raise _too_deep(path, error) from None
     except ValueError as cause:  # JSONDecodeError, and integers of too many digits
         line = getattr(cause, "lineno", None)
-        raise error(f"not a valid JSON file: {cause}", code="invalid-json", path=path, line=line) from cause
+        raise error(
+            f"not a valid JSON file: {cause}",
+            code="invalid-json",
+            path=path,
+            line=line,
+            hint="check the format of the file",
+        ) from cause
     if not isinstance(values, dict):
         text = f"not a JSON object: {format_value(values)}"
-        raise error(text, code="invalid-json", path=path)
+        raise error(text, code="invalid-json", path=path, hint="check the format of the file")
     return _checked(SpecFile(Path(path), "", values, error))
 
 
@@ -321,7 +347,12 @@ def _read_text(path: Path, error: type[UpliftError]) -> str:
         with path.open("rb") as file:
             data = file.read(MAX_BYTES + 1)
         if len(data) > MAX_BYTES:
-            raise error(f"must not exceed {MAX_BYTES:,} bytes", code="file-too-large", path=path)
+            raise error(
+                f"must not exceed {MAX_BYTES:,} bytes",
+                code="file-too-large",
+                path=path,
+                hint="check the format of the file",
+            )
         return data.decode("utf-8")
     except FileNotFoundError as cause:
         raise error("no such file", code="file-not-found", path=path, hint="check the path") from cause
@@ -354,7 +385,7 @@ def _children(value: object) -> Iterable[Any]:
 
 def _too_deep(path: StrPath, error: type[UpliftError]) -> UpliftError:
     text = f"tables and lists must not nest more than {MAX_DEPTH} levels deep"
-    return error(text, code="nesting-too-deep", path=path)
+    return error(text, code="nesting-too-deep", path=path, hint="check the format of the file")
 
 
 def _dotted(keys: tuple[Key, ...]) -> str:

@@ -1,23 +1,25 @@
-"""The page, and what to type."""
+"""The page, the summary and the commands of a plan."""
 
 from __future__ import annotations
 
+import dataclasses
 import shlex
 from html.parser import HTMLParser
 
 import click
+import pytest
 from uplift_cli.main import main
 
 from uplift.scene.plan.commands import build_command, cube_name, expanded_command, texture_command
-from uplift.scene.plan.final_build import FinalBuild
-from uplift.scene.plan.page import page
+from uplift.scene.plan.page import _budget, _previews_by_light, page
 from uplift.scene.plan.summary import summary_rows, verdict
+from uplift.viz.format import format_size
 
 EMPTY = {"meta", "br", "col"}
 
 
 class Reader(HTMLParser):
-    """Text and open elements; an end that fits none is an error."""
+    """Collects text and open elements; fails at unbalanced tags and at links to other files."""
 
     def __init__(self):
         super().__init__()
@@ -35,46 +37,87 @@ class Reader(HTMLParser):
         self.texts.append(data)
 
 
-def test_the_page_is_whole_needs_nothing_else_and_shows_every_candidate(planned, tmp_path):
-    found, _ = planned
-    text = page(found, tmp_path / "kitchen.plan.json")
+def test_the_page_is_self_contained_and_lists_every_candidate(planned, tmp_path):
+    plan, _ = planned
+    text = page(plan, tmp_path / "kitchen.plan.json")
     reader = Reader()
     reader.feed(text)
     assert reader.open == []
-    told = "\n".join(reader.texts)
-    for decision in found.decisions:
-        assert decision.title in told
-        assert all(trial.name in told for trial in decision.trials)
-    assert f"{verdict(found)}." in told
-    charts = sum(len(decision.trials) > 1 for decision in found.decisions)
-    assert text.count("<svg") == charts + 1
-    assert text == page(found, tmp_path / "kitchen.plan.json")
+    content = "\n".join(reader.texts)
+    for decision in plan.decisions:
+        assert decision.title in content
+        assert all(trial.name in content for trial in decision.trials)
+    assert f"{verdict(plan)}." in content
+    charts = sum(len(decision.trials) > 1 for decision in plan.decisions)
+    assert text.count("<svg") == charts
+    assert text == page(plan, tmp_path / "kitchen.plan.json")
 
 
-def test_every_row_says_what_it_costs(planned):
-    found, _ = planned
-    told = summary_rows(found)
-    assert [row.title for row in told][:3] == ["Coefficients a spectrum", "Lattice", "Cells"]
-    assert all(row.chosen and row.cost and row.error for row in told)
+def test_names_cannot_break_the_page(planned, tmp_path):
+    path = tmp_path / "</style><script>.toml"
+    plan = dataclasses.replace(planned[0], scene=dataclasses.replace(planned[0].scene, path=path))
+    assert "<script" not in page(plan, tmp_path / "<b>.plan.json")
 
 
-def test_a_cube_that_is_not_sparse_says_why(planned):
-    built = planned[0].final_build
-    assert not built.is_sparse
-    assert "too little saved" in next(row for row in summary_rows(planned[0]) if row.title == "Cells").cost
-    assert isinstance(built, FinalBuild)
-    assert built.sparse <= built.whole
+def test_bars_are_proportional_to_errors_and_stay_on_the_axis(planned):
+    plan, _ = planned
+    bars = _budget(plan)
+    assert [bar["title"] for bar in bars] == [*(each.title for each in plan.chain), "Confirmed"]
+    ratio = bars[0]["error"] / bars[-1]["error"]
+    assert ratio == pytest.approx(plan.chain[0].trial.error.quantile / plan.confirmed.quantile)
+    assert bars[-1]["limit"] / bars[-1]["error"] == pytest.approx(
+        plan.scene.tolerance / plan.confirmed.quantile
+    )
+    assert all(0 <= bar[key] < 100 for bar in bars for key in ("error", "limit"))
 
 
-def test_the_lines_are_lines_of_the_command_line(planned, tmp_path):
-    found, _ = planned
+def test_previews_are_grouped_by_light(planned):
+    rows = _previews_by_light(planned[0])
+    assert [light for light, _ in rows] == list(planned[0].scene.lights)
+    assert len({tuple(preview.share for preview in row) for _, row in rows}) == 1
+    assert sum(len(row) for _, row in rows) == len(planned[0].previews)
+
+
+def test_every_row_of_the_summary_has_a_cost(planned):
+    rows = summary_rows(planned[0])
+    assert [row.title for row in rows][:3] == ["Coefficients per spectrum", "Lattice", "Cells"]
+    assert all(row.chosen and row.cost and row.error for row in rows)
+
+
+def test_a_full_cube_states_the_size_of_the_sparse_one(planned):
+    build = planned[0].final_build
+    assert not build.is_sparse
+    assert build.sparse_size <= build.full_size == build.size
+    (row,) = (row for row in summary_rows(planned[0]) if row.title == "Cells")
+    assert format_size(build.sparse_size) in row.cost
+
+
+def test_commands_are_accepted_by_the_command_line(planned, tmp_path):
+    plan, _ = planned
     path = tmp_path / "my plan.plan.json"
     assert cube_name(path) == "my plan.uplift"
-    for line in (build_command(path), expanded_command(found, path), texture_command(found, path)):
-        program, name, *arguments = shlex.split(line)
-        assert program == "uplift"
-        with click.Context(main, **main.context_settings) as context:
-            main.get_command(context, name).make_context(name, arguments, parent=context)
-    words = shlex.split(expanded_command(found, path))
-    assert words[words.index("--dim") + 1] == str(found.options["dim"])
-    assert words[words.index("--moments") + 1] == str(found.options["coefficients"] - 1)
+    for line in (build_command(path), expanded_command(plan, path), texture_command(plan, path)):
+        parse(line)
+    words = shlex.split(expanded_command(plan, path))
+    assert words[words.index("--dim") + 1] == str(plan.options["dim"])
+    assert words[words.index("--coefficients") + 1] == str(plan.options["coefficients"])
+
+
+def test_options_of_candidates_are_accepted_by_the_command_line(planned):
+    commands = {
+        "coefficients": "uplift build",
+        "lattice": "uplift build",
+        "wavelengths": "uplift texture a.png b.exr",
+        "storage": "uplift texture a.png b.exr",
+        "representation": "",
+    }
+    for decision in planned[0].decisions:
+        for trial in decision.trials:
+            parse(f"{commands[decision.key]} {trial.cli_args}")
+
+
+def parse(line):
+    program, name, *arguments = shlex.split(line)
+    assert program == "uplift"
+    with click.Context(main, **main.context_settings) as context:
+        main.get_command(context, name).make_context(name, arguments, parent=context)

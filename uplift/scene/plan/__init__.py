@@ -1,9 +1,11 @@
-"""A plan for a scene: the least that will do, measured on its own colours (docs/plan.md).
+"""Plans: the smallest cube, wavelengths and texture format that keep a scene's colours within a tolerance.
 
-from uplift.scene import plan
+Each decision is measured on colours of the scene's own textures; docs/plan.md describes the method.
 
-found = plan.plan(plan.read_scene_file("kitchen.toml"))
-found.confirmed.quantile, found.options, found.sampling.wavelengths
+    from uplift.scene import plan
+
+    result = plan.plan(plan.read_scene_file("kitchen.toml"))
+    result.confirmed.quantile, result.options, result.sampling.wavelengths
 """
 
 from __future__ import annotations

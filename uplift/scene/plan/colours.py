@@ -1,4 +1,4 @@
-"""The colours of textures: some of their pixels, drawn at random, and one colour of every kind."""
+"""Colours of textures: random samples of pixels, and one colour of every occupied bin of RGB."""
 
 from __future__ import annotations
 
@@ -18,15 +18,13 @@ from uplift.io.texture.source import open_image
 from uplift.lattice import Lattice
 from uplift.lattice.entry_boxes import EntryBoxes
 
-STEPS = 64
-"""Kinds of colours along each channel, of encoded RGB: four 8-bit codes wide."""
-
-"""Told how many of how many are done."""
+BINS = 64
+"""Bins along each channel of encoded RGB: four 8-bit codes wide."""
 
 
 @dataclass(frozen=True, eq=False)
-class Pixels:
-    """Different linear RGB (n, 3) and the share (n,) of the pixels that each stands for; shares sum to 1."""
+class PixelSample:
+    """Distinct linear RGB (n, 3), and the share (n,) of the sampled pixels that have each; shares sum to 1."""
 
     rgb: Array
     share: Array
@@ -34,14 +32,19 @@ class Pixels:
 
 @dataclass(frozen=True, eq=False)
 class SampledColours:
-    """Two draws of pixels, to choose by and to confirm by, with none in common; ``kinds`` (n, 3) linear RGB.
+    """Pixels of the textures.
 
-    Each kind of colour that any pixel has, be it rare, has one in ``kinds``. Textures with fewer pixels than are to be
-    drawn have all of them in both draws.
+    Parameters
+    ----------
+    predicting, confirming : PixelSample
+        Disjoint samples, to choose candidates by and to verify the result. Textures with fewer pixels than both
+        need together have all pixels in both.
+    colour_bins : ndarray, shape (n, 3)
+        A colour of every bin that has any pixel, in linear RGB.
     """
 
-    predicting: Pixels
-    confirming: Pixels
+    predicting: PixelSample
+    confirming: PixelSample
     colour_bins: Array
 
 
@@ -49,70 +52,76 @@ def sample_colours(
     textures: tuple[Path, ...],
     sensor: Sensor,
     encoding: str,
-    wanted: tuple[int, int],
+    sizes: tuple[int, int],
     progress: ProgressCallback = ignore_progress,
 ) -> SampledColours:
-    """About so many pixels as are ``wanted`` to predict and to confirm, of all pixels alike; the same each time.
+    """Sample about ``sizes`` pixels to predict and to confirm, all pixels with equal probability.
 
-    Raises `TextureError`, and `PlanFileError` for images without a pixel.
+    The sample is the same every time. Raises `TextureError`, and `PlanFileError` for textures without pixels.
     """
-    total, scene = sum(map(_pixels, textures)), Images(textures, encoding)
+    total, scene = sum(map(_pixel_count, textures)), Images(textures, encoding)
     if not total:
-        raise PlanFileError("the textures have no pixels", hint="name one that has")
-    first = wanted[0] / total
-    last = first + wanted[1] / total
-    rng, kinds = np.random.default_rng(0), np.full((STEPS**3, 3), np.nan)
-    drawn: tuple[list[Array], list[Array]] = [], []
+        raise PlanFileError(
+            "textures must have pixels, got none", code="no-pixels", hint="name an image with pixels"
+        )
+    first = sizes[0] / total
+    last = first + sizes[1] / total
+    rng, bins = np.random.default_rng(0), np.full((BINS**3, 3), np.nan)
+    samples: tuple[list[Array], list[Array]] = [], []
     for done, path in enumerate(textures):
         progress(Progress("textures", done, len(textures)))
         for rgb in scene.colours(path, sensor):
-            kinds[_kind(sensor, rgb)] = rgb
+            bins[_bin_index(sensor, rgb)] = rgb
             lot = rng.random(len(rgb))
-            drawn[0].append(rgb[(lot < first) | (last > 1)])
-            drawn[1].append(rgb[(lot >= first) & (lot < last) | (last > 1)])
-    there = kinds[~np.isnan(kinds[:, 0])]
-    predicting, confirming = (_distinct(np.concatenate(each), there) for each in drawn)
-    return SampledColours(predicting, confirming, there)
+            samples[0].append(rgb[(lot < first) | (last > 1)])
+            samples[1].append(rgb[(lot >= first) & (lot < last) | (last > 1)])
+    occupied = bins[~np.isnan(bins[:, 0])]
+    predicting, confirming = (_distinct(np.concatenate(each), occupied) for each in samples)
+    return SampledColours(predicting, confirming, occupied)
 
 
-def _pixels(path: Path) -> int:
-    """Pixels of an image that have a colour."""
+def _pixel_count(path: Path) -> int:
+    """Pixels of the parts of an image that have colour channels."""
     with open_image(path) as image:
-        return sum(
-            part.window.width * part.window.height
-            for part, places in colour_channels_by_part(image)
-            if places
-        )
+        parts = [part for part, channels in colour_channels_by_part(image) if channels]
+        return sum(part.window.width * part.window.height for part in parts)
 
 
-def _kind(sensor: Sensor, rgb: Array) -> Any:
-    """Numbers (n,) of the kinds that linear RGB (n, 3) are of."""
-    codes = np.interp(rgb, sensor.decoding, np.linspace(0, STEPS, 256))
-    red, green, blue = np.minimum(codes, STEPS - 1).astype(int).T
-    return (red * STEPS + green) * STEPS + blue
+def _bin_index(sensor: Sensor, rgb: Array) -> Any:
+    codes = np.interp(rgb, sensor.decoding, np.linspace(0, BINS, 256))
+    red, green, blue = np.minimum(codes, BINS - 1).astype(int).T
+    return (red * BINS + green) * BINS + blue
 
 
-def _distinct(drawn: Array, kinds: Array) -> Pixels:
-    """Each colour once; should the draw be empty, the kinds."""
-    rgb, times = np.unique(drawn if len(drawn) else kinds, axis=0, return_counts=True)
-    return Pixels(rgb, times / times.sum())
+def _distinct(sample: Array, occupied: Array) -> PixelSample:
+    """Each sampled colour once; the colours of the bins for an empty sample."""
+    rgb, counts = np.unique(sample if len(sample) else occupied, axis=0, return_counts=True)
+    return PixelSample(rgb, counts / counts.sum())
 
 
 @dataclass(frozen=True, eq=False)
 class ColourSet:
-    """The scene of linear RGB (n, 3), for `uplift.build`: points for these colours alone."""
+    """Scene of given colours for `uplift.build`: the cube gets the lattice points that they need.
+
+    Parameters
+    ----------
+    rgb : ndarray, shape (n, 3)
+        Linear RGB.
+    """
 
     rgb: Array
 
     def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
+        """Lattice points (dim³,) that the colours need."""
         return boxes.required_points(occupied_cells(boxes.lattice, self.rgb))
 
     def describe(self) -> list[dict[str, Any]]:
+        """Empty, as there is no source file."""
         return []
 
 
 def occupied_cells(lattice: Lattice, rgb: Array) -> Mask:
-    """Which cells (dim³,) linear RGB (n, 3) lie in."""
-    found = np.zeros(lattice.size, dtype=bool)
-    found[cells_touched(lattice, rgb)] = True
-    return found
+    """Mask (dim³,) of the cells that contain linear RGB (n, 3)."""
+    occupied = np.zeros(lattice.size, dtype=bool)
+    occupied[cells_touched(lattice, rgb)] = True
+    return occupied

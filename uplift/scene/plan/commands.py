@@ -1,60 +1,91 @@
-"""What to type: a plan as command lines."""
+"""Command lines that carry out a plan, and the options that select its candidates."""
 
 from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from uplift.common.arrays import Array
 from uplift.io.texture import Spectrum
 from uplift.pipeline.options import Options
-from uplift.scene.plan.planning import Plan
-from uplift.scene.plan.wavelengths import format_wavelengths
+from uplift.scene.plan.scene_file import SceneFile
+
+if TYPE_CHECKING:
+    from uplift.scene.plan.planning import Plan
 
 SUFFIX = ".plan.json"
 DEFAULTS = {field.name: field.default for field in fields(Options)}
 
 
+def cube_args(options: Mapping[str, Any]) -> str:
+    """Options of ``uplift build`` for fields of `Options` that have an option of their own name."""
+    return " ".join(f"--{name} {value}" for name, value in options.items())
+
+
+def wavelength_args(wavelengths: Array) -> str:
+    """Option of ``uplift texture`` for wavelengths in nm."""
+    return f"--wavelengths {','.join(f'{each:g}' for each in wavelengths)}"
+
+
+def storage_args(form: str, depth: str) -> str:
+    """Options of ``uplift texture`` for the contents of a pixel."""
+    return f"--store {form} --depth {depth}"
+
+
+def compare_command(scene: SceneFile, limit: float) -> str:
+    """``uplift compare`` for the lights and materials of a scene."""
+    words = [*_repeat("--atlas", scene.atlases), *_repeat("--light", scene.lights)]
+    return _join("uplift compare", [*words, "--target", f"{limit:.3g}"])
+
+
 def cube_name(plan_path: str | os.PathLike[str]) -> str:
-    """kitchen.plan.json → kitchen.uplift."""
+    """File name of the cube of a plan.
+
+    >>> cube_name("plans/kitchen.plan.json")
+    'kitchen.uplift'
+    """
     name = Path(plan_path).name
     return f"{name.removesuffix(SUFFIX) if name.endswith(SUFFIX) else Path(name).stem}.uplift"
 
 
 def build_command(path: Path) -> str:
-    """Of the plan at ``path``."""
-    return _line("uplift build --plan", [path])
+    """``uplift build`` for the plan file at ``path``."""
+    return _join("uplift build --plan", [path])
 
 
 def expanded_command(plan: Plan, path: Path) -> str:
-    """The same build without the plan's file."""
+    """``uplift build`` with all options of the plan, which does not need the plan file."""
     scene, options = plan.scene, plan.options
-    words = [word for atlas in scene.atlases for word in ("--atlas", atlas)]
-    words += ["--dim", options["dim"], "--axis", options["axis"], "--moments", options["coefficients"] - 1]
-    words += [word for light in options["lights"] for word in ("--light", light)]
+    words = [*_repeat("--atlas", scene.atlases), "--dim", options["dim"], "--axis", options["axis"]]
+    words += ["--coefficients", options["coefficients"], *_repeat("--light", options["lights"])]
     for name in ("space", "illuminant", "observer"):
         words += [] if options[name] == DEFAULTS[name] else [f"--{name}", options[name]]
     if plan.final_build.is_sparse:
-        words += [word for texture in scene.textures for word in ("--scene", texture)]
-        words += _encoding(plan)
-    return _line("uplift build", [*words, "-o", cube_name(path)])
+        words += [*_repeat("--scene", scene.textures), *_encoding_args(scene)]
+    return _join("uplift build", [*words, "-o", cube_name(path)])
 
 
 def texture_command(plan: Plan, path: Path) -> str:
-    """All textures uplifted as the plan stores them."""
-    textures, held = plan.scene.textures, plan.storage
+    """``uplift texture`` for all textures, as the plan stores them."""
+    textures, storage = plan.scene.textures, plan.storage
     target = f"{textures[0].stem}-uplifted.exr" if len(textures) == 1 else "uplifted"
-    words = [*textures, target, "--cube", cube_name(path), "--store", held.form, "--depth", held.depth]
-    if held.form == Spectrum.name:
-        words += ["--wavelengths", format_wavelengths(plan.sampling)]
-    return _line("uplift texture", [*words, *_encoding(plan)])
+    words = [*textures, target, "--cube", cube_name(path), *storage_args(storage.form, storage.depth).split()]
+    if storage.form == Spectrum.name:
+        words += wavelength_args(plan.sampling.wavelengths).split()
+    return _join("uplift texture", [*words, *_encoding_args(plan.scene)])
 
 
-def _encoding(plan: Plan) -> list[str]:
-    return [] if plan.scene.encoding == "auto" else ["--encoding", plan.scene.encoding]
+def _encoding_args(scene: SceneFile) -> list[str]:
+    return [] if scene.encoding == SceneFile.encoding else ["--encoding", scene.encoding]
 
 
-def _line(command: str, words: Iterable[object]) -> str:
+def _repeat(option: str, values: Iterable[object]) -> list[object]:
+    return [word for value in values for word in (option, value)]
+
+
+def _join(command: str, words: Iterable[object]) -> str:
     return f"{command} {shlex.join(map(str, words))}"

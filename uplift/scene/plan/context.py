@@ -1,4 +1,4 @@
-"""What candidates are measured on: the scene's own colours and materials, and the best that a cube makes of them."""
+"""Inputs that all decisions of a plan share: the scene's colours and materials, and cubes to evaluate."""
 
 from __future__ import annotations
 
@@ -17,17 +17,25 @@ from uplift.common.errors import UpliftWarning
 from uplift.common.progress import ProgressCallback
 from uplift.lookup import Cube
 from uplift.pipeline import build
-from uplift.scene.plan.colours import ColourSet, Pixels, SampledColours, sample_colours
-from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ErrorSummary, EvaluationSet, Group
+from uplift.scene.plan.colours import ColourSet, PixelSample, SampledColours, sample_colours
+from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ColourGroup, ErrorSummary, EvaluationSet
 from uplift.scene.plan.scene_file import SceneFile
 
 
 @dataclass(frozen=True)
 class SearchGrid:
-    """What is tried, the least first, and how many colours it is tried on.
+    """Candidates of the cube, and sizes of the pixel samples.
 
-    ``reference`` is the dim of the cube that is taken for the truth, with the last of the ``coefficients``;
-    ``predicting`` and ``confirming`` pixels choose, and judge what was chosen.
+    Parameters
+    ----------
+    coefficients : tuple of int
+        Numbers of coefficients to try, ascending.
+    dims : tuple of int
+        Dims to try.
+    reference : int
+        Dim of the reference cube, which has the last of the ``coefficients``.
+    predicting, confirming : int
+        Pixels to choose candidates by, and to verify the result on.
     """
 
     coefficients: tuple[int, ...] = (3, 5, 7, 9, 11, 13, 15, 17)
@@ -39,7 +47,7 @@ class SearchGrid:
 
 @contextlib.contextmanager
 def quiet_warnings() -> Iterator[None]:
-    """The build that counts says what is to be said of atlas and textures."""
+    """Suppress warnings of trial builds; the final build repeats them."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         yield
@@ -47,13 +55,30 @@ def quiet_warnings() -> Iterator[None]:
 
 @dataclass(frozen=True, eq=False)
 class PlanContext:
-    """A scene ready to measure on; ``context`` makes it.
+    """A scene with its files read.
 
-    ``reflectances`` (E, N) and ``materials`` (E, 3) are those of the atlas's entries within the space, and their RGB.
+    Parameters
+    ----------
+    scene : SceneFile
+        The scene file.
+    grid : SearchGrid
+        Candidates to try.
+    sensor : Sensor
+        RGB space of the textures.
+    atlas : Atlas or None
+        All entries of the scene's atlases.
+    reflectances : ndarray, shape (E, N)
+        Entries within the RGB space.
+    materials : ndarray, shape (E, 3)
+        Their linear RGB.
+    colours : SampledColours
+        Pixels of the textures.
+    progress : ProgressCallback
+        Called with each step.
     """
 
     scene: SceneFile
-    effort: SearchGrid
+    grid: SearchGrid
     sensor: Sensor
     atlas: Atlas | None
     reflectances: Array
@@ -63,7 +88,10 @@ class PlanContext:
 
     @property
     def options(self) -> dict[str, Any]:
-        """What all cubes of the scene share; entries hold under its lights, and under the one they are built for."""
+        """Options that all cubes of the scene have in common.
+
+        Entries hold under the scene's lights, and under the illuminant of the RGB space.
+        """
         scene = self.scene
         return {
             "space": scene.space,
@@ -73,37 +101,35 @@ class PlanContext:
         }
 
     def cube(self, rgb: Array, **options: Any) -> Cube:
-        """A cube for linear RGB (n, 3) alone."""
+        """Build a sparse cube for linear RGB (n, 3)."""
         with quiet_warnings():
             return build(self.atlas, scene=ColourSet(rgb), **{**self.options, **options})
 
-    def question(self, drawn: Pixels) -> tuple[EvaluationSet, ErrorSummary]:
-        """Pixels of the textures, as the best cube has them, and the atlas's materials, as measured.
+    def evaluation_set(self, sample: PixelSample) -> tuple[EvaluationSet, ErrorSummary]:
+        """Test colours with the reference cube's spectra of pixels and the measured spectra of materials.
 
-        And the error of that cube, which only the materials have.
+        Also the error of the reference cube, which is that of the materials: pixels have none by definition.
         """
-        scene, effort = self.scene, self.effort
-        asked = np.concatenate([drawn.rgb, self.materials])
-        best = self.cube(asked, dim=effort.reference, coefficients=effort.coefficients[-1])
-        answered = best.reflectance(asked)
-        groups = [Group(TEXTURES, drawn.rgb, answered[: len(drawn.rgb)], drawn.share)]
+        rgb = np.concatenate([sample.rgb, self.materials])
+        reference = self.cube(rgb, dim=self.grid.reference, coefficients=self.grid.coefficients[-1])
+        spectra = reference.reflectance(rgb)
+        groups = [ColourGroup(TEXTURES, sample.rgb, spectra[: len(sample.rgb)], sample.share)]
         if count := len(self.materials):
-            groups.append(Group(MATERIALS, self.materials, self.reflectances, np.full(count, 1 / count)))
-        found = EvaluationSet(tuple(groups), scene.light_sources(), scene.quantile)
-        return found, found.error(answered)
+            weights = np.full(count, 1 / count)
+            groups.append(ColourGroup(MATERIALS, self.materials, self.reflectances, weights))
+        tests = EvaluationSet(tuple(groups), self.scene.light_sources(), self.scene.quantile)
+        return tests, tests.error(spectra)
 
 
-def prepare_context(scene: SceneFile, effort: SearchGrid, progress: ProgressCallback) -> PlanContext:
-    """Reads atlases and textures. Raises `AtlasError`, `TextureError`, `PlanFileError`."""
+def prepare_context(scene: SceneFile, grid: SearchGrid, progress: ProgressCallback) -> PlanContext:
+    """Read atlases and textures. Raises `AtlasError`, `TextureError`, `PlanFileError`."""
     sensor = scene.sensor()
     atlas = read_atlas(*scene.atlases) if scene.atlases else None
-    measured = resample(atlas or Atlas(), sensor.wavelengths).values
-    rgb = sensor.rgb(measured)
-    held = sensor.contains(rgb)
-
-    wanted = effort.predicting, effort.confirming
+    reflectances = resample(atlas or Atlas(), sensor.wavelengths).values
+    rgb = sensor.rgb(reflectances)
+    inside = sensor.contains(rgb)
     with quiet_warnings():
-        found = sample_colours(scene.textures, sensor, scene.encoding, wanted, progress)
-    return PlanContext(
-        scene, effort, sensor, atlas, measured[held], np.clip(rgb[held], 0, 1), found, progress
-    )
+        sizes = grid.predicting, grid.confirming
+        colours = sample_colours(scene.textures, sensor, scene.encoding, sizes, progress)
+    materials = np.clip(rgb[inside], 0, 1)
+    return PlanContext(scene, grid, sensor, atlas, reflectances[inside], materials, colours, progress)

@@ -1,4 +1,4 @@
-"""Candidates from the least to the most, measured until one will do."""
+"""Choice of the cheapest sufficient candidate."""
 
 from __future__ import annotations
 
@@ -11,10 +11,22 @@ from uplift.scene.plan.evaluation import ErrorSummary
 
 @dataclass(frozen=True)
 class Trial:
-    """A candidate that was measured.
+    """A candidate and its measured error.
 
-    ``cost`` is told as ``told``; ``choice`` is what it stands for, in JSON values, and ``typed`` on the command line;
-    ``error`` is that of the whole chain so far, all that was chosen before being in place.
+    Parameters
+    ----------
+    name : str
+        Short name for tables.
+    cost : float
+        Quantity that candidates are ordered by.
+    cost_text : str
+        The cost with its unit.
+    cli_args : str
+        Options of the command line that select the candidate.
+    choice : mapping
+        The candidate in JSON values.
+    error : ErrorSummary
+        Error of the chain up to this decision, with all earlier decisions applied.
     """
 
     name: str
@@ -27,9 +39,20 @@ class Trial:
 
 @dataclass(frozen=True)
 class Decision:
-    """One thing decided: the ``trials`` in the order they were measured, and which of them was taken.
+    """Candidates of one kind and the selected one.
 
-    ``limit`` is the ΔE00 that the chain so far was to stay within; where no trial did, the nearest was taken.
+    Parameters
+    ----------
+    key : str
+        Identifier.
+    title, unit : str
+        Heading, and unit of the cost.
+    limit : float
+        Largest ΔE00 of the chain after this decision.
+    trials : tuple of Trial
+        Candidates in the order in which they were measured.
+    selected : int
+        Index of the selected trial: the first within the limit, or else the one of the smallest error.
     """
 
     key: str
@@ -37,24 +60,26 @@ class Decision:
     unit: str
     limit: float
     trials: tuple[Trial, ...]
-    taken: int
+    selected: int
 
     @property
     def trial(self) -> Trial:
-        return self.trials[self.taken]
+        """The selected trial."""
+        return self.trials[self.selected]
 
     @property
-    def kept(self) -> bool:
+    def within_limit(self) -> bool:
+        """Whether the selected trial meets the limit."""
         return self.trial.error.quantile <= self.limit
 
 
 def decide(key: str, title: str, unit: str, limit: float, trials: Iterable[Trial]) -> Decision:
-    """The first of the trials, which are made as they are asked for, that stays within the limit; else the nearest."""
-    made: list[Trial] = []
+    """Measure candidates up to the first within the limit. ``trials`` makes each one when it is requested."""
+    measured: list[Trial] = []
     for trial in trials:
-        made.append(trial)
+        measured.append(trial)
         if trial.error.quantile <= limit:
             break
-    errors = [trial.error.quantile for trial in made]
-    taken = len(made) - 1 if errors[-1] <= limit else errors.index(min(errors))
-    return Decision(key, title, unit, limit, tuple(made), taken)
+    errors = [trial.error.quantile for trial in measured]
+    selected = len(errors) - 1 if errors[-1] <= limit else errors.index(min(errors))
+    return Decision(key, title, unit, limit, tuple(measured), selected)

@@ -1,4 +1,4 @@
-"""What a candidate is asked, and how far its answers are off under the lights of the scene."""
+"""Colour errors of a candidate on test colours, under the lights of the scene."""
 
 from __future__ import annotations
 
@@ -13,30 +13,42 @@ from uplift.common.arrays import Array
 
 TEXTURES, MATERIALS = "textures", "materials"
 WORST_DELTA_E = 100.0
-"""The ΔE00 of what is no number: as far as black is from white."""
+"""ΔE00 of colours that are not finite: the difference between black and white."""
 
 
 @dataclass(frozen=True, eq=False)
-class Group:
-    """n colours that are judged together: linear RGB (n, 3), reflectances (n, N) wanted, weights (n,) that sum to 1."""
+class ColourGroup:
+    """Test colours whose error is one statistic.
+
+    Parameters
+    ----------
+    name : str
+        `TEXTURES` or `MATERIALS`.
+    rgb : ndarray, shape (n, 3)
+        Linear RGB.
+    reflectances : ndarray, shape (n, N)
+        Reference spectra.
+    weights : ndarray, shape (n,)
+        Weights, which sum to 1.
+    """
 
     name: str
     rgb: Array
-    wanted: Array
+    reflectances: Array
     weights: Array
 
-    def thinned(self, most: int) -> Group:
-        """``most`` colours at the most, each for as many others."""
-        if len(self.rgb) <= most:
+    def subsample(self, count: int) -> ColourGroup:
+        """At most ``count`` colours, drawn at equal steps of the cumulative weight."""
+        if len(self.rgb) <= count:
             return self
-        drawn = np.searchsorted(np.cumsum(self.weights), (np.arange(most) + 0.5) / most)
-        rows, times = np.unique(np.minimum(drawn, len(self.rgb) - 1), return_counts=True)
-        return Group(self.name, self.rgb[rows], self.wanted[rows], times / most)
+        drawn = np.searchsorted(np.cumsum(self.weights), (np.arange(count) + 0.5) / count)
+        rows, repeats = np.unique(np.minimum(drawn, len(self.rgb) - 1), return_counts=True)
+        return ColourGroup(self.name, self.rgb[rows], self.reflectances[rows], repeats / count)
 
 
 @dataclass(frozen=True)
 class GroupError:
-    """ΔE00 of a group under a light: mean, the quantile that counts, and the largest."""
+    """ΔE00 of a group under one light: weighted mean, the quantile of the scene, and the largest."""
 
     group: str
     light: str
@@ -47,68 +59,77 @@ class GroupError:
 
 @dataclass(frozen=True)
 class ErrorSummary:
-    """How far a candidate is off: of every group under every light."""
+    """Errors of a candidate: one part for every group under every light."""
 
     parts: tuple[GroupError, ...]
 
     @property
     def worst(self) -> GroupError:
-        """The group and the light that decide."""
+        """The part of the largest quantile, which decides."""
         return max(self.parts, key=lambda part: part.quantile)
 
     @property
     def quantile(self) -> float:
+        """Quantile of the worst part, ΔE00."""
         return self.worst.quantile
 
 
 @dataclass(frozen=True, eq=False)
 class EvaluationSet:
-    """Colours of all groups one below the other, and the lights to see them under.
+    """Test colours with their reference spectra, and the lights to compare them under.
 
-    ``share`` is that of the colours whose largest ΔE00 is the error.
+    Parameters
+    ----------
+    groups : tuple of ColourGroup
+        Arrays of all colours are those of the groups, one below the other.
+    lights : tuple of Light
+        Lights on the grid of the reference spectra.
+    quantile : float
+        Share of the colours whose largest ΔE00 is the error of a group.
     """
 
-    groups: tuple[Group, ...]
+    groups: tuple[ColourGroup, ...]
     lights: tuple[Light, ...]
-    share: float
+    quantile: float
 
     @property
     def rgb(self) -> Array:
-        """(n, 3)."""
+        """Linear RGB of all groups, (n, 3)."""
         return np.concatenate([group.rgb for group in self.groups])
 
     @property
-    def wanted(self) -> Array:
-        """(n, N) reflectances."""
-        return np.concatenate([group.wanted for group in self.groups])
+    def reflectances(self) -> Array:
+        """Reference spectra of all groups, (n, N)."""
+        return np.concatenate([group.reflectances for group in self.groups])
 
-    def thinned(self, most: int) -> EvaluationSet:
-        """``most`` colours of each group at the most."""
-        return replace(self, groups=tuple(group.thinned(most) for group in self.groups))
+    def subsample(self, count: int) -> EvaluationSet:
+        """At most ``count`` colours of each group."""
+        return replace(self, groups=tuple(group.subsample(count) for group in self.groups))
 
-    def error(self, answered: Array) -> ErrorSummary:
-        """Of reflectances (n, N) on the grid of the lights."""
-        return self.seen([answered @ light.xyz.T for light in self.lights])
+    def error(self, reflectances: Array) -> ErrorSummary:
+        """Errors of reflectances (n, N) on the grid of the lights."""
+        return self.error_of_xyz([reflectances @ light.xyz.T for light in self.lights])
 
-    def seen(self, xyz: Sequence[Array] | Array) -> ErrorSummary:
-        """Of the XYZ (n, 3) under each light; white has Y = 1, whoever computes them."""
+    def error_of_xyz(self, xyz: Sequence[Array] | Array) -> ErrorSummary:
+        """Errors of XYZ (n, 3) under each light, where white has Y = 1."""
         ends = np.cumsum([len(group.rgb) for group in self.groups])[:-1]
         parts = [
-            self._part(group, light, values)
-            for light, apart in zip(self.lights, self.apart(xyz), strict=True)
-            for group, values in zip(self.groups, np.split(apart, ends), strict=True)
+            self._group_error(group, light, values)
+            for light, delta_e in zip(self.lights, self.delta_e(xyz), strict=True)
+            for group, values in zip(self.groups, np.split(delta_e, ends), strict=True)
         ]
         return ErrorSummary(tuple(parts))
 
-    def apart(self, xyz: Sequence[Array] | Array) -> list[Array]:
-        """ΔE00 (n,) under each light, of XYZ (n, 3) under each."""
-        found = []
-        for light, seen in zip(self.lights, xyz, strict=True):
-            apart = delta_e_2000(*(lab(each, light.white) for each in (self.wanted @ light.xyz.T, seen)))
-            found.append(np.where(np.isfinite(apart), apart, WORST_DELTA_E))
-        return found
+    def delta_e(self, xyz: Sequence[Array] | Array) -> list[Array]:
+        """ΔE00 (n,) under each light to XYZ (n, 3)."""
+        return [self._delta_e(light, values) for light, values in zip(self.lights, xyz, strict=True)]
 
-    def _part(self, group: Group, light: Light, values: Array) -> GroupError:
-        counts = np.quantile(values, self.share, weights=group.weights, method="inverted_cdf")
-        mean = float(values @ group.weights)
-        return GroupError(group.name, light.name, mean, float(counts), float(values.max()))
+    def _delta_e(self, light: Light, xyz: Array) -> Array:
+        reference = self.reflectances @ light.xyz.T
+        delta_e = delta_e_2000(lab(reference, light.white), lab(xyz, light.white))
+        return np.where(np.isfinite(delta_e), delta_e, WORST_DELTA_E)
+
+    def _group_error(self, group: ColourGroup, light: Light, delta_e: Array) -> GroupError:
+        quantile = np.quantile(delta_e, self.quantile, weights=group.weights, method="inverted_cdf")
+        mean = float(delta_e @ group.weights)
+        return GroupError(group.name, light.name, mean, float(quantile), float(delta_e.max()))

@@ -1,4 +1,4 @@
-"""The cube of a plan built in earnest: whole, or the textures' cells alone where that saves notably."""
+"""Build of the planned cube: all cells, or only those of the textures if that saves enough."""
 
 from __future__ import annotations
 
@@ -14,48 +14,58 @@ from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.scene.plan.context import PlanContext, quiet_warnings
 
-WORTH = 1e6
-"""Bytes that cells alone must save: they answer no other colours."""
+MIN_SAVING = 1e6
+"""Bytes that a sparse cube must save, as it cannot answer other colours."""
 
 
 @dataclass(frozen=True, eq=False)
 class FinalBuild:
-    """A cube, bytes of its file, CPU seconds it took; ``whole`` and ``sparse`` are the bytes of either choice."""
+    """The planned cube and its cost.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    size : int
+        Bytes of its file.
+    seconds : float
+        CPU time of the build.
+    full_size, sparse_size : float
+        Bytes with all cells, and with those of the textures alone.
+    """
 
     cube: Cube
     size: int
     seconds: float
-    whole: float
-    sparse: float
+    full_size: float
+    sparse_size: float
 
     @property
     def is_sparse(self) -> bool:
+        """Whether the cube has only the cells of the textures."""
         return self.cube.data.complete_cells is not None
 
     @property
     def points(self) -> int:
+        """Number of lattice points."""
         return int(self.cube.data.points.present.sum())
 
 
 def build_final(context: PlanContext, options: Mapping[str, Any]) -> FinalBuild:
-    """Warns of what a build warns of."""
+    """Build the cube with the warnings of `uplift.build`."""
     scene = context.scene
-    cube, seconds = _timed(context, options, scene=Images(scene.textures, scene.encoding))
-    size = _size(cube)
-    whole = size * cube.data.lattice.size / int(cube.data.points.present.sum())
-    if whole - size < WORTH:
-        return _whole(context, options, size)
-    return FinalBuild(cube, size, seconds, whole, size)
+    cube, seconds = _timed_build(context, options, Images(scene.textures, scene.encoding))
+    sparse_size = _file_size(cube)
+    full_size = sparse_size * cube.data.lattice.size / int(cube.data.points.present.sum())
+    if full_size - sparse_size >= MIN_SAVING:
+        return FinalBuild(cube, sparse_size, seconds, full_size, sparse_size)
+    with quiet_warnings():  # the sparse build has issued all of them
+        cube, seconds = _timed_build(context, options)
+    size = _file_size(cube)
+    return FinalBuild(cube, size, seconds, size, sparse_size)
 
 
-def _whole(context: PlanContext, options: Mapping[str, Any], sparse: int) -> FinalBuild:
-    with quiet_warnings():  # all has been said by the build before
-        cube, seconds = _timed(context, options)
-    size = _size(cube)
-    return FinalBuild(cube, size, seconds, size, sparse)
-
-
-def _timed(
+def _timed_build(
     context: PlanContext, options: Mapping[str, Any], scene: Images | None = None
 ) -> tuple[Cube, float]:
     begin = time.process_time()
@@ -63,8 +73,7 @@ def _timed(
     return cube, time.process_time() - begin
 
 
-def _size(cube: Cube) -> int:
-    """Bytes of its file."""
+def _file_size(cube: Cube) -> int:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"
         cube.save(path)

@@ -1,17 +1,21 @@
-"""A plan as a JSON file, for people, for other tools, and for ``uplift build --plan``."""
+"""Plans as JSON files, which ``uplift build --plan`` and other tools read."""
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
-from uplift.common.errors import PlanFileError, UpliftError
+from pydantic import ConfigDict
+from pydantic.dataclasses import dataclass as pydantic_dataclass
+
+from uplift.common.arrays import StrPath
+from uplift.common.errors import PlanFileError
 from uplift.common.progress import ProgressCallback, ignore_progress
+from uplift.common.spec_file import SpecFile, SpecModel, format_value, read_json, resolves
 from uplift.io.scene_colours import Images, file_digest
 from uplift.lookup import Cube
 from uplift.pipeline import build
@@ -21,13 +25,26 @@ from uplift.scene.plan.decision import Decision, Trial
 from uplift.scene.plan.evaluation import ErrorSummary
 from uplift.scene.plan.planning import Plan
 
-FORMAT = "uplift plan 1"
-AGAIN = "plan again: uplift plan SCENE.toml"
+FORMAT: Literal["uplift plan 1"] = "uplift plan 1"
+HINT = "plan the scene again"
 
 
 def to_json(plan: Plan, path: Path) -> dict[str, Any]:
-    """All of a plan in JSON values; paths are relative to the folder of ``path``, where it is to be written."""
-    scene, made = plan.scene, plan.final_build
+    """Convert a plan to JSON values.
+
+    Parameters
+    ----------
+    plan : Plan
+        The plan.
+    path : Path
+        The file to write it to. Paths of textures and atlases are relative to its folder.
+
+    Returns
+    -------
+    dict
+        All decisions with their measurements, the wavelengths with their weights, and the command lines.
+    """
+    scene, final = plan.scene, plan.final_build
     return {
         "format": FORMAT,
         "uplift": version("uplift"),
@@ -41,7 +58,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
             "atlases": _sources(scene.atlases, path),
         },
         "build": {**plan.options, "lights": list(plan.options["lights"])},
-        "cells": "sparse" if made.is_sparse else "whole",
+        "cells": "sparse" if final.is_sparse else "whole",
         "texture": asdict(plan.storage),
         "rendering": {
             "wavelengths": plan.sampling.wavelengths.tolist(),
@@ -49,19 +66,19 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
             "powers": dict(zip(plan.sampling.lights, plan.sampling.powers.tolist(), strict=True)),
         },
         "error": {
-            "predicted": _error(plan.predicted),
-            "confirmed": _error(plan.confirmed),
+            "predicted": _error_json(plan.predicted),
+            "confirmed": _error_json(plan.confirmed),
             "within": plan.within_tolerance,
             "expected_of_measurements": plan.expected_error,
         },
         "cost": {
-            "points": made.points,
-            "bytes": made.size,
-            "cpu_seconds": made.seconds,
-            "bytes_whole": made.whole,
-            "bytes_sparse": made.sparse,
+            "points": final.points,
+            "bytes": final.size,
+            "cpu_seconds": final.seconds,
+            "bytes_whole": final.full_size,
+            "bytes_sparse": final.sparse_size,
         },
-        "decisions": [_decision(each) for each in plan.decisions],
+        "decisions": [_decision_json(each) for each in plan.decisions],
         "lines": [build_command(path), expanded_command(plan, path), texture_command(plan, path)],
     }
 
@@ -73,22 +90,50 @@ def _sources(paths: Iterable[Path], plan: Path) -> list[dict[str, str]]:
     ]
 
 
-def _error(error: ErrorSummary) -> dict[str, Any]:
+def _error_json(error: ErrorSummary) -> dict[str, Any]:
     return {**asdict(error.worst), "parts": [asdict(part) for part in error.parts]}
 
 
-def _decision(decision: Decision) -> dict[str, Any]:
-    trials = [_trial(trial) for trial in decision.trials]
-    return {**asdict(decision), "trials": trials, "kept": decision.kept}
+def _decision_json(decision: Decision) -> dict[str, Any]:
+    return {
+        "key": decision.key,
+        "title": decision.title,
+        "unit": decision.unit,
+        "limit": decision.limit,
+        "trials": [_trial_json(trial) for trial in decision.trials],
+        "taken": decision.selected,
+        "kept": decision.within_limit,
+    }
 
 
-def _trial(trial: Trial) -> dict[str, Any]:
-    return {**asdict(trial), "error": asdict(trial.error.worst)}
+def _trial_json(trial: Trial) -> dict[str, Any]:
+    return {
+        "name": trial.name,
+        "cost": trial.cost,
+        "told": trial.cost_text,
+        "typed": trial.cli_args,
+        "choice": trial.choice,
+        "error": asdict(trial.error.worst),
+    }
 
 
 @dataclass(frozen=True)
 class PlanFile:
-    """What a plan's file says to build; all of it is as it was when the plan was measured."""
+    """Contents of a plan file that a build needs.
+
+    Parameters
+    ----------
+    path : Path
+        The plan file.
+    textures, atlases : tuple of Path
+        Source files, unchanged since the plan was made.
+    encoding : str
+        Encoding of the textures.
+    sparse : bool
+        Whether the cube has only the cells of the textures.
+    options : dict
+        Options of `uplift.build`.
+    """
 
     path: Path
     textures: tuple[Path, ...]
@@ -98,38 +143,92 @@ class PlanFile:
     options: dict[str, Any]
 
     def build(self, *, debug: bool = False, progress: ProgressCallback = ignore_progress) -> Cube:
-        """Raises and warns as `uplift.build` does."""
+        """Build the planned cube.
+
+        Parameters
+        ----------
+        debug : bool
+            Store the round of every node.
+        progress : ProgressCallback, optional
+            Called with each step.
+
+        Returns
+        -------
+        Cube
+            The cube, with the warnings and errors of `uplift.build`.
+        """
         scene = Images(self.textures, self.encoding) if self.sparse else None
         return build(self.atlases or None, scene=scene, progress=progress, debug=debug, **self.options)
 
 
-def read_plan(path: str | os.PathLike[str]) -> PlanFile:
-    """Raises `PlanFileError` for no plan, and where a texture or an atlas is missing or has changed."""
-    path = Path(path)
-    try:
-        said = json.loads(path.read_text(encoding="utf-8"))
-        if said["format"] != FORMAT:
-            raise KeyError(said["format"])
-        scene, options = said["scene"], dict(said["build"])
-        options["lights"] = tuple(options["lights"])
-        Options(**options).spectrum_model()
-        textures, atlases = (
-            {path.parent / str(each["path"]): str(each["digest"]) for each in scene[key]}
-            for key in ("textures", "atlases")
-        )
-        sparse, encoding = said["cells"] == "sparse", str(scene["encoding"])
-    except OSError as error:
-        problem = f"cannot be read: {error.strerror or error}"
-        raise PlanFileError(problem, path=path, hint="make it: uplift plan SCENE.toml") from error
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, UpliftError) as error:
-        raise PlanFileError("is no plan of this version", path=path, hint=AGAIN) from error
-    for file, wanted in (textures | atlases).items():
-        _check(path, file, wanted)
-    return PlanFile(path, tuple(textures), tuple(atlases), encoding, sparse, options)
+class _Source(SpecModel):
+    """A texture or an atlas with its SHA-256."""
+
+    path: str
+    digest: str
 
 
-def _check(path: Path, file: Path, wanted: str) -> None:
-    if not os.path.isfile(file):
-        raise PlanFileError(f"there is no file {file}", path=path, hint=f"bring it back, or {AGAIN}")
-    if file_digest(file) != wanted:
-        raise PlanFileError(f"{file} has changed since the plan was measured", path=path, hint=AGAIN)
+class _Scene(SpecModel):
+    """Source files of a plan."""
+
+    model_config = ConfigDict(extra="ignore")
+
+    encoding: str
+    textures: list[_Source]
+    atlases: list[_Source]
+
+
+@pydantic_dataclass(config=ConfigDict(extra="forbid"), frozen=True)
+class _BuildOptions(Options):
+    """`Options` with checked types."""
+
+
+class _PlanTable(SpecModel):
+    """The keys of a plan file that a build needs."""
+
+    model_config = ConfigDict(extra="ignore")
+
+    format: Literal["uplift plan 1"]
+    scene: _Scene
+    build: Annotated[_BuildOptions, resolves(Options.spectrum_model)]
+    cells: Literal["sparse", "whole"]
+
+
+def read_plan(path: StrPath) -> PlanFile:
+    """Read a plan file.
+
+    Parameters
+    ----------
+    path : path-like
+        A JSON file written from `to_json`.
+
+    Returns
+    -------
+    PlanFile
+        What a build needs.
+
+    Raises
+    ------
+    PlanFileError
+        If the file is not a valid plan, or a texture or an atlas is missing or has changed.
+    """
+    file = read_json(path, PlanFileError)
+    table = file.validate(_PlanTable, hint=HINT)
+    options = {key: getattr(table.build, key) for key in file.values["build"]}
+    textures, atlases = (
+        _check_sources(file, key, getattr(table.scene, key)) for key in ("textures", "atlases")
+    )
+    return PlanFile(file.path, textures, atlases, table.scene.encoding, table.cells == "sparse", options)
+
+
+def _check_sources(file: SpecFile, key: str, sources: list[_Source]) -> tuple[Path, ...]:
+    for number, source in enumerate(sources):
+        keys = "scene", key, number, "path"
+        path = file.path.parent / source.path
+        if not os.path.isfile(path):
+            hint = f"restore it, or {HINT}"
+            file.fail(keys, f"no file named {format_value(source.path)}", code="file-not-found", hint=hint)
+        if file_digest(path) != source.digest:
+            text = f"{format_value(source.path)} has changed since the plan was made"
+            file.fail(keys, text, code="source-changed", hint=HINT)
+    return tuple(file.path.parent / source.path for source in sources)

@@ -1,4 +1,4 @@
-"""What an error looks like: colours of the textures as planned, beside the best that could be."""
+"""Previews of an error: colours of the textures by the plan next to those of the reference cube."""
 
 from __future__ import annotations
 
@@ -12,36 +12,42 @@ from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.scene.plan.evaluation import EvaluationSet
 
-HALF, ALL = 0.5, 1.0
+MEDIAN, ALL = 0.5, 1.0
 
 
 @dataclass(frozen=True)
 class Preview:
-    """The colour that ``share`` of the pixels are no worse than under a light.
+    """A colour of the textures under a light.
 
-    ``wanted`` and ``planned`` are ``#rrggbb``, the light's white taken to the screen's.
+    Parameters
+    ----------
+    light : str
+        Name of the light.
+    share : float
+        Share of the pixels whose error is at most that of this colour.
+    delta_e : float
+        Its ΔE00.
+    reference, planned : str
+        The colour by the reference cube and by the plan, ``#rrggbb``, with the light's white as that of the display.
     """
 
     light: str
     share: float
     delta_e: float
-    wanted: str
+    reference: str
     planned: str
 
 
-def make_previews(
-    question: EvaluationSet, xyz: Sequence[Array] | Array, observer: str
-) -> tuple[Preview, ...]:
-    """Of the textures, for half the pixels, for the share that counts, and for all; XYZ (n, 3) under each light."""
-    textures = question.groups[0]
-    found = []
-    screens = display_sensors([light.name for light in question.lights], observer)
-    seen = zip(question.lights, screens, xyz, question.apart(xyz), strict=True)
-    for light, screen, planned, apart in seen:
-        order = np.argsort(apart[: len(textures.rgb)], kind="stable")
-        reached = np.cumsum(textures.weights[order])
-        for share in dict.fromkeys((HALF, question.share, ALL)):
-            row = order[min(int(np.searchsorted(reached, share - 1e-12)), len(order) - 1)]
-            pair = np.stack([light.xyz @ textures.wanted[row], planned[row]]) @ screen.xyz_to_rgb.T
-            found.append(Preview(light.name, share, float(apart[row]), *hex_codes(pair)))
-    return tuple(found)
+def make_previews(tests: EvaluationSet, xyz: Sequence[Array] | Array, observer: str) -> tuple[Preview, ...]:
+    """Previews for half of the pixels, for the quantile of the scene, and for all; XYZ (n, 3) under each light."""
+    textures = tests.groups[0]
+    displays = display_sensors([light.name for light in tests.lights], observer)
+    previews = []
+    for light, display, planned, delta_e in zip(tests.lights, displays, xyz, tests.delta_e(xyz), strict=True):
+        order = np.argsort(delta_e[: len(textures.rgb)], kind="stable")
+        cumulative = np.cumsum(textures.weights[order])
+        for share in dict.fromkeys((MEDIAN, tests.quantile, ALL)):
+            row = order[min(int(np.searchsorted(cumulative, share - 1e-12)), len(order) - 1)]
+            pair = np.stack([light.xyz @ textures.reflectances[row], planned[row]]) @ display.xyz_to_rgb.T
+            previews.append(Preview(light.name, share, float(delta_e[row]), *hex_codes(pair)))
+    return tuple(previews)

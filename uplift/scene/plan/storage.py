@@ -1,4 +1,4 @@
-"""What a pixel of a texture holds: a spectrum, moments or multipliers, in half or single precision."""
+"""Choice of the values that a texture's pixel stores, and of their precision."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from uplift.common.progress import Progress
 from uplift.io import texture
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
+from uplift.scene.plan.commands import storage_args
 from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import EvaluationSet
@@ -26,30 +27,38 @@ DEPTHS: dict[str, DTypeLike] = {"half": np.float16, "float": np.float32}
 
 @dataclass(frozen=True)
 class Storage:
-    """A form of `uplift.io.texture` by its name, and a depth."""
+    """Contents of a texture's pixel.
+
+    Parameters
+    ----------
+    form : str
+        Name of one of `uplift.io.texture.PIXEL_ENCODINGS`.
+    depth : str
+        "half" or "float".
+    """
 
     form: str
     depth: str
 
-    def size(self, cube: Cube, wavelengths: Array) -> int:
-        """Bytes of a pixel, before compression, without the RGB that lies beside."""
-        numbers = len(wavelengths) if self.form == texture.Spectrum.name else cube.data.model.count
-        return numbers * np.dtype(DEPTHS[self.depth]).itemsize
+    def bytes_per_pixel(self, cube: Cube, wavelengths: Array) -> int:
+        """Size of a pixel before compression, without the RGB that textures also store."""
+        count = len(wavelengths) if self.form == texture.Spectrum.name else cube.data.model.count
+        return count * np.dtype(DEPTHS[self.depth]).itemsize
 
-    def read_back(self, cube: Cube, rgb: Array, wavelengths: Array) -> Array:
-        """Reflectances (n, K) at wavelengths (K,) nm that a renderer finds in a texture of linear RGB (n, 3).
+    def decoded_reflectance(self, cube: Cube, rgb: Array, wavelengths: Array) -> Array:
+        """Reflectances (n, K) at wavelengths (K,) in nm that a renderer reads for linear RGB (n, 3).
 
-        NaN where rounding has left moments that no spectrum has.
+        NaN where no spectrum has the rounded moments.
         """
-        sample = _form(self.form, wavelengths).make_sampler(cube, 1)
-        held = sample(rgb.astype(np.float32)).astype(DEPTHS[self.depth]).astype(float)
+        sample = _pixel_encoding(self.form, wavelengths).make_sampler(cube, 1)
+        values = sample(rgb.astype(np.float32)).astype(DEPTHS[self.depth]).astype(float)
         model = cube.data.model
         if self.form == texture.Spectrum.name:
-            return held
+            return values
         if self.form == texture.Multipliers.name:
-            return evaluate(model, held, wavelengths)
+            return evaluate(model, values, wavelengths)
         try:
-            return reflectance(model, held, wavelengths)
+            return reflectance(model, values, wavelengths)
         except UpliftError:
             return np.full((len(rgb), len(wavelengths)), np.nan)
 
@@ -60,27 +69,27 @@ STORAGES = tuple(
 
 
 def choose_storage(
-    context: PlanContext, question: EvaluationSet, limit: float, cube: Cube, sampling: Sampling
+    context: PlanContext, tests: EvaluationSet, limit: float, cube: Cube, sampling: Sampling
 ) -> Decision:
-    """By the bytes of a pixel; at the same size spectra first, which take nothing to evaluate."""
-    at = sampling.wavelengths
-    order = sorted(STORAGES, key=lambda each: each.size(cube, at))
+    """Choose the smallest pixel; of equal sizes spectra first, which renderers need not evaluate."""
+    wavelengths = sampling.wavelengths
+    order = sorted(STORAGES, key=lambda storage: storage.bytes_per_pixel(cube, wavelengths))
 
     def trials() -> Iterator[Trial]:
-        for done, each in enumerate(order):
-            context.progress(Progress(f"{each.form} as {each.depth}", done, len(order)))
-            error = question.seen(sampling.xyz(each.read_back(cube, question.rgb, at)))
-            size = each.size(cube, at)
-            choice: dict[str, Any] = {"as": each.form, "depth": each.depth}
-            typed = f"--store {each.form} --depth {each.depth}"
-            yield Trial(
-                f"{each.form}, {each.depth}", size, f"{format_size(size)} a pixel", typed, choice, error
-            )
+        for done, storage in enumerate(order):
+            form, depth = storage.form, storage.depth
+            context.progress(Progress(f"{form} as {depth}", done, len(order)))
+            spectra = storage.decoded_reflectance(cube, tests.rgb, wavelengths)
+            error = tests.error_of_xyz(sampling.xyz(spectra))
+            size = storage.bytes_per_pixel(cube, wavelengths)
+            choice: dict[str, Any] = {"as": form, "depth": depth}
+            cost = f"{format_size(size)} per pixel"
+            yield Trial(f"{form}, {depth}", size, cost, storage_args(form, depth), choice, error)
 
-    return decide("storage", "A texture's pixel", "bytes a pixel", limit, trials())
+    return decide("storage", "Texture pixel", "bytes per pixel", limit, trials())
 
 
-def _form(name: str, wavelengths: Array) -> texture.PixelEncoding:
-    if name == texture.Spectrum.name:
+def _pixel_encoding(form: str, wavelengths: Array) -> texture.PixelEncoding:
+    if form == texture.Spectrum.name:
         return texture.Spectrum(tuple(wavelengths.tolist()))
-    return texture.PIXEL_ENCODINGS[name]()
+    return texture.PIXEL_ENCODINGS[form]()

@@ -1,4 +1,4 @@
-"""A plan in few words, for the terminal and the page."""
+"""Summary of a plan as text, for terminal and page."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from uplift.viz.format import format_error, format_size
 
 @dataclass(frozen=True)
 class SummaryRow:
-    """One line of the plan: what is decided, for what, at which cost, how to say it, and the ΔE00 so far."""
+    """One line of the summary: heading, selected candidate, cost, command-line options, and ΔE00 of the chain."""
 
     title: str
     chosen: str
@@ -23,66 +23,67 @@ class SummaryRow:
 
 
 def summary_rows(plan: Plan) -> list[SummaryRow]:
-    """In the order of the decisions; whole or sparse follows the lattice, which it belongs to."""
-    told = [_row(decision) for decision in plan.decisions]
+    """Rows in the order of the decisions; the one about cells follows the lattice."""
+    rows = [_decision_row(decision) for decision in plan.decisions]
     place = 1 + next(number for number, each in enumerate(plan.decisions) if each.key == "lattice")
-    return [*told[:place], _cells(plan.final_build, told[place - 1].error), *told[place:]]
+    return [*rows[:place], _cells_row(plan.final_build, rows[place - 1].error), *rows[place:]]
 
 
-def _row(decision: Decision) -> SummaryRow:
+def _decision_row(decision: Decision) -> SummaryRow:
     trial = decision.trial
-    return SummaryRow(
-        decision.title, trial.name, trial.cost_text, trial.cli_args, format_error(trial.error.quantile)
-    )
+    error = format_error(trial.error.quantile)
+    return SummaryRow(decision.title, trial.name, trial.cost_text, trial.cli_args, error)
 
 
-def _cells(made: FinalBuild, error: str) -> SummaryRow:
-    cost = f"{made.points:,} points, {format_size(made.size)}, {made.seconds:.1f} s"
-    if made.is_sparse:
-        told = f"{cost}; all: {format_size(made.whole)}"
-        return SummaryRow("Cells", "the textures' own", told, "--scene IMAGE", error)
-    told = (
-        f"{cost}; the textures' own: {format_size(made.sparse)}, too little saved to answer no other colours"
-    )
-    return SummaryRow("Cells", "all", told, "", error)
+def _cells_row(build: FinalBuild, error: str) -> SummaryRow:
+    cost = f"{build.points:,} points, {format_size(build.size)}, {build.seconds:.1f} s"
+    if build.is_sparse:
+        cost += f"; all cells: {format_size(build.full_size)}"
+        return SummaryRow("Cells", "those of the textures", cost, "--scene IMAGE", error)
+    cost += f"; those of the textures alone: {format_size(build.sparse_size)}, too small a saving"
+    return SummaryRow("Cells", "all", cost, "", error)
 
 
 def verdict(plan: Plan) -> str:
-    """The plan in a sentence."""
-    scene = plan.scene
-    end = "" if plan.within_tolerance else ", which is MORE than is tolerated: plan for a smaller tolerance"
+    """Errors and tolerance in one phrase."""
+    end = "" if plan.within_tolerance else "; the tolerance is EXCEEDED: plan for a smaller one"
     return (
-        f"ΔE00 {format_error(plan.predicted.quantile)} predicted, {format_error(plan.confirmed.quantile)} confirmed by "
-        f"other pixels, {scene.tolerance:g} tolerated{end}"
+        f"ΔE00 {format_error(plan.predicted.quantile)} predicted, {format_error(plan.confirmed.quantile)} confirmed on "
+        f"other pixels, tolerance {plan.scene.tolerance:g}{end}"
     )
 
 
 def describe_error(plan: Plan) -> str:
-    """What the errors are."""
+    """Definition of the errors."""
     scene = plan.scene
-    own, measured = " and of the atlas's materials", ", materials against their measurements"
+    materials = " and of the atlas's entries" if scene.atlases else ""
+    measured = ", entries with their measurements" if scene.atlases else ""
     return (
-        f"ΔE00 that {percent(scene.quantile)} of the textures' pixels{own if scene.atlases else ''} stay within, under "
-        f"the worst of {', '.join(scene.lights)}; pixels against a cube of the finest lattice and the most "
-        f"coefficients at all wavelengths{measured if scene.atlases else ''}"
+        f"ΔE00 of {percent(scene.quantile)} of the textures' pixels{materials} is at most this value, under the worst "
+        f"of {', '.join(scene.lights)}. Pixels are compared with a cube of the finest lattice and the most "
+        f"coefficients at all wavelengths{measured}"
     )
 
 
 def describe_metamerism(plan: Plan) -> str:
-    """What no plan helps with; empty where nobody knows."""
+    """Expected difference between measurements and any answer; empty if it is not known."""
     if plan.expected_error is None:
         return ""
     return (
-        f"RGB alone does not identify a material: measurements of such colours may differ by ΔE00 "
+        "RGB alone does not identify a material: measurements of such colours are expected to differ by ΔE00 "
         f"{format_error(plan.expected_error)} under A from any answer"
     )
 
 
 def percent(share: float) -> str:
-    """97.5 %."""
+    """A share in percent.
+
+    >>> percent(0.975)
+    '97.5 %'
+    """
     return f"{100 * share:.4g} %"
 
 
 def worst_case(error: ErrorSummary) -> str:
-    """textures under FL11."""
+    """Group and light of the worst part, as in "textures under FL11"."""
     return f"{error.worst.group} under {error.worst.light}"

@@ -1,4 +1,4 @@
-"""The fewest wavelengths that show the scene's spectra under its lights, chosen for these."""
+"""Choice of the wavelengths to render at."""
 
 from __future__ import annotations
 
@@ -9,65 +9,59 @@ import numpy as np
 
 from uplift.common.progress import Progress
 from uplift.lookup import Cube
+from uplift.scene.plan.commands import wavelength_args
 from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import EvaluationSet
 from uplift.scene.wavelengths import RenderSetup, Sampling, choose, make_setup
 
 COUNTS = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, 32, 40)
-"""After the last, all that there are."""
-FITTED = 200
-"""Colours of the textures, and as many materials, that wavelengths are chosen for; all are judged."""
+"""Numbers of wavelengths to try before the whole grid."""
+FITTED_COLOURS = 200
+"""Colours of each group that wavelengths are fitted to; all are evaluated."""
 DIGITS = 2
-"""Of a wavelength in nm: what can be typed is what is measured."""
+"""Decimals of a wavelength in nm, so that the measured wavelengths are those of the command line."""
 
 
 def choose_wavelengths(
-    context: PlanContext, question: EvaluationSet, limit: float, cube: Cube
+    context: PlanContext, tests: EvaluationSet, limit: float, cube: Cube
 ) -> tuple[Decision, Sampling]:
-    """What the cube answers, seen at few wavelengths; one set of weights serves all lights."""
-    setting = _setting(context, question, cube)
-    tried: list[Sampling] = []
+    """Choose wavelengths, and weights that serve all lights, for the spectra of the cube."""
+    setup = _render_setup(context, tests, cube)
+    samplings: list[Sampling] = []
 
     def trials() -> Iterator[Trial]:
         for count in COUNTS:
-            context.progress(Progress(f"{count} wavelengths", len(tried), len(COUNTS) + 1))
-            tried.append(_chosen(setting, count))
-            yield _trial(question, cube, tried[-1])
-        tried.append(Sampling(setting.wavelengths, setting.cmfs, setting.lights, setting.powers))
-        yield _trial(question, cube, tried[-1])
+            context.progress(Progress(f"{count} wavelengths", len(samplings), len(COUNTS) + 1))
+            samplings.append(_fit_sampling(setup, count))
+            yield _trial(tests, cube, samplings[-1])
+        samplings.append(Sampling(setup.wavelengths, setup.cmfs, setup.lights, setup.powers))
+        yield _trial(tests, cube, samplings[-1])
 
-    found = decide("wavelengths", "Wavelengths", "wavelengths", limit, trials())
-    return found, tried[found.taken]
-
-
-def format_wavelengths(sampling: Sampling) -> str:
-    """412.5,455,… nm."""
-    return ",".join(f"{wavelength:g}" for wavelength in sampling.wavelengths)
+    decision = decide("wavelengths", "Wavelengths", "wavelengths", limit, trials())
+    return decision, samplings[decision.selected]
 
 
-def _setting(context: PlanContext, question: EvaluationSet, cube: Cube) -> RenderSetup:
-    """Answers for pixels that stand for as many others each, and for the materials."""
+def _render_setup(context: PlanContext, tests: EvaluationSet, cube: Cube) -> RenderSetup:
+    """Spectra of a subsample of the pixels and materials, under the lights of the scene."""
     return make_setup(
-        cube.reflectance(question.thinned(FITTED).rgb),
-        [light.name for light in question.lights],
+        cube.reflectance(tests.subsample(FITTED_COLOURS).rgb),
+        [light.name for light in tests.lights],
         wavelengths=context.sensor.wavelengths,
         observer_name=context.sensor.observer,
     )
 
 
-def _chosen(setting: RenderSetup, count: int) -> Sampling:
-    """Wavelengths to a few digits, no two the same."""
-    found = choose(setting, count=count).sampling
-    least = np.arange(count) / 10**DIGITS
-    apart = np.maximum.accumulate(np.round(found.wavelengths, DIGITS) - least) + least
-    return replace(found, wavelengths=np.round(apart, DIGITS))
+def _fit_sampling(setup: RenderSetup, count: int) -> Sampling:
+    """Wavelengths rounded to `DIGITS`, all distinct."""
+    sampling = choose(setup, count=count).sampling
+    steps = np.arange(count) / 10**DIGITS
+    distinct = np.maximum.accumulate(np.round(sampling.wavelengths, DIGITS) - steps) + steps
+    return replace(sampling, wavelengths=np.round(distinct, DIGITS))
 
 
-def _trial(question: EvaluationSet, cube: Cube, sampling: Sampling) -> Trial:
-    at, count = sampling.wavelengths, len(sampling)
-    error = question.seen(sampling.xyz(cube.reflectance(question.rgb, at)))
-    told = f"{count} samples a ray"
-    return Trial(
-        str(count), count, told, f"--wavelengths {format_wavelengths(sampling)}", {"count": count}, error
-    )
+def _trial(tests: EvaluationSet, cube: Cube, sampling: Sampling) -> Trial:
+    wavelengths, count = sampling.wavelengths, len(sampling)
+    error = tests.error_of_xyz(sampling.xyz(cube.reflectance(tests.rgb, wavelengths)))
+    cost = f"{count} samples per ray"
+    return Trial(str(count), count, cost, wavelength_args(wavelengths), {"count": count}, error)
