@@ -8,8 +8,14 @@ from __future__ import annotations
 
 from uplift.common.errors import Diagnostic
 
-HINTS: dict[str, str] = {
-    "file-exists": "use --force to replace it, or choose another name",
+HINTS = {
+    "codes-out-of-range": "leave out --encoded for linear floats",
+    "encoded-floats-not-mapped": "use --out-of-gamut clip, or --encoding linear",
+    "file-exists": "use --force to replace it, or give another name",
+    "invalid-primaries": "give --primaries as x,y of red, green, blue and white, or the name of an RGB space",
+    "no-moments": "use --store multipliers, or a cube of moments",
+    "rgb-out-of-gamut": "map it inside with --out-of-gamut, or use --encoded for 8-bit codes",
+    "unknown-gamut-mapping": "use --out-of-gamut with error, clip, scale, desaturate or desaturate-oklab",
 }
 """Hint by code of an error or a warning."""
 

@@ -67,9 +67,9 @@ def _check_range(colour: Colour, name: str, line: int, *, encoded: bool, bounded
     elif bounded:
         if not all(-SLACK <= number <= 1 + SLACK for number in colour.numbers):
             problem = f"linear RGB must be in [0, 1], got {values}"
-            raise ColourError(problem, code="out-of-gamut", path=name, line=line)
+            raise ColourError(problem, code="rgb-out-of-gamut", path=name, line=line)
     elif not all(map(math.isfinite, colour.numbers)):
-        raise ColourError(f"{values} is not finite", code="not-finite", path=name, line=line, hint=SYNTAX)
+        raise ColourError(f"{values} is not finite", code="rgb-not-finite", path=name, line=line, hint=SYNTAX)
 
 
 def _rows(file: IO[str], name: str) -> Iterable[tuple[int, list[str]]]:

@@ -1,4 +1,4 @@
-"""Options that were renamed in 0.2.0. The old names are errors that name the new ones."""
+"""Options that were renamed in 0.2.0: the old name is an error whose hint has the new one."""
 
 from __future__ import annotations
 
@@ -7,25 +7,28 @@ import click
 from uplift.common.errors import OptionError
 
 RENAMED = {
-    "--8bit": "--encoded",
-    "--as": "--store",
-    "--at": "--wavelengths",
-    "--constants": "--km-constants",
-    "--drawn": "--samples",
-    "--fill": "--fill-missing",
-    "--incident": "--incidence",
-    "--index": "--refractive-index",
-    "--most": "--max-moments",
-    "--own": "--atlas-materials",
-    "--to": "--format",
-    "--within": "--auto-tolerance",
+    ("build", "--within"): "--auto-tolerance",
+    ("chart", "--own"): "--atlas-materials",
+    ("export", "--fill"): "--fill-missing",
+    ("export", "--to"): "--format",
+    ("mix", "--constants"): "--km-constants",
+    ("mix", "--incident"): "--incidence",
+    ("mix", "--index"): "--refractive-index",
+    ("moments", "--most"): "--max-moments",
+    ("query", "--8bit"): "--encoded",
+    ("query", "--fill"): "--fill-missing",
+    ("stability", "--drawn"): "--samples",
+    ("texture", "--as"): "--store",
+    ("texture", "--fill"): "--fill-missing",
+    ("wavelengths", "--at"): "--wavelengths",
 }
-"""New name by old name."""
+"""New name by command and old name."""
 
 
 def renamed_option(error: click.NoSuchOption) -> OptionError | None:
-    """Return the error for an option that the command knows under a new name, or None."""
-    new = RENAMED.get(error.option_name)
-    if error.ctx is None or new not in {name for param in error.ctx.command.params for name in param.opts}:
+    """Return the error for an option that was renamed, or None for an unknown option."""
+    old = error.option_name
+    new = RENAMED.get((error.ctx.info_name or "", old)) if error.ctx else None
+    if new is None:
         return None
-    return OptionError(f"{error.option_name} was renamed", code="option-renamed", hint=f"use {new}")
+    return OptionError(f"{old} was renamed", code="option-renamed", hint=f"use {new}")

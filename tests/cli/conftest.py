@@ -5,16 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import click
 import pytest
 from click.testing import CliRunner, Result
 from uplift_cli.main import main
+from uplift_cli.output.diagnostics import UsageFailure
+
+from uplift.common.errors import UpliftError
 
 Run = Callable[..., Result]
 
 
 @pytest.fixture
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty working folder; what JAX compiles is kept there too, not in the user's cache."""
+    """An empty working folder; the cache of compiled JAX code is kept out of the user's folder."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path.parent / "compiled"))
     for name in ("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES"):
@@ -24,7 +28,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def run(home: Path) -> Run:
-    """Run ``uplift`` with arguments; anything but an exit code is a failure."""
+    """Run ``uplift`` with arguments; any exception but an exit code is a failure."""
 
     def run(*args: object, code: int = 0, **options: object) -> Result:
         result = CliRunner().invoke(main, [str(arg) for arg in args], catch_exceptions=False, **options)  # type: ignore[arg-type]
@@ -35,19 +39,47 @@ def run(home: Path) -> Run:
 
 
 @pytest.fixture
-def refuse(run: Run) -> Callable[..., str]:
-    """Run ``uplift`` with bad input; the one line it says: what is wrong, and what to do."""
+def refuse(run: Run) -> Callable[..., UpliftError]:
+    """Run ``uplift`` with bad input and return the error, which must be reported on one line with a hint."""
 
-    def refuse(*args: object, **options: object) -> str:
+    def refuse(*args: object, **options: object) -> UpliftError:
         result = run(*args, code=2, **options)
         assert result.stdout == ""
-        errors = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
-        assert len(errors) == 1
-        assert errors[0].startswith("error: ")
-        assert "; " in errors[0]
-        return errors[0].removeprefix("error: ")
+        failure = raised(result)
+        assert isinstance(failure, UsageFailure), result.stderr
+        (line,) = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
+        assert line == f"error: {failure.message}"
+        assert "; " in line
+        assert failure.error.where in line
+        return failure.error
 
     return refuse
+
+
+@pytest.fixture
+def misuse(run: Run) -> Callable[..., str]:
+    """Run ``uplift`` with options that do not fit together; return the message of click's usage error."""
+
+    def misuse(*args: object, **options: object) -> str:
+        result = run(*args, code=2, **options)
+        assert result.stdout == ""
+        failure = raised(result)
+        assert isinstance(failure, click.UsageError), result.stderr
+        return failure.format_message()
+
+    return misuse
+
+
+def raised(result: Result) -> BaseException | None:
+    """Return click's exception behind the exit code."""
+    assert result.exc_info is not None
+    return result.exc_info[1].__context__
+
+
+def warning_lines(result: Result) -> list[str]:
+    """Return the warnings on standard error, without their prefix."""
+    lines = result.stderr.splitlines()
+    return [line.removeprefix("warning: ") for line in lines if line.startswith("warning: ")]
 
 
 @pytest.fixture

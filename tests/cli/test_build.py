@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -10,9 +11,13 @@ import time
 
 import numpy as np
 import pytest
+from uplift_cli.output.hints import hint_for
 
 import uplift
+from tests.helpers import raises
 from uplift.pipeline.options import Options
+
+from .conftest import warning_lines
 
 SMALL = ("--dim", "4", "--moments", "3")
 
@@ -22,28 +27,28 @@ def uplift_process(*args):
     return [sys.executable, "-c", code, *map(str, args)]
 
 
-def test_a_cube_is_written_and_told_in_a_line(run, home):
+def test_cube_is_written_and_summarised_on_one_line(run, home):
     result = run("build", *SMALL, "-o", "cube.uplift")
     assert os.listdir(home) == ["cube.uplift"]
     data = uplift.load(home / "cube.uplift").data
     assert (data.lattice.dim, data.model.count, data.points.round) == (4, 4, None)
-    assert result.stdout.startswith("cube.uplift: 64 points, all within 0.0001 (worst ")
+    assert result.stdout.startswith("cube.uplift: 64 nodes, all within 0.0001 (worst ")
     assert result.stdout.count("\n") == 1
     assert result.stderr == ""
 
 
-def test_help_names_the_lights_that_are_the_default(run):
+def test_help_has_the_default_lights(run):
     assert f"[default: {' '.join(Options.lights)}]" in " ".join(run("build", "--help").stdout.split())
 
 
-def test_colours_that_no_reflectance_has_are_told_of(run, home):
+def test_unrealisable_colours_are_counted(run, home):
     result = run("build", "--dim", "3", "--space", "ITU-R BT.2020", "-o", "wide.uplift")
-    beyond = uplift.load(home / "wide.uplift").data.points.counts()["unrealisable"]
-    assert beyond > 0
-    assert f"all within 0.0001 but {beyond} that no reflectance has the colour of" in result.stdout
-    asked = run("query", "--cube", "wide.uplift", "0", "1", "0").stdout
-    assert "realisable  no: no reflectance has this colour, the answer has less chroma\n" in asked
-    assert "no reflectance" not in run("query", "--cube", "wide.uplift", "0.5", "0.5", "0.5").stdout
+    count = uplift.load(home / "wide.uplift").data.points.counts()["unrealisable"]
+    assert count > 0
+    assert f"{count} unrealisable" in result.stdout
+    query = ("query", "--cube", "wide.uplift")
+    assert "\nrealisable  no" in run(*query, "0", "1", "0").stdout
+    assert "realisable" not in run(*query, "0.5", "0.5", "0.5").stdout
 
 
 @pytest.mark.parametrize(
@@ -56,7 +61,7 @@ def test_colours_that_no_reflectance_has_are_told_of(run, home):
         (("--atlas", "a.csv", "--atlas", "far/b.csv"), "a+b-2.uplift"),
     ],
 )
-def test_the_default_name_is_that_of_atlas_or_space_and_dim(run, home, args, name):
+def test_default_name_has_atlas_or_space_and_dim(run, home, args, name):
     (home / "far").mkdir()
     (home / "a.csv").write_text("name,380,780\ngrey,0.5,0.5\n")
     (home / "far" / "b.csv").write_text("name,380,780\nblack,0.01,0.01\n")
@@ -64,7 +69,7 @@ def test_the_default_name_is_that_of_atlas_or_space_and_dim(run, home, args, nam
     assert {path.name for path in home.iterdir()} - {"a.csv", "far"} == {name}
 
 
-def test_every_option_reaches_the_cube(run, home):
+def test_all_options_are_passed_to_the_build(run, home):
     run("build", "--dim", "3", "--moments", "4", "--warp", "vision", "--axis", "linear", "--space", "Display P3",
         "--illuminant", "D50", "--observer", "CIE 1964 10 Degree Standard Observer", "--light", "A",
         "--light", "FL2", "--threshold", "1e-3", "--debug", "-o", "cube")  # fmt: skip
@@ -78,7 +83,7 @@ def test_every_option_reaches_the_cube(run, home):
     assert data.provenance["options"]["lights"] == ["A", "FL2"]
 
 
-def test_the_sigmoid_is_a_model_too(run, home):
+def test_sigmoid_model(run, home):
     run("build", "--dim", "3", "--model", "sigmoid", "-o", "cube")
     assert uplift.load(home / "cube").data.model.name == "sigmoid"
 
@@ -89,104 +94,117 @@ def test_the_same_input_gives_the_same_bytes(run, home, macbeth):
     assert (home / "a").read_bytes() == (home / "b").read_bytes()
 
 
-def test_entries_out_of_gamut_are_warned_of_and_counted(run, macbeth):
+def test_entries_out_of_gamut_are_left_out_with_a_warning(run, macbeth):
     result = run("build", "--atlas", macbeth, *SMALL, "-o", "cube")
-    lines = result.stderr.splitlines()
-    assert (
-        lines[0]
-        == "warning: entry 'cyan' is left out: its colour (-0.0334, 0.2488, 0.3855) lies outside sRGB"
-    )
-    assert all(line.startswith("warning: ") for line in lines)
+    warnings = warning_lines(result)
+    assert "'cyan'" in warnings[0]
+    assert "(-0.0334, 0.2488, 0.3855)" in warnings[0]
+    assert len(warnings) == result.stderr.count("\n")
     assert "23 atlas entries" in result.stdout
 
 
-def test_quiet_says_nothing_but_warnings(run, macbeth):
+def test_quiet_prints_only_warnings(run, macbeth):
     result = run("build", "-q", *SMALL, "-o", "plain")
     assert (result.stdout, result.stderr) == ("", "")
     result = run("build", "-q", "--atlas", macbeth, *SMALL, "-o", "cube")
     assert result.stdout == ""
-    assert result.stderr.startswith("warning: entry 'cyan'")
-    assert all(line.startswith("warning: ") for line in result.stderr.splitlines())
+    warnings = warning_lines(result)
+    assert "'cyan'" in warnings[0]
+    assert len(warnings) == result.stderr.count("\n")
 
 
-def test_verbose_tells_every_round(run):
+def test_verbose_prints_every_round_and_storing(run):
     result = run("build", "-v", *SMALL, "-o", "cube")
-    rounds = [line for line in result.stderr.splitlines() if line.startswith("round ")]
-    assert rounds[0].startswith("round 0: tried ")
-    assert [line.split(":")[0] for line in rounds] == [f"round {number}" for number in range(len(rounds))]
+    rounds = [line for line in result.stderr.splitlines() if line.startswith("fitting: ")]
+    counts = [int(re.match(r"fitting: (\d+) of 64", line)[1]) for line in rounds]
+    assert counts == sorted(counts)
+    assert counts[-1] == 64
+    assert "\nstoring: 64 of 64" in result.stderr
     assert "\x1b" not in result.stderr
     assert "\r" not in result.stderr
 
 
-def test_existing_files_are_replaced_by_force_alone(run, refuse, home):
+def test_files_are_replaced_only_with_force(run, refuse, home):
     (home / "cube").write_text("mine")
-    assert refuse("build", *SMALL, "-o", "cube").startswith("cube: exists already; use --force")
+    error = refuse("build", *SMALL, "-o", "cube")
+    assert (error.code, error.where) == ("file-exists", "cube")
+    assert "--force" in hint_for(error)
     assert (home / "cube").read_text() == "mine"
     run("build", *SMALL, "-o", "cube", "--force")
     assert uplift.load(home / "cube").data.lattice.dim == 4
 
 
 @pytest.mark.parametrize(
-    ("args", "problem"),
+    ("args", "code"),
     [
-        (("-o", "none/cube"), "none/cube: the folder"),
-        (("-o", "."), ".: is not a regular file; name a file"),
-        (("-o", ""), ".: is not a regular file; name a file"),
-        (("-o", "x" * 300), "xxx"),
-        (("--dim", "1"), "a lattice of dim 1 has no cells; use --dim 2 or more"),
-        (("--dim", "0"), "a lattice of dim 0 has no cells"),
-        (("--dim", "-3"), "a lattice of dim -3 has no cells"),
-        (("--dim", "100000"), "dim 100000 needs about 2.04e+08 GB of memory, this machine has "),
-        (("--dim", "1000000000000"), "dim 1000000000000 needs about 2.04e+29 GB of memory"),
-        (("--illuminant", "D66"), "unknown illuminant 'D66'; did you mean 'D65'"),
-        (("--space", "sRGBB"), "unknown RGB space 'sRGBB'; did you mean 'sRGB'"),
-        (("--space", "no/where"), "unknown RGB space 'no/where'; did you mean"),
-        (("--observer", "CIE 1931"), "unknown observer 'CIE 1931'; did you mean"),
-        (("--light", "FL99"), "unknown illuminant 'FL99'; did you mean 'FL9'"),
-        (("--model", "moment"), "unknown model 'moment'; did you mean 'moments'?"),
-        (("--warp", "bent"), "unknown warp 'bent'; use one of none, vision"),
-        (("--axis", "log"), "unknown axis spacing 'log'; did you mean"),
-        (("--moments", "1"), "coefficients of the moments model must be in [3, 17], got 2"),
-        (("--moments", "17"), "coefficients of the moments model must be in [3, 17], got 18"),
-        (("--threshold", "0"), "a threshold of 0 makes no sense; use 1e-6 to 0.1"),
-        (("--threshold", "nan"), "a threshold of nan makes no sense"),
-        (("--threshold", "1"), "a threshold of 1 makes no sense"),
-        (("--atlas", "none.txt"), "none.txt: cannot be read: no such file"),
-        (("--atlas", "empty.txt"), "empty.txt: the file is empty; name a file that holds atlas entries"),
-        (("--atlas", "."), ".: cannot be read: is a directory"),
+        (("-o", "none/cube"), "folder-not-found"),
+        (("-o", "."), "not-a-file"),
+        (("-o", ""), "not-a-file"),
+        (("-o", "x" * 300), "invalid-path"),
+        (("--dim", "1"), "dim-too-small"),
+        (("--dim", "0"), "dim-too-small"),
+        (("--dim", "-3"), "dim-too-small"),
+        (("--dim", "100000"), "dim-too-large"),
+        (("--dim", "1000000000000"), "dim-too-large"),
+        (("--illuminant", "D66"), "unknown-illuminant"),
+        (("--space", "sRGBB"), "unknown-rgb-space"),
+        (("--space", "no/where"), "unknown-rgb-space"),
+        (("--observer", "CIE 1931"), "unknown-observer"),
+        (("--light", "FL99"), "unknown-illuminant"),
+        (("--model", "moment"), "unknown-model"),
+        (("--warp", "bent"), "unknown-warp"),
+        (("--axis", "log"), "unknown-axis-spacing"),
+        (("--moments", "1"), "coefficients-out-of-range"),
+        (("--moments", "17"), "coefficients-out-of-range"),
+        (("--coefficients", "2"), "coefficients-out-of-range"),
+        (("--coefficients", "18"), "coefficients-out-of-range"),
+        (("--threshold", "0"), "threshold-out-of-range"),
+        (("--threshold", "nan"), "threshold-out-of-range"),
+        (("--threshold", "1"), "threshold-out-of-range"),
+        (("--atlas", "none.txt"), "file-not-found"),
+        (("--atlas", "empty.txt"), "empty-file"),
+        (("--atlas", "."), "not-a-file"),
     ],
 )
-def test_bad_input_is_refused_before_building(refuse, monkeypatch, home, args, problem):
+def test_invalid_input_is_reported_before_the_build(refuse, monkeypatch, home, args, code):
     monkeypatch.setattr("uplift.fit.fit_lattice", lambda *_, **__: pytest.fail("built"))
     (home / "empty.txt").write_text("")
-    assert refuse("build", "--dim", "2", *args).startswith(problem)
+    assert refuse("build", "--dim", "2", *args).code == code
     assert os.listdir(home) == ["empty.txt"]
 
 
-def test_the_dim_proposed_is_one_that_fits(refuse):
-    from uplift.pipeline.options import check_memory
+def test_suggested_dim_fits_into_memory(refuse):
+    from uplift.pipeline.build_cube import Options, check_size
 
-    dim = int(refuse("build", "--dim", "100000").split("use dim=")[1].split()[0])
-    check_memory(Options(dim=dim))
-    with pytest.raises(uplift.UpliftError, match="needs about"):
-        check_memory(Options(dim=dim + 1))
+    error = refuse("build", "--dim", "100000")
+    dim = int(re.search(r"\d+", error.hint)[0])
+    check_size(Options(dim=dim))
+    with raises(uplift.OptionError, "dim-too-large"):
+        check_size(Options(dim=dim + 1))
 
 
-def test_without_a_terminal_there_is_no_progress_bar(home):
+def test_coefficients_count_one_more_than_moments(run, misuse, home):
+    for name, *options in (("a", "--coefficients", 4), ("b", "--moments", 3)):
+        run("build", "--dim", 2, *options, "-o", name)
+    assert (home / "a").read_bytes() == (home / "b").read_bytes()
+    assert "--coefficients" in misuse("build", "--coefficients", 4, "--moments", 3)
+
+
+def test_progress_bars_need_a_terminal(home):
     args = uplift_process("build", *SMALL, "-o", "cube")
     done = subprocess.run(args, cwd=home, capture_output=True, text=True, check=True)
     assert done.stderr == ""
-    assert done.stdout.startswith("cube: 64 points")
+    assert done.stdout.startswith("cube: 64 nodes")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no SIGKILL there")
-def test_a_killed_build_leaves_the_old_cube(home, cubes):
+def test_killed_builds_leave_the_old_cube(home, cubes):
     path = home / "cube.uplift"
     path.write_bytes((cubes / "moments-8.uplift").read_bytes())
     before = path.read_bytes()
     args = uplift_process("build", "-v", "--dim", "48", "-o", path, "--force")
     process = subprocess.Popen(args, cwd=home, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
-    assert process.stderr.readline().startswith("round 0: ")
+    assert process.stderr.readline().startswith("fitting: ")
     time.sleep(0.2)
     assert process.poll() is None
     process.send_signal(signal.SIGKILL)
@@ -197,7 +215,7 @@ def test_a_killed_build_leaves_the_old_cube(home, cubes):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no SIGKILL there")
-def test_a_build_killed_while_writing_leaves_the_old_cube(home, cubes):
+def test_builds_killed_while_writing_leave_the_old_cube(home, cubes):
     path = home / "cube.uplift"
     path.write_bytes((cubes / "moments-8.uplift").read_bytes())
     before = path.read_bytes()
@@ -215,4 +233,4 @@ def test_a_build_killed_while_writing_leaves_the_old_cube(home, cubes):
     done = subprocess.run([sys.executable, "-c", code], cwd=home, capture_output=True)
     assert done.returncode == -signal.SIGKILL
     assert path.read_bytes() == before
-    assert len(os.listdir(home)) == 2  # the half-written file bears another name
+    assert len(os.listdir(home)) == 2  # the incomplete file has another name

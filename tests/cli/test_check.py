@@ -15,79 +15,81 @@ from uplift.report.regression import LIMITS
 
 @pytest.fixture
 def stored(home):
-    """A cube of dim 3 without an atlas, built here."""
+    """A cube of dim 3 without an atlas."""
     uplift.build(dim=3, coefficients=4).save(home / "cube.uplift")
     return home / "cube.uplift"
 
 
 @pytest.fixture
-def spoilt(home, stored):
-    """The same cube, one coefficient nudged, its digest right."""
+def modified(home, stored):
+    """The same cube with one changed coefficient and a valid digest."""
     data = uplift.load(stored).data
     coefficients = data.points.coefficients.copy()
     coefficients[13, 2] += 1e-3
-    write(with_points(data, coefficients=coefficients), home / "spoilt[red].uplift")
-    return home / "spoilt[red].uplift"
+    write(with_points(data, coefficients=coefficients), home / "modified[red].uplift")
+    return home / "modified[red].uplift"
 
 
-def test_a_cube_as_it_was_built_passes(run, stored):
+def test_unchanged_cube_passes(run, stored):
     result = run("check", stored)
     assert "passed" in result.stdout
     assert "FAILED" not in result.stdout
     assert result.stderr == ""
 
 
-def test_a_spoilt_cube_fails_with_code_1_and_is_left_alone(run, spoilt):
-    before = spoilt.read_bytes()
-    result = run("check", spoilt, code=1)
+def test_modified_cube_fails_with_exit_code_1_and_stays(run, modified):
+    before = modified.read_bytes()
+    result = run("check", modified, code=1)
     assert "FAILED" in result.stdout
-    assert "spoilt[red].uplift" in result.stdout
+    assert "modified[red].uplift" in result.stdout
     assert result.stderr == ""
-    assert spoilt.read_bytes() == before
+    assert modified.read_bytes() == before
 
 
-def test_json_names_every_measure_and_what_failed(run, stored, spoilt):
-    good, bad = json.loads(run("check", stored, spoilt, "--format", "json", code=1).stdout)
+def test_json_has_measures_and_failures(run, stored, modified):
+    good, bad = json.loads(run("check", stored, modified, "--format", "json", code=1).stdout)
     assert (good["cube"], good["passed"], good["failures"]) == (str(stored), True, [])
     assert good["measures"].keys() == LIMITS.keys()
     assert good["status"]["stored"] == good["status"]["rebuilt"]
-    assert (bad["cube"], bad["passed"]) == (str(spoilt), False)
+    assert (bad["cube"], bad["passed"]) == (str(modified), False)
     assert "spectra_max" in bad["failures"]
 
 
-def test_quiet_says_it_by_the_code_alone(run, stored, spoilt):
-    for path, code in ((stored, 0), (spoilt, 1)):
+def test_quiet_prints_nothing(run, stored, modified):
+    for path, code in ((stored, 0), (modified, 1)):
         result = run("check", "-q", path, code=code)
         assert (result.stdout, result.stderr) == ("", "")
 
 
-def test_verbose_tells_the_rounds(run, stored):
+def test_verbose_prints_progress(run, stored):
     result = run("check", "-v", stored)
-    assert result.stderr.startswith("round 0: tried ")
+    assert result.stderr.startswith("fitting: ")
+    assert "storing: " in result.stderr
 
 
-def test_update_replaces_what_differs_and_nothing_else(run, stored, spoilt):
+def test_update_replaces_only_cubes_that_differ(run, stored, modified):
     before = stored.read_bytes()
-    result = run("check", "--update", stored, spoilt)
-    assert result.stderr == f"{spoilt}: replaced\n"
+    result = run("check", "--update", stored, modified)
+    assert result.stderr == f"{modified}: replaced\n"
     assert stored.read_bytes() == before
-    assert spoilt.read_bytes() == before
-    run("check", spoilt)
+    assert modified.read_bytes() == before
+    run("check", modified)
 
 
-def test_atlases_are_looked_for_in_the_folders_named(run, refuse, home, macbeth, recwarn):
+def test_atlases_are_searched_for_in_given_folders(run, refuse, home, macbeth, recwarn):
     with pytest.warns(uplift.UpliftWarning):
         uplift.build(macbeth, dim=3, coefficients=4).save(home / "cube.uplift")
-    message = refuse("check", "cube.uplift")
-    assert message.startswith(
-        "cube.uplift: its atlas 'macbeth.txt' is not to be found; name the folder with --atlas"
-    )
+    error = refuse("check", "cube.uplift")
+    assert (error.code, str(error.path)) == ("atlas-not-found", "cube.uplift")
+    assert "macbeth.txt" in error.problem
     (home / "there").mkdir()
     shutil.copy(macbeth, home / "there")
     assert "passed" in run("check", "cube.uplift", "--atlas-dir", "there").stdout
     (home / "there" / "macbeth.txt").write_text("Entry ID: changed\n")
-    assert "has changed" in refuse("check", "cube.uplift", "--atlas-dir", "there")
+    assert refuse("check", "cube.uplift", "--atlas-dir", "there").code == "atlas-changed"
 
 
-def test_one_file_that_is_no_cube_refuses_all_before_building(refuse, stored):
-    assert refuse("check", stored, "none.uplift") == "none.uplift: no such file; 'uplift build' makes cubes"
+def test_invalid_cubes_are_reported_before_any_build(refuse, stored, monkeypatch):
+    monkeypatch.setattr("uplift.pipeline.rebuild.rebuild", lambda *_, **__: pytest.fail("rebuilt"))
+    error = refuse("check", stored, "none.uplift")
+    assert (error.code, error.where) == ("file-not-found", "none.uplift")

@@ -5,12 +5,14 @@ from __future__ import annotations
 import dataclasses
 import json
 
+from uplift_cli.output.hints import hint_for
+
 import uplift
 from tests.helpers import with_points
 from uplift.cube import digest, write
 
 
-def test_json_holds_the_facts(run, cubes):
+def test_json_has_all_fields(run, cubes):
     path = cubes / "moments-8-macbeth.uplift"
     data = uplift.load(path).data
     result = run("info", path, "--format", "json")
@@ -32,9 +34,9 @@ def test_json_holds_the_facts(run, cubes):
     assert facts["digest"] == digest(data)
 
 
-def test_without_a_file_it_is_the_package_s_own_cube(run):
+def test_default_is_the_packaged_cube(run):
     assert json.loads(run("info", "--format", "json").stdout)["digest"] == digest(uplift.load().data)
-    assert "the package's own cube" in run("info").stdout
+    assert "packaged cube" in run("info").stdout
 
 
 def test_without_debug_information_there_are_no_rounds(run, small_cube, home):
@@ -43,7 +45,7 @@ def test_without_debug_information_there_are_no_rounds(run, small_cube, home):
     assert (facts["debug"], facts["rounds"]) == (False, None)
 
 
-def test_the_table_names_file_entries_and_options(run, cubes):
+def test_table_has_file_entries_and_options(run, cubes):
     path = cubes / "moments-8-macbeth.uplift"
     text = " ".join(run("info", path).stdout.split())
     for part in (
@@ -58,7 +60,7 @@ def test_the_table_names_file_entries_and_options(run, cubes):
     assert "\x1b" not in text
 
 
-def test_brackets_in_names_are_shown_as_they_are(run, small_cube, home):
+def test_names_with_brackets_are_not_markup(run, small_cube, home):
     names = ("[/red]", "[bold]tile", *small_cube.data.atlas.names[2:])
     atlas = dataclasses.replace(small_cube.data.atlas, names=names)
     write(dataclasses.replace(small_cube.data, atlas=atlas), home / "a[red].uplift")
@@ -72,9 +74,11 @@ def test_brackets_in_names_are_shown_as_they_are(run, small_cube, home):
     assert "[bold]tile" in text
 
 
-def test_what_is_no_cube_is_refused(refuse, home, repository):
-    assert refuse("info", "none.uplift") == "none.uplift: no such file; 'uplift build' makes cubes"
-    assert refuse("info", home) == f"{home}: no such file; 'uplift build' makes cubes"
-    assert "is not a cube file" in refuse("info", repository / "README.md")
+def test_invalid_files_are_errors(refuse, home, repository):
+    error = refuse("info", "none.uplift")
+    assert (error.code, error.where) == ("file-not-found", "none.uplift")
+    assert "uplift build" in hint_for(error)
+    assert refuse("info", home).code == "file-not-found"
+    assert refuse("info", repository / "README.md").code == "not-a-cube"
     (home / "cut.uplift").write_bytes((repository / "cubes" / "sigmoid-8.uplift").read_bytes()[:-1])
-    assert "is not a cube file, or is cut short" in refuse("info", "cut.uplift")
+    assert refuse("info", "cut.uplift").code == "not-a-cube"

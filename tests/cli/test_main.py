@@ -1,22 +1,28 @@
-"""What all commands share: help, exit codes, one line an error."""
+"""Behaviour that all commands share: help, exit codes, errors and warnings on one line."""
 
 from __future__ import annotations
 
 import importlib
+import json
 import subprocess
 import sys
 import warnings
 
+import click
 import pytest
 from click.testing import CliRunner
 from uplift_cli.main import COMMANDS, main
+from uplift_cli.output.hints import HINTS
+from uplift_cli.params.renamed import RENAMED
 
 import uplift
 from uplift.common.errors import UpliftError, UpliftWarning
 
+from .conftest import warning_lines
+
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_every_command_s_help_has_a_sentence_and_examples(run, name):
+def test_help_has_a_sentence_and_examples(run, name):
     usage, sentence, *rest = run(name, "--help").stdout.split("\n\n")
     assert usage.startswith(f"Usage: main {name} ")
     assert sentence.strip().endswith(".")
@@ -28,13 +34,19 @@ def test_h_is_help(run):
     assert run("query", "-h").stdout == run("query", "--help").stdout
 
 
-def test_the_group_s_own_help_has_examples():
+def test_help_lists_every_command_under_a_heading(run):
+    lines = run("--help").stdout.splitlines()
+    for name in COMMANDS:
+        assert sum(line.startswith(f"  {name} ") for line in lines) == 1
+
+
+def test_help_of_the_group_has_examples():
     examples = main.help.split("\b\n")[1].split("\n\n")[0].splitlines()
     assert examples[0].strip() == "Examples:"
     assert all(line.strip().startswith("uplift ") for line in examples[1:])
 
 
-def test_the_version_is_the_package_s(run):
+def test_version(run):
     assert run("--version").stdout == f"uplift {uplift.__version__}\n"
 
 
@@ -52,48 +64,113 @@ def test_the_version_is_the_package_s(run):
         ("info", "a", "b"),
     ],
 )
-def test_wrong_usage_is_click_s_error_with_code_2(run, args):
-    result = run(*args, code=2)
-    assert result.stdout == ""
-    assert "Error: " in result.stderr
-    assert "Traceback" not in result.stderr
+def test_wrong_usage_is_a_click_error_with_exit_code_2(misuse, args):
+    misuse(*args)
 
 
-def test_errors_of_the_library_are_one_line_with_code_2(monkeypatch, run):
-    def fail(path):
-        raise UpliftError("is bad", path="x", line=3, hint="make it good")
+@pytest.fixture
+def failing(monkeypatch):
+    """Make ``uplift info x`` raise an error."""
 
-    monkeypatch.setattr("uplift.lookup.load", fail)
+    def failing(error):
+        def fail(path):
+            raise error
+
+        monkeypatch.setattr("uplift.lookup.load", fail)
+
+    return failing
+
+
+def test_errors_are_one_line_with_exit_code_2(failing, run):
+    failing(UpliftError("is bad", code="no-such-code", path="x", line=3, hint="make it good"))
     result = run("info", "x", code=2)
     assert (result.stdout, result.stderr) == ("", "error: x:3: is bad; make it good\n")
 
 
-def test_other_errors_are_not_hidden(monkeypatch, home):
-    def fail(path):
-        raise RuntimeError("a fault of ours")
+def test_hints_of_the_command_line_replace_those_of_the_library(failing, run):
+    failing(UpliftError("exists already", code="file-exists", path="x", hint="pass force=True"))
+    assert run("info", "x", code=2).stderr == f"error: x: exists already; {HINTS['file-exists']}\n"
 
-    monkeypatch.setattr("uplift.lookup.load", fail)
+
+def test_json_output_has_json_errors(failing, run):
+    failing(UpliftError("exists already", code="file-exists", path="x", hint="pass force=True"))
+    result = run("info", "x", "--format", "json", code=2)
+    assert result.stdout == ""
+    assert json.loads(result.stderr) == {
+        "error": {
+            "code": "file-exists",
+            "where": "x",
+            "problem": "exists already",
+            "hint": HINTS["file-exists"],
+        }
+    }
+    assert result.stderr.count("\n") == 1
+
+
+def test_other_exceptions_are_not_caught(failing, home):
+    failing(RuntimeError("a bug"))
     result = CliRunner().invoke(main, ["info", "x"])
     assert isinstance(result.exception, RuntimeError)
 
 
-def test_warnings_of_the_library_are_one_line_each_and_others_none(monkeypatch, run):
+def test_warnings_of_the_library_are_one_line_each_and_others_are_ignored(monkeypatch, run):
     def load(path):
-        warnings.warn("entry 'a' is left out", UpliftWarning, stacklevel=2)
-        warnings.warn("entry 'a' is left out", UpliftWarning, stacklevel=2)
+        warnings.warn(UpliftWarning("is left out", code="file-exists", entry="a"), stacklevel=2)
+        warnings.warn(UpliftWarning("is left out", code="no-such-code", entry="a"), stacklevel=2)
         with warnings.catch_warnings():
             warnings.simplefilter("always")
             warnings.warn("internal", RuntimeWarning, stacklevel=2)
-        return found
+        return cube
 
-    found = uplift.load()
+    cube = uplift.load()
     monkeypatch.setattr("uplift.lookup.load", load)
     before = warnings.showwarning
-    assert run("info").stderr == 2 * "warning: entry 'a' is left out\n"
+    result = run("info")
+    assert warning_lines(result) == [
+        f"entry 'a': is left out; {HINTS['file-exists']}",
+        "entry 'a': is left out",
+    ]
+    assert result.stderr.count("\n") == 2
     assert warnings.showwarning is before
 
 
-def test_the_command_line_goes_by_its_installed_name_alone(repository):
+def commands(command=main, path=()):
+    """Yield the words and the command of all commands, subcommands included."""
+    with click.Context(main) as context:
+        for name in command.list_commands(context):
+            each = command.get_command(context, name)
+            yield (*path, name), each
+            if isinstance(each, click.Group):
+                yield from commands(each, (*path, name))
+
+
+def options(command):
+    return {option for param in command.params for option in param.opts}
+
+
+@pytest.mark.parametrize(("key", "new"), RENAMED.items())
+def test_renamed_options_are_errors_that_name_the_new_option(refuse, key, new):
+    name, old = key
+    ((words, command),) = [each for each in commands() if each[0][-1] == name]
+    assert new in options(command)
+    assert old not in options(command)
+    error = refuse(*words, old, "1")
+    assert error.code == "option-renamed"
+    assert old in error.problem
+    assert new in error.hint
+
+
+def test_renamed_options_of_other_commands_are_unknown(misuse):
+    assert "--within" in misuse("info", "--within", "1")
+
+
+def test_hints_name_options_that_exist():
+    known = {option for _, command in commands() for option in options(command)}
+    for hint in HINTS.values():
+        assert {word.strip(",.;:'()") for word in hint.split() if word.startswith("--")} <= known, hint
+
+
+def test_command_line_is_importable_only_by_its_installed_name(repository):
     importlib.import_module("uplift_cli")
     done = subprocess.run(
         [sys.executable, "-c", "import cli"], cwd=repository, capture_output=True, text=True

@@ -1,4 +1,4 @@
-"""``uplift palette --html``: the light dial."""
+"""``uplift palette --html``: the relighting page."""
 
 from __future__ import annotations
 
@@ -23,37 +23,35 @@ def spec(home):
     return path
 
 
-def test_a_page_is_written_with_the_package_s_picture(run, spec, home):
-    assert "two.html: light dial" in run("palette", spec, "--html", "two.html").stderr
+def test_default_picture(run, spec, home):
+    assert run("palette", spec, "--html", "two.html").stderr.startswith("two.html: ")
     text = (home / "two.html").read_text(encoding="utf-8")
     assert "<title>two – uplift palette</title>" in text
     assert 'width="512" height="512"' in text
     assert ">old brick</button>" in text
 
 
-def test_a_page_is_written_with_a_picture_of_one_s_own(run, spec, home):
+def test_picture_from_an_image_of_labels(run, spec, home):
     labels = ("--label", "leaf=#ff0000", "--label", "old brick=#0000ff")
     run("palette", spec, "--html", "two.html", "--image", "labels.png", *labels)
     assert 'width="3" height="1"' in (home / "two.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "code"),
     [
-        (("--image", "labels.png"), "--image without --html; name the page"),
-        (("--html", "a.html", "--label", "leaf=#ff0000"), "--label without --image; name the image"),
-        (
-            ("--html", "a.html", "--image", "labels.png", "--label", "leaf"),
-            "label 'leaf' has no colour; write",
-        ),
-        (("--html", "a.html", "--image", "labels.png"), "2 pixels have no material: #"),
+        (("--image", "labels.png"), "image-without-page"),
+        (("--html", "a.html", "--label", "leaf=#ff0000"), "label-without-image"),
+        (("--html", "a.html", "--image", "labels.png", "--label", "leaf"), "label-unreadable"),
+        (("--html", "a.html", "--image", "labels.png"), "unlabelled-pixels"),
         (
             ("--html", "a.html", "--image", "labels.png", "--label", "leaf=#1", "--label", "leaf=#2"),
-            "two colours for 'leaf'; give one",
+            "duplicate-label",
         ),
-        (("--html", "two.toml"), "two.toml: exists already; use --force"),
+        (("--html", "two.toml"), "file-exists"),
     ],
 )
-def test_what_cannot_be_meant_is_refused_before_any_work(refuse, spec, home, arguments, told):
-    assert told in refuse("palette", spec, *arguments)
+def test_invalid_input_is_reported_before_any_work(refuse, spec, home, monkeypatch, arguments, code):
+    monkeypatch.setattr("uplift.design.palette.design", lambda *_: pytest.fail("designed"))
+    assert refuse("palette", spec, *arguments).code == code
     assert not (home / "a.html").exists()

@@ -1,4 +1,4 @@
-"""``uplift`` as a process of its own."""
+"""``uplift`` as a separate process."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import sys
 import pytest
 
 
-def test_a_closed_pipe_is_no_error():
+def test_closed_pipe_is_not_an_error():
     command = f"{sys.executable} -m uplift_cli query '#cc3319' --format json | head -c 5"
     out = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=True)
     assert out.stdout == '{"rgb'
     assert out.stderr == ""
 
 
-def test_it_runs_as_a_module():
+def test_package_runs_as_a_module():
     out = subprocess.run(
         [sys.executable, "-m", "uplift_cli", "query", "0", "0", "0", "--format", "json"],
         capture_output=True,
@@ -28,9 +28,13 @@ def test_it_runs_as_a_module():
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no such device")
 @pytest.mark.parametrize("style", ["table", "json", "csv"])
-def test_a_full_disk_under_standard_output_is_an_error_in_a_line(style):
+def test_full_disk_is_reported_on_one_line(style):
     command = [sys.executable, "-m", "uplift_cli", "query", "0", "0", "0", "--format", style]
     with open("/dev/full", "w") as full:
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
     assert done.returncode == 2
-    assert done.stderr == "error: standard output cannot be written: No space left on device; make room\n"
+    if style == "json":
+        assert json.loads(done.stderr)["error"]["code"] == "disk-full"
+    else:
+        assert done.stderr.startswith("error: standard output cannot be written: No space left on device; ")
+    assert done.stderr.count("\n") == 1

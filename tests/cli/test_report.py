@@ -1,4 +1,4 @@
-"""``uplift report`` from the outside."""
+"""``uplift report``."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json
 import shutil
 
 import pytest
+from uplift_cli.output.hints import hint_for
 
 import uplift
 
@@ -20,9 +21,9 @@ def cube(home, cubes, macbeth):
     return "macbeth-8.uplift"
 
 
-def test_a_page_beside_the_caller(run, home, cube):
+def test_page_is_written_to_the_working_folder(run, home, cube):
     result = run("report", cube, *SMALL)
-    assert result.stdout.startswith("macbeth-8.html: 0 points over the threshold, 23 entries, ΔE00 mean ")
+    assert result.stdout.startswith("macbeth-8.html: 0 nodes over the threshold, 23 entries, ")
     assert result.stdout.count("\n") == 1
     assert result.stderr == ""
     text = (home / "macbeth-8.html").read_text(encoding="utf-8")
@@ -31,9 +32,10 @@ def test_a_page_beside_the_caller(run, home, cube):
     assert str(home) not in text
 
 
-def test_an_old_page_is_kept_unless_forced(run, refuse, home, cube):
+def test_pages_are_replaced_only_with_force(run, refuse, home, cube):
     (home / "macbeth-8.html").write_text("old")
-    assert refuse("report", cube).startswith("macbeth-8.html: exists already; use --force")
+    error = refuse("report", cube)
+    assert (error.code, error.where) == ("file-exists", "macbeth-8.html")
     assert (home / "macbeth-8.html").read_text() == "old"
     run("report", cube, *SMALL, "--force")
     assert (home / "macbeth-8.html").read_text(encoding="utf-8") != "old"
@@ -55,19 +57,20 @@ def test_default_lights(run, cube):
     assert found["lights"] == ["D65", "A", "FL2", "FL7", "FL11", "LED-B3"]
 
 
-def test_another_atlas_judges_colours_that_the_cube_has_not_seen(run, repository, cube):
+def test_another_atlas_tests_unseen_colours(run, repository, cube):
     other = repository / "atlases" / "babelcolor.txt"
     found = json.loads(run("report", cube, *SMALL, "--atlas", other, "--format", "json").stdout)
     assert (found["atlas"]["own"], found["atlas"]["files"]) == (False, ["babelcolor.txt"])
     assert found["entries"][0]["rms_lattice"] is None
     assert found["crowding"]["against"] == "stored"
     assert found["standard_error"]["calibration"]["count"] == len(found["entries"])
-    told = run("report", cube, *SMALL, "--atlas", other).stdout
-    assert ", under A " in told
-    assert " predicted (root mean squares), " in told
+    calibration = found["standard_error"]["calibration"]
+    summary = run("report", cube, *SMALL, "--atlas", other, "--force").stdout
+    assert " under A " in summary
+    assert f"{calibration['stated']:.2f}" in summary
 
 
-def test_the_cube_s_own_atlas_may_be_named(run, macbeth, cubes, home):
+def test_atlas_of_the_cube_may_be_given(run, macbeth, cubes, home):
     path = cubes / "moments-8-macbeth.uplift"
     found = json.loads(run("report", path, *SMALL, "--atlas", macbeth, "--format", "json").stdout)
     assert found["atlas"]["own"]
@@ -75,29 +78,28 @@ def test_the_cube_s_own_atlas_may_be_named(run, macbeth, cubes, home):
 
 def test_a_cube_without_an_atlas(run, cubes, home):
     result = run("report", cubes / "sigmoid-8.uplift", *SMALL)
-    assert result.stdout == "sigmoid-8.html: 0 points over the threshold\n"
+    assert result.stdout == "sigmoid-8.html: 0 nodes over the threshold\n"
 
 
-def test_atlases_are_looked_for_as_check_does(run, refuse, home, cube):
+def test_atlases_are_searched_for_in_given_folders(run, refuse, home, cube):
     (home / "there").mkdir()
     shutil.move(home / "macbeth.txt", home / "there")
-    message = refuse("report", cube)
-    assert message.startswith(
-        f"{cube}: its atlas 'macbeth.txt' is not to be found; name the folder with --atlas-dir"
-    )
+    error = refuse("report", cube)
+    assert (error.code, error.where) == ("atlas-not-found", cube)
+    assert "--atlas-dir" in hint_for(error)
     run("report", cube, *SMALL, "--atlas-dir", "there")
     (home / "there" / "macbeth.txt").write_text("Entry ID: changed\n")
-    assert "has changed" in refuse("report", cube, "--atlas-dir", "there", "--force")
+    assert refuse("report", cube, "--atlas-dir", "there", "--force").code == "atlas-changed"
 
 
-def test_bad_input_is_refused_and_nothing_written(refuse, home, cube):
-    (home / "text.uplift").write_text("no cube")
+def test_invalid_input_is_an_error_and_nothing_is_written(refuse, home, cube):
+    (home / "text.uplift").write_text("not a cube")
     before = {path.name for path in home.iterdir()}
-    assert refuse("report", "none.uplift").startswith("none.uplift: no such file; ")
-    assert refuse("report", "text.uplift").startswith("text.uplift: ")
-    assert refuse("report", cube, "--light", "D66").startswith("unknown illuminant 'D66'; did you mean")
-    assert refuse("report", cube, "--atlas", "none.txt").startswith("none.txt: cannot be read")
-    assert "does not exist" in refuse("report", cube, "-o", "nowhere/page.html")
+    assert refuse("report", "none.uplift").code == "file-not-found"
+    assert refuse("report", "text.uplift").code == "not-a-cube"
+    assert refuse("report", cube, "--light", "D66").code == "unknown-illuminant"
+    assert refuse("report", cube, "--atlas", "none.txt").code == "file-not-found"
+    assert refuse("report", cube, "-o", "nowhere/page.html").code == "folder-not-found"
     assert {path.name for path in home.iterdir()} == before
 
 
@@ -121,7 +123,7 @@ def test_a_broken_write_leaves_nothing(run, home, cube, monkeypatch):
     assert not (home / "macbeth-8.html").exists()
 
 
-def test_skipped_entries_of_another_atlas_are_told(run, home, cube):
+def test_entries_of_another_atlas_are_assessed(run, home, cube):
     text = "name,400,500,600,700\ngrey,0.4,0.4,0.4,0.4\n"
     (home / "paints.csv").write_text(text)
     assert uplift.read_atlas(home / "paints.csv").names == ("grey",)

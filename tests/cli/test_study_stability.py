@@ -5,13 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 
 import matplotlib.image
 
 NARROW = ("--dims", 4, "--coefficients", "9", "--models", "moments", "--spaces", "sRGB", "--samples", 1)
 
 
-def test_a_map_of_little(run, home, repository):
+def test_all_files_are_written(run, home, repository):
     tcs = repository / "atlases" / "tcs.txt"
     few = ("--thresholds", "1e-3,1e-4", "--peer-dims", "2", "--atlas", tcs, "--atlases", "none,tcs")
     rest = (*few, "-o", "out", "--format", "csv")
@@ -28,19 +29,19 @@ def test_a_map_of_little(run, home, repository):
     assert matplotlib.image.imread(home / "out" / "stability.png").std() > 0.05
 
 
-def test_the_table_says_what_failed(run):
+def test_table_counts_failures(run):
     args = ("--thresholds", "1e-4", "--peer-dims", "2", "--samples", 0, "--atlases", "none")
     result = run("study", "stability", *NARROW[:-2], *args)
     lines = result.stdout.splitlines()
     assert any("in c" in line and "moments 9" in line for line in lines)
-    assert lines[-1].startswith("4 builds, ")
-    assert "unfitted in" in lines[-1]
+    assert re.fullmatch(r"4 builds, \d+ realisable nodes: \d+ unfitted in \d+ builds", lines[-1])
 
 
-def test_what_is_no_list_is_refused(run, refuse):
-    assert "'4,x' is no list" in run("study", "stability", "--dims", "4,x", code=2).stderr
-    message = refuse("study", "stability", *NARROW, "--atlases", "none,moon")
-    assert message.startswith("unknown atlas 'moon'")
+def test_invalid_lists_are_errors(misuse, refuse):
+    assert "'4,x'" in misuse("study", "stability", "--dims", "4,x")
+    error = refuse("study", "stability", *NARROW, "--atlases", "none,moon")
+    assert error.code == "unknown-atlas"
+    assert "'moon'" in error.problem
 
 
 def test_sensitivity_of_a_stored_cube(run, home, cubes):
@@ -48,12 +49,14 @@ def test_sensitivity_of_a_stored_cube(run, home, cubes):
     args = ("study", "sensitivity", cube, "--entries", 1)
     record = json.loads(run(*args, "-o", "out", "--format", "json").stdout)
     assert json.loads((home / "out" / "sensitivity.json").read_text(encoding="utf-8")) == record
-    assert [one["change"] for one in record["changes"]][3:] == ["dark skin wrong", "dark skin left out"]
+    changes = [one["change"] for one in record["changes"]]
+    assert len(changes) == 5
+    assert all("dark skin" in change for change in changes[3:])
     for name in ("steepness", "locality"):
         assert matplotlib.image.imread(home / "out" / f"sensitivity-{name}.png").std() > 0.05
 
 
-def test_sensitivity_of_the_package_s_own_cube_has_no_atlas_to_change(run, home):
+def test_sensitivity_of_the_packaged_cube_has_no_changes_of_an_atlas(run, home):
     result = run("study", "sensitivity", "-o", "out")
     assert "Lipschitz constant" in result.stdout
     assert "left out" not in result.stdout

@@ -1,90 +1,84 @@
-"""``uplift texture`` from the outside."""
+"""``uplift texture``."""
 
 from __future__ import annotations
+
+import re
 
 import numpy as np
 import OpenEXR
 import pytest
+from uplift_cli.output.hints import hint_for
 
 from tests.io.texture.conftest import planes, write_exr
+
+from .conftest import raised, warning_lines
 
 
 @pytest.fixture
 def frames(home):
-    """Three frames of 6 × 5 pixels, one of them too bright."""
+    """Three frames of 6 × 5 pixels, the second out of gamut."""
     rng = np.random.default_rng(0)
     for frame in range(3):
         write_exr(home / f"shot.{frame}.exr", planes(rng.random((6, 5, 3)).astype(np.float32) + (frame == 1)))
     return home
 
 
-def test_one_image(run, frames, cubes):
+def test_one_image(run, refuse, frames, cubes):
     options = ("--cube", cubes / "moments-8.uplift", "--store", "moments")
     result = run("texture", "shot.0.exr", "out.exr", *options)
     assert result.output.startswith("out.exr: 1 texture, 30 pixels, 0.0 MB, ")
     assert "moment.08" in OpenEXR.File("out.exr", separate_channels=True).channels()
-    assert "exists already" in run("texture", "shot.0.exr", "out.exr", *options, code=2).stderr
+    assert refuse("texture", "shot.0.exr", "out.exr", *options).code == "file-exists"
     result = run("texture", "shot.0.exr", "out.exr", *options, "--resume")
-    assert result.output.startswith("out.exr: 0 textures, 1 there already, ")
+    assert result.output.startswith("out.exr: 0 textures, 1 skipped, ")
     assert run("texture", "shot.0.exr", "out.exr", *options, "--force", "-q").output == ""
 
 
-def test_a_sequence_goes_on_where_one_image_is_bad(run, frames, cubes):
-    (frames / "shot.2.exr").write_text("no image")
+def test_sequences_continue_after_an_invalid_image(run, frames, cubes):
+    (frames / "shot.2.exr").write_text("not an image")
     result = run(
         "texture", "shot.*.exr", "out", "--cube", cubes / "moments-8.uplift", "--store", "moments",
         "--processes", 1, code=2,
     )  # fmt: skip
     assert result.stdout.startswith("out: 2 textures, 60 pixels, ")
-    warning, error = result.stderr.splitlines()
-    assert warning.startswith("warning: ")
-    assert "shot.1.exr: " in warning
-    assert " of 30 pixels lie outside [0, 1]: clamped, a component by up to 0.9" in warning
-    assert error.startswith("error: ")
-    assert "shot.2.exr: " in error
+    (warning,) = warning_lines(result)
+    assert re.search(r"shot\.1\.exr: \d+ of 30 pixels .* by up to 0\.9", warning)
+    error = raised(result).error
+    assert (error.code, error.path.name) == ("unreadable-image", "shot.2.exr")
     assert sorted(path.name for path in (frames / "out").iterdir()) == ["shot.0.exr", "shot.1.exr"]
 
 
 @pytest.mark.parametrize(
-    ("words", "problem"),
+    ("words", "code"),
     [
-        (("none.exr", "out.exr"), "none.exr: no such file; use an EXR, PNG, JPEG or TIFF image"),
-        (("none*.exr", "out"), "no file is named like 'none*.exr'; check the pattern"),
-        (("shot.0.exr", "out.png"), "out.png: textures are OpenEXR; name the file .exr, or a folder"),
-        (("shot.0.exr", "shot.1.exr", "out.exr"), "out.exr: is one file, for 2 images; name a folder"),
-        (
-            ("shot.0.exr", "shot.1.exr", "shot.2.exr/out"),
-            "is no folder, and 2 images need one; name a folder",
-        ),
-        (
-            ("shot.0.exr", "a.exr", "--store", "moments", "--wavelengths", "500"),
-            "moments have no wavelengths",
-        ),
-        (("shot.0.exr", "a.exr", "--wavelengths", "500:400:5"), "wavelengths '500:400:5' are not clear"),
-        (("shot.0.exr", "a.exr", "--cube", "none.uplift"), "none.uplift"),
-        (
-            ("shot.0.exr", "a.exr", "--store", "multipliers", "--depth", "half"),
-            "depth of multipliers must be float, got 'half'",
-        ),
+        (("none.exr", "out.exr"), "file-not-found"),
+        (("none*.exr", "out"), "no-match"),
+        (("shot.0.exr", "out.png"), "unknown-suffix"),
+        (("shot.0.exr", "shot.1.exr", "out.exr"), "not-a-folder"),
+        (("shot.0.exr", "shot.1.exr", "shot.2.exr/out"), "not-a-folder"),
+        (("shot.0.exr", "a.exr", "--store", "moments", "--wavelengths", "500"), "wavelengths-not-applicable"),
+        (("shot.0.exr", "a.exr", "--wavelengths", "500:400:5"), "wavelengths-unreadable"),
+        (("shot.0.exr", "a.exr", "--cube", "none.uplift"), "file-not-found"),
+        (("shot.0.exr", "a.exr", "--store", "multipliers", "--depth", "half"), "unsupported-depth"),
     ],
 )
-def test_bad_input(refuse, frames, words, problem):
-    assert problem in refuse("texture", *words)
+def test_invalid_input_is_an_error(refuse, frames, words, code):
+    assert refuse("texture", *words).code == code
 
 
 def test_out_of_gamut(run, refuse, frames, cubes):
     words = ("texture", "shot.1.exr", "out.exr", "--cube", cubes / "moments-8.uplift", "--store", "moments")
-    told = run(*words, "--out-of-gamut", "scale").stderr
-    assert " of 30 pixels lie outside [0, 1]: scaled, a component by up to " in told
+    (warning,) = warning_lines(run(*words, "--out-of-gamut", "scale"))
+    assert re.search(r"\d+ of 30 pixels", warning)
     scaled = OpenEXR.File("out.exr", separate_channels=True).channels()
     assert max(scaled[letter].pixels.max() for letter in "RGB") == 1
     run(*words, "--force")
     clipped = OpenEXR.File("out.exr", separate_channels=True).channels()
     assert (scaled["G"].pixels < clipped["G"].pixels).any()
-    refusal = refuse(*words, "--force", "--out-of-gamut", "error")
-    assert "lies outside [0, 1]; " in refusal
-    assert "--out-of-gamut" in refusal
+    error = refuse(*words, "--force", "--out-of-gamut", "error")
+    assert error.code == "rgb-out-of-gamut"
+    assert "--out-of-gamut" in hint_for(error)
 
 
-def test_a_folder_is_not_the_images_own(refuse, frames):
-    assert "exists already" in refuse("texture", "shot.*.exr", ".")
+def test_images_are_not_replaced(refuse, frames):
+    assert refuse("texture", "shot.*.exr", ".").code == "file-exists"
