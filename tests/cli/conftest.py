@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import click
 import pytest
@@ -27,6 +28,20 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
+def shown(monkeypatch: pytest.MonkeyPatch) -> list[click.ClickException]:
+    """Errors that were printed, in order."""
+    errors: list[click.ClickException] = []
+    for kind in (UsageFailure, click.UsageError):
+
+        def show(self: Any, file: Any = None, original: Callable[..., None] = kind.show) -> None:
+            errors.append(self)
+            original(self, file)
+
+        monkeypatch.setattr(kind, "show", show)
+    return errors
+
+
+@pytest.fixture
 def run(home: Path) -> Run:
     """Run ``uplift`` with arguments; any exception but an exit code is a failure."""
 
@@ -39,13 +54,13 @@ def run(home: Path) -> Run:
 
 
 @pytest.fixture
-def refuse(run: Run) -> Callable[..., UpliftError]:
+def refuse(run: Run, shown: list[click.ClickException]) -> Callable[..., UpliftError]:
     """Run ``uplift`` with bad input and return the error, which must be reported on one line with a hint."""
 
     def refuse(*args: object, **options: object) -> UpliftError:
         result = run(*args, code=2, **options)
         assert result.stdout == ""
-        failure = raised(result)
+        failure = shown.pop()
         assert isinstance(failure, UsageFailure), result.stderr
         (line,) = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
         assert line == f"error: {failure.message}"
@@ -57,23 +72,17 @@ def refuse(run: Run) -> Callable[..., UpliftError]:
 
 
 @pytest.fixture
-def misuse(run: Run) -> Callable[..., str]:
+def misuse(run: Run, shown: list[click.ClickException]) -> Callable[..., str]:
     """Run ``uplift`` with options that do not fit together; return the message of click's usage error."""
 
     def misuse(*args: object, **options: object) -> str:
         result = run(*args, code=2, **options)
         assert result.stdout == ""
-        failure = raised(result)
+        failure = shown.pop()
         assert isinstance(failure, click.UsageError), result.stderr
         return failure.format_message()
 
     return misuse
-
-
-def raised(result: Result) -> BaseException | None:
-    """Return click's exception behind the exit code."""
-    assert result.exc_info is not None
-    return result.exc_info[1].__context__
 
 
 def warning_lines(result: Result) -> list[str]:

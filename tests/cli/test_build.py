@@ -48,7 +48,7 @@ def test_unrealisable_colours_are_counted(run, home):
     assert f"{count} unrealisable" in result.stdout
     query = ("query", "--cube", "wide.uplift")
     assert "\nrealisable  no" in run(*query, "0", "1", "0").stdout
-    assert "realisable" not in run(*query, "0.5", "0.5", "0.5").stdout
+    assert "\nrealisable" not in run(*query, "0.5", "0.5", "0.5").stdout
 
 
 @pytest.mark.parametrize(

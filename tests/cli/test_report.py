@@ -103,15 +103,15 @@ def test_invalid_input_is_an_error_and_nothing_is_written(refuse, home, cube):
     assert {path.name for path in home.iterdir()} == before
 
 
-def test_the_cube_itself_is_no_output(refuse, home, cube):
+def test_the_cube_is_not_replaced_by_its_report(refuse, home, cube):
     before = (home / cube).read_bytes()
-    assert refuse("report", cube, "-o", f"./{cube}", "--force").endswith("name another file with -o")
+    assert refuse("report", cube, "-o", f"./{cube}", "--force").code == "same-file"
     assert (home / cube).read_bytes() == before
 
 
-def test_wrong_usage(run, cube):
-    assert "--worst" in run("report", cube, "--worst", "-1", code=2).stderr
-    assert "CUBE" in run("report", code=2).stderr
+def test_wrong_usage(misuse, cube):
+    assert "--worst" in misuse("report", cube, "--worst", "-1")
+    assert "CUBE" in misuse("report")
 
 
 def test_a_broken_write_leaves_nothing(run, home, cube, monkeypatch):

@@ -83,7 +83,7 @@ def test_few_entries_and_few_moments_are_drawn_too(run, home):
     assert matplotlib.image.imread(home / "moments-worst.png").size
 
 
-def test_files_are_replaced_by_force_alone(run, refuse, home, tcs):
+def test_files_are_replaced_only_with_force(run, refuse, home, tcs):
     args = ("study", "moments", "--atlas", tcs, "--max-moments", 1, "-o", home)
     (home / "moments-worst.png").write_text("mine")
     error = refuse(*args)
