@@ -51,7 +51,6 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 )
 @click.option(
     "--auto-tolerance",
-    "within",
     default=0.5,
     show_default=True,
     help="ΔE00 within which the lattice of --dim auto must reproduce the entries.",

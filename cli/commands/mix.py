@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.mixtures import as_json, as_table, mix, plot
+from ..output.mixtures import as_json, as_table, make_mixture, plot
 from ..output.paint_over import make_brush, paint
 from ..params.ingredients import make_resolver
 from ..params.options import (
@@ -138,7 +138,7 @@ def command(
     if over is not None and output is not None:
         paint(make_brush(cube, kind, ingredients, medium, encoding, method), over, output, force=force)
         return
-    mixture = mix(resolver, kind, ingredients, medium, ground, steps, method)
+    mixture = make_mixture(resolver, kind, ingredients, medium, ground, steps, method)
     if swatches is not None:
         plot(cube, mixture, swatches, force=force)
     WRITERS[style](cube, mixture)

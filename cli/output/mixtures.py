@@ -47,7 +47,7 @@ class Mixture:
         return ", ".join(f"{one.parts:g} of {one.name}" for one in self.ingredients)
 
 
-def mix(
+def make_mixture(
     resolver: SpectrumResolver,
     kind: str,
     ingredients: list[Ingredient],

@@ -124,7 +124,7 @@ def _positive(text: str, word: str) -> float:
     if not 0 < parts < float("inf"):
         raise OptionError(
             f"parts must be a number above 0, got '{word}'",
-            code="parts-out-of-range",
+            code="invalid-parts",
             hint="write for example '2:#1f3a93'",
         )
     return parts

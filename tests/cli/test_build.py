@@ -137,10 +137,10 @@ def test_files_are_replaced_only_with_force(run, refuse, home):
 @pytest.mark.parametrize(
     ("args", "code"),
     [
-        (("-o", "none/cube"), "folder-not-found"),
-        (("-o", "."), "not-a-file"),
-        (("-o", ""), "not-a-file"),
-        (("-o", "x" * 300), "invalid-path"),
+        (("-o", "none/cube"), "folder-missing"),
+        (("-o", "."), "not-a-regular-file"),
+        (("-o", ""), "not-a-regular-file"),
+        (("-o", "x" * 300), "invalid-file-name"),
         (("--dim", "1"), "dim-too-small"),
         (("--dim", "0"), "dim-too-small"),
         (("--dim", "-3"), "dim-too-small"),
@@ -163,7 +163,7 @@ def test_files_are_replaced_only_with_force(run, refuse, home):
         (("--threshold", "1"), "threshold-out-of-range"),
         (("--atlas", "none.txt"), "file-not-found"),
         (("--atlas", "empty.txt"), "empty-file"),
-        (("--atlas", "."), "not-a-file"),
+        (("--atlas", "."), "not-a-regular-file"),
     ],
 )
 def test_invalid_input_is_reported_before_the_build(refuse, monkeypatch, home, args, code):
@@ -174,13 +174,13 @@ def test_invalid_input_is_reported_before_the_build(refuse, monkeypatch, home, a
 
 
 def test_suggested_dim_fits_into_memory(refuse):
-    from uplift.pipeline.build_cube import Options, check_size
+    from uplift.pipeline.options import check_memory
 
     error = refuse("build", "--dim", "100000")
     dim = int(re.search(r"\d+", error.hint)[0])
-    check_size(Options(dim=dim))
+    check_memory(Options(dim=dim))
     with raises(uplift.OptionError, "dim-too-large"):
-        check_size(Options(dim=dim + 1))
+        check_memory(Options(dim=dim + 1))
 
 
 def test_coefficients_count_one_more_than_moments(run, misuse, home):

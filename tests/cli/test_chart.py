@@ -126,7 +126,7 @@ def test_recommendation_from_the_packaged_chart(run, repository):
         (("--recommend",), "no-requirements"),
         (("--recommend", "--delta-e", 1, "--light", "FL12"), "unknown-light"),
         (("--from", "none.csv"), "file-not-found"),
-        (("-o", "file"), "not-a-folder"),
+        (("-o", "file"), "folder-not-created"),
     ],
 )
 def test_invalid_input_is_an_error(refuse, home, macbeth, arguments, code):

@@ -84,7 +84,7 @@ def test_lights_replace_the_default_sets(run, macbeth):
     [
         (("--light", "F2"), "unknown-illuminant"),
         (("--target", 0), "target-out-of-range"),
-        (("-o", "file"), "not-a-folder"),
+        (("-o", "file"), "folder-not-created"),
         (("-o", "out"), "file-exists"),
     ],
 )

@@ -112,20 +112,20 @@ def test_paint_over_an_image(run, refuse, home, cubes):
     run("mix", "--dye", "#c8342a", "--thickness", 0, *options, "-o", "bare.exr")
     np.testing.assert_allclose(read_channels(home / "bare.exr", "RGB"), rgb, atol=1e-5)
     assert refuse("mix", BLUE, *options, "-o", "o.png").code == "unknown-suffix"
-    assert refuse("mix", "--light", BLUE, *options, "-o", "o.exr").code == "not-a-coat"
+    assert refuse("mix", "--light", BLUE, *options, "-o", "o.exr").code == "unknown-coat"
 
 
 @pytest.mark.parametrize(
     ("words", "code"),
     [
         (("teal",), "colour-unreadable"),
-        (("0:#ffffff",), "parts-out-of-range"),
-        (("-1:#ffffff",), "parts-out-of-range"),
+        (("0:#ffffff",), "invalid-parts"),
+        (("-1:#ffffff",), "invalid-parts"),
         (("1:1.5,0,0",), "rgb-out-of-gamut"),
-        (("#802020/#c03030",), "coat-too-opaque"),
-        (("#802020", "--thickness", "-1"), "thickness-out-of-range"),
-        (("#802020", "--refractive-index", "0.5"), "refractive-index-out-of-range"),
-        (("--filter", "#802020", "--thickness", "2"), "thickness-not-applicable"),
+        (("#802020/#c03030",), "layer-too-opaque"),
+        (("#802020", "--thickness", "-1"), "invalid-thickness"),
+        (("#802020", "--refractive-index", "0.5"), "invalid-refractive-index"),
+        (("--filter", "#802020", "--thickness", "2"), "medium-not-applicable"),
         (("#802020", "--cube", "none.uplift"), "file-not-found"),
         (("#802020", "--atlas", "none.txt"), "file-not-found"),
     ],

@@ -391,9 +391,9 @@ def test_plots_are_replaced_only_with_force(run, refuse, home, table):
 
 
 def test_plots_that_cannot_be_written_are_reported_before_the_query(refuse, home):
-    assert refuse("query", "#cc3319", "--plot", "none/red.png").code == "folder-not-found"
-    assert refuse("query", "#cc3319", "--plot", home).code == "not-a-file"
-    assert refuse("query", "#cc3319", "--plot", "x" * 300).code == "invalid-path"
+    assert refuse("query", "#cc3319", "--plot", "none/red.png").code == "folder-missing"
+    assert refuse("query", "#cc3319", "--plot", home).code == "not-a-regular-file"
+    assert refuse("query", "#cc3319", "--plot", "x" * 300).code == "invalid-file-name"
 
 
 @pytest.mark.parametrize("style", ["json", "csv", "table"])

@@ -101,8 +101,8 @@ def test_files_are_replaced_only_with_force(run, refuse, home, tcs):
         (("--atlas", "tcs.txt", "--max-moments", 33), "moments-out-of-range"),
         (("--atlas", "tcs.txt", "--max-moments", -1), "moments-out-of-range"),
         (("--atlas", "tcs.txt", "--atlas", "copy/tcs.txt"), "duplicate-atlas"),
-        (("--atlas", "tcs.txt", "-o", "file"), "not-a-folder"),
-        (("--atlas", "tcs.txt", "-o", "none/out"), "not-a-folder"),
+        (("--atlas", "tcs.txt", "-o", "file"), "folder-not-created"),
+        (("--atlas", "tcs.txt", "-o", "none/out"), "folder-not-created"),
         ((), "no-atlases"),
     ],
 )
