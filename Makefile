@@ -52,18 +52,21 @@ study: $(INSTALLED)
 	$(BIN)/python -m benchmarks.fidelity
 	$(BIN)/python -m tools.render_docs moments fidelity
 
-# Where it fails, and how: docs/stability.md.
+# Failures and sensitivity: docs/stability.md.
 stability: $(INSTALLED)
 	$(BIN)/python -m benchmarks.storage
 	$(BIN)/python -m benchmarks.stability
+	$(BIN)/python -m tools.render_docs stability
 
-# Hostile input, a hundred thousand of each kind, and writers killed at random: docs/stability-hostile.json.
+# Malformed input, a hundred thousand of each kind, and writers killed at random: docs/stability.md.
 nightly: $(INSTALLED)
 	$(BIN)/python -m tests.fuzz
+	$(BIN)/python -m tools.render_docs stability
 
-# The same bytes whatever the threads, and how far instruction sets take them apart: docs/stability-determinism.json.
+# Reproducibility across threads and instruction sets: docs/stability.md.
 determinism: $(INSTALLED)
 	$(BIN)/python -m benchmarks.determinism
+	$(BIN)/python -m tools.render_docs stability
 
 # The ColorChecker as a renderer sees it: docs/render.md.
 demo-render: $(INSTALLED)

@@ -1,13 +1,12 @@
-"""``make determinism``: the same cubes built under other circumstances → docs/stability-determinism.json.
+"""Reproducibility of builds: ``make determinism`` writes docs/data/stability-determinism.json.
 
-Threads, cores, devices and batches must not show: same bytes. Instruction sets may: by how much is what
+Threads, cores, devices and batch sizes must not change a byte. Instruction sets may; the largest difference is what
 `uplift check` has to allow between machines (`uplift.report.regression`).
 """
 
 from __future__ import annotations
 
 import dataclasses
-import json
 import os
 import subprocess
 import sys
@@ -22,13 +21,11 @@ from typing import Any
 import click
 
 import uplift
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT, write
 from uplift.atlas import Atlas
-from uplift.lab.timing import environment
 from uplift.report.regression import LIMITS, compare_rebuilt
 
 Row = dict[str, Any]
-PATH = ROOT / "docs" / "stability-determinism.json"
 CASES: dict[str, dict[str, object]] = {
     "moments, Macbeth, 16³": {"atlas": ("macbeth",), "dim": 16},
     "sigmoid, Macbeth, 16³": {"atlas": ("macbeth",), "dim": 16, "model": "sigmoid"},
@@ -43,7 +40,7 @@ CASES: dict[str, dict[str, object]] = {
 
 @dataclass(frozen=True)
 class Setting:
-    """Circumstances of a process: environment, a command before it, rows of a batch."""
+    """Environment variables of a process, a command prefix, and rows of a batch."""
 
     name: str
     environment: dict[str, str] = field(default_factory=dict)
@@ -51,7 +48,7 @@ class Setting:
     batch: tuple[int, ...] = ()
 
 
-AS_IT_IS = Setting("as it is")
+DEFAULT = Setting("default")
 SAME = (
     Setting("again"),
     Setting("one core", prefix=("taskset", "-c", "0")),
@@ -86,63 +83,37 @@ APART = (
 @click.option("--into", metavar="FOLDER", help="Build the cubes into a folder, and compare nothing.")
 @click.option("--batch", nargs=2, type=int, help="Rows of a large and of a small batch.")
 def main(into: str | None, batch: tuple[int, int] | None) -> None:
-    """Build under all circumstances and compare."""
+    """Build under all settings and compare."""
     if into is not None:
         _build(Path(into), batch)
         return
     with tempfile.TemporaryDirectory() as folder:
-        base = _run(AS_IT_IS, Path(folder) / "base")
+        base = _run(DEFAULT, Path(folder) / "base")
         same = [row for setting in SAME for row in _rows(setting, base, Path(folder) / setting.name)]
         apart = [row for setting in APART for row in _rows(setting, base, Path(folder) / setting.name)]
     worst = {name: max(row["measures"][name] for row in apart) for name in LIMITS}
-    PATH.write_text(json.dumps(_tables(same, apart, worst), indent=1) + "\n", encoding="utf-8")
-    different = [row for row in same if not row["same_bytes"]]
-    click.echo(
-        f"{len(same)} builds that should have the same bytes, {len(different)} that have not: {different}"
+    write(
+        "stability-determinism",
+        "make determinism",
+        cubes=list(CASES),
+        same=[
+            {"setting": name, "cubes": len(rows), "different": sum(not row["same_bytes"] for row in rows)}
+            for name, rows in _by_setting(same)
+        ],
+        apart=[
+            {
+                "setting": name,
+                "measures": {one: max(row["measures"][one] for row in rows) for one in LIMITS},
+                "status_changes": sum(not row["status_same"] for row in rows),
+            }
+            for name, rows in _by_setting(apart)
+        ],
+        limits=dict(LIMITS),
     )
+    different = [row for row in same if not row["same_bytes"]]
+    click.echo(f"{len(same)} builds that must have the same bytes, {len(different)} differ: {different}")
     click.echo(f"across instruction sets at most {worst}")
     raise SystemExit(bool(different))
-
-
-def _tables(same: list[Row], apart: list[Row], worst: dict[str, float]) -> list[dict[str, object]]:
-    """For docs/stability.md, as `benchmarks.stability` has it."""
-    facts = environment()
-    return [
-        {
-            "title": "The same bytes",
-            "command": "make determinism",
-            "columns": ["circumstances", "cubes", "with other bytes"],
-            "rows": [
-                [name, len(rows), sum(not row["same_bytes"] for row in rows)]
-                for name, rows in _by_setting(same)
-            ],
-            "notes": [
-                f"The cubes are {'; '.join(CASES)}. Threads, cores, devices and batches must not show.",
-                f"{facts['machine']}; {facts['versions']}; commit {facts['commit']}.",
-            ],
-        },
-        {
-            "title": "Other instruction sets",
-            "command": "make determinism",
-            "columns": ["instructions", *LIMITS, "other status"],
-            "rows": [
-                *(
-                    [
-                        name,
-                        *(f"{max(row['measures'][one] for row in rows):.1e}" for one in LIMITS),
-                        sum(not row["status_same"] for row in rows),
-                    ]
-                    for name, rows in _by_setting(apart)
-                ),
-                ["largest", *(f"{value:.1e}" for value in worst.values()), ""],
-                ["what `uplift check` allows", *(f"{value:.0e}" for value in LIMITS.values()), 0],
-            ],
-            "notes": [
-                "The same cubes, the largest of each measure; points within 1e-3 of the boundary of what reflectances "
-                "reach are left out, as in `uplift check`.",
-            ],
-        },
-    ]
 
 
 def _by_setting(rows: list[Row]) -> Iterator[tuple[str, list[Row]]]:
@@ -163,7 +134,7 @@ def _build(folder: Path, batch: tuple[int, int] | None) -> None:
 
 
 def _atlas(names: object) -> Atlas:
-    """Atlases as one; names that several have are told apart."""
+    """Merge atlases; entry names get the atlas as prefix."""
     entries = []
     for name in names:
         entries += [
@@ -178,7 +149,7 @@ def _run(setting: Setting, folder: Path) -> Path:
     command = [*setting.prefix, sys.executable, "-m", "benchmarks.determinism", "--into", str(folder)]
     if setting.batch:
         command += ["--batch", *map(str, setting.batch)]
-    compiled = {"JAX_ENABLE_COMPILATION_CACHE": "false"}  # nothing that other circumstances left
+    compiled = {"JAX_ENABLE_COMPILATION_CACHE": "false"}  # no code compiled under another setting
     subprocess.run(command, env=os.environ | compiled | setting.environment, cwd=ROOT, check=True)
     return folder
 

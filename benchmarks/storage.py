@@ -1,18 +1,17 @@
-"""How exactly coefficients must be stored → docs/stability-storage.json, for docs/stability.md.
+"""Precision of stored coefficients: writes docs/data/stability-storage.json.
 
-Whole lattices are fitted without an atlas, their coefficients rounded to half, single and double precision, and read
-back: how much further from their colours are the points, by `uplift.fit.store`'s own measure?
+Lattices are fitted without an atlas and their coefficients rounded to half and single precision. The residuals of the
+rounded coefficients are evaluated as `uplift.fit.store` does.
 """
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator
 from itertools import product
+from typing import Any
 
 import numpy as np
 
-from benchmarks.timing import ROOT
+from benchmarks.record import write
 from uplift import fit
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
@@ -29,63 +28,44 @@ SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ProPhoto RGB")
 MODELS: tuple[Model, ...] = (*(Moments(count) for count in (3, 5, 9, 13, 17)), Sigmoid())
 DIM, THRESHOLD = 17, 1e-4
 LIGHT = "FL11"
-PATH = ROOT / "docs" / "stability-storage.json"
-COLUMNS = (
-    "space",
-    "model",
-    "coefficients",
-    "half: no spectrum",
-    "half: RGB",
-    "single: RGB",
-    "single: ΔE00",
-    "single: points that lose",
-    "a cube has",
-)
-NOTES = (
-    f"Lattices of {DIM}³ points without an atlas. RGB: the largest change of any point's linear RGB by rounding "
-    f"its coefficients; ΔE00: the largest change under {LIGHT}.",
-    "No spectrum: points whose rounded coefficients are the moments of no reflectance.",
-    f"Points that lose end more than {MAX_LOSS:g} of the threshold of {THRESHOLD:g} further from their colours in "
-    "single precision. The rule: where there is none, a cube has float32, otherwise float64; every build decides "
-    "for itself, as its file's reader would (`fit/store.py`).",
-    "More moments do not ask for more digits. Wide spaces do: their saturated colours have spectra as steep as "
-    "boxes, whose moments lie next to the boundary of the moment space, and the few moments worst, as they have "
-    "no other spectrum to give.",
-)
 
 
 def main() -> None:
-    table = {
-        "title": "How exactly coefficients are stored",
-        "command": "python -m benchmarks.storage",
-        "columns": COLUMNS,
-        "rows": list(_rows()),
-        "notes": NOTES,
+    """Measure and store."""
+    write(
+        "stability-storage",
+        "python -m benchmarks.storage",
+        dim=DIM,
+        light=LIGHT,
+        loss=MAX_LOSS,
+        threshold=THRESHOLD,
+        rows=[precision(space, model) for space, model in product(SPACES, MODELS)],
+    )
+
+
+def precision(space: str, model: Model) -> dict[str, Any]:
+    """Fit a lattice, round its coefficients, and return the largest errors."""
+    sensor = observer.sensor(space)
+    problem = _problem(model, sensor)
+    coefficients, distance = _fitted(problem, sensor)
+    exact = _spectra(model, sensor, coefficients)
+    half, single = (_spectra(model, sensor, coefficients.astype(kind)) for kind in (np.float16, np.float32))
+    residual = np.abs(sensor.rgb(single) - problem.goal(np.arange(len(single)))).max(axis=1)
+    lossy = int((residual > distance + MAX_LOSS * THRESHOLD).sum())
+    half_rgb, single_rgb = (
+        float(np.nanmax(np.abs(sensor.rgb(spectra) - sensor.rgb(exact)))) for spectra in (half, single)
+    )
+    return {
+        "space": space,
+        "model": model.name,
+        "coefficients": model.count,
+        "no_spectrum": int(np.isnan(half[:, 0]).sum()),
+        "half_rgb": half_rgb,
+        "single_rgb": single_rgb,
+        "single_delta_e": float(_difference(single, exact).max()),
+        "lossy": lossy,
+        "dtype": "float64" if lossy else "float32",
     }
-    PATH.write_text(json.dumps(table, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-
-
-def _rows() -> Iterator[list[str]]:
-    for space, model in product(SPACES, MODELS):
-        sensor = observer.sensor(space)
-        problem = _problem(model, sensor)
-        coefficients, distance = _fitted(problem, sensor)
-        exact = _spectra(model, sensor, coefficients)
-        half, single = (
-            _spectra(model, sensor, coefficients.astype(kind)) for kind in (np.float16, np.float32)
-        )
-        missed = np.abs(sensor.rgb(single) - problem.goal(np.arange(len(single)))).max(axis=1)
-        lost = int((missed > distance + MAX_LOSS * THRESHOLD).sum())
-        yield [
-            space,
-            model.name,
-            str(model.count),
-            str(int(np.isnan(half[:, 0]).sum())),
-            *(f"{np.nanmax(np.abs(sensor.rgb(found) - sensor.rgb(exact))):.1e}" for found in (half, single)),
-            f"{_difference(single, exact).max():.1e}",
-            str(lost),
-            "float64" if lost else "float32",
-        ]
 
 
 def _problem(model: Model, sensor: Sensor) -> fit.Problem:
@@ -96,7 +76,7 @@ def _problem(model: Model, sensor: Sensor) -> fit.Problem:
 
 
 def _fitted(problem: fit.Problem, sensor: Sensor) -> tuple[Array, Array]:
-    """Coefficients (n, C) in double precision, and how far (n,) the multipliers are from their goals."""
+    """Return coefficients (n, C) in double precision, and the residuals (n,) of the multipliers."""
     nothing, light = np.empty((0, len(sensor.wavelengths))), observer.light("A")
     entries = fit.fit_entries(
         problem.model, problem.forward, nothing, np.empty((0, 3)), [sensor.light], light, problem.tolerance
@@ -107,7 +87,7 @@ def _fitted(problem: fit.Problem, sensor: Sensor) -> tuple[Array, Array]:
 
 
 def _spectra(model: Model, sensor: Sensor, coefficients: Array) -> Array:
-    """Reflectance (n, N) of coefficients (n, C); NaN of those that no reflectance has."""
+    """Return reflectances (n, N) of coefficients (n, C); NaN if they are the moments of no reflectance."""
     try:
         return evaluate(model, model.from_storage(coefficients.astype(float)), sensor.wavelengths)
     except UpliftError:

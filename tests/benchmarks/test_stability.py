@@ -1,48 +1,38 @@
-"""The page of stability: what it says is in its figures, and what others leave beside it is shown."""
+"""Statements of docs/stability.md hold for the stored figures."""
 
 from __future__ import annotations
 
 import json
 
-from benchmarks.stability import tables
-from benchmarks.stability.measure import CONSTRAINED, FIGURES
-from benchmarks.stability.write import others, read_map
+import pytest
+
+from tests.conftest import ROOT
 from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS
+from uplift.lab.study.stability import NO_ATLAS, UPLIFT
 from uplift.lab.study.stability_design import SPACES
 
 
-def test_a_file_beside_the_page_is_a_section(tmp_path):
-    path = tmp_path / "stability-other.json"
-    assert others(path) == []
-    part = {
-        "title": "Told",
-        "command": "make told",
-        "columns": ["a", "b"],
-        "rows": [["x", 0.12345]],
-        "notes": ["So."],
-    }
-    path.write_text(json.dumps(part))
-    (section,) = others(path)
-    assert section == "\n## Told\n\nBy `make told`. So.\n\n| a | b |\n| --- | --- |\n| x | 0.123 |\n"
-    path.write_text(json.dumps([part, part]))
-    assert others(path) == [section, section]
+@pytest.fixture(scope="module")
+def figures():
+    return json.loads((ROOT / "docs" / "data" / "stability.json").read_text(encoding="utf-8"))
 
 
-def test_the_page_s_words_on_failures():
-    rows = read_map()
-    ours = [row for row in rows if row["solver"] == "uplift"]
+def test_statements_on_failures(figures):
+    rows = figures["map"]
+    ours = [row for row in rows if row["solver"] == UPLIFT]
     assert sum(row["unfitted"] for row in ours) == 0
-    assert {row["space"] for row in tables.five_spaces_of(rows)} == set(SPACES)
-    assert {row["model"] for row in tables.five_spaces_of(rows)} == {"moments", "sigmoid"}
+    five = [row for row in ours if (row["dim"], row["threshold"], row["atlas"]) == (17, 1e-4, NO_ATLAS)]
+    assert {row["space"] for row in five} == set(SPACES)
+    assert {row["model"] for row in five} == {"moments", "sigmoid"}
     assert {row["threshold"] for row in ours if row["stand_ins"]} == {1e-6}
     assert not any(row["stand_ins"] for row in ours if row["space"] == "sRGB")
-    left = {row["coefficients"]: row["unfitted"] for row in rows if row["solver"] == IN_MOMENTS}
-    assert left[3] < left[5] < left[9]
+    unfitted = {row["coefficients"]: row["unfitted"] for row in rows if row["solver"] == IN_MOMENTS}
+    assert unfitted[3] < unfitted[5] < unfitted[9]
     assert max(row["unfitted"] for row in rows if row["solver"] == IN_MULTIPLIERS) <= 2
 
 
-def test_the_page_s_words_on_sensitivity():
-    cubes = json.loads(FIGURES.read_text(encoding="utf-8"))["cubes"]
+def test_statements_on_sensitivity(figures):
+    cubes = figures["cubes"]
     for cube in cubes.values():
         for move in cube["moves"]:
             if move["mode"] == "spectra":
@@ -51,5 +41,6 @@ def test_the_page_s_words_on_sensitivity():
         assert cube["lipschitz"]["largest_per_code"] < 0.06
         assert cube["lipschitz"]["steepest_wavelength"] in (380, 780)
     assert cubes["sigmoid-16"]["lipschitz"]["largest"] > 2 * cubes["sigmoid-8"]["lipschitz"]["largest"]
-    noise = [one["rms_mean"] for one in cubes[CONSTRAINED]["changes"] if one["change"].startswith("noise")]
+    changes = cubes[figures["constrained"]]["changes"]
+    noise = [one["rms_mean"] for one in changes if one["change"].startswith("noise")]
     assert noise[2] > 5 * max(noise[:2])

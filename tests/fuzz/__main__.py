@@ -1,4 +1,4 @@
-"""``make nightly``: every target under many inputs → docs/stability-hostile.json."""
+"""``make nightly``: every target under many inputs → docs/data/stability-hostile.json."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ BLOCK = 5000
 )
 @click.option("--seed", default=0, show_default=True, help="Another seed tries other inputs.")
 @click.option("--processes", default=os.cpu_count(), show_default=True)
-@click.option("-o", "--output", default="docs/stability-hostile.json", show_default=True)
+@click.option("-o", "--output", default="docs/data/stability-hostile.json", show_default=True)
 def main(inputs: int, kills: int, seed: int, processes: int, output: str) -> None:
     """Attack every reader and writer; what is not refused cleanly is kept in out/hostile."""
     KEPT.mkdir(parents=True, exist_ok=True)
@@ -42,42 +42,33 @@ def main(inputs: int, kills: int, seed: int, processes: int, output: str) -> Non
         tally = write(target, max(kills // share, 1), seed)
         found[tally.target] = tally
     tallies = list(found.values())
-    Path(output).write_text(json.dumps(_tables(tallies, seed), indent=1) + "\n", encoding="utf-8")
+    figures = {
+        "command": "make nightly",
+        "environment": environment(),
+        "seed": seed,
+        "targets": [_record(tally) for tally in tallies],
+        "findings": FOUND,
+    }
+    Path(output).write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     for tally in tallies:
-        click.echo(f"{tally.target}: {', '.join(_cells(tally)[1:])}")
+        click.echo(f"{tally.target}: {tally.inputs:,} tried, failures: {_failures(tally)}")
     raise SystemExit(any(tally.failures for tally in tallies))
 
 
-def _tables(tallies: list[Tally], seed: int) -> list[dict[str, object]]:
-    """For docs/stability.md, as `benchmarks.stability` has it."""
-    facts = environment()
-    return [
-        {
-            "title": "Hostile input, killed writers, full disks",
-            "command": "make nightly",
-            "columns": ["target", "tried", "taken", "refused", "failures"],
-            "rows": [_cells(tally) for tally in tallies],
-            "notes": [
-                "Readers get files and texts spoilt by seeded mutation; what they take is used, what they refuse is "
-                "one line. Nothing else may happen, nor take longer than some seconds or much more memory than the "
-                "file. Writers are killed, raced and stranded: then there is the old file or a whole new one.",
-                f"Seed {seed}; {facts['machine']}; commit {facts['commit']}.",
-            ],
-        },
-        {
-            "title": "What hostile input found",
-            "command": "make nightly",
-            "columns": list(FOUND[0]),
-            "rows": [list(case.values()) for case in FOUND],
-            "notes": ["Kept by hand, as runs show nothing of what is mended."],
-        },
-    ]
+def _record(tally: Tally) -> dict[str, object]:
+    """Return a row of docs/data/stability-hostile.json."""
+    reads = bool(tally.taken or tally.refused)
+    return {
+        "target": tally.target,
+        "tried": tally.inputs,
+        "taken": tally.taken if reads else None,
+        "refused": tally.refused if reads else None,
+        "failures": _failures(tally),
+    }
 
 
-def _cells(tally: Tally) -> list[str]:
-    failures = ", ".join(f"{count} {kind}" for kind, count in tally.failures.items()) or "none"
-    answers = [f"{count:,}" if tally.taken or tally.refused else "" for count in (tally.taken, tally.refused)]
-    return [tally.target, f"{tally.inputs:,}", *answers, failures]
+def _failures(tally: Tally) -> str:
+    return ", ".join(f"{count} {kind}" for kind, count in tally.failures.items()) or "none"
 
 
 if __name__ == "__main__":
