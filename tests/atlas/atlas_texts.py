@@ -31,7 +31,7 @@ ASCII sample data\t
 """Tódová 2020, figure 3.1, character by character."""
 
 ORANGE = THESIS.replace("... }", ", ".join(["50"] * 68) + "}")
-"""The same, with samples up to 780 nm where the print leaves off."""
+"""The same, with samples up to 780 nm where the figure ends."""
 
 PLAIN = """\
 Entry ID:   grey

@@ -10,7 +10,7 @@ import pytest
 
 @pytest.fixture
 def save(tmp_path: Path) -> Callable[..., Path]:
-    """Write text or bytes to a file in a folder of its own."""
+    """Write text or bytes to a file in a temporary folder."""
 
     def save(content: str | bytes, name: str = "atlas.txt") -> Path:
         path = tmp_path / name

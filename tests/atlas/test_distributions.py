@@ -1,4 +1,4 @@
-"""Distributions that a program already has."""
+"""Atlases from distributions of other libraries."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import colour
 import numpy as np
 import pytest
 
+from tests.helpers import raises
 from uplift.atlas import from_distributions, read_atlas, write_atlas
 from uplift.common.errors import AtlasError
 
@@ -15,7 +16,7 @@ NM = np.array([400.0, 550.0, 700.0])
 RED = SimpleNamespace(name="red", wavelengths=NM, values=np.array([0.1, 0.2, 0.9]))
 
 
-def test_a_mapping_of_colour_science(tmp_path):
+def test_mapping_of_colour_science(tmp_path):
     checker = colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"]
     spectra = from_distributions(checker)
     assert spectra.names == tuple(checker)
@@ -24,7 +25,7 @@ def test_a_mapping_of_colour_science(tmp_path):
     assert read_atlas(tmp_path / "out.txt").sources[0].digest == spectra.sources[0].digest
 
 
-def test_one_distribution_of_colour_science():
+def test_single_distribution_of_colour_science():
     orange = colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"]["orange"]
     assert from_distributions(orange).names == ("orange",)
 
@@ -38,27 +39,30 @@ def test_several_distributions_of_colour_science():
     assert spectra.entries[1].values.tolist() == [0.8, 0.3, 0.05]
 
 
-def test_any_class_will_do():
+def test_any_class_with_the_attributes():
     assert from_distributions({"a": RED, 2: RED}).names == ("a", "2")
     assert from_distributions(RED).names == ("red",)
     assert from_distributions({}).names == ()
 
 
 @pytest.mark.parametrize(
-    ("distributions", "message"),
+    ("distributions", "entry", "code"),
     [
-        (3, "entry 'int': 'int' is no spectral distribution; pass a mapping"),
-        ({"a": [1, 2]}, "entry 'a': 'list' is no spectral distribution; pass a mapping"),
+        (3, "int", "not-a-distribution"),
+        ({"a": [1, 2]}, "a", "not-a-distribution"),
         (
             SimpleNamespace(labels=["a"], wavelengths=NM, values=NM),
-            r"values of shape \(3,\) for 1 labels; give values \(N, E\), a column per label",
+            None,
+            "shape-mismatch",
         ),
         (
             {"a": SimpleNamespace(wavelengths=NM, values=NM)},
-            "entry 'a': reflectance 400 at 400 nm is out of range",
+            "a",
+            "reflectance-out-of-range",
         ),
     ],
 )
-def test_faults(distributions, message):
-    with pytest.raises(AtlasError, match=message):
+def test_invalid_distributions_raise(distributions, entry, code):
+    with raises(AtlasError, code) as caught:
         from_distributions(distributions)
+    assert caught.value.entry == entry

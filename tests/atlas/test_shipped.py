@@ -1,4 +1,4 @@
-"""The files of atlases/ are what tools/ship_atlases.py makes of colour-science's tables."""
+"""The files of atlases/ agree with tools/ship_atlases.py and the tables of colour-science."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tests.atlas.atlas_texts import ATLASES
+from tests.helpers import warns
 from uplift.atlas import on_grid, read_atlas
-from uplift.common.errors import UpliftWarning
 
 GRID = np.arange(380.0, 785.0, 5.0)
 SHIPPED = {
@@ -37,18 +37,18 @@ def test_entries_range_step_and_licence(file):
     assert "BSD-3-Clause" in header.licence
 
 
-def test_every_file_is_in_the_table():
+def test_readme_lists_every_file():
     table = (ATLASES / "README.md").read_text(encoding="utf-8")
     assert sorted(SHIPPED) == sorted(path.name for path in ATLASES.glob("*.txt"))
     for file, (count, start, end, step) in SHIPPED.items():
         assert f"| `{file}` | {count} | {start}–{end}, {step} |" in table
 
 
-def test_all_can_be_read_together():
+def test_all_files_form_one_atlas():
     assert len(read_atlas(*(ATLASES / file for file in SHIPPED))) == sum(row[0] for row in SHIPPED.values())
 
 
-def test_the_measured_values_are_kept():
+def test_measured_values_are_unchanged():
     spectra = read_atlas(ATLASES / "macbeth.txt")
     for entry, sd in zip(
         spectra.entries, colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"].values(), strict=True
@@ -56,15 +56,20 @@ def test_the_measured_values_are_kept():
         np.testing.assert_array_equal(entry.values, sd.values)
 
 
-def test_patches_above_1_are_named():
+def test_patches_above_1_are_clipped_with_a_warning():
     spectra = read_atlas(ATLASES / "rawtoaces.txt")
-    with pytest.warns(UpliftWarning) as caught:
+    with warns(*["entry-clipped"] * 5) as caught:
         on_grid(spectra, GRID)
-    named = [str(warning.message).split("'")[1] for warning in caught]
-    assert named == ["patch085", "patch089", "patch114", "patch125", "patch128"]
+    assert [warning.entry for warning in caught] == [
+        "patch085",
+        "patch089",
+        "patch114",
+        "patch125",
+        "patch128",
+    ]
 
 
-def test_the_tool_writes_the_same_bytes(tmp_path):
+def test_tool_writes_the_same_bytes(tmp_path):
     tool = runpy.run_path(str(ATLASES.parent / "tools" / "ship_atlases.py"))
     tool["main"](tmp_path)
     for file in SHIPPED:

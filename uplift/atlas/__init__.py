@@ -1,4 +1,4 @@
-"""Measured reflectances: text formats → `Atlas`, and back."""
+"""Atlases of measured reflectances: readers and writers of text formats, and resampling."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from uplift.atlas.distributions import from_distributions
 from uplift.atlas.document import read_document
 from uplift.atlas.resample import Clip, Resampled, on_grid, resample
 from uplift.common.arrays import StrPath
-from uplift.common.errors import OutputError, UpliftWarning
+from uplift.common.errors import OutputError
 from uplift.common.files import write_text
 
 __all__ = [
@@ -32,44 +32,77 @@ __all__ = [
 
 
 def read_atlas(*paths: StrPath) -> Atlas:
-    """Read atlas files, text or CSV as their content shows, into one atlas.
+    """Read atlas files into one atlas. The content of a file determines its format: atlas text or CSV.
 
-    An `UpliftWarning` names every entry that was skipped, and every table that was read as percent.
+    Parameters
+    ----------
+    *paths : path-like
+        Files, in the order of their entries.
 
-    Raises
-    ------
-    AtlasError : with path, line, entry and hint.
-    """
-    spectra = merge(_read(path) for path in paths)
-    for skipped in spectra.skipped:
-        warnings.warn(str(skipped), UpliftWarning, stacklevel=2)
-    return spectra
-
-
-def write_atlas(spectra: Atlas, path: StrPath, header: Header | None = None) -> None:
-    """Write an atlas at once, replacing ``path``: as CSV where it ends in ``.csv``, as text otherwise.
-
-    ``header`` is by default what the sources said of themselves; a CSV has no room for it.
+    Returns
+    -------
+    Atlas
 
     Raises
     ------
-    OutputError : nothing to write, a place that cannot be written, or a table of different samplings.
+    AtlasError
+        A file cannot be read, or two entries share a name. The error has path, line, entry and hint.
+
+    Warns
+    -----
+    UpliftWarning
+        An entry was skipped (``entry-skipped``), or a table was read as percent (``values-in-percent``).
+
+    Examples
+    --------
+    >>> import uplift
+    >>> macbeth = uplift.read_atlas("atlases/macbeth.txt")
+    >>> macbeth["orange"]
+    Entry('orange', 81 samples, 380–780 nm)
     """
-    if not spectra.entries:
-        raise OutputError("no entries to write", path=path, hint="name an atlas that holds reflectances")
+    atlas = merge(_read(path) for path in paths)
+    for skipped in atlas.skipped:
+        warnings.warn(skipped.warning(), stacklevel=2)
+    return atlas
+
+
+def write_atlas(atlas: Atlas, path: StrPath, header: Header | None = None) -> None:
+    """Write an atlas atomically, replacing an existing file.
+
+    Parameters
+    ----------
+    atlas : Atlas
+        The entries to write.
+    path : path-like
+        The file. With the suffix ``.csv`` it is a table, otherwise atlas text.
+    header : Header, optional
+        Statements about the archive, by default those of the sources. A table has no header.
+
+    Raises
+    ------
+    OutputError
+        The atlas is empty, the path cannot be written, or the entries of a table differ in sampling.
+    """
+    if not atlas.entries:
+        raise OutputError(
+            "an atlas to write must have entries, got none",
+            code="empty-atlas",
+            path=path,
+            hint="give an atlas that contains reflectances",
+        )
     is_table = os.fspath(path).lower().endswith(".csv")
-    text = table.text(spectra) if is_table else art_write.text(spectra, header or _joined(spectra))
+    text = table.text(atlas) if is_table else art_write.text(atlas, header or _merge_headers(atlas))
     write_text(text, path, force=True)
 
 
 def _read(path: StrPath) -> Atlas:
     document = read_document(path)
-    return art.read(document) if art.claims(document) else table.read(document)
+    return art.read(document) if art.is_art_archive(document) else table.read(document)
 
 
-def _joined(spectra: Atlas) -> Header:
-    """The headers of all sources, each statement once."""
-    headers = [source.header for source in spectra.sources]
+def _merge_headers(atlas: Atlas) -> Header:
+    """Join the headers of all sources, each statement once."""
+    headers = [source.header for source in atlas.sources]
 
     def join(statements: list[str]) -> str:
         return "; ".join(dict.fromkeys(filter(None, statements)))

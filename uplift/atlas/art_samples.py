@@ -4,79 +4,86 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from uplift.atlas.art_fields import TRUNCATED, Line, spoken
-from uplift.atlas.document import SourceLocation, number
+from uplift.atlas.art_fields import COMPLETE_ENTRY, Line, content_lines
+from uplift.atlas.document import SourceLocation, parse_number
+from uplift.common.errors import AtlasError
 
-PLAIN = "write the samples as numbers with commas between, in one pair of braces"
-PAIRS = "write the samples as {{wavelength, value}, {wavelength, value}, …}"
+WRITE_VALUES = "write the samples as numbers separated by commas, in one pair of braces"
+WRITE_PAIRS = "write the samples as {{wavelength, value}, {wavelength, value}, …}"
 
 
 @dataclass(frozen=True)
 class SampleText:
-    """What stands between the outer braces, and where it begins."""
+    """The text between the outer braces, and the location of its start."""
 
     text: str
-    place: SourceLocation
+    location: SourceLocation
 
 
-def enclosed(lines: list[Line], place: SourceLocation) -> SampleText:
-    """The text between the braces that open on the first spoken line. Raises `AtlasError`."""
-    opening = spoken(lines)[:1]
+def extract_samples(lines: list[Line], location: SourceLocation) -> SampleText:
+    """Extract the text between the braces that open on the first line with content. Raise `AtlasError`."""
+    opening = content_lines(lines)[:1]
     if not opening or not opening[0][1].startswith("{"):
-        raise place.error("the sample list, opened by '{', is missing", TRUNCATED)
+        raise location.error("samples-missing", "the sample list, opened by '{', is missing", COMPLETE_ENTRY)
     start = opening[0][0]
     first = start - lines[0][0]
-    end = _closing(lines, first, place.at(start))
-    after = spoken(lines[end + 1 :])
+    end = _closing(lines, first, location.at(start))
+    after = content_lines(lines[end + 1 :])
     text = "\n".join(text for _, text in lines[first : end + 1]).strip()
     if after or not text.endswith("}"):
         line = after[0][0] if after else lines[end][0]
-        raise place.at(line).error("unexpected text after the sample list", "end the entry with '}'")
-    return SampleText(text[1:-1], place.at(start))
+        raise location.at(line).error(
+            "unexpected-text", "unexpected text after the sample list", "end the entry with '}'"
+        )
+    return SampleText(text[1:-1], location.at(start))
 
 
-def plain(samples: SampleText) -> list[float]:
-    """Numbers of ``a, b, …``. Raises `AtlasError`."""
+def parse_values(samples: SampleText) -> list[float]:
+    """Parse ``a, b, …``. Raise `AtlasError`."""
     if "{" in samples.text or "}" in samples.text:
-        raise samples.place.error("braces within a regular sample list", PLAIN)
-    return _numbers(samples.text, samples.place)
+        raise samples.location.error("unexpected-braces", "braces within a regular sample list", WRITE_VALUES)
+    return _numbers(samples.text, samples.location)
 
 
-def pairs(samples: SampleText) -> list[list[float]]:
-    """Pairs of ``{x, y}, {x, y}, …``, the commas between the pairs may be missing. Raises `AtlasError`."""
+def parse_pairs(samples: SampleText) -> list[list[float]]:
+    """Parse ``{x, y}, {x, y}, …``; the commas between pairs are optional. Raise `AtlasError`."""
     *pieces, rest = samples.text.split("}")
-    place, found = samples.place, []
+    location, pairs = samples.location, []
     for piece in pieces:
         between, brace, inside = piece.partition("{")
-        place = place.after(between)
-        found.append(_pair(between + brace, inside, place))
-        place = place.after(inside)
-    if rest.strip() or not found:
-        raise place.error("samples that are not in pairs", PAIRS)
-    return found
+        location = location.after(between)
+        pairs.append(_pair(between + brace, inside, location))
+        location = location.after(inside)
+    if rest.strip() or not pairs:
+        raise _pairs_error(location)
+    return pairs
 
 
-def _pair(opening: str, inside: str, place: SourceLocation) -> list[float]:
-    numbers = _numbers(inside, place) if opening.strip(", \t\n") == "{" else []
+def _pair(opening: str, inside: str, location: SourceLocation) -> list[float]:
+    numbers = _numbers(inside, location) if opening.strip(", \t\n") == "{" else []
     if len(numbers) != 2:
-        raise place.error("samples that are not in pairs", PAIRS)
+        raise _pairs_error(location)
     return numbers
 
 
-def _closing(lines: list[Line], first: int, place: SourceLocation) -> int:
+def _pairs_error(location: SourceLocation) -> AtlasError:
+    return location.error("samples-not-paired", "the samples are not in pairs", WRITE_PAIRS)
+
+
+def _closing(lines: list[Line], first: int, location: SourceLocation) -> int:
     depth = 0
     for i, (_, text) in enumerate(lines[first:], start=first):
         depth += text.count("{") - text.count("}")
         if depth <= 0:
             return i
-    raise place.error("the sample list is not closed by '}'", TRUNCATED)
+    raise location.error("samples-not-closed", "the sample list is not closed by '}'", COMPLETE_ENTRY)
 
 
-def _numbers(text: str, place: SourceLocation) -> list[float]:
+def _numbers(text: str, location: SourceLocation) -> list[float]:
     numbers = []
     for token in text.split(","):
         lead = len(token) - len(token.lstrip())
-        place = place.after(token[:lead])
-        numbers.append(number(token, place, "sample"))
-        place = place.after(token[lead:])
+        location = location.after(token[:lead])
+        numbers.append(parse_number(token, location, "sample"))
+        location = location.after(token[lead:])
     return numbers

@@ -1,4 +1,4 @@
-"""Writer of the ART measurement archive: what it writes, `art` reads back to the last bit."""
+"""Writer of the ART measurement archive. `art` reads the same values, bit for bit."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy as np
 
 from uplift.atlas.art_fields import NOT_STATED
 from uplift.atlas.atlas import Atlas, Entry, Header
-from uplift.atlas.checks import Array
+from uplift.common.arrays import Array
 
 
-def text(spectra: Atlas, header: Header) -> str:
-    """The archive as text: version 1.1, or 1.2 where an entry has an additional description."""
-    version = "1.2" if any(entry.additional for entry in spectra.entries) else "1.1"
+def text(atlas: Atlas, header: Header) -> str:
+    """Format an archive: version 1.1, or 1.2 if an entry has an additional description."""
+    version = "1.2" if any(entry.additional_description for entry in atlas) else "1.1"
     lines = [f"ART measurement archive version {version}", ""]
     lines += [
         f"Archive content: {_one_line(header.content) or NOT_STATED}",
@@ -21,7 +21,7 @@ def text(spectra: Atlas, header: Header) -> str:
         f"Archive license: {_one_line(header.licence) or NOT_STATED}",
         "",
     ]
-    for entry in spectra.entries:
+    for entry in atlas:
         lines += _entry(entry)
     return "\n".join(lines)
 
@@ -30,8 +30,8 @@ def _entry(entry: Entry) -> Iterator[str]:
     yield f"Entry ID:   {entry.name}"
     yield "-" * 75
     yield _field("Description", _quote(entry.description))
-    if entry.additional:
-        yield _field("Additional description", _quote(entry.additional))
+    if entry.additional_description:
+        yield _field("Additional description", _quote(entry.additional_description))
     yield _field("Type", "reflectance spectrum")
     yield _field("Fluorescence data", "no")
     yield _field("Measurement device", entry.device)
@@ -57,7 +57,7 @@ def _samples(wavelengths: Array, values: Array) -> Iterator[str]:
 
 
 def _exact_step(wavelengths: Array) -> float | None:
-    """The step from which the reader makes exactly these wavelengths, if there is one."""
+    """Return the step that gives exactly these wavelengths in the reader, None if there is none."""
     n = len(wavelengths)
     first, last = wavelengths[0], wavelengths[-1]
     for step in (wavelengths[1] - first, (last - first) / (n - 1), round((last - first) / (n - 1), 9)):
@@ -71,7 +71,7 @@ def _field(key: str, value: str) -> str:
 
 
 def _quote(text: str) -> str:
-    """Quotes around text that has some at both ends already: the reader takes one pair off."""
+    """Quote text that has quotes at both ends, as the reader removes one pair."""
     text = _one_line(text)
     return f'"{text}"' if len(text) > 1 and text[0] == text[-1] == '"' else text
 

@@ -1,40 +1,56 @@
-"""Measured reflectances with names: what every atlas reader gives and every writer takes."""
+"""Atlases and their entries: the result of every reader and the input of every writer."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas.checks import Array, check_name, check_spectrum
+from uplift.atlas.checks import check_name, check_spectrum
 from uplift.atlas.document import SourceLocation
+from uplift.common.arrays import Array
+from uplift.common.errors import AtlasError, UpliftWarning, unknown_name
 
 
 @dataclass(frozen=True, eq=False)
 class Entry:
-    """One measured reflectance, checked when it is made.
+    """One measured reflectance, validated on creation.
 
     Parameters
     ----------
-    name : unique within its `Atlas`.
-    wavelengths : (N,) nm, positive, ascending, covering at least 400–700 nm.
-    values : (N,) reflectance in units of 1, as measured: slightly below 0 or above 1 is allowed.
-    description, additional, device, measured_by, date : what the archive says about the measurement.
-    path, line : where the entry stood.
+    name : str
+        Name, unique within its `Atlas`.
+    wavelengths : array_like, shape (N,)
+        Wavelengths in nm: positive, ascending, covering at least 400–700 nm.
+    values : array_like, shape (N,)
+        Reflectance in units of 1 as measured: noise slightly below 0 or above 1 is allowed.
+    description, additional_description, device, measured_by, date : str
+        Statements of the archive about the measurement.
+    path : str, optional
+        File of the entry.
+    line : int, optional
+        First line of the entry in the file, counted from 1.
 
     Raises
     ------
-    AtlasError : with path, line, name and hint.
+    AtlasError
+        The name or the spectrum is invalid.
+
+    Examples
+    --------
+    >>> Entry("grey", [380, 580, 780], [0.5, 0.5, 0.5])
+    Entry('grey', 3 samples, 380–780 nm)
     """
 
     name: str
     wavelengths: Array
     values: Array
     description: str = ""
-    additional: str = ""
+    additional_description: str = ""
     device: str = ""
     measured_by: str = ""
     date: str = ""
@@ -42,35 +58,75 @@ class Entry:
     line: int | None = None
 
     def __post_init__(self) -> None:
-        place = SourceLocation(self.path, self.line, self.name)
-        check_name(self.name, place)
+        location = SourceLocation(self.path, self.line, self.name)
+        check_name(self.name, location)
         for key in ("wavelengths", "values"):
-            object.__setattr__(self, key, _samples(getattr(self, key), key, place))
-        check_spectrum(self.wavelengths, self.values, place)
+            object.__setattr__(self, key, _read_only(getattr(self, key), key, location))
+        check_spectrum(self.wavelengths, self.values, location)
+
+    def __repr__(self) -> str:
+        first, last = self.wavelengths[[0, -1]]
+        return f"Entry({self.name!r}, {len(self.values)} samples, {first:g}–{last:g} nm)"
+
+    def _repr_html_(self) -> str:
+        return Atlas((self,))._repr_html_()
 
     @property
     def step(self) -> float | None:
-        """The sampling step in nm, None where it is irregular."""
+        """Sampling step in nm.
+
+        Returns
+        -------
+        float or None
+            None if the sampling is irregular.
+        """
         steps = np.diff(self.wavelengths)
         return round(float(steps.mean()), 6) if np.ptp(steps) <= 1e-6 else None
 
 
 @dataclass(frozen=True)
 class SkippedEntry:
-    """An entry that a cube of plain reflectances cannot hold, and why."""
+    """An entry of a file that is not a plain reflectance.
+
+    Parameters
+    ----------
+    name : str
+        Name of the entry.
+    reason : str
+        Why it cannot be used.
+    path : str, optional
+        File of the entry.
+    line : int, optional
+        First line of the entry in the file.
+    """
 
     name: str
     reason: str
     path: str | None = None
     line: int | None = None
 
-    def __str__(self) -> str:
-        return f"{self.path}:{self.line}: entry '{self.name}' skipped: {self.reason}"
+    def warning(self) -> UpliftWarning:
+        """Create the warning to issue.
+
+        Returns
+        -------
+        UpliftWarning
+            With the code ``entry-skipped``.
+        """
+        return UpliftWarning(
+            f"skipped: {self.reason}", code="entry-skipped", path=self.path, line=self.line, entry=self.name
+        )
 
 
 @dataclass(frozen=True)
 class Header:
-    """What an archive says about itself."""
+    """Statements of an archive about itself, empty if it makes none.
+
+    Parameters
+    ----------
+    content, copyright, licence : str
+        One line each.
+    """
 
     content: str = ""
     copyright: str = ""
@@ -79,20 +135,50 @@ class Header:
 
 @dataclass(frozen=True)
 class Source:
-    """A file that was read: base name, sha256 (hex) of its bytes, and its header."""
+    """A file that entries were read from.
+
+    Parameters
+    ----------
+    name : str
+        Base name.
+    digest : str
+        SHA-256 of its bytes, in hexadecimal digits.
+    header : Header
+        Statements of the file about itself.
+    """
 
     name: str
     digest: str
     header: Header = field(default_factory=Header)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Atlas:
-    """An atlas: entries in the order they were read, and what was left out.
+    """A sequence of entries with unique names.
+
+    Iteration yields entries. An index is a name, a position, or a slice, which gives an atlas.
+
+    Parameters
+    ----------
+    entries : tuple of Entry
+        Entries, in the order of their files.
+    skipped : tuple of SkippedEntry
+        Entries of the files that were not used.
+    sources : tuple of Source
+        The files.
 
     Raises
     ------
-    AtlasError : two entries share a name; names both places.
+    AtlasError
+        Two entries share a name.
+
+    Examples
+    --------
+    >>> atlas = Atlas((Entry("grey", [380, 780], [0.5, 0.5]), Entry("white", [380, 780], [0.9, 0.9])))
+    >>> atlas
+    Atlas(2 entries, 380–780 nm)
+    >>> atlas["white"].values.tolist(), "black" in atlas, atlas[:1].names
+    ([0.9, 0.9], False, ('grey',))
     """
 
     entries: tuple[Entry, ...] = ()
@@ -103,19 +189,77 @@ class Atlas:
         first: dict[str, Entry] = {}
         for entry in self.entries:
             if first.setdefault(entry.name, entry) is not entry:
-                raise _duplicate(first[entry.name], entry)
+                raise _duplicate_error(first[entry.name], entry)
 
     def __len__(self) -> int:
         return len(self.entries)
 
+    def __iter__(self) -> Iterator[Entry]:
+        return iter(self.entries)
+
+    def __contains__(self, item: object) -> bool:
+        return any(item is entry or item == entry.name for entry in self.entries)
+
+    @overload
+    def __getitem__(self, key: str | int) -> Entry: ...
+    @overload
+    def __getitem__(self, key: slice) -> Atlas: ...
+    def __getitem__(self, key: str | int | slice) -> Entry | Atlas:
+        if isinstance(key, slice):
+            return replace(self, entries=self.entries[key])
+        if not isinstance(key, str):
+            return self.entries[key]
+        for entry in self.entries:
+            if entry.name == key:
+                return entry
+        raise unknown_name(key, self.names, "atlas entry")
+
+    def __repr__(self) -> str:
+        parts = [f"{len(self)} {'entry' if len(self) == 1 else 'entries'}"]
+        if self.entries:
+            first = min(entry.wavelengths[0] for entry in self.entries)
+            last = max(entry.wavelengths[-1] for entry in self.entries)
+            parts.append(f"{first:g}–{last:g} nm")
+        if self.skipped:
+            parts.append(f"{len(self.skipped)} skipped")
+        if self.sources:
+            more = f" and {len(self.sources) - 3} more" if len(self.sources) > 3 else ""
+            parts.append("from " + ", ".join(source.name for source in self.sources[:3]) + more)
+        return f"Atlas({', '.join(parts)})"
+
+    def _repr_html_(self) -> str:
+        from uplift.atlas.html import atlas_table
+
+        return atlas_table(self)
+
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the entries."""
+        """Names of the entries.
+
+        Returns
+        -------
+        tuple of str
+        """
         return tuple(entry.name for entry in self.entries)
 
 
 def merge(parts: Iterable[Atlas]) -> Atlas:
-    """Several atlases as one, in order. Raises `AtlasError` where two entries share a name."""
+    """Merge atlases into one, in order.
+
+    Parameters
+    ----------
+    parts : iterable of Atlas
+        The atlases.
+
+    Returns
+    -------
+    Atlas
+
+    Raises
+    ------
+    AtlasError
+        Two entries share a name.
+    """
     parts = tuple(parts)
     chain = itertools.chain.from_iterable
     return Atlas(
@@ -125,17 +269,19 @@ def merge(parts: Iterable[Atlas]) -> Atlas:
     )
 
 
-def _samples(samples: ArrayLike, key: str, place: SourceLocation) -> Array:
-    """A copy that nobody can change."""
+def _read_only(samples: ArrayLike, key: str, location: SourceLocation) -> Array:
+    """Copy samples to a read-only array."""
     try:
         array = np.array(samples, dtype=np.float64)
     except (TypeError, ValueError):
-        raise place.error(f"the {key} are not all numbers", "give an array of numbers") from None
+        raise location.error(
+            "samples-not-numeric", f"the {key} are not all numbers", "give an array of numbers"
+        ) from None
     array.setflags(write=False)
     return array
 
 
-def _duplicate(first: Entry, second: Entry) -> Exception:
+def _duplicate_error(first: Entry, second: Entry) -> AtlasError:
     where = "" if first.path is None else f": first used at {first.path}:{first.line}"
-    place = SourceLocation(second.path, second.line, second.name)
-    return place.error(f"the name is taken{where}", "rename or remove one of the two")
+    location = SourceLocation(second.path, second.line, second.name)
+    return location.error("duplicate-name", f"the name is taken{where}", "rename or remove one of the two")

@@ -1,83 +1,94 @@
-"""What a measured reflectance must satisfy before anything is computed from it."""
+"""Validation of measured reflectances."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.atlas.document import SourceLocation
-
-Array = NDArray[np.float64]
+from uplift.common.arrays import Array
 
 VISIBLE = (400.0, 700.0)
-"""nm every entry must cover: outside, a reflectance hardly changes a colour; inside, it must be measured."""
+"""Range in nm that every entry must cover. Wavelengths outside have little effect on colour."""
 
 LOWEST, HIGHEST = -0.05, 2.0
-"""Sensor noise goes a little below 0, fluorescent whites above 1; anything beyond is a wrong scale."""
+"""Limits of reflectance. Noise is slightly below 0, fluorescent whites are above 1; other values have a wrong scale."""
 
 LONGEST = 1e6
-"""nm: a millimetre. What lies beyond is no wavelength, and no number to interpolate with."""
+"""Largest wavelength in nm, a millimetre. Larger values would overflow in interpolation."""
 
 SLACK = 1e-6
-"""nm that make no difference: by this a range may miss its end, as start + n × increment rounds."""
+"""Tolerance in nm for the ends of a range, as start + n × increment is rounded."""
 
 
-def check_name(name: str, place: SourceLocation) -> None:
-    """A name must be one line of text without blanks around it. Raises `AtlasError`."""
+def check_name(name: str, location: SourceLocation) -> None:
+    """Check that a name is one line of text without surrounding blanks. Raise `AtlasError`."""
     if not name.strip():
-        raise place.error("an entry has no name", "give every entry a name of its own")
+        raise location.error("name-missing", "an entry needs a name", "give every entry a unique name")
     if name != name.strip() or len(name.splitlines()) != 1 or "\0" in name:
-        raise place.error("the name has line breaks or blanks around it", "give the entry a plain name")
+        raise location.error(
+            "invalid-name",
+            "the name has line breaks or surrounding blanks",
+            "give the entry a name of one line",
+        )
 
 
-def check_spectrum(wavelengths: Array, values: Array, place: SourceLocation) -> None:
-    """Wavelengths (N,) nm and values (N,) in units of 1 must make a reflectance. Raises `AtlasError`."""
-    _check_shapes(wavelengths, values, place)
-    _check_finite(wavelengths, values, place)
-    _check_ascending(wavelengths, place)
-    _check_coverage(wavelengths, place)
-    _check_scale(wavelengths, values, place)
+def check_spectrum(wavelengths: Array, values: Array, location: SourceLocation) -> None:
+    """Check wavelengths (N,) in nm and values (N,) in units of 1. Raise `AtlasError`."""
+    _check_shapes(wavelengths, values, location)
+    _check_finite(wavelengths, values, location)
+    _check_ascending(wavelengths, location)
+    _check_coverage(wavelengths, location)
+    _check_scale(wavelengths, values, location)
 
 
-def _check_shapes(wavelengths: Array, values: Array, place: SourceLocation) -> None:
+def _check_shapes(wavelengths: Array, values: Array, location: SourceLocation) -> None:
     if wavelengths.ndim != 1 or wavelengths.shape != values.shape:
-        shapes = f"{wavelengths.shape} wavelengths for {values.shape} values"
-        raise place.error(shapes, "give one wavelength for every value")
+        problem = f"wavelengths and values must have the same shape (N,), got {wavelengths.shape} and {values.shape}"
+        raise location.error("shape-mismatch", problem, "give one wavelength for every value")
     if len(wavelengths) < 2:
-        raise place.error(f"{len(wavelengths)} sample(s), at least 2 are needed", "add the missing samples")
+        problem = f"an entry needs at least 2 samples, got {len(wavelengths)}"
+        raise location.error("too-few-samples", problem, "add the missing samples")
 
 
-def _check_finite(wavelengths: Array, values: Array, place: SourceLocation) -> None:
+def _check_finite(wavelengths: Array, values: Array, location: SourceLocation) -> None:
     bad = np.flatnonzero(~(np.isfinite(wavelengths) & np.isfinite(values)))
     if len(bad):
         i = bad[0]
         problem = f"sample {i + 1} is not finite: {values[i]:g} at {wavelengths[i]:g} nm"
-        raise place.error(problem, "replace it by the measured value or remove the entry")
+        raise location.error(
+            "sample-not-finite", problem, "replace it by the measured value or remove the entry"
+        )
 
 
-def _check_ascending(wavelengths: Array, place: SourceLocation) -> None:
-    if wavelengths[0] <= 0:
-        raise place.error(f"wavelength {wavelengths[0]:g} nm is not positive", "give wavelengths in nm")
-    if wavelengths[-1] > LONGEST:
-        raise place.error(f"wavelength {wavelengths[-1]:g} nm is out of range", "give wavelengths in nm")
+def _check_ascending(wavelengths: Array, location: SourceLocation) -> None:
+    if wavelengths[0] <= 0 or wavelengths[-1] > LONGEST:
+        outside = wavelengths[0] if wavelengths[0] <= 0 else wavelengths[-1]
+        problem = f"wavelengths must be in (0, {LONGEST:g}] nm, got {outside:g}"
+        raise location.error("wavelength-out-of-range", problem, "give wavelengths in nm")
     bad = np.flatnonzero(np.diff(wavelengths) < SLACK)
     if len(bad):
         i = bad[0]
-        problem = f"wavelengths do not ascend: {wavelengths[i]:g} nm, then {wavelengths[i + 1]:g} nm"
-        raise place.error(problem, "sort the samples by wavelength, each wavelength once")
+        problem = f"wavelengths must ascend, got {wavelengths[i]:g} nm, then {wavelengths[i + 1]:g} nm"
+        raise location.error(
+            "wavelengths-not-ascending", problem, "sort the samples by wavelength, each wavelength once"
+        )
 
 
-def _check_coverage(wavelengths: Array, place: SourceLocation) -> None:
+def _check_coverage(wavelengths: Array, location: SourceLocation) -> None:
     first, last = wavelengths[0], wavelengths[-1]
     if first > VISIBLE[0] + SLACK or last < VISIBLE[1] - SLACK:
-        problem = f"covers {first:g}–{last:g} nm, not the visible {VISIBLE[0]:g}–{VISIBLE[1]:g} nm"
-        raise place.error(problem, "add the missing samples and give wavelengths in nm")
+        problem = f"an entry must cover {VISIBLE[0]:g}–{VISIBLE[1]:g} nm, got {first:g}–{last:g} nm"
+        raise location.error(
+            "visible-range-not-covered", problem, "add the missing samples and give wavelengths in nm"
+        )
 
 
-def _check_scale(wavelengths: Array, values: Array, place: SourceLocation) -> None:
+def _check_scale(wavelengths: Array, values: Array, location: SourceLocation) -> None:
     bad = np.flatnonzero((values > HIGHEST) | (values < LOWEST))
     if len(bad):
         i = bad[0]
-        problem = f"reflectance {values[i]:g} at {wavelengths[i]:g} nm is out of range"
+        problem = (
+            f"reflectance must be in [{LOWEST:g}, {HIGHEST:g}], got {values[i]:g} at {wavelengths[i]:g} nm"
+        )
         hint = "the scale (in atlas text 'Maximum sample value') is probably missing or wrong"
-        raise place.error(problem, hint)
+        raise location.error("reflectance-out-of-range", problem, hint)

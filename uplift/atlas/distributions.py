@@ -1,4 +1,4 @@
-"""Spectral distributions that a Python program already has → `Atlas`, whatever their class."""
+"""Conversion of spectral distributions of other libraries to an `Atlas`."""
 
 from __future__ import annotations
 
@@ -19,17 +19,30 @@ FORMS = (
 
 
 def from_distributions(distributions: Any) -> Atlas:
-    """An atlas from colour-science's distributions, or from anything of the same shape.
+    """Create an atlas from distributions of colour-science, or from objects with the same attributes.
 
     Parameters
     ----------
-    distributions : a mapping of names to objects with ``wavelengths`` (N,) nm and ``values`` (N,) in units
-        of 1; one object with ``labels`` (E,), ``wavelengths`` (N,) and ``values`` (N, E); or one distribution
-        with ``name``, ``wavelengths`` and ``values``.
+    distributions : mapping or object
+        A mapping of names to objects with ``wavelengths`` (N,) in nm and ``values`` (N,) in units of 1; one object with
+        ``labels`` (E,), ``wavelengths`` (N,) and ``values`` (N, E); or one distribution with ``name``,
+        ``wavelengths`` and ``values``.
+
+    Returns
+    -------
+    Atlas
 
     Raises
     ------
-    AtlasError : no such object, or no reflectance in units of 1.
+    AtlasError
+        An object lacks these attributes, or is not a reflectance in units of 1.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> grey = SimpleNamespace(wavelengths=[380, 780], values=[0.5, 0.5])
+    >>> from_distributions({"grey": grey}).names
+    ('grey',)
     """
     entries = tuple(Entry(name, wavelengths, values) for name, wavelengths, values in _named(distributions))
     digest = hashlib.sha256(art_write.text(Atlas(entries), Header()).encode()).hexdigest()
@@ -37,30 +50,30 @@ def from_distributions(distributions: Any) -> Atlas:
 
 
 def _named(distributions: Any) -> Iterator[tuple[str, Any, Any]]:
-    """Names with wavelengths and values."""
+    """Yield names with wavelengths and values."""
     if isinstance(distributions, Mapping):
         for name, distribution in distributions.items():
-            yield str(name), *_sampled(distribution, str(name))
+            yield str(name), *_samples(distribution, str(name))
     elif hasattr(distributions, "labels"):
         yield from _columns(distributions)
     else:
         name = str(getattr(distributions, "name", type(distributions).__name__))
-        yield name, *_sampled(distributions, name)
+        yield name, *_samples(distributions, name)
 
 
-def _sampled(distribution: Any, name: str) -> tuple[Any, Any]:
+def _samples(distribution: Any, name: str) -> tuple[Any, Any]:
     try:
         return distribution.wavelengths, distribution.values
     except AttributeError:
-        problem = f"'{type(distribution).__name__}' is no spectral distribution"
-        raise SourceLocation(entry=name).error(problem, FORMS) from None
+        problem = f"'{type(distribution).__name__}' is not a spectral distribution"
+        raise SourceLocation(entry=name).error("not-a-distribution", problem, FORMS) from None
 
 
 def _columns(distributions: Any) -> Iterator[tuple[str, Any, Any]]:
-    wavelengths, values = _sampled(distributions, "labels")
+    wavelengths, values = _samples(distributions, "labels")
     names = [str(label) for label in distributions.labels]
     if np.ndim(values) != 2 or np.shape(values)[1] != len(names):
-        problem = f"values of shape {np.shape(values)} for {len(names)} labels"
-        raise SourceLocation().error(problem, "give values (N, E), a column per label")
+        problem = f"values must have shape (N, {len(names)}) for {len(names)} labels, got {np.shape(values)}"
+        raise SourceLocation().error("shape-mismatch", problem, "give one column of values per label")
     for name, column in zip(names, np.transpose(values), strict=True):
         yield name, wavelengths, column

@@ -1,4 +1,4 @@
-"""Files in and out: text read whole, faults with their place, no half-written file left behind."""
+"""Text files with source locations, and parsing of numbers with errors that name the location."""
 
 from __future__ import annotations
 
@@ -12,35 +12,35 @@ from pathlib import Path
 from uplift.common.arrays import StrPath
 from uplift.common.errors import AtlasError
 
-SHOWN = 40
-"""Characters of a faulty token or name that a message shows."""
+MAX_QUOTED = 40
+"""Characters of an invalid token or name that a message quotes."""
 
 
 @dataclass(frozen=True)
 class SourceLocation:
-    """Where something stands, as far as it is known (``line`` counts from 1)."""
+    """Path, line (counted from 1) and entry that an error refers to, as far as they are known."""
 
     path: str | None = None
     line: int | None = None
     entry: str | None = None
 
     def at(self, line: int) -> SourceLocation:
-        """Another line of the same entry."""
+        """Return the location of another line of the same entry."""
         return dataclasses.replace(self, line=line)
 
     def after(self, text: str) -> SourceLocation:
-        """Where one stands having read ``text``."""
+        """Return the location after ``text``, which starts here."""
         return self.at((self.line or 1) + text.count("\n")) if "\n" in text else self
 
-    def error(self, problem: str, hint: str) -> AtlasError:
-        """The error to raise for a problem here."""
+    def error(self, code: str, problem: str, hint: str) -> AtlasError:
+        """Create an error at this location."""
         entry = None if self.entry is None else truncate(self.entry)
-        return AtlasError(problem, path=self.path, line=self.line, entry=entry, hint=hint)
+        return AtlasError(problem, code=code, path=self.path, line=self.line, entry=entry, hint=hint)
 
 
 @dataclass(frozen=True)
 class Document:
-    """A text file as it was read: lines end in LF here, ``digest`` is sha256 (hex) of the file's bytes."""
+    """A text file with LF line ends; ``digest`` is the SHA-256 (hex) of the bytes of the file."""
 
     path: str
     text: str
@@ -48,43 +48,47 @@ class Document:
 
     @property
     def name(self) -> str:
-        """The file's base name."""
+        """Base name of the file."""
         return os.path.basename(self.path)
 
     @cached_property
     def lines(self) -> list[str]:
-        """Line n of an editor is ``lines[n - 1]``."""
+        """Lines of the text; line n of an editor is ``lines[n - 1]``."""
         return self.text.split("\n")
 
 
 def read_document(path: StrPath) -> Document:
-    """Read a text file, UTF-8 or else Latin-1.
+    """Read a text file in UTF-8 or else Latin-1.
 
     Raises
     ------
-    AtlasError : the file is missing, unreadable, empty or binary.
+    AtlasError
+        The file is missing, unreadable, empty or binary.
     """
-    place = SourceLocation(os.fspath(path))
-    data = _bytes(place)
-    text = _text(data, place)
+    location = SourceLocation(os.fspath(path))
+    data = _bytes(location)
+    text = _decode(data, location)
     if not text.strip():
-        raise place.error("the file is empty", "name a file that holds atlas entries")
+        raise location.error("empty-file", "the file is empty", "name a file that contains atlas entries")
     return Document(os.fspath(path), text, hashlib.sha256(data).hexdigest())
 
 
-def _bytes(place: SourceLocation) -> bytes:
+def _bytes(location: SourceLocation) -> bytes:
     try:
-        return Path(place.path or "").read_bytes()
+        return Path(location.path or "").read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        raise place.error(
-            f"cannot be read: {_reason(error)}", "name an atlas file that can be read"
+        reason = str(getattr(error, "strerror", None) or error).lower()
+        raise location.error(
+            "cannot-read", f"cannot be read: {reason}", "name an atlas file that can be read"
         ) from None
 
 
-def _text(data: bytes, place: SourceLocation) -> str:
+def _decode(data: bytes, location: SourceLocation) -> str:
     if b"\0" in data:
         line = data[: data.index(b"\0")].count(b"\n") + 1
-        raise place.at(line).error("binary data (a NUL byte), no text", "save the atlas as UTF-8 text")
+        raise location.at(line).error(
+            "binary-file", "binary data (a NUL byte) instead of text", "save the atlas as UTF-8 text"
+        )
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -92,32 +96,28 @@ def _text(data: bytes, place: SourceLocation) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def number(token: str, place: SourceLocation, what: str) -> float:
-    """A number as data files write it; ``what`` names it in the error. Raises `AtlasError`."""
+def parse_number(token: str, location: SourceLocation, label: str) -> float:
+    """Parse a number as data files write it; an error names it by ``label``. Raise `AtlasError`."""
     try:
-        if "_" in token:  # Python reads 1_000, no measuring device writes it
+        if "_" in token:  # valid in Python, but not in data files
             raise ValueError
         return float(token)
     except ValueError:
-        problem = f"{what} '{truncate(token)}' is not a number"
-        raise place.error(problem, "write a plain number such as 0.125") from None
+        problem = f"{label} '{truncate(token)}' is not a number"
+        raise location.error("not-a-number", problem, "write a plain number such as 0.125") from None
+
+
+def parse_nanometres(token: str, location: SourceLocation, label: str) -> float:
+    """Parse a number with an optional unit ``nm``. Raise `AtlasError`."""
+    return parse_number(without_unit(token), location, label)
 
 
 def truncate(text: str) -> str:
-    """Text as a message quotes it: one line, not too long."""
+    """Shorten text to one line of at most `MAX_QUOTED` characters."""
     text = " ".join(text.replace("\0", " ").split())
-    return text if len(text) <= SHOWN else text[:SHOWN] + "…"
-
-
-def nanometres(token: str, place: SourceLocation, what: str) -> float:
-    """A number followed by ``nm`` or by nothing. Raises `AtlasError`."""
-    return number(without_unit(token), place, what)
+    return text if len(text) <= MAX_QUOTED else text[:MAX_QUOTED] + "…"
 
 
 def without_unit(token: str) -> str:
-    """``380.0`` of ``380.0 nm``."""
+    """Return ``380.0`` for ``380.0 nm``."""
     return token.strip().removesuffix("nm").rstrip()
-
-
-def _reason(error: Exception) -> str:
-    return str(getattr(error, "strerror", None) or error).lower()

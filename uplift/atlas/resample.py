@@ -1,4 +1,4 @@
-"""Entries of any sampling → one array on one wavelength grid."""
+"""Resampling of entries to one wavelength grid."""
 
 from __future__ import annotations
 
@@ -9,16 +9,26 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas.atlas import Atlas, Entry
-from uplift.atlas.checks import Array
+from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 
 NOISE = 1e-6
-"""Distance from [0, 1] that is not worth a word: sensors give −2e−16 for black."""
+"""Distance from [0, 1] that is clipped without a warning, such as −2e−16 for black."""
 
 
 @dataclass(frozen=True)
 class Clip:
-    """An entry that leaves [0, 1], with the value that leaves it farthest and its wavelength in nm."""
+    """The value of an entry farthest outside [0, 1].
+
+    Parameters
+    ----------
+    name : str
+        Name of the entry.
+    value : float
+        The value before clipping.
+    wavelength : float
+        Its wavelength in nm.
+    """
 
     name: str
     value: float
@@ -30,36 +40,82 @@ class Clip:
 
 @dataclass(frozen=True, eq=False)
 class Resampled:
-    """(E, N) reflectances within [0, 1], and who had to be clipped for that."""
+    """Reflectances on a grid, and the entries that were clipped.
+
+    Parameters
+    ----------
+    values : ndarray, shape (E, N)
+        Reflectances in [0, 1].
+    clips : tuple of Clip
+        One for every entry that was clipped by more than noise.
+    """
 
     values: Array
     clips: tuple[Clip, ...]
 
 
-def on_grid(spectra: Atlas, wavelengths: ArrayLike) -> Array:
-    """Reflectances of all entries (E, N) at wavelengths (N,) nm, within [0, 1].
+def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
+    """Resample all entries to a wavelength grid.
 
-    Shape-preserving cubic (PCHIP, so no overshoot) inside the measured range, held flat outside it. An
-    `UpliftWarning` names every entry whose values had to be clipped by more than noise.
+    The interpolation is a shape-preserving cubic (PCHIP) without overshoot, with constant extrapolation.
+
+    Parameters
+    ----------
+    atlas : Atlas
+        E entries.
+    wavelengths : array_like, shape (N,)
+        Wavelengths in nm.
+
+    Returns
+    -------
+    ndarray, shape (E, N)
+        Reflectances in [0, 1].
+
+    Warns
+    -----
+    UpliftWarning
+        An entry was clipped by more than noise (``entry-clipped``).
+
+    References
+    ----------
+    Fritsch & Carlson 1980, "Monotone piecewise cubic interpolation".
+
+    Examples
+    --------
+    >>> atlas = Atlas((Entry("ramp", [400, 700], [0.25, 0.75]),))
+    >>> on_grid(atlas, [380, 400, 550, 700]).tolist()
+    [[0.25, 0.25, 0.5, 0.75]]
     """
-    resampled = resample(spectra, wavelengths)
+    resampled = resample(atlas, wavelengths)
     for clip in resampled.clips:
-        warnings.warn(f"entry '{clip.name}': {clip}", UpliftWarning, stacklevel=2)
+        warnings.warn(UpliftWarning(str(clip), code="entry-clipped", entry=clip.name), stacklevel=2)
     return resampled.values
 
 
-def resample(spectra: Atlas, wavelengths: ArrayLike) -> Resampled:
-    """What `on_grid` gives, with the clipping as data in place of warnings."""
+def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
+    """Resample all entries as `on_grid`, and return the clipped entries instead of warning.
+
+    Parameters
+    ----------
+    atlas : Atlas
+        E entries.
+    wavelengths : array_like, shape (N,)
+        Wavelengths in nm.
+
+    Returns
+    -------
+    Resampled
+    """
     grid = np.asarray(wavelengths, dtype=np.float64)
-    raw = np.array([_interpolate(entry, grid) for entry in spectra.entries]).reshape(-1, len(grid))
-    clips = [_clip(entry.name, row, grid) for entry, row in zip(spectra.entries, raw, strict=True)]
+    raw = np.array([_interpolate(entry, grid) for entry in atlas]).reshape(-1, len(grid))
+    clips = [_clip(entry.name, row, grid) for entry, row in zip(atlas, raw, strict=True)]
     return Resampled(np.clip(raw, 0.0, 1.0), tuple(clip for clip in clips if clip is not None))
 
 
 def _interpolate(entry: Entry, grid: Array) -> Array:
     from scipy.interpolate import PchipInterpolator
 
-    with np.errstate(over="ignore"):  # slopes near 0 go through their reciprocals
+    with np.errstate(over="ignore"):  # harmonic means of slopes near 0
         curve = PchipInterpolator(entry.wavelengths, entry.values)
     return np.asarray(curve(np.clip(grid, entry.wavelengths[0], entry.wavelengths[-1])), dtype=np.float64)
 

@@ -1,4 +1,4 @@
-"""Reflectances as CSV: a row per sample under a row of wavelengths, or the transpose of that."""
+"""Reflectances as CSV: a row per entry below a row of wavelengths, or the transpose."""
 
 from __future__ import annotations
 
@@ -13,16 +13,17 @@ import numpy as np
 
 from uplift.atlas.atlas import Atlas, Entry, Source
 from uplift.atlas.checks import HIGHEST, SLACK, VISIBLE
-from uplift.atlas.document import Document, SourceLocation, nanometres, number, without_unit
+from uplift.atlas.document import Document, SourceLocation, parse_nanometres, parse_number, without_unit
+from uplift.common.csv import csv_text
 from uplift.common.errors import OutputError, UpliftWarning
 
 DELIMITERS = ",;\t"
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
-LAYOUT = "write a header row of wavelengths in nm and a row per sample, or the transpose of that"
+LAYOUT = "write a header row of wavelengths in nm and a row per entry, or the transpose"
 
 
 class Cell(NamedTuple):
-    """A cell and the line it stands on."""
+    """Text of a cell, and its line."""
 
     text: str
     line: int
@@ -32,59 +33,63 @@ Row = tuple[Cell, ...]
 
 
 def read(document: Document) -> Atlas:
-    """All samples of a table; values in percent are recognised and scaled, with an `UpliftWarning`.
+    """Read the entries of a table; values in percent are recognised and scaled, with a warning.
 
     Raises
     ------
-    AtlasError : no table of reflectances, or a cell that is no number, with line, entry and hint.
+    AtlasError
+        The text is not a table of reflectances, or a cell is not a number; with line, entry and hint.
     """
-    header, *samples = _oriented(_rows(document), SourceLocation(document.path))
-    place = SourceLocation(document.path, header[0].line)
-    wavelengths = [nanometres(cell.text, place.at(cell.line), "wavelength") for cell in header[1:]]
-    values = [_values(row, document.path) for row in samples]
-    scale = _scale(samples, values, document.path)
+    header, *rows = _orient(_rows(document), SourceLocation(document.path))
+    location = SourceLocation(document.path, header[0].line)
+    wavelengths = [parse_nanometres(cell.text, location.at(cell.line), "wavelength") for cell in header[1:]]
+    values = [_values(row, document.path) for row in rows]
+    scale = _scale(rows, values, document.path)
     entries = [
         Entry(
             row[0].text, np.array(wavelengths), np.array(line) / scale, path=document.path, line=row[0].line
         )
-        for row, line in zip(samples, values, strict=True)
+        for row, line in zip(rows, values, strict=True)
     ]
     return Atlas(tuple(entries), sources=(Source(document.name, document.digest),))
 
 
-def text(spectra: Atlas) -> str:
-    """A row per sample; wavelengths and values are read back to the last bit.
+def text(atlas: Atlas) -> str:
+    """Format a row per entry; `read` returns the same wavelengths and values, bit for bit.
 
     Raises
     ------
-    OutputError : the entries are sampled at different wavelengths.
+    OutputError
+        The entries are sampled at different wavelengths.
     """
-    first = spectra.entries[0]
-    for entry in spectra.entries:
+    first = atlas[0]
+    for entry in atlas:
         if not np.array_equal(entry.wavelengths, first.wavelengths):
             problem = f"entries '{first.name}' and '{entry.name}' are sampled at different wavelengths"
-            raise OutputError(problem, hint="write atlas text, which keeps each sampling, or separate tables")
-    out = io.StringIO()
-    writer = csv.writer(out, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
-    writer.writerow(["name", *first.wavelengths.tolist()])
-    writer.writerows([entry.name, *entry.values.tolist()] for entry in spectra.entries)
-    return out.getvalue()
+            raise OutputError(
+                problem,
+                code="different-samplings",
+                hint="write atlas text, which keeps each sampling, or separate tables",
+            )
+    rows = ([entry.name, *entry.values.tolist()] for entry in atlas)
+    return csv_text(["name", *first.wavelengths.tolist()], rows, quote_text=True)
 
 
 def _rows(document: Document) -> list[Row]:
-    """Rows that are not blank, all of one width."""
-    place = SourceLocation(document.path)
+    """Split a document into rows that are not blank, of equal width."""
+    location = SourceLocation(document.path)
     delimiter = _delimiter(document)
     try:
         rows = list(_split(document, delimiter))
     except csv.Error as error:
-        raise place.error(f"no readable table: {error}", LAYOUT) from None
+        raise location.error("not-a-table", f"not a readable table: {error}", LAYOUT) from None
     if len(rows) < 2:
-        raise place.at(1).error(NO_TABLE, LAYOUT)
+        raise location.at(1).error("not-an-atlas", NO_TABLE, LAYOUT)
     for row in rows:
         if len(row) != len(rows[0]):
-            problem = f"{len(row)} cells, the header row has {len(rows[0])}"
-            raise place.at(row[0].line).error(problem, "fill in the missing cells or remove the row")
+            problem = f"a row must have {len(rows[0])} cells like the header row, got {len(row)}"
+            hint = "fill in the missing cells or remove the row"
+            raise location.at(row[0].line).error("row-of-wrong-length", problem, hint)
     return rows
 
 
@@ -95,18 +100,18 @@ def _split(document: Document, delimiter: str) -> Iterator[Row]:
         while cells and not cells[-1].strip():  # spreadsheets pad rows
             cells.pop()
         if cells:
-            yield tuple(Cell(_point(cell.strip(), delimiter), line) for cell in cells)
+            yield tuple(Cell(_decimal_point(cell.strip(), delimiter), line) for cell in cells)
         line = reader.line_num + 1
 
 
-def _point(cell: str, delimiter: str) -> str:
-    """A decimal comma becomes a point where the comma separates nothing."""
+def _decimal_point(cell: str, delimiter: str) -> str:
+    """Replace a decimal comma by a point, unless the comma is the delimiter."""
     pointed = cell.replace(",", ".")
     return pointed if delimiter != "," and _is_number(pointed) else cell
 
 
 def _delimiter(document: Document) -> str:
-    """The separator that finds most numbers in the first two rows."""
+    """Return the delimiter that yields most numbers in the first two rows."""
 
     def numbers(delimiter: str) -> int:
         try:
@@ -118,14 +123,14 @@ def _delimiter(document: Document) -> str:
     return max(DELIMITERS, key=numbers)
 
 
-def _oriented(rows: list[Row], place: SourceLocation) -> list[Row]:
-    """The table turned so that the wavelengths are its first row."""
+def _orient(rows: list[Row], location: SourceLocation) -> list[Row]:
+    """Transpose the table if necessary, so that its first row contains the wavelengths."""
     columns = list(zip(*rows, strict=True))
     tables = [table for table in (rows, columns) if _numeric(table[0][1:])]
     if len(columns) < 2 or not tables:
-        raise place.at(rows[0][0].line).error(NO_TABLE, LAYOUT)
+        raise location.at(rows[0][0].line).error("not-an-atlas", NO_TABLE, LAYOUT)
     if _is_number(rows[0][0].text):
-        raise place.at(rows[0][0].line).error("the header row is missing", LAYOUT)
+        raise location.at(rows[0][0].line).error("header-row-missing", "the header row is missing", LAYOUT)
     return next((table for table in tables if _covers(table[0][1:])), tables[0])
 
 
@@ -134,7 +139,7 @@ def _numeric(cells: Sequence[Cell]) -> bool:
 
 
 def _covers(cells: Sequence[Cell]) -> bool:
-    """Whether numbers may be wavelengths: names can be numbers too."""
+    """Whether numbers cover the visible range, as wavelengths do and numeric names usually do not."""
     numbers = [float(without_unit(cell.text)) for cell in cells]
     return numbers[0] <= VISIBLE[0] + SLACK and numbers[-1] >= VISIBLE[1] - SLACK
 
@@ -149,16 +154,16 @@ def _is_number(text: str) -> bool:
 
 def _values(row: Row, path: str) -> list[float]:
     name, *cells = row
-    return [number(cell.text, SourceLocation(path, cell.line, name.text), "value") for cell in cells]
+    return [parse_number(cell.text, SourceLocation(path, cell.line, name.text), "value") for cell in cells]
 
 
-def _scale(samples: list[Row], values: list[list[float]], path: str) -> float:
-    """1, or 100 where any value is too large for a reflectance in units of 1."""
-    named = ((value, row[0].text) for row, line in zip(samples, values, strict=True) for value in line)
+def _scale(rows: list[Row], values: list[list[float]], path: str) -> float:
+    """Return 100 if any value is too large for a reflectance in units of 1, else 1."""
+    named = ((value, row[0].text) for row, line in zip(rows, values, strict=True) for value in line)
     large = [pair for pair in named if pair[0] > HIGHEST]
     if not large:
         return 1.0
     largest, name = max(large)
-    message = f"{path}: values up to {largest:g} (entry '{name}'): read as percent, divided by 100"
-    warnings.warn(message, UpliftWarning, stacklevel=4)
+    problem = f"values up to {largest:g} are read as percent and divided by 100"
+    warnings.warn(UpliftWarning(problem, code="values-in-percent", path=path, entry=name), stacklevel=4)
     return 100.0
