@@ -18,10 +18,10 @@ from .output.diagnostics import OUTPUT_FORMAT, UsageFailure, show_warning
 from .params.renamed import renamed_option
 
 GROUPS = {
-    "Build and use cubes": ("build", "query", "texture", "mix", "export"),
-    "Inspect and verify": ("info", "slices", "report", "check", "atlas"),
-    "Plan and design scenes": ("plan", "wavelengths", "compare", "palette"),
-    "Measure methods": ("chart", "study"),
+    "Cubes": ("build", "query", "texture", "mix", "export"),
+    "Inspection": ("info", "slices", "report", "check", "atlas"),
+    "Scenes": ("plan", "wavelengths", "compare", "palette"),
+    "Measurements": ("chart", "study"),
 }
 """Commands by headings of the help."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
