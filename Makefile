@@ -107,9 +107,10 @@ palette: $(INSTALLED)
 wavelengths: $(INSTALLED)
 	$(BIN)/python -m benchmarks.wavelengths
 
-# Ways to hold spectra, beside a thesis of 2011: docs/representations.md.
+# Spectral representations, compared with Kment 2011: docs/representations.md.
 representations: $(INSTALLED)
 	$(BIN)/python -m benchmarks.representations
+	$(BIN)/python -m tools.render_docs representations
 
 # Pictures come with packages that nothing else needs.
 pictures: $(INSTALLED)

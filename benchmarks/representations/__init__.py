@@ -1,1 +1,1 @@
-"""``make representations``: ways to hold spectra, on the shipped atlases and beside the thesis."""
+"""Comparison of spectral representations with Kment 2011: docs/data/representations.json."""

@@ -1,4 +1,7 @@
-"""Measure, and write docs/representations.md with its pictures."""
+"""Comparison of spectral representations: ``make representations``.
+
+Writes docs/data/representations.json and the pictures of docs/representations.
+"""
 
 from __future__ import annotations
 
@@ -7,60 +10,61 @@ import warnings
 from typing import TYPE_CHECKING
 
 import click
-from uplift_cli.startup import one_thread
+from uplift_cli.startup import use_one_blas_thread
 
 if TYPE_CHECKING:
+    from uplift.lab.comparison.measure import Comparison
     from uplift.lab.comparison.scene import Scene
 
-OTHERS = ("LED-B3", "LED-RGB1", "HP1")
+OTHER_LIGHTS = ("LED-B3", "LED-RGB1", "HP1")
 
 
 @click.command()
 def main() -> None:
-    """Measure everything anew: minutes."""
-    one_thread()
-    _publish()
+    """Measure, draw and store; takes minutes."""
+    use_one_blas_thread()
+    _measure()
 
 
-def _publish() -> None:
+def _measure() -> None:
     import uplift
-    from benchmarks.page import write
-    from benchmarks.representations import tables, thesis
-    from benchmarks.representations.closed import both
-    from benchmarks.representations.introduction import introduction
-    from benchmarks.timing import ROOT
+    from benchmarks.record import ROOT, write
+    from benchmarks.representations import closed, results, thesis
     from uplift.common.files import check_folder
     from uplift.lab.comparison.filters import tune
-    from uplift.lab.comparison.measure import Comparison, compare
     from uplift.lab.comparison.pictures import DRAWN, write_picture
     from uplift.lab.comparison.scene import scene
-    from uplift.scene.representations.registry import all_representations
 
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     atlases = {path.stem: uplift.read_atlas(path) for path in sorted((ROOT / "atlases").glob("*.txt"))}
-    asked, others = scene(atlases), scene(atlases, OTHERS)
-
-    def compared(part: Scene, label: str) -> Comparison:
-        made = all_representations(part.powers, part.surfaces)
-        with click.progressbar(length=len(made), label=label, file=sys.stderr) as bar:
-            return compare(part, made, progress=lambda done, total: bar.update(1))
-
-    found, beyond = compared(asked, "representations"), compared(others, "under other lights")
+    default, others = scene(atlases), scene(atlases, OTHER_LIGHTS)
+    main_comparison = _compare(default, "representations")
+    other_comparison = _compare(others, "under other lights")
     with click.progressbar(length=24, label="filters", file=sys.stderr) as bar:
-        tuned = tune(asked, progress=lambda done, total: bar.update(1))
-    readings = both(asked)
+        tuned = tune(default, progress=lambda done: bar.update(1))
     folder = check_folder(ROOT / "docs" / "representations", (), force=True)
     for kind in DRAWN:
-        write_picture(found, kind, folder / f"{kind}.png", force=True)
-    printed, printed_filters = thesis.tables(), thesis.filters()
-    sections = [
-        tables.advice([found, beyond]),
-        *(tables.ranked(found, name, printed) for name in found.sets),
-        tables.closed(readings, printed),
-        *(tables.filters(tuned, name, title, printed_filters) for name, title in found.sets.items()),
-        *(tables.ranked(beyond, name, {}) for name in beyond.sets),
-    ]
-    print(write("representations", introduction(found, tuned, readings, printed), sections, found.facts))
+        write_picture(main_comparison, kind, folder / f"{kind}.png", force=True)
+    printed = thesis.tables()
+    write(
+        "representations",
+        "make representations",
+        surfaces=len(default.names),
+        titles=results.titles(main_comparison, other_comparison),
+        advice=[row for one in (main_comparison, other_comparison) for row in results.advice(one)],
+        ranking=[*results.ranking(main_comparison, printed), *results.ranking(other_comparison, {})],
+        riemann=closed.measure(default, printed),
+        filters=results.filters(tuned, thesis.filters()),
+    )
+
+
+def _compare(part: Scene, label: str) -> Comparison:
+    from uplift.lab.comparison.measure import compare
+    from uplift.scene.representations.registry import all_representations
+
+    representations = all_representations(part.powers, part.surfaces)
+    with click.progressbar(length=len(representations), label=label, file=sys.stderr) as bar:
+        return compare(part, representations, progress=lambda done: bar.update(1))
 
 
 if __name__ == "__main__":

@@ -1,17 +1,17 @@
-"""Riemann sums as eq. 5.3 of Kment 2011 reads at its word: a table's sample on a border counts in both cells."""
+"""Riemann sums over closed cells, the literal reading of eq. 5.3 of Kment 2011: samples on a border count twice."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from benchmarks.representations.thesis import Printed
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.lab.comparison.measure import error_statistics
 from uplift.lab.comparison.scene import Scene
-from uplift.lab.comparison.statistics import Statistics
 from uplift.scene.representations import enhanced_riemann
 from uplift.scene.representations.composite import Composite
 from uplift.scene.representations.dense import TABLE_STRIDE, wavelengths, xyz_weights
@@ -21,33 +21,25 @@ from uplift.scene.representations.samples import SampleRepresentation
 COUNTS = (8, 16, 32)
 
 
-@dataclass(frozen=True)
-class Closed:
-    """The errors of a representation under a set of lights, by both readings."""
-
-    lights: str
-    name: str
-    disjoint: Statistics
-    closed: Statistics
-
-    @property
-    def key(self) -> tuple[str, str]:
-        return self.lights, self.name
-
-
-def both(scene: Scene) -> list[Closed]:
-    """Plain and enhanced sums by both readings, under every set of lights."""
+def measure(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> list[dict[str, Any]]:
+    """Return mean ΔE00 of plain and enhanced sums with disjoint and with closed cells, and of the thesis."""
     pairs: list[tuple[Any, Any]] = [(riemann_sums(count), closed(count)) for count in COUNTS]
     pairs += [(enhanced_riemann.enhanced_riemann(count), enhanced(count)) for count in COUNTS]
     return [
-        Closed(part.name, one.name, error_statistics(one, scene, part), error_statistics(other, scene, part))
+        {
+            "lights": part.name,
+            "name": one.name,
+            "disjoint": error_statistics(one, scene, part).mean,
+            "closed": error_statistics(other, scene, part).mean,
+            "thesis": thesis[part.name, one.name].mean,
+        }
         for part in scene.sets
         for one, other in pairs
     ]
 
 
 def closed(count: int) -> SampleRepresentation:
-    """Means over closed cells; XYZ by the colour-matching functions at 5 nm, each sample shared by its cells."""
+    """Return means over closed cells; XYZ by the colour-matching functions at 5 nm, shared between cells."""
     inside = _cells(count)
     encoder = np.zeros((len(wavelengths()), count))
     encoder[::TABLE_STRIDE] = (inside / inside.sum(axis=1, keepdims=True)).T
@@ -56,7 +48,7 @@ def closed(count: int) -> SampleRepresentation:
 
 
 def enhanced(count: int) -> Composite:
-    """The enhanced sums over the same cells; a spike on a border meets the mean of both."""
+    """Return enhanced sums over the same cells; a spike on a border is multiplied by the mean of both."""
     inside = _cells(count)
     family = "enhanced Riemann sums, closed cells"
     return Composite(
@@ -65,7 +57,7 @@ def enhanced(count: int) -> Composite:
 
 
 def _cells(count: int) -> Array:
-    """(count, 81) whether a sample of the 5 nm table lies in a cell."""
+    """Return (count, 81) whether a sample of the 5 nm table lies in a cell."""
     edges = np.linspace(observer.START, observer.END, count + 1)
     low, high = edges[:-1, None] - 1e-9, edges[1:, None] + 1e-9
     return ((observer.grid() >= low) & (observer.grid() <= high)).astype(float)

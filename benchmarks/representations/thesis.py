@@ -1,4 +1,4 @@
-"""The printed tables of Kment 2011."""
+"""Printed tables of Kment 2011."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import csv
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT
 
 REFERENCE = ROOT / "tests" / "reference"
 
 
 @dataclass(frozen=True)
 class Printed:
-    """What the thesis has of a representation, or of a filter: with ``parameters`` where there are any."""
+    """Printed errors of a representation, or of a filter with its ``parameters``."""
 
     mean: float
     deviation: float
@@ -22,7 +22,7 @@ class Printed:
 
 
 def tables() -> dict[tuple[str, str], Printed]:
-    """Tables 6.1 and 6.2, by lights and representation."""
+    """Return tables 6.1 and 6.2, by lights and representation."""
     return {
         (row["lights"], row["representation"]): Printed(
             float(row["mean"]), float(row["deviation"]), float(row["q97_5"])
@@ -32,7 +32,7 @@ def tables() -> dict[tuple[str, str], Printed]:
 
 
 def filters() -> dict[tuple[str, int, str], Printed]:
-    """Tables A.1 and A.2, by lights, samples and kind of filter."""
+    """Return tables A.1 and A.2, by lights, samples and kind of filter."""
     return {
         (row["lights"], int(row["samples"]), row["filter"]): Printed(
             float(row["mean"]), float(row["deviation"]), None, row["parameters"].replace(";", ",")

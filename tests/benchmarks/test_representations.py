@@ -1,11 +1,11 @@
-"""What docs/representations.md is made of."""
+"""Closed Riemann sums, and the printed tables of the thesis."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from benchmarks.representations import introduction, thesis
+from benchmarks.representations import thesis
 from benchmarks.representations.closed import closed, enhanced
 from uplift.scene.representations.dense import xyz_weights
 
@@ -24,14 +24,6 @@ def test_a_sample_on_a_border_counts_twice():
     assert (closed(15).encode_light(line) > 0).sum() == 1
 
 
-def test_the_thesis_is_read_as_it_is_printed():
+def test_thesis_tables_have_the_printed_values():
     assert thesis.tables()["spiky", "CS15"] == thesis.Printed(0.316, 0.222, 0.816)
     assert thesis.filters()["spiky", 16, "mitchell"].parameters == "extent 19, b -0.4, c 1"
-
-
-def test_numbers_in_the_text_do_not_spoil_its_lines():
-    paragraphs = introduction.TEXT.split("\n\n")
-    for paragraph in paragraphs:
-        wrapped = introduction._wrapped(paragraph)
-        assert wrapped.split() == paragraph.split()
-        assert max(map(len, wrapped.splitlines())) <= introduction.WIDTH
