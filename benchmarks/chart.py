@@ -62,10 +62,10 @@ def publish(found: Chart) -> None:
     from uplift.lab.chart.page import page
     from uplift.lab.chart.picture import write_pictures
     from uplift.lab.chart.recommend import MEASURED
-    from uplift.lab.chart.table import csv_text
+    from uplift.lab.chart.table import chart_csv
 
     folder = check_folder(ROOT / "docs" / "chart", (), force=True)
-    write_text(csv_text(found), ROOT / "uplift" / "chart" / MEASURED, force=True)
+    write_text(chart_csv(found), ROOT / "uplift" / "chart" / MEASURED, force=True)
     picture = write_pictures(found, folder / "chart.png", folder / "chart.svg", force=True)
     write_text(page(found, picture), folder / "chart.html", force=True)
     introduction = INTRODUCTION.format(count=len(found.measured))

@@ -1,33 +1,37 @@
-"""The Munsell book as an atlas, out of the data of luxpy: ``make munsell`` → out/munsell.csv.
+"""Convert the Munsell data of luxpy to an atlas: ``make munsell`` writes out/munsell.csv.
 
-1,269 matt chips measured at the University of Joensuu, 380–800 nm at 1 nm. luxpy (GPL-3) carries the table; the file
-made here stays on the machine.
+The data are 1,269 matt chips measured at the University of Joensuu, 380–800 nm at 1 nm. luxpy is licensed under GPL-3,
+so the output is for local use only.
 """
 
 from __future__ import annotations
 
 import csv
 import sys
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
 
+from uplift.common.csv import csv_text
+from uplift.common.files import write_text
+
 
 def main(folder: str, output: str) -> None:
+    """Convert the data of the luxpy installation in ``folder`` to a CSV atlas at 5 nm."""
     data = Path(folder) / "luxpy" / "data" / "rfls"
     table = np.loadtxt(data / "Munsell1269.dat", delimiter=",")
     with (data / "Munsell1269NotationInfo.dat").open(encoding="utf-8") as file:
         names = [f"{chip['H']} {float(chip['V']):g}/{float(chip['C']):g}" for chip in csv.DictReader(file)]
     wavelengths, values = table[::5, 0], table[::5, 1:]
-    counts: dict[str, int] = {}
+    rows, counts = [], Counter[str]()
+    for name, column in zip(names, values.T, strict=True):
+        counts[name] += 1
+        unique = name if counts[name] == 1 else f"{name} ({counts[name]})"
+        rows.append([unique, *(f"{value:.4f}" for value in column)])
     Path(output).parent.mkdir(parents=True, exist_ok=True)
-    with Path(output).open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["name", *(f"{wavelength:g}" for wavelength in wavelengths)])
-        for name, column in zip(names, values.T, strict=True):
-            counts[name] = counts.get(name, 0) + 1
-            unique = name if counts[name] == 1 else f"{name} ({counts[name]})"
-            writer.writerow([unique, *(f"{value:.4f}" for value in column)])
+    header = ["name", *(f"{wavelength:g}" for wavelength in wavelengths)]
+    write_text(csv_text(header, rows), output, force=True)
 
 
 if __name__ == "__main__":

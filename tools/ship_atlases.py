@@ -1,6 +1,6 @@
-"""Write the atlases of atlases/ from colour-science's tables: ``python tools/ship_atlases.py [FOLDER]``.
+"""Write the atlases of atlases/ from tables of colour-science: ``python tools/ship_atlases.py [FOLDER]``.
 
-atlases/README.md describes the files; tests/atlas/test_shipped.py checks that they are as written here.
+atlases/README.md describes the files; tests/atlas/test_shipped.py compares them with the output.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ GRID = colour.SpectralShape(380, 780, 5)
 
 @dataclass(frozen=True)
 class AtlasFile:
-    """A file to write."""
+    """Name, content and copyright of an atlas file."""
 
     file: str
     content: str
@@ -34,12 +34,13 @@ class AtlasFile:
     copyright: str = COPYRIGHT
 
     def write(self, folder: Path) -> None:
+        """Write the file."""
         header = Header(self.content, self.copyright, LICENCE)
         write_atlas(Atlas(tuple(self.entries())), folder / self.file, header)
 
 
 def checker(key: str, prefix: str, description: str) -> Iterable[Entry]:
-    """Patches of a colour checker; the prefix keeps names apart from those of other checkers."""
+    """Patches of a colour checker; the prefix makes their names unique."""
     for name, sd in colour.SDS_COLOURCHECKERS[key].items():
         text = description.format(name.lower())
         yield Entry(prefix + name, sd.wavelengths, sd.values, description=text)
@@ -69,7 +70,7 @@ def evaluation_samples() -> Iterable[Entry]:
 
 
 def training_patches() -> Iterable[Entry]:
-    """The patches that RAW to ACES is trained on."""
+    """Training patches of RAW to ACES."""
     patches = read_training_data_rawtoaces_v1()
     for index, values in enumerate(patches.values.T, start=1):
         text = f"RAW to ACES training patch {index}"

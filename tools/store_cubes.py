@@ -1,4 +1,4 @@
-"""Builds the stored cubes of ``cubes/`` that ``uplift check`` guards, and the package's own default cube."""
+"""Build the stored cubes of ``cubes/``, which ``uplift check`` compares, and the default cube of the package."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ import uplift
 
 ROOT = Path(__file__).parents[1]
 DEFAULT = "moments-16"
-"""The stored cube that the package carries: sRGB, D65, no atlas, small enough for a wheel."""
+"""The stored cube that is installed with the package: sRGB, D65, without an atlas."""
 
 
 def main() -> None:
+    """Build all cubes."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     for model, dim, atlas in product(("moments", "sigmoid"), (8, 16), (None, "macbeth")):
         source = ROOT / "atlases" / f"{atlas}.txt" if atlas else None

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING
@@ -85,13 +83,14 @@ def _print_json(listing: Listing) -> None:
 
 
 def _print_csv(listing: Listing) -> None:
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"])
-    for row in listing.rows:
-        in_gamut, notes = str(row.in_gamut).lower(), "; ".join(row.warnings)
-        writer.writerow([row.name, row.start, row.end, row.step, *row.rgb, in_gamut, notes])
-    click.echo(out.getvalue(), nl=False)
+    from uplift.common.csv import csv_text
+
+    header = ["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"]
+    rows = (
+        [row.name, row.start, row.end, row.step, *row.rgb, str(row.in_gamut).lower(), "; ".join(row.warnings)]
+        for row in listing.rows
+    )
+    click.echo(csv_text(header, rows), nl=False)
 
 
 def _print_table(listing: Listing) -> None:

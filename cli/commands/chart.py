@@ -143,10 +143,10 @@ def _write(chart: Chart, folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
     from uplift.lab.chart.page import page
     from uplift.lab.chart.picture import write_pictures
-    from uplift.lab.chart.table import csv_text
+    from uplift.lab.chart.table import chart_csv
 
     table, png, svg, html = (folder / name for name in FILES)
-    write_text(csv_text(chart), table, force=force)
+    write_text(chart_csv(chart), table, force=force)
     picture = write_pictures(chart, png, svg, force=force)
     write_text(page(chart, picture), html, force=force)
 

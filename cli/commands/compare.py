@@ -172,12 +172,12 @@ def _print_json(comparison: Comparison, tuned: tuple[Tuned, ...]) -> None:
 
 
 def _print_csv(comparison: Comparison, tuned: tuple[Tuned, ...]) -> None:
-    from uplift.lab.study.records import csv_text
+    from uplift.lab.study.records import records_csv
 
     tables = _records(comparison, tuned)
     for name in ("representations", "filters"):
         if tables[name]:
-            click.echo(csv_text(tables[name]), nl=False)
+            click.echo(records_csv(tables[name]), nl=False)
 
 
 PRINTERS: dict[str, Callable[[Comparison, tuple[Tuned, ...]], None]] = {

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -78,17 +76,11 @@ def _print_json(results: Results) -> None:
 
 def _print_csv(results: Results) -> None:
     from uplift.colorimetry.lights import HELD_OUT_LIGHTS
+    from uplift.common.csv import csv_text
 
-    text = io.StringIO()
-    writer = csv.DictWriter(
-        text,
-        ["atlas", "cube", "colours", "rms", *HELD_OUT_LIGHTS],
-        extrasaction="ignore",
-        lineterminator="\n",
-    )
-    writer.writeheader()
-    writer.writerows(_records(results))
-    click.echo(text.getvalue(), nl=False)
+    header = ["atlas", "cube", "colours", "rms", *HELD_OUT_LIGHTS]
+    rows = ([record[key] for key in header] for record in _records(results))
+    click.echo(csv_text(header, rows), nl=False)
 
 
 def _print_table(results: Results) -> None:

@@ -84,9 +84,9 @@ def _print_json(found: MomentsStudy) -> None:
 
 def _print_csv(found: MomentsStudy) -> None:
     from uplift.lab.study.moments_table import records
-    from uplift.lab.study.records import csv_text
+    from uplift.lab.study.records import records_csv
 
-    click.echo(csv_text(records(found)), nl=False)
+    click.echo(records_csv(records(found)), nl=False)
 
 
 def _print_table(found: MomentsStudy) -> None:

@@ -125,9 +125,9 @@ def _print_json(found: Sequence[RunResult]) -> None:
 
 
 def _print_csv(found: Sequence[RunResult]) -> None:
-    from uplift.lab.study.records import csv_text
+    from uplift.lab.study.records import records_csv
 
-    click.echo(csv_text([one.record() for one in found]), nl=False)
+    click.echo(records_csv([one.record() for one in found]), nl=False)
 
 
 def _print_table(found: Sequence[RunResult]) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -63,12 +61,11 @@ def _statistics(result: Result, errors: ColourErrors) -> dict[str, Any]:
 
 
 def _print_csv(result: Result) -> None:
-    sampling = result.choice.sampling
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["wavelength", *"XYZ", *"rgb", *(f"power {light}" for light in sampling.lights)])
-    writer.writerows(_rows(result))
-    click.echo(out.getvalue(), nl=False)
+    from uplift.common.csv import csv_text
+
+    lights = result.choice.sampling.lights
+    header = ["wavelength", *"XYZ", *"rgb", *(f"power {light}" for light in lights)]
+    click.echo(csv_text(header, _rows(result)), nl=False)
 
 
 def _rows(result: Result) -> Iterator[list[float]]:

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from uplift_cli.main import main
 
 from uplift.lab.chart.recommend import MEASURED, shipped
-from uplift.lab.chart.table import csv_text, read_chart
+from uplift.lab.chart.table import chart_csv, read_chart
 from uplift.lab.timing import ONE_THREAD
 
 FILES = ["chart.csv", "chart.html", "chart.png", "chart.svg"]
@@ -115,7 +115,7 @@ def test_recommendation_from_the_packaged_chart(run, repository):
     result = run("chart", "--recommend", "--delta-e", 1, "--light", "FL11", "--atlas-materials")
     assert "--atlas FILE" in result.stdout
     stored = (repository / "uplift" / "lab" / "chart" / MEASURED).read_text(encoding="utf-8")
-    assert csv_text(shipped()) == stored
+    assert chart_csv(shipped()) == stored
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from uplift.common.errors import ChartFileError
-from uplift.lab.chart.table import State, csv_text, parse_chart, read_chart
+from uplift.lab.chart.table import State, chart_csv, parse_chart, read_chart
 
 
 def test_what_is_written_is_read(row_of, chart_of, tmp_path):
@@ -13,10 +13,10 @@ def test_what_is_written_is_read(row_of, chart_of, tmp_path):
         row_of("quick, or 'not'", 12.3456, 1e-7, note="a note\nof two lines"),
         row_of("broken", 1, 1, state=State.BROKEN, why="NaN", numbers={}),
     )
-    (tmp_path / "chart.csv").write_text(csv_text(chart), encoding="utf-8")
+    (tmp_path / "chart.csv").write_text(chart_csv(chart), encoding="utf-8")
     again = read_chart(tmp_path / "chart.csv")
     assert again.facts == chart.facts
-    assert csv_text(again) == csv_text(chart)
+    assert chart_csv(again) == chart_csv(chart)
     first, second = again.rows
     assert first.numbers == pytest.approx(chart.rows[0].numbers, rel=1e-5)
     assert (first.method, first.note) == ("quick, or 'not'", "a note\nof two lines")
@@ -37,7 +37,7 @@ def test_what_is_written_is_read(row_of, chart_of, tmp_path):
     ],
 )
 def test_a_spoilt_table_is_refused(row_of, chart_of, spoil, problem):
-    text = csv_text(chart_of(row_of("one", 12.5, 1)))
+    text = chart_csv(chart_of(row_of("one", 12.5, 1)))
     assert parse_chart(text, "chart.csv").rows
     with pytest.raises(ChartFileError, match=f"chart.csv: .*{problem}.*; name the CSV file"):
         parse_chart(spoil(text), "chart.csv")

@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields
 from enum import StrEnum
 from pathlib import Path
 
+from uplift.common.csv import csv_text
 from uplift.common.errors import ChartFileError
 
 FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
@@ -66,16 +67,15 @@ class Chart:
 TEXTS = tuple(field.name for field in fields(MethodResult) if field.name != "numbers")
 
 
-def csv_text(chart: Chart) -> str:
+def chart_csv(chart: Chart) -> str:
     """A line a method; numbers to six digits."""
     names = list(dict.fromkeys(name for row in chart.rows for name in row.numbers))
-    out = io.StringIO()
-    writer = csv.DictWriter(out, [*TEXTS, *names, *FACTS], lineterminator="\n")
-    writer.writeheader()
+    facts = [chart.facts.get(name, "") for name in FACTS]
+    rows = []
     for row in chart.rows:
-        numbers = {name: f"{value:.6g}" for name, value in row.numbers.items()}
-        writer.writerow({name: getattr(row, name) for name in TEXTS} | numbers | dict(chart.facts))
-    return out.getvalue()
+        numbers = (f"{row.numbers[name]:.6g}" if name in row.numbers else "" for name in names)
+        rows.append([*(getattr(row, name) for name in TEXTS), *numbers, *facts])
+    return csv_text([*TEXTS, *names, *FACTS], rows)
 
 
 def read_chart(path: str | os.PathLike[str]) -> Chart:
