@@ -49,6 +49,7 @@ TYPE_CODES = {
     "greater_than_equal": "out-of-range",
     "less_than": "out-of-range",
     "less_than_equal": "out-of-range",
+    "multiple_of": "out-of-range",
     "finite_number": "out-of-range",
     "too_short": "too-few-items",
     "too_long": "too-many-items",

@@ -1,147 +1,77 @@
-"""Tables of a spec, read key by key: what is missing, of another kind or unknown is said with its place."""
+"""Types of the values of a palette spec: numbers, names, colours and bounds, with their checks."""
 
 from __future__ import annotations
 
-import difflib
 import math
-import os
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import AfterValidator, Field, PlainValidator
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.common.errors import PaletteError
+from uplift.common.spec_file import format_value, problem
 
-HEX = 7
-"""Characters of '#rrggbb'."""
-CHANNELS = 3
-LARGEST = 1e6
-"""What is larger is a slip, and no number to solve equations with."""
+MAX_NUMBER = 1e6
+"""Larger numbers are typing errors, and make the equations ill-conditioned."""
 NAME = re.compile(r"[^\W_][\w .+-]*(?<! )")
-"""Names go into tables, pictures and atlases."""
+"""Names appear in tables, plots and atlases."""
 
 
-@dataclass
-class Fields:
-    """A table of a spec; ``place`` is its name there. Every key is to be taken once, then `finish` is called."""
+@dataclass(frozen=True)
+class SpecColour:
+    """A colour as written in a spec: 8-bit ``codes``, or ``linear`` RGB."""
 
-    path: str | os.PathLike[str]
-    place: str
-    values: Mapping[str, Any]
-    taken: list[str] = field(default_factory=list)
+    codes: tuple[int, ...] = ()
+    linear: tuple[float, ...] = ()
 
-    def has(self, key: str) -> bool:
-        return key in self.values
-
-    def table(self, key: str) -> Fields:
-        """A table in it, empty where there is none."""
-        found = self._take(key, {})
-        if not isinstance(found, dict):
-            raise self.error(f"'{key}' is no table", f"write it as [{self._name(key)}]")
-        return Fields(self.path, self._name(key), found)
-
-    def tables(self, key: str) -> list[Fields]:
-        """An array of tables, empty where there is none."""
-        found = self._take(key, [])
-        if not isinstance(found, list) or not all(isinstance(one, dict) for one in found):
-            raise self.error(f"'{key}' is no list of tables", f"write each as [[{self._name(key)}]]")
-        return [Fields(self.path, self._name(key), one) for one in found]
-
-    def text(self, key: str, default: str | None = None) -> str:
-        found = self._take(key, default)
-        if not isinstance(found, str):
-            raise self.error(f"'{key}' is {_told(found)}", "write a text in quotes")
-        return found
-
-    def number(self, key: str, default: float | None = None, least: float = -math.inf) -> float:
-        found = self._take(key, default)
-        if not _is_small(found):
-            raise self.error(f"'{key}' is {_told(found)}", f"write a number of at most {LARGEST:,.0f}")
-        if found < least:
-            raise self.error(f"'{key}' is {found:g}", f"write a number of at least {least:g}")
-        return float(found)
-
-    def true(self, key: str) -> None:
-        if self._take(key, None) is not True:
-            raise self.error(f"'{key}' is {_told(self.values[key])}", f"write {key} = true or leave it out")
-
-    def bounds(self, key: str, default: tuple[float, float]) -> tuple[float, float]:
-        """[low, high], or false for none."""
-        found = self._take(key, list(default))
-        if found is False:
-            return -math.inf, math.inf
-        numbers = isinstance(found, list) and all(
-            _is_small(one) or one in (-math.inf, math.inf) for one in found
-        )
-        if not numbers or len(found) != 2 or not found[0] < found[1]:
-            raise self.error(f"'{key}' is {_told(found)}", "write [low, high] or false")
-        return float(found[0]), float(found[1])
-
-    def names(self, key: str, count: int) -> tuple[str, ...]:
-        found = self._take(key, None)
-        if not isinstance(found, list) or len(found) != count or not all(isinstance(n, str) for n in found):
-            raise self.error(f"'{key}' is {_told(found)}", f"write a list of {count} names")
-        return tuple(found)
-
-    def colour(self, key: str, sensor: Sensor, default: str | None = None) -> Array:
-        """Linear RGB (3,) of '#rrggbb', or of three linear numbers."""
-        return self.as_colour(key, self._take(key, default), sensor)
-
-    def as_colour(self, key: str, found: object, sensor: Sensor) -> Array:
-        try:
-            if isinstance(found, str) and len(found) == HEX and found[0] == "#":
-                return sensor.decode(list(bytes.fromhex(found[1:])))
-        except ValueError:
-            pass
-        if isinstance(found, list) and len(found) == CHANNELS and all(map(_is_small, found)):
-            return np.array(found, dtype=float)
-        raise self.error(
-            f"'{key}' is {_told(found)}, no colour", "write '#cc3319', or linear [0.6, 0.03, 0.01]"
-        )
-
-    def name(self, name: str) -> str:
-        """The name of a part, if it is a plain one."""
-        if not NAME.fullmatch(name):
-            raise self.error(
-                f"{_told(name)} is no name", "write letters, digits, blanks, '.', '+', '-' and '_'"
-            )
-        return name
-
-    def finish(self) -> None:
-        """Refuse keys that nobody took."""
-        for key in self.values:
-            if key not in self.taken:
-                raise self.unknown(key, self.taken, "key")
-
-    def unknown(self, name: str, known: list[str], kind: str) -> PaletteError:
-        """The error for a name that means nothing here, with those that do."""
-        near = difflib.get_close_matches(name, known, n=3, cutoff=0.4) or known[:6]
-        choices = ", ".join(f"'{one}'" for one in near)
-        return self.error(f"unknown {kind} '{name}'", f"did you mean {choices}?" if near else "there is none")
-
-    def error(self, problem: str, hint: str) -> PaletteError:
-        place = f"[{self.place}]: " if self.place else ""
-        return PaletteError(place + problem, path=self.path, hint=hint)
-
-    def _take(self, key: str, default: object) -> Any:
-        self.taken.append(key)
-        if key not in self.values and default is None:
-            raise self.error(f"'{key}' is missing", "add it")
-        return self.values.get(key, default)
-
-    def _name(self, key: str) -> str:
-        return f"{self.place}.{key}" if self.place else key
+    def rgb(self, sensor: Sensor) -> Array:
+        """Linear RGB (3,) in the space of a sensor."""
+        return sensor.decode(self.codes) if self.codes else np.array(self.linear)
 
 
-def _is_small(found: object) -> bool:
-    """Whether it is a number that one may compute with."""
-    return isinstance(found, int | float) and not isinstance(found, bool) and abs(found) <= LARGEST
+def _parse_colour(value: Any) -> SpecColour:
+    if isinstance(value, str) and re.fullmatch("#[0-9a-fA-F]{6}", value):
+        return SpecColour(codes=tuple(bytes.fromhex(value[1:])))
+    if isinstance(value, list) and len(value) == 3 and all(map(_is_number, value)):
+        return SpecColour(linear=tuple(map(float, value)))
+    text = f"must be '#rrggbb' or three linear numbers, got {format_value(value)}"
+    raise problem("invalid-colour", text, "write '#cc3319' or [0.6, 0.03, 0.01]")
 
 
-def _told(found: object) -> str:
-    text = repr(found)
-    return text if len(text) <= 40 else text[:40] + "…"
+def _parse_bounds(value: Any) -> tuple[float, float]:
+    if value is False:
+        return -math.inf, math.inf
+    is_pair = isinstance(value, list) and len(value) == 2
+    if not is_pair or not all(_is_number(each) or each in (-math.inf, math.inf) for each in value):
+        raise problem("invalid-bounds", f"must be [low, high] or false, got {format_value(value)}")
+    if not value[0] < value[1]:
+        raise problem("invalid-bounds", f"must be ascending, got {format_value(value)}", "swap the numbers")
+    return float(value[0]), float(value[1])
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= MAX_NUMBER
+
+
+def _check_name(name: str) -> str:
+    if not NAME.fullmatch(name):
+        text = f"must consist of letters, digits, spaces and .+-_, got {format_value(name)}"
+        raise problem("invalid-name", text, "begin with a letter or digit, and do not end with a space")
+    return name
+
+
+def _check_true(value: Any) -> bool:
+    if value is not True:
+        raise problem("invalid-value", f"must be true, got {format_value(value)}", "leave it out otherwise")
+    return True
+
+
+Number = Annotated[float, Field(strict=True, ge=-MAX_NUMBER, le=MAX_NUMBER, allow_inf_nan=False)]
+NonNegative = Annotated[float, Field(strict=True, ge=0, le=MAX_NUMBER, allow_inf_nan=False)]
+Name = Annotated[str, AfterValidator(_check_name)]
+Colour = Annotated[SpecColour, PlainValidator(_parse_colour)]
+Bounds = Annotated[tuple[float, float], PlainValidator(_parse_bounds)]
+TrueFlag = Annotated[bool, PlainValidator(_check_true)]

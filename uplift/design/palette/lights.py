@@ -1,4 +1,4 @@
-"""Lights: relative spectral powers, scaled so that the perfect reflector has luminance 1 under them."""
+"""Spectral powers of lights, scaled so that the perfect reflector has luminance 1."""
 
 from __future__ import annotations
 
@@ -11,30 +11,34 @@ from uplift.common.errors import OptionError
 
 C2 = 1.438776877e7
 """Second radiation constant in nm K (CODATA 2018)."""
-COLDEST, HOTTEST = 500.0, 1e6
-"""Kelvin: what glows visibly, and what looks no bluer however hot."""
+MIN_KELVIN, MAX_KELVIN = 500.0, 1e6
+"""Below, a black body has no visible power; above, its colour no longer changes."""
+REFERENCE_NM = 560.0
+"""Wavelength of unit power before scaling, which keeps all powers near 1."""
 
 
-def scaled(sensor: Sensor, power: Array) -> Array:
-    """Power (…, N) with luminance 1; the power must be seen at all."""
+def scale_to_unit_luminance(sensor: Sensor, power: Array) -> Array:
+    """Power (…, N) with luminance 1; its luminance must not be 0."""
     weights = sensor.cmfs[:, 1]
     return power * (weights.sum() / (power @ weights))[..., None]
 
 
 def illuminant(sensor: Sensor, name: str) -> Array:
-    """(N,) power of an illuminant as colour-science names it. Raises `UnknownNameError`."""
+    """Power (N,) of an illuminant by its name in colour-science. Raises `UnknownNameError`."""
     start, end = sensor.wavelengths[[0, -1]]
     step = sensor.wavelengths[1] - start
-    return scaled(sensor, observer.illuminant_spd(name, float(start), float(end), float(step)))
+    power = observer.illuminant_spd(name, float(start), float(end), float(step))
+    return scale_to_unit_luminance(sensor, power)
 
 
 def planck(sensor: Sensor, kelvin: float) -> Array:
-    """(N,) power of a black body (Bergner, eq. 25). Raises `OptionError`."""
-    if not COLDEST <= kelvin <= HOTTEST:
+    """Power (N,) of a black body (Bergner, eq. 25). Raises `OptionError`."""
+    if not MIN_KELVIN <= kelvin <= MAX_KELVIN:
         raise OptionError(
-            f"a black body of {kelvin:g} K", hint=f"give a temperature of {COLDEST:g} to {HOTTEST:g} K"
+            f"temperature must be in [{MIN_KELVIN:g}, {MAX_KELVIN:g}] K, got {kelvin:g}",
+            code="temperature-out-of-range",
+            hint="give the temperature in kelvin",
         )
-    at = sensor.wavelengths
-    reference = 560.0  # where luminance is; keeps the powers near 1
-    power = (reference / at) ** 5 * np.expm1(C2 / (reference * kelvin)) / np.expm1(C2 / (at * kelvin))
-    return scaled(sensor, power)
+    nm = sensor.wavelengths
+    ratio = np.expm1(C2 / (REFERENCE_NM * kelvin)) / np.expm1(C2 / (nm * kelvin))
+    return scale_to_unit_luminance(sensor, (REFERENCE_NM / nm) ** 5 * ratio)

@@ -1,72 +1,169 @@
-"""Lights and materials of a spec: given by name, by temperature, by an atlas, by a colour, or to be designed."""
+"""Tables of a palette spec: lights and materials by kind, goals, ranges of free colours, and differences."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from uplift import lookup
-from uplift.atlas import on_grid, read_atlas
-from uplift.atlas.atlas import Atlas
+from uplift.atlas import Atlas, on_grid, read_atlas
+from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
-from uplift.design.palette.fields import Fields
-from uplift.design.palette.lights import illuminant, planck
+from uplift.common.errors import unknown_name
+from uplift.common.spec_file import SpecModel, format_value, problem, resolves
+from uplift.design.palette.fields import Bounds, Colour, Name, NonNegative, Number, SpecColour, TrueFlag
+from uplift.design.palette.lights import MAX_KELVIN, MIN_KELVIN, illuminant, planck
 from uplift.design.palette.palette import SpectrumSpec
 
-LIGHT_KINDS, MATERIAL_KINDS = ["illuminant", "planck", "design"], ["atlas", "rgb", "design"]
+BLACK, WHITE = SpecColour(codes=(0, 0, 0)), SpecColour(codes=(255, 255, 255))
+"""Default range of free colours: all that a display shows."""
+
+Kelvin = Annotated[Number, Field(ge=MIN_KELVIN, le=MAX_KELVIN)]
 
 
-def light(name: str, fields: Fields, sensor: Sensor) -> SpectrumSpec:
-    """``illuminant`` or ``planck`` (K), with the ``luminance`` of white; or ``design`` with ``bounds`` of its power."""
-    kind = _kind(fields, LIGHT_KINDS)
-    if kind == "design":
-        return _designed(name, fields, (0.0, math.inf))
-    with_name = kind == "illuminant"
-    power = illuminant(sensor, fields.text(kind)) if with_name else planck(sensor, fields.number(kind))
-    part = SpectrumSpec(name, power * fields.number("luminance", 1.0, least=0.0))
-    fields.finish()
-    return part
+class IlluminantLight(SpecModel):
+    """A light by the name of its illuminant; ``luminance`` is that of the perfect reflector."""
+
+    illuminant: Annotated[str, resolves(observer.illuminant_spd)]
+    luminance: NonNegative = 1.0
+
+    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
+        """Spectrum on the wavelengths of the sensor."""
+        return SpectrumSpec(name, illuminant(sensor, self.illuminant) * self.luminance)
 
 
-def material(name: str, fields: Fields, sensor: Sensor) -> SpectrumSpec:
-    """``atlas`` with ``entry``; ``rgb`` that a ``cube`` uplifts; or ``design``, with ``bounds`` of its reflectance."""
-    kind = _kind(fields, MATERIAL_KINDS)
-    if kind == "design":
-        return _designed(name, fields, (0.0, 1.0))
-    if kind == "atlas":
-        spectra = _entry(fields, read_atlas(_beside(fields, "atlas")))
-        part = SpectrumSpec(name, on_grid(spectra, sensor.wavelengths)[0])
-    else:
-        cube = lookup.load(_beside(fields, "cube") if fields.has("cube") else None)
-        colour = fields.colour("rgb", cube.data.sensor)
-        part = SpectrumSpec(name, cube.reflectance(colour, sensor.wavelengths))
-    fields.finish()
-    return part
+class BlackBodyLight(SpecModel):
+    """A black body by its temperature in K."""
+
+    planck: Kelvin
+    luminance: NonNegative = 1.0
+
+    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
+        """Spectrum on the wavelengths of the sensor."""
+        return SpectrumSpec(name, planck(sensor, self.planck) * self.luminance)
 
 
-def _kind(fields: Fields, kinds: list[str]) -> str:
-    found = [kind for kind in kinds if fields.has(kind)]
-    if len(found) != 1:
-        told = " and ".join(f"'{kind}'" for kind in found) or "nothing"
-        raise fields.error(f"is given by {told}", f"give it by one of {', '.join(kinds)}")
-    return found[0]
+class DesignedLight(SpecModel):
+    """A light to be designed within bounds of its power."""
+
+    design: TrueFlag
+    bounds: Bounds = (0.0, math.inf)
+
+    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
+        """Open spectrum."""
+        return SpectrumSpec(name, None, *self.bounds)
 
 
-def _designed(name: str, fields: Fields, bounds: tuple[float, float]) -> SpectrumSpec:
-    fields.true("design")
-    low, high = fields.bounds("bounds", bounds)
-    fields.finish()
-    return SpectrumSpec(name, None, low, high)
+class AtlasMaterial(SpecModel):
+    """A material by its entry in an atlas file."""
+
+    atlas: str
+    entry: str
+
+    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
+        """Spectrum on the wavelengths of the sensor. Raises `AtlasError` and `UnknownNameError`."""
+        atlas = read_atlas(folder / self.atlas)
+        entries = tuple(entry for entry in atlas.entries if entry.name == self.entry)
+        if not entries:
+            raise unknown_name(self.entry, atlas.names, "entry")
+        return SpectrumSpec(name, on_grid(Atlas(entries), sensor.wavelengths)[0])
 
 
-def _entry(fields: Fields, spectra: Atlas) -> Atlas:
-    name = fields.text("entry")
-    found = tuple(entry for entry in spectra.entries if entry.name == name)
-    if not found:
-        raise fields.unknown(name, list(spectra.names), "entry")
-    return Atlas(found)
+class RgbMaterial(SpecModel):
+    """A material by its colour, uplifted by a cube."""
+
+    rgb: Colour
+    cube: str | None = None
+
+    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
+        """Spectrum on the wavelengths of the sensor. Raises `CubeFileError` and `ColourError`."""
+        cube = lookup.load(None if self.cube is None else folder / self.cube)
+        return SpectrumSpec(name, cube.reflectance(self.rgb.rgb(cube.data.sensor), sensor.wavelengths))
 
 
-def _beside(fields: Fields, key: str) -> Path:
-    """A path of the spec, which starts where the spec lies."""
-    return Path(fields.path).parent / fields.text(key)
+class DesignedMaterial(SpecModel):
+    """A material to be designed within bounds of its reflectance."""
+
+    design: TrueFlag
+    bounds: Bounds = (0.0, 1.0)
+
+    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
+        """Open spectrum."""
+        return SpectrumSpec(name, None, *self.bounds)
+
+
+class RgbGoal(SpecModel):
+    """A colour to reach."""
+
+    rgb: Colour
+    weight: NonNegative = 1.0
+
+
+class FreeGoal(SpecModel):
+    """A free colour, which all goals of its name share."""
+
+    free: Name
+    weight: NonNegative = 1.0
+
+
+class FreeRange(SpecModel):
+    """Lowest and highest values of a free colour."""
+
+    low: Colour = BLACK
+    high: Colour = WHITE
+
+
+class Difference(SpecModel):
+    """Two materials and their least ΔE00 under a light."""
+
+    materials: Annotated[list[str], Field(min_length=2, max_length=2)]
+    light: str
+    delta_e: NonNegative
+
+
+def _check_kind(*kinds: str) -> BeforeValidator:
+    """Validator for tables that have exactly one of some keys."""
+
+    def check(value: Any) -> Any:
+        if not isinstance(value, dict):
+            raise problem("wrong-type", f"must be a table, got {format_value(value)}")
+        present = [kind for kind in kinds if kind in value]
+        if len(present) != 1:
+            text = f"must have exactly one of {', '.join(kinds)}, got {', '.join(present) or 'none'}"
+            raise problem("ambiguous-kind", text)
+        return value
+
+    return BeforeValidator(check)
+
+
+def _tag(*kinds: str) -> Callable[[Any], str]:
+    """Tag of the model for the key that is present."""
+    return lambda value: next(f"~{kind}" for kind in kinds if kind in value)
+
+
+def _goal_tag(value: Any) -> str:
+    return "~colour" if not isinstance(value, dict) else "~free" if "free" in value else "~rgb"
+
+
+LightTable = Annotated[
+    Annotated[IlluminantLight, Tag("~illuminant")]
+    | Annotated[BlackBodyLight, Tag("~planck")]
+    | Annotated[DesignedLight, Tag("~design")],
+    Discriminator(_tag("illuminant", "planck", "design")),
+    _check_kind("illuminant", "planck", "design"),
+]
+MaterialTable = Annotated[
+    Annotated[AtlasMaterial, Tag("~atlas")]
+    | Annotated[RgbMaterial, Tag("~rgb")]
+    | Annotated[DesignedMaterial, Tag("~design")],
+    Discriminator(_tag("atlas", "rgb", "design")),
+    _check_kind("atlas", "rgb", "design"),
+]
+Goal = Annotated[
+    Annotated[Colour, Tag("~colour")] | Annotated[RgbGoal, Tag("~rgb")] | Annotated[FreeGoal, Tag("~free")],
+    Discriminator(_goal_tag),
+]
