@@ -1,4 +1,4 @@
-"""Cubes that the exporters have not met elsewhere."""
+"""Fixtures: a cube of unusual phase and number of moments."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from uplift.models import Moments, Phase
 
 @pytest.fixture(scope="session")
 def warped_cube(small_cube) -> Cube:
-    """Five of nine moments, over another range and warp: whatever spectra and colours these are."""
+    """Cube of five of nine moments, reinterpreted with another wavelength range and warp."""
     data = small_cube.data
     atlas = replace(data.atlas, coefficients=data.atlas.coefficients[:, :5])
     model = Moments(5, Phase(400, 700, "vision"))

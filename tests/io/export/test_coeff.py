@@ -1,4 +1,4 @@
-"""The rgb2spec table, by the eyes of those who read it."""
+"""rgb2spec table: layout, and agreement of its readers."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import colour
 import numpy as np
 import pytest
 
+from tests.helpers import raises
 from uplift.common.errors import OptionError
 from uplift.io.export import write_coeff
 
@@ -18,7 +19,7 @@ RES = 5
 
 @pytest.fixture(scope="module")
 def table(tmp_path_factory, small_cube):
-    """A small table."""
+    """Path of a small table."""
     path = tmp_path_factory.mktemp("coeff") / "data" / "srgb.coeff"
     path.parent.mkdir()
     assert write_coeff(small_cube.data, path, res=RES) < 2e-5
@@ -26,13 +27,13 @@ def table(tmp_path_factory, small_cube):
 
 
 def spectra(coefficients, wavelengths):
-    """Reflectance (n, N) of coefficients (n, 3), as the paper has it."""
+    """Evaluate reflectance (n, N) of coefficients (n, 3) by the formula of the paper."""
     x = coefficients @ np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
     return 0.5 + x / (2 * np.sqrt(1 + x * x))
 
 
-def test_every_number_lies_where_the_layout_says(table, sensor):
-    """One by one, without numpy's shapes."""
+def test_every_number_is_at_its_documented_offset(table, sensor):
+    """Read numbers one by one, without numpy's shapes."""
     content = table.read_bytes()
     assert content[:4] == b"SPEC"
     assert struct.unpack_from("<I", content, 4) == (RES,)
@@ -82,17 +83,17 @@ for rgb in ([1, 0.25, 0.5], [0.75, 1, 0]):
 
 
 def test_mitsuba_reads_it(table, sensor):
-    """Mitsuba looks for data/srgb.coeff where its file resolver does: first, where we say."""
+    """Mitsuba finds data/srgb.coeff by its file resolver, in the folder prepended here first."""
     pytest.importorskip("mitsuba")
     level = struct.unpack_from(f"<{RES}f", table.read_bytes(), 8)[3]
 
-    def fetched(folder):
+    def fetch(folder):
         args = [sys.executable, "-c", MITSUBA, str(folder), str(level)]
         done = subprocess.run(args, capture_output=True, text=True, check=True)
         return np.array([line.split() for line in done.stdout.splitlines()], dtype=float)
 
-    ours, own = fetched(table.parents[1]), fetched(table.parent)
-    assert not np.allclose(ours, own, rtol=1e-4)
+    ours, default = fetch(table.parents[1]), fetch(table.parent)
+    assert not np.allclose(ours, default, rtol=1e-4)
     reader = colour.recovery.LUT3D_Jakob2019()
     reader.read(table)
     rgb = level * np.array([[1, 0.25, 0.5], [0.75, 1, 0]])
@@ -102,7 +103,7 @@ def test_mitsuba_reads_it(table, sensor):
 
 
 @pytest.mark.parametrize("res", [1, 0, -3, 257])
-def test_a_table_has_a_sensible_size(small_cube, tmp_path, res):
-    with pytest.raises(OptionError, match="2 to 256"):
+def test_res_out_of_range_raises(small_cube, tmp_path, res):
+    with raises(OptionError, "res-out-of-range"):
         write_coeff(small_cube.data, tmp_path / "table.coeff", res=res)
     assert not list(tmp_path.iterdir())

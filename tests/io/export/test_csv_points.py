@@ -1,4 +1,4 @@
-"""Lattice points as text."""
+"""Nodes as CSV."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def read(path):
         return list(csv.DictReader(file))
 
 
-def test_a_line_for_every_point_and_nothing_rounded(tmp_path, monkeypatch):
+def test_every_node_has_a_line_in_full_precision(tmp_path, monkeypatch):
     monkeypatch.setattr(csv_points, "BLOCK", 5)
     data = hand_made()
     assert write_csv(data, tmp_path / "points.csv") == data.lattice.size
@@ -37,7 +37,7 @@ def test_a_line_for_every_point_and_nothing_rounded(tmp_path, monkeypatch):
     ]
 
 
-def test_what_a_cube_has_not_has_no_column(tmp_path):
+def test_missing_quantities_have_no_column(tmp_path):
     write_csv(hand_made(round=None, standard_error=None), tmp_path / "points.csv")
     names = read(tmp_path / "points.csv")[0].keys()
     assert not {"round", "standard_error"} & set(names)

@@ -1,4 +1,4 @@
-"""The arrays of a cube, as numpy reads them."""
+"""Arrays of a cube, read by numpy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from uplift.io.export import write_npz
 from uplift.models import evaluate, reflectance
 
 
-def test_everything_is_there_by_name(small_cube, tmp_path):
+def test_all_arrays_are_present(small_cube, tmp_path):
     data = small_cube.data
     count = write_npz(data, tmp_path / "cube.npz")
     with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
@@ -22,7 +22,7 @@ def test_everything_is_there_by_name(small_cube, tmp_path):
         assert json.loads(str(arrays["metadata"]))["model"] == data.model.describe()
 
 
-def test_multipliers_are_spectra_ready_to_evaluate(small_cube, tmp_path):
+def test_multipliers_evaluate_to_the_spectra(small_cube, tmp_path):
     data = small_cube.data
     write_npz(data, tmp_path / "cube.npz")
     with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
@@ -34,7 +34,7 @@ def test_multipliers_are_spectra_ready_to_evaluate(small_cube, tmp_path):
     np.testing.assert_allclose(atlas, small_cube.reflectance(data.atlas.rgb, [450, 650]), atol=1e-9)
 
 
-def test_the_same_cube_gives_the_same_bytes(plain_cube, tmp_path):
+def test_output_is_reproducible(plain_cube, tmp_path):
     for name in ("first", "second"):
         write_npz(plain_cube.data, tmp_path / name)
     assert (tmp_path / "first").read_bytes() == (tmp_path / "second").read_bytes()

@@ -1,4 +1,4 @@
-"""Cubes of a scene for other tools: what is there, or nothing."""
+"""Export of cubes that were built for a scene."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import csv
 import numpy as np
 import pytest
 
+from tests.helpers import raises
 from tests.sparse_cubes import near_black, with_absent_points
 from uplift.common.errors import ColourError, OptionError
 from uplift.io.export import write_c, write_coeff, write_csv, write_npz
@@ -18,7 +19,7 @@ def data(small_cube):
     return with_absent_points(small_cube.data, near_black(small_cube.data))
 
 
-def test_lines_are_those_of_the_points_there(data, tmp_path):
+def test_csv_has_the_present_nodes(data, tmp_path):
     count = int(data.points.present.sum())
     assert write_csv(data, tmp_path / "cube.csv") == count
     lines = csv.DictReader((tmp_path / "cube.csv").read_text(encoding="utf-8").splitlines())
@@ -27,7 +28,7 @@ def test_lines_are_those_of_the_points_there(data, tmp_path):
     np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 
-def test_arrays_are_those_of_the_file(data, tmp_path):
+def test_npz_has_the_present_nodes(data, tmp_path):
     write_npz(data, tmp_path / "cube.npz")
     arrays = np.load(tmp_path / "cube.npz")
     np.testing.assert_array_equal(arrays["points"], np.flatnonzero(data.points.present))
@@ -35,14 +36,14 @@ def test_arrays_are_those_of_the_file(data, tmp_path):
     assert np.isfinite(arrays["multipliers"]).all()
 
 
-def test_what_cannot_refuse_a_colour_is_not_made(data, tmp_path, small_cube):
-    with pytest.raises(OptionError, match=r"a header has all colours.*--fill"):
+def test_formats_of_all_colours_raise(data, tmp_path, small_cube):
+    with raises(OptionError, "sparse-cube"):
         write_c(data, tmp_path / "cube.h")
     with pytest.raises(ColourError, match=r"none of them.*--fill"):
         write_coeff(data, tmp_path / "cube.coeff", res=2)
     assert not list(tmp_path.iterdir())
 
 
-def test_nor_studied(data, small_cube):
+def test_the_sensitivity_study_raises(data, small_cube):
     with pytest.raises(OptionError, match="nothing to measure"):
         study_sensitivity(type(small_cube)(data), None, 0)

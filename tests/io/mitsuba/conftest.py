@@ -1,4 +1,4 @@
-"""Mitsuba in its scalar spectral variant, which needs nothing else installed; skipped where it is absent."""
+"""Fixtures: Mitsuba in its scalar spectral variant. Tests are skipped where it is not installed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ STORED = "moments-8-macbeth.uplift"
 
 @pytest.fixture(scope="session")
 def mi():
-    """Mitsuba, with the texture ``uplift``."""
+    """Mitsuba with the texture plugin ``uplift``."""
     mitsuba = pytest.importorskip("mitsuba")
     from uplift.io.mitsuba import register
 
@@ -19,14 +19,14 @@ def mi():
 
 
 @pytest.fixture(scope="session")
-def stored(repository):
-    """Path of the cube that ``small_cube`` is."""
+def cube_path(repository):
+    """Path of the cube of ``small_cube``."""
     return str(repository / "cubes" / STORED)
 
 
 @pytest.fixture
 def spectrum(mi):
-    """Reflectance (N,) of a texture at (u, v) and wavelengths (N,) nm."""
+    """Function that evaluates reflectance (N,) of a texture at (u, v) and wavelengths (N,) in nm."""
     import drjit
 
     def spectrum(texture, uv, wavelengths):

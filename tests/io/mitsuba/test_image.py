@@ -1,4 +1,4 @@
-"""Images as textures: where texels lie, how they blend, and in which variants."""
+"""Images as textures: position, filtering and decoding of texels, in scalar and JIT variants."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 
 IMAGE = np.random.default_rng(8).random((3, 4, 3), dtype=np.float32)
-PLACES = [(0.1, 0.2), (0.83, 0.4), (0.999, 0.001), (0.5, 0.5), (1.3, -0.7), (-0.2, 1.9)]
+POSITIONS = [(0.1, 0.2), (0.83, 0.4), (0.999, 0.001), (0.5, 0.5), (1.3, -0.7), (-0.2, 1.9)]
 WITHIN = 1e-5
-"""Linear RGB: single precision."""
+"""Tolerance of linear RGB in single precision."""
 
 
 @pytest.fixture
-def texture(mi, stored):
-    """A texture of the image, or of another."""
+def texture(mi, cube_path):
+    """Function that makes a texture, by default of `IMAGE`."""
 
     def texture(image=IMAGE, **options):
-        return mi.load_dict({"type": "uplift", "cube": stored, "bitmap": mi.Bitmap(image), **options})
+        return mi.load_dict({"type": "uplift", "cube": cube_path, "bitmap": mi.Bitmap(image), **options})
 
     return texture
 
@@ -34,18 +34,18 @@ def texture(mi, stored):
         {"filter_type": "nearest", "wrap_mode": "clamp"},
     ],
 )
-def test_texels_lie_and_blend_as_in_mitsuba_s_own_bitmap(mi, texture, spectrum, sensor, options):
+def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, options):
     import drjit
 
-    ours, own = (
+    ours, reference = (
         texture(**options),
         mi.load_dict({"type": "bitmap", "bitmap": mi.Bitmap(IMAGE), "raw": True, **options}),
     )
     si = drjit.zeros(mi.SurfaceInteraction3f)
-    for uv in PLACES:
+    for uv in POSITIONS:
         si.uv = mi.Point2f(*uv)
         found = sensor.rgb(spectrum(ours, uv, sensor.wavelengths))
-        np.testing.assert_allclose(found, np.array(own.eval_3(si)), rtol=0, atol=WITHIN)
+        np.testing.assert_allclose(found, np.array(reference.eval_3(si)), rtol=0, atol=WITHIN)
 
 
 @pytest.mark.parametrize("matrix", ["ScalarTransform3f", "ScalarTransform4f"])
@@ -57,47 +57,45 @@ def test_uv_are_transformed(mi, texture, spectrum, matrix):
     )
 
 
-def test_spectra_blend_not_multipliers(texture, spectrum, small_cube):
-    """Between a black and a white texel lies grey, whatever multipliers these have."""
+def test_filtering_blends_spectra_not_multipliers(texture, spectrum, small_cube):
+    """Halfway between a black and a white texel is grey."""
     image = np.array([[[0.01] * 3, [0.9] * 3]], dtype=np.float32)
     ends = small_cube.reflectance(image[0], [500, 600], mode="refined")
     found = spectrum(texture(image, wrap_mode="clamp"), (0.5, 0.5), [500, 600])
     np.testing.assert_allclose(found, ends.mean(axis=0), atol=1e-5)
 
 
-def test_encoded_files_are_decoded_and_linear_ones_are_not(
-    mi, texture, spectrum, small_cube, tmp_path, stored
-):
+def test_only_encoded_files_are_decoded(mi, texture, spectrum, small_cube, tmp_path, cube_path):
     codes = np.array([[[200, 30, 90]]], dtype=np.uint8)
     linear = small_cube.decode(codes).astype(np.float32)
     mi.Bitmap(codes).write(str(tmp_path / "image.png"))
     mi.Bitmap(linear).write(str(tmp_path / "image.exr"))
     expected = small_cube.reflectance(linear[0, 0], [450, 650], mode="refined")
     for name in ("image.png", "image.exr"):
-        found = mi.load_dict({"type": "uplift", "cube": stored, "filename": str(tmp_path / name)})
+        found = mi.load_dict({"type": "uplift", "cube": cube_path, "filename": str(tmp_path / name)})
         np.testing.assert_allclose(spectrum(found, (0.5, 0.5), [450, 650]), expected, atol=1e-5)
 
 
-def test_what_mitsuba_asks_of_textures(texture, small_cube):
+def test_interface_of_textures(texture, small_cube):
     found = texture()
     assert found.is_spatially_varying()
     assert tuple(found.resolution()) == (4, 3)
-    whole = small_cube.reflectance(IMAGE, mode="refined")
-    assert found.mean() == pytest.approx(whole.mean(), abs=0.02)
+    expected = small_cube.reflectance(IMAGE, mode="refined")
+    assert found.mean() == pytest.approx(expected.mean(), abs=0.02)
     assert "4 × 3, moments, 9 multipliers, repeat" in str(found)
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
-        ({"wrap_mode": "round"}, "unknown wrap_mode 'round'; use one of repeat, mirror, clamp"),
-        ({"filter_type": "cubic"}, "unknown filter_type 'cubic'"),
+        ({"wrap_mode": "round"}, "wrap_mode must be one of repeat, mirror, clamp, got 'round'"),
+        ({"filter_type": "cubic"}, "filter_type must be one of bilinear, nearest, got 'cubic'"),
         ({"image": 2 * IMAGE}, r"lies outside \[0, 1\]"),
         ({"image": IMAGE * np.nan}, r"lies outside \[0, 1\]"),
     ],
 )
-def test_mistakes_are_named(texture, options, told):
-    with pytest.raises(RuntimeError, match=told):
+def test_invalid_properties_raise(texture, options, message):
+    with pytest.raises(RuntimeError, match=message):
         texture(**options)
 
 
@@ -116,12 +114,12 @@ print(*np.array(texture.eval(si)).T.ravel())
 """
 
 
-def test_a_whole_wavefront_is_answered_as_ray_by_ray(texture, spectrum, stored):
-    """In a process of its own: an LLVM too old for Mitsuba takes the process down."""
-    done = subprocess.run([sys.executable, "-c", JIT, stored], capture_output=True, text=True)
+def test_a_wavefront_agrees_with_single_rays(texture, spectrum, cube_path):
+    """Runs in a subprocess, because an LLVM too old for Mitsuba ends the process."""
+    done = subprocess.run([sys.executable, "-c", JIT, cube_path], capture_output=True, text=True)
     if done.returncode and "LLVM" in done.stderr:
-        pytest.skip("Mitsuba finds no LLVM that it can use")
+        pytest.skip("Mitsuba finds no usable LLVM")
     assert not done.returncode, done.stderr
     found = np.array(done.stdout.split(), dtype=float).reshape(6, 4)
-    one_by_one = [spectrum(texture(), uv, [400, 500, 600, 700]) for uv in PLACES]
+    one_by_one = [spectrum(texture(), uv, [400, 500, 600, 700]) for uv in POSITIONS]
     np.testing.assert_allclose(found, one_by_one, atol=1e-5)

@@ -1,11 +1,11 @@
-"""The models in Dr.Jit's arithmetic are those of numpy."""
+"""Spectrum models in Dr.Jit agree with numpy."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from uplift.io.mitsuba.spectra import basis, mixed, squash
+from uplift.io.mitsuba.spectra import basis, blend, squash
 from uplift.models import Moments, Phase, Sigmoid, evaluate
 
 WAVELENGTHS = [340.0, 401.5, 555.0, 820.0]
@@ -23,9 +23,9 @@ def test_basis_and_squash(mi, model):
 
 
 @pytest.mark.parametrize("model", MODELS, ids=str)
-def test_spectra_are_weighted(mi, model):
+def test_blend_is_the_weighted_sum(mi, model):
     multipliers = np.random.default_rng(2).normal(size=(3, model.count))
     weights = [0.5, 0.2, 0.3]
-    found = mixed(model, multipliers.tolist(), weights, mi.Spectrum(*WAVELENGTHS))
+    found = blend(model, multipliers.tolist(), weights, mi.Spectrum(*WAVELENGTHS))
     expected = weights @ evaluate(model, multipliers, WAVELENGTHS)
     np.testing.assert_allclose(np.array(found), expected, rtol=0, atol=1e-5)

@@ -1,4 +1,4 @@
-"""Cubes for other tools, one format a file. What each keeps of a cube its docstring tells."""
+"""Cubes in the formats of other programs, one format per module."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A cube as one C99 header, which C++ takes too: table, lookup and spectra, with nothing else needed."""
+"""A cube as a self-contained header for C99 and C++: table, lookup, and evaluation of spectra."""
 
 from __future__ import annotations
 
@@ -22,43 +22,71 @@ from uplift.models import Model, Moments, Sigmoid
 from uplift.models.phase import WARPS
 
 LARGE = 16_000_000
-"""Bytes of text that compilers take long over."""
-IN_C = {"none": "wavelength", "vision": "tanh(0.0072 * (wavelength - 538.0))"}
-"""`WARPS` in C."""
+"""Size in bytes above which compilation is slow."""
+WARPS_IN_C = {"none": "wavelength", "vision": "tanh(0.0072 * (wavelength - 538.0))"}
+"""`uplift.models.phase.WARPS` as C expressions."""
 TYPES = {"float32": ("float", "%.9g"), "float64": ("double", "%.17g"), "int64": ("int", "%d")}
 
 
 def write_c(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
-    """Write the header, and say how many bytes it has. Its names begin with the file's, made an identifier.
+    """Write a cube as a C header.
 
-    Spectra are interpolated as mode ``moments`` has it: coefficients, of lattice and entries alike.
-    Raises `OutputError`, and `OptionError` for a cube of a scene: the header could not refuse other colours. Warns
-    where the header is large.
+    Names in the header begin with the name of the file, converted to an identifier. Coefficients of nodes and entries
+    are interpolated, as in the lookup mode ``moments``.
+
+    Parameters
+    ----------
+    data : CubeData
+        A cube with all nodes.
+    path : path-like
+        File to write.
+    force : bool
+        Whether to replace an existing file.
+
+    Returns
+    -------
+    int
+        Size of the header in bytes.
+
+    Raises
+    ------
+    OptionError
+        The cube was built for a scene; the header could not reject other colours (code ``sparse-cube``).
+    OutputError
+        The file cannot be written, or exists and ``force`` is off.
+
+    Warns
+    -----
+    UpliftWarning
+        The header is large (code ``large-header``).
     """
     if data.complete_cells is not None:
-        problem = "the cube was built for the colours of a scene, and a header has all colours"
-        raise OptionError(problem, hint="export it with --fill (in Python: cube.fill_missing())")
+        raise OptionError(
+            "a header needs all nodes, but the cube was built for the colours of a scene",
+            code="sparse-cube",
+            hint="pass cube.fill_missing().data",
+        )
     name = _identifier(Path(path).stem)
     with atomic_write(path, force=force) as temporary:
         with temporary.open("w", encoding="ascii", newline="\n") as file:
             file.writelines(_parts(data, name))
         size = temporary.stat().st_size
     if size > LARGE:
-        message = (
-            f"{path} has {size / 1e6:.0f} MB, which compilers take long over; a cube of smaller dim has less"
-        )
-        warnings.warn(message, UpliftWarning, stacklevel=2)
+        problem = f"the header has {size / 1e6:.0f} MB and is slow to compile"
+        warning = UpliftWarning(problem, code="large-header", path=path, hint="use a cube of smaller dim")
+        warnings.warn(warning, stacklevel=2)
     return size
 
 
 def _identifier(stem: str) -> str:
-    """'macbeth-32' → 'macbeth_32', '32' → 'cube_32'."""
+    """Convert a file name to an identifier: 'macbeth-32' → 'macbeth_32', '32' → 'cube_32'."""
     name = re.sub(r"\W+", "_", stem, flags=re.ASCII)
     return name if re.match(r"[A-Za-z]", name) else f"cube_{name}".rstrip("_")
 
 
 def _parts(data: CubeData, name: str) -> Iterator[str]:
-    words = _words(data, name)
+    """Yield the text of the header piece by piece."""
+    words = _placeholders(data, name)
     yield _template("head").substitute(words)
     yield from _array(f"{name}_nodes[]", data.lattice.nodes[:, None])
     yield from _array(f"{name}_table[][{data.model.count}]", data.points.coefficients)
@@ -74,8 +102,8 @@ def _parts(data: CubeData, name: str) -> Iterator[str]:
         yield _template(part).substitute(words)
 
 
-def _words(data: CubeData, name: str) -> dict[str, Any]:
-    """What the templates leave open."""
+def _placeholders(data: CubeData, name: str) -> dict[str, Any]:
+    """Return the values of the templates' placeholders."""
     sensor = data.sensor
     facts = {
         "version": version("uplift"),
@@ -95,7 +123,7 @@ def _words(data: CubeData, name: str) -> dict[str, Any]:
 
 
 def _comment(text: str) -> str:
-    """Text that a comment can hold: whoever made the cube chose it."""
+    """Return text that cannot end a C comment; names in a cube file are arbitrary."""
     return text.encode("ascii", "replace").decode().replace("*", "")
 
 
@@ -108,7 +136,7 @@ def _range(model: Model) -> dict[str, Any]:
     return {
         "start": phase.start,
         "end": phase.end,
-        "warp": IN_C[phase.warp],
+        "warp": WARPS_IN_C[phase.warp],
         "low": repr(low),
         "width": repr(high - low),
     }
@@ -119,7 +147,7 @@ def _template(part: str) -> Template:
 
 
 def _array(declaration: str, rows: NDArray[Any]) -> Iterator[str]:
-    """A constant array of rows (n, K), one a line, with all their digits; of plain numbers where K is 1."""
+    """Yield a constant array, one line per row (n, K), in full precision. Rows of one number are not bracketed."""
     kind, style = TYPES[rows.dtype.name]
     width = rows.shape[1]
     line = f"{style},\n" if width == 1 else "{" + ", ".join([style] * width) + "},\n"

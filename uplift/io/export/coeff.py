@@ -1,14 +1,18 @@
-"""The table of rgb2spec: sigmoid spectra, as Mitsuba and colour-science read them.
+"""The table of rgb2spec: sigmoid spectra, which Mitsuba and colour-science read.
 
-Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", CGF 38(2), and its
-`rgb2spec`. "SPEC", u32 res, f32 scale[res], f32 data[3][res][res][res][3], little-endian. The first axis tells the
-largest component, l; then come its value, scale[k], and the others as even shares of it, l + 2 before l + 1 (modulo
-3). A spectrum is S(c₀λ² + c₁λ + c₂), λ in nm, S(t) = ½ + t / (2√(1 + t²)). After it comes what Mitsuba since 3.9 wants
-and others do not read, the sensor: u32 count, f32 wavelength[count] as shares of 360–830 nm, f32 rgb[3][count] of a
-reflectance there, f32 rgb_to_xyz[3][3], f32 white_xyz[3].
+The file is little-endian: "SPEC", u32 res, f32 scale[res], f32 data[3][res][res][res][3]. The first axis of the data is
+the largest component l. The second axis is its value, scale[k]. The last two are the other components as even fractions
+of it, l + 2 before l + 1 (modulo 3). A spectrum is S(c₀λ² + c₁λ + c₂) with λ in nm and S(t) = ½ + t / (2√(1 + t²)).
+The sensor follows, which Mitsuba 3.9 and later require and other programs ignore: u32 count, f32 wavelength[count] as
+fractions of 360–830 nm, f32 rgb[3][count] of a reflectance there, f32 rgb_to_xyz[3][3], f32 white_xyz[3].
 
-Three numbers a spectrum are what three components of a colour take: the colours are the cube's, exactly, and nothing
-is left to tell what it knows of its atlas.
+Three coefficients per spectrum determine a colour. The table therefore reproduces the cube's colours, but not the
+spectra of its atlas.
+
+References
+----------
+W. Jakob and J. Hanika, "A Low-Dimensional Function Space for Efficient Spectral Upsampling", CGF 38(2), 2019, and its
+reference implementation ``rgb2spec``.
 """
 
 from __future__ import annotations
@@ -29,38 +33,60 @@ from uplift.models.minimum_norm import ForwardMap, forward_map
 
 MAGIC = b"SPEC"
 RES = 64
-"""As Mitsuba's own table has it."""
-FEWEST, MOST = 2, 256
-TOLERANCE, PASSES = 1e-6, 32
-FIRST, LAST = 360.0, 830.0
-"""nm, of rgb2spec's own wavelengths."""
+"""Resolution of Mitsuba's own table."""
+MIN_RES, MAX_RES = 2, 256
+TOLERANCE, MAX_PASSES = 1e-6, 32
+START, END = 360.0, 830.0
+"""Wavelength range of rgb2spec in nm."""
 
 
 def write_coeff(
     data: CubeData, path: str | os.PathLike[str], *, res: int = RES, force: bool = False
 ) -> float:
-    """Write the table and say how far, max |linear RGB|, its colours are from the cube's, as a reader sees them.
+    """Write a cube as an rgb2spec table.
 
-    Readers take the components for those of the cube's space under its illuminant. Mitsuba means sRGB under D65.
-    Raises `OutputError`, or `OptionError` for a ``res`` outside 2 to 256.
+    Readers interpret RGB in the cube's space under its illuminant. Mitsuba assumes sRGB under D65.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    path : path-like
+        File to write.
+    res : int
+        Points along each axis, 2 to 256.
+    force : bool
+        Whether to replace an existing file.
+
+    Returns
+    -------
+    float
+        Largest error of a component of linear RGB, compared with the cube's colours.
+
+    Raises
+    ------
+    OptionError
+        ``res`` is out of range (code ``res-out-of-range``).
+    OutputError
+        The file cannot be written, or exists and ``force`` is off.
     """
-    if not FEWEST <= res <= MOST:
-        raise OptionError(f"a table of res {res} makes no sense", hint=f"use {FEWEST} to {MOST}")
+    if not MIN_RES <= res <= MAX_RES:
+        raise OptionError(f"res must be from {MIN_RES} to {MAX_RES}, got {res}", code="res-out-of-range")
     with atomic_write(path, force=force) as temporary:
         scale = _scale(res)
-        coefficients, worst = _fit(data, scale)
+        coefficients, max_error = _fit(data, scale)
         with temporary.open("wb") as file:
             file.write(MAGIC + np.array(res, dtype="<u4").tobytes())
             file.write(scale.astype("<f4").tobytes())
             file.write(coefficients.astype("<f4").tobytes())
             file.write(_sensor_bytes(data.sensor))
-    return worst
+    return max_error
 
 
 def _sensor_bytes(sensor: Sensor) -> bytes:
-    """How spectra were turned into RGB."""
+    """Return the sensor in the layout of Mitsuba."""
     numbers = (
-        (sensor.wavelengths - FIRST) / (LAST - FIRST),
+        (sensor.wavelengths - START) / (END - START),
         sensor.matrix,
         np.linalg.inv(sensor.xyz_to_rgb),
         sensor.xyz(np.ones(3)),
@@ -70,7 +96,7 @@ def _sensor_bytes(sensor: Sensor) -> bytes:
 
 
 def _scale(res: int) -> Array:
-    """(res,) values of the largest component, close together near 0 and 1, where spectra change most."""
+    """Return values (res,) of the largest component, dense near 0 and 1, where spectra change most."""
     return _smoothstep(_smoothstep(np.linspace(0, 1, res)))
 
 
@@ -79,7 +105,7 @@ def _smoothstep(x: Array) -> Array:
 
 
 def _points(level: float, res: int) -> Array:
-    """(3·res·res, 3) linear RGB of the entries whose largest component is ``level``."""
+    """Return linear RGB (3·res·res, 3) of the table's points whose largest component is ``level``."""
     share = np.linspace(0, 1, res)
     second, first = np.meshgrid(share, share, indexing="ij")
     shares = np.stack([np.ones_like(first), first, second], axis=-1)
@@ -87,35 +113,38 @@ def _points(level: float, res: int) -> Array:
 
 
 def _fit(data: CubeData, scale: Array) -> tuple[NDArray[np.float32], float]:
-    """Coefficients (3, res, res, res, 3), and how far their colours are from the cube's.
+    """Fit coefficients (3, res, res, res, 3); return them and the largest error of linear RGB.
 
-    Level by level, upwards and downwards from a medium one, each from its neighbour's multipliers: neighbours then
-    are alike, as a reader that interpolates between them needs it.
+    Levels are fitted upwards and downwards from a medium one. Each starts from the multipliers of the previous level,
+    so that neighbours are similar and can be interpolated.
     """
     from uplift.fit.solve import solve
 
     sensor, res = data.sensor, len(scale)
     model = Sigmoid(*sensor.wavelengths[[0, -1]].tolist())
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     table = np.empty((3, res, res, res, 3), dtype=np.float32)
-    middle, worst = res // 5, 0.0
-    grey = np.zeros((3 * res * res, model.count))
+    middle, max_error = res // 5, 0.0
+    middle_multipliers = np.zeros((3 * res * res, model.count))
     for levels in (range(middle, res), range(middle - 1, -1, -1)):
-        start = grey
+        multipliers = middle_multipliers
         for level in levels:
             rgb = _points(scale[level], res)
-            goal = around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
-            start = solve(model, ahead, start, goal, tolerance=TOLERANCE, max_passes=PASSES).multipliers
+            target = around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
+            multipliers = solve(
+                model, forward, multipliers, target, tolerance=TOLERANCE, max_passes=MAX_PASSES
+            ).multipliers
             if level == middle:
-                grey = start
-            stored = _per_nanometre(model, start).astype(np.float32)
-            worst = max(worst, float(np.abs(_colours(model, ahead, sensor.wavelengths, stored) - goal).max()))
+                middle_multipliers = multipliers
+            stored = _per_nanometre(model, multipliers).astype(np.float32)
+            error = np.abs(_colours(model, forward, sensor.wavelengths, stored) - target).max()
+            max_error = max(max_error, float(error))
             table[:, level] = stored.reshape(3, res, res, 3)
-    return table, worst
+    return table, max_error
 
 
 def _per_nanometre(model: Sigmoid, multipliers: Array) -> Array:
-    """The same polynomials (n, 3), of λ in nm rather than of [start, end] as [−1, 1]."""
+    """Convert polynomials (n, 3) of [start, end] scaled to [−1, 1] to polynomials of λ in nm."""
     middle, half = (model.start + model.end) / 2, (model.end - model.start) / 2
     square, linear, constant = (multipliers / half ** np.array([2, 1, 0])).T
     return np.stack(
@@ -129,8 +158,8 @@ def _per_nanometre(model: Sigmoid, multipliers: Array) -> Array:
 
 
 def _colours(
-    model: Sigmoid, ahead: ForwardMap, wavelengths: Array, coefficients: NDArray[np.float32]
+    model: Sigmoid, forward: ForwardMap, wavelengths: Array, coefficients: NDArray[np.float32]
 ) -> Array:
-    """Linear RGB (n, 3) of coefficients (n, 3) as they are stored."""
+    """Return linear RGB (n, 3) of stored coefficients (n, 3)."""
     powers = np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
-    return np.asarray(model.squash(coefficients.astype(float) @ powers) @ ahead.sensor.T)
+    return np.asarray(model.squash(coefficients.astype(float) @ powers) @ forward.sensor.T)

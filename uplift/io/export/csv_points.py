@@ -1,4 +1,4 @@
-"""The lattice points of a cube as text, a line each."""
+"""The nodes of a cube as CSV, one line per node."""
 
 from __future__ import annotations
 
@@ -15,28 +15,47 @@ from uplift.cube import CubeData
 from uplift.lattice import Status
 
 BLOCK = 1 << 12
-"""Points made into text at a time."""
+"""Nodes converted to text at a time."""
 
 
 def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
-    """Write a line for every lattice point that is present under a line of names, and say how many they are.
+    """Write the nodes of a cube as CSV, below a line of column names.
 
-    Columns: target and lattice RGB, linear; fitting distance; status; the atlas entry that the point is based on,
-    if any; round and standard error, of cubes that have them; the coefficients. Raises `OutputError`.
+    Columns are linear target and lattice RGB, fitting distance, status, the atlas entry that the node is based on, if
+    any, round and standard error of cubes that have them, and the coefficients.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube. Absent nodes of a cube built for a scene are left out.
+    path : path-like
+        File to write.
+    force : bool
+        Whether to replace an existing file.
+
+    Returns
+    -------
+    int
+        Number of nodes.
+
+    Raises
+    ------
+    OutputError
+        The file cannot be written, or exists and ``force`` is off.
     """
     with (
         atomic_write(path, force=force) as temporary,
         temporary.open("w", encoding="utf-8", newline="") as file,
     ):
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(_names(data))
-        points = np.flatnonzero(data.points.present)
-        for first in range(0, len(points), BLOCK):
-            writer.writerows(_rows(data, points[first : first + BLOCK]))
-    return len(points)
+        writer.writerow(_column_names(data))
+        nodes = np.flatnonzero(data.points.present)
+        for first in range(0, len(nodes), BLOCK):
+            writer.writerows(_rows(data, nodes[first : first + BLOCK]))
+    return len(nodes)
 
 
-def _names(data: CubeData) -> list[str]:
+def _column_names(data: CubeData) -> list[str]:
     optional = [name for name in ("round", "standard_error") if getattr(data.points, name) is not None]
     return [
         *("r", "g", "b", "lattice_r", "lattice_g", "lattice_b", "distance", "status", "entry"),

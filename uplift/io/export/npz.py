@@ -1,4 +1,4 @@
-"""Everything that a cube file holds, as numpy arrays by name."""
+"""The contents of a cube file as named numpy arrays."""
 
 from __future__ import annotations
 
@@ -12,10 +12,30 @@ from uplift.cube import CubeData, contents
 
 
 def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
-    """Write the arrays of docs/cube-file.md under their names, and say how many.
+    """Write a cube as an ``.npz`` file without pickled objects.
 
-    Beside them lie ``multipliers`` (n, C) of the points and ``atlas.multipliers`` (E, C), from which spectra are
-    evaluated at once; ``atlas.names`` (E,); and ``metadata``, the JSON text. Nothing is pickled. Raises `OutputError`.
+    The file has the arrays of docs/cube-file.md under their names. In addition, it has ``multipliers`` (n, C) of the
+    nodes and ``atlas.multipliers`` (E, C), from which spectra are evaluated directly, ``atlas.names`` (E,), and
+    ``metadata``, the JSON text.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    path : path-like
+        File to write.
+    force : bool
+        Whether to replace an existing file.
+
+    Returns
+    -------
+    int
+        Number of arrays.
+
+    Raises
+    ------
+    OutputError
+        The file cannot be written, or exists and ``force`` is off.
     """
     tensors, metadata = contents(data)
     arrays = tensors | {

@@ -1,4 +1,4 @@
-"""An image as a texture of Mitsuba: multipliers of every texel, evaluated at the wavelengths of a ray."""
+"""Images as Mitsuba textures: multipliers of every texel, evaluated at the wavelengths of a ray."""
 
 from __future__ import annotations
 
@@ -11,60 +11,60 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.io.mitsuba.spectra import mixed
+from uplift.io.mitsuba.spectra import blend
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined_multipliers
 from uplift.lookup.validation import colours
 from uplift.models import Model, evaluate
 
-MEAN_OVER = np.arange(380.0, 781.0, 25.0)
-"""nm. Mitsuba asks for a texture's mean to choose between lobes: it need not be exact."""
+MEAN_WAVELENGTHS = np.arange(380.0, 781.0, 25.0)
+"""Wavelengths in nm of the mean reflectance, by which Mitsuba chooses between lobes; it need not be exact."""
 THREADS = 2
 
 
 @dataclass(frozen=True, eq=False)
 class Image:
-    """Multipliers (h, w, C), float32, of the model's spectra; ``mean`` reflectance of them all."""
+    """Multipliers (h, w, C), float32, of the texels' spectra, and their mean reflectance."""
 
     model: Model
     multipliers: NDArray[np.float32]
     mean: float
 
     @staticmethod
-    def of(cube: Cube, rgb: Array) -> Image:
-        """Uplift linear RGB (h, w, 3) to their very colours. Raises `ColourError` for what lies outside [0, 1]."""
+    def uplift(cube: Cube, rgb: Array) -> Image:
+        """Uplift linear RGB (h, w, 3) to spectra of the exact colours. Raises `ColourError` outside [0, 1]."""
         data, model = cube.data, cube.data.model
         refined = partial(refined_multipliers, data)
-        asked = colours(rgb, data.sensor)
-        multipliers = blockwise(refined, asked, model.count, dtype=np.float32, threads=THREADS)
+        texels = colours(rgb, data.sensor)
+        multipliers = blockwise(refined, texels, model.count, dtype=np.float32, threads=THREADS)
         means = blockwise(
-            lambda rows: evaluate(model, rows, MEAN_OVER).mean(axis=1, keepdims=True), multipliers, 1
+            lambda rows: evaluate(model, rows, MEAN_WAVELENGTHS).mean(axis=1, keepdims=True), multipliers, 1
         )
         return Image(model, multipliers, float(means.mean()))
 
 
-def decoded(cube: Cube, bitmap: Any) -> Array:
-    """Linear RGB (h, w, 3) of a `mitsuba.Bitmap`: what is encoded is decoded as the cube's space has it."""
+def decode_bitmap(cube: Cube, bitmap: Any) -> Array:
+    """Return linear RGB (h, w, 3) of a `mitsuba.Bitmap`. Encoded images are decoded in the cube's space."""
     import mitsuba
 
-    plain = bitmap.convert(pixel_format=mitsuba.Bitmap.PixelFormat.RGB)
-    values = np.array(plain)
+    rgb = bitmap.convert(pixel_format=mitsuba.Bitmap.PixelFormat.RGB)
+    values = np.array(rgb)
     if values.dtype.kind == "u":
         values = values / np.iinfo(values.dtype).max
     return cube.decode(255 * values) if bitmap.srgb_gamma() else values.astype(float)
 
 
 @cache
-def _texture(variant: str) -> type:
-    """The class, made anew for each variant: its base is the variant's."""
+def _texture_class(variant: str) -> type:
+    """Define the class for a variant, as each variant has its own base class."""
     import drjit as dr
     import mitsuba as mi
 
     wraps = {"repeat": dr.WrapMode.Repeat, "mirror": dr.WrapMode.Mirror, "clamp": dr.WrapMode.Clamp}
 
     class UpliftTexture(mi.Texture):  # type: ignore[misc]
-        """``filter_type`` bilinear blends the spectra of four texels: their colours blend as the image's do."""
+        """Texture of spectra. Bilinear filtering blends the spectra of four texels, and thus their colours."""
 
         def __init__(self, props: Any, image: Image) -> None:
             super().__init__(props)
@@ -79,15 +79,16 @@ def _texture(variant: str) -> type:
             )
 
         def eval(self, si: Any, active: Any = True) -> Any:
+            """Return reflectance at the wavelengths of the surface interaction."""
             uv = self.to_uv @ si.uv
-            texels, weights = self._nearest(uv, active) if self.nearest else self._around(uv, active)
-            return mixed(self.image.model, texels, weights, si.wavelengths)
+            texels, weights = self._nearest(uv, active) if self.nearest else self._bilinear(uv, active)
+            return blend(self.image.model, texels, weights, si.wavelengths)
 
         def _nearest(self, uv: Any, active: Any) -> tuple[Any, Any]:
             return (self.texels.eval(uv, active),), (1.0,)
 
-        def _around(self, uv: Any, active: Any) -> tuple[Any, Any]:
-            """The four texels around, and their weights."""
+        def _bilinear(self, uv: Any, active: Any) -> tuple[Any, Any]:
+            """Return the four surrounding texels and their weights."""
             height, width = self.image.multipliers.shape[:2]
             x, y = uv.x * width - 0.5, uv.y * height - 0.5
             x, y = x - dr.floor(x), y - dr.floor(y)
@@ -95,41 +96,48 @@ def _texture(variant: str) -> type:
             return self.texels.eval_fetch(uv, active), weights
 
         def mean(self) -> Any:
+            """Return the mean reflectance."""
             return mi.Float(self.image.mean)
 
         def is_spatially_varying(self) -> bool:
+            """Return True."""
             return True
 
         def resolution(self) -> Any:
+            """Return width and height in texels."""
             height, width = self.image.multipliers.shape[:2]
             return mi.ScalarVector2i(width, height)
 
         def to_string(self) -> str:
+            """Return a summary."""
             height, width, count = self.image.multipliers.shape
             return f"UpliftTexture[{width} × {height}, {self.image.model.name}, {count} multipliers, {self.wrap}]"
 
     return UpliftTexture
 
 
-def texture() -> Any:
-    """The texture class of the current variant."""
+def texture_class() -> Any:
+    """Return the texture class of the current variant."""
     import mitsuba
 
-    return _texture(mitsuba.variant())
+    return _texture_class(mitsuba.variant())
 
 
 def _choice(props: Any, name: str, choices: tuple[str, ...]) -> str:
-    """Raises `OptionError`. The first is the default."""
+    """Return a property; the first choice is the default. Raises `OptionError`."""
     chosen = str(props.get(name, choices[0]))
     if chosen not in choices:
-        raise OptionError(f"unknown {name} '{chosen}'", hint=f"use one of {', '.join(choices)}")
+        raise OptionError(
+            f"{name} must be one of {', '.join(choices)}, got '{chosen}'",
+            code=f"unknown-{name.replace('_', '-')}",
+        )
     return chosen
 
 
 def _uv_transform(props: Any) -> Array:
-    """(3, 3), of which Mitsuba may give (4, 4)."""
+    """Return the transform as (3, 3); Mitsuba also accepts (4, 4)."""
     if "to_uv" not in props:
         return np.eye(3)
     matrix = np.array(props["to_uv"].matrix, dtype=float)
-    kept = [0, 1, len(matrix) - 1]
-    return matrix[np.ix_(kept, kept)]
+    axes = [0, 1, len(matrix) - 1]
+    return matrix[np.ix_(axes, axes)]

@@ -1,4 +1,4 @@
-"""The models in Dr.Jit's arithmetic, of one ray and of whole wavefronts alike (docs/mathematics.md, 2 and 3)."""
+"""Spectrum models in Dr.Jit, for single rays and for wavefronts (docs/mathematics.md, sections 2 and 3)."""
 
 from __future__ import annotations
 
@@ -11,22 +11,23 @@ from uplift.models import Model, Moments, Sigmoid
 from uplift.models.phase import WARPS
 
 
-def mixed(model: Model, multipliers: Sequence[Any], weights: Sequence[Any], wavelengths: Any) -> Any:
-    """Reflectance at ``wavelengths``, a spectrum of Mitsuba's: ``weights`` of those with ``multipliers`` of C."""
+def blend(model: Model, multipliers: Sequence[Any], weights: Sequence[Any], wavelengths: Any) -> Any:
+    """Return the weighted sum of spectra at ``wavelengths``, a Mitsuba spectrum; each has C multipliers."""
     import drjit as dr
 
-    parts = basis(model, wavelengths)
-    found = dr.zeros(type(wavelengths))
-    for some, weight in zip(multipliers, weights, strict=True):
+    functions = basis(model, wavelengths)
+    total = dr.zeros(type(wavelengths))
+    for each, weight in zip(multipliers, weights, strict=True):
         linear = sum(
-            (part * some[order] for order, part in enumerate(parts)), start=dr.zeros(type(wavelengths))
+            (function * each[order] for order, function in enumerate(functions)),
+            start=dr.zeros(type(wavelengths)),
         )
-        found += weight * squash(model, linear)
-    return found
+        total += weight * squash(model, linear)
+    return total
 
 
 def basis(model: Model, wavelengths: Any) -> list[Any]:
-    """What multipliers are weighted by at ``wavelengths``: C of them."""
+    """Return the C basis functions of the linear part at ``wavelengths``."""
     import drjit as dr
 
     one = dr.ones(type(wavelengths))
@@ -36,14 +37,14 @@ def basis(model: Model, wavelengths: Any) -> list[Any]:
         return [x * x, x, one]
     assert isinstance(model, Moments)
     cosine = dr.cos(_phase(model, wavelengths))
-    waves = [one, cosine]
+    cosines = [one, cosine]
     for _ in range(2, model.count):
-        waves.append(2 * cosine * waves[-1] - waves[-2])
-    return [one, *(2 * wave for wave in waves[1:])]
+        cosines.append(2 * cosine * cosines[-1] - cosines[-2])
+    return [one, *(2 * each for each in cosines[1:])]
 
 
 def squash(model: Model, linear: Any) -> Any:
-    """Reflectance of the linear part."""
+    """Return the reflectance of a linear part."""
     import drjit as dr
 
     if isinstance(model, Sigmoid):
@@ -56,6 +57,6 @@ def _phase(model: Moments, wavelengths: Any) -> Any:
 
     phase = model.phase
     low, high = WARPS[phase.warp](np.array([phase.start, phase.end])).tolist()
-    inside = dr.clip(wavelengths, phase.start, phase.end)
-    warped = dr.tanh(0.0072 * (inside - 538)) if phase.warp == "vision" else inside
+    clipped = dr.clip(wavelengths, phase.start, phase.end)
+    warped = dr.tanh(0.0072 * (clipped - 538)) if phase.warp == "vision" else clipped
     return dr.pi * (warped - low) / (high - low) - dr.pi

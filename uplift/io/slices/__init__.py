@@ -1,4 +1,4 @@
-"""A cube as multi-part OpenEXR files, one part per slice of constant blue."""
+"""Cubes as multi-part OpenEXR files, one part per slice of constant blue."""
 
 from __future__ import annotations
 

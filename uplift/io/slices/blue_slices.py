@@ -1,4 +1,4 @@
-"""How a cube lies in an image: blue slices, red rising to the right, green rising upwards."""
+"""Arrangement of a cube in an image: slices of constant blue, red to the right, green upwards."""
 
 from __future__ import annotations
 
@@ -10,10 +10,22 @@ from numpy.typing import NDArray
 Number = TypeVar("Number", bound=np.generic)
 
 
-def planes(values: NDArray[Number], dim: int) -> NDArray[Number]:
-    """Slices ``[blue, row, red]`` (dim, dim, dim, …) of values (dim³, …) per lattice point; a view.
+def blue_slices(values: NDArray[Number], dim: int) -> NDArray[Number]:
+    """Arrange the values of nodes as slices.
 
-    Image rows count downwards, so row 0 holds the highest green: ``row = dim − 1 − green``.
+    Image rows count downwards, so row 0 has the highest green: ``row = dim − 1 − green``.
+
+    Parameters
+    ----------
+    values : ndarray of shape (dim³, ...)
+        Values of the nodes.
+    dim : int
+        Nodes along each axis.
+
+    Returns
+    -------
+    ndarray of shape (dim, dim, dim, ...)
+        View with axes blue, row, red.
     """
     by_red = values.reshape(dim, dim, dim, *values.shape[1:])
     return by_red.swapaxes(0, 2)[:, ::-1]

@@ -1,4 +1,4 @@
-"""OpenEXR files of a cube: what their headers say, finite 32-bit channels, written whole or not at all."""
+"""OpenEXR files of a cube: header attributes and finite 32-bit channels, written atomically."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from uplift.cube.data import CubeData
 from uplift.cube.file import digest
 from uplift.lattice import Status
 
-LARGEST = float(np.finfo(np.float32).max)
+MAX_FLOAT32 = float(np.finfo(np.float32).max)
 
 
 def attributes(data: CubeData) -> dict[str, Any]:
-    """Header attributes that say which cube this is; numbers that are not whole have 32 bits there.
+    """Return header attributes that identify the cube. OpenEXR stores floats in 32 bits.
 
     ``uplift.cube`` is the digest of the cube's content, ``uplift.model`` its model as JSON.
     """
@@ -38,8 +38,8 @@ def attributes(data: CubeData) -> dict[str, Any]:
     }
 
 
-def part(name: str, header: Mapping[str, Any], channels: Mapping[str, NDArray[Any]]) -> Any:
-    """An `OpenEXR.Part` of planes (height, width). Raises `OutputError` for NaN."""
+def make_part(name: str, header: Mapping[str, Any], channels: Mapping[str, NDArray[Any]]) -> Any:
+    """Make an `OpenEXR.Part` of channels (height, width). Raises `OutputError` for NaN (``nan-in-channel``)."""
     import OpenEXR
 
     lossless = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
@@ -48,9 +48,9 @@ def part(name: str, header: Mapping[str, Any], channels: Mapping[str, NDArray[An
 
 
 def write_parts(parts: Iterable[Any], path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write parts as one file, atomically; same parts, same bytes. Raises `OutputError`.
+    """Write parts as one file, atomically and reproducibly. Raises `OutputError`.
 
-    The file is opened here: given a name, OpenEXR 3.5 says nothing when its last bytes meet a full disk.
+    The file is opened here, because OpenEXR 3.5 ignores a full disk if it opens the file.
     """
     import OpenEXR
 
@@ -59,13 +59,13 @@ def write_parts(parts: Iterable[Any], path: str | os.PathLike[str], *, force: bo
 
 
 def _float32(channel: str, plane: NDArray[Any]) -> NDArray[np.float32]:
-    """Whole numbers to 2²⁴ and −1 stay exact; what is too large becomes the largest, not infinite."""
+    """Convert to float32. Integers up to 2²⁴ are exact; numbers that are too large become the largest float."""
     if np.isnan(plane).any():
-        raise OutputError(f"channel '{channel}' holds NaN", hint="rebuild the cube")
-    return np.ascontiguousarray(np.clip(plane, -LARGEST, LARGEST), dtype=np.float32)
+        raise OutputError(f"channel '{channel}' contains NaN", code="nan-in-channel", hint="rebuild the cube")
+    return np.ascontiguousarray(np.clip(plane, -MAX_FLOAT32, MAX_FLOAT32), dtype=np.float32)
 
 
 def chromaticities(sensor: Sensor) -> tuple[float, ...]:
-    """x, y of red, green, blue and white under the build illuminant, as OpenEXR orders them."""
-    corners = sensor.xyz(np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]]))
-    return tuple(map(float, (corners / corners.sum(axis=1, keepdims=True))[:, :2].ravel()))
+    """Return x, y of red, green, blue and white under the build illuminant, in the order of OpenEXR."""
+    primaries = sensor.xyz(np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]]))
+    return tuple(map(float, (primaries / primaries.sum(axis=1, keepdims=True))[:, :2].ravel()))

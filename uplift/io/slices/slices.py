@@ -1,4 +1,4 @@
-"""A cube as OpenEXR: every number of every lattice point, a part per blue slice."""
+"""A cube as OpenEXR: all numbers of all nodes, one part per blue slice."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from uplift.common.errors import OutputError
 from uplift.common.files import check_output
 from uplift.cube.data import CubeData
 from uplift.io.slices import exr
-from uplift.io.slices.blue_slices import planes
+from uplift.io.slices.blue_slices import blue_slices
 
-READING = (
+COMMENTS = (
     "A blue slice of a spectral uplifting cube. A pixel is a lattice point: red rises to the right, green "
     "upwards (the top row has the highest). R, G, B and lattice: what the stored spectrum evaluates to; target: "
     "the lattice point itself, both linear. distance: largest difference of the two. entry and round: -1 for none. "
@@ -27,31 +27,56 @@ READING = (
 
 
 def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write one OpenEXR file with a part ``blue 07 (0.1234)`` for every node of the blue axis.
+    """Write a cube as one OpenEXR file with a part ``blue 07 (0.1234)`` for every node of the blue axis.
 
-    Pixel x is the red index; row y is green index dim − 1 − y, so that green rises upwards. Channels, all
-    32-bit float: ``R``, ``G``, ``B`` and ``lattice.*`` (lattice RGB), ``target.*``, ``distance``,
-    ``deltaE2000`` (target to lattice RGB under the build illuminant), ``status``, ``entry`` and ``round``
-    (−1 for none; ``round`` only with debug information), ``standardError`` (where an atlas tells) and
-    ``coefficient.00`` onwards.
+    Pixel x is the red index. Row y is the green index dim − 1 − y, so that green rises upwards. The channels are 32-bit
+    floats: ``R``, ``G``, ``B`` and ``lattice.*`` (lattice RGB), ``target.*``, ``distance``, ``deltaE2000`` (target to
+    lattice RGB under the build illuminant), ``status``, ``entry`` and ``round`` (−1 for none; ``round`` only with debug
+    information), ``standardError`` (of cubes with an atlas) and ``coefficient.00`` onwards.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    path : path-like
+        File to write.
+    force : bool
+        Whether to replace an existing file.
 
     Raises
     ------
-    OutputError : the path is no ``.exr``, exists already (without ``force``) or cannot be written.
+    OutputError
+        The path does not end in ``.exr`` (code ``unsupported-suffix``), cannot be written, or exists and ``force`` is
+        off.
     """
     check_slices(path, force=force)
     exr.write_parts(_parts(data), path, force=force)
 
 
 def check_slices(path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Raises `OutputError` where `write_slices` would: asks before long work."""
+    """Check that `write_slices` can write a file, before long work.
+
+    Parameters
+    ----------
+    path : path-like
+        File to write.
+    force : bool
+        Whether an existing file can be replaced.
+
+    Raises
+    ------
+    OutputError
+        As `write_slices` raises it.
+    """
     if Path(path).suffix.lower() != ".exr":
-        raise OutputError("slices are OpenEXR", path=path, hint="name the file .exr, or make a sheet")
+        raise OutputError(
+            "the name of a file of slices must end in .exr", code="unsupported-suffix", path=path
+        )
     check_output(path, force=force)
 
 
 def channels(data: CubeData) -> dict[str, NDArray[Any]]:
-    """Everything a slice shows: values (n,) per lattice point by channel name."""
+    """Return the values (n,) of the nodes by channel name."""
     target = data.lattice.points
     found: dict[str, NDArray[Any]] = {
         **_rgb("", data.points.rgb),
@@ -70,13 +95,13 @@ def channels(data: CubeData) -> dict[str, NDArray[Any]]:
 
 
 def _parts(data: CubeData) -> Iterator[Any]:
-    common = {**exr.attributes(data), "comments": READING}
-    slices = {name: planes(values, data.lattice.dim) for name, values in channels(data).items()}
+    common = {**exr.attributes(data), "comments": COMMENTS}
+    slices = {name: blue_slices(values, data.lattice.dim) for name, values in channels(data).items()}
     digits = len(str(data.lattice.dim - 1))
     for blue, value in enumerate(map(float, data.lattice.nodes)):
         header = {**common, "uplift.blueIndex": blue, "uplift.blueValue": value}
         name = f"blue {blue:0{max(digits, 2)}} ({value:.4f})"
-        yield exr.part(name, header, {channel: stack[blue] for channel, stack in slices.items()})
+        yield exr.make_part(name, header, {channel: stack[blue] for channel, stack in slices.items()})
 
 
 def _rgb(layer: str, rgb: NDArray[Any]) -> dict[str, NDArray[Any]]:

@@ -1,4 +1,4 @@
-"""The contact sheet of a cube: every slice of constant blue on one PNG."""
+"""The contact sheet of a cube: all slices of constant blue on one image."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""What a sheet shows: one colour per lattice point, and the key to read it by.
+"""Panels of a contact sheet: one colour per node, and a legend.
 
-The palettes hold up under colour-vision deficiencies: a ramp of one hue, dark to light, against orange; and
-for the status tones that stay 16 ΔE00 apart for protanopes, deuteranopes and tritanopes (Machado et al. 2009),
-with the many regular points receding.
+The palettes are suitable for colour-vision deficiencies: a ramp of one hue, dark to light, and orange as highlight.
+Status colours differ by at least 16 ΔE00 for protanopes, deuteranopes and tritanopes (Machado et al. 2009), and the
+frequent regular nodes are inconspicuous.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from uplift.common.arrays import Array, Mask
 from uplift.cube.data import CubeData
 
 BACKGROUND = 0.03
-"""Linear grey, dark enough for the colours to glow and light enough for black to show; absent points have it too."""
+"""Linear grey, on which both bright colours and black are visible. Absent nodes have this colour."""
 DECADES = 3
-"""Of the fitting distance, below the threshold, that the ramp spans."""
+"""Decades of fitting distance below the threshold that the ramp spans."""
 
 
 def _linear(*codes: str) -> Array:
-    """(k, 3) linear RGB of hexadecimal sRGB codes."""
+    """Return linear RGB (k, 3) of hexadecimal sRGB codes."""
     return decode(np.array([list(bytes.fromhex(code)) for code in codes]) / 255)
 
 
 RAMP = _linear("0b1d51", "20509a", "3f8fc5", "8fc7e0", "e6f4f7")
-LOUD = _linear("ff5a00")
+HIGHLIGHT = _linear("ff5a00")
 STATUS = _linear("f0e442", "9bd4f5", "53708a", "00a878", "ff5a00", "6a1b4d")
-"""Of every `Status` but absent, in its order; what is unfitted is as loud as a distance over the threshold."""
+"""Colours of every `Status` but absent, in its order. Unfitted nodes have the highlight colour."""
 
 
 @dataclass(frozen=True, eq=False)
 class Key:
-    """A swatch of linear RGB (k, 3), a ramp if k > 1, and what it means."""
+    """A swatch of linear RGB (k, 3), a ramp if k > 1, and its meaning."""
 
     colours: Array
     text: str
@@ -43,7 +43,7 @@ class Key:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """A quantity: its title, linear RGB (n, 3) per lattice point, and its keys."""
+    """A quantity: its title, linear RGB (n, 3) of the nodes, and its legend."""
 
     title: str
     colours: NDArray[np.floating]
@@ -51,13 +51,13 @@ class Panel:
 
 
 def panels(data: CubeData) -> tuple[Panel, ...]:
-    """Lattice RGB, fitting distance, status; where the cube has them, standard error and round."""
-    shown = [_colour(data), _distance(data), _status(data)]
+    """Return panels of lattice RGB, fitting distance and status, and of standard error and round if available."""
+    found = [_colour(data), _distance(data), _status(data)]
     if data.points.standard_error is not None:
-        shown.append(_error(data.points.standard_error, data.error_illuminant))
+        found.append(_error(data.points.standard_error, data.error_illuminant))
     if data.points.round is not None:
-        shown.append(_round(data.points.round, data.points.round[data.points.present] < 0))
-    return tuple(replace(panel, colours=_present(data, panel.colours)) for panel in shown)
+        found.append(_round(data.points.round, data.points.round[data.points.present] < 0))
+    return tuple(replace(panel, colours=_present(data, panel.colours)) for panel in found)
 
 
 def _present(data: CubeData, colours: NDArray[np.floating]) -> NDArray[np.floating]:
@@ -66,8 +66,8 @@ def _present(data: CubeData, colours: NDArray[np.floating]) -> NDArray[np.floati
 
 def _colour(data: CubeData) -> Panel:
     ramps = np.linspace(0, 1, 64)[:, None, None] * np.eye(3)
-    ways = ("red rises to the right", "green rises upwards", "blue rises from tile to tile")
-    keys = tuple(Key(ramps[:, i], way) for i, way in enumerate(ways))
+    directions = ("red rises to the right", "green rises upwards", "blue rises from tile to tile")
+    keys = tuple(Key(ramps[:, i], direction) for i, direction in enumerate(directions))
     return Panel("Lattice RGB", data.points.rgb, keys)
 
 
@@ -77,9 +77,12 @@ def _distance(data: CubeData) -> Panel:
     low, high = data.threshold / 10**DECADES, data.threshold
     keys = (
         Key(_ramp(np.linspace(0, 1, 64)), f"{low:g} or less to {high:g}, logarithmic"),
-        Key(LOUD, f"over the threshold: {_points(over)}; largest distance {data.points.distance.max():.2g}"),
+        Key(
+            HIGHLIGHT,
+            f"over the threshold: {_points(over)}; largest distance {data.points.distance.max():.2g}",
+        ),
     )
-    return Panel("Fitting distance", _loud_where(over, 1 + np.log10(within) / DECADES), keys)
+    return Panel("Fitting distance", _highlight_where(over, 1 + np.log10(within) / DECADES), keys)
 
 
 def _status(data: CubeData) -> Panel:
@@ -96,13 +99,13 @@ def _error(errors: NDArray[np.float32], light: str) -> Panel:
     return Panel("Standard error", _ramp(errors / errors.max()), (key,))
 
 
-def _round(rounds: NDArray[np.int16], never: Mask) -> Panel:
+def _round(rounds: NDArray[np.int16], not_fitted: Mask) -> Panel:
     none, last = rounds < 0, max(int(rounds.max()), 0)
     keys = (
         Key(_ramp(np.linspace(0, 1, 64)), f"0 to {last}"),
-        Key(LOUD, f"fitted in no round: {_points(never)}"),
+        Key(HIGHLIGHT, f"fitted in no round: {_points(not_fitted)}"),
     )
-    return Panel("Round", _loud_where(none, rounds / max(last, 1)), keys)
+    return Panel("Round", _highlight_where(none, rounds / max(last, 1)), keys)
 
 
 def _points(mask: Mask) -> str:
@@ -110,11 +113,11 @@ def _points(mask: Mask) -> str:
     return f"{count:,} point{'' if count == 1 else 's'}"
 
 
-def _loud_where(mask: Mask, share: Array) -> Array:
-    return np.where(mask[:, None], LOUD, _ramp(share))
+def _highlight_where(mask: Mask, share: Array) -> Array:
+    return np.where(mask[:, None], HIGHLIGHT, _ramp(share))
 
 
 def _ramp(share: Array) -> Array:
-    """Linear RGB (n, 3) for shares (n,) of the way from dark, 0, to light, 1."""
+    """Return linear RGB (n, 3) for positions (n,) from dark, 0, to light, 1."""
     anchors = np.linspace(0, 1, len(RAMP))
     return np.stack([np.interp(share, anchors, column) for column in RAMP.T], axis=-1)

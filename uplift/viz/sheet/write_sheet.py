@@ -1,4 +1,4 @@
-"""The contact sheet as a file: OpenEXR for colour work, PNG for a look."""
+"""Contact sheets as files: OpenEXR for colour work, PNG for viewing."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from uplift.cube.data import CubeData
 from uplift.io.slices import exr
 from uplift.viz.sheet.sheet import Label, compose
 
-INK = 0.75
+TEXT_GREY = 0.75
 """Linear grey of the text."""
 DPI = 64
-"""A power of two: dividing pixels by it is exact, so that the text's canvas is as large as the sheet."""
+"""A power of two: division is exact, so the canvas of the text has the size of the sheet."""
 STYLE: dict[str, Any] = {
     "family": "DejaVu Sans",  # comes with matplotlib
     "va": "center_baseline",
@@ -33,22 +33,48 @@ Image = NDArray[np.float32]
 def write_sheet(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Write the contact sheet of a cube: linear RGB in a single-part ``.exr``, or sRGB in a ``.png``.
 
-    Panels show lattice RGB, fitting distance, status and (with debug information) round; see
-    `uplift.viz.sheet.panels` for the colours and `uplift.viz.sheet.sheet.Layout` for the places.
+    Panels show lattice RGB, fitting distance, status, standard error (of cubes with an atlas) and round (with debug
+    information).
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    path : path-like
+        File to write.
+    force : bool
+        Whether to replace an existing file.
 
     Raises
     ------
-    OutputError : the name ends in neither, exists already (without ``force``) or cannot be written.
+    OutputError
+        The path ends in neither suffix (code ``unsupported-suffix``), cannot be written, or exists and ``force`` is
+        off.
     """
     check_sheet(path, force=force)
     sheet = compose(data)
-    WRITERS[_suffix(path)](data, _lettered(sheet.image, sheet.labels), Path(path), force)
+    WRITERS[_suffix(path)](data, _draw_text(sheet.image, sheet.labels), Path(path), force)
 
 
 def check_sheet(path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Raises `OutputError` where `write_sheet` would: asks before long work."""
+    """Check that `write_sheet` can write a file, before long work.
+
+    Parameters
+    ----------
+    path : path-like
+        File to write.
+    force : bool
+        Whether an existing file can be replaced.
+
+    Raises
+    ------
+    OutputError
+        As `write_sheet` raises it.
+    """
     if _suffix(path) not in WRITERS:
-        raise OutputError("a sheet is OpenEXR or PNG", path=path, hint="name the file .exr or .png")
+        raise OutputError(
+            "the name of a sheet must end in .exr or .png", code="unsupported-suffix", path=path
+        )
     check_output(path, force=force)
 
 
@@ -58,14 +84,14 @@ def _suffix(path: str | os.PathLike[str]) -> str:
 
 def _write_exr(data: CubeData, image: Image, path: Path, force: bool) -> None:
     channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
-    exr.write_parts([exr.part("sheet", exr.attributes(data), channels)], path, force=force)
+    exr.write_parts([exr.make_part("sheet", exr.attributes(data), channels)], path, force=force)
 
 
 def _write_png(data: CubeData, image: Image, path: Path, force: bool) -> None:
     from matplotlib.image import imsave
 
     codes = np.rint(255 * encode(image)).astype(np.uint8)
-    # Without a name here matplotlib writes its own and its version.
+    # Without this entry matplotlib writes its own name and version.
     with atomic_write(path, force=force) as temporary:
         imsave(temporary, codes, format="png", metadata={"Software": "uplift"})
 
@@ -73,8 +99,8 @@ def _write_png(data: CubeData, image: Image, path: Path, force: bool) -> None:
 WRITERS = {".exr": _write_exr, ".png": _write_png}
 
 
-def _lettered(image: Image, labels: tuple[Label, ...]) -> Image:
-    """The image (height, width, 3) with its text, drawn by matplotlib's own font."""
+def _draw_text(image: Image, labels: tuple[Label, ...]) -> Image:
+    """Draw the labels on the image (height, width, 3) in the font that comes with matplotlib."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -86,4 +112,4 @@ def _lettered(image: Image, labels: tuple[Label, ...]) -> Image:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     cover = np.asarray(canvas.buffer_rgba())[..., 3:] / np.float32(255)
-    return image + cover * (np.float32(INK) - image)
+    return image + cover * (np.float32(TEXT_GREY) - image)

@@ -18,30 +18,30 @@ static inline int ${name}_entry_at(const double rgb[3])
     return -1;
 }
 
-/* Coefficients at linear RGB. Near an atlas entry, x = (1 - t) e + t y with y where the ray from the entry's colour
-   e through x leaves its box: the answer mixes the entry's coefficients and the lattice's at y alike. */
+/* Coefficients at linear RGB. In the box of an atlas entry, x = (1 - t) e + t y, where the ray from the entry's colour
+   e through x leaves the box at y. The result mixes the coefficients of the entry and of the lattice at y by t. */
 static inline void ${name}_fetch(const double rgb[3], double coefficients[${count}])
 {
-    double asked[3], share = 0;
+    double query[3], share = 0;
     const double *middle;
     int entry, k;
-    ${name}_clip(rgb, asked);
-    entry = ${name}_entry_at(asked);
+    ${name}_clip(rgb, query);
+    entry = ${name}_entry_at(query);
     if (entry < 0) {
-        ${name}_lattice(asked, coefficients);
+        ${name}_lattice(query, coefficients);
         return;
     }
     middle = ${name}_entry_box[entry];
     for (k = 0; k < 3; ++k) {
-        double ray = asked[k] - middle[k], room = ray > 0 ? middle[6 + k] - middle[k] : middle[k] - middle[3 + k];
-        if (ray != 0 && fabs(ray) > share * room) share = fabs(ray) / room;
+        double ray = query[k] - middle[k], extent = ray > 0 ? middle[6 + k] - middle[k] : middle[k] - middle[3 + k];
+        if (ray != 0 && fabs(ray) > share * extent) share = fabs(ray) / extent;
     }
     if (share > 0) {
-        double away[3];
-        for (k = 0; k < 3; ++k) away[k] = middle[k] + (asked[k] - middle[k]) / share;
-        ${name}_clip(away, asked);
+        double exit_rgb[3];
+        for (k = 0; k < 3; ++k) exit_rgb[k] = middle[k] + (query[k] - middle[k]) / share;
+        ${name}_clip(exit_rgb, query);
     }
-    ${name}_lattice(asked, coefficients);
+    ${name}_lattice(query, coefficients);
     for (k = 0; k < ${count}; ++k)
         coefficients[k] = share * coefficients[k] + (1 - share) * ${name}_entry[entry][k];
 }

@@ -1,4 +1,4 @@
-/* The last node before x, and in *fraction how far x lies between it and the next. */
+/* Index of the last node up to x; *fraction is the position of x between it and the next node. */
 static inline int ${name}_cell(double x, double *fraction)
 {
     int low = 0, high = ${NAME}_DIM - 1;
@@ -11,7 +11,7 @@ static inline int ${name}_cell(double x, double *fraction)
     return low;
 }
 
-/* Coefficients between lattice points: trilinear in linear RGB. */
+/* Coefficients of the lattice: trilinear interpolation in linear RGB. */
 static inline void ${name}_lattice(const double rgb[3], double coefficients[${count}])
 {
     int low[3], corner, k;
@@ -26,7 +26,7 @@ static inline void ${name}_lattice(const double rgb[3], double coefficients[${co
     }
 }
 
-/* What lies outside [0, 1] is clipped; NaN counts as 0. */
+/* Clip linear RGB to [0, 1]; NaN becomes 0. */
 static inline void ${name}_clip(const double rgb[3], double clipped[3])
 {
     int k;

@@ -1,4 +1,4 @@
-/* Multipliers of moments by Levinson's recursion, 0 where it breaks down (Peters et al. 2019; Markoff 1896). */
+/* Multipliers of moments by Levinson's recursion (Peters et al. 2019; Markoff 1896). Returns 0 if it breaks down. */
 static inline int ${name}_dual(const double moments[${count}], double multipliers[${count}])
 {
     double hr[${count}], hi[${count}];           /* exponential moments */
@@ -58,23 +58,23 @@ static inline int ${name}_dual(const double moments[${count}], double multiplier
     return 1;
 }
 
-/* Multipliers of coefficients. Spectra that touch 0 or 1 are blended with a grey, as little as it takes; 0 where
-   that does not help, as with numbers that are no spectrum: the multipliers then are a grey's. */
+/* Multipliers of coefficients. Spectra that reach 0 or 1 are blended with as little grey as necessary. Returns 0 if
+   that fails, as for numbers that are not moments of a spectrum; the multipliers are then those of a grey. */
 static inline int ${name}_multipliers(const double coefficients[${count}], double multipliers[${count}])
 {
     static const double shares[5] = {0, 1e-10, 1e-8, 1e-6, 1e-4};
     double moments[${count}];
-    int turn, k;
-    for (turn = 0; turn < 5; ++turn) {
-        for (k = 0; k < ${count}; ++k) moments[k] = (1 - shares[turn]) * coefficients[k];
-        moments[0] += 0.5 * shares[turn];
+    int attempt, k;
+    for (attempt = 0; attempt < 5; ++attempt) {
+        for (k = 0; k < ${count}; ++k) moments[k] = (1 - shares[attempt]) * coefficients[k];
+        moments[0] += 0.5 * shares[attempt];
         if (${name}_dual(moments, multipliers)) return 1;
     }
     for (k = 0; k < ${count}; ++k) multipliers[k] = 0;
     return 0;
 }
 
-/* Reflectance in [0, 1] at a wavelength in nm; outside ${start} to ${end} that of the nearer end. */
+/* Reflectance in [0, 1] at a wavelength in nm, constant outside ${start} to ${end}. */
 static inline double ${name}_evaluate(const double multipliers[${count}], double wavelength)
 {
     const double pi = 3.14159265358979323846;
@@ -82,7 +82,7 @@ static inline double ${name}_evaluate(const double multipliers[${count}], double
     int k;
     wavelength = wavelength > ${start} ? (wavelength < ${end} ? wavelength : ${end}) : ${start};
     turn = 2 * cos(pi * (${warp} - ${low}) / ${width} - pi);
-    for (k = ${count} - 1; k > 0; --k) { /* Clenshaw's sum of multipliers[k] cos(k phase) */
+    for (k = ${count} - 1; k > 0; --k) { /* Clenshaw's summation of multipliers[k] cos(k phase) */
         double next = 2 * multipliers[k] + turn * sum - before;
         before = sum;
         sum = next;

@@ -1,8 +1,8 @@
 /* Coefficients at linear RGB. */
 static inline void ${name}_fetch(const double rgb[3], double coefficients[${count}])
 {
-    double asked[3];
-    ${name}_clip(rgb, asked);
-    ${name}_lattice(asked, coefficients);
+    double query[3];
+    ${name}_clip(rgb, query);
+    ${name}_lattice(query, coefficients);
 }
 

@@ -1,4 +1,4 @@
-/* Multipliers of coefficients: the same numbers. */
+/* Multipliers of coefficients, which are the same numbers. */
 static inline int ${name}_multipliers(const double coefficients[${count}], double multipliers[${count}])
 {
     int k;
@@ -6,7 +6,7 @@ static inline int ${name}_multipliers(const double coefficients[${count}], doubl
     return 1;
 }
 
-/* Reflectance in [0, 1] at a wavelength in nm; outside ${start} to ${end} that of the nearer end. */
+/* Reflectance in [0, 1] at a wavelength in nm, constant outside ${start} to ${end}. */
 static inline double ${name}_evaluate(const double multipliers[${count}], double wavelength)
 {
     double x, t;

@@ -1,4 +1,4 @@
-/* All at once, for who asks for a colour once. */
+/* Reflectance of a colour that is evaluated once. */
 static inline double ${name}_reflectance(const double rgb[3], double wavelength)
 {
     double coefficients[${count}], multipliers[${count}];
