@@ -53,12 +53,12 @@ def test_files_without_an_atlas_raise(save, content, code):
 
 
 def test_unreadable_files_raise(tmp_path):
-    for path, reason in [
-        (tmp_path / "none.txt", "no such file"),
-        (tmp_path, "is a directory"),
-        ("a\0b", "null"),
+    for path, code, reason in [
+        (tmp_path / "none.txt", "file-not-found", "no such file"),
+        (tmp_path, "not-a-regular-file", "is a directory"),
+        ("a\0b", "unreadable-file", "null"),
     ]:
-        with raises(AtlasError, "cannot-read") as caught:
+        with raises(AtlasError, code) as caught:
             read_atlas(path)
         assert reason in caught.value.problem
 
@@ -69,7 +69,7 @@ def test_unreadable_files_raise(tmp_path):
 def test_file_without_permission_raises(save):
     path = save(PLAIN)
     path.chmod(0)
-    with raises(AtlasError, "cannot-read"):
+    with raises(AtlasError, "unreadable-file"):
         read_atlas(path)
 
 

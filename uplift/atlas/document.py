@@ -16,6 +16,13 @@ MAX_QUOTED = 40
 """Characters of an invalid token or name that a message quotes."""
 
 
+READ_ERRORS: dict[type[Exception], str] = {
+    FileNotFoundError: "file-not-found",
+    IsADirectoryError: "not-a-regular-file",
+}
+"""Codes of errors in reading; others are ``unreadable-file``."""
+
+
 @dataclass(frozen=True)
 class SourceLocation:
     """Path, line (counted from 1) and entry that an error refers to, as far as they are known."""
@@ -77,9 +84,10 @@ def _bytes(location: SourceLocation) -> bytes:
     try:
         return Path(location.path or "").read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        code = READ_ERRORS.get(type(error), "unreadable-file")
         reason = str(getattr(error, "strerror", None) or error).lower()
         raise location.error(
-            "cannot-read", f"cannot be read: {reason}", "name an atlas file that can be read"
+            code, f"cannot be read: {reason}", "name an atlas file that can be read"
         ) from None
 
 
