@@ -28,6 +28,7 @@ test: lint
 
 # Measurements are stored in docs/data; this renders the pages from them, and measures nothing.
 docs: $(INSTALLED)
+	$(BIN)/python -m tools.error_codes
 	$(BIN)/python -m tools.render_docs
 
 bench: $(INSTALLED)

@@ -1,6 +1,7 @@
 """Render the pages of measurements: docs/templates/NAME.md.j2 filled from docs/data/NAME.json is docs/NAME.md.
 
-Nothing is measured here. The programs in benchmarks/ write the data.
+Nothing is measured here. The programs in benchmarks/ write the data. A template without data of its own uses that of
+other pages, by ``load`` (JSON) and ``rows`` (CSV).
 
 Examples
 --------
@@ -12,6 +13,8 @@ Examples
 from __future__ import annotations
 
 import argparse
+import csv
+import io
 import json
 import string
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -125,6 +128,12 @@ def render(name: str, docs: Path = DOCS) -> str:
     def load(part: str) -> Any:
         return json.loads((docs / "data" / f"{part}.json").read_text(encoding="utf-8"))
 
+    def rows(path: str) -> list[Row]:
+        return [
+            {key: _value(cell) for key, cell in row.items()}
+            for row in csv.DictReader(io.StringIO(text(path)))
+        ]
+
     def text(path: str) -> str:
         return (docs / path).read_text(encoding="utf-8")
 
@@ -137,8 +146,24 @@ def render(name: str, docs: Path = DOCS) -> str:
         autoescape=False,
     )
     environment.filters |= {"num": number, "mean": mean}
-    environment.globals |= {"load": load, "text": text, "table": table, "where": where, "pick": pick}
-    return environment.get_template(f"{name}.md.j2").render(load(name))
+    environment.globals |= {
+        "load": load,
+        "rows": rows,
+        "text": text,
+        "table": table,
+        "where": where,
+        "pick": pick,
+    }
+    has_data = (docs / "data" / f"{name}.json").is_file()
+    return environment.get_template(f"{name}.md.j2").render(load(name) if has_data else {})
+
+
+def _value(cell: str) -> Any:
+    """Convert a cell of a CSV file: a number if it is one, None if it is empty."""
+    try:
+        return float(cell) if cell else None
+    except ValueError:
+        return cell
 
 
 def stale(docs: Path = DOCS) -> list[str]:

@@ -1,0 +1,63 @@
+"""List the codes of errors and warnings in the source: writes docs/data/errors.json.
+
+Examples
+--------
+    python -m tools.error_codes
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[1]
+TARGET = ROOT / "docs" / "data" / "errors.json"
+
+
+def calls(tree: ast.AST) -> Iterator[tuple[str, str]]:
+    """Yield the function name and the code of every call with a literal ``code``."""
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call):
+            continue
+        name = node.func.id if isinstance(node.func, ast.Name) else getattr(node.func, "attr", "")
+        for keyword in node.keywords:
+            if keyword.arg == "code" and isinstance(keyword.value, ast.Constant):
+                yield name, str(keyword.value.value)
+
+
+def collect(root: Path = ROOT) -> list[dict[str, Any]]:
+    """Return the codes in alphabetical order, each with the packages of the library that use it.
+
+    Parameters
+    ----------
+    root : Path
+        The root of the working tree.
+
+    Returns
+    -------
+    list of dict
+        ``code``, ``kind`` ("error" or "warning") and ``packages``, dotted names.
+    """
+    found: dict[tuple[str, str], set[str]] = {}
+    for path in sorted((root / "uplift").rglob("*.py")):
+        package = ".".join(path.relative_to(root).parent.parts)
+        for name, code in calls(ast.parse(path.read_text(encoding="utf-8"))):
+            kind = "warning" if name.endswith(("Warning", "warn", "_warn")) else "error"
+            found.setdefault((code, kind), set()).add(package)
+    return [
+        {"code": code, "kind": kind, "packages": sorted(packages)}
+        for (code, kind), packages in sorted(found.items())
+    ]
+
+
+def main() -> None:
+    """Write the list."""
+    text = json.dumps({"codes": collect()}, indent=1)
+    TARGET.write_text(text + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
