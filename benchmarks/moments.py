@@ -45,7 +45,7 @@ def main() -> None:
         "moments",
         "make study",
         winners=[winners(study, thesis, floats) for floats in FLOATS],
-        by_moments=[by_moments(study, thesis, count) for count in range(study.most + 1)],
+        by_moments=[by_moments(study, thesis, count) for count in range(study.max_moments + 1)],
         by_warp=by_warp(atlases, study, thesis),
         lights=[under_lights(study, floats, one) for floats in FLOATS for one in TECHNIQUES],
         by_atlas=[by_atlas(study, group) for group in study.groups],
@@ -81,7 +81,7 @@ def max_moments(technique: Technique, floats: int) -> int:
 
 def pair(result: MomentsResult, measure: int = 0) -> Pair:
     """Return the mean and the largest error."""
-    return [float(result.mean[measure]), float(result.most[measure])]
+    return [float(result.mean[measure]), float(result.max[measure])]
 
 
 def winners(study: MomentsStudy, thesis: Thesis, floats: int) -> dict[str, Any]:
@@ -93,7 +93,7 @@ def winners(study: MomentsStudy, thesis: Thesis, floats: int) -> dict[str, Any]:
         return {"technique": technique.short, "value": values[technique]}
 
     sources = {
-        "ours": lambda technique, count: pair(study.of(technique, count)),
+        "ours": lambda technique, count: pair(study.result(technique, count)),
         "thesis": lambda technique, count: thesis[technique, count],
     }
     both = {name: {"mean": best(errors, 0), "max": best(errors, 1)} for name, errors in sources.items()}
@@ -104,7 +104,7 @@ def by_moments(study: MomentsStudy, thesis: Thesis, count: int) -> dict[str, Any
     """Return the errors of every technique with ``count`` moments, here and in the thesis."""
     return {
         "moments": count,
-        "ours": {one.short: pair(study.of(one, count)) for one in TECHNIQUES},
+        "ours": {one.short: pair(study.result(one, count)) for one in TECHNIQUES},
         "thesis": {one.short: thesis[one, count] for one in TECHNIQUES},
     }
 
@@ -115,21 +115,25 @@ def by_warp(atlases: dict[str, uplift.Atlas], study: MomentsStudy, thesis: Thesi
     for name, warp in warps.made(study.measured).items():
         with warps.in_place_of_ours(warp):
             other = study_moments(atlases, max(WARP_MOMENTS))
-        rows.append({"warp": name, "errors": {str(n + 1): pair(other.of(WARPED, n)) for n in WARP_MOMENTS}})
+        rows.append(
+            {"warp": name, "errors": {str(n + 1): pair(other.result(WARPED, n)) for n in WARP_MOMENTS}}
+        )
     printed = {str(n + 1): thesis[WARPED, n] for n in WARP_MOMENTS}
     return [*rows, {"warp": "thesis", "errors": printed}]
 
 
 def under_lights(study: MomentsStudy, floats: int, technique: Technique) -> dict[str, Any]:
     """Return ΔE00 under each light and the rms difference of the spectra."""
-    result = study.of(technique, max_moments(technique, floats))
+    result = study.result(technique, max_moments(technique, floats))
     errors = {light: pair(result, 1 + row) for row, light in enumerate(REPORT_LIGHTS)}
     return {"floats": floats, "technique": technique.short, "errors": errors, "rms": pair(result, -1)}
 
 
 def by_atlas(study: MomentsStudy, group: str) -> dict[str, Any]:
     """Return the errors of an atlas with the default number of floats."""
-    errors = {one.short: pair(study.of(one, max_moments(one, DEFAULT_FLOATS), group)) for one in TECHNIQUES}
+    errors = {
+        one.short: pair(study.result(one, max_moments(one, DEFAULT_FLOATS), group)) for one in TECHNIQUES
+    }
     return {"atlas": group, "entries": len(study.rows(group)), "errors": errors}
 
 
@@ -137,9 +141,9 @@ def worst_entries(study: MomentsStudy, floats: int) -> dict[str, Any]:
     """Return the entry with the largest ΔE76 of each technique."""
     worst = {}
     for technique in TECHNIQUES:
-        result = study.of(technique, max_moments(technique, floats))
+        result = study.result(technique, max_moments(technique, floats))
         entry = {"name": study.names[result.worst], "atlas": study.atlases[result.worst]}
-        worst[technique.short] = entry | {"error": float(result.most[0])}
+        worst[technique.short] = entry | {"error": float(result.max[0])}
     return {"floats": floats, "worst": worst}
 
 

@@ -68,7 +68,7 @@ def failure_map() -> list[dict[str, Any]]:
     axes = DesignSpace(atlases=(NO_ATLAS, "macbeth", *SYNTHETIC_ATLASES))
     synthetic = {name: make() for name, make in SYNTHETIC_ATLASES.items()}
     results = study_stability(design(axes), macbeth | synthetic, _print_progress)
-    plot_map(grids(axes), {one.setting: one for one in results}, FOLDER / "map.png", force=True)
+    plot_map(grids(axes), {one.config: one for one in results}, FOLDER / "map.png", force=True)
     return [row | {"technique": technique(row)} for row in (one.record() for one in results)]
 
 

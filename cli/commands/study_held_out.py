@@ -63,7 +63,7 @@ def _records(results: Results) -> list[dict[str, Any]]:
     for name, splits in results.items():
         for method in splits[0].errors:
             rms, *delta_e = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
-            record = {"atlas": name, "cube": method, "colours": len(splits[0].real), "rms": rms}
+            record = {"atlas": name, "cube": method, "colours": len(splits[0].actual), "rms": rms}
             records.append(record | dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True)))
         errors = pooled_calibration(splits)
         records[-len(splits[0].errors)]["standard_error"] = errors and errors.to_json()

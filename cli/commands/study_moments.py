@@ -103,9 +103,9 @@ def _print_table(found: MomentsStudy) -> None:
     table.add_column("moments", justify="right")
     for technique in TECHNIQUES:
         table.add_column(technique.label.replace(" ", "\n"), justify="right", no_wrap=True)
-    for count in range(found.most + 1):
-        results = [found.of(technique, count) for technique in TECHNIQUES]
-        table.add_row(str(count), *(f"{one.mean[0]:.2f} / {one.most[0]:6.2f}" for one in results))
+    for count in range(found.max_moments + 1):
+        results = [found.result(technique, count) for technique in TECHNIQUES]
+        table.add_row(str(count), *(f"{one.mean[0]:.2f} / {one.max[0]:6.2f}" for one in results))
     console().print(table)
 
 

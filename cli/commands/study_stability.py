@@ -56,8 +56,14 @@ def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
 @click.option(
     "--atlases", callback=_list_of(str), metavar="NAME,…", help="Atlases to use by name, or 'none'."
 )
-@click.option("--samples", "drawn", type=int, help="Number of random settings in addition to the grids.")
-@click.option("--peer-dims", callback=_list_of(int), metavar="N,…", help="Lattices for the solver of scipy.")
+@click.option("--samples", type=int, help="Number of random settings in addition to the grids.")
+@click.option(
+    "--peer-dims",
+    "solver_dims",
+    callback=_list_of(int),
+    metavar="N,…",
+    help="Lattices for the solver of scipy.",
+)
 @click.option("-o", "--output", metavar="DIR", help="Folder for the tables and the heat map.")
 @format_option("table", "json", "csv")
 @force_option()
@@ -112,7 +118,7 @@ def _write(axes: DesignSpace, found: Sequence[RunResult], folder: Path, *, force
     table, text, picture = (folder / name for name in FILES)
     write_csv([one.record() for one in found], table, force=force)
     write_text(_json(found) + "\n", text, force=force)
-    plot_map(grids(axes), {one.setting: one for one in found}, picture, force=force)
+    plot_map(grids(axes), {one.config: one for one in found}, picture, force=force)
     click.echo(f"{folder}: {', '.join(FILES)}", err=True)
 
 
@@ -141,8 +147,8 @@ def _print_table(found: Sequence[RunResult]) -> None:
     for heading in ("realisable", "unfitted", "rounds", "calls", "worst", "at", "s"):
         table.add_column(heading, justify="right", no_wrap=True)
     for one in found:
-        setting = one.setting
-        names = (setting.solver, setting.technique, str(setting.dim), setting.space)
+        setting = one.config
+        names = (setting.solver, setting.model_label, str(setting.dim), setting.space)
         facts = (f"{one.realisable}", f"{one.unfitted}", f"{one.rounds}", f"{one.calls}", f"{one.worst:.1e}")
         where = f"{one.r:.3f} {one.g:.3f} {one.b:.3f}"
         table.add_row(

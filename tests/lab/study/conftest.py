@@ -1,4 +1,4 @@
-"""The study of the ColorChecker, once a run."""
+"""Fixture: the moments study of the ColorChecker, once per session."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Lipschitz constant of a cube: never exceeded, and attained."""
+"""Lipschitz constants of a cube: never exceeded, and attained."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ def steep(small_cube):
 
 
 def quotient(first, second, before, after):
-    """rms change of spectra (n, N) per unit of change of colours (n, 3)."""
+    """Change of spectra (n, N), rms over wavelength, per unit of change of colours (n, 3)."""
     return np.sqrt(((after - before) ** 2).mean(axis=1)) / np.linalg.norm(second - first, axis=1)
 
 
-def test_no_two_colours_are_steeper(small_cube, steep):
+def test_no_pair_of_colours_exceeds_the_constant(small_cube, steep):
     first = RNG.random((3000, 3))
     for size in (1.0, 1e-2, 1e-5):
         second = np.clip(first + size * RNG.normal(size=first.shape), 0, 1)
@@ -32,7 +32,7 @@ def test_no_two_colours_are_steeper(small_cube, steep):
         assert found.max() > 0.1 * steep.largest or size == 1.0
 
 
-def test_the_steepest_cell_is_as_steep_as_that(small_cube, steep):
+def test_constant_is_attained_in_the_steepest_cell(small_cube, steep):
     data = small_cube.data
     nodes = data.lattice.nodes
     low = np.array(np.unravel_index(steep.cells.argmax(), steep.cells.shape))
@@ -52,23 +52,23 @@ def test_the_steepest_cell_is_as_steep_as_that(small_cube, steep):
     assert best == pytest.approx(steep.cells.max(), rel=0.01)
 
 
-def test_a_box_is_as_steep_as_stated(small_cube, steep):
-    """Between its steepest entry and all corners that the lattice cuts its box into, in all directions."""
+def test_constant_of_a_box_is_attained(small_cube, steep):
+    """Near the rays from the entry to all corners of the patches on its box, in random directions."""
     data = small_cube.data
     entry = steep.boxes.argmax()
     low, high = (face[entry] for face in data.entry_boxes.faces)
     middle = data.atlas.rgb[entry]
     cuts = [_cuts(data.lattice.nodes, low[axis], high[axis]) for axis in range(3)]
     corners = np.stack(np.meshgrid(*cuts, indexing="ij"), axis=-1).reshape(-1, 1, 3)
-    beside = corners + 1e-3 * (high - low) * RNG.normal(size=(len(corners), 200, 3))
-    first = (middle + 0.5 * (beside - middle)).reshape(-1, 3)
+    nearby = corners + 1e-3 * (high - low) * RNG.normal(size=(len(corners), 200, 3))
+    first = (middle + 0.5 * (nearby - middle)).reshape(-1, 3)
     second = first + 1e-5 * (high - low).min() * RNG.normal(size=first.shape)
     found = quotient(first, second, small_cube.reflectance(first), small_cube.reflectance(second))
     assert 0.9 * steep.boxes[entry] < found.max() <= steep.boxes[entry] * (1 + 1e-4)
 
 
-def test_codes_count_along_the_curve_of_the_space(plain_cube):
-    """A cell between codes is as steep per code as its two ends tell, the curve being steepest above."""
+def test_constants_per_code_follow_the_transfer_curve(plain_cube):
+    """The ratio lies between the slopes of the curve, and equals the last slope in the last cell."""
     data = plain_cube.data
     steep = lipschitz_constants(data)
     slope = np.diff(data.sensor.decoding)
@@ -80,14 +80,14 @@ def test_codes_count_along_the_curve_of_the_space(plain_cube):
     assert steep.largest == steep.cells.max()
 
 
-def test_norms_are_those_of_the_jacobian():
+def test_spectral_norms_equal_numpy():
     columns = RNG.normal(size=(5, 3, 20))
     expected = [np.linalg.norm(one, 2) / np.sqrt(20) for one in columns]
     np.testing.assert_allclose(spectral_norms(columns), expected)
 
 
 @pytest.mark.parametrize("axis", range(3))
-def test_a_face_is_the_same_from_both_of_its_cells(small_cube, axis):
+def test_answers_agree_on_the_face_between_two_cells(small_cube, axis):
     data = small_cube.data
     low = RNG.integers(0, data.lattice.dim - 2, (200, 3))
     fraction = RNG.random((200, 3))
@@ -104,8 +104,8 @@ def test_a_face_is_the_same_from_both_of_its_cells(small_cube, axis):
     )
 
 
-def test_the_face_of_a_box_is_the_same_from_both_sides(small_cube, steep):
-    """What the entry's answer becomes at its face is what the lattice has there."""
+def test_answers_agree_on_both_sides_of_the_face_of_a_box(small_cube, steep):
+    """The answer within the box meets the lattice at the faces."""
     data = small_cube.data
     low, high = data.entry_boxes.faces
     entry = np.flatnonzero(data.atlas.half_width)

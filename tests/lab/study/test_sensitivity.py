@@ -1,4 +1,4 @@
-"""Queries and atlases a little different: figures by hand, and changes that stay where they belong."""
+"""Sensitivity to queries and atlases: results by hand, and the locality of changes."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 
+from tests.helpers import raises
 from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
@@ -17,7 +18,7 @@ from uplift.lab.study.locality import Change, add_noise, build_baseline, remove_
 LIGHT = observer.light("FL11")
 
 
-def test_answers_move_with_the_question(small_cube):
+def test_answers_change_in_proportion_to_the_query(small_cube):
     found = perturb(small_cube, LIGHT, 200)
     assert [move.mode for move in found[::3]] == list(CONTINUOUS_MODES)
     for wide, narrow, rounding in zip(found[::3], found[1::3], found[2::3], strict=True):
@@ -33,45 +34,45 @@ def base(repository):
     return build_baseline(read_atlas(repository / "atlases" / "tcs.txt"), LIGHT, dim=8)
 
 
-def test_an_entry_left_out_is_missed_nearby_alone(base):
+def test_removing_an_entry_changes_only_nearby_points(base):
     name = base.data.atlas.names[0]
     found = remove_entry(base, name)
-    assert found.delta_e[found.lab_apart.argmin()] > 0
-    far = found.lab_apart > 60
+    assert found.delta_e[found.lab_distance.argmin()] > 0
+    far = found.lab_distance > 60
     assert far.sum() > 100
     assert found.delta_e[far].max() < 0.1 * found.delta_e.max()
     assert 0 < found.moved < 0.1
-    assert found.radius(found.lab_apart) < 40
+    assert found.radius(found.lab_distance) < 40
 
 
-def test_a_wrong_entry_is_felt_where_it_was_and_where_it_is(base):
+def test_distance_from_a_reversed_entry_is_to_its_old_or_new_colour(base):
     name = base.data.atlas.names[0]
     wrong, without = reverse_entry(base, name), remove_entry(base, name)
-    assert (wrong.rgb_apart <= without.rgb_apart + 1e-12).all()
+    assert (wrong.rgb_distance <= without.rgb_distance + 1e-12).all()
     assert wrong.delta_e.max() > 0
 
 
-def test_noise_on_all_entries_has_no_place(base):
+def test_noise_on_all_entries_has_no_distance(base):
     found = add_noise(base, 0)
     assert found.rms.shape == (512,)
-    assert found.rgb_apart.size == 0
-    assert np.isnan(found.radius(found.rgb_apart))
+    assert found.rgb_distance.size == 0
+    assert np.isnan(found.radius(found.rgb_distance))
     assert found.delta_e.mean() < 0.1
 
 
-def test_moved_and_radius_by_hand():
+def test_moved_share_and_radius_by_hand():
     change = Change("", np.zeros(4), np.array([0.1, 0.6, 2, 0.5]), np.array([0.0, 1, 2, 3]), np.zeros(4))
     assert change.moved == 0.5
-    assert change.radius(change.rgb_apart) == 2
+    assert change.radius(change.rgb_distance) == 2
     assert Change("", np.zeros(1), np.zeros(1), np.ones(1), np.ones(1)).radius(np.ones(1)) == 0
 
 
-def test_a_cube_without_an_atlas_has_queries_and_steepness_alone(plain_cube):
+def test_cube_without_an_atlas_has_no_changes(plain_cube):
     found = sensitivity.study_sensitivity(plain_cube, None, 5)
     assert (found.noise, found.reversed, found.removed) == ([], [], [])
     record = json.loads(json.dumps(found.record()))
     assert record["changes"] == []
     assert record["lipschitz"]["largest_box"] is None
     assert record["lipschitz"]["largest"] >= record["lipschitz"]["median_cell"]
-    with pytest.raises(OptionError, match="-1 entries"):
+    with raises(OptionError, "entries-out-of-range"):
         sensitivity.study_sensitivity(plain_cube, None, -1)

@@ -1,4 +1,4 @@
-"""The atlases that are hard on purpose: always the same, and as hard as they are called."""
+"""Synthetic atlases: reproducible, and as difficult as their names."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ def values(atlas):
 
 
 @pytest.mark.parametrize("name", SYNTHETIC_ATLASES)
-def test_they_are_always_the_same(name):
+def test_atlases_are_reproducible(name):
     first, second = SYNTHETIC_ATLASES[name](), SYNTHETIC_ATLASES[name]()
     np.testing.assert_array_equal(values(first), values(second))
     assert first.names == second.names
 
 
-def test_they_are_what_they_are_called(sensor):
+def test_atlases_are_crowded_spiky_and_noisy(sensor):
     lab = rgb_to_lab(sensor, sensor.rgb(values(crowded())))
-    apart = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))
-    assert np.median(apart.min(axis=1)) < 1
+    distance = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))
+    assert np.median(distance.min(axis=1)) < 1
     assert (np.abs(np.diff(values(spiky()), axis=1)).max(axis=1) > 0.2).all()
     rough = np.diff(values(noisy()), n=2, axis=1).std()
     assert rough == pytest.approx(0.05 * 6**0.5, rel=0.1)

@@ -16,7 +16,7 @@ UNMIRRORED = [technique for technique in TECHNIQUES if not technique.mirrored]
 
 
 def bumps(rows: int, wavelengths: np.ndarray) -> np.ndarray:
-    """(rows, N) smooth reflectances in (0, 1), their ends apart."""
+    """Smooth reflectances (rows, N) in (0, 1) whose ends differ."""
     rng = np.random.default_rng(2020)
     slope, wave, shift = rng.normal(size=(3, rows, 1))
     t = (wavelengths - 380) / 400
@@ -28,7 +28,7 @@ def by_label(techniques):
 
 
 @by_label(TECHNIQUES)
-def test_the_range_takes_its_part_of_the_circle(technique):
+def test_phase_covers_the_half_or_full_circle(technique):
     phase = technique.phase(fine_grid())
     assert phase[0] == pytest.approx(-np.pi, abs=1e-14)
     assert phase[-1] == pytest.approx(0 if technique.mirrored else np.pi, abs=1e-14)
@@ -36,8 +36,8 @@ def test_the_range_takes_its_part_of_the_circle(technique):
 
 
 @by_label(TECHNIQUES)
-def test_moments_are_the_integrals_they_are_named_after(technique):
-    """Against adaptive integration of the same broken line."""
+def test_moments_equal_the_integrals(technique):
+    """Compared with adaptive integration of the same piecewise linear function."""
     samples = np.array([380.0, 430, 520, 560, 640, 780])
     values = np.array([[0.1, 0.9, 0.3, 0.35, 1.0, 0.6]])
     phase = technique.phase(samples)
@@ -56,8 +56,8 @@ def test_moments_are_the_integrals_they_are_named_after(technique):
 
 @by_label(UNMIRRORED)
 @pytest.mark.parametrize("count", [0, 1, 2, 4, 8, 15])
-def test_a_reconstruction_has_the_complex_moments_it_was_made_from(technique, count):
-    """By the trapezoid rule on the circle itself, which converges faster than any power."""
+def test_reconstruction_has_its_complex_moments(technique, count):
+    """Computed by the trapezoid rule on the circle, which converges exponentially."""
     moments = technique.moments(bumps(20, fine_grid()), fine_grid(), count)
     circle = -np.pi + 2 * np.pi * np.arange(1 << 14) / (1 << 14)
     waves = duality.fourier_basis(circle, count + 1)
@@ -68,8 +68,8 @@ def test_a_reconstruction_has_the_complex_moments_it_was_made_from(technique, co
 
 @by_label(MIRRORED)
 @pytest.mark.parametrize("count", [3, 9, 16])
-def test_mirrored_is_what_cubes_store(technique, count):
-    """The same moments, taken by the model of the cubes: the same spectra, and the same moments back."""
+def test_mirrored_moments_are_those_of_cubes(technique, count):
+    """The model of cubes gives the same spectra and the same moments."""
     model = Moments(count, Phase(warp="vision" if technique.warped else "none"))
     moments = technique.moments(bumps(20, fine_grid()), fine_grid(), count - 1)
     multipliers = model.from_storage(moments)
@@ -83,8 +83,8 @@ def test_mirrored_is_what_cubes_store(technique, count):
 
 
 @by_label(MIRRORED)
-def test_a_spectrum_of_the_model_comes_back(technique):
-    """What has nine multipliers loses nothing in nine moments but what 1 nm between samples loses."""
+def test_spectrum_of_the_model_is_reconstructed(technique):
+    """Nine moments represent nine multipliers up to the error of sampling at 1 nm."""
     model = Moments(9, Phase(warp="vision" if technique.warped else "none"))
     multipliers = np.random.default_rng(4).normal(size=(10, 9)) / (1 + np.arange(9))
     moments = technique.moments(evaluate(model, multipliers, fine_grid()), fine_grid(), 8)
@@ -98,33 +98,33 @@ def test_a_spectrum_of_the_model_comes_back(technique):
 
 
 @by_label(TECHNIQUES)
-def test_without_moments_a_spectrum_is_its_mean_over_the_phase(technique):
+def test_zeroth_moment_gives_the_mean_over_the_phase(technique):
     reflectance = bumps(5, fine_grid())
     mean = np.trapezoid(reflectance, technique.phase(fine_grid())) / np.ptp(technique.phase(fine_grid()))
     found = technique.reconstruct(technique.moments(reflectance, fine_grid(), 0), observer.grid())
     np.testing.assert_allclose(found, np.repeat(mean[:, None], 81, axis=1), rtol=0, atol=1e-12)
 
 
-def test_a_spectrum_even_about_the_middle_has_its_odd_mirrored_moments_nothing():
-    """And its even ones are those of the whole circle: half the storage, of either kind."""
+def test_symmetric_spectrum_has_zero_odd_mirrored_moments():
+    """Its even moments equal those of the full circle."""
     wavelengths = fine_grid()
     even = bumps(5, wavelengths)
     even = (even + even[:, ::-1]) / 2
     mirrored = Technique(True, False).moments(even, wavelengths, 8)
     whole = Technique(False, False).moments(even, wavelengths, 4)
     np.testing.assert_allclose(mirrored[:, 1::2], 0, atol=1e-14)
-    signs = (-1) ** np.arange(5)  # the whole circle begins half a turn earlier
+    signs = (-1) ** np.arange(5)  # the full circle starts half a turn earlier
     np.testing.assert_allclose(mirrored[:, ::2] * signs, whole, rtol=0, atol=1e-13)
 
 
 @by_label(TECHNIQUES)
-def test_black_white_and_boxes_are_reconstructed_too(technique):
+def test_black_white_and_a_step_are_reconstructed(technique):
     extremes = np.stack([np.zeros(401), np.ones(401), (fine_grid() > 580).astype(float)])
     found = technique.reconstruct(technique.moments(extremes, fine_grid(), 15), observer.grid())
     assert ((found >= 0) & (found <= 1)).all()
     np.testing.assert_allclose(found[:2], [[0] * 81, [1] * 81], atol=1e-4)
 
 
-def test_floats():
+def test_storage_and_abbreviations():
     assert [technique.floats(8) for technique in TECHNIQUES] == [9, 9, 17, 17]
     assert [technique.short for technique in TECHNIQUES] == ["M&W", "M&nW", "nM&W", "nM&nW"]

@@ -1,1 +1,3 @@
-"""Studies: what the choices behind the models are worth, measured on atlases."""
+"""Studies of the choices behind the models: moments, held-out measurements, stability and sensitivity of builds."""
+
+__all__: list[str] = []

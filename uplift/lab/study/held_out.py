@@ -1,4 +1,4 @@
-"""Half of an atlas as constraint, the other half asked: what a cube makes of materials that it has not seen."""
+"""Errors on held-out measurements: a cube built from half of an atlas predicts the other half."""
 
 from __future__ import annotations
 
@@ -20,111 +20,136 @@ from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.report.calibration import Calibration, calibration
 
-FEWEST = 8
-"""Entries within the space that can be halved."""
+MIN_ENTRIES = 8
+"""Fewest entries within the RGB space of an atlas that is split."""
+HALF, NO_ATLAS, SIGMOID = "half the atlas", "without an atlas", "sigmoid"
+"""Names of the cubes that are compared."""
 
 
 @dataclass(frozen=True, eq=False)
 class SpectrumErrors:
-    """Answers against measurements of n colours: rms (n,) over wavelength, ΔE00 (n, L) under L lights."""
+    """Errors of n predicted spectra.
+
+    Parameters
+    ----------
+    rms : ndarray, shape (n,)
+        Root mean square over wavelength.
+    delta_e : ndarray, shape (n, L)
+        ΔE00 under L lights.
+    """
 
     rms: Array
     delta_e: Array
 
     def means(self) -> Array:
-        """(1 + L,) mean rms, then mean ΔE00 under each light."""
+        """Mean rms, then mean ΔE00 under each light, as one array (1 + L,)."""
         return np.concatenate([[self.rms.mean()], self.delta_e.mean(axis=0)])
 
 
 @dataclass(frozen=True, eq=False)
 class HoldoutSplit:
-    """One way to halve an atlas. ``errors`` by what answered; ``stated`` (n,) standard errors, if the cube has any.
+    """One split of an atlas and the errors on its held-out half of n entries.
 
-    ``real`` (n,) is what the stated errors are about: ΔE00 under the cube's reference light.
+    Parameters
+    ----------
+    errors : dict of str to SpectrumErrors
+        Errors by the name of the cube.
+    actual : ndarray, shape (n,)
+        ΔE00 of the cube with half the atlas, under its reference illuminant.
+    predicted : ndarray, shape (n,), or None
+        Standard errors that this cube predicts, if it has any.
     """
 
     errors: dict[str, SpectrumErrors]
-    real: Array
-    stated: Array | None
+    actual: Array
+    predicted: Array | None
 
 
 def spectrum_errors(
-    answered: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS
+    predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS
 ) -> SpectrumErrors:
-    """Errors of reflectances (n, N), on the grid of every sensor, against measurements (n, N)."""
-    rms = np.sqrt(((answered - measured) ** 2).mean(axis=1))
-    return SpectrumErrors(
-        rms, np.stack([delta_e_spectra(observer.light(name), answered, measured) for name in lights], axis=1)
-    )
+    """Compare predicted with measured reflectances (n, N) on the wavelength grid of all sensors."""
+    rms = np.sqrt(((predicted - measured) ** 2).mean(axis=1))
+    delta_e = [delta_e_spectra(observer.light(name), predicted, measured) for name in lights]
+    return SpectrumErrors(rms, np.stack(delta_e, axis=1))
 
 
 def holdout(
-    spectra: Atlas,
-    splits: int = 3,
-    progress: ProgressCallback = ignore_progress,
-    **options: Any,
+    atlas: Atlas, splits: int = 3, progress: ProgressCallback = ignore_progress, **options: Any
 ) -> tuple[HoldoutSplit, ...]:
-    """Halve an atlas ``splits`` times, build a cube from one half with ``options``, ask it for the other.
+    """Build cubes from random halves of an atlas and predict the other halves.
 
-    Beside the cube answer one of the same options without an atlas, and the sigmoid's. ``progress`` hears how many
-    cubes are built, and of how many.
+    Parameters
+    ----------
+    atlas : Atlas
+        Measurements.
+    splits : int, optional
+        Number of random splits.
+    progress : callable, optional
+        Called with the stage ``"builds"``.
+    **options
+        Options of `uplift.pipeline.build`.
+
+    Returns
+    -------
+    tuple of HoldoutSplit
+        Errors of the cubes with half the atlas, of a cube without an atlas, and of a sigmoid cube without an atlas.
 
     Raises
     ------
-    AtlasError : too few entries within the space.
+    AtlasError
+        Too few entries lie within the RGB space.
     """
+    total = 2 + splits
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
-        others = {
-            "without an atlas": build(**options),
-            "sigmoid": build(**{**options, "model": "sigmoid"}),
-        }
-        progress(Progress("builds", 2, 2 + splits))
-        inside = _inside(spectra, others["sigmoid"])
-        found = []
-        for number in range(splits):
-            order = np.random.default_rng(number).permutation(len(inside))
-            kept, asked = np.array_split(order, 2)
-            cube = build(_some(spectra, inside[kept]), **options)
-            found.append(_ask({"half the atlas": cube, **others}, _some(spectra, inside[asked])))
-            progress(Progress("builds", 3 + number, 2 + splits))
-    return tuple(found)
+        others = {NO_ATLAS: build(**options), SIGMOID: build(**{**options, "model": "sigmoid"})}
+        progress(Progress("builds", 2, total))
+        inside = _entries_in_gamut(atlas, others[SIGMOID])
+        results = []
+        for seed in range(splits):
+            kept, held_out = np.array_split(np.random.default_rng(seed).permutation(len(inside)), 2)
+            cube = build(_subset(atlas, inside[kept]), **options)
+            results.append(_evaluate({HALF: cube, **others}, _subset(atlas, inside[held_out])))
+            progress(Progress("builds", 3 + seed, total))
+    return tuple(results)
 
 
-def _ask(cubes: dict[str, Cube], asked: Atlas) -> HoldoutSplit:
-    cube = cubes["half the atlas"]
+def pooled_calibration(splits: Sequence[HoldoutSplit]) -> Calibration | None:
+    """Calibration of the standard errors over all splits; None if the cubes have none."""
+    pairs = [(split.actual, split.predicted) for split in splits if split.predicted is not None]
+    if not pairs:
+        return None
+    actual, predicted = (np.concatenate(part) for part in zip(*pairs, strict=True))
+    return calibration(actual, predicted)
+
+
+def _evaluate(cubes: dict[str, Cube], held_out: Atlas) -> HoldoutSplit:
+    cube = cubes[HALF]
     sensor = cube.data.sensor
-    measured = resample(asked, sensor.wavelengths).values
+    measured = resample(held_out, sensor.wavelengths).values
     rgb = np.clip(sensor.rgb(measured), 0, 1)
-    answers = {name: other.reflectance(rgb) for name, other in cubes.items()}
+    predicted = {name: other.reflectance(rgb) for name, other in cubes.items()}
     light = observer.light(cube.data.error_illuminant, sensor.observer)
     return HoldoutSplit(
-        {name: spectrum_errors(answered, measured) for name, answered in answers.items()},
-        delta_e_spectra(light, answers["half the atlas"], measured),
+        {name: spectrum_errors(spectra, measured) for name, spectra in predicted.items()},
+        delta_e_spectra(light, predicted[HALF], measured),
         cube.standard_error(rgb),
     )
 
 
-def _inside(spectra: Atlas, cube: Cube) -> Indices:
-    """Rows of the entries that the cube's space holds."""
+def _entries_in_gamut(atlas: Atlas, cube: Cube) -> Indices:
+    """Indices of the entries within the RGB space of the cube."""
     sensor = cube.data.sensor
-    rows = np.flatnonzero(sensor.contains(sensor.rgb(resample(spectra, sensor.wavelengths).values)))
-    if len(rows) < FEWEST:
+    rows = np.flatnonzero(sensor.contains(sensor.rgb(resample(atlas, sensor.wavelengths).values)))
+    if len(rows) < MIN_ENTRIES:
         raise AtlasError(
-            f"{len(rows)} entries lie within {sensor.space}, too few to halve",
-            hint=f"give an atlas of {FEWEST} or more",
+            f"a split needs at least {MIN_ENTRIES} entries within {sensor.space}, got {len(rows)}",
+            code="too-few-entries",
+            hint="use a larger atlas",
         )
     return rows
 
 
-def _some(spectra: Atlas, rows: Indices) -> Atlas:
-    return Atlas(tuple(spectra.entries[row] for row in rows))
-
-
-def pooled_calibration(splits: Sequence[HoldoutSplit]) -> Calibration | None:
-    """Of all splits together. None where the cubes state no errors."""
-    parts = [(split.real, split.stated) for split in splits if split.stated is not None]
-    if not parts:
-        return None
-    real, stated = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return calibration(real, stated)
+def _subset(atlas: Atlas, rows: Indices) -> Atlas:
+    return Atlas(tuple(atlas.entries[row] for row in rows))

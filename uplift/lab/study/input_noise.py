@@ -1,4 +1,4 @@
-"""Colours a little beside those asked: how far the answers move."""
+"""Sensitivity of answers to small changes of the query."""
 
 from __future__ import annotations
 
@@ -13,20 +13,33 @@ from uplift.lookup import MODES, Cube
 
 COLOURS = 4096
 CONTINUOUS_MODES = tuple(mode for mode in MODES if mode != "nearest")
-"""Modes whose answers move as the question does; the nearest node jumps."""
-STEPS = {"1/255": 1.0, "1/1023": 255 / 1023}
-"""A code of 8 and of 10 bits, in codes of 8."""
-ROUNDING = "1e-7"
-FLOAT = 1e-7
-"""Rounding of a float32, linear RGB."""
+"""Modes in which answers depend continuously on the query; the nearest node changes abruptly."""
+CODE_STEPS = {"1/255": 1.0, "1/1023": 255 / 1023}
+"""Steps of one code of 8 and of 10 bits, in 8-bit codes."""
+ROUNDING, ROUNDING_STEP = "1e-7", 1e-7
+"""Rounding of a float32, in linear RGB."""
 
 
 @dataclass(frozen=True)
 class Perturbation:
-    """Answers of ``mode`` to colours moved by ``step``: mean and most over the colours.
+    """Changes of the answers of one mode to colours that moved by one step.
 
-    rms and largest change over wavelength; ΔE00 under a light, and under the build illuminant, of which the
-    question itself is the cause.
+    ``_mean`` and ``_most`` are mean and maximum over the colours. The fields are the keys of the JSON output.
+
+    Parameters
+    ----------
+    mode : str
+        Lookup mode.
+    step : str
+        Name of the step.
+    rms_mean, rms_most : float
+        Change of the reflectance, rms over wavelength.
+    largest : float
+        Largest change of reflectance at any wavelength.
+    light_mean, light_most : float
+        ΔE00 under the light of the study.
+    own_mean, own_most : float
+        ΔE00 under the illuminant of the cube, which the change of the query itself causes.
     """
 
     mode: str
@@ -41,29 +54,36 @@ class Perturbation:
 
 
 def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Perturbation]:
-    """Random colours, evenly over the codes of the cube's space, each moved by every step in a random direction.
+    """Move random colours, uniform in 8-bit codes, by every step and compare the answers.
 
-    Every channel goes up or down by the whole step.
+    Every channel moves up or down, at random, by the full step.
     """
     rng = np.random.default_rng(5)
     codes = rng.uniform(1, 254, (count, 3))
     signs = rng.choice([-1.0, 1.0], (count, 3))
-    asked = cube.decode(codes)
-    moved = {name: cube.decode(codes + step * signs) for name, step in STEPS.items()}
-    moved[ROUNDING] = np.clip(asked + FLOAT * signs, 0, 1)
+    rgb = cube.decode(codes)
+    moved = {name: cube.decode(codes + step * signs) for name, step in CODE_STEPS.items()}
+    moved[ROUNDING] = np.clip(rgb + ROUNDING_STEP * signs, 0, 1)
     return [
-        _move(cube, light, mode, name, asked, beside)
+        _compare(cube, light, mode, name, rgb, nearby)
         for mode in CONTINUOUS_MODES
-        for name, beside in moved.items()
+        for name, nearby in moved.items()
     ]
 
 
-def _move(cube: Cube, light: Light, mode: str, step: str, asked: Array, beside: Array) -> Perturbation:
-    before, after = (cube.reflectance(rgb, mode=mode) for rgb in (asked, beside))
-    rms = np.sqrt(((after - before) ** 2).mean(axis=1))
-    seen = delta_e_spectra(light, before, after)
-    own = delta_e_spectra(cube.data.sensor.light, before, after)
-    pairs = (float(value) for values in (seen, own) for value in (values.mean(), values.max()))
+def _compare(cube: Cube, light: Light, mode: str, step: str, rgb: Array, nearby: Array) -> Perturbation:
+    before, after = (cube.reflectance(colours, mode=mode) for colours in (rgb, nearby))
+    change = np.sqrt(((after - before) ** 2).mean(axis=1))
+    under_light = delta_e_spectra(light, before, after)
+    under_own = delta_e_spectra(cube.data.sensor.light, before, after)
     return Perturbation(
-        mode, step, float(rms.mean()), float(rms.max()), float(np.abs(after - before).max()), *pairs
+        mode,
+        step,
+        rms_mean=float(change.mean()),
+        rms_most=float(change.max()),
+        largest=float(np.abs(after - before).max()),
+        light_mean=float(under_light.mean()),
+        light_most=float(under_light.max()),
+        own_mean=float(under_own.mean()),
+        own_most=float(under_own.max()),
     )

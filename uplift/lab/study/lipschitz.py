@@ -1,11 +1,13 @@
-"""How fast the answers of mode ``spectra`` change with the colour asked: the Lipschitz constant, exactly.
+"""Exact Lipschitz constants of the answers of mode ``spectra`` as functions of the queried colour.
 
-Within a cell the answer is trilinear, so that its derivative along one channel does not depend on that channel and
-is linear in each of the others; the norm of the Jacobian (N × 3) is then convex along every axis, and largest at one
-of the cell's corners, where the derivatives are the differences along three edges. Within the box of an entry e,
-cut into pyramids by its faces, the answer is the entry's spectrum plus what is homogeneous of degree one in x − e: the
-Jacobian is the same all along a ray, and on a face is linear in each of the two coordinates of the face, cut up by
-the lattice. So the largest value over the whole cube is among finitely many. (docs/mathematics.md, 8)
+Within a cell the answer is trilinear. Its derivative along one channel is constant in that channel and linear in each
+other. The norm of the Jacobian (N × 3) is then convex along every axis, and largest at a corner of the cell, where the
+derivatives are the differences along three edges.
+
+The box of an entry e is divided into pyramids by its faces. Within a pyramid, the answer is the spectrum of the entry
+plus a homogeneous function of degree one in x − e: the Jacobian is constant along a ray, and on a face linear in each of
+its two coordinates between the nodes of the lattice. The maximum over the cube is thus one of finitely many values.
+(docs/mathematics.md, section 8)
 """
 
 from __future__ import annotations
@@ -22,81 +24,86 @@ from uplift.lattice import CORNERS
 from uplift.lookup.interpolate import lattice_spectra
 from uplift.models import reflectance
 
-THIN = 1e-9
-"""Linear RGB below which a face does not stand apart from its entry: the entry lies on the cube's edge."""
+MIN_SIDE = 1e-9
+"""Distance in linear RGB below which a face coincides with its entry, which then lies on the boundary of the cube."""
 
 
 @dataclass(frozen=True, eq=False)
 class LipschitzConstants:
-    """The largest rms over wavelength of the change of the answer, per unit of change of the colour.
+    """Largest rms change of the reflectance over wavelength per unit of change of the colour.
 
     Parameters
     ----------
-    cells : (dim − 1, dim − 1, dim − 1) within each cell, per unit of linear RGB (Euclidean), entries aside.
-    codes : the same, per 8-bit code of the space (Euclidean), its curve taken where it is steepest in the cell.
-    waves : (N,) the largest change at each wavelength, per unit of linear RGB, over all cells.
-    boxes : (E,) within the box of each entry, per unit of linear RGB; 0 for one without a box.
+    cells : ndarray, shape (dim − 1, dim − 1, dim − 1)
+        Maximum in each cell per unit of linear RGB (Euclidean), without entries.
+    codes : ndarray, shape (dim − 1, dim − 1, dim − 1)
+        The same per 8-bit code of the RGB space, at the steepest part of its transfer curve in the cell.
+    wavelengths : ndarray, shape (N,)
+        Largest change at each wavelength per unit of linear RGB, over all cells.
+    boxes : ndarray, shape (E,)
+        Maximum in the box of each entry per unit of linear RGB; 0 for an entry without a box.
     """
 
     cells: Array
     codes: Array
-    waves: Array
+    wavelengths: Array
     boxes: Array
 
     @property
     def largest(self) -> float:
-        """The Lipschitz constant of the whole cube, per unit of linear RGB."""
+        """Lipschitz constant of the cube per unit of linear RGB."""
         return max(float(self.cells.max()), float(self.boxes.max(initial=0)))
 
 
 def lipschitz_constants(data: CubeData) -> LipschitzConstants:
-    """Of every cell and box. Two planes of spectra are in memory at a time."""
+    """Compute the constants of every cell and box, with two planes of spectra in memory at a time."""
     dim, nodes = data.lattice.dim, data.lattice.nodes
-    sides, slope = np.diff(nodes), _steepest_curve(data)
+    sides, slope = np.diff(nodes), _largest_slopes(data)
     cells, codes = np.empty((dim - 1,) * 3), np.empty((dim - 1,) * 3)
-    waves = np.zeros(len(data.sensor.wavelengths))
+    wavelengths = np.zeros(len(data.sensor.wavelengths))
     before = _plane(data, 0)
     for red in range(dim - 1):
         after = _plane(data, red + 1)
-        both = np.stack([before, after])
-        corners = [_columns(both, corner, red, sides) for corner in CORNERS]
+        planes = np.stack([before, after])
+        jacobians = [_corner_jacobian(planes, corner, red, sides) for corner in CORNERS]
         scale = np.stack(np.broadcast_arrays(slope[red], slope[:, None], slope[None, :]), axis=-1)
-        cells[red] = np.max([spectral_norms(columns) for columns in corners], axis=0)
-        codes[red] = np.max([spectral_norms(columns * scale[..., None]) for columns in corners], axis=0)
-        for columns in corners:
-            waves = np.maximum(waves, np.linalg.norm(columns, axis=-2).max(axis=(0, 1)))
+        cells[red] = np.max([spectral_norms(columns) for columns in jacobians], axis=0)
+        codes[red] = np.max([spectral_norms(columns * scale[..., None]) for columns in jacobians], axis=0)
+        for columns in jacobians:
+            wavelengths = np.maximum(wavelengths, np.linalg.norm(columns, axis=-2).max(axis=(0, 1)))
         before = after
-    return LipschitzConstants(cells, codes, waves, _boxes(data))
+    boxes = np.array([_box_constant(data, entry) for entry in range(len(data.atlas.names))])
+    return LipschitzConstants(cells, codes, wavelengths, boxes)
 
 
 def spectral_norms(columns: Array) -> Array:
-    """The largest rms (…) that columns (…, 3, N), the derivatives along three axes, give any unit direction."""
+    """Spectral norms (…), divided by √N, of Jacobians whose columns are given as rows (…, 3, N)."""
     gram = columns @ columns.mT / columns.shape[-1]
     return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(gram)[..., -1], 0)))
 
 
 def _plane(data: CubeData, red: int) -> Array:
-    """(dim, dim, N) spectra of the points of one red, green first."""
+    """Spectra (dim, dim, N) of the lattice points of one red node, by green and blue."""
     dim = data.lattice.dim
     rows = data.points.coefficients[red * dim**2 : (red + 1) * dim**2]
     return reflectance(data.model, rows, data.sensor.wavelengths).reshape(dim, dim, -1)
 
 
-def _columns(both: Array, corner: Array, red: int, sides: Array) -> Array:
+def _corner_jacobian(planes: Array, corner: Array, red: int, sides: Array) -> Array:
     """Derivatives (dim − 1, dim − 1, 3, N) at one corner of every cell between two planes (2, dim, dim, N)."""
     r, g, b = corner
     low, high = slice(None, -1), slice(1, None)
     green, blue = (high if step else low for step in (g, b))
-    along = (
-        (both[1] - both[0])[green, blue] / sides[red],
-        (both[r, high] - both[r, low])[:, blue] / sides[:, None, None],
-        (both[r][:, high] - both[r][:, low])[green] / sides[:, None],
+    derivatives = (
+        (planes[1] - planes[0])[green, blue] / sides[red],
+        (planes[r, high] - planes[r, low])[:, blue] / sides[:, None, None],
+        (planes[r][:, high] - planes[r][:, low])[green] / sides[:, None],
     )
-    return np.stack(along, axis=-2)
+    return np.stack(derivatives, axis=-2)
 
 
-def _steepest_curve(data: CubeData) -> Array:
-    """(dim − 1,) linear RGB per 8-bit code, where it is most between one node and the next."""
+def _largest_slopes(data: CubeData) -> Array:
+    """Largest change (dim − 1,) of linear RGB per 8-bit code between consecutive nodes."""
     decoding = data.sensor.decoding
     slopes, nodes = np.diff(decoding), data.lattice.nodes
     first = np.clip(np.searchsorted(decoding, nodes[:-1], side="right") - 1, 0, len(slopes) - 1)
@@ -104,52 +111,48 @@ def _steepest_curve(data: CubeData) -> Array:
     return np.array([slopes[low:high].max() for low, high in zip(first, last, strict=True)])
 
 
-def _boxes(data: CubeData) -> Array:
-    return np.array([_box(data, entry) for entry in range(len(data.atlas.names))])
-
-
-def _box(data: CubeData, entry: int) -> float:
-    """The largest norm within the box of an entry."""
+def _box_constant(data: CubeData, entry: int) -> float:
     if not data.atlas.half_width[entry]:
         return 0.0
     own = reflectance(data.model, data.atlas.coefficients[entry : entry + 1], data.sensor.wavelengths)[0]
-    return max(float(spectral_norms(columns).max()) for columns in _faces(data, entry, own))
+    return max(float(spectral_norms(columns).max()) for columns in _face_jacobians(data, entry, own))
 
 
-def _faces(data: CubeData, entry: int, own: Array) -> Iterator[Array]:
-    """Jacobians (4, 3, N) at the corners of every patch that the lattice cuts the faces of a box into."""
+def _face_jacobians(data: CubeData, entry: int, own: Array) -> Iterator[Array]:
+    """Yield Jacobians (4, 3, N) at the corners of every patch of the faces of a box between lattice nodes."""
     low, high = (face[entry] for face in data.entry_boxes.faces)
-    middle, nodes = data.atlas.rgb[entry], data.lattice.nodes
+    centre, nodes = data.atlas.rgb[entry], data.lattice.nodes
     cuts = [_cuts(nodes, low[axis], high[axis]) for axis in range(3)]
     points = np.stack(np.meshgrid(*cuts, indexing="ij"), axis=-1)
-    apart = (lattice_spectra(data, points.reshape(-1, 3), data.sensor.wavelengths) - own).reshape(
-        *points.shape[:3], -1
-    )
+    spectra = lattice_spectra(data, points.reshape(-1, 3), data.sensor.wavelengths)
+    differences = (spectra - own).reshape(*points.shape[:3], -1)
     for axis, end in product(range(3), (0, -1)):
-        if abs(cuts[axis][end] - middle[axis]) < THIN:
+        if abs(cuts[axis][end] - centre[axis]) < MIN_SIDE:
             continue
-        away, face = (np.take(array, end, axis=axis) for array in (points - middle, apart))
-        for i, j in product(range(len(face) - 1), range(face.shape[1] - 1)):
-            yield _patch(away[i : i + 2, j : j + 2], face[i : i + 2, j : j + 2], axis)
+        offsets, changes = (np.take(array, end, axis=axis) for array in (points - centre, differences))
+        for i, j in product(range(len(changes) - 1), range(changes.shape[1] - 1)):
+            yield _patch_jacobians(offsets[i : i + 2, j : j + 2], changes[i : i + 2, j : j + 2], axis)
 
 
-def _patch(away: Array, apart: Array, axis: int) -> Array:
-    """Jacobians (4, 3, N) at the corners of a patch of a face that ``axis`` stands upright on.
+def _patch_jacobians(offsets: Array, changes: Array, axis: int) -> Array:
+    """Jacobians (4, 3, N) at the corners of a patch of the face normal to ``axis``.
 
-    ``away`` (2, 2, 3) and ``apart`` (2, 2, N) are the corners' colours and spectra, less the entry's.
+    ``offsets`` (2, 2, 3) and ``changes`` (2, 2, N) are colours and spectra of the corners minus those of the entry.
     """
     first, second = (other for other in range(3) if other != axis)
-    along_first = np.broadcast_to((apart[1] - apart[0]) / (away[1, 0] - away[0, 0])[first], apart.shape)
-    steps = (apart[:, 1] - apart[:, 0]) / (away[0, 1] - away[0, 0])[second]
-    along_second = np.broadcast_to(steps[:, None], apart.shape)
-    outward = apart - away[..., [first]] * along_first - away[..., [second]] * along_second
-    found = np.empty((4, 3, apart.shape[-1]))
-    parts = {axis: outward / away[..., [axis]], first: along_first, second: along_second}
-    for column, part in parts.items():
-        found[:, column] = part.reshape(4, -1)
-    return found
+    along_first = np.broadcast_to(
+        (changes[1] - changes[0]) / (offsets[1, 0] - offsets[0, 0])[first], changes.shape
+    )
+    steps = (changes[:, 1] - changes[:, 0]) / (offsets[0, 1] - offsets[0, 0])[second]
+    along_second = np.broadcast_to(steps[:, None], changes.shape)
+    radial = changes - offsets[..., [first]] * along_first - offsets[..., [second]] * along_second
+    jacobians = np.empty((4, 3, changes.shape[-1]))
+    columns = {axis: radial / offsets[..., [axis]], first: along_first, second: along_second}
+    for column, values in columns.items():
+        jacobians[:, column] = values.reshape(4, -1)
+    return jacobians
 
 
 def _cuts(nodes: Array, low: float, high: float) -> Array:
-    """The ends of a side of a face, and the nodes between them."""
-    return np.array([low, *nodes[(nodes > low + THIN) & (nodes < high - THIN)], high])
+    """Both ends of a side of a face, and the nodes in between."""
+    return np.array([low, *nodes[(nodes > low + MIN_SIDE) & (nodes < high - MIN_SIDE)], high])

@@ -1,4 +1,4 @@
-"""An atlas a little different: how much of the cube that changes, and how far from the entry."""
+"""Sensitivity of a cube to changes of its atlas: how much of the lattice changes, and how far from the entry."""
 
 from __future__ import annotations
 
@@ -20,42 +20,63 @@ from uplift.models import reflectance
 from uplift.pipeline import build
 
 NOISE = 0.002
-"""Repeatability of a spectrophotometer, standard deviation at every wavelength."""
+"""Repeatability of a spectrophotometer: standard deviation of a reflectance."""
 MOVED_DELTA_E = 0.5
-"""ΔE00 by which a lattice point has moved enough to count: half of what an eye can just tell."""
+"""ΔE00 above which a lattice point counts as moved: half of a just noticeable difference."""
 
 
 @dataclass(frozen=True, eq=False)
 class Change:
-    """What a change of the atlas does to all lattice points.
+    """Effect of a change of the atlas on the n lattice points.
 
     Parameters
     ----------
-    what : the change, in words.
-    rms, delta_e : (n,) of the spectra before and after: rms over wavelength, ΔE00 under a light.
-    rgb_apart, lab_apart : (n,) distance from the entry that changed, from where it was or is, in linear RGB and ΔE*ab;
-        empty where all entries changed.
+    description : str
+        The change.
+    rms : ndarray, shape (n,)
+        Change of the spectra, rms over wavelength.
+    delta_e : ndarray, shape (n,)
+        Change of the spectra, ΔE00 under a light.
+    rgb_distance, lab_distance : ndarray, shape (n,)
+        Distance in linear RGB and ΔE*ab from the nearer of the old and the new colour of the changed entry. Empty if
+        all entries changed.
     """
 
-    what: str
+    description: str
     rms: Array
     delta_e: Array
-    rgb_apart: Array
-    lab_apart: Array
+    rgb_distance: Array
+    lab_distance: Array
 
     @property
     def moved(self) -> float:
-        """Share of the lattice points that have `MOVED_DELTA_E`."""
+        """Share of the lattice points that change by more than `MOVED_DELTA_E`."""
         return float((self.delta_e > MOVED_DELTA_E).mean())
 
-    def radius(self, apart: Array) -> float:
-        """Largest distance (n,) of a point that moved; 0 where none has, NaN where all entries changed."""
-        return float(np.max(apart[self.delta_e > MOVED_DELTA_E], initial=0)) if apart.size else float("nan")
+    def radius(self, distance: Array) -> float:
+        """Largest distance (n,) of a moved point; 0 if no point moved, NaN if all entries changed."""
+        if not distance.size:
+            return float("nan")
+        return float(np.max(distance[self.delta_e > MOVED_DELTA_E], initial=0))
 
 
 @dataclass(frozen=True, eq=False)
 class Baseline:
-    """A cube before its atlas changes: its entries, what it holds, the spectra (n, N) of its lattice points."""
+    """A cube before its atlas changes.
+
+    Parameters
+    ----------
+    entries : tuple of Entry
+        Entries of the atlas that constrain the cube.
+    data : CubeData
+        The cube.
+    spectra : ndarray, shape (n, N)
+        Reflectances of the lattice points.
+    light : Light
+        Light of all ΔE00.
+    options : mapping
+        Build options.
+    """
 
     entries: tuple[Entry, ...]
     data: CubeData
@@ -64,20 +85,21 @@ class Baseline:
     options: Mapping[str, Any]
 
 
-def build_baseline(spectra: Atlas, light: Light, **options: Any) -> Baseline:
-    """Build the cube that changes are compared with; changes are ΔE00 under ``light``. Raises `UpliftError`."""
-    data = _build(spectra.entries, options)
-    entries = tuple(entry for entry in spectra.entries if entry.name in data.atlas.names)
-    return Baseline(entries, data, _lattice(data), light, options)
+def build_baseline(atlas: Atlas, light: Light, **options: Any) -> Baseline:
+    """Build the cube that changes are compared with. Raises `UpliftError`."""
+    data = _build(atlas.entries, options)
+    entries = tuple(entry for entry in atlas.entries if entry.name in data.atlas.names)
+    return Baseline(entries, data, _lattice_spectra(data), light, options)
 
 
 def remove_entry(base: Baseline, name: str) -> Change:
-    """Without an entry."""
-    return _compare(base, f"{name} left out", [entry for entry in base.entries if entry.name != name], name)
+    """Rebuild without an entry."""
+    kept = [entry for entry in base.entries if entry.name != name]
+    return _compare(base, f"{name} left out", kept, name)
 
 
 def reverse_entry(base: Baseline, name: str) -> Change:
-    """With an entry whose wavelengths were read from the wrong end."""
+    """Rebuild with the wavelengths of an entry in reverse order, as an example of a wrong measurement."""
     entries = [
         replace(entry, values=entry.values[::-1]) if entry.name == name else entry for entry in base.entries
     ]
@@ -85,37 +107,38 @@ def reverse_entry(base: Baseline, name: str) -> Change:
 
 
 def add_noise(base: Baseline, seed: int) -> Change:
-    """With `NOISE` on every entry."""
+    """Rebuild with `NOISE` added to every entry."""
     rng = np.random.default_rng(seed)
 
-    def again(entry: Entry) -> Entry:
-        return replace(
-            entry, values=np.clip(entry.values + rng.normal(0, NOISE, len(entry.values)), LOWEST, HIGHEST)
-        )
+    def noisy(entry: Entry) -> Entry:
+        values = entry.values + rng.normal(0, NOISE, len(entry.values))
+        return replace(entry, values=np.clip(values, LOWEST, HIGHEST))
 
-    return _compare(base, f"noise, draw {seed}", [again(entry) for entry in base.entries])
+    return _compare(base, f"noise, draw {seed}", [noisy(entry) for entry in base.entries])
 
 
-def _compare(base: Baseline, what: str, entries: Sequence[Entry], name: str | None = None) -> Change:
+def _compare(base: Baseline, description: str, entries: Sequence[Entry], name: str | None = None) -> Change:
     data = _build(entries, base.options)
-    after = _lattice(data)
+    after = _lattice_spectra(data)
     rms = np.sqrt(((after - base.spectra) ** 2).mean(axis=1))
-    places = [
-        one.atlas.rgb[one.atlas.names.index(name)] for one in (base.data, data) if name in one.atlas.names
+    colours = [
+        each.atlas.rgb[each.atlas.names.index(name)] for each in (base.data, data) if name in each.atlas.names
     ]
     points, sensor = base.data.lattice.points, base.data.sensor
-    rgb_apart, lab_apart = (
-        _nearest(points, places),
-        _nearest(rgb_to_lab(sensor, points), [rgb_to_lab(sensor, place) for place in places]),
+    return Change(
+        description,
+        rms,
+        delta_e_spectra(base.light, base.spectra, after),
+        _distance(points, colours),
+        _distance(rgb_to_lab(sensor, points), [rgb_to_lab(sensor, colour) for colour in colours]),
     )
-    return Change(what, rms, delta_e_spectra(base.light, base.spectra, after), rgb_apart, lab_apart)
 
 
-def _nearest(points: Array, places: Sequence[Array]) -> Array:
-    """Distance (n,) of points (n, 3) to the nearest place; nothing where there is none."""
-    if not places:
+def _distance(points: Array, centres: Sequence[Array]) -> Array:
+    """Distance (n,) of points (n, 3) to the nearest centre; empty without centres."""
+    if not centres:
         return np.zeros(0)
-    return np.asarray(np.min([np.linalg.norm(points - place, axis=1) for place in places], axis=0))
+    return np.asarray(np.min([np.linalg.norm(points - centre, axis=1) for centre in centres], axis=0))
 
 
 def _build(entries: Sequence[Entry], options: Mapping[str, Any]) -> CubeData:
@@ -124,5 +147,5 @@ def _build(entries: Sequence[Entry], options: Mapping[str, Any]) -> CubeData:
         return build(Atlas(tuple(entries)), **options).data
 
 
-def _lattice(data: CubeData) -> Array:
+def _lattice_spectra(data: CubeData) -> Array:
     return reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)

@@ -1,7 +1,7 @@
-"""What the moments of a spectrum keep of it: four techniques, several counts, measured on atlases.
+"""Loss of trigonometric moments: four techniques and several counts, measured on atlases.
 
-Tódová 2020, table 4.1 and appendix B.1: every measured spectrum is reduced to its plain trigonometric moments,
-reconstructed from them, and the two are compared.
+Every measured spectrum is reduced to its moments, reconstructed, and compared with the measurement, as in Tódová 2020,
+*Constrained Spectral Uplifting*, table 4.1 and appendix B.1.
 """
 
 from __future__ import annotations
@@ -23,25 +23,29 @@ from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.study.technique import TECHNIQUES, Technique
 
 DEFAULT_MAX_MOMENTS, MAX_MOMENTS = 15, 32
-"""Moments beside the zeroth: as many as the thesis has; more waves than that the 5 nm grid hardly shows."""
+"""Largest number of moments above the zeroth: in the thesis, and of cosines that a 5 nm grid still resolves."""
 MEASURES = ("delta_e_76_D65", *(f"delta_e_00_{name}" for name in REPORT_LIGHTS), "rms")
-"""ΔE76 under D65 (the thesis's measure), ΔE00 under every light, rms difference of the spectra."""
+"""Error measures: ΔE76 under D65 as in the thesis, ΔE00 under every light, rms difference of the spectra."""
 ALL_ATLASES = "all"
-"""The name of all atlases together."""
+"""Name of the group of all entries."""
 STEP = 1.0
-"""nm between the samples that moments are taken from."""
+"""Distance in nm of the samples that moments are computed from."""
 
 
 @dataclass(frozen=True, eq=False)
 class MomentsStudy:
-    """Errors of every entry, by every technique, with every count of moments.
+    """Errors of every entry for every technique and number of moments.
 
     Parameters
     ----------
-    names : (E,) of the entries.
-    atlases : (E,) the atlas that each comes from.
-    measured : (E, N) reflectance on the wavelengths of `fine_grid`.
-    errors : (4, most + 1, E, len(MEASURES)); techniques as in `TECHNIQUES`, moments from 0.
+    names : tuple of str
+        Names of the E entries.
+    atlases : tuple of str
+        Atlas of each entry.
+    measured : ndarray, shape (E, N)
+        Reflectances at the wavelengths of `fine_grid`.
+    errors : ndarray, shape (4, max_moments + 1, E, len(MEASURES))
+        Errors, by the order of `TECHNIQUES` and by moments from 0.
     """
 
     names: tuple[str, ...]
@@ -50,100 +54,141 @@ class MomentsStudy:
     errors: Array
 
     @property
-    def most(self) -> int:
+    def max_moments(self) -> int:
+        """Largest number of moments."""
         return self.errors.shape[1] - 1
 
     @property
     def groups(self) -> tuple[str, ...]:
-        """All entries together, and every atlas."""
+        """Names of the groups: all entries, and every atlas."""
         return (ALL_ATLASES, *dict.fromkeys(self.atlases))
 
     def rows(self, group: str = ALL_ATLASES) -> NDArray[np.intp]:
-        """Which entries are of a group."""
+        """Indices of the entries of a group."""
         return np.array([row for row, atlas in enumerate(self.atlases) if group in (ALL_ATLASES, atlas)])
 
-    def of(self, technique: Technique, moments: int, group: str = ALL_ATLASES) -> MomentsResult:
-        """What a technique did to a group with so many moments."""
+    def result(self, technique: Technique, moments: int, group: str = ALL_ATLASES) -> MomentsResult:
+        """Summarise the errors of a group for one technique and number of moments."""
         rows = self.rows(group)
         errors = self.errors[TECHNIQUES.index(technique), moments, rows]
         worst = int(rows[errors[:, 0].argmax()])
         return MomentsResult(group, technique, moments, errors.mean(axis=0), errors.max(axis=0), worst)
 
     def results(self) -> Iterator[MomentsResult]:
-        """Every group, technique and count."""
+        """Yield the result of every group, technique and number of moments."""
         for group in self.groups:
             for technique in TECHNIQUES:
-                for moments in range(self.most + 1):
-                    yield self.of(technique, moments, group)
+                for moments in range(self.max_moments + 1):
+                    yield self.result(technique, moments, group)
 
 
 @dataclass(frozen=True, eq=False)
 class MomentsResult:
-    """Mean and largest error over a group, in the order of `MEASURES`; ``worst`` is the entry of the largest ΔE76."""
+    """Errors of a group for one technique and number of moments.
+
+    Parameters
+    ----------
+    group : str
+        Name of the group.
+    technique : Technique
+        The technique.
+    moments : int
+        Number of moments above the zeroth.
+    mean, max : ndarray, shape (len(MEASURES),)
+        Mean and largest error.
+    worst : int
+        Index of the entry with the largest ΔE76.
+    """
 
     group: str
     technique: Technique
     moments: int
     mean: Array
-    most: Array
+    max: Array
     worst: int
 
     @property
     def floats(self) -> int:
+        """Numbers stored per spectrum."""
         return self.technique.floats(self.moments)
 
 
 def fine_grid() -> Array:
-    """(401,) wavelengths that moments are taken from: 380–780 nm at 1 nm."""
+    """Wavelengths (401,) that moments are computed from: 380–780 nm at 1 nm."""
     return np.arange(observer.START, observer.END + STEP / 2, STEP)
 
 
 def study_moments(
     atlases: Mapping[str, Atlas],
-    most: int = DEFAULT_MAX_MOMENTS,
+    max_moments: int = DEFAULT_MAX_MOMENTS,
     progress: ProgressCallback = ignore_progress,
 ) -> MomentsStudy:
-    """Reduce every entry of the atlases to 0 … ``most`` moments and back, by all four techniques.
+    """Reduce every entry to 0 … ``max_moments`` moments, and reconstruct it, by all four techniques.
 
-    ``progress`` hears how many of how many reconstructions are done. An `UpliftWarning` names every entry that
-    had to be clipped to [0, 1].
+    Parameters
+    ----------
+    atlases : mapping of str to Atlas
+        Measurements by name.
+    max_moments : int, optional
+        Largest number of moments above the zeroth, 0 to `MAX_MOMENTS`.
+    progress : callable, optional
+        Called with the stage ``"reconstructions"``.
+
+    Returns
+    -------
+    MomentsStudy
+        The errors.
 
     Raises
     ------
-    OptionError : ``most`` outside 0 to 32.
-    AtlasError : no entries, or two of one name.
+    OptionError
+        ``max_moments`` is out of range.
+    AtlasError
+        No entries, or two entries with one name.
+
+    Warns
+    -----
+    UpliftWarning
+        An entry was clipped to [0, 1].
     """
-    if not 0 <= most <= MAX_MOMENTS:
-        raise OptionError(f"{most} moments are out of range", hint=f"take 0 to {MAX_MOMENTS}")
-    spectra = merge(atlases.values())
-    if not spectra.entries:
-        raise AtlasError("no entries to study", hint="name an atlas that holds reflectances")
-    measured = on_grid(spectra, fine_grid())
-    compare = _comparer(measured)
-    errors = np.empty((len(TECHNIQUES), most + 1, len(measured), len(MEASURES)))
+    if not 0 <= max_moments <= MAX_MOMENTS:
+        raise OptionError(
+            f"max_moments must be in [0, {MAX_MOMENTS}], got {max_moments}",
+            code="moments-out-of-range",
+            hint=f"the thesis has {DEFAULT_MAX_MOMENTS}",
+        )
+    atlas = merge(atlases.values())
+    if not atlas.entries:
+        raise AtlasError(
+            "the atlases have no entries", code="empty-atlas", hint="name an atlas with reflectances"
+        )
+    measured = on_grid(atlas, fine_grid())
+    errors_of = _error_function(measured)
+    counts = max_moments + 1
+    errors = np.empty((len(TECHNIQUES), counts, len(measured), len(MEASURES)))
     for row, technique in enumerate(TECHNIQUES):
-        moments = technique.moments(measured, fine_grid(), most)
-        for count in range(most + 1):
-            found = technique.reconstruct(moments[:, : count + 1], observer.grid())
-            errors[row, count] = compare(found)
-            progress(Progress("reconstructions", row * (most + 1) + count + 1, len(TECHNIQUES) * (most + 1)))
-    homes = [name for name, atlas in atlases.items() for _ in atlas.entries]
-    return MomentsStudy(spectra.names, tuple(homes), measured, errors)
+        moments = technique.moments(measured, fine_grid(), max_moments)
+        for count in range(counts):
+            reconstructed = technique.reconstruct(moments[:, : count + 1], observer.grid())
+            errors[row, count] = errors_of(reconstructed)
+            progress(Progress("reconstructions", row * counts + count + 1, len(TECHNIQUES) * counts))
+    origins = tuple(name for name, each in atlases.items() for _ in each.entries)
+    return MomentsStudy(atlas.names, origins, measured, errors)
 
 
-def _comparer(measured: Array) -> Callable[[Array], Array]:
-    """The function that takes reconstructions (E, 81) on the observer's grid to errors (E, len(MEASURES))."""
+def _error_function(measured: Array) -> Callable[[Array], Array]:
+    """Make the function from reconstructions (E, 81) on the grid of the observer to errors (E, len(MEASURES))."""
     original = measured[:, :: round(observer.STEP / STEP)]
     lights = [observer.light(name) for name in REPORT_LIGHTS]
-    labs = [_lab(light, original) for light in lights]
+    expected = [_lab(light, original) for light in lights]
 
-    def compare(found: Array) -> Array:
-        seen = [_lab(light, found) for light in lights]
-        apart = [delta_e_2000(one, other) for one, other in zip(seen, labs, strict=True)]
-        rms = np.sqrt(((found - original) ** 2).mean(axis=1))
-        return np.stack([delta_e_1976(seen[0], labs[0]), *apart, rms], axis=1)
+    def errors(reconstructed: Array) -> Array:
+        actual = [_lab(light, reconstructed) for light in lights]
+        delta_e = [delta_e_2000(one, other) for one, other in zip(actual, expected, strict=True)]
+        rms = np.sqrt(((reconstructed - original) ** 2).mean(axis=1))
+        return np.stack([delta_e_1976(actual[0], expected[0]), *delta_e, rms], axis=1)
 
-    return compare
+    return errors
 
 
 def _lab(light: Light, reflectance: Array) -> Array:

@@ -1,4 +1,4 @@
-"""The results of the moments study as plain values: records for JSON and CSV."""
+"""Results of the moments study as records for JSON and CSV."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from uplift.lab.study.moments import MEASURES, MomentsResult, MomentsStudy
 
 
 def records(study: MomentsStudy) -> list[dict[str, Any]]:
-    """A flat record for every group, technique and count; ``<measure>_mean`` and ``_max`` for every measure."""
+    """Make a flat record for every group, technique and count, with the mean and maximum of every measure."""
     return [_record(study, result) for result in study.results()]
 
 
 def _record(study: MomentsStudy, result: MomentsResult) -> dict[str, Any]:
     errors: dict[str, float] = {}
-    for name, mean, most in zip(MEASURES, result.mean, result.most, strict=True):
-        errors |= {f"{name}_mean": float(mean), f"{name}_max": float(most)}
+    for name, mean, largest in zip(MEASURES, result.mean, result.max, strict=True):
+        errors |= {f"{name}_mean": float(mean), f"{name}_max": float(largest)}
     return {
         "atlas": result.group,
         "entries": len(study.rows(result.group)),

@@ -1,4 +1,4 @@
-"""How answers move with what they rest on: the colour asked, and the measurements behind the cube."""
+"""Sensitivity of a cube to the query and to the measurements behind it."""
 
 from __future__ import annotations
 
@@ -17,13 +17,26 @@ from uplift.lab.study.input_noise import Perturbation, perturb
 from uplift.lab.study.lipschitz import LipschitzConstants, lipschitz_constants
 from uplift.lab.study.locality import Change, add_noise, build_baseline, remove_entry, reverse_entry
 from uplift.lookup import Cube
+from uplift.pipeline.options import recorded_options
 
-DRAWS = 3
+NOISE_DRAWS = 3
 
 
 @dataclass(frozen=True, eq=False)
 class Sensitivity:
-    """Of a cube; the changes of its atlas are none for a cube without."""
+    """Results of `study_sensitivity`.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    perturbations : list of Perturbation
+        Changes of the query.
+    lipschitz : LipschitzConstants
+        Lipschitz constants of the cube.
+    noise, reversed, removed : list of Change
+        Changes of the atlas: noise on all entries, one entry reversed, one entry removed. Empty without an atlas.
+    """
 
     cube: Cube
     perturbations: list[Perturbation]
@@ -34,40 +47,40 @@ class Sensitivity:
 
     @property
     def steepest(self) -> tuple[float, float, float]:
-        """Linear RGB of the lowest corner of the steepest cell."""
-        cells = self.lipschitz.cells
+        """Linear RGB of the lowest corner of the cell with the largest Lipschitz constant."""
+        cells, nodes = self.lipschitz.cells, self.cube.data.lattice.nodes
         red, green, blue = (
-            float(self.cube.data.lattice.nodes[place])
-            for place in np.unravel_index(int(cells.argmax()), cells.shape)
+            float(nodes[index]) for index in np.unravel_index(int(cells.argmax()), cells.shape)
         )
         return red, green, blue
 
     def record(self) -> dict[str, Any]:
-        """For JSON."""
-        steep, boxes = self.lipschitz, self.lipschitz.boxes
+        """Convert to JSON values."""
+        constants, boxes = self.lipschitz, self.lipschitz.boxes
+        steepest_wavelength = self.cube.data.sensor.wavelengths[constants.wavelengths.argmax()]
         return {
-            "moves": [asdict(move) for move in self.perturbations],
+            "moves": [asdict(each) for each in self.perturbations],
             "lipschitz": {
-                "largest": steep.largest,
-                "median_cell": float(np.median(steep.cells)),
-                "largest_per_code": float(steep.codes.max()),
-                "median_per_code": float(np.median(steep.codes)),
+                "largest": constants.largest,
+                "median_cell": float(np.median(constants.cells)),
+                "largest_per_code": float(constants.codes.max()),
+                "median_per_code": float(np.median(constants.codes)),
                 "steepest_cell": self.steepest,
-                "steepest_wavelength": float(self.cube.data.sensor.wavelengths[steep.waves.argmax()]),
+                "steepest_wavelength": float(steepest_wavelength),
                 "largest_box": float(boxes.max()) if boxes.size else None,
             },
-            "changes": [changed(change) for change in (*self.noise, *self.reversed, *self.removed)],
+            "changes": [change_record(each) for each in (*self.noise, *self.reversed, *self.removed)],
         }
 
 
-def changed(change: Change) -> dict[str, Any]:
-    """A change in figures; the radii are those of points that moved by half a ΔE00."""
-    known = bool(change.rgb_apart.size)
+def change_record(change: Change) -> dict[str, Any]:
+    """Convert a change to JSON values; radii are those of points that moved by more than half a ΔE00."""
+    one_entry = bool(change.rgb_distance.size)
     return {
-        "change": change.what,
+        "change": change.description,
         "moved": change.moved,
-        "rgb_radius": change.radius(change.rgb_apart) if known else None,
-        "lab_radius": change.radius(change.lab_apart) if known else None,
+        "rgb_radius": change.radius(change.rgb_distance) if one_entry else None,
+        "lab_radius": change.radius(change.lab_distance) if one_entry else None,
         "delta_e_mean": float(change.delta_e.mean()),
         "delta_e_most": float(change.delta_e.max()),
         "rms_mean": float(change.rms.mean()),
@@ -78,39 +91,63 @@ def changed(change: Change) -> dict[str, Any]:
 def study_sensitivity(
     cube: Cube,
     atlas: Atlas | None,
-    most: int,
+    entries: int,
     progress: ProgressCallback = ignore_progress,
 ) -> Sensitivity:
-    """Move queries, bound how steep the cube is, and change its ``atlas``: up to ``most`` entries, one at a time.
+    """Perturb queries, compute Lipschitz constants, and rebuild the cube with changes of its atlas.
 
-    ``progress`` hears how many of how many builds are done.
+    Parameters
+    ----------
+    cube : Cube
+        A cube with a complete lattice.
+    atlas : Atlas or None
+        The atlas that the cube was built from, if any.
+    entries : int
+        Largest number of entries that are changed, one at a time, at least 0.
+    progress : callable, optional
+        Called with the stage ``"builds"``.
+
+    Returns
+    -------
+    Sensitivity
+        The results.
 
     Raises
     ------
-    OptionError : a negative number of entries.
+    OptionError
+        ``entries`` is negative, or the cube is sparse.
     """
-    if most < 0:
-        raise OptionError(f"{most} entries cannot be left out", hint="use 0 or more")
-    light = observer.light(NARROW_BAND_LIGHT, cube.data.sensor.observer)
-    if cube.data.complete_cells is not None:
-        problem = (
-            "the cube was built for the colours of a scene, and between its cells there is nothing to measure"
+    if entries < 0:
+        raise OptionError(
+            f"entries must be at least 0, got {entries}",
+            code="entries-out-of-range",
+            hint="give 0 to change no entry",
         )
-        raise OptionError(problem, hint="build it without --scene")
-    asked, steep = perturb(cube, light), lipschitz_constants(cube.data)
-    if atlas is None or not most:
-        return Sensitivity(cube, asked, steep, [], [], [])
-    options = dict(cube.data.provenance["options"])
-    base = build_baseline(atlas, light, **options | {"lights": tuple(options["lights"])})
-    names = base.data.atlas.names[:most]
+    if cube.data.complete_cells is not None:
+        raise OptionError(
+            "a sparse cube has no answers between the cells of its scene",
+            code="sparse-cube",
+            hint="build it without a scene",
+        )
+    light = observer.light(NARROW_BAND_LIGHT, cube.data.sensor.observer)
+    perturbations, lipschitz = perturb(cube, light), lipschitz_constants(cube.data)
+    if atlas is None or not entries:
+        return Sensitivity(cube, perturbations, lipschitz, [], [], [])
+    base = build_baseline(atlas, light, **recorded_options(cube.data.provenance["options"]))
+    names = base.data.atlas.names[:entries]
     jobs = [
-        *(partial(add_noise, base, seed) for seed in range(DRAWS)),
+        *(partial(add_noise, base, seed) for seed in range(NOISE_DRAWS)),
         *(partial(reverse_entry, base, name) for name in names),
         *(partial(remove_entry, base, name) for name in names),
     ]
-    done = []
+    changes = []
     for number, job in enumerate(jobs, 1):
-        done.append(job())
+        changes.append(job())
         progress(Progress("builds", number, len(jobs)))
-    wrong = DRAWS + len(names)
-    return Sensitivity(cube, asked, steep, done[:DRAWS], done[DRAWS:wrong], done[wrong:])
+    first_removed = NOISE_DRAWS + len(names)
+    noise, reverse, removed = (
+        changes[:NOISE_DRAWS],
+        changes[NOISE_DRAWS:first_removed],
+        changes[first_removed:],
+    )
+    return Sensitivity(cube, perturbations, lipschitz, noise, reverse, removed)

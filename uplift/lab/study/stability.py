@@ -1,4 +1,4 @@
-"""Where the fit fails: one build after another over dims, models, spaces, thresholds and atlases, each judged."""
+"""Failures of the fit: builds over lattice sizes, models, RGB spaces, thresholds and atlases."""
 
 from __future__ import annotations
 
@@ -13,23 +13,41 @@ import numpy as np
 from uplift.atlas import Atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import UpliftWarning, unknown_name
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS, PointwiseProblem, fit_pointwise
+from uplift.lab.study.pointwise import PointwiseProblem, fit_pointwise
 from uplift.lattice import Lattice, Status
 from uplift.models import Moments, Sigmoid
 from uplift.pipeline import build
 from uplift.pipeline.options import ModelName
 
 UPLIFT = "uplift"
-SOLVERS = (UPLIFT, IN_MOMENTS, IN_MULTIPLIERS)
+"""Solver of this package; the others are the unknowns of a `PointwiseProblem`."""
 NO_ATLAS = "none"
 
 
 @dataclass(frozen=True, order=True)
 class RunConfig:
-    """One build. ``solver`` is `UPLIFT`, or what the thesis's least squares solve in."""
+    """Options of one build.
+
+    Parameters
+    ----------
+    model : str
+        Name of the spectrum model.
+    coefficients : int
+        Coefficients per spectrum.
+    dim : int
+        Lattice points along each axis.
+    space : str
+        RGB space.
+    threshold : float
+        Largest distance of a fitted point.
+    atlas : str
+        Name of an atlas, or `NO_ATLAS`.
+    solver : str
+        `UPLIFT`, `IN_MOMENTS` or `IN_MULTIPLIERS`.
+    """
 
     model: ModelName = "moments"
     coefficients: int = 9
@@ -40,27 +58,38 @@ class RunConfig:
     solver: str = UPLIFT
 
     @property
-    def technique(self) -> str:
-        """'sigmoid', or 'moments 9' by its coefficients."""
+    def model_label(self) -> str:
+        """Model with its number of coefficients, such as ``moments 9``."""
         return self.model if self.model == Sigmoid.name else f"{self.model} {self.coefficients}"
 
 
 @dataclass(frozen=True)
 class RunResult:
-    """What became of a build.
+    """Result of one build.
 
     Parameters
     ----------
-    points, realisable : lattice points, and those of a colour that some reflectance has.
-    unfitted : realisable points further from their colour than the threshold.
-    stand_ins : unrealisable points whose nearest realisable colour was missed by more than the threshold.
-    rounds : of growth, after the first.
-    calls : points that improvement steps were tried on, step by step; of scipy, starts beyond the first of a point.
-    worst : the largest distance of a realisable point, max |linear RGB|; ``r``, ``g``, ``b`` its colour.
-    seconds : wall time; with what is compiled for the first time.
+    config : RunConfig
+        Options of the build.
+    points, realisable : int
+        Lattice points, and those whose colour some reflectance has.
+    unfitted : int
+        Realisable points farther from their colour than the threshold.
+    stand_ins : int
+        Unrealisable points farther from their nearest realisable colour than the threshold.
+    rounds : int
+        Rounds of growth after the first.
+    calls : int
+        Points that improvement was tried on, summed over its steps. For scipy, solves beyond the first of each point.
+    worst : float
+        Largest distance of a realisable point, max |linear RGB|.
+    r, g, b : float
+        Colour of that point.
+    seconds : float
+        Wall time, including compilation.
     """
 
-    setting: RunConfig
+    config: RunConfig
     points: int
     realisable: int
     unfitted: int
@@ -79,102 +108,131 @@ class RunResult:
         return 1 - self.unfitted / self.realisable
 
     def record(self) -> dict[str, Any]:
-        """Flat, for JSON and CSV."""
+        """Convert to a flat record for JSON and CSV."""
         rest = asdict(self)
-        return rest.pop("setting") | {"success": self.success} | rest
+        return rest.pop("config") | {"success": self.success} | rest
 
 
 def study_stability(
-    settings: Iterable[RunConfig],
+    configs: Iterable[RunConfig],
     atlases: Mapping[str, Atlas],
     progress: ProgressCallback = ignore_progress,
 ) -> list[RunResult]:
-    """Run every setting; ``progress`` hears how many of how many are done.
+    """Run every configuration once, ordered by model so that compiled functions are reused.
 
-    In the order of models, so that what JAX compiles for one is all used before the next.
+    Parameters
+    ----------
+    configs : iterable of RunConfig
+        The builds.
+    atlases : mapping of str to Atlas
+        Atlases by the names in ``configs``.
+    progress : callable, optional
+        Called with the stage ``"builds"``.
+
+    Returns
+    -------
+    list of RunResult
+        Results in the order of the runs.
 
     Raises
     ------
-    UpliftError : an atlas that is not there, before any work; a setting that cannot be built.
+    UnknownNameError
+        An atlas is missing. Raised before any build.
+    UpliftError
+        A configuration cannot be built.
     """
-    ordered = sorted(set(settings))
-    for setting in ordered:
-        if setting.atlas not in (NO_ATLAS, *atlases):
-            raise unknown_name(setting.atlas, (NO_ATLAS, *atlases), "atlas")
-    outcomes = []
-    for number, setting in enumerate(ordered, 1):
-        outcomes.append(run(setting, atlases))
+    ordered = sorted(set(configs))
+    for config in ordered:
+        if config.atlas not in (NO_ATLAS, *atlases):
+            raise unknown_name(config.atlas, (NO_ATLAS, *atlases), "atlas")
+    results = []
+    for number, config in enumerate(ordered, 1):
+        results.append(run(config, atlases))
         progress(Progress("builds", number, len(ordered)))
-    return outcomes
+    return results
 
 
-def run(setting: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
-    """Build, and judge by what is stored. Raises `UpliftError` for what cannot be built."""
-    return _ours(setting, atlases) if setting.solver == UPLIFT else _pointwise(setting)
+def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
+    """Build one configuration and evaluate what is stored. Raises `UpliftError`."""
+    return _run_uplift(config, atlases) if config.solver == UPLIFT else _run_pointwise(config)
 
 
-def _ours(setting: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
+def _run_uplift(config: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
     rounds = 0
 
-    def progress(done: Progress) -> None:
+    def count_rounds(progress: Progress) -> None:
         nonlocal rounds
-        rounds = max(rounds, done.step)
+        rounds = max(rounds, progress.step)
 
-    begin = time.perf_counter()
+    start = time.perf_counter()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         data = build(
-            atlases[setting.atlas] if setting.atlas != NO_ATLAS else None,
-            progress=progress,
-            dim=setting.dim,
-            model=setting.model,
-            coefficients=setting.coefficients,
-            space=setting.space,
-            threshold=setting.threshold,
+            atlases[config.atlas] if config.atlas != NO_ATLAS else None,
+            progress=count_rounds,
+            dim=config.dim,
+            model=config.model,
+            coefficients=config.coefficients,
+            space=config.space,
+            threshold=config.threshold,
         ).data
-    seconds = time.perf_counter() - begin
-    unrealisable = ~solid(data.sensor.matrix).contains(data.lattice.points)
-    calls = sum(step["tried"] for step in data.provenance["improvements"])
-    missed = int((unrealisable & (data.points.status == Status.UNFITTED)).sum())
-    return _judge(
-        setting, data.lattice.points, ~unrealisable, data.points.distance, missed, rounds, calls, seconds
+    seconds = time.perf_counter() - start
+    realisable = solid(data.sensor.matrix).contains(data.lattice.points)
+    return _evaluate(
+        config,
+        data.lattice.points,
+        realisable,
+        data.points.distance,
+        stand_ins=int((~realisable & (data.points.status == Status.UNFITTED)).sum()),
+        rounds=rounds,
+        calls=sum(step["tried"] for step in data.provenance["improvements"]),
+        seconds=seconds,
     )
 
 
-def _pointwise(setting: RunConfig) -> RunResult:
-    sensor = observer.sensor(setting.space)
-    lattice = Lattice(observer.axis_nodes("srgb", setting.dim))
-    begin = time.perf_counter()
-    task = PointwiseProblem(Moments(setting.coefficients), sensor, setting.solver)
-    grown = fit_pointwise(task, lattice, setting.threshold)
-    seconds = time.perf_counter() - begin
-    realisable = solid(sensor.matrix).contains(lattice.points)
-    calls = grown.starts - lattice.size
-    return _judge(setting, lattice.points, realisable, grown.distance, 0, grown.rounds, calls, seconds)
+def _run_pointwise(config: RunConfig) -> RunResult:
+    sensor = observer.sensor(config.space)
+    lattice = Lattice(observer.axis_nodes("srgb", config.dim))
+    start = time.perf_counter()
+    problem = PointwiseProblem(Moments(config.coefficients), sensor, config.solver)
+    fit = fit_pointwise(problem, lattice, config.threshold)
+    seconds = time.perf_counter() - start
+    return _evaluate(
+        config,
+        lattice.points,
+        solid(sensor.matrix).contains(lattice.points),
+        fit.distance,
+        stand_ins=0,
+        rounds=fit.rounds,
+        calls=fit.starts - lattice.size,
+        seconds=seconds,
+    )
 
 
-def _judge(
-    setting: RunConfig,
+def _evaluate(
+    config: RunConfig,
     points: Array,
-    realisable: Any,
-    distance: Any,
+    realisable: Mask,
+    distance: Values,
+    *,
     stand_ins: int,
     rounds: int,
     calls: int,
     seconds: float,
 ) -> RunResult:
-    off = np.where(realisable, distance, -1)
-    worst = int(off.argmax())
+    """Count the realisable points that failed, and find the worst."""
+    of_realisable = np.where(realisable, distance, -1)
+    worst = int(of_realisable.argmax())
     r, g, b = (float(value) for value in points[worst])
     return RunResult(
-        setting,
+        config,
         points=len(points),
         realisable=int(realisable.sum()),
-        unfitted=int((off > setting.threshold).sum()),
+        unfitted=int((of_realisable > config.threshold).sum()),
         stand_ins=stand_ins,
         rounds=rounds,
         calls=calls,
-        worst=float(off[worst]),
+        worst=float(of_realisable[worst]),
         r=r,
         g=g,
         b=b,

@@ -1,37 +1,49 @@
-"""Which builds the failure map is made of: all of them would be tens of thousands.
+"""Design of the stability study: which of tens of thousands of possible builds are run.
 
-A grid of every axis against the techniques, the rest held where that axis has something to show, and beside the
-grids a sample drawn from everything, so that no combination is safe because nobody looks.
+A grid varies one axis against the model variants, with the other axes at values for which it has an effect. A Latin
+hypercube sample of all combinations covers the rest.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import product
+from math import prod
 from typing import Any
 
 import numpy as np
 
 from uplift.common.errors import OptionError
 from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS
-from uplift.lab.study.stability import NO_ATLAS, RunConfig
+from uplift.lab.study.stability import NO_ATLAS, UPLIFT, RunConfig
 from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES
 from uplift.models import Moments, Sigmoid
 from uplift.pipeline.options import MODELS
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
-SMALL = 9
-"""Dim of what takes long: thresholds near the rounding of what is stored, in wide spaces."""
-COMPARED = (3, 5, 9)
-"""Coefficients that the thesis's solver is tried with: it takes no more."""
-LARGEST_DRAWN = 17
-"""Dim that the sample goes up to."""
+DEFAULT_DIM, DEFAULT_THRESHOLD = 17, 1e-4
+SMALL_DIM = 9
+"""Size of slow builds: thresholds near the rounding of stored numbers, in wide-gamut spaces."""
+COMPARED_COEFFICIENTS = (3, 5, 9)
+"""Coefficients of the runs of scipy's solver, which takes too long with more."""
+MAX_SAMPLED_DIM = 17
+"""Largest size in the sample."""
+SEED = 4
 
 
 @dataclass(frozen=True)
 class DesignSpace:
-    """The values to choose from; ``drawn`` settings are a sample of them all."""
+    """Values of each axis of the design.
+
+    Parameters
+    ----------
+    dims, coefficients, spaces, models, thresholds, atlases : tuple
+        Values of the fields of `RunConfig`, not empty.
+    samples : int
+        Size of the Latin hypercube sample.
+    solver_dims : tuple of int
+        Sizes of the lattices on which solvers are compared.
+    """
 
     dims: tuple[int, ...] = (4, 8, 17, 32, 64)
     coefficients: tuple[int, ...] = (3, 5, 9, 17)
@@ -39,33 +51,33 @@ class DesignSpace:
     models: tuple[str, ...] = MODELS
     thresholds: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
     atlases: tuple[str, ...] = (NO_ATLAS, *SYNTHETIC_ATLASES)
-    drawn: int = 12
-    peer_dims: tuple[int, ...] = (4,)
+    samples: int = 12
+    solver_dims: tuple[int, ...] = (4,)
 
     def __post_init__(self) -> None:
         for name in ("dims", "coefficients", "spaces", "models", "thresholds", "atlases"):
             if not getattr(self, name):
-                raise OptionError(f"no {name} to study", hint="give at least one")
+                raise OptionError(
+                    f"{name} must not be empty", code="empty-axis", hint="give at least one value"
+                )
 
     @property
-    def techniques(self) -> tuple[RunConfig, ...]:
-        """One setting for every model and count of coefficients."""
-        found = [RunConfig("moments", count) for count in self.coefficients if Moments.name in self.models]
-        return (*found, *[RunConfig("sigmoid", 3)] * (Sigmoid.name in self.models))
+    def variants(self) -> tuple[RunConfig, ...]:
+        """A configuration for every model and number of coefficients."""
+        moments = [RunConfig("moments", count) for count in self.coefficients if Moments.name in self.models]
+        return (*moments, *[RunConfig("sigmoid", Sigmoid.count)] * (Sigmoid.name in self.models))
 
-    def base(self, **preferred: Any) -> dict[str, Any]:
-        """What a grid holds fast: the preferred values where they are among those chosen, else the nearest."""
-        wanted: dict[str, Any] = {
-            "dim": 17,
-            "space": SPACES[0],
-            "threshold": 1e-4,
-            "atlas": NO_ATLAS,
-        } | preferred
+    def nearest_dim(self, dim: int) -> int:
+        """Nearest value of ``dims``."""
+        return min(self.dims, key=lambda value: abs(value - dim))
+
+    def fixed(self, **preferred: Any) -> dict[str, Any]:
+        """Values of the axes that a grid does not vary: the preferred or default value if present, else the first."""
         return {
-            "dim": min(self.dims, key=lambda dim: abs(dim - wanted["dim"])),
-            "space": _in(self.spaces, wanted["space"]),
-            "threshold": _in(self.thresholds, wanted["threshold"]),
-            "atlas": _in(self.atlases, wanted["atlas"]),
+            "dim": self.nearest_dim(preferred.get("dim", DEFAULT_DIM)),
+            "space": _preferred(self.spaces, preferred.get("space", SPACES[0])),
+            "threshold": _preferred(self.thresholds, preferred.get("threshold", DEFAULT_THRESHOLD)),
+            "atlas": _preferred(self.atlases, NO_ATLAS),
         }
 
 
@@ -74,87 +86,102 @@ QUICK_DESIGN = DesignSpace(
     coefficients=(3, 9),
     spaces=(SPACES[0], SPACES[-1]),
     thresholds=(1e-3, 1e-4, 1e-5),
-    drawn=4,
-    peer_dims=(4,),
+    samples=4,
+    solver_dims=(4,),
 )
 
 
 @dataclass(frozen=True)
 class Grid:
-    """An axis of `RunConfig` against the techniques."""
+    """One axis against the model variants.
+
+    Parameters
+    ----------
+    title : str
+        Title of the figure.
+    axis : str
+        Field of `RunConfig` that varies.
+    values : tuple
+        Values of the axis.
+    variants : tuple of RunConfig
+        Models and numbers of coefficients.
+    fixed : dict
+        Values of the other fields.
+    """
 
     title: str
     axis: str
     values: tuple[Any, ...]
-    techniques: tuple[RunConfig, ...]
+    variants: tuple[RunConfig, ...]
     fixed: dict[str, Any]
 
     def rows(self) -> Iterator[tuple[str, list[RunConfig]]]:
-        """Every technique's name, and its settings along the axis."""
-        for technique in self.techniques:
-            yield (
-                technique.technique,
-                [replace(technique, **self.fixed | {self.axis: value}) for value in self.values],
-            )
+        """Yield the label of every variant, and its configurations along the axis."""
+        for variant in self.variants:
+            configs = [replace(variant, **self.fixed | {self.axis: value}) for value in self.values]
+            yield variant.model_label, configs
 
 
-def grids(axes: DesignSpace) -> tuple[Grid, ...]:
-    """The grids; a later one of the same settings costs nothing."""
-    techniques, wide = axes.techniques, _in(axes.spaces, SPACES[-1])
-    small = {"dim": min(axes.dims, key=lambda dim: abs(dim - SMALL))}
+def grids(space: DesignSpace) -> tuple[Grid, ...]:
+    """Make the grids of a design, without repetition."""
+    default = space.fixed()
+    wide_and_small = space.fixed(space=SPACES[-1], dim=SMALL_DIM)
     chosen = [
-        ("space", axes.spaces, axes.base()),
-        ("threshold", axes.thresholds, axes.base()),
-        ("threshold", axes.thresholds, axes.base(space=wide) | small),
-        ("atlas", axes.atlases, axes.base()),
-        ("dim", axes.dims, axes.base()),
+        ("space", space.spaces, default),
+        ("threshold", space.thresholds, default),
+        ("threshold", space.thresholds, wide_and_small),
+        ("atlas", space.atlases, default),
+        ("dim", space.dims, default),
     ]
-    found = {}
+    by_title = {}
     for axis, values, fixed in chosen:
-        told = {name: value for name, value in fixed.items() if name != axis}
-        title = f"by {axis}: {', '.join(_told(name, value) for name, value in told.items())}"
-        found[title] = Grid(title, axis, values, techniques, fixed)
-    return tuple(found.values())
+        rest = ", ".join(_describe(name, value) for name, value in fixed.items() if name != axis)
+        title = f"by {axis}: {rest}"
+        by_title[title] = Grid(title, axis, values, space.variants, fixed)
+    return tuple(by_title.values())
 
 
-def solver_runs(axes: DesignSpace) -> tuple[RunConfig, ...]:
-    """The thesis's solver in its own unknowns and in ours, and our solver, on small sRGB lattices."""
-    if Moments.name not in axes.models or SPACES[0] not in axes.spaces:
+def solver_runs(space: DesignSpace) -> tuple[RunConfig, ...]:
+    """Configurations that compare the solver of the thesis, in both unknowns, with that of this package."""
+    if Moments.name not in space.models or SPACES[0] not in space.spaces:
         return ()
     return tuple(
         RunConfig("moments", count, dim, solver=solver)
-        for dim in axes.peer_dims
-        for count in COMPARED
-        if count in axes.coefficients
-        for solver in (IN_MOMENTS, IN_MULTIPLIERS, RunConfig.solver)
+        for dim in space.solver_dims
+        for count in COMPARED_COEFFICIENTS
+        if count in space.coefficients
+        for solver in (IN_MOMENTS, IN_MULTIPLIERS, UPLIFT)
     )
 
 
-def draw_sample(axes: DesignSpace) -> tuple[RunConfig, ...]:
-    """Settings drawn from everything up to `LARGEST_DRAWN`; always the same."""
-    dims = [dim for dim in axes.dims if dim <= LARGEST_DRAWN] or [min(axes.dims)]
-    every = [
-        replace(technique, dim=dim, space=space, threshold=threshold, atlas=atlas)
-        for technique, dim, space, threshold, atlas in product(
-            axes.techniques, dims, axes.spaces, axes.thresholds, axes.atlases
-        )
-    ]
-    count = min(axes.drawn, len(every))
-    drawn = np.random.default_rng(4).choice(len(every), count, replace=False)
-    return tuple(every[number] for number in drawn)
+def draw_sample(space: DesignSpace) -> tuple[RunConfig, ...]:
+    """Draw distinct configurations up to `MAX_SAMPLED_DIM` from Latin hypercubes with a fixed seed."""
+    from scipy.stats import qmc
+
+    dims = [dim for dim in space.dims if dim <= MAX_SAMPLED_DIM] or [min(space.dims)]
+    axes = (space.variants, dims, space.spaces, space.thresholds, space.atlases)
+    sizes = [len(values) for values in axes]
+    count = min(space.samples, prod(sizes))
+    hypercube = qmc.LatinHypercube(len(sizes), rng=np.random.default_rng(SEED))
+    drawn: dict[RunConfig, None] = {}
+    while len(drawn) < count:  # several points of one hypercube may be the same combination
+        for row in hypercube.integers(np.zeros(len(sizes), int), u_bounds=sizes, n=count).tolist():
+            variant, dim, rgb_space, threshold, atlas = (axis[i] for axis, i in zip(axes, row, strict=True))
+            drawn[replace(variant, dim=dim, space=rgb_space, threshold=threshold, atlas=atlas)] = None
+    return tuple(drawn)[:count]
 
 
-def design(axes: DesignSpace) -> tuple[RunConfig, ...]:
-    """Every setting of the grids, the sample and the peers, once."""
-    in_grids = [setting for grid in grids(axes) for _, row in grid.rows() for setting in row]
-    return tuple(dict.fromkeys([*in_grids, *draw_sample(axes), *solver_runs(axes)]))
+def design(space: DesignSpace) -> tuple[RunConfig, ...]:
+    """List every configuration of the grids, the sample and the solver comparison once."""
+    in_grids = [config for grid in grids(space) for _, row in grid.rows() for config in row]
+    return tuple(dict.fromkeys([*in_grids, *draw_sample(space), *solver_runs(space)]))
 
 
-def _in(values: tuple[Any, ...], wanted: Any) -> Any:
-    return wanted if wanted in values else values[0]
+def _preferred(values: tuple[Any, ...], preferred: Any) -> Any:
+    return preferred if preferred in values else values[0]
 
 
-def _told(name: str, value: Any) -> str:
+def _describe(name: str, value: Any) -> str:
     if name == "atlas":
         return "no atlas" if value == NO_ATLAS else f"atlas {value}"
     return {"dim": f"{value}³", "threshold": f"threshold {value}"}.get(name, f"{value}")

@@ -1,6 +1,6 @@
-"""The four ways to lay a spectrum on the circle before its moments are taken: mirrored or not, warped or not.
+"""Four techniques that map a spectrum to the circle before its moments are computed: mirrored or not, warped or not.
 
-Tódová 2020, *Constrained Spectral Uplifting*, 2.2.1 and 4.1.1; Peters et al. 2019, section 4.
+Tódová 2020, *Constrained Spectral Uplifting*, sections 2.2.1 and 4.1.1; Peters et al. 2019, section 4.
 """
 
 from __future__ import annotations
@@ -17,10 +17,15 @@ from uplift.models.phase import Phase
 
 @dataclass(frozen=True)
 class Technique:
-    """Whether the spectrum is mirrored, so that its moments are real, and whether its phase is warped.
+    """A mapping of the spectrum to the circle.
 
-    Mirrored, [start, end] nm (those of `Phase`) takes the half circle [−π, 0]; unmirrored the whole one,
-    [−π, π], where the two ends meet.
+    Parameters
+    ----------
+    mirrored : bool
+        Map [start, end] nm of `Phase` to the half circle [−π, 0] and mirror it, which makes the moments real.
+        Otherwise the range covers the circle [−π, π], and its two ends meet.
+    warped : bool
+        Warp the phase towards wavelengths to which the eye is sensitive.
     """
 
     mirrored: bool
@@ -28,38 +33,37 @@ class Technique:
 
     @property
     def short(self) -> str:
-        """As the thesis abbreviates it: M&W, M&nW, nM&W, nM&nW."""
+        """Abbreviation of the thesis: M&W, M&nW, nM&W or nM&nW."""
         return f"{'' if self.mirrored else 'n'}M&{'' if self.warped else 'n'}W"
 
     @property
     def label(self) -> str:
+        """Full name, such as ``mirrored, warped``."""
         return f"{'mirrored' if self.mirrored else 'unmirrored'}, {'warped' if self.warped else 'unwarped'}"
 
     def floats(self, moments: int) -> int:
-        """Numbers to store for the zeroth moment and ``moments`` more."""
+        """Count the numbers stored for the zeroth moment and ``moments`` more."""
         return moments + 1 if self.mirrored else 2 * moments + 1
 
     def phase(self, wavelengths: ArrayLike) -> Array:
-        """Phases (N,) of wavelengths (N,) in nm."""
+        """Map wavelengths (N,) in nm to phases (N,)."""
         half = Phase(warp="vision" if self.warped else "none")(wavelengths)
         return half if self.mirrored else 2 * half + np.pi
 
     def moments(self, reflectance: Array, wavelengths: ArrayLike, moments: int) -> duality.Complex | Array:
-        """Moments (n, moments + 1) of reflectances (n, N) at ascending wavelengths (N,) nm, end to end.
+        """Compute moments (n, moments + 1) of reflectances (n, N) at ascending wavelengths (N,) nm, end to end.
 
-        Exact for the function that is linear in the phase between the samples, so that they are moments of
-        a reflectance whenever the samples are within [0, 1]. Real if mirrored.
+        They are exact for the interpolant that is linear in the phase, so samples within [0, 1] have moments of a
+        reflectance. Moments of a mirrored spectrum are real.
         """
         phase = self.phase(wavelengths)
         found = _integrals(reflectance, phase, moments) / np.ptp(phase)
         return np.ascontiguousarray(found.real) if self.mirrored else found
 
     def reconstruct(self, moments: duality.Complex | Array, wavelengths: ArrayLike) -> Array:
-        """Bounded maximum-entropy reflectances (n, N) at wavelengths (N,) nm of moments (n, C).
+        """Compute the bounded maximum-entropy reflectances (n, N) of moments (n, C) at wavelengths (N,) nm.
 
-        Raises
-        ------
-        UpliftError : no reflectance has these moments.
+        Raises `UpliftError` if no reflectance has these moments.
         """
         multipliers = duality.multipliers_from_moments(moments)
         waves = duality.fourier_basis(self.phase(wavelengths), moments.shape[1])
@@ -67,13 +71,13 @@ class Technique:
 
 
 TECHNIQUES = tuple(Technique(mirrored, warped) for mirrored in (True, False) for warped in (True, False))
-"""In the order of the thesis's tables."""
+"""All techniques, in the order of the tables of the thesis."""
 
 
 def _integrals(values: Array, phase: Array, moments: int) -> duality.Complex:
-    """∫ g exp(−ijφ) dφ (n, moments + 1) of g linear between ``values`` (n, N) at phases (N,).
+    """Integrals (n, moments + 1) of g exp(−ijφ) dφ, with g linear between ``values`` (n, N) at phases (N,).
 
-    Twice by parts: what is left is the ends, and the slopes times how far exp(−ijφ) travels in each interval.
+    Integrated by parts twice: a term of the two ends, and the slopes times the change of exp(−ijφ) in each interval.
     """
     orders = np.arange(1, moments + 1)
     turn = np.exp(-1j * phase[:, None] * orders)
