@@ -9,13 +9,26 @@ from __future__ import annotations
 from uplift.common.errors import Diagnostic
 
 HINTS = {
+    "atlas-changed": "name the folder of the recorded file with --atlas-dir, or build the cube again",
+    "atlas-not-found": "name its folder with --atlas-dir, or build the cube again",
+    "auto-tolerance-out-of-range": "use --auto-tolerance with a ΔE00 of 0 or more",
     "codes-out-of-range": "leave out --encoded for linear floats",
+    "coefficients-out-of-range": "use --coefficients 3 to 17",
+    "dim-not-a-number": "use --dim with a number, or --dim auto",
+    "dim-too-small": "use --dim 2 or more",
     "encoded-floats-not-mapped": "use --out-of-gamut clip, or --encoding linear",
-    "file-exists": "use --force to replace it, or give another name",
+    "entry-crowded": "use --dim auto for a lattice that is large enough; 'uplift report' shows details",
+    "file-exists": "use --force to replace it, or choose another name",
     "invalid-primaries": "give --primaries as x,y of red, green, blue and white, or the name of an RGB space",
+    "invalid-thickness": "use --thickness 0 or more",
     "no-moments": "use --store multipliers, or a cube of moments",
     "rgb-out-of-gamut": "map it inside with --out-of-gamut, or use --encoded for 8-bit codes",
+    "scene-without-colours": "name an image with --scene, or build without --scene",
+    "sparse-cube": "build it without --scene",
+    "threshold-out-of-range": "use --threshold 1e-6 to 0.1",
+    "unknown-coat": "use --pigment or --dye",
     "unknown-gamut-mapping": "use --out-of-gamut with error, clip, scale, desaturate or desaturate-oklab",
+    "unknown-warp": "use --warp none or vision",
 }
 """Hint by code of an error or a warning."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import shutil
 
@@ -90,6 +91,7 @@ def test_atlases_are_searched_for_in_given_folders(run, refuse, home, macbeth, r
 
 
 def test_invalid_cubes_are_reported_before_any_build(refuse, stored, monkeypatch):
-    monkeypatch.setattr("uplift.pipeline.rebuild.rebuild", lambda *_, **__: pytest.fail("rebuilt"))
+    module = importlib.import_module("uplift.pipeline.rebuild")
+    monkeypatch.setattr(module, "rebuild", lambda *_, **__: pytest.fail("rebuilt"))
     error = refuse("check", stored, "none.uplift")
     assert (error.code, error.where) == ("file-not-found", "none.uplift")
