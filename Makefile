@@ -38,6 +38,7 @@ bench: $(INSTALLED)
 # Speed against accuracy of all methods: docs/chart.md and its pictures, and what `uplift chart --recommend` reads.
 chart: $(INSTALLED)
 	$(BIN)/python -m benchmarks.chart
+	$(BIN)/python -m tools.render_docs chart
 
 # What `make bench` and `make chart` compare with where it finds it. Ceres is the system's: libceres-dev, cmake, g++.
 peers: $(INSTALLED)
@@ -104,9 +105,10 @@ palette: $(INSTALLED)
 	$(BIN)/python -m benchmarks.palette
 	$(BIN)/python -m tools.render_docs palette
 
-# Meyer's tables anew, and what few wavelengths cost: docs/wavelengths.md.
+# Wavelength selection, and reproduction of Meyer 1988: docs/wavelengths.md.
 wavelengths: $(INSTALLED)
 	$(BIN)/python -m benchmarks.wavelengths
+	$(BIN)/python -m tools.render_docs wavelengths
 
 # Spectral representations, compared with Kment 2011: docs/representations.md.
 representations: $(INSTALLED)

@@ -16,7 +16,7 @@ DATA = ROOT / "docs" / "data"
 
 
 def write(name: str, command: str, **figures: Any) -> None:
-    """Write figures with the command that measures them and the environment they were measured in."""
+    """Write figures with the command that measures them; ``environment`` is that of this process by default."""
     content = {"command": command, "environment": environment(), **figures}
     text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False, default=to_json)
     (DATA / f"{name}.json").write_text(text + "\n", encoding="utf-8")

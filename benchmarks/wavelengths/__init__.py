@@ -1,1 +1,1 @@
-"""``make wavelengths``: Meyer's figures derived anew, and what few wavelengths cost → docs/wavelengths.md."""
+"""Selection of wavelengths, and reproduction of Meyer 1988: ``make wavelengths``."""

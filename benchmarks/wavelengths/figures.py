@@ -1,4 +1,4 @@
-"""Pictures of docs/wavelengths.md: Meyer's figures 6 and 7, and the methods over the number of wavelengths."""
+"""Meyer's figures 6 and 7, and the errors of the methods over the number of wavelengths."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_pn
 
 COLOURS = ("#20509a", "#d1495b", "#2e8b57", "#c98a1b", "#7fa3d9")
 CORNERS = np.array([[0.5, np.sqrt(0.75)], [0.0, 0.0], [1.0, 0.0]])
-"""Where the first, second and third channel have all wavelengths."""
+"""Corners where the first, second and third channel have all wavelengths."""
 
 
 def figure_6(spaces: Sequence[Trials], path: Path) -> None:
-    """Mean over all allocations, and the best of them, over the number of wavelengths."""
+    """Plot the mean over all allocations, and the best of them, over the number of wavelengths."""
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
@@ -39,7 +39,7 @@ def figure_6(spaces: Sequence[Trials], path: Path) -> None:
 
 
 def figure_7(trials: Trials, path: Path) -> None:
-    """Small triangles, the darker the larger the error."""
+    """Plot the mean error as small triangles, darker for larger errors."""
     import matplotlib
     from matplotlib.collections import PolyCollection
 
@@ -71,7 +71,7 @@ def figure_7(trials: Trials, path: Path) -> None:
 
 
 def methods(comparisons: Sequence[Comparison], path: Path) -> None:
-    """Mean ΔE00 over the number of wavelengths, on materials that ours has not seen."""
+    """Plot mean ΔE00 on held-out materials over the number of wavelengths."""
     import matplotlib
 
     with matplotlib.rc_context(STYLE):

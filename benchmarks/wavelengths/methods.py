@@ -1,104 +1,104 @@
-"""The project's wavelengths against Meyer's and even ones, on all shipped materials and on unseen halves."""
+"""Methods of wavelength selection on all shipped materials and on held-out halves."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from benchmarks.page import table
 from uplift.common.arrays import Array
 from uplift.scene.wavelengths import METHODS, ColourErrors, RenderSetup, choose, evaluate, make_setup
 
-OURS, EVEN = "optimised", "fitted"
-"""Ours in full, and with wavelengths that are even."""
+OPTIMISED, FITTED = "optimised", "fitted"
 OTHERS = ("meyer", "uniform", "bins")
+"""Methods that are not fitted to materials."""
 COUNTS = range(4, 17)
 SMOOTH, SPIKY = ("A", "B", "C", "D65"), ("FL2", "FL7", "FL11")
 
-Found = Mapping[tuple[str, int], ColourErrors]
+Errors = Mapping[tuple[str, int], ColourErrors]
 """By method and number of wavelengths."""
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Errors on all materials, ours fitted to them, and on every second one, ours fitted to the others."""
+    """Errors on all materials, fitted to them, and on every second one, fitted to the others."""
 
     lights: tuple[str, ...]
-    seen: Found
-    unseen: Found
+    known: Errors
+    unseen: Errors
+
+    @property
+    def by_materials(self) -> dict[str, Errors]:
+        """The two tests by the name of their materials."""
+        return {"unseen": self.unseen, "all": self.known}
 
 
 def compare(materials: Array, lights: tuple[str, ...]) -> Comparison:
-    """All methods at every count, under some lights at once."""
-    whole = make_setup(materials, lights)
+    """Evaluate all methods with every number of wavelengths, under several lights at once."""
+    setup = make_setup(materials, lights)
     odd = np.arange(len(materials)) % 2 == 1
-    seen, unseen = {}, {}
-    for count in COUNTS:
-        for method in METHODS:
-            seen[method, count] = choose(whole, count=count, method=method).errors
-            unseen[method, count] = _unseen(whole, odd, method, count)
-    return Comparison(lights, seen, unseen)
+    keys = [(method, count) for count in COUNTS for method in METHODS]
+    known = {(method, count): choose(setup, count=count, method=method).errors for method, count in keys}
+    unseen = {(method, count): _held_out(setup, odd, method, count) for method, count in keys}
+    return Comparison(lights, known, unseen)
 
 
-def _unseen(whole: RenderSetup, odd: Array, method: str, count: int) -> ColourErrors:
-    """Those that know no materials see only what is asked, which flatters Meyer's allocation."""
-    asked = whole.only(odd)
-    return evaluate(asked, METHODS[method](asked if method in OTHERS else whole.only(~odd), count))
+def _held_out(setup: RenderSetup, odd: Array, method: str, count: int) -> ColourErrors:
+    """Evaluate on the odd materials. Methods that are not fitted get these, which favours Meyer's allocation."""
+    tested = setup.only(odd)
+    return evaluate(tested, METHODS[method](tested if method in OTHERS else setup.only(~odd), count))
 
 
-def factors(found: Found) -> Array:
-    """By how much the best of the other methods errs more in the mean, at every count."""
+def gains(errors: Errors) -> Array:
+    """Return the ratio of the best other method's mean to the optimised one's, for every number of wavelengths."""
     return np.array(
-        [min(found[other, count].mean for other in OTHERS) / found[OURS, count].mean for count in COUNTS]
+        [
+            min(errors[other, count].mean for other in OTHERS) / errors[OPTIMISED, count].mean
+            for count in COUNTS
+        ]
     )
 
 
-def section(title: str, found: Found, words: str) -> str:
-    """A table of mean, 95 % and largest ΔE00."""
-    rows = []
-    for count, factor in zip(COUNTS, factors(found), strict=True):
-        cells = [_cell(found[method, count]) for method in METHODS]
-        rows.append([str(count), *cells, f"{factor:.1f}"])
-    return table(title, words, ["wavelengths", *METHODS, "best other / optimised"], rows)
+def rows(comparison: Comparison) -> Iterator[dict[str, Any]]:
+    """Yield [mean, 95th percentile, largest] ΔE00 of every method."""
+    for materials, errors in comparison.by_materials.items():
+        for count, gain in zip(COUNTS, gains(errors).tolist(), strict=True):
+            cells = {method: errors[method, count] for method in METHODS}
+            yield {
+                "lights": ", ".join(comparison.lights),
+                "materials": materials,
+                "count": count,
+                "errors": {
+                    name: [float(one.mean), float(one.p95), float(one.max)] for name, one in cells.items()
+                },
+                "gain": gain,
+            }
 
 
-def summary(comparisons: Sequence[Comparison], materials: int) -> str:
-    """The factors, and what a mean of 1 takes."""
-    rows = []
-    for comparison in comparisons:
-        for name, found in (("unseen", comparison.unseen), ("all", comparison.seen)):
-            moved = np.array([found[EVEN, count].mean / found[OURS, count].mean for count in COUNTS])
-            rows.append(
-                [
-                    ", ".join(comparison.lights),
-                    name,
-                    _range(factors(found)),
-                    _range(moved),
-                    *(_fewest(found, method) for method in METHODS),
-                ]
-            )
-    head = ["lights", "materials", "best other / optimised", "fitted / optimised"]
-    return table(
-        "In short",
-        f"The {materials} entries of `atlases/`. *unseen*: fitted to every other entry, judged by the rest; *all*: "
-        "fitted to all and judged by all. Ratios of mean ΔE00, 4 to 16 wavelengths: median (least at so many–most); "
-        "*best other* is that of Meyer's, uniform and bins. Then the fewest of 4 to 16 wavelengths whose mean is at "
-        "most 1; – where 16 do not reach it.",
-        [*head, *METHODS],
-        rows,
-    )
+def summary(comparison: Comparison) -> Iterator[dict[str, Any]]:
+    """Yield the ratios, and the fewest wavelengths for a mean of 1; None if 16 do not reach it."""
+    for materials, errors in comparison.by_materials.items():
+        fitted = np.array([errors[FITTED, count].mean / errors[OPTIMISED, count].mean for count in COUNTS])
+        yield {
+            "lights": ", ".join(comparison.lights),
+            "materials": materials,
+            "other_gain": _ratios(gains(errors)),
+            "fitted_gain": _ratios(fitted),
+            "needed": {method: _fewest(errors, method) for method in METHODS},
+        }
 
 
-def _range(ratios: Array) -> str:
-    least = int(ratios.argmin())
-    return f"{np.median(ratios):.1f} ({ratios[least]:.1f} at {COUNTS[least]}–{ratios.max():.1f})"
+def _ratios(ratios: Array) -> dict[str, float]:
+    lowest = int(ratios.argmin())
+    return {
+        "median": float(np.median(ratios)),
+        "min": float(ratios[lowest]),
+        "min_count": COUNTS[lowest],
+        "max": float(ratios.max()),
+    }
 
 
-def _fewest(found: Found, method: str) -> str:
-    return next((str(count) for count in COUNTS if found[method, count].mean <= 1), "–")
-
-
-def _cell(errors: ColourErrors) -> str:
-    return f"{errors.mean:.3f} / {errors.p95:.2f} / {errors.max:.2f}"
+def _fewest(errors: Errors, method: str) -> int | None:
+    return next((count for count in COUNTS if errors[method, count].mean <= 1), None)

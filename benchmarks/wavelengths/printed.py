@@ -1,4 +1,4 @@
-"""What Meyer 1988 prints, from tests/reference."""
+"""Printed tables of Meyer 1988, from tests/reference."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT
 from uplift.common.arrays import Array
 
 CHANNELS = ("A", "C1", "C2")
@@ -16,21 +16,21 @@ Nodes = tuple[Array, Array]
 
 
 def rows(name: str) -> list[dict[str, str]]:
-    """The rows of a table of the paper."""
+    """Return the rows of a table of the paper."""
     path = ROOT / "tests" / "reference" / f"meyer1988_{name}.csv"
     with path.open(encoding="utf-8") as file:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
 def tables_1() -> Mapping[tuple[str, int], Nodes]:
-    """Tables 1a and 1b by channel and order; undefined orders are absent."""
+    """Return tables 1a and 1b by channel and order; undefined orders are absent."""
     found = rows("table1")
     keys = dict.fromkeys((row["channel"], int(row["order"])) for row in found)
     return {key: _nodes(found, "order", key[0], str(key[1])) for key in keys}
 
 
 def table_2(row: str) -> tuple[list[Nodes], float]:
-    """A row of table 2: the channels' rules, and the error."""
+    """Return a row of table 2: the rules of the channels, and the error."""
     found = rows("table2")
     error = next(float(one["error"]) for one in found if one["row"] == row)
     return [_nodes(found, "row", channel, row) for channel in CHANNELS], error
