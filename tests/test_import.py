@@ -1,4 +1,4 @@
-"""``import uplift`` is light, changes nothing, and shows the whole interface."""
+"""``import uplift`` is light, changes no global setting, and exposes the public interface."""
 
 from __future__ import annotations
 
@@ -13,23 +13,58 @@ import uplift
 HEAVY = "{'numpy', 'jax', 'colour', 'scipy', 'safetensors', 'matplotlib', 'click', 'rich'}"
 
 
-def in_a_fresh_process(code):
+def run_python(code):
+    """Run code in a new process and return its output."""
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     return done.stdout.strip()
 
 
-def test_importing_costs_nothing_not_even_numpy():
-    assert in_a_fresh_process(f"import sys, uplift; print({HEAVY} & set(sys.modules))") == "set()"
+def test_import_loads_no_dependency():
+    assert run_python(f"import sys, uplift; print({HEAVY} & set(sys.modules))") == "set()"
 
 
-def test_the_check_sees_what_is_loaded():
+def test_first_use_loads_dependencies():
     code = f"import sys, uplift; uplift.Atlas; print({HEAVY} & set(sys.modules))"
-    assert in_a_fresh_process(code) == "{'numpy'}"
+    assert run_python(code) == "{'numpy'}"
 
 
-def test_loading_a_cube_costs_numpy_and_the_file_s_library():
+def test_loading_a_cube_needs_only_numpy_and_safetensors():
     code = f"import sys, uplift; uplift.load(); print(sorted({HEAVY} & set(sys.modules)))"
-    assert in_a_fresh_process(code) == "['numpy', 'safetensors']"
+    assert run_python(code) == "['numpy', 'safetensors']"
+
+
+CORE = {"common", "colorimetry", "models", "lattice", "cube", "lookup"}
+BUILD = CORE | {"atlas", "fit", "pipeline"}
+QUERY = "import uplift; uplift.load().reflectance([0.5, 0.5, 0.5], wavelengths=[400, 500]); "
+BUILD_2 = "import uplift; uplift.build(dim=2); "
+
+
+def loaded_subpackages(code):
+    """Run code in a new process and return the subpackages of uplift that it loads, and its loaded modules."""
+    modules = run_python(f"{code}\nimport sys; print(*sys.modules)").split()
+    ours = [name for name in modules if name.startswith("uplift.")]
+    return {name.split(".")[1] for name in ours}, set(modules)
+
+
+def test_build_without_scene_loads_only_the_pipeline_and_the_core():
+    assert loaded_subpackages(BUILD_2)[0] == BUILD
+
+
+def test_query_loads_only_the_numpy_part_of_the_core():
+    subpackages, modules = loaded_subpackages(QUERY)
+    assert subpackages == CORE
+    assert not modules & {"uplift.colorimetry.observer", "uplift.lookup.bulk", "colour", "scipy", "jax"}
+
+
+@pytest.mark.parametrize("subpackage", ["io", "viz", "report", "scene", "design", "lab"])
+def test_check_of_loaded_subpackages_detects_an_added_import(subpackage):
+    assert loaded_subpackages(f"{QUERY}import uplift.{subpackage}")[0] >= CORE | {subpackage}
+
+
+def test_check_of_loaded_modules_detects_the_observer():
+    assert (
+        "uplift.colorimetry.observer" in loaded_subpackages(f"{QUERY}import uplift.colorimetry.observer")[1]
+    )
 
 
 @pytest.mark.parametrize(
@@ -41,7 +76,7 @@ def test_loading_a_cube_costs_numpy_and_the_file_s_library():
         "from uplift.lookup import bulk; bulk.spectra(uplift.load(), [500])([0.5, 0.5, 0.5])",
     ],
 )
-def test_no_setting_of_jax_is_changed(use):
+def test_jax_settings_are_unchanged(use):
     code = (
         "import jax, jax.numpy as jnp\n"
         "before = dict(jax.config.values)\n"
@@ -49,10 +84,10 @@ def test_no_setting_of_jax_is_changed(use):
         "print({name for name, value in jax.config.values.items() if before.get(name) != value})\n"
         "print(jnp.zeros(1).dtype)"
     )
-    assert in_a_fresh_process(code) == "set()\nfloat32"
+    assert run_python(code) == "set()\nfloat32"
 
 
-def test_no_setting_of_numpy_or_of_warnings_is_changed():
+def test_numpy_and_warning_settings_are_unchanged():
     code = (
         "import numpy, warnings\n"
         "before = numpy.geterr(), numpy.get_printoptions(), list(warnings.filters), warnings.showwarning\n"
@@ -60,7 +95,7 @@ def test_no_setting_of_numpy_or_of_warnings_is_changed():
         "after = numpy.geterr(), numpy.get_printoptions(), list(warnings.filters), warnings.showwarning\n"
         "print([one for one, other in zip(before, after) if one != other])"
     )
-    assert in_a_fresh_process(code) == "[]"
+    assert run_python(code) == "[]"
 
 
 def test_dir_lists_the_interface():
@@ -69,7 +104,7 @@ def test_dir_lists_the_interface():
 
 
 @pytest.mark.parametrize("name", uplift.__all__)
-def test_every_name_of_the_interface_is_documented_at_its_home(name):
+def test_every_public_name_is_documented_in_its_module(name):
     found = getattr(uplift, name)
     home = found.__name__ if inspect.ismodule(found) else f"{found.__module__}.{found.__name__}"
     assert home.startswith("uplift.")
@@ -77,8 +112,8 @@ def test_every_name_of_the_interface_is_documented_at_its_home(name):
     assert found.__doc__
 
 
-def test_star_import_brings_the_interface():
-    names = in_a_fresh_process("from uplift import *; print(*sorted(n for n in dir() if n[0] != '_'))")
+def test_star_import_gives_the_public_names():
+    names = run_python("from uplift import *; print(*sorted(n for n in dir() if n[0] != '_'))")
     assert names.split() == uplift.__all__
 
 
