@@ -110,15 +110,15 @@ def command(
     click.echo(f"{folder}: {', '.join(FILES)}", err=True)
 
 
-def _recommend(source: str | None, wish: Requirement) -> None:
+def _recommend(source: str | None, requirement: Requirement) -> None:
     from uplift.lab.chart.recommend import recommend, shipped
     from uplift.viz.format import format_error, format_size, format_time
 
-    row = recommend(_read(source) if source is not None else shipped(), wish)
+    row = recommend(_read(source) if source is not None else shipped(), requirement)
     numbers = row.numbers
     click.echo(
-        f"{row.title}: {format_time(numbers['time_ns'])} per RGB, mean ΔE00 {format_error(numbers[wish.error])} "
-        f"{wish.about}, {format_size(numbers['bytes'])}\n  {row.build}\n  {row.ask}"
+        f"{row.title}: {format_time(numbers['time_ns'])} per RGB, mean ΔE00 {format_error(numbers[requirement.error])} "
+        f"{requirement.about}, {format_size(numbers['bytes'])}\n  {row.build}\n  {row.ask}"
     )
 
 

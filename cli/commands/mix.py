@@ -108,7 +108,7 @@ def command(
     encoding: str,
     force: bool,
 ) -> None:
-    """Mix colours as spectra. A cube converts each colour to a spectrum; the result has its illuminant.
+    """Mix colours as spectra. A cube converts each colour to a spectrum, and the mixture has its illuminant.
 
     A COLOUR is '#rrggbb', 'r,g,b' in linear RGB, 'white', 'black', or an entry of the cube's atlas or of --atlas.
     'A/B' is a paint whose layer of thickness 1 has colour A on white and colour B on black. Other paints are opaque by

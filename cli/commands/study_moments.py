@@ -57,54 +57,54 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
     if output is not None:
         check_folder(output, FILES, force=force)
     with progress_bar("reconstructions") as progress:
-        found = study_moments(atlases, max_moments, progress)
+        study = study_moments(atlases, max_moments, progress)
     if output is not None:
-        _write(found, Path(output), force=force)
-    PRINTERS[style](found)
+        _write(study, Path(output), force=force)
+    PRINTERS[style](study)
 
 
-def _write(found: MomentsStudy, folder: Path, *, force: bool) -> None:
+def _write(study: MomentsStudy, folder: Path, *, force: bool) -> None:
     from uplift.lab.study.moments_plots import curves, plot_errors, plot_patches, plot_worst
     from uplift.lab.study.moments_table import records
     from uplift.lab.study.records import write_csv
 
     table, errors, patches, worst = (folder / name for name in FILES)
-    write_csv(records(found), table, force=force)
-    plot_errors({"all entries": curves(found)}, errors, force=force)
-    plot_patches(found, patches, force=force)
-    plot_worst(found, worst, force=force)
+    write_csv(records(study), table, force=force)
+    plot_errors({"all entries": curves(study)}, errors, force=force)
+    plot_patches(study, patches, force=force)
+    plot_worst(study, worst, force=force)
     click.echo(f"{folder}: {', '.join(FILES)}", err=True)
 
 
-def _print_json(found: MomentsStudy) -> None:
+def _print_json(study: MomentsStudy) -> None:
     from uplift.lab.study.moments_table import records
 
-    click.echo(json_text(records(found)))
+    click.echo(json_text(records(study)))
 
 
-def _print_csv(found: MomentsStudy) -> None:
+def _print_csv(study: MomentsStudy) -> None:
     from uplift.lab.study.moments_table import records
     from uplift.lab.study.records import records_csv
 
-    click.echo(records_csv(records(found)), nl=False)
+    click.echo(records_csv(records(study)), nl=False)
 
 
-def _print_table(found: MomentsStudy) -> None:
+def _print_table(study: MomentsStudy) -> None:
     from rich import box
     from rich.table import Table
 
     from uplift.lab.study.technique import TECHNIQUES
 
     caption = (
-        f"mean / largest ΔE76 under D65 of {len(found.names)} entries\n"
+        f"mean / largest ΔE76 under D65 of {len(study.names)} entries\n"
         "n moments take n + 1 floats mirrored, 2n + 1 unmirrored"
     )
     table = Table(box=box.SIMPLE_HEAD, caption=caption)
     table.add_column("moments", justify="right")
     for technique in TECHNIQUES:
         table.add_column(technique.label.replace(" ", "\n"), justify="right", no_wrap=True)
-    for count in range(found.max_moments + 1):
-        results = [found.result(technique, count) for technique in TECHNIQUES]
+    for count in range(study.max_moments + 1):
+        results = [study.result(technique, count) for technique in TECHNIQUES]
         table.add_row(str(count), *(f"{one.mean[0]:.2f} / {one.max[0]:6.2f}" for one in results))
     console().print(table)
 

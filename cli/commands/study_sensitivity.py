@@ -61,33 +61,33 @@ def sensitivity(
     if output is not None:
         check_folder(output, FILES if atlas else FILES[:2], force=force)
     with progress_bar("builds") as progress:
-        found = study_sensitivity(loaded, atlas, entries, progress)
+        result = study_sensitivity(loaded, atlas, entries, progress)
     if output is not None:
-        _write(found, Path(output), force=force)
-    PRINTERS[style](found)
+        _write(result, Path(output), force=force)
+    PRINTERS[style](result)
 
 
-def _write(found: Sensitivity, folder: Path, *, force: bool) -> None:
+def _write(result: Sensitivity, folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
     from uplift.lab.study.sensitivity_plots import plot_locality, plot_steepness
 
     written = [RESULTS, STEEPNESS]
-    write_text(json_text(found.record()) + "\n", folder / RESULTS, force=force)
-    plot_steepness(found.cube.data, found.lipschitz, folder / STEEPNESS, force=force)
-    if found.removed:
-        plot_locality(found.removed, folder / LOCALITY, force=force)
+    write_text(json_text(result.record()) + "\n", folder / RESULTS, force=force)
+    plot_steepness(result.cube.data, result.lipschitz, folder / STEEPNESS, force=force)
+    if result.removed:
+        plot_locality(result.removed, folder / LOCALITY, force=force)
         written.append(LOCALITY)
     click.echo(f"{folder}: {', '.join(written)}", err=True)
 
 
-def _print_json(found: Sensitivity) -> None:
-    click.echo(json_text(found.record()))
+def _print_json(result: Sensitivity) -> None:
+    click.echo(json_text(result.record()))
 
 
-def _print_table(found: Sensitivity) -> None:
+def _print_table(result: Sensitivity) -> None:
     from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 
-    record = found.record()
+    record = result.record()
     _table(
         (
             "mode",

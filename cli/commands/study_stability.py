@@ -103,40 +103,40 @@ def stability(
     if output is not None:
         check_folder(output, FILES, force=force)
     with progress_bar("builds") as progress:
-        found = study_stability(design.design(axes), atlases, progress)
+        runs = study_stability(design.design(axes), atlases, progress)
     if output is not None:
-        _write(axes, found, Path(output), force=force)
-    PRINTERS[style](found)
+        _write(axes, runs, Path(output), force=force)
+    PRINTERS[style](runs)
 
 
-def _write(axes: DesignSpace, found: Sequence[RunResult], folder: Path, *, force: bool) -> None:
+def _write(axes: DesignSpace, runs: Sequence[RunResult], folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
     from uplift.lab.study.records import write_csv
     from uplift.lab.study.stability_design import grids
     from uplift.lab.study.stability_plots import plot_map
 
     table, text, picture = (folder / name for name in FILES)
-    write_csv([one.record() for one in found], table, force=force)
-    write_text(_json(found) + "\n", text, force=force)
-    plot_map(grids(axes), {one.config: one for one in found}, picture, force=force)
+    write_csv([run.record() for run in runs], table, force=force)
+    write_text(_json(runs) + "\n", text, force=force)
+    plot_map(grids(axes), {run.config: run for run in runs}, picture, force=force)
     click.echo(f"{folder}: {', '.join(FILES)}", err=True)
 
 
-def _json(found: Sequence[RunResult]) -> str:
-    return json_text([one.record() for one in found])
+def _json(runs: Sequence[RunResult]) -> str:
+    return json_text([run.record() for run in runs])
 
 
-def _print_json(found: Sequence[RunResult]) -> None:
-    click.echo(_json(found))
+def _print_json(runs: Sequence[RunResult]) -> None:
+    click.echo(_json(runs))
 
 
-def _print_csv(found: Sequence[RunResult]) -> None:
+def _print_csv(runs: Sequence[RunResult]) -> None:
     from uplift.lab.study.records import records_csv
 
-    click.echo(records_csv([one.record() for one in found]), nl=False)
+    click.echo(records_csv([run.record() for run in runs]), nl=False)
 
 
-def _print_table(found: Sequence[RunResult]) -> None:
+def _print_table(runs: Sequence[RunResult]) -> None:
     from rich import box
     from rich.table import Table
     from rich.text import Text
@@ -146,25 +146,25 @@ def _print_table(found: Sequence[RunResult]) -> None:
         table.add_column(heading, no_wrap=True)
     for heading in ("realisable", "unfitted", "rounds", "calls", "worst", "at", "s"):
         table.add_column(heading, justify="right", no_wrap=True)
-    for one in found:
-        setting = one.config
+    for run in runs:
+        setting = run.config
         names = (setting.solver, setting.model_label, str(setting.dim), setting.space)
-        facts = (f"{one.realisable}", f"{one.unfitted}", f"{one.rounds}", f"{one.calls}", f"{one.worst:.1e}")
-        where = f"{one.r:.3f} {one.g:.3f} {one.b:.3f}"
+        facts = (f"{run.realisable}", f"{run.unfitted}", f"{run.rounds}", f"{run.calls}", f"{run.worst:.1e}")
+        where = f"{run.r:.3f} {run.g:.3f} {run.b:.3f}"
         table.add_row(
             *names,
             f"{setting.threshold:g}",
             Text(setting.atlas),
             *facts,
             where,
-            f"{one.seconds:.2f}",
-            style="bold red" if one.unfitted else None,
+            f"{run.seconds:.2f}",
+            style="bold red" if run.unfitted else None,
         )
     console().print(table)
-    failed = [one for one in found if one.unfitted]
+    failed = [run for run in runs if run.unfitted]
     click.echo(
-        f"{len(found)} builds, {sum(one.realisable for one in found)} realisable nodes: "
-        f"{sum(one.unfitted for one in failed)} unfitted in {len(failed)} builds"
+        f"{len(runs)} builds, {sum(run.realisable for run in runs)} realisable nodes: "
+        f"{sum(run.unfitted for run in failed)} unfitted in {len(failed)} builds"
     )
 
 

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of the model. * designed"
 
 
-def _print_table(design: Design, colours: Matrix, missed: Sequence[UnmetGoal]) -> None:
+def _print_table(design: Design, colours: Matrix, unmet: Sequence[UnmetGoal]) -> None:
     out = console()
     out.print(_table(design, colours, coloured=out.color_system is not None))
     out.print(LEGEND, markup=False)
-    for miss in missed:
-        click.echo(f"not met: {miss}")
-    if not missed:
+    for goal in unmet:
+        click.echo(f"not met: {goal}")
+    if not unmet:
         click.echo("all goals are met")
 
 
@@ -63,11 +63,11 @@ def _cell(colours: Matrix, at: tuple[int, int], coloured: bool) -> Text:
         (code,) = hex_codes(rgb[None])
         text.append("    " if coloured else code, style=f"on {code}" if coloured else "")
         text.append(" ")
-    missed = f"{colours.delta_e[at]:.2f}" if has_goal else "–"
-    return text.append(f" {missed}, {colours.model_error[at]:.2f}")
+    error = f"{colours.delta_e[at]:.2f}" if has_goal else "–"
+    return text.append(f" {error}, {colours.model_error[at]:.2f}")
 
 
-def _print_json(design: Design, colours: Matrix, missed: Sequence[UnmetGoal]) -> None:
+def _print_json(design: Design, colours: Matrix, unmet: Sequence[UnmetGoal]) -> None:
     palette = design.palette
     fields = {
         "wavelengths": palette.sensor.wavelengths.tolist(),
@@ -87,7 +87,7 @@ def _print_json(design: Design, colours: Matrix, missed: Sequence[UnmetGoal]) ->
             for column, light in enumerate(palette.lights)
         ],
         "to_rgb": design.model.matrix.tolist(),
-        "missed": [str(miss) for miss in missed],
+        "missed": [str(goal) for goal in unmet],
     }
     click.echo(json_text(fields))
 
