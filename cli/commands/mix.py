@@ -133,7 +133,7 @@ def command(
         check_output(path, force=force)
     cube = load(cube_path)
     medium = _medium(thickness, INCIDENCES[incidence](refractive_index), km_constants)
-    resolver = make_resolver(cube, atlases, cube.wavelengths(parse_wavelengths(wavelengths)))
+    resolver = make_resolver(cube, atlases, cube.resolve_wavelengths(parse_wavelengths(wavelengths)))
     ingredients = resolver.ingredients(words)
     if over is not None and output is not None:
         paint(make_brush(cube, kind, ingredients, medium, encoding, method), over, output, force=force)

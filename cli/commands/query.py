@@ -108,7 +108,7 @@ def command(
     if fill_missing:
         cube = _fill_missing(cube, mapped.rgb)
     results: Iterable[QueryResult] = query(
-        cube, mapped.rgb, parse_wavelengths(wavelengths), mode, asked=mapped.requested
+        cube, mapped.rgb, parse_wavelengths(wavelengths), mode, requested_rgb=mapped.requested
     )
     if plot_path is not None:
         from uplift.viz.spectra import plot_spectra
@@ -129,7 +129,7 @@ def _warn_if_mapped(mapped: GamutMapped, method: str) -> None:
 
 def _fill_missing(cube: Cube, rgb: Array) -> Cube:
     """Fill the cells that the colours need, with a warning that counts the colours."""
-    count = int((~cube.holds(rgb)).sum())
+    count = int((~cube.covers(rgb)).sum())
     if count:
         problem = f"{count} of {len(rgb)} colours are not in the cube's scene: filled from the packaged cube"
         warnings.warn(UpliftWarning(problem, code="colours-filled"), stacklevel=1)

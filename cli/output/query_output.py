@@ -33,7 +33,7 @@ def as_json(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
 def _object(cube: Cube, result: QueryResult) -> dict[str, Any]:
     return {
         "rgb": result.rgb.tolist(),
-        "requested_rgb": result.asked.tolist(),
+        "requested_rgb": result.requested_rgb.tolist(),
         "wavelengths": result.wavelengths.tolist(),
         "reflectance": result.reflectance.tolist(),
         "round_trip": {"rgb": result.round_trip.tolist(), "delta_e_2000": result.delta_e_2000},
@@ -92,10 +92,10 @@ def _mapped(cube: Cube, result: QueryResult) -> dict[str, str]:
     """Return the requested colour if it was outside [0, 1]."""
     from uplift.colorimetry.delta_e import delta_e_rgb
 
-    if (result.asked == result.rgb).all():
+    if (result.requested_rgb == result.rgb).all():
         return {}
-    distance = float(delta_e_rgb(cube.data.sensor, result.asked, result.rgb))
-    return {"requested": f"{format_rgb(result.asked)}  outside [0, 1], mapped by ΔE00 {distance:.2g}"}
+    distance = float(delta_e_rgb(cube.data.sensor, result.requested_rgb, result.rgb))
+    return {"requested": f"{format_rgb(result.requested_rgb)}  outside [0, 1], mapped by ΔE00 {distance:.2g}"}
 
 
 def _standard_error(cube: Cube, result: QueryResult) -> str:

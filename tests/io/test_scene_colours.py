@@ -68,7 +68,7 @@ def test_its_points_are_those_of_the_whole_cube(scene_cube, macbeth_cube):
 
 @pytest.mark.parametrize("mode", MODES)
 def test_its_answers_to_the_scene_are_those_of_the_whole_cube(scene_cube, macbeth_cube, photo_colours, mode):
-    assert scene_cube.holds(photo_colours).all()
+    assert scene_cube.covers(photo_colours).all()
     rgb = photo_colours if mode != "refined" else photo_colours[::10]
     answers = (cube.reflectance(rgb, WAVELENGTHS, mode) for cube in (scene_cube, macbeth_cube))
     np.testing.assert_allclose(*answers, rtol=0, atol=1e-9)
@@ -92,7 +92,7 @@ def test_what_bulk_answers_need_is_there_for_the_very_pixels(scene_cube, photo_c
 def outsiders(cube):
     """Linear RGB (n, 3) that the cube has no points for."""
     rgb = np.random.default_rng(3).random((500, 3))
-    return rgb[~cube.holds(rgb)]
+    return rgb[~cube.covers(rgb)]
 
 
 @pytest.mark.parametrize(

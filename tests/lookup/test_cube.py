@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import uplift
+from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import Status
 from uplift.lookup import MODES
@@ -69,7 +70,7 @@ def test_the_question_is_left_as_it_was(small_cube, mode):
 
 def test_the_default_wavelengths_are_the_sensor_s(small_cube):
     at = small_cube.data.sensor.wavelengths
-    np.testing.assert_array_equal(small_cube.wavelengths(), at)
+    np.testing.assert_array_equal(small_cube.wavelengths, at)
     np.testing.assert_array_equal(small_cube.reflectance(RED), small_cube.reflectance(RED, at))
 
 
@@ -133,7 +134,7 @@ def test_what_is_no_colour_is_refused(small_cube, mode, rgb):
 def test_one_bad_colour_among_many_is_quoted(small_cube):
     rgb = random_colours(10)
     rgb[7] = (0.5, 1.25, 0)
-    with pytest.raises(ColourError, match=r"linear RGB \(0\.5, 1\.25, 0\) lies outside \[0, 1\]; .* --8bit"):
+    with raises(ColourError, "rgb-out-of-gamut"):
         small_cube.reflectance(rgb)
 
 
@@ -150,7 +151,7 @@ def test_rounding_takes_no_colour_out_of_the_space(small_cube, mode):
 
 @pytest.mark.parametrize("name", ["", "Spectra", "exact", None, 3])
 def test_unknown_modes_are_refused_with_the_known(small_cube, name):
-    with pytest.raises(OptionError, match=f"unknown mode '{name}'; use one of spectra, moments, refined"):
+    with raises(OptionError, "unknown-mode"):
         small_cube.reflectance(RED, mode=name)
 
 
@@ -170,7 +171,7 @@ def test_unknown_modes_are_refused_with_the_known(small_cube, name):
     ],
 )
 def test_bad_wavelengths_are_refused(small_cube, mode, wavelengths):
-    with pytest.raises(OptionError, match="wavelengths must be a list of positive numbers in nm"):
+    with raises(OptionError, "invalid-wavelengths"):
         small_cube.reflectance(RED, wavelengths, mode)
 
 
@@ -195,7 +196,7 @@ def test_decoding_and_encoding_are_inverse(small_cube):
 
 @pytest.mark.parametrize("codes", [-1, 256, [0, 255.001, 3], np.nan, np.inf, "red", [[1], [2, 3]]])
 def test_codes_outside_are_refused(small_cube, codes):
-    with pytest.raises(ColourError, match="8-bit codes"):
+    with raises(ColourError, "invalid-codes"):
         small_cube.decode(codes)
 
 

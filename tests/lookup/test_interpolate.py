@@ -7,7 +7,7 @@ import pytest
 
 from uplift.lookup import MODES
 from uplift.lookup.interpolate import lattice_spectra, refined_multipliers
-from uplift.lookup.refine import REFINED
+from uplift.lookup.refine import TOLERANCE
 from uplift.models import reflectance
 
 
@@ -89,7 +89,7 @@ def test_moments_come_near(small_cube):
 
 
 def test_refined_comes_nearly_exact(small_cube):
-    assert miss(small_cube, random_colours(), "refined").max() <= 2 * REFINED
+    assert miss(small_cube, random_colours(), "refined").max() <= 2 * TOLERANCE
 
 
 def test_refined_comes_nearly_exact_for_most_with_the_sigmoid(small_sigmoid_cube):
@@ -112,7 +112,7 @@ def test_refined_multipliers_evaluate_to_the_colour(small_cube):
     rgb = random_colours(50)
     data = small_cube.data
     spectra = data.model.squash(refined_multipliers(data, rgb) @ data.model.basis(data.sensor.wavelengths).T)
-    np.testing.assert_allclose(data.sensor.rgb(spectra), rgb, rtol=0, atol=2 * REFINED)
+    np.testing.assert_allclose(data.sensor.rgb(spectra), rgb, rtol=0, atol=2 * TOLERANCE)
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments", "refined"])

@@ -19,7 +19,7 @@ FACES = st.tuples(st.integers(1, 6), st.integers(0, 2), arrays(float, 3, element
 def test_weights_are_a_partition_of_unity_entries_included(small_cube, rgb):
     nodes = around(small_cube.data, rgb)
     assert (nodes.weights >= 0).all()
-    assert ((nodes.share >= 0) & (nodes.share <= 1)).all()
+    assert ((nodes.lattice_weight >= 0) & (nodes.lattice_weight <= 1)).all()
     data = small_cube.data
     ones = nodes.weighted_sum(np.ones((data.lattice.size, 1)), np.ones((len(data.atlas.names), 1)))
     np.testing.assert_allclose(ones, 1, atol=1e-14)

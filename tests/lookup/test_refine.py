@@ -36,12 +36,12 @@ def test_what_it_follows_is_what_evaluation_finds(setting, monkeypatch):
     """The distance is a sum of changes; slices of a few columns do not show."""
     model, ahead, multipliers = setting
     goal = minimum_norm.forward_rgb(model, ahead, 0.7 * multipliers).T
-    monkeypatch.setattr(refine, "COLUMNS", 7)
+    monkeypatch.setattr(refine, "BLOCK_COLUMNS", 7)
     moved = multipliers.T.copy()
     distance = refine._descend(model, ahead, moved, goal)
     evaluated = np.abs(minimum_norm.residual(model, ahead, moved.T, goal.T)).max(axis=1)
     np.testing.assert_allclose(distance, evaluated, rtol=0, atol=1e-10)
-    assert distance.max() <= refine.REFINED
+    assert distance.max() <= refine.TOLERANCE
 
 
 def test_steps_that_do_not_help_are_not_taken(setting):

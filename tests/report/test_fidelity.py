@@ -117,7 +117,7 @@ def test_entries_of_another_atlas_have_no_lattice_errors(small_cube, repository)
     assert {getattr(found.entries, name) for name in own} == {None}
     assert sorted((*found.entries.names, *found.out_of_gamut)) == sorted(other.names)
     name = found.entries.names[0]
-    (measured,) = on_grid(uplift.Atlas((other.entries[other.names.index(name)],)), small_cube.wavelengths())
+    (measured,) = on_grid(uplift.Atlas((other.entries[other.names.index(name)],)), small_cube.wavelengths)
     assert found.entries.rgb[0] == pytest.approx(small_cube.data.sensor.rgb(measured), abs=1e-12)
     assert found.entries.delta_e[0, 1] == pytest.approx(
         delta_e(found.entries.answer[0], measured, "A"), abs=1e-6
@@ -226,7 +226,7 @@ def test_calibration_against_an_unknown_atlas(small_cube, repository):
     found = assess(small_cube, "small.uplift", 1, other, ("D65",))
     squares, errors, one, two = [], [], 0, 0
     for entry in other.entries:
-        (measured,) = on_grid(uplift.Atlas((entry,)), small_cube.wavelengths())
+        (measured,) = on_grid(uplift.Atlas((entry,)), small_cube.wavelengths)
         rgb = small_cube.data.sensor.rgb(measured)
         if rgb.min() < 0 or rgb.max() > 1:
             continue

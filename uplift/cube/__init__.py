@@ -1,4 +1,4 @@
-"""The cube: its data, and the file it is stored in."""
+"""The content of a cube, and the file that stores it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The cube file: a safetensors container with one JSON text of metadata (docs/cube-file.md). Same cube, same bytes."""
+"""Read and write cube files: safetensors with one JSON text of metadata (docs/cube-file.md).
+
+Equal cubes have equal bytes.
+"""
 
 from __future__ import annotations
 
@@ -24,87 +27,141 @@ from uplift.models import from_description
 FORMAT = "uplift cube"
 VERSION = 3
 KEY = "uplift"
-"""The one metadata entry: safetensors does not keep several in a fixed order."""
+"""The only metadata entry: safetensors does not keep the order of several."""
 
 Tensors = dict[str, NDArray[Any]]
 FEATURES = {"debug": "round", "errors": "standard_error"}
-"""Arrays that a cube may have or not, by the feature that says so."""
+"""Optional arrays by the features that announce them."""
+INVALID = (AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError, UpliftError)
+"""Errors caused by the content of a file."""
 
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write atomically. Raises `OutputError`."""
+    """Write a cube file, atomically.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    path : path-like
+        File to write.
+    force : bool, default False
+        Replace an existing file.
+
+    Raises
+    ------
+    OutputError
+        The file exists and ``force`` is false, or cannot be written.
+    """
     from safetensors.numpy import save
 
     tensors, metadata = contents(data)
     metadata["digest"] = _digest(tensors, metadata)
     with atomic_write(path, force=force) as temporary:
-        # Its own way to a file has a temporary one too, which nobody would remove if this process were killed.
+        # safetensors' own save_file uses another temporary file, which would remain if this process were killed.
         temporary.write_bytes(save(tensors, metadata={KEY: _json(metadata)}))
 
 
 def read(path: str | os.PathLike[str]) -> CubeData:
-    """Read and check everything. Raises `CubeFileError` for whatever is no whole cube of this version."""
+    """Read a cube file, and check its digest and all its content.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+
+    Returns
+    -------
+    CubeData
+        The cube.
+
+    Raises
+    ------
+    CubeFileError
+        The file is missing (``cube-not-found``), damaged (``cube-damaged``), not a cube (``not-a-cube``), of another
+        version (``cube-version``), or its content is invalid (``cube-invalid``, or a code of `check`).
+    """
     path = Path(path)
     tensors, metadata = _load(path)
     if metadata.get("format") != FORMAT:
-        raise _broken(path, "is a safetensors file, but no uplift cube")
+        raise _error(path, "is not an uplift cube", "not-a-cube")
     if metadata.get("version") != VERSION:
         raise CubeFileError(
-            f"is a cube of format version {metadata.get('version')}, this uplift reads version {VERSION}",
+            f"must have format version {VERSION}, got {metadata.get('version')}",
+            code="cube-version",
             path=path,
-            hint="rebuild it, or use the uplift that wrote it",
+            hint="build the cube again, or use the version of uplift that wrote it",
         )
     digest = metadata.pop("digest", None)
     if digest != _digest(tensors, metadata):
-        raise _broken(path, "is damaged: the content does not match its digest")
+        raise _error(path, "is damaged: the content does not match its digest", "cube-damaged")
     try:
         data = _data(tensors, metadata)
         check(data, stored=len(tensors["status"]))
-    except (
-        AttributeError,
-        KeyError,
-        MemoryError,
-        OverflowError,
-        TypeError,
-        ValueError,
-        UpliftError,
-    ) as error:
-        raise _broken(path, f"is not a complete cube ({type(error).__name__}: {error})") from error
+    except CubeFileError as error:
+        raise _error(path, f"is not a valid cube: {error.problem}", error.code) from error
+    except INVALID as error:
+        problem = f"is not a valid cube ({type(error).__name__}: {error})"
+        raise _error(path, problem, "cube-invalid") from error
     return data
 
 
 def digest(data: CubeData) -> str:
-    """Hex SHA-256 of the content; the same for cubes that answer alike in every bit."""
+    """Compute the digest of a cube. Cubes with equal digests give equal answers, bit for bit.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+
+    Returns
+    -------
+    str
+        SHA-256 in hexadecimal.
+    """
     return _digest(*contents(data))
 
 
 def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
-    """The arrays that a file holds, by name, and its metadata but for the digest: JSON values."""
+    """Return the content of a cube file without the digest.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+
+    Returns
+    -------
+    tensors : dict of str to ndarray
+        Arrays by their names in the file.
+    metadata : dict
+        JSON values.
+    """
     return _tensors(data), _metadata(data)
 
 
 def _load(path: Path) -> tuple[Tensors, dict[str, Any]]:
     from safetensors import SafetensorError, safe_open
 
-    if not os.path.isfile(path):  # False for impossible names too, where Path.is_file raises
-        raise CubeFileError("no such file", path=path, hint="'uplift build' makes cubes")
+    if not os.path.isfile(path):  # Path.is_file raises for impossible names
+        raise CubeFileError("no such file", code="cube-not-found", path=path, hint="build the cube first")
     try:
         with safe_open(path, framework="numpy") as file:
-            metadata = json.loads((file.metadata() or {}).get(KEY, "{}"), parse_constant=_no_number)
+            metadata = json.loads((file.metadata() or {}).get(KEY, "{}"), parse_constant=_reject_constant)
             tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
     except (SafetensorError, ValueError, TypeError, OSError, RecursionError) as error:
-        raise _broken(path, f"is not a cube file, or is cut short ({error})") from error
+        raise _error(path, f"is not a cube file, or is truncated ({error})", "not-a-cube") from error
     if not isinstance(metadata, dict):
-        raise _broken(path, "is a safetensors file, but no uplift cube")
+        raise _error(path, "is not an uplift cube", "not-a-cube")
     return tensors, metadata
 
 
-def _no_number(text: str) -> None:
-    raise ValueError(f"{text} is no number")
+def _reject_constant(text: str) -> None:
+    raise ValueError(f"{text} is not a finite number")
 
 
-def _broken(path: Path, problem: str) -> CubeFileError:
-    return CubeFileError(problem, path=path, hint="rebuild it with 'uplift build'")
+def _error(path: Path, problem: str, code: str) -> CubeFileError:
+    return CubeFileError(problem, code=code, path=path, hint="build the cube again")
 
 
 def _json(metadata: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""Asking a cube. Starts in the time that numpy takes: neither the fit nor colour-science is needed."""
+"""Queries of a cube with numpy alone: neither the fit, JAX nor colour-science is imported."""
 
 from __future__ import annotations
 

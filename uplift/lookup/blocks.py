@@ -1,4 +1,4 @@
-"""Long questions block by block, so that memory does not grow with them, on as many threads as are wanted."""
+"""Process large inputs in blocks of bounded memory, on several threads."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import DTypeLike, NDArray
 from uplift.common.arrays import Array
 
 BLOCK = 4096
-"""Rows worked on at a time: what they need stays in a core's cache."""
+"""Rows per block: their temporary arrays fit into a core's cache."""
 
 Function = Callable[[Array], NDArray[Any]]
 """From rows (k, K) to rows (k, N)."""
@@ -27,12 +27,33 @@ def blockwise(
     threads: int = 1,
     block: int = BLOCK,
 ) -> NDArray[Any]:
-    """``function`` of rows (…, K), as (…, width) of ``dtype``; numpy lets threads run beside one another."""
+    """Apply a function of rows block by block. numpy releases the GIL, so threads run in parallel.
+
+    Parameters
+    ----------
+    function : callable
+        From rows (k, K) to rows (k, width).
+    rows : ndarray, shape (..., K)
+        Input.
+    width : int
+        Number of columns of the result.
+    dtype : dtype, default float64
+        Type of the result.
+    threads : int, default 1
+        Number of threads.
+    block : int, default 4096
+        Rows per block.
+
+    Returns
+    -------
+    ndarray, shape (..., width)
+        The result; it does not depend on the number of threads.
+    """
     flat = rows.reshape(-1, rows.shape[-1])
-    found = np.empty((len(flat), width), dtype=dtype)
+    result = np.empty((len(flat), width), dtype=dtype)
 
     def work(start: int) -> None:
-        found[start : start + block] = function(flat[start : start + block])
+        result[start : start + block] = function(flat[start : start + block])
 
     starts = range(0, len(flat), block)
     if min(threads, len(starts)) < 2:
@@ -40,4 +61,4 @@ def blockwise(
     else:
         with ThreadPoolExecutor(threads) as pool:
             deque(pool.map(work, starts), maxlen=0)
-    return found.reshape(*rows.shape[:-1], width)
+    return result.reshape(*rows.shape[:-1], width)

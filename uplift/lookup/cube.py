@@ -1,12 +1,13 @@
-"""A cube that answers: linear RGB in, coefficients and reflectance spectra out. numpy alone."""
+"""The cube: linear RGB in, coefficients and reflectance spectra out. Needs numpy only."""
 
 from __future__ import annotations
 
 import os
 from dataclasses import dataclass
 from functools import partial
+from importlib import import_module
 from importlib.resources import as_file, files
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -18,32 +19,113 @@ from uplift.lookup.blocks import Function, blockwise
 from uplift.lookup.fill import fill_missing, missing_points
 from uplift.lookup.interpolate import MODES, coefficients, standard_error
 from uplift.lookup.node_table import TABULATED, tabulate
-from uplift.lookup.nodes import holds
-from uplift.lookup.validation import colours, float_type, floats, thread_count, wavelengths_asked
+from uplift.lookup.nodes import covers
+from uplift.lookup.validation import as_colours, as_float_type, as_floats, as_thread_count, as_wavelengths
 
-MOST_BYTES = 1 << 28
-"""Largest table of the lattice's spectra that a question is answered from."""
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MAX_TABLE_BYTES = 1 << 28
+"""Largest table of the spectra of all lattice points that a query computes."""
+NOTEBOOK = "uplift.viz.notebook"
+"""Module of the figures. It lies above this one, so it is imported by name, when a figure is requested."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Cube:
-    """A cube ready to be asked; ``data`` is all that its file holds."""
+    """A spectral uplifting cube.
+
+    Parameters
+    ----------
+    data : CubeData
+        Content of a cube file.
+
+    Examples
+    --------
+    >>> import uplift
+    >>> cube = uplift.load()
+    >>> cube
+    Cube(moments with 9 coefficients, dim 16, sRGB under D65, 0 entries)
+    >>> cube.reflectance([0.8, 0.2, 0.1], wavelengths=[450, 550, 650]).round(2)
+    array([0.08, 0.17, 0.86])
+    """
 
     data: CubeData
+
+    def __repr__(self) -> str:
+        return f"Cube{repr(self.data).removeprefix('CubeData')}"
+
+    def _repr_html_(self) -> str:
+        """HTML for notebooks: facts, swatches of the atlas entries, and spectra."""
+        return str(import_module(NOTEBOOK).cube_html(self))
+
+    @property
+    def dim(self) -> int:
+        """Lattice points along each axis."""
+        return self.data.lattice.dim
+
+    @property
+    def space(self) -> str:
+        """RGB space of queries."""
+        return self.data.sensor.space
+
+    @property
+    def illuminant(self) -> str:
+        """Illuminant under which reflectances have their RGB."""
+        return self.data.sensor.illuminant
+
+    @property
+    def observer(self) -> str:
+        """Colour-matching functions."""
+        return self.data.sensor.observer
+
+    @property
+    def wavelengths(self) -> Array:
+        """(N,) wavelengths of the sensor in nm, the default of queries."""
+        return self.data.sensor.wavelengths
+
+    @property
+    def coefficient_count(self) -> int:
+        """Coefficients per spectrum."""
+        return self.data.model.count
+
+    @property
+    def atlas_names(self) -> tuple[str, ...]:
+        """Names of the atlas entries that constrain the cube."""
+        return self.data.atlas.names
 
     def coefficients(
         self, rgb: ArrayLike, *, dtype: DTypeLike = np.float64, threads: int = 1
     ) -> NDArray[Any]:
-        """Coefficients (…, C) of the model at linear RGB (…, 3), interpolated between the lattice points.
+        """Interpolate the coefficients of the model between the lattice points.
 
-        ``dtype``, ``threads`` and what is raised: as for `reflectance`.
+        Parameters
+        ----------
+        rgb : array_like, shape (..., 3)
+            Linear RGB in [0, 1].
+        dtype : {float64, float32}, default float64
+            Type of the result.
+        threads : int, default 1
+            Number of threads; the result does not depend on it.
+
+        Returns
+        -------
+        ndarray, shape (..., C)
+            Coefficients.
+
+        Raises
+        ------
+        ColourError
+            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
+        OptionError
+            An unsupported type, or fewer than one thread.
         """
         return blockwise(
             partial(coefficients, self.data),
-            colours(rgb, self.data.sensor),
-            self.data.model.count,
-            float_type(dtype),
-            thread_count(threads),
+            as_colours(rgb, self.data.sensor),
+            self.coefficient_count,
+            as_float_type(dtype),
+            as_thread_count(threads),
         )
 
     def reflectance(
@@ -55,97 +137,268 @@ class Cube:
         dtype: DTypeLike = np.float64,
         threads: int = 1,
     ) -> NDArray[Any]:
-        """Reflectance (…, N) in [0, 1] of linear RGB (…, 3), as the cube's space and illuminant have it.
+        """Compute reflectance spectra whose colour, under the illuminant of the cube, is the given RGB.
 
         Parameters
         ----------
-        rgb : linear RGB in [0, 1] in the space of the cube.
-        wavelengths : (N,) nm; by default those of the cube's sensor. Outside the model's range the
-            spectrum is held flat.
-        mode : ``spectra`` (exact), ``moments`` (one reconstruction, nearly exact), ``refined`` (exact, ditto),
-            ``nearest`` (the spectrum of the nearest node, whose colour differs).
-        dtype : of the answer: float64 or float32, which takes half the room and differs by less than 1e-6.
-        threads : how many share a question of thousands of colours; the answer is the same.
+        rgb : array_like, shape (..., 3)
+            Linear RGB in [0, 1], in the RGB space of the cube.
+        wavelengths : array_like, shape (N,), optional
+            Wavelengths in nm, by default those of the sensor. Spectra are constant outside the range of the model.
+        mode : {"spectra", "moments", "refined", "nearest"}, default "spectra"
+            ``"spectra"`` interpolates spectra, with exact colours. ``"moments"`` interpolates coefficients, with
+            nearly exact colours. ``"refined"`` moves those to the exact colour. ``"nearest"`` is the spectrum of
+            the nearest node, of another colour.
+        dtype : {float64, float32}, default float64
+            Type of the result; float32 differs by less than 1e-6.
+        threads : int, default 1
+            Number of threads; the result does not depend on it.
+
+        Returns
+        -------
+        ndarray, shape (..., N)
+            Reflectances in [0, 1].
 
         Raises
         ------
-        ColourError : a colour outside [0, 1] or not finite.
-        OptionError : an unknown mode, wavelengths that are not positive numbers, another dtype, no threads.
+        ColourError
+            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
+        OptionError
+            An unknown mode, invalid wavelengths, an unsupported type, or fewer than one thread.
+
+        Examples
+        --------
+        >>> import uplift
+        >>> uplift.load().reflectance([[1, 1, 1], [0, 0, 0]], [500, 600]).round(3)
+        array([[1., 1.],
+               [0., 0.]])
         """
         if mode not in MODES:
-            raise OptionError(f"unknown mode '{mode}'", hint=f"use one of {', '.join(MODES)}")
-        at, kind, count = self.wavelengths(wavelengths), float_type(dtype), thread_count(threads)
-        asked = colours(rgb, self.data.sensor)
+            raise OptionError(
+                f"unknown mode '{mode}'", code="unknown-mode", hint=f"use one of {', '.join(MODES)}"
+            )
+        at, kind, count = (
+            self.resolve_wavelengths(wavelengths),
+            as_float_type(dtype),
+            as_thread_count(threads),
+        )
+        colours = as_colours(rgb, self.data.sensor)
         function: Function
-        if mode in TABULATED and self._tabulates(asked.size // 3, len(at) * kind.itemsize):
+        if mode in TABULATED and self._is_table_worthwhile(colours.size // 3, len(at) * kind.itemsize):
             function = partial(TABULATED[mode], tabulate(self.data, at, kind, count))
         else:
             function = partial(_reflectance, self.data, mode, at)
-        return blockwise(function, asked, len(at), kind, count)
+        return blockwise(function, colours, len(at), kind, count)
 
-    def _tabulates(self, colours: int, bytes_each: int) -> bool:
-        """Whether to work out the spectra of all lattice points first, so that no block does so again."""
-        table = self.data.lattice.size * bytes_each
-        return table <= MOST_BYTES and colours >= int(self.data.points.present.sum())
+    def _is_table_worthwhile(self, colours: int, row_bytes: int) -> bool:
+        """Whether to compute the spectra of all lattice points once, instead of repeatedly per block."""
+        bytes_needed = self.data.lattice.size * row_bytes
+        return bytes_needed <= MAX_TABLE_BYTES and colours >= int(self.data.points.present.sum())
 
-    def holds(self, rgb: ArrayLike) -> Mask:
-        """Whether (…,) linear RGB (…, 3) can be asked: always, but for cubes of a scene. Raises `ColourError`."""
-        asked = colours(rgb, self.data.sensor)
-        return holds(self.data, asked.reshape(-1, 3)).reshape(asked.shape[:-1])
+    def covers(self, rgb: ArrayLike) -> Mask:
+        """Test whether the cube can answer colours: always, unless it was built for a scene.
+
+        Parameters
+        ----------
+        rgb : array_like, shape (..., 3)
+            Linear RGB in [0, 1].
+
+        Returns
+        -------
+        ndarray of bool, shape (...)
+            True where the cube can answer.
+
+        Raises
+        ------
+        ColourError
+            A colour outside [0, 1] or not finite.
+        """
+        colours = as_colours(rgb, self.data.sensor)
+        return covers(self.data, colours.reshape(-1, 3)).reshape(colours.shape[:-1])
 
     def fill_missing(
         self, rgb: ArrayLike | None = None, other: Cube | None = None, *, threads: int = 1
     ) -> Cube:
-        """A cube of a scene with what linear RGB (…, 3), by default all colours, lack, from another cube.
+        """Add missing lattice points of a sparse cube, with the spectra of another cube.
 
-        ``other``, by default the package's own, gives its spectra at the absent lattice points, in this cube's
-        model and exact in colour. Raises `ColourError`, also where the cubes are not of the same RGB.
+        The spectra are fitted by the model of this cube, and have exact colours.
+
+        Parameters
+        ----------
+        rgb : array_like, shape (..., 3), optional
+            Colours that the result must answer; all by default.
+        other : Cube, optional
+            Cube of the same RGB space, illuminant and observer; the default cube of the package by default.
+        threads : int, default 1
+            Number of threads.
+
+        Returns
+        -------
+        Cube
+            The filled cube; this cube if no point is missing.
+
+        Raises
+        ------
+        ColourError
+            Cubes of different RGB spaces, or a colour that ``other`` cannot answer.
         """
-        asked = None if rgb is None else colours(rgb, self.data.sensor).reshape(-1, 3)
-        points = missing_points(self.data, asked)
+        colours = None if rgb is None else as_colours(rgb, self.data.sensor).reshape(-1, 3)
+        points = missing_points(self.data, colours)
         if not points.size:
             return self
-        return Cube(
-            fill_missing(self.data, points, (load() if other is None else other).data, thread_count(threads))
-        )
+        source = load() if other is None else other
+        return Cube(fill_missing(self.data, points, source.data, as_thread_count(threads)))
 
     def standard_error(self, rgb: ArrayLike) -> Array | None:
-        """By how much (…,) answers at linear RGB (…, 3) are expected to miss measurements, a root mean square.
+        """Estimate the root-mean-square difference between answers and measurements.
 
-        ΔE00 under the light ``cube.data.error_illuminant``, learnt from atlas entries left out; None where the cube has
-        too few of them. Raises `ColourError`.
+        The estimate is learned from atlas entries that are left out of the fit.
+
+        Parameters
+        ----------
+        rgb : array_like, shape (..., 3)
+            Linear RGB in [0, 1].
+
+        Returns
+        -------
+        ndarray, shape (...), or None
+            ΔE00 under ``data.error_illuminant``; None if the atlas is too small to estimate it.
+
+        Raises
+        ------
+        ColourError
+            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
         """
         if self.data.points.standard_error is None:
             return None
-        return blockwise(partial(standard_error, self.data), colours(rgb, self.data.sensor), 1)[..., 0]
+        return blockwise(partial(standard_error, self.data), as_colours(rgb, self.data.sensor), 1)[..., 0]
 
-    def wavelengths(self, wavelengths: ArrayLike | None = None) -> Array:
-        """The wavelengths (N,) nm that are asked for; by default those of the sensor. Raises `OptionError`."""
-        return self.data.sensor.wavelengths if wavelengths is None else wavelengths_asked(wavelengths)
+    def resolve_wavelengths(self, wavelengths: ArrayLike | None = None) -> Array:
+        """Return wavelengths as an array, by default those of the sensor.
+
+        Parameters
+        ----------
+        wavelengths : array_like, shape (N,), optional
+            Wavelengths in nm.
+
+        Returns
+        -------
+        ndarray, shape (N,)
+            Wavelengths in nm.
+
+        Raises
+        ------
+        OptionError
+            Values that are not positive numbers.
+        """
+        return self.wavelengths if wavelengths is None else as_wavelengths(wavelengths)
 
     def decode(self, codes: ArrayLike) -> Array:
-        """Linear RGB (…) of 8-bit codes (…) as the cube's space encodes them.
+        """Convert 8-bit codes to linear RGB, by the encoding of the RGB space.
 
-        Raises `ColourError` for codes outside 0–255; fractions are interpolated.
+        Parameters
+        ----------
+        codes : array_like, shape (...)
+            Codes from 0 to 255; fractions are interpolated.
+
+        Returns
+        -------
+        ndarray, shape (...)
+            Linear RGB.
+
+        Raises
+        ------
+        ColourError
+            Codes outside 0 to 255.
         """
-        array = floats(codes, "8-bit codes are numbers")
-        if not ((array >= 0) & (array <= 255)).all():
-            raise ColourError("8-bit codes run from 0 to 255", hint="leave out --8bit for linear floats")
+        array = as_floats(codes, "8-bit codes must be numbers", "invalid-codes")
+        outside = array[~((array >= 0) & (array <= 255))]
+        if outside.size:
+            raise ColourError(
+                f"8-bit codes must be in [0, 255], got {outside[0]:g}",
+                code="invalid-codes",
+                hint="pass linear RGB to the query without decoding it",
+            )
         return self.data.sensor.decode(array)
 
     def encode(self, rgb: ArrayLike) -> Array:
-        """8-bit codes (…), with fractions, of linear RGB (…) in [0, 1]."""
+        """Convert linear RGB to 8-bit codes, the inverse of `decode`.
+
+        Parameters
+        ----------
+        rgb : array_like, shape (...)
+            Linear RGB in [0, 1].
+
+        Returns
+        -------
+        ndarray, shape (...)
+            Codes from 0 to 255, with fractions.
+        """
         return np.interp(np.asarray(rgb, dtype=float), self.data.sensor.decoding, np.arange(256))
 
+    def plot(self, rgb: ArrayLike, wavelengths: ArrayLike | None = None) -> Figure:
+        """Plot the reflectance spectra of colours, each in its own colour.
+
+        Parameters
+        ----------
+        rgb : array_like, shape (..., 3)
+            Linear RGB in [0, 1].
+        wavelengths : array_like, shape (N,), optional
+            Wavelengths in nm, by default those of the sensor.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure; ``savefig`` writes it.
+
+        Raises
+        ------
+        ColourError
+            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
+        """
+        return import_module(NOTEBOOK).plot_cube(self, rgb, wavelengths)
+
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
-        """Write the cube file, atomically. Raises `OutputError`."""
+        """Write the cube file, atomically.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write.
+        force : bool, default False
+            Replace an existing file.
+
+        Raises
+        ------
+        OutputError
+            The file exists and ``force`` is false, or cannot be written.
+        """
         write(self.data, path, force=force)
 
 
 def load(path: str | os.PathLike[str] | None = None) -> Cube:
-    """The cube in a file, or the default cube of the package (sRGB, D65, no atlas).
+    """Load a cube.
 
-    Raises `CubeFileError` for a file that is no whole cube.
+    Parameters
+    ----------
+    path : path-like, optional
+        Cube file. By default the cube of the package: sRGB, D65, without an atlas.
+
+    Returns
+    -------
+    Cube
+        The cube.
+
+    Raises
+    ------
+    CubeFileError
+        The file is missing, damaged, or not a cube file of this version.
+
+    Examples
+    --------
+    >>> import uplift
+    >>> uplift.load().space
+    'sRGB'
     """
     if path is not None:
         return Cube(read(path))

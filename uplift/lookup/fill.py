@@ -1,4 +1,4 @@
-"""Points that a sparse cube lacks, taken from another cube: its spectra in the sparse cube's model, exact in colour."""
+"""Fill missing points of a sparse cube with the spectra of another cube, fitted by the sparse cube's model."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices
@@ -19,59 +20,91 @@ from uplift.lookup.nodes import cells
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models import reflectance
 
-FINITE = 1e-6
-"""Nearest to 0 and 1 that a reflectance is taken for where multipliers are sought."""
+MIN_REFLECTANCE = 1e-6
+"""Reflectances are clipped to this distance from 0 and 1, so that the linear part of the model is finite."""
 
 
 def missing_points(data: CubeData, rgb: Array | None = None) -> Indices:
-    """Numbers of the absent points that linear RGB (n, 3) need; of all of them without."""
+    """Return the absent points that linear RGB (n, 3) need, or all absent points."""
     absent = ~data.points.present
     if rgb is not None:
-        asked = np.zeros(data.lattice.size, dtype=bool)
-        asked[cells(data, rgb)] = True
-        absent &= data.lattice.corner_points(asked)
+        queried = np.zeros(data.lattice.size, dtype=bool)
+        queried[cells(data, rgb)] = True
+        absent &= data.lattice.corner_points(queried)
     return np.flatnonzero(absent)
 
 
 def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int = 1) -> CubeData:
-    """The cube with absent ``points`` (k,) as ``other`` answers at their colours.
+    """Return the cube with absent points filled.
 
-    Nobody knows how far those are from measurements: they get the largest standard error that the cube has.
-    Raises `ColourError` for cubes of different RGB, or where ``other`` has no answer itself.
+    Their standard error is the largest of the cube, as their distance from measurements is unknown.
+
+    Parameters
+    ----------
+    data : CubeData
+        A sparse cube.
+    points : ndarray of int, shape (k,)
+        Absent points to fill.
+    other : CubeData
+        Cube that answers the colours of the points.
+    threads : int, default 1
+        Number of threads.
+
+    Returns
+    -------
+    CubeData
+        The filled cube.
+
+    Raises
+    ------
+    ColourError
+        Cubes of different RGB spaces, or a colour that ``other`` cannot answer.
     """
-    _require_same(data.sensor, other.sensor)
-    target, at = data.lattice.target(points), data.sensor.wavelengths
-    multipliers = blockwise(partial(_as_other, data, other), target, data.model.count, threads=threads)
-    coefficients = data.model.to_storage(multipliers)
-    rgb = data.sensor.rgb(reflectance(data.model, coefficients.astype(data.points.coefficients.dtype), at))
-    kind = data.points.coefficients.dtype
-    if (np.abs(target - rgb) > data.threshold).any():  # single precision is not enough
-        kind, rgb = np.dtype(np.float64), data.sensor.rgb(reflectance(data.model, coefficients, at))
+    _require_same_rgb(data.sensor, other.sensor)
+    target, table = data.lattice.target(points), data.points
+    multipliers = blockwise(partial(_fit_to_other, data, other), target, data.model.count, threads=threads)
+    coefficients, kind = data.model.to_storage(multipliers), table.coefficients.dtype
+    rgb = _rgb(data, coefficients.astype(kind))
+    if (np.abs(target - rgb) > data.threshold).any():  # single precision is not accurate enough
+        kind, rgb = np.dtype(np.float64), _rgb(data, coefficients)
     distance = np.abs(target - rgb).max(axis=1)
-    status = np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)
-    put: dict[str, Any] = {"rgb": rgb, "distance": distance, "status": status}
-    if data.points.standard_error is not None:
-        put["standard_error"] = data.points.standard_error.max()
-    changed: dict[str, Any] = {name: getattr(data.points, name).copy() for name in put}
-    changed["coefficients"], put["coefficients"] = data.points.coefficients.astype(kind), coefficients
-    for name, values in put.items():
-        changed[name][points] = values
-    told = {**data.provenance, "filled": {"points": len(points), "cube": digest(other)}}
-    return replace(data, provenance=told, points=replace(data.points, **changed))
+    arrays: dict[str, NDArray[Any]] = {
+        "coefficients": _put(table.coefficients.astype(kind), points, coefficients),
+        "rgb": _put(table.rgb, points, rgb),
+        "distance": _put(table.distance, points, distance),
+        "status": _put(
+            table.status, points, np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)
+        ),
+    }
+    if table.standard_error is not None:
+        arrays["standard_error"] = _put(table.standard_error, points, table.standard_error.max())
+    provenance = {**data.provenance, "filled": {"points": len(points), "cube": digest(other)}}
+    return replace(data, provenance=provenance, points=replace(table, **arrays))
 
 
-def _as_other(data: CubeData, other: CubeData, rgb: Array) -> Array:
-    """Multipliers (n, C) of the cube's model: the spectra of ``other`` at linear RGB (n, 3), then the very colour."""
+def _put(array: NDArray[Any], points: Indices, values: Any) -> NDArray[Any]:
+    changed = array.copy()
+    changed[points] = values
+    return changed
+
+
+def _rgb(data: CubeData, coefficients: Array) -> Array:
+    return data.sensor.rgb(reflectance(data.model, coefficients, data.sensor.wavelengths))
+
+
+def _fit_to_other(data: CubeData, other: CubeData, rgb: Array) -> Array:
+    """Multipliers (n, C) of the cube's model: close to the spectra of ``other``, with exactly the colours (n, 3)."""
     spectra = refined(other, rgb, data.sensor.wavelengths)
-    linear = data.model.unsquash(np.clip(spectra, FINITE, 1 - FINITE))
+    linear = data.model.unsquash(np.clip(spectra, MIN_REFLECTANCE, 1 - MIN_REFLECTANCE))
     start = np.linalg.lstsq(data.model.basis(data.sensor.wavelengths), linear.T, rcond=None)[0].T
     return refine_to_rgb(data, np.ascontiguousarray(start), rgb)
 
 
-def _require_same(mine: Sensor, its: Sensor) -> None:
-    names = [f"{sensor.space} under {sensor.illuminant}, {sensor.observer}" for sensor in (mine, its)]
+def _require_same_rgb(first: Sensor, second: Sensor) -> None:
+    names = [f"{each.space} under {each.illuminant}, {each.observer}" for each in (first, second)]
     if names[0] != names[1]:
         raise ColourError(
-            f"a cube in {names[0]} cannot be filled from one in {names[1]}",
-            hint="build it with the image in --scene, or without --scene",
+            f"a cube can only be filled from one of the same RGB space: {names[0]}, got {names[1]}",
+            code="rgb-space-mismatch",
+            hint="build the cube with all colours in its scene, or without a scene",
         )

@@ -1,11 +1,11 @@
-"""Multipliers and spectra between lattice points, in four modes (docs/mathematics.md, 8). numpy alone.
+"""Interpolate coefficients and spectra between nodes, in four modes (docs/mathematics.md, 8). Needs numpy only.
 
-spectra   the spectra of the nodes around, weighted: exact, as RGB is linear in the spectrum
-moments   their coefficients, weighted: one reconstruction in place of eight
-refined   ``moments``, then steps of least change to the very colour
-nearest   the spectrum of the node of most weight: of another colour, as near as nodes are close
+spectra   weighted spectra of the surrounding nodes; exact colours, as RGB is linear in the spectrum
+moments   weighted coefficients; one reconstruction instead of eight
+refined   ``moments``, then minimum-norm steps to the exact colour
+nearest   the spectrum of the node of largest weight, of another colour
 
-All of it in float64: on the way from moments to multipliers rounding grows.
+All of it in float64: the conversion from moments to multipliers amplifies rounding errors.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from uplift.models import evaluate, reflectance
 
 
 def coefficients(data: CubeData, rgb: Array) -> Array:
-    """Coefficients (n, C) at linear RGB (n, 3) in [0, 1]: those of the nodes around, weighted."""
+    """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1]."""
     return around(data, rgb).weighted_sum(data.points.coefficients, data.atlas.coefficients)
 
 
 def standard_error(data: CubeData, rgb: Array) -> Array:
-    """ΔE00 (n, 1) by which answers are expected to miss measurements, of a cube that can tell."""
+    """Expected ΔE00 (n, 1) between answers and measurements, for a cube with standard errors."""
     lattice = np.asarray(data.points.standard_error, dtype=float)
     return around(data, rgb).weighted_sum(lattice[:, None], data.atlas.error[:, None])
 
 
 def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) as the weighted spectra of the nodes around."""
+    """Reflectance (n, N) as weighted spectra of the nodes."""
     nodes = around(data, rgb)
     points, point = np.unique(nodes.points, return_inverse=True)
     entries, entry = np.unique(nodes.entry, return_inverse=True)
@@ -47,34 +47,30 @@ def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 
 def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the nearest node, lattice point or atlas entry."""
-    return reflectance(
-        data.model, around(data, rgb).nearest(data.points.coefficients, data.atlas.coefficients), wavelengths
-    )
+    found = around(data, rgb).nearest(data.points.coefficients, data.atlas.coefficients)
+    return reflectance(data.model, found, wavelengths)
 
 
 def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) at linear RGB (n, 3) as the weighted spectra of the corners alone, entries aside."""
-    points, weights = data.lattice.corners(rgb)
-    used, place = np.unique(points, return_inverse=True)
-    return weighted_sum(
-        reflectance(data.model, data.points.coefficients[used], wavelengths),
-        place.reshape(points.shape),
-        weights,
-    )
+    """Reflectance (n, N) as weighted spectra of the lattice alone, without entry boxes."""
+    corners, weights = data.lattice.corners(rgb)
+    points, row = np.unique(corners, return_inverse=True)
+    values = reflectance(data.model, data.points.coefficients[points], wavelengths)
+    return weighted_sum(values, row.reshape(corners.shape), weights)
 
 
 def moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of the interpolated coefficients."""
+    """Reflectance (n, N) of the weighted coefficients."""
     return reflectance(data.model, coefficients(data, rgb), wavelengths)
 
 
 def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of the interpolated coefficients, moved to the colour asked for."""
+    """Reflectance (n, N) of the weighted coefficients, moved to the exact colour."""
     return evaluate(data.model, refined_multipliers(data, rgb), wavelengths)
 
 
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
-    """Multipliers (n, C) that start at the interpolated coefficients and evaluate to ``rgb`` (n, 3)."""
+    """Multipliers (n, C) that start from the weighted coefficients and have exactly the colours (n, 3)."""
     return refine_to_rgb(data, data.model.from_storage(coefficients(data, rgb)), rgb)
 
 

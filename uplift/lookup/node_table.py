@@ -1,4 +1,4 @@
-"""What all nodes carry, worked out beforehand: for questions longer than the lattice has points."""
+"""Tables of the values of all nodes, for queries of more colours than the lattice has points."""
 
 from __future__ import annotations
 
@@ -14,17 +14,27 @@ from uplift.lookup.nodes import around
 from uplift.models import reflectance
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class NodeTable:
-    """Numbers (dim³, K) of the lattice points, NaN where absent, and (E, K) of the atlas entries; float64 or 32."""
+    """Values of all nodes, float64 or float32.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    lattice : ndarray, shape (dim³, K)
+        Values of the lattice points, NaN at absent points.
+    atlas : ndarray, shape (E, K)
+        Values of the atlas entries.
+    """
 
     data: CubeData
     lattice: Values
     atlas: Values
 
     @classmethod
-    def of_points(cls, data: CubeData, points: Values, atlas: Values) -> NodeTable:
-        """From numbers (m, K) of the points that are present."""
+    def of_present_points(cls, data: CubeData, points: Values, atlas: Values) -> NodeTable:
+        """Make a table from values (m, K) of the present points."""
         if data.complete_cells is None:
             return cls(data, points, atlas)
         lattice = np.full((data.lattice.size, points.shape[1]), np.nan, points.dtype)
@@ -32,18 +42,18 @@ class NodeTable:
         return cls(data, lattice, atlas)
 
     def spectra(self, rgb: Array) -> Values:
-        """Reflectance (n, N) in [0, 1] at linear RGB (n, 3), in mode ``spectra``."""
+        """Reflectance (n, N) in mode ``spectra``."""
         return np.clip(around(self.data, rgb).weighted_sum(self.lattice, self.atlas), 0, 1)
 
     def nearest(self, rgb: Array) -> Values:
-        """The same in mode ``nearest``."""
+        """Reflectance (n, N) in mode ``nearest``."""
         return around(self.data, rgb).nearest(self.lattice, self.atlas)
 
 
 def tabulate(
     data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1
 ) -> NodeTable:
-    """Reflectances of all nodes at wavelengths (N,) nm; takes dim³ × N numbers."""
+    """Compute the reflectances of all nodes at wavelengths (N,) in nm: dim³ × N numbers."""
 
     def spectra(coefficients: Array) -> Values:
         return blockwise(
@@ -54,10 +64,9 @@ def tabulate(
             threads,
         )
 
-    return NodeTable.of_points(
-        data, spectra(data.points.coefficients[data.points.present]), spectra(data.atlas.coefficients)
-    )
+    present = data.points.coefficients[data.points.present]
+    return NodeTable.of_present_points(data, spectra(present), spectra(data.atlas.coefficients))
 
 
 TABULATED = {"spectra": NodeTable.spectra, "nearest": NodeTable.nearest}
-"""Modes that a table serves."""
+"""Modes that can use a table."""

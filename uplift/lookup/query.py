@@ -1,4 +1,4 @@
-"""What a query says about a colour: its spectrum, where it came from, and how exactly it comes back."""
+"""Queries in full detail: spectrum, provenance and round trip of every colour."""
 
 from __future__ import annotations
 
@@ -16,23 +16,42 @@ from uplift.lattice import Status
 from uplift.lookup.blocks import BLOCK
 from uplift.lookup.cube import Cube
 
-HALF_A_CODE = 0.5
-"""A colour sits on an entry if both round to the same 8-bit codes, give or take half of one."""
+CODE_TOLERANCE = 0.5
+"""A colour is that of an entry if their 8-bit codes differ by at most this."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class QueryResult:
-    """One colour: linear RGB (3,), its reflectance (N,) at wavelengths (N,) nm, and its round trip.
+    """The answer to one colour.
 
-    ``asked`` is what ``rgb`` was before it was moved into [0, 1], if it was (`uplift.colorimetry.gamut`);
-    ``cell`` is the lowest corner's position along the axes (r, g, b); ``statuses`` are those of the cell's
-    corners; ``entry`` is the atlas entry that the colour sits on, if any; ``standard_error`` is by how much, in
-    ΔE00 under the cube's reference light, a measurement may be expected to differ, if the cube tells;
-    ``realisable`` is whether any reflectance has the colour: if not, the answer has less chroma.
+    Parameters
+    ----------
+    rgb : ndarray, shape (3,)
+        Linear RGB in [0, 1].
+    requested_rgb : ndarray, shape (3,)
+        Linear RGB before gamut mapping.
+    wavelengths : ndarray, shape (N,)
+        Wavelengths in nm.
+    reflectance : ndarray, shape (N,)
+        Reflectances in [0, 1].
+    round_trip : ndarray, shape (3,)
+        Linear RGB of the reflectance.
+    delta_e_2000 : float
+        ΔE00 between ``rgb`` and ``round_trip``.
+    cell : tuple of int
+        Position of the lowest corner of the cell along the axes.
+    statuses : tuple of Status
+        Statuses of the corners of the cell.
+    entry : str, optional
+        Atlas entry of the same colour.
+    standard_error : float, optional
+        ΔE00 expected between the answer and a measurement; None if the cube has no estimate.
+    realisable : bool
+        Whether a reflectance with the colour exists. If not, the answer has less chroma.
     """
 
     rgb: Array
-    asked: Array
+    requested_rgb: Array
     wavelengths: Array
     reflectance: Array
     round_trip: Array
@@ -43,67 +62,95 @@ class QueryResult:
     standard_error: float | None
     realisable: bool
 
+    def __repr__(self) -> str:
+        values = ", ".join(f"{value:.4g}" for value in self.rgb)
+        return (
+            f"QueryResult(rgb ({values}), {len(self.wavelengths)} wavelengths, ΔE00 {self.delta_e_2000:.2g})"
+        )
+
 
 def query(
     cube: Cube,
     rgb: Array,
     wavelengths: ArrayLike | None = None,
     mode: str = "spectra",
-    asked: Array | None = None,
+    requested_rgb: Array | None = None,
 ) -> Iterator[QueryResult]:
-    """Answers for linear RGB (n, 3), in order, as they are made. Raises as `Cube.reflectance`.
+    """Answer colours in full detail, block by block.
 
-    ``asked`` (n, 3) is what they were before they were moved into [0, 1], if any were.
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    rgb : ndarray, shape (n, 3)
+        Linear RGB in [0, 1].
+    wavelengths : array_like, shape (N,), optional
+        Wavelengths in nm, by default those of the sensor.
+    mode : str, default "spectra"
+        One of `MODES`, see `Cube.reflectance`.
+    requested_rgb : ndarray, shape (n, 3), optional
+        The colours before gamut mapping, ``rgb`` by default.
+
+    Yields
+    ------
+    QueryResult
+        The answers in order.
+
+    Raises
+    ------
+    ColourError
+        A colour that the cube cannot answer.
+    OptionError
+        An unknown mode, or invalid wavelengths.
     """
-    at = cube.wavelengths(wavelengths)
+    at = cube.resolve_wavelengths(wavelengths)
+    requested = rgb if requested_rgb is None else requested_rgb
     for start in range(0, len(rgb), BLOCK):
         block = slice(start, start + BLOCK)
-        yield from _block(cube, rgb[block], (rgb if asked is None else asked)[block], at, mode)
+        yield from _block(cube, rgb[block], requested[block], at, mode)
 
 
-def _block(cube: Cube, rgb: Array, asked: Array, at: Array, mode: str) -> Iterator[QueryResult]:
-    sensor, lattice = cube.data.sensor, cube.data.lattice
+def _block(cube: Cube, rgb: Array, requested: Array, at: Array, mode: str) -> Iterator[QueryResult]:
+    data, sensor = cube.data, cube.data.sensor
     count = len(sensor.wavelengths)
-    both = cube.reflectance(rgb, np.concatenate([sensor.wavelengths, at]), mode)
-    back = sensor.rgb(both[:, :count])
-    apart = delta_e_rgb(sensor, rgb, back)
+    spectra = cube.reflectance(rgb, np.concatenate([sensor.wavelengths, at]), mode)
+    round_trip = sensor.rgb(spectra[:, :count])
+    delta_e = delta_e_rgb(sensor, rgb, round_trip)
     errors = cube.standard_error(rgb)
-    cells, _ = lattice.cell(rgb)
-    corners, _ = lattice.corners(rgb)
-    possible = _realisable(cube.data, rgb, corners)
-    for row, cell in enumerate(cells):
+    low, fraction = data.lattice.cell(rgb)
+    corners, _ = data.lattice.cell_corners(low, fraction)
+    realisable = _realisable(data, rgb, corners)
+    for row, cell in enumerate(low):
         yield QueryResult(
             rgb=rgb[row],
-            asked=asked[row],
+            requested_rgb=requested[row],
             wavelengths=at,
-            reflectance=both[row, count:],
-            round_trip=back[row],
-            delta_e_2000=float(apart[row]),
+            reflectance=spectra[row, count:],
+            round_trip=round_trip[row],
+            delta_e_2000=float(delta_e[row]),
             cell=(int(cell[0]), int(cell[1]), int(cell[2])),
-            statuses=tuple(
-                Status(code) for code in sorted(set(cube.data.points.status[corners[row]].tolist()))
-            ),
+            statuses=tuple(map(Status, np.unique(data.points.status[corners[row]]).tolist())),
             entry=_entry(cube, rgb[row]),
             standard_error=None if errors is None else float(errors[row]),
-            realisable=bool(possible[row]),
+            realisable=bool(realisable[row]),
         )
 
 
 def _realisable(data: CubeData, rgb: Array, corners: Indices) -> Mask:
-    """Whether some reflectance has linear RGB (n, 3), of cells with ``corners`` (n, 8).
+    """Whether linear RGB (n, 3) in cells with ``corners`` (n, 8) are realisable.
 
-    What such colours have, their mixtures have too, so that only cells with a corner that is not need a look.
+    Mixtures of realisable colours are realisable, so only cells with an unrealisable corner are tested.
     """
-    possible = ~(data.points.status[corners] == Status.UNREALISABLE).any(axis=1)
-    if not possible.all():
-        possible[~possible] = solid(data.sensor.matrix).contains(rgb[~possible])
-    return np.asarray(possible)
+    realisable = ~(data.points.status[corners] == Status.UNREALISABLE).any(axis=1)
+    if not realisable.all():
+        realisable[~realisable] = solid(data.sensor.matrix).contains(rgb[~realisable])
+    return np.asarray(realisable)
 
 
 def _entry(cube: Cube, rgb: Array) -> str | None:
     atlas = cube.data.atlas
     if not atlas.names:
         return None
-    apart = np.abs(cube.encode(atlas.rgb) - cube.encode(rgb)).max(axis=1)
-    nearest = int(apart.argmin())
-    return atlas.names[nearest] if apart[nearest] <= HALF_A_CODE else None
+    difference = np.abs(cube.encode(atlas.rgb) - cube.encode(rgb)).max(axis=1)
+    nearest = int(difference.argmin())
+    return atlas.names[nearest] if difference[nearest] <= CODE_TOLERANCE else None

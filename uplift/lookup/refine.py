@@ -1,7 +1,7 @@
-"""Multipliers moved to their very colours by steps of least change (`uplift.models.minimum_norm`), in numpy alone.
+"""Move multipliers to exact colours by minimum-norm steps (`uplift.models.minimum_norm`). Needs numpy only.
 
-Spectra are columns here, so that all arithmetic runs along contiguous memory. A colour is evaluated once; from there on
-it is followed by what each step changes, which takes no arc tangents of large numbers.
+Spectra are columns here, so that all arithmetic runs along contiguous memory. A spectrum is evaluated once; later steps
+add its changes, which need no arc tangents of large numbers.
 """
 
 from __future__ import annotations
@@ -17,51 +17,51 @@ from uplift.models.matmul import matmul_columns
 from uplift.models.minimum_norm import ForwardMap, forward_map, solve_3x3
 from uplift.models.roots import MAX_MULTIPLIER
 
-REFINED = 1e-8
-"""Residual, max |linear RGB|, at which it stops."""
-MOST_STEPS = 24
+TOLERANCE = 1e-8
+"""Residual, max |linear RGB|, at which a colour is exact."""
+MAX_STEPS = 24
 FIRST_DAMPING = 1e-2
-"""μ after a full step that did not help; nearly all colours need one full step or two, and no damping."""
-COLUMNS = 1024
-"""Spectra worked on at a time: what they need stays in the cache."""
+"""μ after a rejected full step; nearly all colours need one or two full steps and no damping."""
+BLOCK_COLUMNS = 1024
+"""Spectra processed at a time: their temporary arrays fit into the cache."""
 
 
 def refine_to_rgb(data: CubeData, start: Array, rgb: Array) -> Array:
-    """Multipliers ``start`` (n, C) moved to linear RGB (n, 3).
+    """Move multipliers ``start`` (n, C) to linear RGB (n, 3).
 
-    Where a start is hopeless, as the sigmoid's near white in coarse cells, they start from grey.
+    Colours that do not converge, such as those of the sigmoid near white in coarse cells, start again from grey.
     """
-    ahead = forward_map(data.model, data.sensor.wavelengths, data.sensor.matrix)
-    multipliers, goal = np.array(start.T, order="C"), np.array(rgb.T, order="C")
-    distance = _descend(data.model, ahead, multipliers, goal)
-    hopeless = np.flatnonzero(distance > data.threshold)
-    if hopeless.size:
-        again = np.zeros((len(multipliers), hopeless.size))
-        better = _descend(data.model, ahead, again, goal[:, hopeless]) < distance[hopeless]
-        multipliers[:, hopeless[better]] = again[:, better]
+    forward = forward_map(data.model, data.sensor.wavelengths, data.sensor.matrix)
+    multipliers, target = np.array(start.T, order="C"), np.array(rgb.T, order="C")
+    distance = _descend(data.model, forward, multipliers, target)
+    failed = np.flatnonzero(distance > data.threshold)
+    if failed.size:
+        from_grey = np.zeros((len(multipliers), failed.size))
+        better = _descend(data.model, forward, from_grey, target[:, failed]) < distance[failed]
+        multipliers[:, failed[better]] = from_grey[:, better]
     return multipliers.T
 
 
-def _descend(model: Model, ahead: ForwardMap, multipliers: Array, goal: Array) -> Array:
-    """Move multipliers (C, n) in place, each step only where it helps; distance (n,) from linear RGB (3, n)."""
-    way = _Way(multipliers, np.empty_like(goal), np.zeros(goal.shape[1]))
-    for first in range(0, goal.shape[1], COLUMNS):
-        part = slice(first, first + COLUMNS)
-        linear = matmul_columns(ahead.basis, multipliers[:, part])
-        way.off[:, part] = goal[:, part] - matmul_columns(ahead.sensor, model.squash(linear))
-        _move(model, ahead, way, part, linear)
-    for _ in range(MOST_STEPS - 1):
-        left = np.flatnonzero(way.distance > REFINED)
-        if not left.size:
+def _descend(model: Model, forward: ForwardMap, multipliers: Array, target: Array) -> Array:
+    """Move multipliers (C, n) in place towards linear RGB (3, n) and return the final distances (n,)."""
+    state = _DescentState(multipliers, np.empty_like(target), np.zeros(target.shape[1]))
+    for first in range(0, target.shape[1], BLOCK_COLUMNS):
+        block = slice(first, first + BLOCK_COLUMNS)
+        linear = matmul_columns(forward.basis, multipliers[:, block])
+        state.off[:, block] = target[:, block] - matmul_columns(forward.sensor, model.squash(linear))
+        _move(model, forward, state, block, linear)
+    for _ in range(MAX_STEPS - 1):
+        pending = np.flatnonzero(state.distance > TOLERANCE)
+        if not pending.size:
             break
-        for first in range(0, left.size, COLUMNS):
-            some = left[first : first + COLUMNS]
-            _move(model, ahead, way, some, matmul_columns(ahead.basis, multipliers[:, some]))
-    return way.distance
+        for first in range(0, pending.size, BLOCK_COLUMNS):
+            columns = pending[first : first + BLOCK_COLUMNS]
+            _move(model, forward, state, columns, matmul_columns(forward.basis, multipliers[:, columns]))
+    return state.distance
 
 
-class _Way(NamedTuple):
-    """Multipliers (C, n), the residual (3, n) and the damping (n,), changed in place."""
+class _DescentState(NamedTuple):
+    """Multipliers (C, n), residual (3, n) and damping (n,), changed in place."""
 
     multipliers: Array
     off: Array
@@ -72,25 +72,26 @@ class _Way(NamedTuple):
         return np.asarray(np.abs(self.off).max(axis=0))
 
 
-def _move(model: Model, ahead: ForwardMap, way: _Way, columns: slice | Indices, linear: Array) -> None:
-    """One step of some columns, whose linear part is (N, k)."""
-    here, off, damping = way.multipliers[:, columns], way.off[:, columns], way.damping[columns]
-    with np.errstate(over="ignore", invalid="ignore"):  # steps too far are turned down
-        change = step(model, ahead, linear, off, damping)
-        there = here + change
-        off_there = off - matmul_columns(
-            ahead.sensor, model.squash_difference(linear, matmul_columns(ahead.basis, change))
-        )
-    better = (off_there**2).sum(axis=0) < (off**2).sum(axis=0)
-    better &= np.abs(there).max(axis=0) <= MAX_MULTIPLIER
-    way.multipliers[:, columns] = np.where(better, there, here)
-    way.off[:, columns] = np.where(better, off_there, off)
-    way.damping[columns] = np.where(better, damping / 16, 4 * damping + FIRST_DAMPING)
+def _move(
+    model: Model, forward: ForwardMap, state: _DescentState, columns: slice | Indices, linear: Array
+) -> None:
+    """Take one step of some columns with linear part (N, k); steps that do not reduce the residual are rejected."""
+    current, off, damping = state.multipliers[:, columns], state.off[:, columns], state.damping[columns]
+    with np.errstate(over="ignore", invalid="ignore"):  # overflowing steps are rejected
+        change = step(model, forward, linear, off, damping)
+        trial = current + change
+        difference = model.squash_difference(linear, matmul_columns(forward.basis, change))
+        trial_off = off - matmul_columns(forward.sensor, difference)
+    better = (trial_off**2).sum(axis=0) < (off**2).sum(axis=0)
+    better &= np.abs(trial).max(axis=0) <= MAX_MULTIPLIER
+    state.multipliers[:, columns] = np.where(better, trial, current)
+    state.off[:, columns] = np.where(better, trial_off, off)
+    state.damping[columns] = np.where(better, damping / 16, 4 * damping + FIRST_DAMPING)
 
 
-def step(model: Model, ahead: ForwardMap, linear: Array, off: Array, damping: Array) -> Array:
-    """`uplift.models.minimum_norm.minimum_norm_step` of columns (C, n): linear part (N, n), residual (3, n)."""
-    jacobian = matmul_columns(ahead.products.T, model.slope(linear)).reshape(3, len(ahead.root), -1)
+def step(model: Model, forward: ForwardMap, linear: Array, off: Array, damping: Array) -> Array:
+    """Minimum-norm step (C, n) from the linear part (N, n) and residual (3, n), spectra as columns."""
+    jacobian = matmul_columns(forward.products.T, model.slope(linear)).reshape(3, len(forward.root), -1)
     gram = [[np.einsum("cn,cn->n", jacobian[a], jacobian[b]) for b in range(a + 1)] for a in range(3)]
     y = solve_3x3(gram, damping * (gram[0][0] + gram[1][1] + gram[2][2]), off)
-    return matmul_columns(ahead.root, np.einsum("an,acn->cn", np.stack(y), jacobian))
+    return matmul_columns(forward.root, np.einsum("an,acn->cn", np.stack(y), jacobian))

@@ -1,7 +1,8 @@
-"""What may be asked: colours, wavelengths, types, checked once and made into plain arrays."""
+"""Validate the arguments of queries, and convert them to plain arrays."""
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 import numpy as np
@@ -12,57 +13,50 @@ from uplift.colorimetry.sensor import SLACK, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError, UpliftError
 
-TYPES = (np.dtype(np.float64), np.dtype(np.float32))
+FLOAT_TYPES = (np.dtype(np.float64), np.dtype(np.float32))
 
 
-def colours(rgb: ArrayLike, sensor: Sensor) -> Array:
-    """Linear RGB (…, 3), clipped where rounding took it outside [0, 1]. Raises `ColourError`."""
-    return within(as_rgb(rgb), sensor)
+def as_colours(rgb: ArrayLike, sensor: Sensor) -> Array:
+    """Convert to linear RGB (…, 3), clipped where rounding moved it outside [0, 1]; `ColourError` for others."""
+    return clip_rounding(as_rgb(rgb), sensor)
 
 
-def within(rgb: NDArray[Any], sensor: Sensor) -> Array:
-    """Linear RGB (…, 3) in [0, 1], float64. Raises `ColourError`, quoting the first that lies outside."""
+def clip_rounding(rgb: NDArray[Any], sensor: Sensor) -> Array:
+    """Clip linear RGB (…, 3) to [0, 1], as float64; `ColourError` quotes the first colour outside."""
     array = np.asarray(rgb, dtype=float)
-    # Much quicker than asking for each; NaN fails both comparisons.
+    # Faster than a test of each colour; NaN fails both comparisons.
     if array.size and not (array.min() >= -SLACK and array.max() <= 1 + SLACK):
         raise_out_of_gamut(array[~sensor.contains(array)])
     return np.clip(array, 0, 1)
 
 
-def wavelengths_asked(wavelengths: ArrayLike) -> Array:
-    """Wavelengths (N,) nm. Raises `OptionError` for what are no positive numbers."""
+def as_wavelengths(wavelengths: ArrayLike) -> Array:
+    """Convert to wavelengths (N,) in nm; `OptionError` if they are not positive numbers."""
     problem = "wavelengths must be a list of positive numbers in nm"
-    array = np.atleast_1d(floats(wavelengths, problem, OptionError))
+    array = np.atleast_1d(as_floats(wavelengths, problem, "invalid-wavelengths", OptionError))
     if array.ndim != 1 or not array.size or not (np.isfinite(array) & (array > 0)).all():
-        raise OptionError(problem)
+        raise OptionError(problem, code="invalid-wavelengths")
     return array
 
 
-def float_type(dtype: DTypeLike) -> np.dtype[Any]:
-    """float64 or float32. Raises `OptionError` for other types."""
-    for known in TYPES:
-        if _same(dtype, known):
-            return known
-    raise OptionError(f"answers are float64 or float32, not {dtype!r}")
+def as_float_type(dtype: DTypeLike) -> np.dtype[Any]:
+    """Convert to float64 or float32; `OptionError` for other types."""
+    with contextlib.suppress(TypeError):
+        if np.dtype(dtype) in FLOAT_TYPES:
+            return np.dtype(dtype)
+    raise OptionError(f"dtype must be float64 or float32, got {dtype!r}", code="unsupported-dtype")
 
 
-def thread_count(threads: int) -> int:
-    """A whole number from 1. Raises `OptionError` for anything else."""
+def as_thread_count(threads: int) -> int:
+    """Convert to a whole number from 1; `OptionError` for anything else."""
     if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
-        raise OptionError(f"{threads!r} is no number of threads", hint="use 1 or more")
+        raise OptionError(f"threads must be a whole number from 1, got {threads!r}", code="invalid-threads")
     return int(threads)
 
 
-def floats(values: Any, problem: str, kind: type[UpliftError] = ColourError) -> Array:
-    """``values`` as an array of float64. Raises ``kind``."""
+def as_floats(values: Any, problem: str, code: str, kind: type[UpliftError] = ColourError) -> Array:
+    """Convert to an array of float64; an error of ``kind`` if that is impossible."""
     try:
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:
-        raise kind(problem) from error
-
-
-def _same(dtype: DTypeLike, known: np.dtype[Any]) -> bool:
-    try:
-        return np.dtype(dtype) == known
-    except TypeError:
-        return False
+        raise kind(problem, code=code) from error

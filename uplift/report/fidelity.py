@@ -59,7 +59,7 @@ class EntryQuery:
         EntryQuery
             The covered entries; the names of all others are in ``not_covered``.
         """
-        covered = cube.holds(self.rgb)
+        covered = cube.covers(self.rgb)
         names, not_covered = _partition(self.names, covered)
         rows = None if self.rows is None else self.rows[covered]
         return EntryQuery(

@@ -28,7 +28,7 @@ def round_trips(cube: Cube) -> dict[str, Array]:
         ΔE00 under the cube's illuminant, by mode of lookup.
     """
     rgb, sensor = _random_rgb(cube.data), cube.data.sensor
-    rgb = rgb[cube.holds(rgb)]
+    rgb = rgb[cube.covers(rgb)]
     return {mode: delta_e_rgb(sensor, rgb, sensor.rgb(cube.reflectance(rgb, mode=mode))) for mode in MODES}
 
 

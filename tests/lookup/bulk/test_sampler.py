@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.cube.hand_made import hand_made
+from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import Lattice
 from uplift.lookup import Cube, bulk
@@ -115,7 +116,7 @@ def test_what_is_no_colour_is_refused(sample, small_cube, rgb):
 def test_one_bad_colour_in_a_later_chunk_is_quoted(sample):
     rgb = np.full((70_000, 3), 0.5)
     rgb[69_000] = (0.5, 1.25, 0)
-    with pytest.raises(ColourError, match=r"linear RGB \(0\.5, 1\.25, 0\) lies outside"):
+    with raises(ColourError, "rgb-out-of-gamut"):
         sample(rgb)
 
 
@@ -138,12 +139,12 @@ def test_memory_is_that_of_the_tables(small_cube):
 
 
 def test_bad_wavelengths_and_threads_are_refused(small_cube):
-    with pytest.raises(OptionError, match="wavelengths must be"):
+    with raises(OptionError, "invalid-wavelengths"):
         bulk.spectra(small_cube, [0])
     for threads in (0, -1, 1.5, None, True):
-        with pytest.raises(OptionError, match="no number of threads"):
+        with raises(OptionError, "invalid-threads"):
             bulk.spectra(small_cube, AT, threads=threads)
-        with pytest.raises(OptionError, match="no number of threads"):
+        with raises(OptionError, "invalid-threads"):
             bulk.coefficients(small_cube, threads=threads)
 
 

@@ -15,7 +15,7 @@ from uplift.io.mitsuba.spectra import blend
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined_multipliers
-from uplift.lookup.validation import colours
+from uplift.lookup.validation import as_colours
 from uplift.models import Model, evaluate
 
 MEAN_WAVELENGTHS = np.arange(380.0, 781.0, 25.0)
@@ -36,7 +36,7 @@ class Image:
         """Uplift linear RGB (h, w, 3) to spectra of the exact colours. Raises `ColourError` outside [0, 1]."""
         data, model = cube.data, cube.data.model
         refined = partial(refined_multipliers, data)
-        texels = colours(rgb, data.sensor)
+        texels = as_colours(rgb, data.sensor)
         multipliers = blockwise(refined, texels, model.count, dtype=np.float32, threads=THREADS)
         means = blockwise(
             lambda rows: evaluate(model, rows, MEAN_WAVELENGTHS).mean(axis=1, keepdims=True), multipliers, 1

@@ -132,7 +132,7 @@ class Spectrum:
         OptionError
             The wavelengths do not ascend (code ``wavelengths-not-ascending``).
         """
-        wavelengths = cube.wavelengths(self.wavelengths)
+        wavelengths = cube.resolve_wavelengths(self.wavelengths)
         names = tuple("T." + f"{wavelength:.6f}nm".replace(".", ",") for wavelength in wavelengths)
         if (np.diff(wavelengths) <= 0).any() or len(set(names)) < len(names):
             raise OptionError(
@@ -164,7 +164,7 @@ class Spectrum:
         dict
             ``as`` and ``wavelengths``.
         """
-        return {"as": self.name, "wavelengths": cube.wavelengths(self.wavelengths).tolist()}
+        return {"as": self.name, "wavelengths": cube.resolve_wavelengths(self.wavelengths).tolist()}
 
     def make_sampler(self, cube: Cube, threads: int) -> Sampler:
         """Return the function that computes reflectances.

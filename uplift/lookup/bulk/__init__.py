@@ -1,11 +1,15 @@
-"""Millions of colours: a cube made ready once for textures, then asked through JAX, on CPU or accelerator.
+"""Millions of colours: a cube prepared once for textures, then queried through JAX, on CPU or accelerator.
 
-    from uplift.lookup import bulk
+The first call compiles. For a few thousand colours `uplift.Cube` is faster.
 
-    sample = bulk.spectra(cube, range(400, 701, 20))
-    sample(image)  # (h, w, 3) -> (h, w, 16) float32
-
-For a few thousand colours `uplift.Cube` answers sooner: here something is compiled first.
+Examples
+--------
+>>> import numpy as np
+>>> import uplift
+>>> sample = uplift.bulk.spectra(uplift.load(), [450, 550, 650])
+>>> image = np.full((2, 4, 3), 0.5)
+>>> sample(image).shape
+(2, 4, 3)
 """
 
 from __future__ import annotations

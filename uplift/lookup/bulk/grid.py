@@ -1,4 +1,4 @@
-"""A cube as the plain arrays that the kernel reads: cells by bins, boxes by cell, and what nodes carry."""
+"""The arrays of a cube that the compiled kernel reads."""
 
 from __future__ import annotations
 
@@ -8,79 +8,78 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices
-from uplift.lattice import Lattice
-from uplift.lattice.entry_boxes import EntryBoxes
+from uplift.lattice import EntryBoxes, Lattice
 from uplift.lookup.node_table import NodeTable
 
 BINS = 4096
-"""Even bins of [0, 1]; one holds a node at the most, for all but the finest lattices."""
+"""Even bins of [0, 1]. A bin contains at most one node, except in the finest lattices."""
 
 Places = NDArray[np.int32]
 
 
 class Grid(NamedTuple):
-    """Arrays alone, so that JAX passes them through. Row E of boxes and of ``atlas`` stands for no entry."""
+    """Arrays only, a pytree for JAX. Row E of ``boxes`` and ``atlas`` stands for no entry."""
 
     nodes: Any
-    """(dim + 1,) of the axis, and infinity."""
+    """(dim + 1,) axis nodes, and infinity."""
     bins: Any
     """(BINS + 1,) the last node before each bin."""
-    crowd: Any
-    """(M,) nothing but its length, the most nodes that a bin holds: a shape, so that it is known when compiling."""
+    max_nodes_per_bin: Any
+    """(M,) zeros: only the length matters. As a shape it is known when compiling."""
     candidates: Any
-    """(K, dim³) entries whose boxes touch each cell, E where no more do."""
+    """(K, dim³) entries whose boxes touch each cell, padded with E."""
     boxes: Any
-    """(E + 1, 3, 3) middle, and one over the room below and above it, linear RGB."""
+    """(E + 1, 3, 3) centre in linear RGB, and reciprocals of the distances to the lower and upper faces."""
     lattice: Any
-    """(dim³, N) what lattice points carry, float32; NaN where they are absent."""
+    """(dim³, N) values of the lattice points, float32; NaN at absent points."""
     atlas: Any
-    """(E + 1, N) what entries carry, float32."""
+    """(E + 1, N) values of the entries, float32."""
     limits: Any
-    """(2,) least and most of what is carried."""
+    """(2,) smallest and largest value."""
 
 
-def grid(table: NodeTable) -> Grid:
-    """The arrays of a table's cube."""
-    lattice, pins = table.data.lattice, table.data.entry_boxes
-    bins, crowd = _bins(lattice)
-    carried = np.concatenate([table.lattice.ravel(), table.atlas.ravel()])
+def make_grid(table: NodeTable) -> Grid:
+    """Make the arrays of a table."""
+    lattice, boxes = table.data.lattice, table.data.entry_boxes
+    bins, most = _bins(lattice)
+    values = np.concatenate([table.lattice.ravel(), table.atlas.ravel()])
     return Grid(
         np.append(lattice.nodes, np.inf),
         bins,
-        np.zeros(crowd),
-        _candidates(pins),
-        _boxes(pins),
+        np.zeros(most),
+        _candidates(boxes),
+        _boxes(boxes),
         table.lattice,
         np.concatenate([table.atlas, np.zeros_like(table.lattice[:1])]),
-        np.array([np.nanmin(carried), np.nanmax(carried)]),
+        np.array([np.nanmin(values), np.nanmax(values)]),
     )
 
 
 def _bins(lattice: Lattice) -> tuple[Places, int]:
-    """The last node before each bin, and how many nodes a bin holds at the most.
+    """The last node before each bin, and the largest number of nodes in a bin.
 
-    Truncation puts nodes and colours into bins alike, so that no colour is taken for the far side of a node.
+    Nodes and colours are truncated alike, so that no colour moves to the other side of a node.
     """
     bins = (lattice.nodes * BINS).astype(np.int64)
     before = np.searchsorted(bins, np.arange(BINS + 1), side="left") - 1
     return np.maximum(before, 0).astype(np.int32), int(np.bincount(bins).max())
 
 
-def _candidates(pins: EntryBoxes) -> Places:
-    cells, entries = pins.cells
+def _candidates(boxes: EntryBoxes) -> Places:
+    cells, entries = boxes.cells
     numbers, first, count = np.unique(cells, return_index=True, return_counts=True)
-    candidates = np.full((count.max(initial=0), pins.lattice.size), len(pins.rgb), dtype=np.int32)
+    candidates = np.full((count.max(initial=0), boxes.lattice.size), len(boxes.rgb), dtype=np.int32)
     for turn, row in enumerate(candidates):
         more: Indices = np.flatnonzero(count > turn)
         row[numbers[more]] = entries[first[more] + turn]
     return candidates
 
 
-def _boxes(pins: EntryBoxes) -> Array:
-    low, high = pins.faces
+def _boxes(boxes: EntryBoxes) -> Array:
+    low, high = boxes.faces
     below, above = (
         np.divide(1, room, out=np.zeros_like(room), where=room > 0)
-        for room in (pins.rgb - low, high - pins.rgb)
+        for room in (boxes.rgb - low, high - boxes.rgb)
     )
-    nowhere = np.array([[[-1.0] * 3, [1.0] * 3, [1.0] * 3]])
-    return np.concatenate([np.stack([pins.rgb, below, above], axis=1), nowhere])
+    none = np.array([[[-1.0] * 3, [1.0] * 3, [1.0] * 3]])
+    return np.concatenate([np.stack([boxes.rgb, below, above], axis=1), none])

@@ -1,4 +1,4 @@
-"""A cube made ready for many colours at once."""
+"""Samplers: the values of a cube's nodes, prepared for many colours."""
 
 from __future__ import annotations
 
@@ -13,76 +13,140 @@ from uplift.colorimetry.gamut import as_rgb
 from uplift.colorimetry.sensor import Sensor
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
-from uplift.lookup.bulk.grid import Grid, grid
-from uplift.lookup.bulk.kernel import answer
+from uplift.lookup.bulk.grid import Grid, make_grid
+from uplift.lookup.bulk.kernel import interpolate
 from uplift.lookup.node_table import NodeTable, tabulate
 from uplift.lookup.nodes import require
-from uplift.lookup.validation import thread_count, within
+from uplift.lookup.validation import as_thread_count, clip_rounding
 
 CHUNKS = (1 << 16, 1 << 12)
-"""Rows of a chunk: few shapes, so that little is compiled, and a small one for small questions."""
+"""Rows per chunk: two shapes, so that little is compiled; the smaller one is for short inputs."""
 
 Floats = NDArray[np.float32]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sampler:
-    """Numbers of the nodes of a cube, interpolated between them; ``spectra`` and ``coefficients`` make it."""
+    """Interpolate values of the nodes of a cube. Made by `spectra`, `coefficients` or `max_rgb_error`.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        RGB space of the colours.
+    grid : Grid
+        Arrays of the cube, on the device of JAX.
+    threads : int
+        Number of threads; each processes a chunk at a time.
+    """
 
     sensor: Sensor
     grid: Grid
     threads: int
 
+    def __repr__(self) -> str:
+        return f"Sampler({self.grid.lattice.shape[1]} values per colour, {self.nbytes / 1e6:.1f} MB)"
+
     def __call__(self, rgb: ArrayLike) -> Floats:
-        """(…, N) of linear RGB (…, 3) in [0, 1]. Raises `ColourError` as `Cube.reflectance` does."""
+        """Interpolate values (…, N) at linear RGB (…, 3) in [0, 1]; `ColourError` as in `Cube.reflectance`."""
         width = self.grid.lattice.shape[1]
         return blockwise(self._chunk, as_rgb(rgb), width, np.float32, self.threads, CHUNKS[0])
 
     @property
     def nbytes(self) -> int:
-        """Memory that the tables take."""
+        """Memory of the arrays in bytes."""
         return sum(array.nbytes for array in self.grid)
 
     def _chunk(self, rgb: NDArray[Any]) -> Floats:
-        asked = within(rgb, self.sensor)
-        size = min(size for size in CHUNKS if size >= len(asked))
-        padded = np.pad(asked, ((0, size - len(asked)), (0, 0))) if len(asked) < size else asked
+        colours = clip_rounding(rgb, self.sensor)
+        size = min(size for size in CHUNKS if size >= len(colours))
+        missing = size - len(colours)
+        padded = np.pad(colours, ((0, missing), (0, 0))) if missing else colours
         with jax.enable_x64(True):
-            found = np.asarray(answer(self.grid, padded))[: len(asked)]
-        require(~np.isnan(found[:, 0]), asked)  # what an absent point has a part in is NaN
-        return found
+            values = np.asarray(interpolate(self.grid, padded))[: len(colours)]
+        require(~np.isnan(values[:, 0]), colours)  # absent points make NaN
+        return values
 
 
 def spectra(cube: Cube, wavelengths: ArrayLike | None = None, *, threads: int = 2) -> Sampler:
-    """Reflectance at wavelengths (N,) nm, by default those of the sensor, as `Cube.reflectance` has it.
+    """Prepare a cube for reflectances in mode ``spectra``, accurate to 1e-6.
 
-    Mode ``spectra``, to 1e-6. The table takes 4 · dim³ · N bytes; a colour reads eight rows of it, 32 · N bytes,
-    and a ninth within an entry's box. ``threads`` share a question; each takes a chunk of it at a time.
-    Raises `OptionError`.
+    The table takes 4 · dim³ · N bytes. A colour reads eight of its rows (32 · N bytes), in an entry box one more.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    wavelengths : array_like, shape (N,), optional
+        Wavelengths in nm, by default those of the sensor.
+    threads : int, default 2
+        Number of threads.
+
+    Returns
+    -------
+    Sampler
+        From linear RGB (..., 3) to reflectances (..., N).
+
+    Raises
+    ------
+    OptionError
+        Invalid wavelengths, or fewer than one thread.
     """
-    count = thread_count(threads)
-    return _sampler(tabulate(cube.data, cube.wavelengths(wavelengths), np.float32, count), count)
+    count = as_thread_count(threads)
+    return _sampler(tabulate(cube.data, cube.resolve_wavelengths(wavelengths), np.float32, count), count)
 
 
 def coefficients(cube: Cube, *, threads: int = 2) -> Sampler:
-    """Coefficients (C,) of the cube's model, as `Cube.coefficients` has them, to float32. Raises `OptionError`."""
-    data = cube.data
-    points, atlas = (
-        c.astype(np.float32) for c in (data.points.coefficients[data.points.present], data.atlas.coefficients)
-    )
-    return _sampler(NodeTable.of_points(data, points, atlas), thread_count(threads))
+    """Prepare a cube for coefficients of its model, in float32.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    threads : int, default 2
+        Number of threads.
+
+    Returns
+    -------
+    Sampler
+        From linear RGB (..., 3) to coefficients (..., C).
+
+    Raises
+    ------
+    OptionError
+        Fewer than one thread.
+    """
+    points = cube.data.points
+    present = points.coefficients[points.present].astype(np.float32)
+    entries = cube.data.atlas.coefficients.astype(np.float32)
+    return _sampler(NodeTable.of_present_points(cube.data, present, entries), as_thread_count(threads))
 
 
 def max_rgb_error(cube: Cube, *, threads: int = 2) -> Sampler:
-    """By how much (1,) answers miss their colours, |linear RGB|, at the most: the fitting distances around."""
-    data = cube.data
-    entries = np.zeros((len(data.atlas.names), 1), np.float32)
-    return _sampler(
-        NodeTable.of_points(data, data.points.distance[data.points.present, None], entries),
-        thread_count(threads),
-    )
+    """Prepare a cube for upper bounds of the colour error, from the fitting distances of the nodes.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    threads : int, default 2
+        Number of threads.
+
+    Returns
+    -------
+    Sampler
+        From linear RGB (..., 3) to the largest |linear RGB| error (..., 1).
+
+    Raises
+    ------
+    OptionError
+        Fewer than one thread.
+    """
+    points = cube.data.points
+    entries = np.zeros((len(cube.atlas_names), 1), np.float32)
+    present = points.distance[points.present, None]
+    return _sampler(NodeTable.of_present_points(cube.data, present, entries), as_thread_count(threads))
 
 
 def _sampler(table: NodeTable, threads: int) -> Sampler:
     with jax.enable_x64(True):
-        return Sampler(table.data.sensor, jax.device_put(grid(table)), threads)
+        return Sampler(table.data.sensor, jax.device_put(make_grid(table)), threads)

@@ -1,0 +1,100 @@
+"""Cubes in notebooks: a figure of spectra, and an HTML summary. `uplift.Cube` imports this module when needed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from markupsafe import Markup, escape
+from numpy.typing import ArrayLike
+
+from uplift.colorimetry.gamut import as_rgb
+from uplift.colorimetry.srgb import hex_codes
+from uplift.common.arrays import Array
+from uplift.lookup import Cube
+from uplift.viz.figure import GREY, new_figure, style_spectrum_axes, to_svg
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MAX_SWATCHES = 64
+MAX_SPECTRA = 24
+PRIMARIES = np.array([[0.8, 0.1, 0.1], [0.1, 0.8, 0.1], [0.1, 0.1, 0.8], [0.8, 0.8, 0.8], [0.2, 0.2, 0.2]])
+"""Linear RGB shown for a cube without an atlas."""
+SWATCH = "display:inline-block;width:1.4em;height:1.4em;margin:1px;background:"
+
+
+def plot_cube(cube: Cube, rgb: ArrayLike, wavelengths: ArrayLike | None = None) -> Figure:
+    """Plot the reflectance spectra of colours, each in its own colour.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    rgb : array_like, shape (..., 3)
+        Linear RGB in [0, 1].
+    wavelengths : array_like, shape (N,), optional
+        Wavelengths in nm, by default those of the sensor.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+    """
+    colours = np.asarray(as_rgb(rgb), dtype=float).reshape(-1, 3)
+    at = cube.resolve_wavelengths(wavelengths)
+    spectra = cube.reflectance(colours, at)
+    figure = new_figure(6.0, 3.2)
+    axes = figure.subplots()
+    for spectrum, code in zip(spectra, hex_codes(colours, cube.data.sensor), strict=True):
+        axes.plot(at, spectrum, color=GREY, linewidth=2.4)
+        axes.plot(at, spectrum, color=code, linewidth=1.6, label=code)
+    style_spectrum_axes(axes)
+    return figure
+
+
+def cube_html(cube: Cube) -> Markup:
+    """Summarise a cube: facts, swatches of its atlas entries, and spectra.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+
+    Returns
+    -------
+    Markup
+        An HTML element; all text is escaped.
+    """
+    rows = Markup().join(
+        Markup("<tr><th style='text-align:left'>{}</th><td>{}</td></tr>").format(*fact)
+        for fact in _facts(cube).items()
+    )
+    colours = cube.data.atlas.rgb if cube.atlas_names else PRIMARIES
+    shown = colours[cube.covers(colours)][:MAX_SPECTRA]
+    plot = to_svg(plot_cube(cube, shown)) if len(shown) else Markup()
+    return Markup("<div><table>{}</table><div>{}</div><div style='max-width:36em'>{}</div></div>").format(
+        rows, _swatches(cube), plot
+    )
+
+
+def _facts(cube: Cube) -> dict[str, str]:
+    points, size = cube.data.points.present, cube.data.lattice.size
+    return {
+        "model": f"{cube.data.model.name}, {cube.coefficient_count} coefficients",
+        "lattice": f"dim {cube.dim}, {np.count_nonzero(points):,} of {size:,} points",
+        "RGB space": f"{cube.space} under {cube.illuminant}",
+        "observer": cube.observer,
+        "atlas entries": f"{len(cube.atlas_names):,}",
+    }
+
+
+def _swatches(cube: Cube) -> Markup:
+    names = cube.atlas_names[:MAX_SWATCHES]
+    rgb: Array = cube.data.atlas.rgb[:MAX_SWATCHES]
+    swatches = Markup().join(
+        Markup("<span title='{}' style='{}{}'></span>").format(name, SWATCH, code)
+        for name, code in zip(names, hex_codes(rgb, cube.data.sensor), strict=True)
+    )
+    more = len(cube.atlas_names) - len(names)
+    return swatches + escape(f" and {more} more" if more else "")
