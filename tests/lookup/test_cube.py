@@ -134,8 +134,9 @@ def test_what_is_no_colour_is_refused(small_cube, mode, rgb):
 def test_one_bad_colour_among_many_is_quoted(small_cube):
     rgb = random_colours(10)
     rgb[7] = (0.5, 1.25, 0)
-    with raises(ColourError, "rgb-out-of-gamut"):
+    with raises(ColourError, "rgb-out-of-gamut") as caught:
         small_cube.reflectance(rgb)
+    assert "(0.5, 1.25, 0)" in caught.value.problem
 
 
 def test_rounding_takes_no_colour_out_of_the_space(small_cube, mode):

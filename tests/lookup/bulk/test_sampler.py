@@ -116,8 +116,9 @@ def test_what_is_no_colour_is_refused(sample, small_cube, rgb):
 def test_one_bad_colour_in_a_later_chunk_is_quoted(sample):
     rgb = np.full((70_000, 3), 0.5)
     rgb[69_000] = (0.5, 1.25, 0)
-    with raises(ColourError, "rgb-out-of-gamut"):
+    with raises(ColourError, "rgb-out-of-gamut") as caught:
         sample(rgb)
+    assert "(0.5, 1.25, 0)" in caught.value.problem
 
 
 def test_rounding_takes_no_colour_out_of_the_space(sample):
