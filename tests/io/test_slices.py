@@ -155,8 +155,8 @@ def test_an_existing_file_is_replaced_only_with_force(tmp_path):
 @pytest.mark.parametrize(
     ("name", "code"),
     [
-        ("slices.png", "unsupported-suffix"),
-        ("slices", "unsupported-suffix"),
+        ("slices.png", "unknown-suffix"),
+        ("slices", "unknown-suffix"),
         ("no/slices.exr", "folder-missing"),
     ],
 )

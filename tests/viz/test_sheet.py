@@ -175,7 +175,7 @@ def test_colours_far_outside_the_gamut_are_drawn(tmp_path):
 
 @pytest.mark.parametrize("name", ["sheet.jpg", "sheet", "sheet.exr.gz"])
 def test_unsupported_suffixes_raise(tmp_path, name):
-    with raises(OutputError, "unsupported-suffix"):
+    with raises(OutputError, "unknown-suffix"):
         write_sheet(hand_made(), tmp_path / name)
 
 

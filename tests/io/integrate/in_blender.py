@@ -11,7 +11,7 @@ from pathlib import Path
 
 import bpy
 
-# What compiles shaders asks a module of Blender's own Python about them.
+# The shader compiler needs a module of Blender's own Python.
 OWN = Path(bpy.__file__).parents[3].glob("python/lib/python*/site-packages")
 sys.path += map(str, OWN)
 
@@ -35,7 +35,7 @@ def main(shader: str, texture: str, image: str) -> None:
 
 
 def _material(shader: str, texture: str) -> bpy.types.Material:
-    """A surface that shines as the shader says it reflects."""
+    """Return a material that emits the shader's reflectance."""
     material = bpy.data.materials.new("uplifted")
     material.use_nodes = True
     tree = material.node_tree
@@ -52,7 +52,7 @@ def _material(shader: str, texture: str) -> bpy.types.Material:
 
 
 def _camera(scene: bpy.types.Scene) -> bpy.types.Object:
-    """Straight from above, on the square alone."""
+    """Return an orthographic camera above the square."""
     camera = bpy.data.cameras.new("camera")
     camera.type, camera.ortho_scale = "ORTHO", 2
     found = bpy.data.objects.new("camera", camera)

@@ -1,4 +1,4 @@
-"""docs/integrate.md: its code runs, and answers as the cube does."""
+"""docs/integrate.md: the code blocks run and agree with the cube."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ COLOUR = [0.8, 0.2, 0.1]
 
 
 def code(section, language):
-    """The one block of a section in a language."""
+    """Return the only code block of a section in a language."""
     (text,) = re.findall(rf"^## {section}\n(.*?)(?=^## |\Z)", PAGE, re.DOTALL | re.MULTILINE)
     (block,) = re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
     return block
@@ -29,7 +29,7 @@ def code(section, language):
 
 @pytest.fixture
 def folder(repository, tmp_path, monkeypatch):
-    """The working folder, with the cube that the page speaks of."""
+    """Working folder with the cube of the page."""
     shutil.copy(repository / "cubes" / STORED, tmp_path / "paints.uplift")
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -69,7 +69,7 @@ def test_mitsuba(folder, small_cube):
 
 @pytest.fixture
 def shader(folder):
-    """The shader as a file."""
+    """Path of the shader."""
     (folder / "uplift_reflectance.osl").write_text(code("Blender, OSL", "osl"))
     return folder / "uplift_reflectance.osl"
 
@@ -80,8 +80,8 @@ def test_osl_compiles(shader):
     subprocess.run(["oslc", "-q", shader], check=True)
 
 
-def test_cycles_renders_it(shader, folder, small_cube):
-    """Four texels at three wavelengths. Blender's module bpy wants packages of its own versions."""
+def test_cycles_renders_the_shader(shader, folder, small_cube):
+    """Four texels at three wavelengths, rendered by a Python that has Blender's module bpy."""
     python = os.environ.get("BLENDER_PYTHON")
     if python is None:
         pytest.skip("needs BLENDER_PYTHON, a Python that has Blender's module bpy")

@@ -87,7 +87,7 @@ def test_resume_leaves_out_complete_newer_textures(jobs):
     run(jobs[0])
     target = jobs[0].target
     assert texture.pending([jobs[0]], resume=True) == []
-    with pytest.raises(OutputError, match="exists already"):
+    with raises(OutputError, "file-exists"):
         texture.pending([jobs[0]])
     forced = [replace(jobs[0], force=True)]
     assert texture.pending(forced, resume=True) == []

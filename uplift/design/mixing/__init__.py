@@ -16,30 +16,11 @@ Examples
 
 from __future__ import annotations
 
-from uplift.design.mixing import (
-    additive,
-    amy,
-    coats,
-    criteria,
-    duntley,
-    dyes,
-    filters,
-    hsl,
-    kubelka_munk,
-    layers,
-    mixers,
-    overpaint,
-    phosphors,
-    pigments,
-    recipes,
-    ryb,
-    surface,
-)
 from uplift.design.mixing.coats import Coat
 from uplift.design.mixing.criteria import Criterion, CriterionResult
 from uplift.design.mixing.duntley import Flux
 from uplift.design.mixing.layers import Layer
-from uplift.design.mixing.mixers import Mixer
+from uplift.design.mixing.mixers import Mixer, mixers
 from uplift.design.mixing.overpaint import Overpainter
 from uplift.design.mixing.phosphors import Monitor
 from uplift.design.mixing.pigments import Pigment
@@ -59,24 +40,8 @@ __all__ = [
     "Overpainter",
     "Pigment",
     "Surface",
-    "additive",
-    "amy",
-    "coats",
-    "criteria",
-    "duntley",
-    "dyes",
-    "filters",
-    "hsl",
-    "kubelka_munk",
-    "layers",
     "make_coat",
     "mix",
     "mixers",
-    "overpaint",
-    "phosphors",
-    "pigments",
     "ramp",
-    "recipes",
-    "ryb",
-    "surface",
 ]

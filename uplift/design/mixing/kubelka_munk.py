@@ -40,8 +40,8 @@ def opaque_reflectance(pigment: Pigment) -> Array:
     --------
     >>> import numpy as np
     >>> from uplift.design.mixing.pigments import Pigment
-    >>> opaque_reflectance(Pigment(np.array([1.0]), np.array([4.0])))
-    array([0.5])
+    >>> opaque_reflectance(Pigment(np.array([1.0]), np.array([4.0]))).tolist()
+    [0.5]
     """
     K, S = pigment.absorption, pigment.scattering
     return np.asarray(S / np.maximum(K + S + _gamma(K, S), TINY))

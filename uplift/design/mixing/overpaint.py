@@ -10,46 +10,34 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.gamut import check_method, map_to_gamut
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.design.mixing.coats import Coat
 from uplift.io.slices import exr
 from uplift.io.texture.colours import Counts, Floats, check_encoding
+from uplift.io.texture.converter import Converter
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 
 
 @dataclass(frozen=True, eq=False)
-class Overpainter:
+class Overpainter(Converter):
     """A converter that lays a coat over images, made by `prepare`; pass it to `uplift.io.texture.convert`.
 
     Parameters
     ----------
-    sensor : Sensor
-        The cube's sensor.
+    sensor, depth, encoding, out_of_gamut, channels, header
+        As in `uplift.io.texture.Converter`. The gamut mapping applies before and after painting.
     coat : Coat
         The coat, at the wavelengths of the sensor.
     reflectance : callable
         From linear RGB (..., 3) to reflectances (..., N).
-    encoding : {"auto", "linear", "encoded"}
-        Interpretation of the numbers in images.
-    out_of_gamut : str
-        Gamut mapping for pixels outside [0, 1], before and after painting.
-    header : mapping
-        Attributes of every file.
     threads : int
         Threads that share a band.
     """
 
-    sensor: Sensor
     coat: Coat
     reflectance: Callable[[Floats], Floats]
-    encoding: str
-    out_of_gamut: str
-    header: Mapping[str, Any]
     threads: int
-    depth = "float"
-    channels = ()
 
     def paint(self, rgb: Floats) -> Floats:
         """Lay the coat over colours.
@@ -144,4 +132,5 @@ def prepare(
         "chromaticities": exr.chromaticities(sensor),
         "uplift.mix": json.dumps(dict(recipe or {})),
     }
-    return Overpainter(sensor, coat, bulk.spectra(cube, threads=1), encoding, out_of_gamut, header, threads)
+    sampler = bulk.spectra(cube, threads=1)
+    return Overpainter(sensor, "float", encoding, out_of_gamut, (), header, coat, sampler, threads)

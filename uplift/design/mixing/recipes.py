@@ -181,10 +181,8 @@ def ramp(parts: ArrayLike, steps: int) -> Array:
 
     Examples
     --------
-    >>> ramp([2, 1], 3)
-    array([[2. , 0. ],
-           [1. , 0.5],
-           [0. , 1. ]])
+    >>> ramp([2, 1], 3).tolist()
+    [[2.0, 0.0], [1.0, 0.5], [0.0, 1.0]]
     """
     if steps < 2:
         raise OptionError(f"a ramp must have at least 2 steps, got {steps}", code="too-few-steps")

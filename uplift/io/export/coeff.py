@@ -66,12 +66,14 @@ def write_coeff(
     Raises
     ------
     OptionError
-        ``res`` is out of range (code ``res-out-of-range``).
+        ``res`` is out of range (code ``resolution-out-of-range``).
     OutputError
         The file cannot be written, or exists and ``force`` is off.
     """
     if not MIN_RES <= res <= MAX_RES:
-        raise OptionError(f"res must be from {MIN_RES} to {MAX_RES}, got {res}", code="res-out-of-range")
+        raise OptionError(
+            f"res must be from {MIN_RES} to {MAX_RES}, got {res}", code="resolution-out-of-range"
+        )
     with atomic_write(path, force=force) as temporary:
         scale = _scale(res)
         coefficients, max_error = _fit(data, scale)

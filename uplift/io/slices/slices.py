@@ -46,7 +46,7 @@ def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = 
     Raises
     ------
     OutputError
-        The path does not end in ``.exr`` (code ``unsupported-suffix``), cannot be written, or exists and ``force`` is
+        The path does not end in ``.exr`` (code ``unknown-suffix``), cannot be written, or exists and ``force`` is
         off.
     """
     check_slices(path, force=force)
@@ -69,9 +69,7 @@ def check_slices(path: str | os.PathLike[str], *, force: bool = False) -> None:
         As `write_slices` raises it.
     """
     if Path(path).suffix.lower() != ".exr":
-        raise OutputError(
-            "the name of a file of slices must end in .exr", code="unsupported-suffix", path=path
-        )
+        raise OutputError("the name of a file of slices must end in .exr", code="unknown-suffix", path=path)
     check_output(path, force=force)
 
 

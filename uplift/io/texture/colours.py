@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,14 +60,8 @@ class Counts:
 
     def __add__(self, other: Counts) -> Counts:
         """Counts of both."""
-        return Counts(
-            self.pixels + other.pixels,
-            self.outside + other.outside,
-            self.not_finite + other.not_finite,
-            self.unrealisable + other.unrealisable,
-            max(self.max_change, other.max_change),
-            self.painted_outside + other.painted_outside,
-        )
+        sums = {each.name: getattr(self, each.name) + getattr(other, each.name) for each in fields(self)}
+        return Counts(**sums | {"max_change": max(self.max_change, other.max_change)})
 
     def warnings(
         self, method: str = "clip", path: str | os.PathLike[str] | None = None
@@ -87,30 +81,26 @@ class Counts:
             The warnings. They are not emitted.
         """
         total, past = f"of {self.pixels:,} pixels", PAST_TENSE[method]
-        table = (
-            (
-                self.outside,
-                "pixels-out-of-gamut",
-                f"{total} lie outside [0, 1]: {past}, a component by up to {self.max_change:.3g}",
-            ),
-            (
+        change = f"a component by up to {self.max_change:.3g}"
+        table = {
+            "pixels-out-of-gamut": (self.outside, f"{total} lie outside [0, 1]: {past}, {change}"),
+            "pixels-not-finite": (
                 self.not_finite,
-                "pixels-not-finite",
                 f"{total} are not finite: NaN is replaced by 0, infinity is clamped",
             ),
-            (
+            "pixels-unrealisable": (
                 self.unrealisable,
-                "pixels-unrealisable",
                 f"{total} are close to unrealisable colours: their spectra have less chroma",
             ),
-            (
+            "painted-pixels-out-of-gamut": (
                 self.painted_outside,
-                "painted-pixels-out-of-gamut",
                 f"painted pixels lie outside [0, 1]: {past}",
             ),
-        )
+        }
         return tuple(
-            UpliftWarning(f"{count:,} {text}", code=code, path=path) for count, code, text in table if count
+            UpliftWarning(f"{count:,} {text}", code=code, path=path)
+            for code, (count, text) in table.items()
+            if count
         )
 
 

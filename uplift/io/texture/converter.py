@@ -1,47 +1,44 @@
-"""Interface of the objects that `uplift.io.texture.convert` applies to an image."""
+"""Base class of the objects that `uplift.io.texture.convert` applies to an image."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Any
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.io.texture.colours import Counts, Floats
 
 
-class Converter(Protocol):
-    """Conversion of colours to the channels of an OpenEXR file, and the settings to read and write them by."""
+@dataclass(frozen=True, eq=False)
+class Converter(ABC):
+    """Conversion of colours to the channels of an OpenEXR file.
 
-    @property
-    def sensor(self) -> Sensor:
-        """The sensor whose RGB space images are in."""
-        ...
+    Parameters
+    ----------
+    sensor : Sensor
+        The sensor whose RGB space images are in.
+    depth : {"half", "float"}
+        Type of the channels.
+    encoding : {"auto", "linear", "encoded"}
+        Interpretation of the numbers in images.
+    out_of_gamut : str
+        Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+    channels : tuple of str
+        Names (N,) of the channels after R, G and B.
+    header : mapping
+        Attributes of every file.
+    """
 
-    @property
-    def encoding(self) -> str:
-        """Interpretation of the numbers in images, one of `uplift.io.texture.ENCODINGS`."""
-        ...
+    sensor: Sensor
+    depth: str
+    encoding: str
+    out_of_gamut: str
+    channels: tuple[str, ...]
+    header: Mapping[str, Any]
 
-    @property
-    def out_of_gamut(self) -> str:
-        """Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`."""
-        ...
-
-    @property
-    def depth(self) -> str:
-        """Type of the channels written: half or float."""
-        ...
-
-    @property
-    def channels(self) -> tuple[str, ...]:
-        """Names (N,) of the channels that `convert` appends to R, G and B."""
-        ...
-
-    @property
-    def header(self) -> Mapping[str, Any]:
-        """Attributes of every file."""
-        ...
-
+    @abstractmethod
     def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
         """Convert a block of colours.
 
@@ -57,4 +54,3 @@ class Converter(Protocol):
         Counts
             Pixels that the conversion could not represent.
         """
-        ...

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -20,19 +21,15 @@ Sampler = Callable[[Floats], Floats]
 """From linear RGB (…, 3) in [0, 1] to numbers (…, N)."""
 
 
-class PixelEncoding(Protocol):
+class PixelEncoding(ABC):
     """The numbers of a pixel, the channels for them, and their description in the header."""
 
-    @property
-    def name(self) -> str:
-        """Name of the encoding."""
-        ...
+    name: ClassVar[str]
+    """Name of the encoding."""
+    depths: ClassVar[tuple[str, ...]]
+    """Channel types that are precise enough, the default first."""
 
-    @property
-    def depths(self) -> tuple[str, ...]:
-        """Types that are precise enough, the default first."""
-        ...
-
+    @abstractmethod
     def channels(self, cube: Cube) -> tuple[str, ...]:
         """Return the channel names.
 
@@ -51,33 +48,8 @@ class PixelEncoding(Protocol):
         OptionError
             The cube has no such numbers.
         """
-        ...
 
-    def header(self) -> dict[str, str]:
-        """Return the attributes that the layout requires.
-
-        Returns
-        -------
-        dict
-            Attributes by name.
-        """
-        ...
-
-    def describe(self, cube: Cube) -> dict[str, Any]:
-        """Return the encoding as JSON values.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-
-        Returns
-        -------
-        dict
-            ``as``, the name, and the wavelengths of a spectrum.
-        """
-        ...
-
+    @abstractmethod
     def make_sampler(self, cube: Cube, threads: int) -> Sampler:
         """Return the function that computes the numbers.
 
@@ -93,11 +65,35 @@ class PixelEncoding(Protocol):
         callable
             From linear RGB (..., 3), float32 in [0, 1], to numbers (..., N).
         """
-        ...
+
+    def header(self) -> dict[str, str]:
+        """Return the attributes that the layout requires.
+
+        Returns
+        -------
+        dict
+            Attributes by name, none by default.
+        """
+        return {}
+
+    def describe(self, cube: Cube) -> dict[str, Any]:
+        """Return the encoding as JSON values.
+
+        Parameters
+        ----------
+        cube : Cube
+            The cube that uplifts.
+
+        Returns
+        -------
+        dict
+            ``as``, the name, and the wavelengths of a spectrum.
+        """
+        return {"as": self.name}
 
 
 @dataclass(frozen=True)
-class Spectrum:
+class Spectrum(PixelEncoding):
     """Reflectance at wavelengths, a channel ``T.550,000000nm`` each.
 
     Parameters
@@ -186,39 +182,8 @@ class Spectrum:
         return bulk.spectra(cube, self.wavelengths, threads=threads)
 
 
-class _Coefficients:
-    """Description that moments and multipliers share: the header of the cube's model is sufficient."""
-
-    name: str
-
-    def header(self) -> dict[str, str]:
-        """Return no attributes.
-
-        Returns
-        -------
-        dict
-            Empty.
-        """
-        return {}
-
-    def describe(self, cube: Cube) -> dict[str, Any]:
-        """Return the name.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-
-        Returns
-        -------
-        dict
-            ``as``.
-        """
-        return {"as": self.name}
-
-
 @dataclass(frozen=True)
-class Moments(_Coefficients):
+class Moments(PixelEncoding):
     """Coefficients of a moments cube. They are linear in the spectrum, so textures can be filtered and mip-mapped."""
 
     name = "moments"
@@ -272,7 +237,7 @@ class Moments(_Coefficients):
 
 
 @dataclass(frozen=True)
-class Multipliers(_Coefficients):
+class Multipliers(PixelEncoding):
     """Multipliers, from which spectra are evaluated at once. They are refined to the pixel's exact colour.
 
     Every model has them. They do not interpolate, so textures must not be filtered.

@@ -3,38 +3,28 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from uplift.colorimetry.gamut import check_method
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.errors import OptionError
 from uplift.io.slices import exr
 from uplift.io.texture.colours import Counts, Floats, check_encoding
+from uplift.io.texture.converter import Converter
 from uplift.io.texture.pixel_encoding import PixelEncoding, Sampler, Spectrum
 from uplift.lattice import Status
 from uplift.lookup import Cube
 
 
 @dataclass(frozen=True, eq=False)
-class Uplifter:
+class Uplifter(Converter):
     """A converter of colours to spectra, made by `prepare`, for any number of images.
 
     Parameters
     ----------
+    sensor, depth, encoding, out_of_gamut, channels, header
+        As in `Converter`. The header suffices to evaluate the spectra of a texture.
     cube : Cube
         The cube that uplifts.
-    depth : {"half", "float"}
-        Type of the channels.
-    encoding : {"auto", "linear", "encoded"}
-        Interpretation of the numbers in images.
-    out_of_gamut : str
-        Gamut mapping for pixels outside [0, 1].
-    channels : tuple of str
-        Names (N,) of the numbers of a pixel.
-    header : mapping
-        Attributes of every texture. They suffice to evaluate its spectra.
     sample : callable
         From linear RGB (..., 3) to the numbers (..., N) of a pixel.
     rgb_error : callable or None
@@ -43,18 +33,8 @@ class Uplifter:
     """
 
     cube: Cube
-    depth: str
-    encoding: str
-    out_of_gamut: str
-    channels: tuple[str, ...]
-    header: Mapping[str, Any]
     sample: Sampler
     rgb_error: Sampler | None
-
-    @property
-    def sensor(self) -> Sensor:
-        """The cube's sensor."""
-        return self.cube.data.sensor
 
     def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
         """Uplift a block of colours.
@@ -130,8 +110,17 @@ def prepare(
     settings = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
     description = json.dumps({**pixels.describe(cube), **settings})
     header = {**exr.attributes(cube.data), "uplift.texture": description, **pixels.header()}
-    sampler = pixels.make_sampler(cube, threads)
-    return Uplifter(cube, depth, encoding, out_of_gamut, channels, header, sampler, _rgb_error(cube, threads))
+    return Uplifter(
+        cube.data.sensor,
+        depth,
+        encoding,
+        out_of_gamut,
+        channels,
+        header,
+        cube,
+        sample=pixels.make_sampler(cube, threads),
+        rgb_error=_rgb_error(cube, threads),
+    )
 
 
 def _rgb_error(cube: Cube, threads: int) -> Sampler | None:

@@ -48,7 +48,7 @@ def write_sheet(data: CubeData, path: str | os.PathLike[str], *, force: bool = F
     Raises
     ------
     OutputError
-        The path ends in neither suffix (code ``unsupported-suffix``), cannot be written, or exists and ``force`` is
+        The path ends in neither suffix (code ``unknown-suffix``), cannot be written, or exists and ``force`` is
         off.
     """
     check_sheet(path, force=force)
@@ -73,7 +73,7 @@ def check_sheet(path: str | os.PathLike[str], *, force: bool = False) -> None:
     """
     if _suffix(path) not in WRITERS:
         raise OutputError(
-            "the name of a sheet must end in .exr or .png", code="unsupported-suffix", path=path
+            "the name of a sheet must end in .exr or .png", code="unknown-suffix", path=path
         )
     check_output(path, force=force)
 
