@@ -72,9 +72,7 @@ def check_sheet(path: str | os.PathLike[str], *, force: bool = False) -> None:
         As `write_sheet` raises it.
     """
     if _suffix(path) not in WRITERS:
-        raise OutputError(
-            "the name of a sheet must end in .exr or .png", code="unknown-suffix", path=path
-        )
+        raise OutputError("the name of a sheet must end in .exr or .png", code="unknown-suffix", path=path)
     check_output(path, force=force)
 
 
