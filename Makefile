@@ -77,6 +77,7 @@ demo-render: $(INSTALLED)
 # What textures keep of real images, and take: docs/textures.md.
 textures: pictures
 	$(BIN)/python -m benchmarks.textures
+	$(BIN)/python -m tools.render_docs textures
 
 # What becomes of colours that no screen shows: docs/display.md and its picture.
 display: $(INSTALLED)

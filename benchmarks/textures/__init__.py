@@ -1,1 +1,1 @@
-"""What textures are worth: ``make textures`` writes docs/textures.md and docs/textures/relit.png."""
+"""Accuracy, speed and memory of spectral textures: ``make textures``."""

@@ -1,4 +1,7 @@
-"""What textures are worth: ``make textures`` → docs/textures.md and docs/textures/relit.png."""
+"""Accuracy, speed and memory of spectral textures: ``make textures``.
+
+Writes docs/data/textures.json and docs/textures/relit.png.
+"""
 
 from __future__ import annotations
 
@@ -7,36 +10,33 @@ import time
 import warnings
 
 import uplift
-from benchmarks.page import write
-from benchmarks.textures.introduction import INTRODUCTION
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT, write
 
 PICTURES = ROOT / "docs" / "textures"
 
 
 def main() -> None:
+    """Measure, draw and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
-    # First: what starts from a large process counts that one's memory as its own.
+    # First: a process started from a large one counts the memory of its parent as its own.
     from benchmarks.textures import speed
 
     begin = time.perf_counter()
-    cube = ROOT / "cubes" / "moments-16-macbeth.uplift"
-    timings = speed.section(str(cube))
-    _tell("speed", begin)
+    timings = speed.measure(str(ROOT / "cubes" / "moments-16-macbeth.uplift"))
+    _print_time("speed", begin)
     from benchmarks.textures import accuracy, relit
     from benchmarks.textures.pictures import pictures
 
     macbeth = uplift.build(ROOT / "atlases" / "macbeth.txt", dim=32)
     PICTURES.mkdir(exist_ok=True)
-    apart = relit.draw(macbeth, next(iter(pictures())), PICTURES / "relit.png")
-    sections = accuracy.sections(macbeth)
-    _tell("accuracy", begin)
-    told = ", ".join(f"{value:.1f} under {name}" for name, value in apart.items())
-    print(write("textures", INTRODUCTION.format(apart=told), [*sections, timings]))
+    relighting = relit.draw(macbeth, next(iter(pictures())), PICTURES / "relit.png")
+    figures = accuracy.measure(macbeth)
+    _print_time("accuracy", begin)
+    write("textures", "make textures", relighting=relighting, **figures, speed=timings)
 
 
-def _tell(what: str, begin: float) -> None:
-    print(f"{what}: {time.perf_counter() - begin:.0f} s", file=sys.stderr)
+def _print_time(part: str, begin: float) -> None:
+    print(f"{part}: {time.perf_counter() - begin:.0f} s", file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -1,15 +1,16 @@
-"""Textures of real images, read by others and seen as sRGB again."""
+"""Accuracy of textures of real images, read by other software and converted back to sRGB."""
 
 from __future__ import annotations
 
 import tempfile
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import OpenEXR
 
-from benchmarks.page import table
 from benchmarks.textures.pictures import Picture, colour, pictures
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
@@ -18,51 +19,48 @@ from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
 
 FORMS: tuple[tuple[str, texture.PixelEncoding, str], ...] = (
-    ("spectrum, half", texture.Spectrum(), "half"),
-    ("spectrum, float", texture.Spectrum(), "float"),
-    ("moments, half", texture.Moments(), "half"),
-    ("moments, float", texture.Moments(), "float"),
-    ("multipliers, float", texture.Multipliers(), "float"),
+    ("spectrum_half", texture.Spectrum(), "half"),
+    ("spectrum_float", texture.Spectrum(), "float"),
+    ("moments_half", texture.Moments(), "half"),
+    ("moments_float", texture.Moments(), "float"),
+    ("multipliers_float", texture.Multipliers(), "float"),
 )
 ROWS = 64
-"""Rows that colour-science is given at a time: it writes its tables into attributes at each call."""
+"""Rows per call of colour-science, which limits its memory."""
 GRIDS = ((380, 780, 5), (400, 700, 5), (380, 780, 10), (400, 700, 10), (380, 780, 20), (400, 700, 20))
 """First, last, step in nm."""
 
 
-def sections(cube: Cube) -> list[str]:
-    found = list(pictures())
+def measure(cube: Cube) -> dict[str, Any]:
+    """Convert the images in every form, then as spectra of fewer wavelengths."""
+    images = list(pictures())
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "texture.exr"
-        return [_forms(cube, found, target), _grids(cube, found, target)]
+        return {
+            "round_trips": list(round_trips(cube, images, target)),
+            "wavelengths": [fewer_wavelengths(cube, images, target, *grid) for grid in GRIDS],
+        }
 
 
-def _forms(cube: Cube, found: list[Picture], target: Path) -> str:
-    ready = [texture.prepare(cube, form, depth=depth) for _, form, depth in FORMS]
-    rows = []
-    for picture in found:
+def round_trips(cube: Cube, images: list[Picture], target: Path) -> Iterator[dict[str, Any]]:
+    """Yield ΔE00 between each image and its textures, read by OpenEXR and, where spectral, by colour-science."""
+    uplifters = [(name, form, texture.prepare(cube, form, depth=depth)) for name, form, depth in FORMS]
+    for picture in images:
         linear = np.clip(picture.linear(), 0, 1)
-        cells = [f"{picture.path.name} ({picture.package})", f"{linear.size // 3:,}"]
-        for (_, form, _), uplifter in zip(FORMS, ready, strict=True):
+        errors, colour_science = {}, {}
+        for name, form, uplifter in uplifters:
             texture.convert(uplifter, picture.path, target, force=True)
-            apart = delta_e_rgb(cube.data.sensor, linear, _rgb(cube, form, uplifter.channels, target))
-            cells.append(f"{apart.mean():.4f} / {apart.max():.3f}")
+            found = delta_e_rgb(cube.data.sensor, linear, _rgb(cube, form, uplifter.channels, target))
+            errors[name] = [float(found.mean()), float(found.max())]
             if isinstance(form, texture.Spectrum):
-                theirs = delta_e_rgb(cube.data.sensor, linear, _theirs(target))
-                cells.append(f"{theirs.mean():.4f}")
-        rows.append(cells)
-    head = ["image", "pixels"]
-    for name, form, _ in FORMS:
-        head += [name, "by colour-science"] if isinstance(form, texture.Spectrum) else [name]
-    return table(
-        "Images that come back",
-        "ΔE00 between an image, read by Pillow or OpenEXR, and its texture, read by OpenEXR, evaluated as the header "
-        "tells, and integrated on the cube's own grid: mean / largest. *By colour-science*: the mean where "
-        "`read_spectral_image_Fichet2021` and `components_to_sRGB_Fichet2021` do it all; they take sRGB's white for "
-        "(0.3127, 0.3290), from which D65 at 5 nm differs, by 0.026 on white: that is nearly all of it.",
-        head,
-        rows,
-    )
+                found = delta_e_rgb(cube.data.sensor, linear, _rgb_by_colour_science(target))
+                colour_science[name] = float(found.mean())
+        yield {
+            "image": f"{picture.path.name} ({picture.package})",
+            "pixels": linear.size // 3,
+            "errors": errors,
+            "colour_science": colour_science,
+        }
 
 
 def _rgb(cube: Cube, form: texture.PixelEncoding, names: tuple[str, ...], path: Path) -> Array:
@@ -81,8 +79,8 @@ def _rgb(cube: Cube, form: texture.PixelEncoding, names: tuple[str, ...], path: 
     return np.concatenate(blocks).reshape(*shape, 3)
 
 
-def _theirs(path: Path) -> Array:
-    """Linear sRGB by colour-science alone."""
+def _rgb_by_colour_science(path: Path) -> Array:
+    """Return linear sRGB, read and converted by colour-science alone."""
     io = colour.io.fichet2021
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -91,24 +89,25 @@ def _theirs(path: Path) -> Array:
         return np.concatenate([io.components_to_sRGB_Fichet2021({"T": (at, rows)})[0] for rows in blocks])
 
 
-def _grids(cube: Cube, found: list[Picture], target: Path) -> str:
-    rows = []
-    for first, last, step in GRIDS:
-        at = tuple(float(wavelength) for wavelength in range(first, last + 1, step))
-        uplifter = texture.prepare(cube, texture.Spectrum(at))
-        means, worst = [], 0.0
-        for picture in found:
-            texture.convert(uplifter, picture.path, target, force=True)
-            apart = delta_e_rgb(cube.data.sensor, np.clip(picture.linear(), 0, 1), _theirs(target))
-            means.append(apart.mean())
-            worst = max(worst, apart.max())
-        name = f"{first}:{last}:{step}" + (", the default" if (first, last, step) == GRIDS[0] else "")
-        cells = [f"{min(means):.3f}–{max(means):.3f}", f"{worst:.2f}"]
-        rows.append([name, str(len(at)), str(2 * (len(at) + 3)), *cells])
-    return table(
-        "Fewer wavelengths",
-        "The same images as half-float spectra, back to sRGB by colour-science: means of the images and the largest "
-        "ΔE00 of all. Bytes are those of a pixel before compression, R, G and B among them.",
-        ["wavelengths", "channels", "bytes", "mean", "largest"],
-        rows,
-    )
+def fewer_wavelengths(
+    cube: Cube, images: list[Picture], target: Path, first: int, last: int, step: int
+) -> dict[str, Any]:
+    """Return ΔE00 of half-float spectra at first:last:step nm, converted back by colour-science."""
+    wavelengths = tuple(float(wavelength) for wavelength in range(first, last + 1, step))
+    uplifter = texture.prepare(cube, texture.Spectrum(wavelengths))
+    means, worst = [], 0.0
+    for picture in images:
+        texture.convert(uplifter, picture.path, target, force=True)
+        linear = np.clip(picture.linear(), 0, 1)
+        errors = delta_e_rgb(cube.data.sensor, linear, _rgb_by_colour_science(target))
+        means.append(float(errors.mean()))
+        worst = max(worst, float(errors.max()))
+    return {
+        "wavelengths": f"{first}:{last}:{step}"
+        + (", the default" if (first, last, step) == GRIDS[0] else ""),
+        "channels": len(wavelengths),
+        "bytes": 2 * (len(wavelengths) + 3),
+        "lowest_mean": min(means),
+        "highest_mean": max(means),
+        "max": worst,
+    }

@@ -1,4 +1,4 @@
-"""Real images: those that come with scikit-image, scikit-learn, colour-science and matplotlib."""
+"""Images distributed with scikit-image, scikit-learn, colour-science and matplotlib."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from typing import Any
 import matplotlib
 import numpy as np
 
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT
 from uplift.common.arrays import Array
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # of its optional parts
     import colour
 
-BROUGHT = ROOT / "out" / "pictures"
-"""Where `make textures` puts the packages whose pictures are looked at."""
+INSTALLED = ROOT / "out" / "pictures"
+"""Folder into which `make textures` installs packages with images."""
 
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """An image file, whose it is, and its linear sRGB as others read it."""
+    """An image file, its package, and its linear sRGB as read by other software."""
 
     path: Path
     package: str
 
     def linear(self) -> Array:
-        """(h, w, 3) linear sRGB: OpenEXR's own reader, or Pillow and colour-science's sRGB curve."""
+        """Return linear sRGB (h, w, 3), by OpenEXR, or by Pillow and the sRGB curve of colour-science."""
         if self.path.suffix == ".exr":
             import OpenEXR
 
@@ -43,13 +43,13 @@ class Picture:
 
 
 def pictures() -> Iterator[Picture]:
-    """Raises `FileNotFoundError` where `make textures` did not bring them."""
-    if not BROUGHT.is_dir():
-        raise FileNotFoundError(f"{BROUGHT}: run 'make textures'")
+    """Yield the images; raise `FileNotFoundError` unless `make textures` installed them."""
+    if not INSTALLED.is_dir():
+        raise FileNotFoundError(f"{INSTALLED}: run 'make textures'")
     for name in ("astronaut.png", "coffee.png", "chelsea.png", "ihc.png", "rocket.jpg"):
-        yield Picture(BROUGHT / "skimage" / "data" / name, "scikit-image")
+        yield Picture(INSTALLED / "skimage" / "data" / name, "scikit-image")
     for name in ("china.jpg", "flower.jpg"):
-        yield Picture(BROUGHT / "sklearn" / "datasets" / "images" / name, "scikit-learn")
+        yield Picture(INSTALLED / "sklearn" / "datasets" / "images" / name, "scikit-learn")
     test_pattern = Path(colour.__file__).parent / "io" / "tests" / "resources" / "CMS_Test_Pattern.exr"
     yield Picture(test_pattern, "colour-science")
     portrait = Path(matplotlib.get_data_path()) / "sample_data" / "grace_hopper.jpg"

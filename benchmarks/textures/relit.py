@@ -1,4 +1,4 @@
-"""A picture of why: an image under other lights, from its spectral texture and as an RGB renderer would have it."""
+"""Figure of an image under other lights, from its spectral texture and by RGB products."""
 
 from __future__ import annotations
 
@@ -21,46 +21,46 @@ from uplift.lookup import Cube
 from uplift.viz.figure import new_figure, write_png
 
 LIGHTS = {"A": "tungsten", "FL11": "three-band fluorescent", "HP1": "high-pressure sodium"}
-SHOWN = (slice(0, 300), slice(60, 460))
-"""Rows and columns of the picture."""
+DETAIL = (slice(0, 300), slice(60, 460))
+"""Rows and columns of the detail."""
 
 
 def draw(cube: Cube, picture: Picture, path: Path) -> dict[str, float]:
-    """Write the figure; the mean ΔE00 between the two ways by light."""
-    seen = _spectra(cube, picture)
-    rgb = np.clip(picture.linear(), 0, 1)[SHOWN]
+    """Write the figure, and return the mean ΔE00 between both methods by light."""
+    spectra = _spectra(cube, picture)
+    rgb = np.clip(picture.linear(), 0, 1)[DETAIL]
     sensor = cube.data.sensor
     figure = new_figure(10.2, 4.5)
     panels = figure.subplots(2, len(LIGHTS) + 1)
-    _show(panels[0, 0], sensor.rgb(seen), "D65, from the texture's spectra")
+    _show(panels[0, 0], sensor.rgb(spectra), "D65, from the texture's spectra")
     _show(panels[1, 0], rgb, "the image")
-    apart = {}
+    errors = {}
     for (above, below), (name, what) in zip(panels[:, 1:].T, LIGHTS.items(), strict=True):
         light = observer.light(name)
-        spectral = seen @ light.xyz.T
+        spectral = spectra @ light.xyz.T
         colour = _screen(cube, light.white)
-        apart[name] = _apart(light, spectral, (rgb * colour) @ np.linalg.inv(sensor.xyz_to_rgb).T)
+        errors[name] = _mean_delta_e(light, spectral, (rgb * colour) @ np.linalg.inv(sensor.xyz_to_rgb).T)
         _show(above, _screen(cube, spectral) / colour.max(), f"{name}, {what}")
-        _show(below, rgb * colour / colour.max(), f"{name}, RGB × RGB: ΔE00 {apart[name]:.1f}")
+        _show(below, rgb * colour / colour.max(), f"{name}, RGB × RGB: ΔE00 {errors[name]:.1f}")
     write_png(figure, path, force=True)
-    return apart
+    return errors
 
 
 def _spectra(cube: Cube, picture: Picture) -> Array:
-    """(h, w, N) of the texture, as OpenEXR's own reader has them."""
+    """Return the spectra (h, w, N) of the texture, read by OpenEXR."""
     with tempfile.TemporaryDirectory() as folder:
         uplifter = texture.prepare(cube)
         texture.convert(uplifter, picture.path, Path(folder) / "texture.exr")
         channels = OpenEXR.File(str(Path(folder) / "texture.exr"), separate_channels=True).channels()
-        return np.stack([channels[name].pixels[SHOWN] for name in uplifter.channels], axis=-1).astype(float)
+        return np.stack([channels[name].pixels[DETAIL] for name in uplifter.channels], axis=-1).astype(float)
 
 
 def _screen(cube: Cube, xyz: Array) -> Array:
-    """Linear sRGB of XYZ, white not adapted: what a camera balanced for daylight sees."""
+    """Return linear sRGB without chromatic adaptation, as of a camera balanced for daylight."""
     return xyz @ cube.data.sensor.xyz_to_rgb.T
 
 
-def _apart(light: Light, first: Array, second: Array) -> float:
+def _mean_delta_e(light: Light, first: Array, second: Array) -> float:
     return float(delta_e_2000(lab(first, light.white), lab(second, light.white)).mean())
 
 

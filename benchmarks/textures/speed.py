@@ -1,18 +1,16 @@
-"""Whole processes on images of several sizes: pixels per second, and memory that does not grow."""
+"""Processes on images of several sizes: pixels per second and peak memory."""
 
 from __future__ import annotations
 
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from benchmarks.page import table
 from benchmarks.processes import UPLIFT
 from benchmarks.textures.pictures import pictures
 from benchmarks.timing import process
-from uplift.lab.timing import Spread
 
 FEW = ("--wavelengths", "400:700:10")
 JOBS: tuple[tuple[int, tuple[str, ...], int], ...] = (
@@ -26,32 +24,30 @@ JOBS: tuple[tuple[int, tuple[str, ...], int], ...] = (
 """Size, options, runs."""
 
 
-@dataclass(frozen=True)
-class TextureTiming:
-    """Wall seconds and peak memory (MB) of a process that uplifts size² pixels, and the bytes that it writes."""
-
-    size: int
-    options: tuple[str, ...]
-    wall: Spread
-    megabytes: float
-    written: int
+def measure(cube: str) -> list[dict[str, Any]]:
+    """Time the processes, one after the other."""
+    return [_time(cube, *job) for job in JOBS]
 
 
-def section(cube: str) -> str:
-    return _table([_time(cube, *job) for job in JOBS])
-
-
-def _time(cube: str, size: int, options: tuple[str, ...], runs: int) -> TextureTiming:
+def _time(cube: str, size: int, options: tuple[str, ...], runs: int) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         source, target = Path(folder) / "in.png", Path(folder) / "out.exr"
         _write(source, size)
         command = [UPLIFT, "texture", str(source), str(target), "--cube", cube, "--force", *options]
         wall, megabytes = process(command, runs)
-        return TextureTiming(size, options, wall, megabytes, target.stat().st_size)
+        return {
+            "options": " ".join(options) or "none: spectra at 81 wavelengths",
+            "size": size,
+            "megapixels": size**2 / 1e6,
+            "seconds": wall,
+            "rate": size**2 / wall.median / 1e6,
+            "written_mb": target.stat().st_size / 1e6,
+            "peak_mb": megabytes,
+        }
 
 
 def _write(path: Path, size: int) -> None:
-    """A photograph tiled to size² pixels as 8-bit PNG, with noise, or compression would find the tiles."""
+    """Write a photograph tiled to size² pixels as 8-bit PNG, with noise so that the tiles do not compress."""
     import OpenImageIO
     from PIL import Image
 
@@ -65,25 +61,3 @@ def _write(path: Path, size: int) -> None:
         noisy = np.clip(tiled + rng.integers(-3, 4, tiled.shape), 0, 255).astype(np.uint8)
         image.write_scanlines(first, first + height, 0, noisy)
     image.close()
-
-
-def _table(timings: list[TextureTiming]) -> str:
-    return table(
-        "Pixels per second, and memory",
-        "`uplift texture` as a process, start and compilation included, on a photograph tiled and with noise added, "
-        "8-bit PNG. An image is read, uplifted and written a band of rows at a time: memory is that of the program, "
-        "of the cube's tables and of some bands, whatever the height. Machines differ and are shared: compare rows.",
-        ["options", "image", "million pixels", "seconds", "million pixels/s", "written MB", "peak memory MB"],
-        [
-            [
-                " ".join(timing.options) or "none: spectra at 81 wavelengths",
-                f"{timing.size}²",
-                f"{timing.size**2 / 1e6:.1f}",
-                f"{timing.wall:.1f}",
-                f"{timing.size**2 / timing.wall.median / 1e6:.2f}",
-                f"{timing.written / 1e6:,.0f}",
-                f"{timing.megabytes:,.0f}",
-            ]
-            for timing in timings
-        ],
-    )
