@@ -38,11 +38,11 @@ def _read(source: str) -> Chart:
 def _measure() -> Chart:
     from uplift.atlas import read_atlas
     from uplift.lab.chart.measure import measure
-    from uplift.lab.chart.methods import chosen
+    from uplift.lab.chart.methods import select_methods
     from uplift.lab.chart.task import task
 
     atlases = {path.stem: read_atlas(path) for path in sorted((ROOT / "atlases").glob("*.txt"))}
-    methods = chosen()
+    methods = select_methods()
     with click.progressbar(length=len(methods), label="methods", file=sys.stderr) as bar:
         return measure(methods, task(atlases), lambda done: bar.update(1))
 
@@ -74,7 +74,7 @@ def store(chart: Chart) -> None:
         methods=[method_record(row) for row in chart.measured],
         excluded=[
             {"method": row.title, "state": row.state, "reason": row.why}
-            for row in chart.rows
+            for row in chart.results
             if row.state != State.MEASURED
         ],
     )

@@ -25,7 +25,7 @@ def write(name: str, command: str, **figures: Any) -> None:
 def to_json(value: Any) -> Any:
     """Convert a spread, another dataclass, or a number or array of numpy."""
     if isinstance(value, Spread):
-        return {"median": value.median, "min": value.least, "max": value.most, "runs": value.runs}
+        return {"median": value.median, "min": value.min, "max": value.max, "runs": value.runs}
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
     if isinstance(value, np.ndarray | np.generic):

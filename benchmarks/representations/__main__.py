@@ -32,7 +32,7 @@ def _measure() -> None:
     from benchmarks.representations import closed, results, thesis
     from uplift.common.files import check_folder
     from uplift.lab.comparison.filters import tune
-    from uplift.lab.comparison.pictures import DRAWN, write_picture
+    from uplift.lab.comparison.pictures import KINDS, write_picture
     from uplift.lab.comparison.scene import scene
 
     warnings.simplefilter("ignore", uplift.UpliftWarning)
@@ -43,7 +43,7 @@ def _measure() -> None:
     with click.progressbar(length=24, label="filters", file=sys.stderr) as bar:
         tuned = tune(default, progress=lambda done: bar.update(1))
     folder = check_folder(ROOT / "docs" / "representations", (), force=True)
-    for kind in DRAWN:
+    for kind in KINDS:
         write_picture(main_comparison, kind, folder / f"{kind}.png", force=True)
     printed = thesis.tables()
     write(

@@ -10,7 +10,7 @@ from uplift.lab.comparison.filters import NONE, Tuned
 from uplift.lab.comparison.measure import Comparison, RepresentationResult
 from uplift.lab.comparison.recommend import cheapest
 from uplift.lab.comparison.statistics import Statistics
-from uplift.lab.comparison.style import heading
+from uplift.viz.format import capitalise
 
 TARGETS = (2.0, 1.0, 0.5)
 TABLE = 81
@@ -25,7 +25,7 @@ def advice(comparison: Comparison) -> Iterator[Row]:
     compact = Comparison(
         comparison.facts,
         comparison.sets,
-        tuple(row for row in comparison.rows if row.light_floats < TABLE),
+        tuple(row for row in comparison.results if row.light_floats < TABLE),
     )
     for name, title in comparison.sets.items():
         for target in TARGETS:
@@ -85,7 +85,7 @@ def filters(tuned: Sequence[Tuned], thesis: ThesisFilters) -> list[Row]:
                 "mean": mean,
                 "std": one.statistics.deviation,
                 "change": None if one.kind == NONE else mean / reference - 1,
-                "parameters": one.told,
+                "parameters": one.parameters,
                 "thesis": {
                     "mean": printed.mean,
                     "change": None if one.kind == NONE else printed.mean / bare.mean - 1,
@@ -98,4 +98,4 @@ def filters(tuned: Sequence[Tuned], thesis: ThesisFilters) -> list[Row]:
 
 def titles(*comparisons: Comparison) -> dict[str, str]:
     """Return the headings of the sets of lights."""
-    return {name: heading(title) for one in comparisons for name, title in one.sets.items()}
+    return {name: capitalise(title) for one in comparisons for name, title in one.sets.items()}

@@ -111,14 +111,14 @@ def command(
 
 
 def _recommend(source: str | None, requirement: Requirement) -> None:
-    from uplift.lab.chart.recommend import recommend, shipped
+    from uplift.lab.chart.recommend import recommend, shipped_chart
     from uplift.viz.format import format_error, format_size, format_time
 
-    row = recommend(_read(source) if source is not None else shipped(), requirement)
+    row = recommend(_read(source) if source is not None else shipped_chart(), requirement)
     numbers = row.numbers
     click.echo(
         f"{row.title}: {format_time(numbers['time_ns'])} per RGB, mean ΔE00 {format_error(numbers[requirement.error])} "
-        f"{requirement.about}, {format_size(numbers['bytes'])}\n  {row.build}\n  {row.ask}"
+        f"{requirement.description}, {format_size(numbers['bytes'])}\n  {row.build}\n  {row.ask}"
     )
 
 
@@ -130,10 +130,10 @@ def _read(source: str) -> Chart:
 
 def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *, quick: bool) -> Chart:
     from uplift.lab.chart.measure import measure
-    from uplift.lab.chart.methods import chosen
+    from uplift.lab.chart.methods import select_methods
     from uplift.lab.chart.task import QUICK, Effort, task
 
-    methods = chosen(patterns, quick=quick)
+    methods = select_methods(patterns, quick=quick)
     colours_and_spectra = task(read_atlases(files), colours, QUICK if quick else Effort())
     with progress_bar("methods") as progress:
         return measure(methods, colours_and_spectra, progress)
@@ -171,11 +171,11 @@ def _print_fronts(chart: Chart) -> None:
             table.add_row(
                 title,
                 row.method,
-                *panel.told(row),
+                *panel.labels(row),
                 format_size(row.numbers["bytes"]),
                 end_section=row is front[-1],
             )
     console().print(table)
-    for row in chart.rows:
+    for row in chart.results:
         if row.state != State.MEASURED:
             click.echo(f"{row.method}: {row.state}, not drawn: {row.why}")

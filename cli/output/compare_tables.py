@@ -41,19 +41,19 @@ def print_filters(tuned: tuple[Tuned, ...]) -> None:
         HEADINGS,
     )
     for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
-        table.add_row(one.lights, str(one.count), one.kind, one.told, *_cells(one.statistics))
+        table.add_row(one.lights, str(one.count), one.kind, one.parameters, *_cells(one.statistics))
     console().print(table)
 
 
 def print_advice(comparison: Comparison, target: float) -> None:
     """Print the cheapest sufficient representation for each set of lights."""
-    from uplift.lab.comparison.recommend import cheapest, nearest
+    from uplift.lab.comparison.recommend import cheapest, most_accurate
     from uplift.viz.format import format_error, format_time
 
     for name, title in comparison.sets.items():
         row = cheapest(comparison, name, target)
         if row is None:
-            best = nearest(comparison, name)
+            best = most_accurate(comparison, name)
             text = f"none; the most accurate, {best.name}, has {format_error(best.statistics.q97_5)}"
         else:
             text = (

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 from uplift_cli.main import main
 
-from uplift.lab.chart.recommend import MEASURED, shipped
+from uplift.lab.chart.recommend import MEASURED, shipped_chart
 from uplift.lab.chart.table import chart_csv, read_chart
 from uplift.lab.timing import ONE_THREAD
 
@@ -36,7 +36,7 @@ def quick(repository, tmp_path_factory):
 @pytest.fixture(scope="module")
 def numbers(quick):
     """Numbers by method."""
-    return {row.method: row.numbers for row in read_chart(quick[0] / "chart.csv").rows}
+    return {row.method: row.numbers for row in read_chart(quick[0] / "chart.csv").results}
 
 
 def test_all_files_are_written_and_fronts_printed(quick, numbers):
@@ -115,7 +115,7 @@ def test_recommendation_from_the_packaged_chart(run, repository):
     result = run("chart", "--recommend", "--delta-e", 1, "--light", "FL11", "--atlas-materials")
     assert "--atlas FILE" in result.stdout
     stored = (repository / "uplift" / "lab" / "chart" / MEASURED).read_text(encoding="utf-8")
-    assert chart_csv(shipped()) == stored
+    assert chart_csv(shipped_chart()) == stored
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""The scene that representations are tested on: the ColorChecker under the lights of the thesis."""
+"""Test scene of the representations: the ColorChecker under the lights of Kment 2011."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
-"""Labels beside crowded points."""
+"""Placement of labels."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from uplift.viz.labels import place
+from uplift.viz.labels import place_labels
 
 PANEL = np.array([0.0, 0.0, 300.0, 200.0])
 
@@ -16,23 +16,23 @@ def overlapping(corners, sizes):
     return int(np.triu((high > low).all(axis=-1), 1).sum())
 
 
-def test_labels_of_a_crowd_do_not_overlap_and_stay_within():
+def test_labels_of_close_points_do_not_overlap():
     anchors = np.random.default_rng(1).normal((290, 100), (3, 12), (9, 2))
     sizes = np.tile([48.0, 9.0], (9, 1))
-    corners = place(anchors, sizes, anchors, PANEL)
+    corners = place_labels(anchors, sizes, anchors, PANEL)
     assert overlapping(anchors, sizes) > 10
     assert overlapping(corners, sizes) == 0
     assert (corners >= PANEL[:2]).all()
     assert (corners + sizes <= PANEL[2:]).all()
 
 
-def test_a_lonely_label_stands_close_to_its_point():
+def test_single_label_is_next_to_its_point():
     anchors = np.array([[100.0, 100.0]])
-    (corner,) = place(anchors, np.array([[40.0, 8.0]]), anchors, PANEL)
+    (corner,) = place_labels(anchors, np.array([[40.0, 8.0]]), anchors, PANEL)
     np.testing.assert_allclose(corner, [106, 96])
 
 
-def test_a_label_does_not_cover_a_marker():
+def test_label_does_not_cover_a_marker():
     anchors, markers = np.array([[100.0, 100.0]]), np.array([[100.0, 100.0], [120.0, 100.0]])
-    (corner,) = place(anchors, np.array([[40.0, 8.0]]), markers, PANEL)
+    (corner,) = place_labels(anchors, np.array([[40.0, 8.0]]), markers, PANEL)
     assert not ((markers > corner) & (markers < corner + np.array([40, 8]))).all(axis=1).any()

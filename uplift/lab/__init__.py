@@ -1,1 +1,1 @@
-"""Measurements about methods: studies, the chart of speed against accuracy, comparisons."""
+"""Measurements of methods: studies, the chart of speed against accuracy, comparisons of representations."""

@@ -1,4 +1,4 @@
-"""Honest numbers: repeats with median and spread, and where they were taken."""
+"""Timings with median and range, and the environment in which they are taken."""
 
 from __future__ import annotations
 
@@ -15,32 +15,85 @@ from pathlib import Path
 
 PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors", "uplift")
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-"""Read when numpy is imported. With matrices as small as these, more threads made colour-science twice as slow."""
+"""Environment variables, read when numpy is imported. Matrices here are small: with more threads colour-science took
+twice as long."""
 SOURCES = Path(__file__).parents[1]
 
 
 @dataclass(frozen=True)
 class Spread:
-    """Median, least and most of several runs."""
+    """Median and range of several runs.
+
+    Parameters
+    ----------
+    median, min, max : float
+        Median, smallest and largest value.
+    runs : int
+        Number of runs.
+
+    Examples
+    --------
+    >>> print(f"{Spread(2.0, 1.0, 4.0, 3):.1f}")
+    2.0 (1.0–4.0)
+    """
 
     median: float
-    least: float
-    most: float
+    min: float
+    max: float
     runs: int
 
     def __format__(self, spec: str) -> str:
-        return f"{self.median:{spec}} ({self.least:{spec}}–{self.most:{spec}})"
+        return f"{self.median:{spec}} ({self.min:{spec}}–{self.max:{spec}})"
 
     def scaled(self, factor: float) -> Spread:
-        return Spread(self.median * factor, self.least * factor, self.most * factor, self.runs)
+        """Multiply all values by a factor.
+
+        Parameters
+        ----------
+        factor : float
+            The factor.
+
+        Returns
+        -------
+        Spread
+            The products, of as many runs.
+        """
+        return Spread(self.median * factor, self.min * factor, self.max * factor, self.runs)
 
 
 def spread(values: list[float]) -> Spread:
+    """Summarise the values of several runs.
+
+    Parameters
+    ----------
+    values : list of float
+        At least one value.
+
+    Returns
+    -------
+    Spread
+        Median and range.
+    """
     return Spread(statistics.median(values), min(values), max(values), len(values))
 
 
 def timed(function: Callable[[], object], runs: int) -> tuple[Spread, Spread]:
-    """Wall and CPU seconds of warm runs; the caller has run it once, and what it returns is finished."""
+    """Measure repeated calls of a function.
+
+    The caller has called it once to warm up. Asynchronous results must be complete when the function returns.
+
+    Parameters
+    ----------
+    function : callable
+        Function without arguments.
+    runs : int
+        Number of calls.
+
+    Returns
+    -------
+    wall, cpu : Spread
+        Wall seconds, and CPU seconds of all threads.
+    """
     wall, cpu = [], []
     for _ in range(runs):
         begin, begin_cpu = time.perf_counter(), time.process_time()
@@ -51,7 +104,13 @@ def timed(function: Callable[[], object], runs: int) -> tuple[Spread, Spread]:
 
 
 def environment() -> dict[str, str]:
-    """Machine, versions and commit."""
+    """Describe where measurements are taken.
+
+    Returns
+    -------
+    dict of str to str
+        ``machine``, ``versions`` and ``commit``.
+    """
     cpu = next(
         (line.split(":")[1].strip() for line in _lines("/proc/cpuinfo") if line.startswith("model name")),
         platform.processor() or platform.machine(),
@@ -65,17 +124,23 @@ def environment() -> dict[str, str]:
 
 
 def commit() -> str:
-    """The commit that this code is of; 'unknown' where it does not lie in a working tree of its own."""
+    """Return the commit of this code.
+
+    Returns
+    -------
+    str
+        Its abbreviated hash, with a remark if files have changed; ``unknown`` outside a working tree of this package.
+    """
     if not _git("ls-files", "--", __file__):
         return "unknown"
     changed = _git("status", "--porcelain", "--", "uplift", "cli", "benchmarks")
     return _git("rev-parse", "--short=12", "HEAD") + (" with changes" if changed else "")
 
 
-def _git(*words: str) -> str:
-    """What git says of the sources; nothing where there is no git."""
+def _git(*arguments: str) -> str:
+    """Output of git in the source folder, empty without git."""
     try:
-        done = subprocess.run(["git", *words], cwd=SOURCES, capture_output=True, text=True, check=False)
+        done = subprocess.run(["git", *arguments], cwd=SOURCES, capture_output=True, text=True, check=False)
     except OSError:
         return ""
     return done.stdout.strip()

@@ -1,8 +1,8 @@
-"""What pictures of error over cost share: axes, the Pareto front as a staircase, names beside markers."""
+"""Scatter plots of error over cost: axes, Pareto fronts, labels next to markers."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -10,20 +10,35 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.viz.figure import GREY, INK, PALE
-from uplift.viz.labels import place
+from uplift.viz.figure import GREY, INK, new_figure, style_axes
+from uplift.viz.labels import place_labels
 
-POINTS = 72
-"""An inch, whatever the resolution."""
-BEHIND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.6}
-"""A label on top of a crowd can still be read."""
-LED = 14
-"""Points from a marker beyond which a line leads to its label."""
+MARKER: dict[str, Any] = {
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 8,
+    "color": GREY,
+    "markeredgecolor": "white",
+}
+FRONT_LINE: dict[str, Any] = {"linestyle": "-", "marker": "none", "color": INK, "linewidth": 1.1}
+LEGEND: dict[str, Any] = {
+    "frameon": False,
+    "alignment": "left",
+    "fontsize": 9,
+    "title_fontsize": 9,
+    "labelspacing": 0.7,
+}
+"""Arguments of a legend."""
+
+_POINTS_PER_INCH = 72
+_LABEL_BACKGROUND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.6}
+_MAX_DISTANCE = 14
+"""Points between a marker and its label without a line that joins them."""
 
 
 @dataclass(frozen=True)
-class Name:
-    """A ``text`` that stands beside the ``point`` (x, y) it names; ``gid`` is its name in an SVG file."""
+class Label:
+    """A text next to the point (x, y) that it names; ``gid`` identifies it in an SVG file."""
 
     text: str
     point: tuple[float, float]
@@ -32,57 +47,103 @@ class Name:
     gid: str
 
 
-def set_up(axes: Any, title: str, across: str) -> None:
-    """Logarithmic axes, a grid behind, no frame."""
-    axes.set(xscale="log", yscale="log", xlabel=across)
-    axes.set_title(title, loc="left", fontsize=11, fontweight="bold", color=INK)
+def new_panels(
+    rows: int, columns: int, panel: tuple[float, float], margins: Mapping[str, float], extra: float = 0.0
+) -> tuple[Any, Any]:
+    """Create a figure with a renderer, so that positions are known at once, and its axes (rows, columns).
+
+    ``panel`` is the size of a panel in inches, ``extra`` the height for a legend, ``margins`` are those of
+    ``subplots_adjust``.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    figure = new_figure(columns * panel[0], rows * panel[1] + extra, layout=None)
+    figure.subplots_adjust(**margins)
+    FigureCanvasAgg(figure)
+    return figure, figure.subplots(rows, columns, squeeze=False)
+
+
+def style_log_axes(axes: Any, title: str, label: str) -> None:
+    """Set logarithmic scales, the title and the label of the x axis."""
+    axes.set(xscale="log", yscale="log", xlabel=label)
+    style_title(axes, title)
     axes.minorticks_off()
-    axes.grid(color=PALE, linewidth=0.5)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
+    style_axes(axes)
+
+
+def style_title(axes: Any, title: str) -> None:
+    """Set a bold title on the left."""
+    axes.set_title(title, loc="left", fontsize=11, fontweight="bold", color=INK)
+
+
+def pareto_front(points: Array, ratio: float = 1.0) -> list[int]:
+    """Find the points that no cheaper point beats.
+
+    Parameters
+    ----------
+    points : ndarray, shape (k, 2)
+        Cost and error.
+    ratio : float, default 1.0
+        Share in (0, 1] of the previous error that a point on the front must stay below.
+
+    Returns
+    -------
+    list of int
+        Rows of the front, cheapest first.
+
+    Examples
+    --------
+    >>> pareto_front(np.array([[3, 1.0], [1, 2.0], [2, 2.5], [4, 0.999]]), ratio=0.99)
+    [1, 0]
+    """
+    front: list[int] = []
+    for row in np.lexsort((points[:, 1], points[:, 0])).tolist():
+        if not front or points[row, 1] < ratio * points[front[-1], 1]:
+            front.append(row)
+    return front
 
 
 def pareto_steps(front: Array, right: float) -> Array:
-    """A Pareto front (k, 2), from the left, as a staircase up to ``right``: who stands above it is beaten in both
-    respects."""
+    """Convert a Pareto front (k, 2), cheapest first, to a staircase up to ``right``."""
     x = np.append(front[:, 0].repeat(2)[1:], right)
     return np.stack([x, front[:, 1].repeat(2)], axis=1)
 
 
-def label(axes: Any, names: Sequence[Name], markers: Array, line: Array) -> None:
-    """Write names where they cover least of the ``markers`` (M, 2) and of a ``line`` (k, 2)."""
-    if not names:
+def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array) -> None:
+    """Write labels where they cover least of the ``markers`` (M, 2) and of a ``line`` (k, 2)."""
+    if not labels:
         return
-    scale = POINTS / axes.figure.dpi
+    scale = _POINTS_PER_INCH / axes.figure.dpi
     line = np.concatenate([np.geomspace(*pair, 40) for pair in pairwise(line)])
     anchors, markers, line = (
-        scale * axes.transData.transform(points) for points in ([name.point for name in names], markers, line)
+        scale * axes.transData.transform(points)
+        for points in ([label.point for label in labels], markers, line)
     )
     texts = [
         axes.annotate(
-            name.text,
+            label.text,
             (0, 0),
             xycoords="figure points",
             fontsize=7.5,
-            fontweight="bold" if name.bold else "normal",
-            color=name.colour,
-            gid=name.gid,
-            bbox=BEHIND,
+            fontweight="bold" if label.bold else "normal",
+            color=label.colour,
+            gid=label.gid,
+            bbox=_LABEL_BACKGROUND,
         )
-        for name in names
+        for label in labels
     ]
     renderer = axes.figure.canvas.get_renderer()
     sizes = scale * np.array([text.get_window_extent(renderer).size for text in texts])
-    within = scale * axes.get_window_extent(renderer).extents
-    corners = place(anchors, sizes, np.concatenate([markers, line]), within)
+    panel = scale * axes.get_window_extent(renderer).extents
+    corners = place_labels(anchors, sizes, np.concatenate([markers, line]), panel)
     for text, corner, size, anchor in zip(texts, corners, sizes, anchors, strict=True):
         text.set_position(corner)
         text.xy = tuple(corner)
-        _lead(axes, np.clip(anchor, corner, corner + size), anchor)
+        _join(axes, np.clip(anchor, corner, corner + size), anchor)
 
 
-def _lead(axes: Any, end: Array, start: Array) -> None:
-    if np.linalg.norm(end - start) > LED:
+def _join(axes: Any, end: Array, start: Array) -> None:
+    if np.linalg.norm(end - start) > _MAX_DISTANCE:
         style = {"arrowstyle": "-", "color": GREY, "linewidth": 0.5}
-        there = {"xycoords": "figure points", "textcoords": "figure points"}
-        axes.annotate("", end, start, arrowprops=style, zorder=1, **there)
+        units = {"xycoords": "figure points", "textcoords": "figure points"}
+        axes.annotate("", end, start, arrowprops=style, zorder=1, **units)

@@ -1,4 +1,4 @@
-"""Small tasks, and charts of few methods."""
+"""Small tasks and charts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from uplift.lab.chart.table import Chart, MethodResult, State
 from uplift.lab.chart.task import Effort, task
 
 FACTS = dict.fromkeys(("machine", "versions", "commit", "colours", "spectra", "effort"), "stated")
-HASTE = Effort(answering=0.05, runs=3, lap=0.001, batch=64, builds=1)
+HASTE = Effort(seconds_per_error=0.05, runs=3, lap=0.001, batch=64, builds=1)
 ERRORS = (
     "round_trip",
     *CHART_LIGHTS,
@@ -26,19 +26,19 @@ ERRORS = (
 
 @pytest.fixture(scope="session")
 def small_task(repository):
-    """Sixteen colours, the edges, and the ColorChecker; no time to lose."""
+    """Sixteen colours, the edges, and the ColorChecker, with short timings."""
     return task({"macbeth": read_atlas(repository / "atlases" / "macbeth.txt")}, 16, HASTE)
 
 
 @pytest.fixture(scope="session")
 def greys():
-    """A family to put methods into."""
+    """Family of the test methods."""
     return Family("Greys", "a test", "#123456", ())
 
 
 @pytest.fixture
 def method_of():
-    """A method that answers with a function of RGB and wavelengths."""
+    """Make a method from a function of RGB and wavelengths."""
 
     def method_of(uplift, **fields):
         return Method("test", "Test", lambda task: PreparedMethod(uplift, 8), **fields)
@@ -48,7 +48,7 @@ def method_of():
 
 @pytest.fixture
 def row_of():
-    """A measured row with one error for everything."""
+    """Make a result in which all errors are equal."""
 
     def row_of(name, time, error, **fields):
         numbers = {f"{key}_{kind}": error for key in ERRORS for kind in ("mean", "p99", "max")}
@@ -65,7 +65,7 @@ def row_of():
 
 @pytest.fixture
 def chart_of():
-    """A chart of rows."""
+    """Make a chart from results."""
     return lambda *rows: Chart(FACTS, rows)
 
 

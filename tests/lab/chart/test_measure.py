@@ -1,23 +1,25 @@
-"""Answers are checked before they are timed, and what is broken has no time."""
+"""Answers are checked before they are timed; broken methods have no times."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from markupsafe import Markup
 
+from tests.pages import Page
 from uplift.colorimetry.lights import CHART_LIGHTS
-from uplift.lab.chart.measure import FAR, measure, measure_one
+from uplift.common.progress import Progress
+from uplift.lab.chart.measure import MAX_CLAIM_RATIO, measure, measure_one
 from uplift.lab.chart.method import Claims, Method, NotInstalledError
 from uplift.lab.chart.methods.mallett2019 import FAMILIES
 from uplift.lab.chart.page import page
 from uplift.lab.chart.panels import PANELS
 from uplift.lab.chart.table import State
 from uplift.lab.study.held_out import spectrum_errors
-from uplift.viz.markup import Markup
 
 
 def grey(rgb, wavelengths):
-    """An honest answer, though hardly a good one."""
+    """A valid answer with a large error."""
     return np.repeat(rgb.mean(axis=1, keepdims=True), len(wavelengths), axis=1)
 
 
@@ -34,18 +36,18 @@ def lazy(rgb, wavelengths):
 
 
 BROKEN = {
-    "lazy with many": (lazy, Claims(), "answers 64 colours otherwise than 50, by 0."),
-    "not numbers": (nan, Claims(), "spectra are not numbers"),
+    "wrong in large batches": (lazy, Claims(), "64 colours per call give other reflectances than 50, by 0."),
+    "not finite": (nan, Claims(), "spectra are not finite"),
     "too bright": (lambda rgb, at: 1.1 + grey(rgb, at), Claims(), "0 to 1 are claimed"),
-    "below nothing": (lambda rgb, at: grey(rgb, at) - 0.2, Claims(), "0 to 1 are claimed"),
-    "another colour": (grey, Claims(round_trip=0.01), "0.01 is claimed"),
-    "another shape": (lambda rgb, at: grey(rgb, at)[:, :-1], Claims(), "answers of shape (80,)"),
+    "negative": (lambda rgb, at: grey(rgb, at) - 0.2, Claims(), "0 to 1 are claimed"),
+    "wrong colour": (grey, Claims(round_trip=0.01), "0.01 is claimed"),
+    "wrong shape": (lambda rgb, at: grey(rgb, at)[:, :-1], Claims(), "spectra have shape (80,)"),
     "an exception": (fail, Claims(), "raises ZeroDivisionError: by the last of these"),
 }
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_a_broken_answer_is_flagged_and_not_timed(small_task, greys, method_of, name):
+def test_broken_answer_is_reported_and_not_timed(small_task, greys, method_of, name):
     uplift, claims, why = BROKEN[name]
     row = measure_one(greys, method_of(uplift, claims=claims), small_task)
     assert row.state == State.BROKEN
@@ -53,24 +55,28 @@ def test_a_broken_answer_is_flagged_and_not_timed(small_task, greys, method_of, 
     assert row.numbers == {}
 
 
-def test_a_broken_method_is_listed_and_not_drawn_as_fast(small_task, greys, method_of):
+def test_broken_method_is_listed_and_not_drawn(small_task, greys, method_of):
     (mallett,) = FAMILIES
     broken = method_of(nan)
     chart = measure([(mallett, mallett.methods[0]), (greys, broken)], small_task)
-    good, bad = chart.rows
+    good, bad = chart.results
     assert (good.state, bad.state) == (State.MEASURED, State.BROKEN)
     assert chart.measured == (good,)
     assert all(bad not in panel.front(chart) and panel.point(bad) is None for panel in PANELS)
-    assert f'<td class="bad">broken</td><td>{bad.why}</td>' in page(chart, Markup(""))
+    (row,) = Page(page(chart, Markup(""))).table("method", "state", "reason")
+    assert [cell.text for cell in row] == [bad.title, "broken", bad.why]
 
 
-def test_the_same_answer_is_no_error_where_less_is_claimed(small_task, greys, method_of):
+def test_answer_is_broken_only_if_far_off_its_claim(small_task, greys, method_of):
     miss = measure_one(greys, method_of(grey), small_task).numbers["round_trip_mean"]
-    for claimed, state in ((1.01 * miss / FAR, State.MEASURED), (0.99 * miss / FAR, State.BROKEN)):
+    for claimed, state in (
+        (1.01 * miss / MAX_CLAIM_RATIO, State.MEASURED),
+        (0.99 * miss / MAX_CLAIM_RATIO, State.BROKEN),
+    ):
         assert measure_one(greys, method_of(grey, claims=Claims(claimed)), small_task).state == state
 
 
-def test_errors_are_those_of_the_study_of_halves(small_task, greys, method_of):
+def test_errors_are_those_of_the_holdout_study(small_task, greys, method_of):
     numbers = measure_one(greys, method_of(grey), small_task).numbers
     for prefix, measured in (("", small_task.unseen), ("own_", small_task.own)):
         errors = spectrum_errors(
@@ -83,21 +89,21 @@ def test_errors_are_those_of_the_study_of_halves(small_task, greys, method_of):
         assert numbers[f"{prefix}lights_mean"] == pytest.approx(errors.delta_e.mean())
 
 
-def test_many_at_once_and_one_a_call_are_timed_apart(small_task, greys, method_of):
-    asked = []
+def test_batches_and_single_colours_are_timed(small_task, greys, method_of):
+    sizes = []
 
     def uplift(rgb, wavelengths):
-        asked.append(len(rgb))
+        sizes.append(len(rgb))
         return grey(rgb, wavelengths)
 
     numbers = measure_one(greys, method_of(uplift), small_task).numbers
-    assert {1, small_task.effort.batch} <= set(asked)
+    assert {1, small_task.effort.batch} <= set(sizes)
     assert numbers["time_ns"] == numbers["batch_ns"]
     assert numbers["batch_ns_least"] <= numbers["batch_ns"] <= numbers["batch_ns_most"]
     assert numbers["batch_colours"] == small_task.effort.batch
 
 
-def test_a_method_of_one_colour_a_call_is_timed_so_and_asked_for_less(small_task, greys, method_of):
+def test_method_without_batches_processes_fewer_colours(small_task, greys, method_of):
     def slow(rgb, wavelengths):
         for _ in range(len(rgb) * 200_000):
             pass
@@ -109,7 +115,7 @@ def test_a_method_of_one_colour_a_call_is_timed_so_and_asked_for_less(small_task
     assert 3 <= numbers["round_trip_colours"] < len(small_task.rgb)
 
 
-def test_what_is_not_installed_says_so(small_task, greys):
+def test_missing_package_is_reported(small_task, greys):
     def prepare(task):
         raise NotInstalledError("it is not installed: pip install it")
 
@@ -117,13 +123,11 @@ def test_what_is_not_installed_says_so(small_task, greys):
     assert (row.state, row.why, row.numbers) == (State.MISSING, "it is not installed: pip install it", {})
 
 
-def test_the_chart_says_what_was_asked_where_and_how(small_task, greys, method_of):
-    heard = []
-    chart = measure(
-        [(greys, method_of(grey))] * 2, small_task, lambda done, total: heard.append((done, total))
-    )
-    assert heard == [(1, 2), (2, 2)]
+def test_chart_describes_test_set_and_environment(small_task, greys, method_of):
+    events = []
+    chart = measure([(greys, method_of(grey))] * 2, small_task, events.append)
+    assert events == [Progress("methods", 1, 2), Progress("methods", 2, 2)]
     assert "16 random" in chart.facts["colours"]
     assert "12 of 24 entries of macbeth" in chart.facts["spectra"]
     assert "numpy" in chart.facts["versions"]
-    assert "64 colours at once" in chart.facts["effort"]
+    assert "64 colours per call" in chart.facts["effort"]

@@ -1,4 +1,4 @@
-"""The picture and the page: what is measured and nothing else, and no need of a network."""
+"""Picture and page: all measured methods, escaped names, no external files."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ import re
 
 import matplotlib.image
 import pytest
+from markupsafe import Markup
 
+from tests.pages import Page, external_links
 from uplift.lab.chart.page import page
 from uplift.lab.chart.panels import PANELS
 from uplift.lab.chart.picture import write_pictures
 from uplift.lab.chart.table import State
-from uplift.viz.markup import Markup
 
 HOSTILE = "</script><b>x</b>"
 
@@ -22,7 +23,7 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("chart")
 
 
-def test_a_marker_in_every_panel_for_what_is_measured(row_of, chart_of, folder):
+def test_measured_methods_have_a_marker_in_every_panel(row_of, chart_of, folder):
     numbers = {key: value for key, value in row_of("one", 1, 1).numbers.items() if key != "batch_ns"}
     chart = chart_of(
         row_of("Mallett 2019", 80, 0.4),
@@ -40,18 +41,20 @@ def test_a_marker_in_every_panel_for_what_is_measured(row_of, chart_of, folder):
     assert "wrong" not in text
 
 
-def test_the_page_needs_nothing_else_and_cannot_be_broken_by_names(row_of, chart_of):
+def test_page_is_self_contained_and_escapes_names(row_of, chart_of):
     rows = row_of(HOSTILE, 80, 0.4), row_of("wrong", 1, 1, state=State.BROKEN, why=HOSTILE, numbers={})
     text = page(chart_of(*rows), Markup("<svg></svg>"))
     assert HOSTILE not in text
     assert not re.search(r'(?:src|href|url)\s*[=(]\s*["\']?(?:https?:)?//', text)
+    assert external_links(text) == []
+    assert HOSTILE in Page(text).text
     (data,) = re.findall(r'<script type="application/json" id="rows">(.*?)</script>', text, re.DOTALL)
     first, second = json.loads(data)
     assert first["title"] == HOSTILE
-    assert ["held", "10 kB"] in first["lines"]
+    assert ["memory", "10 kB"] in first["lines"]
     assert second["lines"] == []
 
 
-def test_the_same_chart_gives_the_same_page(row_of, chart_of):
+def test_same_chart_gives_the_same_page(row_of, chart_of):
     chart = chart_of(row_of("one", 80, 0.4))
     assert page(chart, Markup("")) == page(chart, Markup(""))

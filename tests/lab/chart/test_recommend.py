@@ -1,4 +1,4 @@
-"""What to build, from what was measured."""
+"""Recommendation of a cube."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ import click
 import pytest
 from uplift_cli.main import main
 
+from tests.helpers import raises
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.lab.chart.recommend import Requirement, recommend, shipped
+from uplift.lab.chart.recommend import Requirement, recommend, shipped_chart
 
 
 @pytest.fixture
@@ -24,7 +25,7 @@ def chart(row_of, chart_of):
 
 
 @pytest.mark.parametrize(
-    ("wish", "name"),
+    ("requirement", "name"),
     [
         (Requirement(time_ns=100), "good"),
         (Requirement(time_ns=60), "rough"),
@@ -35,47 +36,57 @@ def chart(row_of, chart_of):
         (Requirement(time_ns=100, delta_e=1), "good"),
     ],
 )
-def test_the_quickest_that_is_near_enough_or_the_nearest_that_is_quick_enough(chart, wish, name):
-    assert recommend(chart, wish).method == name
+def test_fastest_accurate_enough_or_most_accurate_in_time(chart, requirement, name):
+    assert recommend(chart, requirement).method == name
 
 
 @pytest.mark.parametrize(
-    ("wish", "message"),
+    ("requirement", "closest"),
     [
-        (Requirement(time_ns=10), "no cube answers in 10 ns per RGB; the quickest, rough, takes 50 ns"),
+        (Requirement(time_ns=10), "the fastest, rough, takes 50 ns"),
         (
             Requirement(delta_e=0.1, light="A"),
-            "within ΔE00 0.1 under A, for unseen materials; the nearest, no better, has 0.199",
+            "the most accurate, no better, has 0.199",
         ),
-        (Requirement(delta_e=0.3, time_ns=100), "the nearest, good, has 0.5"),
+        (
+            Requirement(delta_e=0.3, time_ns=100),
+            "the most accurate, good, has 0.5",
+        ),
     ],
 )
-def test_what_cannot_be_had_is_refused_with_what_comes_closest(chart, wish, message):
-    with pytest.raises(OptionError, match=message):
-        recommend(chart, wish)
+def test_unmet_requirement_names_the_closest_cube(chart, requirement, closest):
+    with raises(OptionError, "requirements-not-met") as caught:
+        recommend(chart, requirement)
+    assert caught.value.hint == closest
 
 
-def test_a_chart_without_cubes_has_nothing_to_recommend(row_of, chart_of):
-    with pytest.raises(OptionError, match="has no cube"):
+def test_conditions_are_described():
+    assert Requirement(delta_e=1, light="A").description == "under A, for unseen materials"
+    assert Requirement(delta_e=1, light="D65").description == "of the round trip"
+
+
+def test_chart_without_cubes_is_an_error(row_of, chart_of):
+    with raises(OptionError, "chart-without-cubes"):
         recommend(chart_of(row_of("peer", 1, 1)), Requirement(time_ns=100))
 
 
 @pytest.mark.parametrize("limit", [0, -1, float("nan"), float("inf")])
-def test_limits_are_positive_numbers(limit):
+def test_limits_must_be_positive(limit):
     for field in ("time_ns", "delta_e"):
-        with pytest.raises(OptionError, match="a limit is no positive number"):
+        with raises(OptionError, "limit-not-positive"):
             Requirement(**{field: limit})
 
 
-def test_a_wish_needs_a_limit_and_a_light_of_the_chart():
-    with pytest.raises(OptionError, match="nothing is wished for"):
+def test_limit_is_required_and_light_must_be_in_the_chart():
+    with raises(OptionError, "no-requirements"):
         Requirement()
-    with pytest.raises(UnknownNameError, match="did you mean 'FL11'"):
+    with raises(UnknownNameError, "unknown-light") as caught:
         Requirement(delta_e=1, light="FL111")
+    assert "'FL11'" in caught.value.hint
 
 
-def test_the_shipped_chart_recommends_what_can_be_built():
-    found = recommend(shipped(), Requirement(time_ns=1e5))
+def test_recommendation_of_the_shipped_chart_is_a_valid_command():
+    found = recommend(shipped_chart(), Requirement(time_ns=1e5))
     assert found.numbers["time_ns"] <= 1e5
     name, *arguments = shlex.split(found.build)[1:]
     with click.Context(main, **main.context_settings) as context:

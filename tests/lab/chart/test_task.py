@@ -1,10 +1,10 @@
-"""The questions: the same every time, and no answer among them."""
+"""Test sets: reproducible, and disjoint from the entries that build cubes."""
 
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
+from tests.helpers import raises
 from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
 from uplift.common.errors import AtlasError, OptionError
 from uplift.lab.chart.task import edges, task
@@ -14,8 +14,8 @@ def shipped(repository, *names):
     return {name: read_atlas(repository / "atlases" / f"{name}.txt") for name in names}
 
 
-def test_of_each_atlas_every_second_entry_builds_and_the_others_are_asked_for(repository):
-    # vs has an odd number of entries: counted through, macbeth would begin with its second.
+def test_every_second_entry_builds_and_the_others_test(repository):
+    # The first atlas has an odd number of entries; counting starts again with each atlas.
     atlases = shipped(repository, "vs", "macbeth")
     found = task(atlases, 16)
     names = [entry.name for spectra in atlases.values() for entry in spectra.entries[::2]]
@@ -26,13 +26,13 @@ def test_of_each_atlas_every_second_entry_builds_and_the_others_are_asked_for(re
     assert len(found.own) + len(found.unseen) == found.sensor.contains(found.sensor.rgb(every)).sum()
 
 
-def test_the_questions_are_the_same_every_time(small_task, repository):
+def test_task_is_reproducible(small_task, repository):
     again = task(shipped(repository, "macbeth"), 16)
     for name in ("rgb", "own", "unseen"):
         np.testing.assert_array_equal(getattr(again, name), getattr(small_task, name))
 
 
-def test_edges_hold_every_corner_and_grey_once():
+def test_edges_contain_every_corner_and_grey_once():
     found = edges()
     assert len(np.unique(found, axis=0)) == len(found)
     assert (
@@ -43,10 +43,10 @@ def test_edges_hold_every_corner_and_grey_once():
     assert (np.ptp(found, axis=1) == 0).sum() == 9
 
 
-def test_too_few_colours_and_entries_are_refused(repository):
-    with pytest.raises(OptionError, match="15 colours say nothing; ask for 16 or more"):
+def test_too_few_colours_or_entries_are_an_error(repository):
+    with raises(OptionError, "too-few-colours"):
         task(shipped(repository, "macbeth"), 15)
     at = np.arange(380.0, 781.0, 10.0)
     two = Atlas(tuple(Entry(name, at, np.full(len(at), 0.5)) for name in ("one", "other")))
-    with pytest.raises(AtlasError, match="1 of the entries to ask for lie within sRGB"):
+    with raises(AtlasError, "too-few-entries"):
         task({"two": two}, 16)

@@ -1,4 +1,4 @@
-"""A comparison of few representations, measured once a run."""
+"""A comparison of few representations, shared by the session."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from uplift.scene.representations.riemann_sums import riemann_sums
 from uplift.scene.representations.sun_composite import sun_composite
 from uplift.scene.representations.trigonometric_moments import trigonometric_moments
 
-EFFORT = Effort(runs=3, lap=0.001, rows=32)
+EFFORT = Effort(runs=3, seconds=0.001, rows=32)
 
 
 @pytest.fixture(scope="session")

@@ -1,12 +1,13 @@
-"""The cheapest that is near enough."""
+"""Recommendation of a representation."""
 
 from __future__ import annotations
 
 import pytest
 
+from tests.helpers import raises
 from uplift.common.errors import OptionError
 from uplift.lab.comparison.measure import Comparison, RepresentationResult
-from uplift.lab.comparison.recommend import cheapest, nearest
+from uplift.lab.comparison.recommend import cheapest, most_accurate
 from uplift.lab.comparison.statistics import Statistics
 from uplift.lab.timing import Spread
 
@@ -35,16 +36,16 @@ def test_surfaces_count_first_then_lights_then_errors(target, name):
     assert cheapest(FOUND, "smooth", target).name == name
 
 
-def test_each_set_of_lights_is_asked_by_itself():
+def test_sets_of_lights_are_independent():
     assert cheapest(FOUND, "spiky", 0.5).name == "other"
 
 
-def test_where_none_is_near_enough_there_is_none():
+def test_no_representation_is_accurate_enough():
     assert cheapest(FOUND, "smooth", 0.1) is None
-    assert nearest(FOUND, "smooth").name == "near"
+    assert most_accurate(FOUND, "smooth").name == "near"
 
 
-def test_the_cheapest_of_a_measured_comparison_is_within_the_target(found):
+def test_cheapest_of_a_measured_comparison_is_within_the_target(found):
     best = cheapest(found, "spiky", 2.5)
     assert best is not None
     assert best.statistics.q97_5 <= 2.5
@@ -53,6 +54,6 @@ def test_the_cheapest_of_a_measured_comparison_is_within_the_target(found):
 
 
 @pytest.mark.parametrize("target", [0, -1, float("nan"), float("inf")])
-def test_targets_are_positive_numbers(target):
-    with pytest.raises(OptionError, match="give a ΔE00 above 0"):
+def test_target_must_be_positive(target):
+    with raises(OptionError, "target-not-positive"):
         cheapest(FOUND, "smooth", target)

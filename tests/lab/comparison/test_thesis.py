@@ -1,4 +1,4 @@
-"""The printed tables of Kment 2011 as they are stored."""
+"""Consistency of the stored tables of Kment 2011."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Methods measured: the answers first, and the time of those alone whose answers are not broken."""
+"""Measurement of methods: their answers are checked first, and only correct ones are timed."""
 
 from __future__ import annotations
 
@@ -19,46 +19,74 @@ from uplift.lab.chart.timing import batch_times, single_times
 from uplift.lab.study.held_out import spectrum_errors
 from uplift.lab.timing import environment
 
-FAR = 10
-"""A mean round trip so many times what is claimed is no slip, it is broken."""
-FIRST = 3
-"""Colours that tell how long a slow method takes."""
+MAX_CLAIM_RATIO = 10
+"""A method is broken if its mean round-trip error is larger than the claimed one by more than this factor."""
+TRIAL_COLOURS = 3
+"""Colours from which the duration of a slow method is estimated."""
+SAMPLE, SAMPLE_TOLERANCE = 50, 1e-5
+"""Colours of a large batch that are computed again in a small one, and the reflectance that rounding may change."""
 
-FEW, SAME = 50, 1e-5
-"""Of many colours those that are asked once more, and the reflectance by which rounding may change them."""
-
-Ask = Callable[[Array], Array]
+UpliftRgb = Callable[[Array], Array]
 
 
 class BrokenError(Exception):
-    """An answer that is none; the text says why."""
+    """An answer is wrong; the text gives the reason."""
 
 
 def measure(
     methods: Iterable[tuple[Family, Method]], task: Task, progress: ProgressCallback = ignore_progress
 ) -> Chart:
-    """Every method at the task, in order. ``progress`` hears how many of how many are done."""
-    methods, rows, begin, where = list(methods), [], time.perf_counter(), environment()
+    """Measure methods at a task.
+
+    Parameters
+    ----------
+    methods : iterable of (Family, Method)
+        The methods, in the order of the chart.
+    task : Task
+        Colours and spectra.
+    progress : callable, optional
+        Called with a `Progress` after each method.
+
+    Returns
+    -------
+    Chart
+        The results.
+    """
+    methods, results, begin, machine = list(methods), [], time.perf_counter(), environment()
     for family, method in methods:
-        rows.append(measure_one(family, method, task))
-        progress(Progress("methods", len(rows), len(methods)))
+        results.append(measure_one(family, method, task))
+        progress(Progress("methods", len(results), len(methods)))
     effort = task.effort
-    told = (
-        f"CPU time of all threads, {effort.batch:,} colours at once, spectra at {len(task.sensor.wavelengths)} "
-        f"wavelengths; up to {effort.runs} runs; cubes are built {effort.builds}×, the last one counts; "
+    summary = (
+        f"CPU time of all threads, {effort.batch:,} colours per call, spectra at {len(task.sensor.wavelengths)} "
+        f"wavelengths; up to {effort.runs} runs; cubes are built {effort.builds}×, the last build counts; "
         f"{(time.perf_counter() - begin) / 60:.1f} minutes in all"
     )
-    return Chart({**where, **task.facts, "effort": told}, tuple(rows))
+    return Chart({**machine, **task.facts, "effort": summary}, tuple(results))
 
 
 def measure_one(family: Family, method: Method, task: Task) -> MethodResult:
-    """A method's row; what is broken or missing has no times."""
+    """Measure one method.
+
+    Parameters
+    ----------
+    family : Family
+        Its family.
+    method : Method
+        The method.
+    task : Task
+        Colours and spectra.
+
+    Returns
+    -------
+    MethodResult
+        The result; without numbers if the method is broken or not installed.
+    """
     state, why, numbers = State.MEASURED, "", {}
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter(
-                "ignore"
-            )  # what others' code has to say, and entries that all cubes leave out
+            # Other packages warn, and so do cubes about the entries that all of them leave out.
+            warnings.simplefilter("ignore")
             numbers = _numbers(method, task)
     except NotInstalledError as error:
         state, why = State.MISSING, str(error)
@@ -81,89 +109,92 @@ def measure_one(family: Family, method: Method, task: Task) -> MethodResult:
 
 
 def _numbers(method: Method, task: Task) -> dict[str, float]:
-    """Raises `BrokenError`, before anything is timed."""
-    ready = method.prepare(task)
-    ask = _guarded(ready.uplift, task.sensor.wavelengths)
-    numbers: dict[str, float] = {"bytes": ready.bytes}
-    if ready.seconds is not None:
-        numbers["build_s"] = ready.seconds
-    numbers |= _errors(method, ask, task)
+    prepared = method.prepare(task)
+    uplift = _guarded(prepared.uplift, task.sensor.wavelengths)
+    numbers: dict[str, float] = {"bytes": prepared.bytes}
+    if prepared.seconds is not None:
+        numbers["build_s"] = prepared.seconds
+    numbers |= _errors(method, uplift, task)
     if method.batch:
-        _check_long(ask, task.effort.batch)
-    single = single_times(ask, task.effort)
-    batch = batch_times(ask, task.effort) if method.batch else {}
+        _check_batch(uplift, task.effort.batch)
+    single = single_times(uplift, task.effort)
+    batch = batch_times(uplift, task.effort) if method.batch else {}
     return numbers | batch | single | {"time_ns": batch.get("batch_ns", single["single_ns"])}
 
 
-def _guarded(uplift: Uplift, wavelengths: Array) -> Ask:
-    """A function of colours (n, 3) alone, that raises nothing but `BrokenError`."""
+def _guarded(uplift: Uplift, wavelengths: Array) -> UpliftRgb:
+    """Function of colours (n, 3) alone that raises no error but `BrokenError`."""
 
-    def ask(rgb: Array) -> Array:
+    def uplift_rgb(rgb: Array) -> Array:
         try:
             return uplift(rgb, wavelengths)
-        except Exception as error:  # whatever another's code raises is its answer
+        except Exception as error:  # code of other packages may raise anything
             raise BrokenError(f"raises {type(error).__name__}: {str(error)[:80]}") from error
 
-    return ask
+    return uplift_rgb
 
 
-def _errors(method: Method, ask: Ask, task: Task) -> dict[str, float]:
-    rgb, answered = _answered(method, ask, task, task.rgb)
-    apart = delta_e_rgb(task.sensor, rgb, task.sensor.rgb(answered))
-    _check_round_trip(apart, method.claims)
-    numbers = _summary("round_trip", apart) | {"round_trip_colours": len(rgb)}
+def _errors(method: Method, uplift: UpliftRgb, task: Task) -> dict[str, float]:
+    rgb, spectra = _spectra(method, uplift, task, task.rgb)
+    round_trip = delta_e_rgb(task.sensor, rgb, task.sensor.rgb(spectra))
+    _check_round_trip(round_trip, method.claims)
+    numbers = _summary("round_trip", round_trip) | {"round_trip_colours": len(rgb)}
     for prefix, name, measured in (("", "unseen", task.unseen), ("own_", "own", task.own)):
-        asked, answered = _answered(method, ask, task, np.clip(task.sensor.rgb(measured), 0, 1))
-        errors = spectrum_errors(answered, measured[: len(asked)], CHART_LIGHTS)
-        parts = dict(zip(CHART_LIGHTS, errors.delta_e.T, strict=True))
-        parts |= {"lights": errors.delta_e.mean(axis=1), "rms": errors.rms}
-        for key, values in parts.items():
-            numbers |= _summary(f"{prefix}{key}", values)
-        numbers[f"{name}_spectra"] = len(asked)
+        rgb, spectra = _spectra(method, uplift, task, np.clip(task.sensor.rgb(measured), 0, 1))
+        errors = spectrum_errors(spectra, measured[: len(rgb)], CHART_LIGHTS)
+        values = dict(zip(CHART_LIGHTS, errors.delta_e.T, strict=True))
+        values |= {"lights": errors.delta_e.mean(axis=1), "rms": errors.rms}
+        for key, array in values.items():
+            numbers |= _summary(f"{prefix}{key}", array)
+        numbers[f"{name}_spectra"] = len(rgb)
     return numbers
 
 
-def _answered(method: Method, ask: Ask, task: Task, rgb: Array) -> tuple[Array, Array]:
-    """The colours (k, 3) that there was time for, and their spectra (k, N)."""
-    ask(rgb[:1])
+def _spectra(method: Method, uplift: UpliftRgb, task: Task, rgb: Array) -> tuple[Array, Array]:
+    """As many of the colours as time allows, (k, 3), and their spectra (k, N)."""
+    uplift(rgb[:1])
     begin = time.process_time()
-    first = ask(rgb[:FIRST])
-    each = max(time.process_time() - begin, 1e-9) / FIRST
-    count = len(rgb) if method.batch else min(len(rgb), int(task.effort.answering / each))
-    answered = np.concatenate([first, ask(rgb[FIRST:count])]) if count > FIRST else first
-    _check_range(answered, len(task.sensor.wavelengths), method.claims)
-    return rgb[: len(answered)], answered
+    first = uplift(rgb[:TRIAL_COLOURS])
+    seconds = max(time.process_time() - begin, 1e-9) / TRIAL_COLOURS
+    count = len(rgb) if method.batch else min(len(rgb), int(task.effort.seconds_per_error / seconds))
+    rest = count > TRIAL_COLOURS
+    spectra = np.concatenate([first, uplift(rgb[TRIAL_COLOURS:count])]) if rest else first
+    _check_range(spectra, len(task.sensor.wavelengths), method.claims)
+    return rgb[: len(spectra)], spectra
 
 
-def _check_long(ask: Ask, count: int) -> None:
-    """Many colours at once, which is what is timed, may go another way than the few that errors are of."""
+def _check_batch(uplift: UpliftRgb, count: int) -> None:
+    """Large batches are timed; check that they give the same spectra as small ones, whose errors are measured."""
     rgb = np.random.default_rng(4).random((count, 3))
-    rows = np.linspace(0, count - 1, FEW, dtype=int)
-    apart = np.abs(ask(rgb)[rows] - ask(rgb[rows])).max()
-    if not apart <= SAME:
-        raise BrokenError(f"answers {count:,} colours otherwise than {FEW}, by {apart:.2g} in reflectance")
-
-
-def _check_range(answered: Array, width: int, claims: Claims) -> None:
-    if answered.shape[1:] != (width,):
-        raise BrokenError(f"answers of shape {answered.shape[1:]} in place of ({width},)")
-    finite = np.isfinite(answered).all(axis=1)
-    if not finite.all():
-        raise BrokenError(f"{(~finite).sum()} of {len(answered)} spectra are not numbers")
-    if answered.min() < claims.least or answered.max() > claims.most:
+    rows = np.linspace(0, count - 1, SAMPLE, dtype=int)
+    difference = np.abs(uplift(rgb)[rows] - uplift(rgb[rows])).max()
+    if not difference <= SAMPLE_TOLERANCE:
         raise BrokenError(
-            f"reflectances from {answered.min():.4g} to {answered.max():.4g}, "
-            f"{claims.least:g} to {claims.most:g} are claimed"
+            f"{count:,} colours per call give other reflectances than {SAMPLE}, by {difference:.2g}"
         )
 
 
-def _check_round_trip(apart: Array, claims: Claims) -> None:
-    if claims.round_trip is not None and apart.mean() > FAR * claims.round_trip:
-        raise BrokenError(f"round trips miss by ΔE00 {apart.mean():.3g}, {claims.round_trip:g} is claimed")
+def _check_range(spectra: Array, width: int, claims: Claims) -> None:
+    if spectra.shape[1:] != (width,):
+        raise BrokenError(f"spectra have shape {spectra.shape[1:]} instead of ({width},)")
+    finite = np.isfinite(spectra).all(axis=1)
+    if not finite.all():
+        raise BrokenError(f"{(~finite).sum()} of {len(spectra)} spectra are not finite")
+    if spectra.min() < claims.min or spectra.max() > claims.max:
+        raise BrokenError(
+            f"reflectances from {spectra.min():.4g} to {spectra.max():.4g}, "
+            f"{claims.min:g} to {claims.max:g} are claimed"
+        )
+
+
+def _check_round_trip(errors: Array, claims: Claims) -> None:
+    if claims.round_trip is not None and errors.mean() > MAX_CLAIM_RATIO * claims.round_trip:
+        raise BrokenError(f"mean round-trip ΔE00 is {errors.mean():.3g}, {claims.round_trip:g} is claimed")
 
 
 def _summary(name: str, values: Array) -> dict[str, float]:
-    numbers = (values.mean(), np.quantile(values, 0.99), values.max())
     return {
-        f"{name}_{kind}": float(number) for kind, number in zip(("mean", "p99", "max"), numbers, strict=True)
+        f"{name}_mean": float(values.mean()),
+        f"{name}_p99": float(np.quantile(values, 0.99)),
+        f"{name}_max": float(values.max()),
     }

@@ -1,4 +1,4 @@
-"""What a method of spectral upsampling is to the chart: one is a file of `uplift.lab.chart.methods`."""
+"""Interface of methods of spectral upsampling to the chart; each is a module of `uplift.lab.chart.methods`."""
 
 from __future__ import annotations
 
@@ -12,32 +12,44 @@ import numpy as np
 from uplift.common.arrays import Array
 from uplift.lab.chart.task import Task
 
-Made = TypeVar("Made")
+Result = TypeVar("Result")
 Uplift = Callable[[Array, Array], Array]
-"""From linear sRGB (n, 3) in [0, 1] and wavelengths (N,) nm to reflectances (n, N)."""
+"""From linear sRGB (n, 3) in [0, 1] and wavelengths (N,) in nm to reflectances (n, N)."""
 
 
 class NotInstalledError(Exception):
-    """What a method needs is not here; the text says what."""
+    """A package that a method needs is missing; the text names it."""
 
 
 @dataclass(frozen=True)
 class Claims:
-    """What a method's makers say of its answers. One that is far off is broken, and not drawn.
+    """Properties that the authors of a method claim. A method far off its claims is broken and is not drawn.
 
-    ``round_trip`` is a mean ΔE00, None where nothing is claimed; reflectances are to lie from ``least`` to ``most``.
+    Parameters
+    ----------
+    round_trip : float, optional
+        Mean ΔE00 of round trips.
+    min, max : float
+        Range of reflectances.
     """
 
     round_trip: float | None = None
-    least: float = 0.0
-    most: float = 1.0
+    min: float = 0.0
+    max: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class PreparedMethod:
-    """A method ready to be asked: what it holds in bytes, and the CPU seconds that making that took.
+    """A method ready for use.
 
-    ``seconds`` is 0 where there is nothing to make, None where it was made elsewhere.
+    Parameters
+    ----------
+    uplift : callable
+        From linear sRGB (n, 3) in [0, 1] and wavelengths (N,) in nm to reflectances (n, N).
+    bytes : int
+        Size of its tables.
+    seconds : float or None
+        CPU seconds of their build; 0 if there is nothing to build, None if they come from elsewhere.
     """
 
     uplift: Uplift
@@ -47,18 +59,28 @@ class PreparedMethod:
 
 @dataclass(frozen=True)
 class Method:
-    """One way from RGB to spectra.
+    """A method of spectral upsampling.
 
     Parameters
     ----------
-    name, title : for the command line, and for people.
-    prepare : makes it ready. Raises `NotInstalledError`.
-    claims : what its answers are held to.
-    batch : whether it takes many colours at once; if not, ``uplift`` loops over them.
-    usual, quick : whether it is measured where no methods are named, and in a quick run.
-    label, mode : what stands beside its marker, by default the title, and the mode that gives the marker its shape.
-    build, ask : the command and the call that give a user of this package the same; empty for others.
-    note : what a reader must know.
+    name, title : str
+        Name for the command line, and name to display.
+    prepare : callable
+        From a `Task` to a `PreparedMethod`. Raises `NotInstalledError`.
+    claims : Claims
+        Claims that its answers are checked against.
+    batch : bool
+        Whether it accepts many colours per call; otherwise ``uplift`` loops over them.
+    usual, quick : bool
+        Whether it is measured if no methods are named, and in a quick run.
+    label : str
+        Label of its marker, by default the title.
+    mode : str
+        Mode of lookup, which determines the shape of the marker.
+    build, ask : str
+        Command and call that give a user of this package the same; empty for other methods.
+    note : str
+        Remark for the reader.
     """
 
     name: str
@@ -77,7 +99,7 @@ class Method:
 
 @dataclass(frozen=True)
 class Family:
-    """Methods that share a name and a colour (``#rrggbb``) in the legend, and the source they are from."""
+    """Methods with a common name, source and colour (``#rrggbb``) in the legend."""
 
     name: str
     source: str
@@ -85,17 +107,25 @@ class Family:
     methods: tuple[Method, ...]
 
 
-def stopwatch(make: Callable[[], Made]) -> tuple[Made, float]:
-    """What ``make`` makes, and CPU seconds of all threads."""
+def stopwatch(function: Callable[[], Result]) -> tuple[Result, float]:
+    """Call a function; return its result and the CPU seconds of all threads."""
     begin = time.process_time()
-    made = make()
-    return made, time.process_time() - begin
+    result = function()
+    return result, time.process_time() - begin
 
 
 def one_by_one(spectrum: Callable[[Array], tuple[Array, Array]]) -> Uplift:
-    """From a function of one colour (3,), that gives wavelengths (M,) and values (M,), to many.
+    """Extend a function of one colour to many.
 
-    Between its wavelengths a spectrum is interpolated linearly; outside it is held flat.
+    Parameters
+    ----------
+    spectrum : callable
+        From RGB (3,) to wavelengths (M,) and values (M,). Spectra are interpolated linearly and constant outside.
+
+    Returns
+    -------
+    callable
+        From RGB (n, 3) and wavelengths (N,) to values (n, N).
     """
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
@@ -105,5 +135,5 @@ def one_by_one(spectrum: Callable[[Array], tuple[Array, Array]]) -> Uplift:
 
 
 def nbytes(arrays: Mapping[str, Array] | tuple[Array, ...]) -> int:
-    """Bytes of arrays."""
+    """Size of arrays."""
     return sum(array.nbytes for array in (arrays.values() if isinstance(arrays, Mapping) else arrays))

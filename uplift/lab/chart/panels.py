@@ -1,57 +1,71 @@
-"""The panels of the chart, and in each the methods that no other beats in both respects."""
+"""Panels of the chart and their Pareto fronts."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.table import Chart, MethodResult
 from uplift.viz.format import format_build_time, format_error, format_time
+from uplift.viz.scatter import pareto_front
 
-FLOORS = {"time_ns": 1.0, "build_s": 1e-3}
-"""Where the axes of time begin: what has nothing to build stands there."""
-LEAST = 1e-4
-"""Errors below are drawn there: nobody sees less, and who is quicker is ahead."""
-NOTABLE = 0.99
-"""The share of another's error that is worth more time: what differs by less is noise."""
+MIN_TIMES = {"time_ns": 1.0, "build_s": 1e-3}
+"""Left ends of the time axes; methods with nothing to build are drawn there."""
+MIN_ERROR = 1e-4
+"""Smaller errors are not visible and are drawn here, so that the faster of two such methods is on the front."""
+CLEAR_RATIO = 0.99
+"""Share of an error below which another one is clearly smaller; the rest is noise."""
 
 
 @dataclass(frozen=True)
 class Panel:
-    """``across`` a time, the mean of an ``error`` upwards; ``whiskers`` from there to its 99 % and its largest."""
+    """A panel of error over time.
+
+    Parameters
+    ----------
+    title : str
+        Title.
+    error : str
+        Name of the error in `MethodResult.numbers`, without ``_mean``; the mean is drawn.
+    unit : str
+        Its unit.
+    time : str
+        Name of the time.
+    whiskers : bool
+        Whether lines join the mean with the 99 % quantile and the largest error.
+    """
 
     title: str
     error: str
     unit: str
-    across: str = "time_ns"
+    time: str = "time_ns"
     whiskers: bool = False
 
-    def point(self, row: MethodResult) -> tuple[float, float] | None:
-        """Where a method stands; None where that is not known."""
-        time, error = row.numbers.get(self.across), row.numbers.get(f"{self.error}_mean")
+    def point(self, result: MethodResult) -> tuple[float, float] | None:
+        """Return time and mean error, None if either is unknown."""
+        time, error = result.numbers.get(self.time), result.numbers.get(f"{self.error}_mean")
         if time is None or error is None:
             return None
-        return max(time, FLOORS[self.across]), max(error, LEAST)
+        return max(time, MIN_TIMES[self.time]), max(error, MIN_ERROR)
 
-    def told(self, row: MethodResult) -> tuple[str, str]:
-        """Time and mean error, to be read."""
-        time = row.numbers[self.across]
-        told = format_build_time(time) if self.across == "build_s" else format_time(time)
-        return told, format_error(row.numbers[f"{self.error}_mean"])
+    def labels(self, result: MethodResult) -> tuple[str, str]:
+        """Return time and mean error as text."""
+        time = result.numbers[self.time]
+        label = format_build_time(time) if self.time == "build_s" else format_time(time)
+        return label, format_error(result.numbers[f"{self.error}_mean"])
 
-    def reach(self, row: MethodResult) -> tuple[float, float]:
-        """The 99 % and the largest error."""
-        return max(row.numbers[f"{self.error}_p99"], LEAST), max(row.numbers[f"{self.error}_max"], LEAST)
+    def whisker(self, result: MethodResult) -> tuple[float, float]:
+        """Return the 99 % quantile and the largest error."""
+        p99, largest = (result.numbers[f"{self.error}_{kind}"] for kind in ("p99", "max"))
+        return max(p99, MIN_ERROR), max(largest, MIN_ERROR)
 
     def front(self, chart: Chart) -> tuple[MethodResult, ...]:
-        """The Pareto front, fastest first: who is slower than another on it is notably nearer."""
-        points = {row: self.point(row) for row in chart.measured}
-        known = {row: point for row, point in points.items() if point is not None}
-        found: list[MethodResult] = []
-        for row in sorted(known, key=lambda row: known[row]):
-            if not found or known[row][1] < NOTABLE * known[found[-1]][1]:
-                found.append(row)
-        return tuple(found)
+        """Return the Pareto front, fastest first: each is clearly more accurate than all faster methods."""
+        points = [(result, point) for result in chart.measured if (point := self.point(result)) is not None]
+        array = np.array([point for _, point in points]).reshape(-1, 2)
+        return tuple(points[row][0] for row in pareto_front(array, CLEAR_RATIO))
 
 
 PANELS = (
@@ -59,6 +73,6 @@ PANELS = (
     *(Panel(f"Unseen materials under {light}", light, "ΔE00") for light in CHART_LIGHTS),
     Panel("Unseen materials, the spectrum", "rms", "rms of reflectance"),
     Panel("Materials of the atlas itself, mean of the five lights", "own_lights", "ΔE00"),
-    Panel("Building: unseen materials, mean of the five lights", "lights", "ΔE00", across="build_s"),
+    Panel("Building: unseen materials, mean of the five lights", "lights", "ΔE00", time="build_s"),
 )
 AXES = {"time_ns": "CPU time per RGB", "build_s": "CPU time to build"}

@@ -1,4 +1,4 @@
-"""Which cube to build, from what was measured."""
+"""Recommendation of a cube from the measurements of a chart."""
 
 from __future__ import annotations
 
@@ -7,24 +7,50 @@ from importlib.resources import files
 
 from uplift.colorimetry.lights import CHART_LIGHTS, DEFAULT_ILLUMINANT
 from uplift.common.errors import OptionError, unknown_name
-from uplift.lab.chart.panels import NOTABLE
+from uplift.lab.chart.panels import CLEAR_RATIO
 from uplift.lab.chart.table import Chart, MethodResult, parse_chart
 from uplift.viz.format import format_error, format_time
 
 MEASURED = "measured.csv"
 
 
-def shipped() -> Chart:
-    """The chart of docs/chart.md, which the package carries."""
+def shipped_chart() -> Chart:
+    """Return the chart of docs/chart.md, which is part of the package.
+
+    Returns
+    -------
+    Chart
+        The chart.
+
+    Examples
+    --------
+    >>> shipped_chart().facts["commit"] != ""
+    True
+    """
     return parse_chart(files("uplift.lab.chart").joinpath(MEASURED).read_text(encoding="utf-8"), MEASURED)
 
 
 @dataclass(frozen=True)
 class Requirement:
-    """What answers may cost, in ns per RGB, and how far they may be off: mean ΔE00 under a light.
+    """Limits for time and error; at least one is required.
 
-    Without a light, under all that were measured; ``own`` asks for materials of the atlas itself, not for unseen ones.
-    Raises `OptionError` for limits that are no positive numbers, and for none; `UnknownNameError` for another light.
+    Parameters
+    ----------
+    time_ns : float, optional
+        Largest CPU time per RGB, in ns.
+    delta_e : float, optional
+        Largest mean ΔE00.
+    light : str, optional
+        Light of the ΔE00, by default all lights of the chart; the illuminant D65 stands for round trips.
+    own : bool, default False
+        Whether the ΔE00 is of materials of the atlas itself, not of unseen ones.
+
+    Raises
+    ------
+    OptionError
+        If there is no limit, or one is not a positive number.
+    UnknownNameError
+        If the chart has no such light.
     """
 
     time_ns: float | None = None
@@ -33,60 +59,90 @@ class Requirement:
     own: bool = False
 
     def __post_init__(self) -> None:
-        limits = [limit for limit in (self.time_ns, self.delta_e) if limit is not None]
-        if not limits:
-            raise OptionError("nothing is wished for", hint="give --time-ns, --delta-e or both")
-        if not all(0 < limit < float("inf") for limit in limits):
-            raise OptionError("a limit is no positive number", hint="give ns, and ΔE00, above 0")
+        limits = {"time_ns": self.time_ns, "delta_e": self.delta_e}
+        if all(limit is None for limit in limits.values()):
+            raise OptionError(
+                "time_ns or delta_e is required", code="no-requirements", hint="give one or both"
+            )
+        for name, limit in limits.items():
+            if limit is not None and not 0 < limit < float("inf"):
+                raise OptionError(
+                    f"{name} must be a positive number, got {limit:g}", code="limit-not-positive"
+                )
         if self.light not in (None, DEFAULT_ILLUMINANT, *CHART_LIGHTS):
-            raise unknown_name(str(self.light), (DEFAULT_ILLUMINANT, *CHART_LIGHTS), "light of the chart")
+            raise unknown_name(str(self.light), (DEFAULT_ILLUMINANT, *CHART_LIGHTS), "light")
 
     @property
     def error(self) -> str:
-        """The name of the number that is looked at."""
+        """Return the name of the error in `MethodResult.numbers`."""
         if self.light == DEFAULT_ILLUMINANT:
             return "round_trip_mean"
         return f"{'own_' if self.own else ''}{self.light or 'lights'}_mean"
 
     @property
-    def about(self) -> str:
-        """What the error is of."""
+    def description(self) -> str:
+        """Return the conditions of the error as text."""
         if self.light == DEFAULT_ILLUMINANT:
             return "of the round trip"
-        where = f"under {self.light}" if self.light else f"under {', '.join(CHART_LIGHTS)}"
-        return f"{where}, for {'materials of the atlas' if self.own else 'unseen materials'}"
+        lights = f"under {self.light}" if self.light else f"under {', '.join(CHART_LIGHTS)}"
+        return f"{lights}, for {'materials of the atlas' if self.own else 'unseen materials'}"
 
 
-def recommend(chart: Chart, wish: Requirement) -> MethodResult:
-    """Of the cubes measured the quickest that is near enough; where only time is limited, as near as any in that time.
+def recommend(chart: Chart, requirement: Requirement) -> MethodResult:
+    """Choose a cube: the fastest that is accurate enough or, without a limit for the error, the most accurate in time.
 
-    Raises `OptionError` where nothing measured is, with what comes closest.
+    Parameters
+    ----------
+    chart : Chart
+        Measurements.
+    requirement : Requirement
+        Limits for time and error.
+
+    Returns
+    -------
+    MethodResult
+        A cube of this package; ``build`` is the command that builds it.
+
+    Raises
+    ------
+    OptionError
+        If no measured cube meets the requirement; the hint names the closest one.
     """
-    cubes = [row for row in chart.measured if row.build and {"time_ns", wish.error} <= row.numbers.keys()]
+    cubes = [
+        result
+        for result in chart.measured
+        if result.build and {"time_ns", requirement.error} <= result.numbers.keys()
+    ]
     if not cubes:
-        raise OptionError("the chart has no cube with such numbers", hint="measure one with 'uplift chart'")
-
-    def time(row: MethodResult) -> float:
-        return row.numbers["time_ns"]
-
-    def error(row: MethodResult) -> float:
-        return row.numbers[wish.error]
-
-    quick = [row for row in cubes if wish.time_ns is None or time(row) <= wish.time_ns]
-    if not quick:
-        least = min(cubes, key=time)
         raise OptionError(
-            f"no cube answers in {format_time(wish.time_ns or 0)} per RGB",
-            hint=f"the quickest, {least.method}, takes {format_time(time(least))}",
+            f"the chart has no cube with {requirement.error}",
+            code="chart-without-cubes",
+            hint="measure one with uplift.lab.chart.measure",
         )
-    if wish.delta_e is None:
-        least_error = min(map(error, quick))
-        return min((row for row in quick if NOTABLE * error(row) <= least_error), key=time)
-    near = [row for row in quick if error(row) <= wish.delta_e]
-    if not near:
-        least = min(quick, key=error)
+
+    def time(result: MethodResult) -> float:
+        return result.numbers["time_ns"]
+
+    def error(result: MethodResult) -> float:
+        return result.numbers[requirement.error]
+
+    fast = [cube for cube in cubes if requirement.time_ns is None or time(cube) <= requirement.time_ns]
+    if not fast:
+        fastest = min(cubes, key=time)
         raise OptionError(
-            f"no cube comes within ΔE00 {wish.delta_e:g} {wish.about}",
-            hint=f"the nearest, {least.method}, has {format_error(error(least))}",
+            f"no cube takes at most {format_time(requirement.time_ns or 0)} per RGB",
+            code="requirements-not-met",
+            hint=f"the fastest, {fastest.method}, takes {format_time(time(fastest))}",
         )
-    return min(near, key=time)
+    if requirement.delta_e is None:
+        smallest = min(map(error, fast))
+        return min((cube for cube in fast if CLEAR_RATIO * error(cube) <= smallest), key=time)
+    sufficient = [cube for cube in fast if error(cube) <= requirement.delta_e]
+    if not sufficient:
+        best = min(fast, key=error)
+        raise OptionError(
+            f"no cube has at most ΔE00 {requirement.delta_e:g} {requirement.description}",
+            code="requirements-not-met",
+            hint=f"the most accurate, {best.method}, has {format_error(error(best))}",
+        )
+    return min(sufficient, key=time)

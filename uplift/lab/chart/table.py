@@ -1,4 +1,4 @@
-"""A chart as rows of numbers, and as one CSV file that holds all there is to know."""
+"""A chart as rows of numbers, and as a CSV file."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from uplift.common.csv import csv_text
 from uplift.common.errors import ChartFileError
 
 FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
-"""What holds for all rows: each a column."""
+"""Columns with the same text in all rows."""
 
 
 class State(StrEnum):
-    """What became of a method: only what is measured is drawn."""
+    """Whether a method was measured; only measured ones are drawn."""
 
     MEASURED = "measured"
     BROKEN = "broken"
@@ -28,13 +28,22 @@ class State(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class MethodResult:
-    """A method and what was found of it.
+    """Result of a method. The fields are the columns of the CSV file.
 
-    ``why`` tells what is broken or missing. ``numbers``: ``bytes``, ``build_s``; ``batch_ns`` and ``single_ns`` per
-    RGB, each with ``_least``, ``_most``, ``_runs``, ``_colours``; ``time_ns``, the batch's or, without one, the single;
-    errors ``round_trip``, every light's, ``lights`` (their mean) and ``rms``, and with ``own_`` before them those at
-    entries that cubes were built from, each with ``_mean``, ``_p99``, ``_max``; ``round_trip_colours``,
-    ``unseen_spectra``, ``own_spectra`` that were asked for.
+    Parameters
+    ----------
+    method, title, label, family, source, mode, build, ask, note : str
+        As in `Method` and `Family`.
+    state : State
+        Whether the method was measured.
+    why : str
+        The reason if it was not.
+    numbers : mapping of str to float
+        ``bytes`` and ``build_s``; ``batch_ns`` and ``single_ns`` per RGB, each with ``_least``, ``_most``, ``_runs``
+        and ``_colours``; ``time_ns``, the batch time or without one the single time. Errors ``round_trip``, of every
+        light, ``lights`` (their mean) and ``rms``, and prefixed by ``own_`` those at entries that cubes were built
+        from, each with ``_mean``, ``_p99`` and ``_max``. Sizes ``round_trip_colours``, ``unseen_spectra`` and
+        ``own_spectra`` of the test set.
     """
 
     method: str
@@ -53,64 +62,113 @@ class MethodResult:
 
 @dataclass(frozen=True)
 class Chart:
-    """Rows, and the ``facts`` that hold for all of them."""
+    """Results of all methods, and the ``facts`` that all have in common."""
 
     facts: Mapping[str, str]
-    rows: tuple[MethodResult, ...]
+    results: tuple[MethodResult, ...]
 
     @property
     def measured(self) -> tuple[MethodResult, ...]:
-        """Those that are drawn."""
-        return tuple(row for row in self.rows if row.state == State.MEASURED)
+        """Return the results of the methods that were measured."""
+        return tuple(result for result in self.results if result.state == State.MEASURED)
 
 
 TEXTS = tuple(field.name for field in fields(MethodResult) if field.name != "numbers")
 
 
 def chart_csv(chart: Chart) -> str:
-    """A line a method; numbers to six digits."""
-    names = list(dict.fromkeys(name for row in chart.rows for name in row.numbers))
+    """Convert a chart to CSV.
+
+    Parameters
+    ----------
+    chart : Chart
+        The chart.
+
+    Returns
+    -------
+    str
+        One line per method, numbers with six digits.
+    """
+    names = list(dict.fromkeys(name for result in chart.results for name in result.numbers))
     facts = [chart.facts.get(name, "") for name in FACTS]
     rows = []
-    for row in chart.rows:
-        numbers = (f"{row.numbers[name]:.6g}" if name in row.numbers else "" for name in names)
-        rows.append([*(getattr(row, name) for name in TEXTS), *numbers, *facts])
+    for result in chart.results:
+        numbers = (f"{result.numbers[name]:.6g}" if name in result.numbers else "" for name in names)
+        rows.append([*(getattr(result, name) for name in TEXTS), *numbers, *facts])
     return csv_text([*TEXTS, *names, *FACTS], rows)
 
 
 def read_chart(path: str | os.PathLike[str]) -> Chart:
-    """The chart that a CSV file holds. Raises `ChartFileError`."""
+    """Read the CSV file of a chart.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+
+    Returns
+    -------
+    Chart
+        The chart.
+
+    Raises
+    ------
+    ChartFileError
+        If the file cannot be read or is not a valid chart.
+    """
     try:
         text = Path(path).read_text(encoding="utf-8")
     except (OSError, ValueError) as error:
-        raise _unreadable(path, "cannot be read") from error
+        raise _chart_error(
+            path,
+            "cannot be read",
+            "file-not-found" if isinstance(error, FileNotFoundError) else "file-unreadable",
+        ) from error
     return parse_chart(text, path)
 
 
 def parse_chart(text: str, path: str | os.PathLike[str]) -> Chart:
-    """The same from the text of ``path``. Raises `ChartFileError`."""
+    """Parse the text of a chart's CSV file.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    path : path-like
+        The file, for error messages.
+
+    Returns
+    -------
+    Chart
+        The chart.
+
+    Raises
+    ------
+    ChartFileError
+        If the text is not a valid chart.
+    """
     reader = csv.DictReader(io.StringIO(text))
     if not {*TEXTS, *FACTS} <= set(reader.fieldnames or ()):
-        raise _unreadable(path, "is no chart's table")
+        raise _chart_error(path, "is not the table of a chart", "not-a-chart")
     try:
         lines = list(reader)
-        rows = tuple(_row(line) for line in lines)
+        results = tuple(_result(line) for line in lines)
     except (ValueError, TypeError, csv.Error) as error:
-        raise _unreadable(path, f"is broken: {error}") from error
-    if not rows:
-        raise _unreadable(path, "holds no methods")
-    return Chart({name: lines[0][name] for name in FACTS}, rows)
+        raise _chart_error(path, f"is not a valid chart: {error}", "invalid-chart") from error
+    if not results:
+        raise _chart_error(path, "contains no methods", "chart-without-methods")
+    return Chart({name: lines[0][name] for name in FACTS}, results)
 
 
-def _row(line: dict[str, str]) -> MethodResult:
+def _result(line: dict[str, str]) -> MethodResult:
     if None in line or None in line.values():
-        raise ValueError("a line is longer or shorter than the first")
+        raise ValueError("lines differ in length")
     texts = {name: line[name] for name in TEXTS if name != "state"}
     numbers = {name: float(line[name]) for name in line if name not in (*TEXTS, *FACTS) and line[name]}
     if not all(map(math.isfinite, numbers.values())):
-        raise ValueError(f"'{line['method']}' has a number that is none")
+        raise ValueError(f"'{line['method']}' has a number that is not finite")
     return MethodResult(**texts, state=State(line["state"]), numbers=numbers)
 
 
-def _unreadable(path: str | os.PathLike[str], problem: str) -> ChartFileError:
-    return ChartFileError(problem, path=path, hint="name the CSV file that 'uplift chart' wrote")
+def _chart_error(path: str | os.PathLike[str], problem: str, code: str) -> ChartFileError:
+    return ChartFileError(problem, code=code, path=path, hint="give the CSV file of a chart")

@@ -1,4 +1,4 @@
-"""What every method is asked: colours of sRGB, and those of measured spectra that it has not been shown."""
+"""Test set of the chart: colours of sRGB, and colours of measured spectra that methods do not know."""
 
 from __future__ import annotations
 
@@ -15,42 +15,61 @@ from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError
 
-COLOURS, FEWEST, SEED = 2000, 16, 1
-"""Random colours by default, the fewest that make a statistic, and what they are drawn from."""
-STEPS = 9
-"""Colours along each edge of the RGB cube, and along its grey diagonal, corners included."""
+COLOURS, MIN_COLOURS, SEED = 2000, 16, 1
+"""Default and smallest number of random colours, and the seed of their generator."""
+EDGE_STEPS = 9
+"""Colours along each edge of the RGB cube and along its grey diagonal, corners included."""
+MIN_SPECTRA = 2
 
 
 @dataclass(frozen=True)
 class Effort:
-    """How much time a method may take.
+    """Time spent on a method.
 
-    ``answering`` seconds for the colours of an error, after which no more are asked; ``runs`` of at least
-    ``lap`` seconds each for a time, of no more than ``batch`` colours; ``builds`` of a cube, the last one counted.
+    Parameters
+    ----------
+    seconds_per_error : float
+        CPU time for the answers of one error; slow methods process fewer colours.
+    runs : int
+        Largest number of repetitions of a timing.
+    lap : float
+        Shortest duration of a repetition in seconds.
+    batch : int
+        Largest number of colours per call.
+    builds : int
+        Number of builds of each cube; the last one is timed.
     """
 
-    answering: float = 10.0
+    seconds_per_error: float = 10.0
     runs: int = 7
     lap: float = 0.1
     batch: int = 1 << 16
     builds: int = 2
 
 
-QUICK = Effort(answering=0.3, runs=3, lap=0.01, batch=1 << 12, builds=1)
+QUICK = Effort(seconds_per_error=0.3, runs=3, lap=0.01, batch=1 << 12, builds=1)
 
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """The questions, in an order of no meaning, so that slow methods may answer the first of them only.
+    """Colours and spectra in random order, so that slow methods may process the first of them only.
 
     Parameters
     ----------
-    sensor : linear sRGB under D65.
-    rgb : (n, 3) random colours, and those along the edges and the grey diagonal of the RGB cube.
-    kept : the entries that cubes with an atlas are built from.
-    own, unseen : (k, N), (m, N) measured spectra of the kept entries and of the others, within sRGB.
-    lights : to look under.
-    facts : what of this a reader must know.
+    sensor : Sensor
+        Linear sRGB under D65.
+    rgb : ndarray, shape (n, 3)
+        Random colours, and those along the edges and the grey diagonal of the RGB cube.
+    kept : Atlas
+        Entries that cubes with an atlas are built from.
+    own, unseen : ndarray, shape (k, N) and (m, N)
+        Measured spectra of the kept entries and of the others, within sRGB.
+    lights : tuple of Light
+        Lights of the errors.
+    effort : Effort
+        Time spent on a method.
+    facts : mapping of str to str
+        Description for the reader.
     """
 
     sensor: Sensor
@@ -64,36 +83,54 @@ class Task:
 
 
 def task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | None = None) -> Task:
-    """Questions from measured spectra: of each atlas every second entry, from the first, builds; the others are asked.
+    """Make a task from measured spectra: of each atlas the first, third, … entry builds cubes, the others test them.
+
+    Parameters
+    ----------
+    atlases : mapping of str to Atlas
+        Atlases by name.
+    colours : int, default 2000
+        Number of random colours.
+    effort : Effort, optional
+        Time spent on a method.
+
+    Returns
+    -------
+    Task
+        The same for equal arguments.
 
     Raises
     ------
-    OptionError : too few colours.
-    AtlasError : too few entries within sRGB to ask for, or two of one name.
+    OptionError
+        If there are too few colours.
+    AtlasError
+        If too few entries are within sRGB, or two have the same name.
     """
-    if colours < FEWEST:
-        raise OptionError(f"{colours} colours say nothing", hint=f"ask for {FEWEST} or more")
+    if colours < MIN_COLOURS:
+        raise OptionError(f"colours must be at least {MIN_COLOURS}, got {colours}", code="too-few-colours")
     sensor = observer.sensor()
-    kept, unseen = (_every_second(atlases.values(), start) for start in (0, 1))
-    own, asked = (_within(sensor, part) for part in (kept, unseen))
-    if min(len(own), len(asked)) < 2:
+    kept, others = (_every_second(atlases.values(), start) for start in (0, 1))
+    own, unseen = (_in_gamut(sensor, part) for part in (kept, others))
+    if min(len(own), len(unseen)) < MIN_SPECTRA:
         raise AtlasError(
-            f"{len(asked)} of the entries to ask for lie within sRGB",
+            f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes each, "
+            f"got {len(own)} and {len(unseen)}",
+            code="too-few-entries",
             hint="give an atlas of 8 or more entries",
         )
     rng = np.random.default_rng(SEED)
     rgb = np.concatenate([rng.random((colours, 3)), edges()])
     facts = {
         "colours": f"{colours:,} random and {len(edges())} along edges and greys of linear sRGB, under D65",
-        "spectra": f"{len(kept)} of {len(kept) + len(unseen)} entries of {', '.join(atlases)} (every second) build "
-        f"the cubes with an atlas; the other half's {len(asked)} within sRGB are asked for",
+        "spectra": f"{len(kept)} of {len(kept) + len(others)} entries of {', '.join(atlases)} (every second) build "
+        f"the cubes with an atlas; of the others, {len(unseen)} within sRGB test all methods",
     }
     return Task(
         sensor,
         rng.permutation(rgb),
         kept,
         rng.permutation(own),
-        rng.permutation(asked),
+        rng.permutation(unseen),
         tuple(observer.light(name) for name in CHART_LIGHTS),
         effort or Effort(),
         facts,
@@ -101,17 +138,19 @@ def task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | 
 
 
 def edges() -> Array:
-    """Linear RGB (n, 3) along the edges and the grey diagonal of the RGB cube, each once."""
-    along = np.linspace(0, 1, STEPS)
+    """Return linear RGB (n, 3) along the edges and the grey diagonal of the RGB cube, each once."""
+    along = np.linspace(0, 1, EDGE_STEPS)
     ends = product((0.0, 1.0), repeat=2)
-    lines = [np.insert(np.tile(end, (STEPS, 1)), axis, along, axis=1) for end in ends for axis in range(3)]
+    lines = [
+        np.insert(np.tile(end, (EDGE_STEPS, 1)), axis, along, axis=1) for end in ends for axis in range(3)
+    ]
     return np.unique(np.concatenate([*lines, np.repeat(along[:, None], 3, axis=1)]), axis=0)
 
 
 def _every_second(atlases: Iterable[Atlas], start: int) -> Atlas:
-    return merge(Atlas(spectra.entries[start::2], (), spectra.sources) for spectra in atlases)
+    return merge(Atlas(atlas.entries[start::2], (), atlas.sources) for atlas in atlases)
 
 
-def _within(sensor: Sensor, spectra: Atlas) -> Array:
-    values = resample(spectra, sensor.wavelengths).values
+def _in_gamut(sensor: Sensor, atlas: Atlas) -> Array:
+    values = resample(atlas, sensor.wavelengths).values
     return values[sensor.contains(sensor.rgb(values))]

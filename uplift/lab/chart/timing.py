@@ -1,4 +1,4 @@
-"""CPU time per colour, of many colours at once and of one at a time; the caller has checked the answers."""
+"""CPU time per colour, of many colours per call and of one per call."""
 
 from __future__ import annotations
 
@@ -11,54 +11,52 @@ from uplift.common.arrays import Array
 from uplift.lab.chart.task import Effort
 from uplift.lab.timing import Spread, timed
 
-FEWEST_RUNS = 3
-PATIENCE = 15
-"""Laps that all runs together may take, if they are more than the fewest."""
+MIN_RUNS = 3
+MAX_LAPS = 15
+"""Duration of all runs together, in units of `Effort.lap`, unless `MIN_RUNS` take longer."""
 TRIAL = 512
-"""Colours that tell how many there is patience for."""
-CALLS = 64
-"""Different colours asked one at a time."""
-
-Times = dict[str, float]
+"""Colours from which the size of the batch is estimated."""
+SINGLE_COLOURS = 64
+"""Different colours for single calls."""
 
 
-def batch_times(ask: Callable[[Array], object], effort: Effort) -> Times:
-    """Of as many random colours as the effort has, fewer of slow methods; ns of all threads per colour."""
+def batch_times(uplift: Callable[[Array], object], effort: Effort) -> dict[str, float]:
+    """Measure calls with many colours, fewer of them for slow methods; ns of all threads per colour."""
     rgb = np.random.default_rng(2).random((effort.batch, 3))
-    ask(rgb[:1])
-    _, trial = timed(lambda: ask(rgb[:TRIAL]), 1)
-    rgb = rgb[: max(int(PATIENCE * effort.lap * TRIAL / max(trial.median, 1e-9)), TRIAL)]
-    return _numbers("batch", *_repeated(lambda: ask(rgb), len(rgb), effort))
+    uplift(rgb[:1])
+    _, trial = timed(lambda: uplift(rgb[:TRIAL]), 1)
+    rgb = rgb[: max(int(MAX_LAPS * effort.lap * TRIAL / max(trial.median, 1e-9)), TRIAL)]
+    return _numbers("batch", _repeated(lambda: uplift(rgb), len(rgb), effort), len(rgb))
 
 
-def single_times(ask: Callable[[Array], object], effort: Effort) -> Times:
-    """Of one colour a call, after one another; ns of all threads per call."""
-    colours = np.random.default_rng(3).random((CALLS, 1, 3))
-    ask(colours[0])
-    _, once = timed(lambda: ask(colours[1]), FEWEST_RUNS)
+def single_times(uplift: Callable[[Array], object], effort: Effort) -> dict[str, float]:
+    """Measure calls with one colour; ns of all threads per call."""
+    colours = np.random.default_rng(3).random((SINGLE_COLOURS, 1, 3))
+    uplift(colours[0])
+    _, once = timed(lambda: uplift(colours[1]), MIN_RUNS)
     calls = max(1, min(int(effort.lap / 5 / max(once.median, 1e-9)), 1000))
 
-    def several() -> None:
+    def run() -> None:
         for rgb in islice(cycle(colours), calls):
-            ask(rgb)
+            uplift(rgb)
 
-    return _numbers("single", *_repeated(several, calls, effort))
+    return _numbers("single", _repeated(run, calls, effort), calls)
 
 
-def _repeated(run: Callable[[], object], colours: int, effort: Effort) -> tuple[Spread, int]:
-    """CPU seconds per colour, after a run that warms up and tells how many more there may be."""
+def _repeated(run: Callable[[], object], colours: int, effort: Effort) -> Spread:
+    """CPU seconds per colour, after a run that warms up and determines the number of the others."""
     _, first = timed(run, 1)
-    runs = int(PATIENCE * effort.lap / max(first.median, 1e-9))
-    _, cpu = timed(run, min(max(runs, FEWEST_RUNS), effort.runs))
-    return cpu.scaled(1 / colours), colours
+    runs = int(MAX_LAPS * effort.lap / max(first.median, 1e-9))
+    _, cpu = timed(run, min(max(runs, MIN_RUNS), effort.runs))
+    return cpu.scaled(1 / colours)
 
 
-def _numbers(kind: str, seconds: Spread, colours: int) -> Times:
+def _numbers(kind: str, seconds: Spread, colours: int) -> dict[str, float]:
     ns = seconds.scaled(1e9)
     return {
         f"{kind}_ns": ns.median,
-        f"{kind}_ns_least": ns.least,
-        f"{kind}_ns_most": ns.most,
+        f"{kind}_ns_least": ns.min,
+        f"{kind}_ns_most": ns.max,
         f"{kind}_runs": ns.runs,
         f"{kind}_colours": colours,
     }

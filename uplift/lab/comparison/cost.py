@@ -1,4 +1,4 @@
-"""The chart of error over cost: for each set of lights over the time of a product, and over the floats stored."""
+"""The chart of error over cost: a row of panels for each set of lights, a column for each kind of cost."""
 
 from __future__ import annotations
 
@@ -10,134 +10,167 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.lab.chart.legend import FRONT, PLAIN
-from uplift.lab.chart.legend import STYLE as KEY
+from uplift.lab.comparison.families import family_colour, family_colours
 from uplift.lab.comparison.measure import Comparison, RepresentationResult
-from uplift.lab.comparison.style import colour, families, heading
-from uplift.viz.figure import new_figure
-from uplift.viz.format import format_time
-from uplift.viz.scatter import Name, label, pareto_steps, set_up
+from uplift.viz.format import capitalise, format_time
+from uplift.viz.scatter import (
+    FRONT_LINE,
+    LEGEND,
+    MARKER,
+    Label,
+    draw_labels,
+    new_panels,
+    pareto_front,
+    pareto_steps,
+    style_log_axes,
+)
 
-PANEL, KEY_HEIGHT = (6.0, 4.0), 0.55
-"""Inches of a panel, and of the key below all."""
-JOINED = {"linewidth": 0.8, "alpha": 0.45, "zorder": 1}
-"""Lines from each size of a family to the next."""
-LEAST = 1e-3
-"""ΔE00 below are drawn there: nobody sees less."""
+PANEL_SIZE, LEGEND_HEIGHT = (6.0, 4.0), 0.55
+"""Inches."""
+FAMILY_LINE = {"linewidth": 0.8, "alpha": 0.45, "zorder": 1}
+"""Style of the lines from each size of a family to the next."""
+MIN_ERROR = 1e-3
+"""Smaller ΔE00 are not visible and are drawn here."""
 
 
 @dataclass(frozen=True)
 class Cost:
-    """What is drawn across: its title, a row's, how it is told, and where; without ``ticks`` at powers of ten."""
+    """A kind of cost.
+
+    Parameters
+    ----------
+    title : str
+        Label of the axis.
+    of : callable
+        The cost of a result.
+    format : callable
+        Text of a value.
+    ticks : tuple of float
+        Ticks of the axis, by default powers of ten.
+    """
 
     title: str
     of: Callable[[RepresentationResult], float]
-    told: Callable[[float], str]
+    format: Callable[[float], str]
     ticks: tuple[float, ...] = ()
 
 
 COSTS = (
-    Cost("CPU time of a product", lambda row: row.ns.median, format_time),
-    Cost("floats stored of a surface", lambda row: row.floats, "{:g}".format, (4, 8, 16, 32, 64, 128, 256)),
+    Cost("CPU time of a product", lambda result: result.ns.median, format_time),
+    Cost(
+        "floats stored of a surface",
+        lambda result: result.floats,
+        "{:g}".format,
+        (4, 8, 16, 32, 64, 128, 256),
+    ),
 )
 
 
-def draw(found: Comparison) -> Any:
-    """A matplotlib figure. What stands for a representation is named ``marker-<panel>-<number>``, and ``label-…``,
-    numbered as `numbered` does."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    height = PANEL[1] * len(found.sets) + KEY_HEIGHT
-    figure = new_figure(PANEL[0] * len(COSTS), height, layout=None)
-    inch = 1 / height
-    figure.subplots_adjust(
-        left=0.06,
-        right=0.985,
-        bottom=(KEY_HEIGHT + 0.6) * inch,
-        top=1 - 0.35 * inch,
-        wspace=0.13,
-        hspace=0.27,
-    )
-    FigureCanvasAgg(figure)
-    cells = figure.subplots(len(found.sets), len(COSTS), squeeze=False)
-    numbers = numbered(found)
-    drawn = [
-        (axes, cost, found.of(name), panel, title)
-        for panel, (axes, (name, title), cost) in enumerate(
-            (axes, part, cost)
-            for row, part in zip(cells, found.sets.items(), strict=True)
-            for axes, cost in zip(row, COSTS, strict=True)
-        )
+def draw(comparison: Comparison) -> Any:
+    """Return the matplotlib figure. Artists have the identifiers ``marker-<panel>-<number>``, ``label-…``, with the
+    numbers of `numbered`."""
+    height = PANEL_SIZE[1] * len(comparison.sets) + LEGEND_HEIGHT
+    margins = {
+        "left": 0.06,
+        "right": 0.985,
+        "bottom": (LEGEND_HEIGHT + 0.6) / height,
+        "top": 1 - 0.35 / height,
+        "wspace": 0.13,
+        "hspace": 0.27,
+    }
+    figure, cells = new_panels(len(comparison.sets), len(COSTS), PANEL_SIZE, margins, LEGEND_HEIGHT)
+    panels = [
+        (axes, cost, comparison.of(name), title)
+        for row, (name, title) in zip(cells, comparison.sets.items(), strict=True)
+        for axes, cost in zip(row, COSTS, strict=True)
     ]
-    for axes, cost, rows, panel, title in drawn:
-        _draw_panel(axes, title, cost, rows, {name: f"{panel}-{number}" for name, number in numbers.items()})
-    _key(figure, found)
-    for axes, cost, rows, panel, _ in drawn:
-        _label(axes, cost, rows, {name: f"{panel}-{number}" for name, number in numbers.items()})
+    identifiers = [
+        {name: f"{panel}-{number}" for name, number in numbered(comparison).items()}
+        for panel in range(len(panels))
+    ]
+    for (axes, cost, results, title), gids in zip(panels, identifiers, strict=True):
+        _draw_panel(axes, title, cost, results, gids)
+    _draw_legend(figure, comparison)
+    for (axes, cost, results, _), gids in zip(panels, identifiers, strict=True):
+        _draw_labels(axes, cost, results, gids)
     return figure
 
 
-def numbered(found: Comparison) -> dict[str, int]:
-    """The number of each representation, whatever the set."""
-    return {name: number for number, name in enumerate(dict.fromkeys(row.name for row in found.rows))}
+def numbered(comparison: Comparison) -> dict[str, int]:
+    """Number the representations, independent of the set of lights.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+
+    Returns
+    -------
+    dict of str to int
+        Numbers from 0 by name.
+    """
+    names = dict.fromkeys(result.name for result in comparison.results)
+    return {name: number for number, name in enumerate(names)}
 
 
-def _point(row: RepresentationResult, cost: Cost) -> tuple[float, float]:
-    return max(cost.of(row), 1.0), max(row.statistics.q97_5, LEAST)
+def front(results: Sequence[RepresentationResult], cost: Cost) -> list[RepresentationResult]:
+    """Return the Pareto front, cheapest first."""
+    return [results[row] for row in pareto_front(np.array([_point(result, cost) for result in results]))]
 
 
-def front(rows: Sequence[RepresentationResult], cost: Cost) -> list[RepresentationResult]:
-    """The Pareto front, the cheapest first: who costs more than another on it is nearer."""
-    found: list[RepresentationResult] = []
-    for row in sorted(rows, key=lambda row: _point(row, cost)):
-        if not found or _point(row, cost)[1] < _point(found[-1], cost)[1]:
-            found.append(row)
-    return found
+def _point(result: RepresentationResult, cost: Cost) -> tuple[float, float]:
+    return max(cost.of(result), 1.0), max(result.statistics.q97_5, MIN_ERROR)
 
 
 def _draw_panel(
-    axes: Any, title: str, cost: Cost, rows: Sequence[RepresentationResult], gids: dict[str, str]
+    axes: Any, title: str, cost: Cost, results: Sequence[RepresentationResult], gids: dict[str, str]
 ) -> None:
-    set_up(axes, f"{heading(title)}, ΔE00 of 97.5 %", cost.title)
+    style_log_axes(axes, f"{capitalise(title)}, ΔE00 of 97.5 %", cost.title)
     if cost.ticks:
         axes.set_xticks(cost.ticks)
-    axes.xaxis.set_major_formatter(lambda value, _: cost.told(value))
+    axes.xaxis.set_major_formatter(lambda value, _: cost.format(value))
     axes.yaxis.set_major_formatter("{x:g}")
-    ahead = front(rows, cost)
-    for family in families(rows):
-        members = sorted((row for row in rows if row.family == family), key=lambda row: row.floats)
+    for family, colour in family_colours(result.family for result in results).items():
+        members = sorted((each for each in results if each.family == family), key=lambda each: each.floats)
         for pair in pairwise(members):
-            ends = np.array([_point(row, cost) for row in pair])
-            axes.plot(*ends.T, gid=f"whisker-{gids[pair[1].name]}", **{**JOINED, "color": colour(family)})
-    for row in rows:
-        axes.plot(
-            *_point(row, cost),
-            **{**PLAIN, "color": colour(row.family), "markersize": 7.5 if row in ahead else 6.0},
-            gid=f"marker-{gids[row.name]}",
-            zorder=3 if row in ahead else 2,
-        )
+            ends = np.array([_point(result, cost) for result in pair])
+            axes.plot(*ends.T, gid=f"whisker-{gids[pair[1].name]}", **FAMILY_LINE, color=colour)
+    on_front = front(results, cost)
+    for result in results:
+        best = result in on_front
+        style = MARKER | {"color": family_colour(result.family), "markersize": 7.5 if best else 6.0}
+        axes.plot(*_point(result, cost), gid=f"marker-{gids[result.name]}", zorder=3 if best else 2, **style)
     axes.margins(0.07)
-    axes.plot(*_stairs(axes, cost, rows).T, scalex=False, zorder=1, **FRONT)
+    axes.plot(*_front_line(axes, cost, results).T, scalex=False, zorder=1, **FRONT_LINE)
 
 
-def _stairs(axes: Any, cost: Cost, rows: Sequence[RepresentationResult]) -> Array:
-    points = np.array([_point(row, cost) for row in front(rows, cost)])
+def _front_line(axes: Any, cost: Cost, results: Sequence[RepresentationResult]) -> Array:
+    points = np.array([_point(result, cost) for result in front(results, cost)])
     return pareto_steps(points, axes.get_xlim()[1])
 
 
-def _label(axes: Any, cost: Cost, rows: Sequence[RepresentationResult], gids: dict[str, str]) -> None:
-    ahead = front(rows, cost)
-    names = [
-        Name(row.name, _point(row, cost), colour(row.family), row in ahead, f"label-{gids[row.name]}")
-        for row in rows
+def _draw_labels(
+    axes: Any, cost: Cost, results: Sequence[RepresentationResult], gids: dict[str, str]
+) -> None:
+    on_front = front(results, cost)
+    labels = [
+        Label(
+            result.name,
+            _point(result, cost),
+            family_colour(result.family),
+            result in on_front,
+            f"label-{gids[result.name]}",
+        )
+        for result in results
     ]
-    label(axes, names, np.array([name.point for name in names]), _stairs(axes, cost, rows))
+    draw_labels(axes, labels, np.array([label.point for label in labels]), _front_line(axes, cost, results))
 
 
-def _key(figure: Any, found: Comparison) -> None:
+def _draw_legend(figure: Any, comparison: Comparison) -> None:
     from matplotlib.lines import Line2D
 
-    entries = [(name, {**PLAIN, "color": code}) for name, code in families(found.rows).items()]
-    entries.append(("Pareto front", {**PLAIN, **FRONT}))
-    handles = [Line2D([], [], **style) for _, style in entries]
-    figure.legend(handles, [name for name, _ in entries], loc="lower center", ncols=6, **KEY)
+    colours = family_colours(result.family for result in comparison.results)
+    styles = {name: MARKER | {"color": colour} for name, colour in colours.items()}
+    styles["Pareto front"] = MARKER | FRONT_LINE
+    handles = [Line2D([], [], **style) for style in styles.values()]
+    figure.legend(handles, list(styles), loc="lower center", ncols=6, **LEGEND)

@@ -1,6 +1,10 @@
-"""Low-pass filters before point sampling: a grid search for the parameters that leave least error.
+"""Grid search for the low-pass filter before point sampling that leaves the smallest error.
 
-Kment 2011, 6.3 and tables A.1 and A.2. Lights and surfaces alike go through the filter.
+Lights and surfaces are filtered alike.
+
+References
+----------
+Kment 2011, section 6.3, tables A.1 and A.2.
 """
 
 from __future__ import annotations
@@ -23,13 +27,27 @@ from uplift.scene.representations.filters import FINE_STRIDE, KINDS, Filter, can
 from uplift.scene.representations.point_sampling import point_samples
 
 COUNTS = (4, 8, 16)
-"""As the thesis has them."""
+"""Numbers of samples in the thesis."""
 NONE = "none"
 
 
 @dataclass(frozen=True)
 class Tuned:
-    """The best filter of a kind for so many samples under a set of lights; ``low_pass`` None for no filter."""
+    """The best filter of a kind.
+
+    Parameters
+    ----------
+    kind : str
+        Kind of the filter, ``none`` for unfiltered samples.
+    count : int
+        Number of samples.
+    lights : str
+        Name of the set of lights.
+    low_pass : Filter or None
+        The filter.
+    statistics : Statistics
+        Its errors.
+    """
 
     kind: str
     count: int
@@ -38,8 +56,8 @@ class Tuned:
     statistics: Statistics
 
     @property
-    def told(self) -> str:
-        """The filter's parameters, to be read."""
+    def parameters(self) -> str:
+        """Return the filter's parameters as text."""
         if self.low_pass is None:
             return ""
         named = zip(KINDS[self.kind].choices, self.low_pass.parameters, strict=True)
@@ -48,46 +66,62 @@ class Tuned:
 
 def tune(
     scene: Scene,
-    every: int = FINE_STRIDE,
+    stride: int = FINE_STRIDE,
     kinds: Sequence[str] = tuple(KINDS),
     counts: Sequence[int] = COUNTS,
     progress: ProgressCallback = ignore_progress,
 ) -> tuple[Tuned, ...]:
-    """Without a filter, then the best of each kind, for each count of samples and each set of lights.
+    """Search the best filter of each kind, for each number of samples and each set of lights.
 
-    The search tries ``every`` so many of the choices for each parameter.
+    Parameters
+    ----------
+    scene : Scene
+        Surfaces and lights.
+    stride : int
+        Step through the choices for each parameter, 1 for all.
+    kinds : sequence of str
+        Kinds of filters.
+    counts : sequence of int
+        Numbers of samples.
+    progress : callable, optional
+        Called with a `Progress` after each search.
+
+    Returns
+    -------
+    tuple of Tuned
+        Unfiltered samples first, then the filters.
     """
-    found = [
-        Tuned(NONE, count, part.name, None, error_statistics(point_samples(count), scene, part))
+    results = [
+        Tuned(NONE, count, light_set.name, None, error_statistics(point_samples(count), scene, light_set))
         for count in counts
-        for part in scene.sets
+        for light_set in scene.sets
     ]
     tasks = list(product(kinds, counts))
     for done, (kind, count) in enumerate(tasks, 1):
-        for part, low_pass in zip(scene.sets, _best(candidates(kind, every), count, scene), strict=True):
-            best = error_statistics(filtered_point_samples(count, low_pass), scene, part)
-            found.append(Tuned(kind, count, part.name, low_pass, best))
+        for light_set, best in zip(scene.sets, _best(candidates(kind, stride), count, scene), strict=True):
+            errors = error_statistics(filtered_point_samples(count, best), scene, light_set)
+            results.append(Tuned(kind, count, light_set.name, best, errors))
         progress(Progress("filters", done, len(tasks)))
-    return tuple(found)
+    return tuple(results)
 
 
-def _best(tried: Sequence[Filter], count: int, scene: Scene) -> list[Filter]:
-    """Under each set of lights that of the least mean error."""
-    judges = [_judge(scene, part, count) for part in scene.sets]
-    means = np.empty((len(tried), len(judges)))
-    for row, low_pass in enumerate(tried):
+def _best(filters: Sequence[Filter], count: int, scene: Scene) -> list[Filter]:
+    """For each set of lights the filter of the smallest mean error."""
+    mean_errors = [_mean_error(scene, light_set, count) for light_set in scene.sets]
+    means = np.empty((len(filters), len(mean_errors)))
+    for row, low_pass in enumerate(filters):
         encoder = resampling_matrix(low_pass, count).T
-        means[row] = [error_statistics(encoder) for error_statistics in judges]
-    return [tried[int(row)] for row in means.argmin(axis=0)]
+        means[row] = [mean_error(encoder) for mean_error in mean_errors]
+    return [filters[int(row)] for row in means.argmin(axis=0)]
 
 
-def _judge(scene: Scene, part: LightSet, count: int) -> Callable[[Array], float]:
-    """From what takes the 5 nm table to samples, (81, count), to the mean ΔE00: `error_statistics`, quicker."""
-    surfaces, lights = scene.surfaces[:, ::TABLE_STRIDE], part.powers[:, ::TABLE_STRIDE]
-    reference, weights = scene.reference(part), point_samples(count).weights
+def _mean_error(scene: Scene, light_set: LightSet, count: int) -> Callable[[Array], float]:
+    """Function from an encoder (81, count) of the 5 nm table to the mean ΔE00, faster than `error_statistics`."""
+    surfaces, lights = scene.surfaces[:, ::TABLE_STRIDE], light_set.powers[:, ::TABLE_STRIDE]
+    reference, weights = scene.reference(light_set), point_samples(count).weights
 
-    def mean(encoder: Array) -> float:
-        sent = (lights @ encoder)[:, None] * (surfaces @ encoder)
-        return float(delta_e_2000(part.lab(sent @ weights), reference).mean())
+    def mean_error(encoder: Array) -> float:
+        products = (lights @ encoder)[:, None] * (surfaces @ encoder)
+        return float(delta_e_2000(light_set.lab(products @ weights), reference).mean())
 
-    return mean
+    return mean_error

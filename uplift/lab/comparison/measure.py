@@ -1,4 +1,4 @@
-"""Error and cost of every representation: products of lights and surfaces against dense ones, and what they take."""
+"""Error and cost of representations: products of lights and surfaces against densely sampled ones."""
 
 from __future__ import annotations
 
@@ -20,26 +20,42 @@ from uplift.scene.representations.representation import Representation
 
 @dataclass(frozen=True)
 class Effort:
-    """``runs`` of at least ``lap`` seconds for a time, ``rows`` products at once."""
+    """Accuracy of the timings.
+
+    Parameters
+    ----------
+    runs : int
+        Repetitions.
+    seconds : float
+        Shortest duration of a run.
+    rows : int
+        Products per call.
+    """
 
     runs: int = 7
-    lap: float = 0.05
+    seconds: float = 0.05
     rows: int = 1024
 
 
-QUICK = Effort(runs=3, lap=0.005, rows=256)
+QUICK = Effort(runs=3, seconds=0.005, rows=256)
 
 
 @dataclass(frozen=True)
 class RepresentationResult:
-    """A representation under a set of lights.
+    """Error and cost of a representation under a set of lights.
 
     Parameters
     ----------
-    name, family, lights : of the representation, and of the set.
-    statistics : ΔE00 between its products and the dense ones.
-    floats, light_floats : stored of a surface and of a light, in the mean.
-    ns : CPU time of all threads for a product, of many at once.
+    name, family : str
+        Name and family of the representation.
+    lights : str
+        Name of the set of lights.
+    statistics : Statistics
+        ΔE00 between its products and the dense ones.
+    floats, light_floats : float
+        Mean storage of a surface and of a light.
+    ns : Spread
+        CPU time of all threads per product, of many products per call.
     """
 
     name: str
@@ -53,15 +69,36 @@ class RepresentationResult:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Rows, ranked by mean error within each set; the ``sets`` by name, with their titles; ``facts`` of the run."""
+    """Results of several representations.
+
+    Parameters
+    ----------
+    facts : mapping of str to str
+        Machine, versions and size of the comparison.
+    sets : mapping of str to str
+        Titles of the sets of lights by name.
+    results : tuple of RepresentationResult
+        Ranked by mean error within each set.
+    """
 
     facts: Mapping[str, str]
     sets: Mapping[str, str]
-    rows: tuple[RepresentationResult, ...]
+    results: tuple[RepresentationResult, ...]
 
     def of(self, name: str) -> tuple[RepresentationResult, ...]:
-        """The rows of a set."""
-        return tuple(row for row in self.rows if row.lights == name)
+        """Return the results under a set of lights.
+
+        Parameters
+        ----------
+        name : str
+            Name of the set.
+
+        Returns
+        -------
+        tuple of RepresentationResult
+            Its results, ranked by mean error.
+        """
+        return tuple(result for result in self.results if result.lights == name)
 
 
 def compare(
@@ -70,86 +107,128 @@ def compare(
     effort: Effort | None = None,
     progress: ProgressCallback = ignore_progress,
 ) -> Comparison:
-    """Every representation, under every set of lights. ``progress`` hears how many of how many are done.
+    """Measure representations under every set of lights of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Surfaces and lights.
+    representations : sequence of Representation
+        The representations.
+    effort : Effort, optional
+        Accuracy of the timings.
+    progress : callable, optional
+        Called with a `Progress` after each representation.
+
+    Returns
+    -------
+    Comparison
+        The results, ranked.
 
     Raises
     ------
-    UpliftError : a representation whose answers are not numbers.
+    UpliftError
+        If a representation returns values that are not finite.
     """
-    references = [scene.reference(part) for part in scene.sets]
-    rows = []
+    references = [scene.reference(light_set) for light_set in scene.sets]
+    results = []
     for done, representation in enumerate(representations, 1):
         surfaces = representation.encode_surface(scene.surfaces)
         times = _times(representation, scene, effort or Effort())
-        rows += [
-            _row(representation, surfaces, part, scene, reference, ns)
-            for part, reference, ns in zip(scene.sets, references, times, strict=True)
+        results += [
+            _result(representation, surfaces, light_set, scene, reference, ns)
+            for light_set, reference, ns in zip(scene.sets, references, times, strict=True)
         ]
         progress(Progress("representations", done, len(representations)))
-    order = [part.name for part in scene.sets]
-    ranked = sorted(rows, key=lambda row: (order.index(row.lights), row.statistics.mean))
+    order = [light_set.name for light_set in scene.sets]
+    ranked = sorted(results, key=lambda result: (order.index(result.lights), result.statistics.mean))
     facts = {**environment(), "products": f"{len(scene.names)} surfaces under each light"}
-    return Comparison(facts, {part.name: part.title for part in scene.sets}, tuple(ranked))
+    return Comparison(facts, {light_set.name: light_set.title for light_set in scene.sets}, tuple(ranked))
 
 
-def errors(
-    representation: Representation, surfaces: Any, part: LightSet, scene: Scene, reference: Array
-) -> Array:
-    """ΔE00 (K, E) of encoded ``surfaces`` under each light of a set. Raises `UpliftError`."""
-    seen = [
-        representation.xyz(
-            representation.multiply(_repeated(representation, power, len(scene.names)), surfaces)
-        )
-        for power in part.powers
-    ]
-    apart = delta_e_2000(part.lab(np.stack(seen)), reference)
-    if not np.isfinite(apart).all():
-        raise UpliftError(f"{representation.name} answers what is no number under {part.title}")
-    return apart
+def error_statistics(representation: Representation, scene: Scene, light_set: LightSet) -> Statistics:
+    """Compute the errors of a representation under a set of lights.
 
+    Parameters
+    ----------
+    representation : Representation
+        The representation.
+    scene : Scene
+        The surfaces.
+    light_set : LightSet
+        The lights.
 
-def error_statistics(representation: Representation, scene: Scene, part: LightSet) -> Statistics:
-    """The errors of a representation under a set of lights, and no cost. Raises `UpliftError`."""
+    Returns
+    -------
+    Statistics
+        Statistics of ΔE00.
+
+    Raises
+    ------
+    UpliftError
+        If the representation returns values that are not finite.
+    """
     surfaces = representation.encode_surface(scene.surfaces)
-    return statistics(errors(representation, surfaces, part, scene, scene.reference(part)))
+    return statistics(_errors(representation, surfaces, light_set, scene, scene.reference(light_set)))
 
 
-def _row(
-    representation: Representation, surfaces: Any, part: LightSet, scene: Scene, reference: Array, ns: Spread
+def _errors(
+    representation: Representation, surfaces: Any, light_set: LightSet, scene: Scene, reference: Array
+) -> Array:
+    """ΔE00 (K, E) of encoded ``surfaces`` under each light of a set."""
+    rows = len(scene.names)
+    xyz = [
+        representation.xyz(representation.multiply(_repeat_light(representation, power, rows), surfaces))
+        for power in light_set.powers
+    ]
+    errors = delta_e_2000(light_set.lab(np.stack(xyz)), reference)
+    if not np.isfinite(errors).all():
+        raise UpliftError(
+            f"{representation.name} returns values that are not finite under {light_set.title}",
+            code="result-not-finite",
+        )
+    return errors
+
+
+def _result(
+    representation: Representation,
+    surfaces: Any,
+    light_set: LightSet,
+    scene: Scene,
+    reference: Array,
+    ns: Spread,
 ) -> RepresentationResult:
-    apart = errors(representation, surfaces, part, scene, reference)
     return RepresentationResult(
         name=representation.name,
         family=representation.family,
-        lights=part.name,
-        statistics=statistics(apart),
+        lights=light_set.name,
+        statistics=statistics(_errors(representation, surfaces, light_set, scene, reference)),
         floats=float(representation.storage(surfaces).mean()),
-        light_floats=float(representation.storage(representation.encode_light(part.powers)).mean()),
+        light_floats=float(representation.storage(representation.encode_light(light_set.powers)).mean()),
         ns=ns,
     )
 
 
 def _times(representation: Representation, scene: Scene, effort: Effort) -> list[Spread]:
-    """CPU time of a product, in ns, for each set: of each of its lights in turn with many surfaces at once."""
-    surfaces = representation.encode_surface(
-        np.resize(scene.surfaces, (effort.rows, scene.surfaces.shape[1]))
-    )
-    return [_time(representation, surfaces, part, effort) for part in scene.sets]
+    """CPU time of a product, in ns, for each set: each of its lights in turn, with many surfaces per call."""
+    surfaces = np.resize(scene.surfaces, (effort.rows, scene.surfaces.shape[1]))
+    encoded = representation.encode_surface(surfaces)
+    return [_time(representation, encoded, light_set, effort) for light_set in scene.sets]
 
 
-def _time(representation: Representation, surfaces: Any, part: LightSet, effort: Effort) -> Spread:
-    lights = [_repeated(representation, power, effort.rows) for power in part.powers]
+def _time(representation: Representation, surfaces: Any, light_set: LightSet, effort: Effort) -> Spread:
+    lights = [_repeat_light(representation, power, effort.rows) for power in light_set.powers]
 
-    def laps(count: int) -> None:
-        for light in lights * count:
+    def multiply(laps: int) -> None:
+        for light in lights * laps:
             representation.multiply(light, surfaces)
 
-    laps(1)
-    _, once = timed(lambda: laps(1), 1)
-    count = max(1, round(effort.lap / max(once.median, 1e-6)))
-    _, cpu = timed(lambda: laps(count), effort.runs)
-    return cpu.scaled(1e9 / (count * len(lights) * effort.rows))
+    multiply(1)
+    _, once = timed(lambda: multiply(1), 1)
+    laps = max(1, round(effort.seconds / max(once.median, 1e-6)))
+    _, cpu = timed(lambda: multiply(laps), effort.runs)
+    return cpu.scaled(1e9 / (laps * len(lights) * effort.rows))
 
 
-def _repeated(representation: Representation, power: Array, rows: int) -> Any:
+def _repeat_light(representation: Representation, power: Array, rows: int) -> Any:
     return representation.encode_light(np.broadcast_to(power, (rows, len(power))))

@@ -1,25 +1,48 @@
-"""The pictures of a comparison as files, and as parts of a page."""
+"""Figures of a comparison as files and as parts of a page."""
 
 from __future__ import annotations
 
 import os
-from typing import Any
+
+from markupsafe import Markup
 
 from uplift.lab.comparison import box_plots, cost
 from uplift.lab.comparison.measure import Comparison
 from uplift.viz.figure import STYLE, to_svg, write_png
-from uplift.viz.markup import Markup
 
-DRAWN = {"boxes": box_plots.draw, "cost": cost.draw}
+KINDS = {"boxes": box_plots.draw, "cost": cost.draw}
+"""Functions that draw a comparison, by kind."""
 
 
 def write_picture(
-    found: Comparison, kind: str, path: str | os.PathLike[str], *, force: bool = False
+    comparison: Comparison, kind: str, path: str | os.PathLike[str], *, force: bool = False
 ) -> Markup:
-    """One of `DRAWN` as PNG; the same as an ``svg`` element is returned. Raises `OutputError`."""
+    """Write a figure of a comparison as PNG.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+    kind : {"boxes", "cost"}
+        Box plots of the errors, or error over cost.
+    path : path-like
+        The file to write.
+    force : bool, default False
+        Replace an existing file.
+
+    Returns
+    -------
+    Markup
+        The same figure as ``svg`` element, for a page.
+
+    Raises
+    ------
+    OutputError
+        If the file exists and ``force`` is false, or cannot be written.
+    """
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        figure: Any = DRAWN[kind](found)
+        figure = KINDS[kind](comparison)
         write_png(figure, path, force=force)
         return to_svg(figure)

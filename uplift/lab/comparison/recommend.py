@@ -1,4 +1,4 @@
-"""Model no more than a scene needs: the cheapest representation that is near enough."""
+"""Recommendation of the cheapest representation that is accurate enough."""
 
 from __future__ import annotations
 
@@ -9,22 +9,80 @@ from uplift.lab.comparison.measure import Comparison, RepresentationResult
 
 
 def check_target(target: float) -> float:
-    """The target, if it is one. Raises `OptionError`."""
+    """Check the largest ΔE00 that a representation may have.
+
+    Parameters
+    ----------
+    target : float
+        Limit of the 97.5 % quantile of ΔE00.
+
+    Returns
+    -------
+    float
+        The limit.
+
+    Raises
+    ------
+    OptionError
+        If it is not a positive number.
+
+    Examples
+    --------
+    >>> check_target(1.0)
+    1.0
+    """
     if not (math.isfinite(target) and target > 0):
-        raise OptionError(f"a target of {target:g} is none", hint="give a ΔE00 above 0")
+        raise OptionError(f"target must be a positive ΔE00, got {target:g}", code="target-not-positive")
     return target
 
 
-def cheapest(found: Comparison, lights: str, target: float) -> RepresentationResult | None:
-    """Under a set of lights, of all whose 97.5 % quantile stays within the target the one that stores least of a
-    surface, then of a light, then the nearest; None where none stays within it. Raises `OptionError`.
+def cheapest(comparison: Comparison, lights: str, target: float) -> RepresentationResult | None:
+    """Choose the representation that stores least among those accurate enough under a set of lights.
 
-    Times have no say: those of equal size differ by what a machine does besides."""
+    Of equally small ones the smaller light, then the smaller error decides. Times are not considered: among
+    representations of equal size they depend on other work of the machine.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+    lights : str
+        Name of the set of lights.
+    target : float
+        Largest 97.5 % quantile of ΔE00.
+
+    Returns
+    -------
+    RepresentationResult or None
+        None if none is accurate enough.
+
+    Raises
+    ------
+    OptionError
+        If the target is not a positive number.
+    """
     check_target(target)
-    near = [row for row in found.of(lights) if row.statistics.q97_5 <= target]
-    return min(near, key=lambda row: (row.floats, row.light_floats, row.statistics.q97_5), default=None)
+    sufficient = [result for result in comparison.of(lights) if result.statistics.q97_5 <= target]
+    return min(
+        sufficient,
+        key=lambda result: (result.floats, result.light_floats, result.statistics.q97_5),
+        default=None,
+    )
 
 
-def nearest(found: Comparison, lights: str) -> RepresentationResult:
-    """The one whose 97.5 % quantile is least."""
-    return min(found.of(lights), key=lambda row: row.statistics.q97_5)
+def most_accurate(comparison: Comparison, lights: str) -> RepresentationResult:
+    """Choose the representation of the smallest 97.5 % quantile under a set of lights.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+    lights : str
+        Name of the set of lights.
+
+    Returns
+    -------
+    RepresentationResult
+        Its result.
+    """
+    return min(comparison.of(lights), key=lambda result: result.statistics.q97_5)

@@ -1,4 +1,4 @@
-"""What representations are asked to hold: measured reflectances, and the lights that they meet."""
+"""Test scene of a comparison: measured reflectances under sets of lights."""
 
 from __future__ import annotations
 
@@ -16,15 +16,25 @@ from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
 from uplift.scene.representations.dense import STEP, wavelengths, xyz_weights
 
-GIVEN = "given"
-"""The set of lights that a user names."""
-FEW = 40
+NAMED_SET = "given"
+"""Name of the set of lights that a user lists."""
+QUICK_SURFACES = 40
 """Surfaces of a quick comparison."""
 
 
 @dataclass(frozen=True, eq=False)
 class LightSet:
-    """Lights by name: relative powers (K, 401) of luminance 1."""
+    """A set of lights.
+
+    Parameters
+    ----------
+    name : str
+        Name of the set.
+    lights : tuple of str
+        Names of K lights.
+    powers : ndarray, shape (K, 401)
+        Their relative powers, of luminance 1.
+    """
 
     name: str
     lights: tuple[str, ...]
@@ -32,21 +42,43 @@ class LightSet:
 
     @property
     def title(self) -> str:
+        """Return the name of the set with those of its lights."""
         return f"{self.name} lights ({', '.join(self.lights)})"
 
     @cached_property
     def whites(self) -> Array:
-        """(K, 3) XYZ of the lights."""
+        """Return XYZ of the lights, (K, 3)."""
         return self.powers @ xyz_weights()
 
     def lab(self, xyz: Array) -> Array:
-        """L*a*b* (K, E, 3) of XYZ (K, E, 3), each light's against its own white."""
+        """Convert XYZ to L*a*b*, relative to the white of each light.
+
+        Parameters
+        ----------
+        xyz : ndarray, shape (K, E, 3)
+            XYZ of E surfaces under each light.
+
+        Returns
+        -------
+        ndarray, shape (K, E, 3)
+            L*a*b*.
+        """
         return lab(xyz / self.whites[:, None], np.ones(3))
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Surfaces (E, 401) by name, and sets of lights that they are seen under."""
+    """Surfaces and the sets of lights that illuminate them.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names of E surfaces.
+    surfaces : ndarray, shape (E, 401)
+        Their reflectances.
+    sets : tuple of LightSet
+        Sets of lights.
+    """
 
     names: tuple[str, ...]
     surfaces: Array
@@ -54,33 +86,71 @@ class Scene:
 
     @property
     def powers(self) -> Array:
-        """(L, 401) of all lights."""
-        return np.concatenate([part.powers for part in self.sets])
+        """Return the powers of all lights, (L, 401)."""
+        return np.concatenate([light_set.powers for light_set in self.sets])
 
-    def reference(self, part: LightSet) -> Array:
-        """L*a*b* (K, E, 3) of every surface under every light of a set, from the dense products."""
-        return part.lab((part.powers[:, None] * self.surfaces) @ xyz_weights())
+    def reference(self, light_set: LightSet) -> Array:
+        """Compute the colours of all surfaces from densely sampled products.
 
-    def thinned(self, most: int = FEW) -> Scene:
-        """The same with ``most`` surfaces at most, evenly from all."""
-        kept = np.unique(np.linspace(0, len(self.names) - 1, most).round().astype(np.intp))
+        Parameters
+        ----------
+        light_set : LightSet
+            A set of K lights.
+
+        Returns
+        -------
+        ndarray, shape (K, E, 3)
+            L*a*b* of every surface under every light.
+        """
+        return light_set.lab((light_set.powers[:, None] * self.surfaces) @ xyz_weights())
+
+    def thinned(self, count: int = QUICK_SURFACES) -> Scene:
+        """Select at most ``count`` surfaces, evenly spaced.
+
+        Parameters
+        ----------
+        count : int, default 40
+            Largest number of surfaces.
+
+        Returns
+        -------
+        Scene
+            The smaller scene.
+        """
+        kept = np.unique(np.linspace(0, len(self.names) - 1, count).round().astype(np.intp))
         return replace(self, names=tuple(self.names[row] for row in kept), surfaces=self.surfaces[kept])
 
 
 def scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scene:
-    """Every entry of the atlases, under ``lights`` or, without any, under the two sets of the thesis.
+    """Combine the entries of atlases with sets of lights.
+
+    Parameters
+    ----------
+    atlases : mapping of str to Atlas
+        Atlases by name.
+    lights : sequence of str, optional
+        Names of lights, by default the two sets of Kment 2011, section 5.4.
+
+    Returns
+    -------
+    Scene
+        The scene.
 
     Raises
     ------
-    AtlasError : no entries, or two of one name.
-    UnknownNameError : a light that there is no table of.
+    AtlasError
+        If there are no entries, or two of the same name.
+    UnknownNameError
+        If a light is not in the tables.
     """
-    spectra = merge(atlases.values())
-    if not spectra.entries:
-        raise AtlasError("no entries to compare with", hint="name an atlas that holds reflectances")
-    named = {GIVEN: tuple(dict.fromkeys(lights))} if lights else KMENT_LIGHTS
+    merged = merge(atlases.values())
+    if not merged.entries:
+        raise AtlasError(
+            "the atlases have no entries", code="no-entries", hint="give an atlas of reflectances"
+        )
+    named = {NAMED_SET: tuple(dict.fromkeys(lights))} if lights else KMENT_LIGHTS
     sets = tuple(LightSet(name, members, _powers(members)) for name, members in named.items())
-    return Scene(spectra.names, on_grid(spectra, wavelengths()), sets)
+    return Scene(merged.names, on_grid(merged, wavelengths()), sets)
 
 
 def _powers(names: Sequence[str]) -> Array:

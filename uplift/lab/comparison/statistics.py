@@ -1,4 +1,9 @@
-"""The few numbers that stand for a distribution of colour differences (Kment 2011, 5.4)."""
+"""Statistics of colour differences.
+
+References
+----------
+Kment 2011, section 5.4.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +13,21 @@ from dataclasses import astuple, dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+HEADINGS = ("mean", "σ", "median", "2.5 %", "25 %", "75 %", "97.5 %")
+"""Headings of tables, in the order of `Statistics`."""
+
 
 @dataclass(frozen=True)
 class Statistics:
-    """ΔE00: mean, standard deviation, median, and the quantiles of 2.5, 25, 75 and 97.5 %."""
+    """Statistics of ΔE00.
+
+    Parameters
+    ----------
+    mean, deviation, median : float
+        Mean, standard deviation and median.
+    q2_5, q25, q75, q97_5 : float
+        Quantiles of 2.5, 25, 75 and 97.5 %.
+    """
 
     mean: float
     deviation: float
@@ -22,16 +38,27 @@ class Statistics:
     q97_5: float
 
     def __iter__(self) -> Iterator[float]:
-        """In the order of `HEADINGS`."""
         return iter(astuple(self))
 
 
-HEADINGS = ("mean", "σ", "median", "2.5 %", "25 %", "75 %", "97.5 %")
-"""Of tables."""
-
-
 def statistics(errors: ArrayLike) -> Statistics:
-    """Of errors (…), one at least."""
-    errors = np.asarray(errors, dtype=float).ravel()
-    low, first, median, third, high = (float(q) for q in np.quantile(errors, (0.025, 0.25, 0.5, 0.75, 0.975)))
-    return Statistics(float(errors.mean()), float(errors.std()), median, low, first, third, high)
+    """Compute the statistics of errors.
+
+    Parameters
+    ----------
+    errors : array_like
+        At least one ΔE00.
+
+    Returns
+    -------
+    Statistics
+        Mean, standard deviation and quantiles.
+
+    Examples
+    --------
+    >>> statistics([1, 2, 3]).mean
+    2.0
+    """
+    values = np.asarray(errors, dtype=float).ravel()
+    low, first, median, third, high = np.quantile(values, (0.025, 0.25, 0.5, 0.75, 0.975)).tolist()
+    return Statistics(float(values.mean()), float(values.std()), median, low, first, third, high)

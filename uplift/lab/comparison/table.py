@@ -1,4 +1,4 @@
-"""A comparison as flat records: for JSON and CSV."""
+"""A comparison as flat records, for JSON and CSV."""
 
 from __future__ import annotations
 
@@ -10,29 +10,51 @@ from uplift.lab.comparison.filters import Tuned
 from uplift.lab.comparison.measure import Comparison, RepresentationResult
 
 
-def records(found: Comparison) -> list[dict[str, Any]]:
-    """A record a row; ``ns`` has its least and its most beside it."""
-    return [_record(row) for row in found.rows]
+def records(comparison: Comparison) -> list[dict[str, Any]]:
+    """Convert the results of a comparison to records.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+
+    Returns
+    -------
+    list of dict
+        One record per result; ``ns`` is a median, ``ns_least`` and ``ns_most`` are the extremes.
+    """
+    return [_record(result) for result in comparison.results]
 
 
 def filter_records(tuned: Iterable[Tuned]) -> list[dict[str, Any]]:
-    """A record a filter."""
+    """Convert tuned filters to records.
+
+    Parameters
+    ----------
+    tuned : iterable of Tuned
+        The filters.
+
+    Returns
+    -------
+    list of dict
+        One record per filter.
+    """
     return [
-        {"lights": one.lights, "samples": one.count, "filter": one.kind, "parameters": one.told}
-        | asdict(one.statistics)
-        for one in tuned
+        {"lights": each.lights, "samples": each.count, "filter": each.kind, "parameters": each.parameters}
+        | asdict(each.statistics)
+        for each in tuned
     ]
 
 
-def _record(row: RepresentationResult) -> dict[str, Any]:
+def _record(result: RepresentationResult) -> dict[str, Any]:
     return {
-        "lights": row.lights,
-        "representation": row.name,
-        "family": row.family,
-        **asdict(row.statistics),
-        "floats": row.floats,
-        "light_floats": row.light_floats,
-        "ns": row.ns.median,
-        "ns_least": row.ns.least,
-        "ns_most": row.ns.most,
+        "lights": result.lights,
+        "representation": result.name,
+        "family": result.family,
+        **asdict(result.statistics),
+        "floats": result.floats,
+        "light_floats": result.light_floats,
+        "ns": result.ns.median,
+        "ns_least": result.ns.min,
+        "ns_most": result.ns.max,
     }

@@ -1,4 +1,4 @@
-"""The methods of the chart, a file for each publication. To add one, add its file, with the name FAMILIES in it."""
+"""Methods of the chart, one module for each publication; a new module needs a tuple ``FAMILIES``."""
 
 from __future__ import annotations
 
@@ -9,32 +9,62 @@ from pkgutil import iter_modules
 from uplift.common.errors import OptionError
 from uplift.lab.chart.method import Family, Method
 
-
-def found() -> tuple[Family, ...]:
-    """The families of all files here."""
-    files = (import_module(file.name) for file in iter_modules(__path__, f"{__name__}."))
-    return tuple(family for file in files for family in file.FAMILIES)
+__all__ = ["FAMILIES", "load_families", "select_methods"]
 
 
-FAMILIES = found()
+def load_families() -> tuple[Family, ...]:
+    """Import all modules of this package.
 
-
-def chosen(patterns: tuple[str, ...] = (), *, quick: bool = False) -> list[tuple[Family, Method]]:
-    """Methods whose names match any of the patterns (``*`` and ``?`` as in a shell); without one, the usual.
-
-    Raises `OptionError` for a pattern that matches none.
+    Returns
+    -------
+    tuple of Family
+        The families of all modules.
     """
-    every = [(family, method) for family in FAMILIES for method in family.methods]
+    modules = (import_module(module.name) for module in iter_modules(__path__, f"{__name__}."))
+    return tuple(family for module in modules for family in module.FAMILIES)
+
+
+FAMILIES = load_families()
+
+
+def select_methods(patterns: tuple[str, ...] = (), *, quick: bool = False) -> list[tuple[Family, Method]]:
+    """Select methods by name.
+
+    Parameters
+    ----------
+    patterns : tuple of str, optional
+        Names, with ``*`` and ``?`` as in a shell; by default the usual methods are selected.
+    quick : bool, default False
+        Without patterns, select the methods of a quick run.
+
+    Returns
+    -------
+    list of (Family, Method)
+        The methods in the order of the chart.
+
+    Raises
+    ------
+    OptionError
+        If a pattern matches no method.
+
+    Examples
+    --------
+    >>> [method.name for _, method in select_methods(("s*1999", "mallett*"))]
+    ['mallett2019', 'smits1999']
+    """
+    methods = [(family, method) for family in FAMILIES for method in family.methods]
     if not patterns:
-        return [(family, method) for family, method in every if (method.quick if quick else method.usual)]
+        return [(family, method) for family, method in methods if (method.quick if quick else method.usual)]
     for pattern in patterns:
-        if not any(fnmatchcase(method.name, pattern) for _, method in every):
-            some = ", ".join(f"'{family.methods[0].name}'" for family in FAMILIES)
+        if not any(fnmatchcase(method.name, pattern) for _, method in methods):
+            examples = ", ".join(f"'{family.methods[0].name}'" for family in FAMILIES)
             raise OptionError(
-                f"no method is called '{pattern}'", hint=f"name some as {some}; '*' stands for any"
+                f"no method matches '{pattern}'",
+                code="unknown-method",
+                hint=f"names are {examples} and others; '*' matches any characters",
             )
     return [
         (family, method)
-        for family, method in every
+        for family, method in methods
         if any(fnmatchcase(method.name, pattern) for pattern in patterns)
     ]

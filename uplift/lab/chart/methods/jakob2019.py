@@ -1,4 +1,13 @@
-"""Sigmoids of a quadratic, as colour-science fits them: Jakob & Hanika 2019, A low-dimensional function space."""
+"""Sigmoids of quadratic polynomials, as colour-science fits them.
+
+Domain: linear sRGB in [0, 1] under D65, as XYZ or as RGB of a table. Range: reflectance in [0, 1] at the wavelengths
+of the sensor.
+
+References
+----------
+Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", Computer Graphics Forum
+38(2).
+"""
 
 from __future__ import annotations
 
@@ -9,21 +18,24 @@ from uplift.lab.chart.task import Task
 from uplift.models.sigmoid import evaluate_unscaled
 
 SIZE = 5
-"""Of the table, 3 × 5³ points: colour-science fits it in Python, in half a minute. Published tables have 64."""
+"""Points along each edge of the 3 × 5³ table: colour-science fits it in Python in half a minute. Published tables
+have 64."""
 
 
 def prepare_direct(task: Task) -> PreparedMethod:
+    """Prepare a fit for every colour."""
     convert = colour_science().recovery.XYZ_to_sd_Jakob2019
     cmfs, light = aligned(task.sensor)
 
     def spectrum(rgb: Array) -> tuple[Array, Array]:
-        found = convert(task.sensor.xyz(rgb), cmfs, light)
-        return found.wavelengths, found.values
+        distribution = convert(task.sensor.xyz(rgb), cmfs, light)
+        return distribution.wavelengths, distribution.values
 
     return PreparedMethod(one_by_one(spectrum), nbytes((cmfs.values, light.values)))
 
 
 def prepare_table(task: Task) -> PreparedMethod:
+    """Fit a table of coefficients."""
     colour = colour_science()
     table = colour.recovery.LUT3D_Jakob2019()
     space = colour.RGB_COLOURSPACES[task.sensor.space]
@@ -55,7 +67,7 @@ FAMILIES = (
                 "jakob2019-table",
                 f"Jakob 2019, table of {SIZE}",
                 prepare_table,
-                note=f"colour-science, 3 × {SIZE}³ points; for a table of 64 see Mitsuba's",
+                note=f"colour-science, 3 × {SIZE}³ points; see Mitsuba 3 for a table of 64",
             ),
         ),
     ),

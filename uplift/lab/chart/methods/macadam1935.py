@@ -1,7 +1,13 @@
-"""Spectra of one step up and one down: MacAdam 1935, The theory of the maximum visual efficiency of colored materials.
+"""Box spectra: optimal colours scaled in height.
 
-Of all reflectances of a chromaticity a box from 0 to 1, that of a passed band or of a stopped one, is the brightest.
-One of the same edges and less height has any darker colour. A baseline: no measurement looks so.
+Of all reflectances of a chromaticity, a box function from 0 to 1, of a passed or of a stopped band, is the brightest.
+A lower box with the same edges has any darker colour. A baseline: no measured spectrum is a box.
+
+Domain: linear sRGB in [0, 1] under D65. Range: reflectance in [0, 1] at the sensor's wavelengths.
+
+References
+----------
+MacAdam 1935, "The theory of the maximum visual efficiency of colored materials", JOSA 25.
 """
 
 from __future__ import annotations
@@ -17,22 +23,33 @@ from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbyt
 from uplift.lab.chart.task import Task
 
 STEPS, HALVINGS = 6, 4
-"""Of Newton's method, and of a step that does not help; most edges settle in three."""
+"""Steps of Newton's method, and halvings of a step that does not reduce the error; most edges converge in three."""
 STARTS = 16
-"""Boxes to start from; few colours need more than one."""
-CLOSE = 1e-7
+"""Boxes to start from, one after the other; few colours need more than one."""
+TOLERANCE = 1e-7
 """CIE xy."""
 DARK = 1e-12
-"""Luminance that has no chromaticity."""
+"""Luminance below which a colour is black."""
 
 
 @dataclass(frozen=True, eq=False)
 class Boxes:
-    """Boxes that rise at one place and fall at a later one, counted in samples of a sensor.
+    """Box functions by their rising and falling edges, in units of the sensor's samples.
 
-    Wavelengths go round: a box that runs past the last sample goes on with the first, and is a stopped band.
-    ``weights`` (N, 3) are XYZ of a sample, ``below`` (N, 3) their sums up to it. ``starts`` (S, 2) are whole boxes, and
-    ``tree`` holds their chromaticities.
+    Wavelengths are cyclic: a box that extends beyond the last sample continues at the first, and is a stopped band.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        The sensor.
+    weights : ndarray, shape (N, 3)
+        XYZ of each sample.
+    below : ndarray, shape (N, 3)
+        Sums of the weights of all samples before.
+    starts : ndarray, shape (S, 2)
+        Edges of the boxes that begin and end between samples.
+    tree : cKDTree
+        Their chromaticities.
     """
 
     sensor: Sensor
@@ -42,71 +59,75 @@ class Boxes:
     tree: cKDTree
 
     def xyz(self, edges: Array) -> Array:
-        """XYZ (n, 3) of full boxes with ``edges`` (n, 2)."""
+        """XYZ (n, 3) of boxes of height 1 with ``edges`` (n, 2)."""
         return _xyz(self.weights, self.below, edges)
 
     def find(self, xy: Array) -> Array:
-        """Edges (n, 2) of the boxes of chromaticities (n, 2): of the nearest whole ones, one after the other."""
-        found = self.starts[self.tree.query(xy)[1]]
-        off = self._off(found, xy)
+        """Edges (n, 2) of the boxes of chromaticities (n, 2), starting from the nearest known ones in turn."""
+        edges = self.starts[self.tree.query(xy)[1]]
+        error = self._error(edges, xy)
         for start in range(STARTS):
-            rows = np.flatnonzero(off > CLOSE)
+            rows = np.flatnonzero(error > TOLERANCE)
             if not rows.size:
                 break
             near = self.starts[self.tree.query(xy[rows], [start + 1])[1][:, 0]]
-            edges = self._descend(near, xy[rows])
-            off_edges = self._off(edges, xy[rows])
-            better = off_edges < off[rows]
-            found[rows[better]], off[rows[better]] = edges[better], off_edges[better]
-        return found
+            improved = self._descend(near, xy[rows])
+            improved_error = self._error(improved, xy[rows])
+            better = improved_error < error[rows]
+            edges[rows[better]], error[rows[better]] = improved[better], improved_error[better]
+        return edges
 
     def _descend(self, edges: Array, xy: Array) -> Array:
-        """By Newton's method, in steps that are halved until they help."""
+        """Newton's method with steps that are halved until they reduce the error."""
         for _ in range(STEPS):
-            step, off = self._step(edges, xy), self._off(edges, xy)
+            step, error = self._step(edges, xy), self._error(edges, xy)
             for _ in range(HALVINGS):
-                there = edges + step
-                length = there[:, 1] - there[:, 0]
-                better = (length > 0) & (length <= len(self.weights)) & (self._off(there, xy) < off)
-                edges[better] = there[better]
+                new = edges + step
+                length = new[:, 1] - new[:, 0]
+                better = (length > 0) & (length <= len(self.weights)) & (self._error(new, xy) < error)
+                edges[better] = new[better]
                 step[better] = 0
                 step /= 2
         return edges
 
-    def _off(self, edges: Array, xy: Array) -> Array:
+    def _error(self, edges: Array, xy: Array) -> Array:
         return np.asarray(np.linalg.norm(chromaticity(self.xyz(edges)) - xy, axis=1))
 
     def _step(self, edges: Array, xy: Array) -> Array:
-        here = self.xyz(edges)
-        total, now = here.sum(axis=1)[:, None, None], chromaticity(here)
+        xyz = self.xyz(edges)
+        total, current = xyz.sum(axis=1)[:, None, None], chromaticity(xyz)
         slope = self.weights[np.floor(edges).astype(int) % len(self.weights)] * [[-1], [1]]
-        jacobian = ((slope[..., :2] - now[:, None] * slope.sum(axis=-1, keepdims=True)) / total).swapaxes(
+        jacobian = ((slope[..., :2] - current[:, None] * slope.sum(axis=-1, keepdims=True)) / total).swapaxes(
             1, 2
         )
-        return np.asarray((np.linalg.pinv(jacobian) @ (xy - now)[..., None])[..., 0])
+        return np.asarray((np.linalg.pinv(jacobian) @ (xy - current)[..., None])[..., 0])
 
     def __call__(self, rgb: Array, wavelengths: Array) -> Array:
-        wanted, count = self.sensor.xyz(rgb), len(self.weights)
-        dark = wanted[:, 1] < DARK
-        wanted[dark] = self.sensor.light.white
-        edges = self.find(chromaticity(wanted))
-        height = np.where(dark, 0, np.minimum(wanted[:, 1] / self.xyz(edges)[:, 1], 1))
+        target, count = self.sensor.xyz(rgb), len(self.weights)
+        dark = target[:, 1] < DARK
+        target[dark] = self.sensor.light.white
+        edges = self.find(chromaticity(target))
+        height = np.where(dark, 0, np.minimum(target[:, 1] / self.xyz(edges)[:, 1], 1))
         start, step = self.sensor.wavelengths[0], self.sensor.wavelengths[1] - self.sensor.wavelengths[0]
-        place = np.clip((wavelengths - start) / step, 0, count - 1)
+        position = np.clip((wavelengths - start) / step, 0, count - 1)
         first = np.floor(edges[:, :1] / count) * count
         inside = [
-            np.clip(np.minimum(edges[:, 1:] - turn, place + 1) - np.maximum(edges[:, :1] - turn, place), 0, 1)
+            np.clip(
+                np.minimum(edges[:, 1:] - turn, position + 1) - np.maximum(edges[:, :1] - turn, position),
+                0,
+                1,
+            )
             for turn in (first, first + count)
         ]
         return np.asarray(height[:, None] * (inside[0] + inside[1]))
 
 
 def _xyz(weights: Array, below: Array, edges: Array) -> Array:
-    turns, place = np.divmod(edges, len(weights))
-    low = place.astype(int)
+    turns, position = np.divmod(edges, len(weights))
+    low = position.astype(int)
     total = below[-1] + weights[-1]
     rise, fall = np.moveaxis(
-        turns[..., None] * total + below[low] + (place - low)[..., None] * weights[low], 1, 0
+        turns[..., None] * total + below[low] + (position - low)[..., None] * weights[low], 1, 0
     )
     return np.asarray(fall - rise)
 
@@ -117,7 +138,7 @@ def chromaticity(xyz: Array) -> Array:
 
 
 def boxes(sensor: Sensor) -> Boxes:
-    """All that is needed to find the box of a colour."""
+    """Precompute the boxes whose edges are between samples."""
     weights = np.ascontiguousarray(sensor.light.xyz.T)
     below = weights.cumsum(axis=0) - weights
     rise, length = np.divmod(np.arange(len(weights) ** 2), len(weights))
@@ -126,8 +147,9 @@ def boxes(sensor: Sensor) -> Boxes:
 
 
 def prepare(task: Task) -> PreparedMethod:
-    made, seconds = stopwatch(lambda: boxes(task.sensor))
-    return PreparedMethod(made, nbytes((made.weights, made.below, made.starts, made.tree.data)), seconds)
+    """Prepare the boxes of the sensor."""
+    table, seconds = stopwatch(lambda: boxes(task.sensor))
+    return PreparedMethod(table, nbytes((table.weights, table.below, table.starts, table.tree.data)), seconds)
 
 
 FAMILIES = (
@@ -142,7 +164,7 @@ FAMILIES = (
                 prepare,
                 Claims(round_trip=0.01),
                 quick=True,
-                note="box spectra, our own baseline",
+                note="box spectra, a baseline of this package",
             ),
         ),
     ),

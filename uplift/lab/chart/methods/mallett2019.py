@@ -1,6 +1,11 @@
-"""Three smooth spectra, one for each primary of sRGB: Mallett & Yuksel 2019, Spectral primary decomposition.
+"""Spectral primary decomposition of sRGB into three smooth spectra.
 
-The table is colour-science's; a spectrum is a product of matrices.
+Domain: linear sRGB in [0, 1] under D65. Range: reflectance in [0, 1] at 380 to 780 nm in steps of 5 nm, interpolated
+linearly. The basis is that of colour-science; a spectrum is a product of matrices.
+
+References
+----------
+Mallett & Yuksel 2019, "Spectral primary decomposition for rendering with sRGB reflectance", EGSR.
 """
 
 from __future__ import annotations
@@ -14,6 +19,7 @@ from uplift.lab.chart.task import Task
 
 
 def prepare(task: Task) -> PreparedMethod:
+    """Prepare the basis."""
     primaries = colour_science().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
     values = np.ascontiguousarray(primaries.values.T)
 
@@ -33,9 +39,9 @@ FAMILIES = (
                 "mallett2019",
                 "Mallett 2019",
                 prepare,
-                Claims(round_trip=0.01, most=1 + 1e-6),
+                Claims(round_trip=0.01, max=1 + 1e-6),
                 quick=True,
-                note="the table of colour-science, one product of matrices",
+                note="basis of colour-science, one product of matrices",
             ),
         ),
     ),

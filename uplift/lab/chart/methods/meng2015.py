@@ -1,4 +1,13 @@
-"""The smoothest spectrum of a colour, by optimisation: Meng, Simon, Hanika & Dachsbacher 2015, in colour-science."""
+"""The smoothest spectrum of a colour, by numerical optimisation.
+
+Domain: linear sRGB in [0, 1] under D65, as XYZ. Range: reflectance of at least 0, not limited to 1, in steps of 10 nm,
+interpolated linearly.
+
+References
+----------
+Meng, Simon, Hanika & Dachsbacher 2015, "Physically meaningful rendering using tristimulus colours", Computer Graphics
+Forum 34(4).
+"""
 
 from __future__ import annotations
 
@@ -8,16 +17,17 @@ from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbyt
 from uplift.lab.chart.task import Task
 
 STEP = 10.0
-"""nm; twice as many unknowns take three times as long."""
+"""nm. With half the step, twice as many unknowns take three times as long."""
 
 
 def prepare(task: Task) -> PreparedMethod:
+    """Prepare the optimisation."""
     convert = colour_science().recovery.XYZ_to_sd_Meng2015
     cmfs, light = aligned(task.sensor, step=STEP)
 
     def spectrum(rgb: Array) -> tuple[Array, Array]:
-        found = convert(task.sensor.xyz(rgb), cmfs, light)
-        return found.wavelengths, found.values
+        distribution = convert(task.sensor.xyz(rgb), cmfs, light)
+        return distribution.wavelengths, distribution.values
 
     return PreparedMethod(one_by_one(spectrum), nbytes((cmfs.values, light.values)))
 
@@ -32,9 +42,9 @@ FAMILIES = (
                 "meng2015",
                 "Meng 2015",
                 prepare,
-                Claims(round_trip=0.5, most=1000.0),
+                Claims(round_trip=0.5, max=1000.0),
                 batch=False,
-                note=f"colour-science at {STEP:g} nm, between which we interpolate; may reflect more than it gets",
+                note=f"colour-science at {STEP:g} nm, interpolated; reflectances may exceed 1",
             ),
         ),
     ),

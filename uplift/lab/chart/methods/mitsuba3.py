@@ -1,4 +1,13 @@
-"""Mitsuba 3's table of sigmoids for sRGB, made when Mitsuba was built and looked up a colour a call."""
+"""Sigmoids of quadratic polynomials from the table of Mitsuba 3.
+
+Domain: linear sRGB in [0, 1]. Range: reflectance in [0, 1] at any wavelengths. The table of 64 points along each edge
+is part of Mitsuba; it is queried from Python with one colour per call.
+
+References
+----------
+Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", Computer Graphics Forum
+38(2).
+"""
 
 from __future__ import annotations
 
@@ -14,11 +23,12 @@ from uplift.lab.chart.task import Task
 from uplift.models.sigmoid import evaluate_unscaled
 
 VARIANT = "scalar_spectral"
-"""Of those that know spectra, the one that needs no LLVM."""
+"""The spectral variant that does not need LLVM."""
 TABLE = Path("data", "srgb.coeff")
 
 
 def prepare(task: Task) -> PreparedMethod:
+    """Load Mitsuba and locate its table."""
     mitsuba = _mitsuba()
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
@@ -49,7 +59,7 @@ FAMILIES = (
                 prepare,
                 Claims(round_trip=0.1),
                 batch=False,
-                note="looked up from Python a colour a call; the spectra of many at once by numpy",
+                note="coefficients from Python, one colour per call; spectra by numpy",
             ),
         ),
     ),

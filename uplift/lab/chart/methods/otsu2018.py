@@ -1,4 +1,13 @@
-"""Clusters of measured spectra, three principal components each: Otsu, Yamamoto & Hachisuka 2018, by colour-science."""
+"""Principal components of clusters of measured spectra, three per cluster.
+
+Domain: linear sRGB in [0, 1] under D65, as XYZ. Range: reflectance clipped to [0, 1], interpolated linearly from the
+wavelengths of the published data, those of colour-science.
+
+References
+----------
+Otsu, Yamamoto & Hachisuka 2018, "Reproducing spectral reflectances from tristimulus colours", Computer Graphics Forum
+37(6).
+"""
 
 from __future__ import annotations
 
@@ -9,13 +18,14 @@ from uplift.lab.chart.task import Task
 
 
 def prepare(task: Task) -> PreparedMethod:
+    """Prepare the published data."""
     otsu = colour_science().recovery.otsu2018
     shape = otsu.SPECTRAL_SHAPE_OTSU2018
     cmfs, light = aligned(task.sensor, shape.start, shape.end, shape.interval)
 
     def spectrum(rgb: Array) -> tuple[Array, Array]:
-        found = otsu.XYZ_to_sd_Otsu2018(task.sensor.xyz(rgb), cmfs, light)
-        return found.wavelengths, found.values
+        distribution = otsu.XYZ_to_sd_Otsu2018(task.sensor.xyz(rgb), cmfs, light)
+        return distribution.wavelengths, distribution.values
 
     data = (otsu.BASIS_FUNCTIONS_OTSU2018, otsu.CLUSTER_MEANS_OTSU2018, otsu.SELECTOR_ARRAY_OTSU2018)
     return PreparedMethod(one_by_one(spectrum), nbytes(data))
@@ -33,7 +43,7 @@ FAMILIES = (
                 prepare,
                 batch=False,
                 quick=True,
-                note="colour-science with its own data set, clipped to [0, 1]",
+                note="colour-science with its own data, clipped to [0, 1]",
             ),
         ),
     ),

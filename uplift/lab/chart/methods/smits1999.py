@@ -1,6 +1,11 @@
-"""Seven hand-made spectra of ten bins: Smits 1999, An RGB-to-spectrum conversion for reflectances.
+"""Spectra from seven hand-made basis spectra of ten bins.
 
-The table is colour-science's. It was made for an equal-energy white; renderers feed it sRGB as it is, and so do we.
+Domain: RGB in [0, 1]; made for an equal-energy white, used with linear sRGB as renderers do. Range: reflectance up to
+1.015 at 380 to 720 nm, interpolated linearly between the centres of the bins. The table is that of colour-science.
+
+References
+----------
+Smits 1999, "An RGB-to-spectrum conversion for reflectances", Journal of Graphics Tools 4(4).
 """
 
 from __future__ import annotations
@@ -13,10 +18,11 @@ from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod
 from uplift.lab.chart.task import Task
 
 SECONDARIES, PRIMARIES = ("cyan", "magenta", "yellow"), ("red", "green", "blue")
-"""By the component that is least, and by that which is most."""
+"""Basis spectra by the smallest and by the largest component of RGB."""
 
 
 def prepare(task: Task) -> PreparedMethod:
+    """Prepare the table."""
     table = colour_science().recovery.SDS_SMITS1999
     centres = table["white"].wavelengths
     white, secondaries, primaries = (
@@ -25,11 +31,9 @@ def prepare(task: Task) -> PreparedMethod:
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         order = rgb.argsort(axis=1)
-        least, middle, most = np.take_along_axis(rgb, order, axis=1).T[..., None]
+        low, middle, high = np.take_along_axis(rgb, order, axis=1).T[..., None]
         bins = (
-            least * white
-            + (middle - least) * secondaries[order[:, 0]]
-            + (most - middle) * primaries[order[:, 2]]
+            low * white + (middle - low) * secondaries[order[:, 0]] + (high - middle) * primaries[order[:, 2]]
         )
         return bins @ _linear(wavelengths, centres)
 
@@ -37,8 +41,8 @@ def prepare(task: Task) -> PreparedMethod:
 
 
 def _linear(wavelengths: Array, centres: Array) -> Array:
-    """(10, N) shares of the bins in a spectrum that is linear between their centres."""
-    return np.stack([np.interp(wavelengths, centres, one) for one in np.eye(len(centres))])
+    """Weights (10, N) of the bins in a spectrum that is linear between their centres."""
+    return np.stack([np.interp(wavelengths, centres, row) for row in np.eye(len(centres))])
 
 
 FAMILIES = (
@@ -51,9 +55,9 @@ FAMILIES = (
                 "smits1999",
                 "Smits 1999",
                 prepare,
-                Claims(most=1.02),
+                Claims(max=1.02),
                 quick=True,
-                note="the table of colour-science, sRGB taken as it is; reflectances up to 1.015",
+                note="table of colour-science, used with sRGB; reflectances up to 1.015",
             ),
         ),
     ),

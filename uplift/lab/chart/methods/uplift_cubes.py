@@ -1,4 +1,7 @@
-"""Ours: cubes of both models, of several sizes, with and without an atlas, asked in every mode and type."""
+"""Cubes of this package: both models, several sizes, with and without an atlas, in every mode and data type.
+
+Domain: linear sRGB in [0, 1] under D65. Range: reflectance in [0, 1] at any wavelengths.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +21,12 @@ from uplift.pipeline.options import ModelName
 DIMS = (8, 16, 32, 64)
 COUNTS = (3, 5, 9, 13, 17)
 EXACT = Claims(round_trip=0.01)
-"""Of modes ``spectra`` and ``bulk``, and of ``refined`` where the model is moments; other modes promise nothing."""
+"""Claims of modes ``spectra`` and ``bulk``, and of ``refined`` with moments; other modes have none."""
 
 
 @dataclass(frozen=True)
-class Recipe:
-    """What a cube is built from."""
+class CubeOptions:
+    """Options of a build."""
 
     model: ModelName
     count: int
@@ -32,72 +35,76 @@ class Recipe:
 
     @property
     def name(self) -> str:
+        """Return the name for the command line."""
         model = f"{self.model}{self.count if self.model == Moments.name else ''}"
         return f"{model}-{self.dim}{'-atlas' if self.atlas else ''}"
 
     @property
     def title(self) -> str:
+        """Return the name to display."""
         model = f"{self.model} {self.count}" if self.model == Moments.name else self.model
         return f"{model}, {self.dim}³{', atlas' if self.atlas else ''}"
 
     @property
-    def line(self) -> str:
-        """The command that builds it."""
+    def command(self) -> str:
+        """Return the command that builds the cube."""
         model = f"--moments {self.count - 1}" if self.model == Moments.name else f"--model {self.model}"
         return f"uplift build {'--atlas FILE ' if self.atlas else ''}--dim {self.dim} {model}"
 
 
 @dataclass(frozen=True)
-class Asking:
-    """How a cube is asked: a mode of `Cube.reflectance`, or ``bulk``, and the type of the answer."""
+class Lookup:
+    """A mode of `Cube.reflectance`, or ``bulk``, and the data type of the result."""
 
     mode: str
     dtype: str
 
     @property
     def suffix(self) -> str:
+        """Return the end of the method's name."""
         return self.mode if self.mode == "bulk" or self.dtype == "float64" else f"{self.mode}-{self.dtype}"
 
     @property
     def call(self) -> str:
+        """Return the call in Python."""
         if self.mode == "bulk":
             return "uplift.lookup.bulk.spectra(cube)(rgb)"
         dtype = "" if self.dtype == "float64" else ', dtype="float32"'
         return f'cube.reflectance(rgb, mode="{self.mode}"{dtype})'
 
 
-ASKINGS = (
-    *(Asking(mode, dtype) for mode in MODES for dtype in ("float64", "float32")),
-    Asking("bulk", "float32"),
+LOOKUPS = (
+    *(Lookup(mode, dtype) for mode in MODES for dtype in ("float64", "float32")),
+    Lookup("bulk", "float32"),
 )
 
 
 @lru_cache(maxsize=1)
-def _cube(task: Task, recipe: Recipe) -> tuple[Cube, float]:
-    """The cube, and the CPU seconds of its last build; what is compiled once is compiled by then."""
+def _cube(task: Task, options: CubeOptions) -> tuple[Cube, float]:
+    """The cube, and the CPU seconds of its last build, which does not include compilation."""
     from uplift.pipeline import build
 
     for _ in range(task.effort.builds):
         cube, seconds = stopwatch(
             lambda: build(
-                task.kept if recipe.atlas else None,
-                dim=recipe.dim,
-                model=recipe.model,
-                coefficients=recipe.count,
+                task.kept if options.atlas else None,
+                dim=options.dim,
+                model=options.model,
+                coefficients=options.count,
             )
         )
     return cube, seconds
 
 
-def _prepare(task: Task, recipe: Recipe, asking: Asking) -> PreparedMethod:
-    cube, seconds = _cube(task, recipe)
-    if asking.mode == "bulk":
+def _prepare(task: Task, options: CubeOptions, lookup: Lookup) -> PreparedMethod:
+    cube, seconds = _cube(task, options)
+    if lookup.mode == "bulk":
         sampler, more = stopwatch(lambda: _sampler(cube, task.sensor.wavelengths))
         return PreparedMethod(sampler[0], sampler[1], seconds + more)
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
-        found: Array = cube.reflectance(rgb, wavelengths, asking.mode, dtype=asking.dtype)
-        return found
+        spectra: Array = cube.reflectance(rgb, wavelengths, lookup.mode, dtype=lookup.dtype)
+        return spectra
 
     data = cube.data
     arrays = (data.points.coefficients, data.lattice.nodes, data.atlas.rgb, data.atlas.coefficients)
@@ -105,7 +112,7 @@ def _prepare(task: Task, recipe: Recipe, asking: Asking) -> PreparedMethod:
 
 
 def _sampler(cube: Cube, at: Array) -> tuple[Uplift, int]:
-    """A sampler's wavelengths are fixed when it is made."""
+    """A bulk sampler, whose wavelengths are fixed, and its size."""
     from uplift.lookup import bulk
 
     sampler = bulk.spectra(cube, at, threads=1)
@@ -117,40 +124,42 @@ def _sampler(cube: Cube, at: Array) -> tuple[Uplift, int]:
     return uplift, sampler.nbytes
 
 
-def _usual(recipe: Recipe, asking: Asking) -> bool:
-    """Of all that can be combined, one choice varied at a time about the default, and the ends."""
-    nine = recipe.count == 9
+def _usual(options: CubeOptions, lookup: Lookup) -> bool:
+    """Whether one option at most differs from the defaults, or the options are extreme."""
+    nine = options.count == 9
     swept = (
-        nine or (recipe.count == 17 and recipe.atlas) or (recipe.model == Sigmoid.name and not recipe.atlas)
+        nine
+        or (options.count == 17 and options.atlas)
+        or (options.model == Sigmoid.name and not options.atlas)
     )
-    if asking.mode == "bulk":
-        return swept and recipe.model == Moments.name
-    if asking.dtype == "float32":
-        return nine and recipe.dim == 32
-    return swept or recipe.dim == 32
+    if lookup.mode == "bulk":
+        return swept and options.model == Moments.name
+    if lookup.dtype == "float32":
+        return nine and options.dim == 32
+    return swept or options.dim == 32
 
 
-def _quick(recipe: Recipe, asking: Asking) -> bool:
-    """Enough to see the order of things."""
-    plain = recipe.count == 9 and asking.dtype == "float64" and asking.mode in ("spectra", "moments")
-    return plain and recipe.dim in ((16,) if recipe.atlas else (16, 64))
+def _quick(options: CubeOptions, lookup: Lookup) -> bool:
+    """Whether the method is part of a quick run."""
+    plain = options.count == 9 and lookup.dtype == "float64" and lookup.mode in ("spectra", "moments")
+    return plain and options.dim in ((16,) if options.atlas else (16, 64))
 
 
 def _methods(model: ModelName, counts: tuple[int, ...], atlas: bool) -> Iterator[Method]:
-    for recipe in (Recipe(model, count, dim, atlas) for count in counts for dim in DIMS):
-        for asking in ASKINGS:
-            exact = asking.mode in ("spectra", "bulk") or (asking.mode == "refined" and model == Moments.name)
+    for options in (CubeOptions(model, count, dim, atlas) for count in counts for dim in DIMS):
+        for lookup in LOOKUPS:
+            exact = lookup.mode in ("spectra", "bulk") or (lookup.mode == "refined" and model == Moments.name)
             yield Method(
-                f"{recipe.name}-{asking.suffix}",
-                f"{recipe.title}, {asking.suffix.replace('-', ', ')}",
-                partial(_prepare, recipe=recipe, asking=asking),
+                f"{options.name}-{lookup.suffix}",
+                f"{options.title}, {lookup.suffix.replace('-', ', ')}",
+                partial(_prepare, options=options, lookup=lookup),
                 EXACT if exact else Claims(),
-                usual=_usual(recipe, asking),
-                quick=_quick(recipe, asking),
-                label=f"{recipe.count} · {recipe.dim}³ {asking.mode}",
-                mode=asking.mode,
-                build=recipe.line,
-                ask=asking.call,
+                usual=_usual(options, lookup),
+                quick=_quick(options, lookup),
+                label=f"{options.count} · {options.dim}³ {lookup.mode}",
+                mode=lookup.mode,
+                build=options.command,
+                ask=lookup.call,
             )
 
 

@@ -1,4 +1,4 @@
-// Hovering over a marker tells what stands for it, and finds the same method in every panel.
+// Hovering over a marker shows its tooltip and highlights the same row in every panel.
 const rows = JSON.parse(document.getElementById("rows").textContent);
 const tip = document.getElementById("tip");
 const picture = document.querySelector(".picture svg");
@@ -13,11 +13,11 @@ for (const part of picture.querySelectorAll('[id^="marker-"], [id^="whisker-"], 
 function show(row, event) {
   const { title, lines } = rows[row];
   const list = document.createElement("dl");
-  for (const [name, told] of lines) {
+  for (const [name, text] of lines) {
     const term = document.createElement("dt");
     const value = document.createElement("dd");
     term.textContent = name;
-    value.textContent = told;
+    value.textContent = text;
     if (!name) value.className = "wide";
     list.append(...(name ? [term, value] : [value]));
   }
@@ -25,8 +25,8 @@ function show(row, event) {
   head.textContent = title;
   tip.replaceChildren(head, list);
   tip.hidden = false;
-  picture.classList.add("dim");
-  parts.get(row).forEach(part => part.classList.add("hot"));
+  picture.classList.add("dimmed");
+  parts.get(row).forEach(part => part.classList.add("highlighted"));
   follow(event);
 }
 function follow(event) {
@@ -37,13 +37,13 @@ function follow(event) {
 }
 function hide() {
   tip.hidden = true;
-  picture.classList.remove("dim");
-  picture.querySelectorAll(".hot").forEach(part => part.classList.remove("hot"));
+  picture.classList.remove("dimmed");
+  picture.querySelectorAll(".highlighted").forEach(part => part.classList.remove("highlighted"));
 }
 for (const box of document.querySelectorAll(".families input")) {
   box.addEventListener("change", () => {
     rows.forEach(({ family }, row) => {
-      if (family === box.value) parts.get(row).forEach(part => part.classList.toggle("gone", !box.checked));
+      if (family === box.value) parts.get(row).forEach(part => part.classList.toggle("hidden", !box.checked));
     });
   });
 }
