@@ -1,4 +1,4 @@
-"""One factor model for all tests of palettes, and palettes written in a few words."""
+"""Fixtures: one factor model for all tests, two lights, and a small palette."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from uplift.design.palette.palette import ColourGoal, SpectrumSpec
 
 @pytest.fixture(scope="session")
 def model(sensor) -> FactorModel:
-    """Seven coefficients."""
+    """The standard model of seven coefficients."""
     return standard_model(sensor)
 
 
@@ -28,7 +28,7 @@ def lamp(sensor) -> SpectrumSpec:
 
 @pytest.fixture(scope="session")
 def metamers(sensor, day, lamp) -> Palette:
-    """Two paints that share a free colour by day, and differ under the lamp."""
+    """Palette of two paints that share a free colour by day and differ under the lamp."""
     return Palette(
         sensor,
         (day, lamp),

@@ -1,4 +1,4 @@
-"""Designed materials as atlases, and palettes as pictures."""
+"""Designed materials as atlases, and plots of designs."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 from matplotlib.image import imread
 
 import uplift
+from tests.helpers import raises, warns
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.errors import OutputError, PaletteError, UpliftWarning
 from uplift.design.palette import design, matrix, plot_matrix, plot_spectra, write_designed
@@ -21,7 +22,7 @@ def found(metamers, model):
     return design(dataclasses.replace(metamers, materials=(*metamers.materials, given)), model)
 
 
-def test_designed_materials_come_back_from_the_atlas(found, tmp_path):
+def test_an_exported_atlas_has_the_designed_spectra(found, tmp_path):
     for name in ("out.txt", "out.csv"):
         assert write_designed(found, tmp_path / name) == 2
         back = uplift.read_atlas(tmp_path / name)
@@ -32,7 +33,7 @@ def test_designed_materials_come_back_from_the_atlas(found, tmp_path):
 
 
 def test_an_atlas_of_designs_constrains_a_cube(found, tmp_path):
-    """The cube gives the designed spectrum back, as well as its few coefficients can."""
+    """The cube reproduces the colour of a designed material."""
     write_designed(found, tmp_path / "out.txt")
     with pytest.warns(UpliftWarning, match="crowded"):
         cube = uplift.build(tmp_path / "out.txt", dim=3, coefficients=5)
@@ -42,28 +43,30 @@ def test_an_atlas_of_designs_constrains_a_cube(found, tmp_path):
     np.testing.assert_allclose(back, colour, atol=1e-3)
 
 
-def test_what_no_atlas_holds_is_named(found, tmp_path):
+def test_materials_outside_the_range_of_atlases_are_left_out(found, tmp_path):
     wild = dataclasses.replace(found, reflectances=found.reflectances - [[0.2], [0], [0]])
-    with pytest.warns(UpliftWarning, match="'fox' is left out of the atlas: -0.2 to"):
+    with warns("entry-left-out") as caught:
         assert write_designed(wild, tmp_path / "out.txt") == 1
+    assert "material 'fox'" in caught[0].problem
+    assert "got -0.2 to" in caught[0].problem
     assert uplift.read_atlas(tmp_path / "out.txt").names == ("moss",)
 
 
-def test_an_atlas_of_nothing_is_refused(found, tmp_path):
+def test_an_empty_atlas_is_refused(found, tmp_path):
     given = tuple(dataclasses.replace(part, samples=np.ones(81)) for part in found.palette.materials)
     nothing = dataclasses.replace(found, palette=dataclasses.replace(found.palette, materials=given))
-    with pytest.raises(PaletteError, match="no designed material"):
+    with raises(PaletteError, "no-designed-material"):
         write_designed(nothing, tmp_path / "out.txt")
 
 
-def test_files_are_not_replaced_unasked(found, tmp_path):
+def test_existing_files_are_kept_without_force(found, tmp_path):
     (tmp_path / "out.txt").write_text("mine", encoding="utf-8")
-    with pytest.raises(OutputError, match="exists already"):
+    with raises(OutputError, "file-exists"):
         write_designed(found, tmp_path / "out.txt")
 
 
 def test_the_matrix_shows_every_colour(found, tmp_path):
-    """Wanted, obtained and the factor model's, each where the PNG has it."""
+    """Target, obtained and modelled colours are pixels of the PNG."""
     colours = matrix(found)
     split = dataclasses.replace(colours, target=colours.target * 0.5, factor=colours.factor * 0.8)
     plot_matrix(found, split, tmp_path / "m.png")

@@ -1,4 +1,4 @@
-"""Palettes with little in them, or nothing, still have a matrix of numbers."""
+"""Palettes with few entries or goals still have finite results."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ DAY, GIVEN, NEW = (
         'lights.off = { illuminant = "D65", luminance = 0 }\n' + NEW + 'colours.new.off = "#000000"',
     ],
 )
-def test_nothing_is_undefined(model, tmp_path, text):
+def test_all_results_are_finite(model, tmp_path, text):
     (tmp_path / "spec.toml").write_text(text, encoding="utf-8")
     found = design(read_palette(tmp_path / "spec.toml"), model)
     colours = matrix(found)

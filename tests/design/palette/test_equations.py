@@ -1,4 +1,4 @@
-"""The stacked equations say what the criteria say, row by row."""
+"""Rows of the stacked equations against the criteria that they stand for."""
 
 from __future__ import annotations
 
@@ -23,30 +23,30 @@ def residuals(palette, model, x):
 
 
 def only(palette, **weights):
-    """A palette with the criteria named, and no others."""
+    """The palette with only the given criteria."""
     return dataclasses.replace(palette, **{"smoothness": 0.0, "model_error": 0.0} | weights)
 
 
-def test_colours_are_missed_by_what_spectra_say(metamers, model, guess):
+def test_colour_residuals_are_differences_to_the_target(metamers, model, guess):
     where, screen = unknowns(metamers), screen_matrix(metamers.sensor)
     found = []
-    for wish in metamers.goals:
-        power = metamers.light(wish.light).samples
-        wanted = guess[where.free("coat")] if wish.free else wish.rgb
-        found.append(screen @ (guess[where.material(wish.material)] * power) - wanted)
+    for goal in metamers.goals:
+        power = metamers.light(goal.light).samples
+        target = guess[where.free("coat")] if goal.free else goal.rgb
+        found.append(screen @ (guess[where.material(goal.material)] * power) - target)
     expected = np.concatenate(found) / np.sqrt(3)
     np.testing.assert_allclose(residuals(only(metamers), model, guess), expected, atol=1e-12)
 
 
-def test_weights_multiply_their_wish_alone(metamers, model, guess):
+def test_weights_scale_only_their_goal(metamers, model, guess):
     heavy = dataclasses.replace(metamers.goals[2], weight=7.0)
     palette = only(metamers, goals=(*metamers.goals[:2], heavy, metamers.goals[3]))
     ratio = residuals(palette, model, guess) / residuals(only(metamers), model, guess)
     np.testing.assert_allclose(ratio, [*[1] * 6, *[7] * 3, *[1] * 3])
 
 
-def test_wishes_without_weight_are_left_out(metamers, model):
-    idle = tuple(dataclasses.replace(wish, weight=0.0) for wish in metamers.goals)
+def test_goals_of_zero_weight_have_no_rows(metamers, model):
+    idle = tuple(dataclasses.replace(goal, weight=0.0) for goal in metamers.goals)
     assert len(equations(only(metamers, goals=idle), model).values) == 0
 
 
@@ -60,15 +60,15 @@ def test_smoothness_is_the_second_difference_over_10_nm(metamers, model, guess):
     np.testing.assert_allclose(residuals(palette, model, guess), np.concatenate(expected), atol=1e-12)
 
 
-def test_straight_spectra_are_perfectly_smooth(metamers, model):
+def test_linear_spectra_have_no_smoothness_error(metamers, model):
     x = np.tile(np.linspace(0, 1, 81), 3)[: unknowns(metamers).count]
     x[unknowns(metamers).material("fox")] = np.linspace(0, 1, 81)
     x[unknowns(metamers).material("moss")] = 0.3
     np.testing.assert_allclose(residuals(only(metamers, goals=(), smoothness=1.0), model, x), 0, atol=1e-12)
 
 
-def test_the_model_s_error_is_that_of_its_colours(metamers, model, guess):
-    """For a designed light on a given paint too."""
+def test_model_error_residuals_are_differences_between_colours(metamers, model, guess):
+    """Also for a designed light on a given paint."""
     paint = SpectrumSpec("paint", np.linspace(0.1, 0.9, 81))
     palette = only(
         metamers, lights=(*metamers.lights, SpectrumSpec("odd", None)), materials=(*metamers.materials, paint)
@@ -84,19 +84,19 @@ def test_the_model_s_error_is_that_of_its_colours(metamers, model, guess):
                 continue
             surface = x[where.material(material.name)] if surface is None else surface
             power = x[where.light(light.name)] if power is None else power
-            seen = model.rgb(model.light(power) * model.reflectance(surface))
-            expected.append(3.0 / np.sqrt(3) * (screen @ (power * surface) - seen))
+            obtained = model.rgb(model.light(power) * model.reflectance(surface))
+            expected.append(3.0 / np.sqrt(3) * (screen @ (power * surface) - obtained))
     np.testing.assert_allclose(residuals(palette, model, x), np.concatenate(expected), atol=1e-10)
 
 
 def test_a_free_colour_may_be_tied_to_a_given_material(metamers, model, guess):
-    """A wish of which all is given still says what the free colour is."""
+    """A goal with given light and material determines the free colour."""
     paint = SpectrumSpec("paint", np.full(81, 0.5))
     palette = only(
         metamers,
         materials=(*metamers.materials, paint),
         goals=(ColourGoal("paint", "day", free="coat"),),
     )
-    seen = screen_matrix(palette.sensor) @ (0.5 * palette.light("day").samples)
-    expected = (seen - guess[unknowns(palette).free("coat")]) / np.sqrt(3)
+    obtained = screen_matrix(palette.sensor) @ (0.5 * palette.light("day").samples)
+    expected = (obtained - guess[unknowns(palette).free("coat")]) / np.sqrt(3)
     np.testing.assert_allclose(residuals(palette, model, guess), expected, atol=1e-12)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 
 from uplift.atlas import Atlas, Entry, Header, write_atlas
 from uplift.atlas.checks import HIGHEST, LOWEST
+from uplift.common.arrays import StrPath
 from uplift.common.errors import PaletteError, UpliftWarning
 from uplift.common.files import check_output
 from uplift.design.palette.design import Design
@@ -14,34 +14,82 @@ from uplift.design.palette.design import Design
 CONTENT = "Reflectances designed by uplift palette"
 
 
-def designed_atlas(found: Design) -> Atlas:
-    """The designed materials. An `UpliftWarning` names those that no atlas holds: far below 0, or above 1."""
+def designed_atlas(design: Design) -> Atlas:
+    """Convert the designed materials to an atlas.
+
+    Parameters
+    ----------
+    design : Design
+        The design.
+
+    Returns
+    -------
+    Atlas
+        Its designed materials.
+
+    Warns
+    -----
+    UpliftWarning
+        For each material outside the range of reflectances of an atlas, which is left out.
+    """
     entries = []
-    for part, row in zip(found.palette.materials, found.reflectances, strict=True):
-        if not part.designed:
+    for material, values in zip(design.palette.materials, design.reflectances, strict=True):
+        if not material.designed:
             continue
-        if row.min() < LOWEST or row.max() > HIGHEST:
-            reach = f"{row.min():.3g} to {row.max():.3g}"
-            told = f"material '{part.name}' is left out of the atlas: {reach} is no reflectance"
-            warnings.warn(told, UpliftWarning, stacklevel=2)
+        if values.min() < LOWEST or values.max() > HIGHEST:
+            text = (
+                f"material '{material.name}' is left out of the atlas: reflectance must be in "
+                f"[{LOWEST:g}, {HIGHEST:g}], got {values.min():.3g} to {values.max():.3g}"
+            )
+            warnings.warn(UpliftWarning(text, code="entry-left-out"), stacklevel=2)
             continue
-        wavelengths = found.palette.sensor.wavelengths
-        entries.append(Entry(part.name, wavelengths, row, description=_description(found, part.name)))
+        wavelengths = design.palette.sensor.wavelengths
+        entries.append(
+            Entry(material.name, wavelengths, values, description=_description(design, material.name))
+        )
     return Atlas(tuple(entries))
 
 
-def write_designed(found: Design, path: str | os.PathLike[str], *, force: bool = False) -> int:
-    """Write them as `uplift.write_atlas` does, and say how many. Raises `OutputError`, `PaletteError`."""
-    atlas = designed_atlas(found)
+def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int:
+    """Write the designed materials as an atlas file.
+
+    Parameters
+    ----------
+    design : Design
+        The design.
+    path : path-like
+        The file, in the format of `uplift.write_atlas`.
+    force : bool
+        Replace an existing file.
+
+    Returns
+    -------
+    int
+        Number of entries written.
+
+    Raises
+    ------
+    PaletteError
+        If no material can be written.
+    OutputError
+        If the file exists or cannot be written.
+
+    Warns
+    -----
+    UpliftWarning
+        As `designed_atlas`.
+    """
+    atlas = designed_atlas(design)
     if not atlas.entries:
         raise PaletteError(
-            "no designed material that an atlas can hold", hint="design one with bounds within [0, 1]"
+            "no designed material has reflectances that an atlas can hold",
+            code="no-designed-material",
+            hint="design one with bounds within [0, 1]",
         )
     write_atlas(atlas, check_output(path, force=force), Header(content=CONTENT))
     return len(atlas)
 
 
-def _description(found: Design, material: str) -> str:
-    """What it was designed for."""
-    lights = [wish.light for wish in found.palette.goals if wish.material == material and wish.weight]
+def _description(design: Design, material: str) -> str:
+    lights = [goal.light for goal in design.palette.goals if goal.material == material and goal.weight]
     return f"designed for its colours under {', '.join(lights)}" if lights else "designed"

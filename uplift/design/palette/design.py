@@ -1,4 +1,9 @@
-"""Designing: the spectra that make the colours of a palette, by one linear least-squares problem (Bergner, 3.3)."""
+"""Design of the open spectra of a palette by one linear least-squares problem.
+
+References
+----------
+S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, section 3.3.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +14,7 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.common.errors import PaletteError
-from uplift.design.palette.equations import equations, undetermined, unknowns
+from uplift.design.palette.equations import equations, underdetermined_goal, unknowns
 from uplift.design.palette.factor import FactorModel
 from uplift.design.palette.palette import Palette
 from uplift.design.palette.solve import solve
@@ -17,14 +22,20 @@ from uplift.design.palette.solve import solve
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """A palette with all its spectra.
+    """A palette with all spectra.
 
     Parameters
     ----------
-    palette, model : what was asked, and the factor model that it was designed for.
-    powers : (L, N) of the lights, given and designed, in the palette's order.
-    reflectances : (M, N) of the materials.
-    free : linear RGB (3,) that each free colour took.
+    palette : Palette
+        The palette.
+    model : FactorModel
+        The factor model whose error the design keeps small.
+    powers : ndarray, shape (L, N)
+        Powers of the lights in the palette's order.
+    reflectances : ndarray, shape (M, N)
+        Reflectances of the materials.
+    free : mapping
+        Linear RGB (3,) of each free colour.
     """
 
     palette: Palette
@@ -35,25 +46,42 @@ class Design:
 
 
 def design(palette: Palette, model: FactorModel) -> Design:
-    """Find what is open in a palette.
+    """Compute the open spectra and the free colours of a palette.
+
+    Parameters
+    ----------
+    palette : Palette
+        The palette.
+    model : FactorModel
+        Factor model on the palette's wavelengths.
+
+    Returns
+    -------
+    Design
+        The spectra of least squared error within their bounds.
 
     Raises
     ------
-    PaletteError : a colour of which neither light nor material is given.
+    PaletteError
+        If both light and material of a goal are open.
+
+    Warns
+    -----
+    UpliftWarning
+        If the solver stops before it converges.
     """
-    wish = undetermined(palette)
-    if wish is not None:
+    goal = underdetermined_goal(palette)
+    if goal is not None:
         raise PaletteError(
-            f"a colour for {wish}, both of which are to be designed",
-            hint="give one of them, or leave the colour out",
+            f"light or material of a goal must be given, got {goal}, both to be designed",
+            code="goal-underdetermined",
+            hint="give one of them, or remove the goal",
         )
-    where, found = unknowns(palette), solve(equations(palette, model))
+    where, x = unknowns(palette), solve(equations(palette, model))
     return Design(
         palette,
         model,
-        np.array([found[where.light(p.name)] if p.samples is None else p.samples for p in palette.lights]),
-        np.array(
-            [found[where.material(p.name)] if p.samples is None else p.samples for p in palette.materials]
-        ),
-        {name: found[where.free(name)] for name in palette.free},
+        np.array([x[where.light(s.name)] if s.samples is None else s.samples for s in palette.lights]),
+        np.array([x[where.material(s.name)] if s.samples is None else s.samples for s in palette.materials]),
+        {name: x[where.free(name)] for name in palette.free},
     )

@@ -1,8 +1,12 @@
-"""The stacked equations of a palette: M x ≈ y, x being free colours and spectra (Bergner, 3.2–3.3, eq. 18–24).
+"""Stacked equations of a palette, M x ≈ y, where x holds free colours and spectra.
 
-Colours are weighed by 1/√3 and smoothness by 1/(√rows ‖(−1, 2, −1)‖), so that weights of 1 mean the same. Differences
-count as those of samples 10 nm apart, whatever the step, and none is taken beyond the ends, where the source's matrix
-has a zero: flat spectra cost nothing here.
+Colours are weighted by 1/√3 and smoothness by 1/(√rows ‖(−1, 2, −1)‖), so that weights of 1 are comparable.
+Differences are scaled as for samples 10 nm apart. None extends beyond the ends, where the matrix of the paper has a
+zero: flat spectra have no smoothness error here.
+
+References
+----------
+S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, sections 3.2–3.3, eq. 18–24.
 """
 
 from __future__ import annotations
@@ -18,29 +22,32 @@ from uplift.design.palette.factor import FactorModel
 from uplift.design.palette.palette import ColourGoal, Palette, SpectrumSpec
 
 SPACING = 10.0
-"""nm between the samples of the source, for which its weights are meant."""
+"""Sample distance in nm that the weights of the paper refer to."""
 
 
 @dataclass(frozen=True)
 class Unknowns:
-    """Where the unknowns stand in x: first free colours, then designed spectra (eq. 24)."""
+    """Positions in x: first free colours, then designed spectra (eq. 24)."""
 
-    places: dict[tuple[str, str], slice]
+    slices: dict[tuple[str, str], slice]
     count: int
 
     def free(self, name: str) -> slice:
-        return self.places["free", name]
+        """Position of a free colour."""
+        return self.slices["free", name]
 
     def light(self, name: str) -> slice:
-        return self.places["light", name]
+        """Position of a designed light."""
+        return self.slices["light", name]
 
     def material(self, name: str) -> slice:
-        return self.places["material", name]
+        """Position of a designed material."""
+        return self.slices["material", name]
 
 
 @dataclass(frozen=True, eq=False)
 class Equations:
-    """matrix (rows, n), values (rows,), and bounds low, high (n,) of x."""
+    """Least-squares problem: matrix (rows, n), values (rows,), and bounds low, high (n,) of x."""
 
     matrix: Array
     values: Array
@@ -50,75 +57,72 @@ class Equations:
 
 @dataclass(frozen=True, eq=False)
 class _Rows:
-    """Some equations: blocks (r, k) with their places in x, and values (r,)."""
+    """Some equations: blocks (r, k) with their positions in x, and values (r,)."""
 
     blocks: tuple[tuple[slice, Array], ...]
     values: Array
 
 
 def unknowns(palette: Palette) -> Unknowns:
-    """All that is to be found."""
+    """Positions of all unknowns of a palette."""
     samples = len(palette.sensor.wavelengths)
     sizes = {("free", name): 3 for name in palette.free}
-    sizes |= {("light", part.name): samples for part in palette.lights if part.designed}
-    sizes |= {("material", part.name): samples for part in palette.materials if part.designed}
+    sizes |= {("light", spec.name): samples for spec in palette.lights if spec.designed}
+    sizes |= {("material", spec.name): samples for spec in palette.materials if spec.designed}
     ends = np.cumsum([0, *sizes.values()])
-    places = {key: slice(int(a), int(b)) for key, a, b in zip(sizes, ends[:-1], ends[1:], strict=True)}
-    return Unknowns(places, int(ends[-1]))
+    slices = {key: slice(int(a), int(b)) for key, a, b in zip(sizes, ends[:-1], ends[1:], strict=True)}
+    return Unknowns(slices, int(ends[-1]))
 
 
 def equations(palette: Palette, model: FactorModel) -> Equations:
-    """All criteria, stacked; those of weight 0 are left out (eq. 22)."""
+    """Stack all criteria of non-zero weight (eq. 22)."""
     where = unknowns(palette)
-    rows = [*_colours(palette, where), *_smooth(palette, where), *_model_errors(palette, model, where)]
+    rows = [*_colour_rows(palette, where), *_smoothness_rows(palette, where)]
+    rows += _model_error_rows(palette, model, where)
     matrix = np.zeros((sum(len(part.values) for part in rows), where.count))
     values = np.concatenate([part.values for part in rows]) if rows else np.zeros(0)
     top = 0
     for part in rows:
-        for place, block in part.blocks:
-            matrix[top : top + len(part.values), place] = block
+        for position, block in part.blocks:
+            matrix[top : top + len(part.values), position] = block
         top += len(part.values)
     return Equations(matrix, values, *_bounds(palette, where))
 
 
-def _colours(palette: Palette, where: Unknowns) -> Iterator[_Rows]:
-    """Wanted colours (eq. 18), and free ones, which stand among the unknowns (eq. 24)."""
+def _colour_rows(palette: Palette, where: Unknowns) -> Iterator[_Rows]:
+    """Target colours (eq. 18), and free ones, which are unknowns too (eq. 24)."""
     screen = screen_matrix(palette.sensor)
-    for wish in palette.goals:
-        spectrum, power = palette.material(wish.material).samples, palette.light(wish.light).samples
-        weight, blocks = wish.weight / np.sqrt(3), []
-        wanted = np.zeros(3) if wish.rgb is None else wish.rgb
+    for goal in palette.goals:
+        spectrum, power = palette.material(goal.material).samples, palette.light(goal.light).samples
+        weight, blocks = goal.weight / np.sqrt(3), []
+        target = np.zeros(3) if goal.rgb is None else goal.rgb
         if spectrum is None and power is not None:
-            blocks.append((where.material(wish.material), weight * screen * power))
+            blocks.append((where.material(goal.material), weight * screen * power))
         elif power is None and spectrum is not None:
-            blocks.append((where.light(wish.light), weight * screen * spectrum))
+            blocks.append((where.light(goal.light), weight * screen * spectrum))
         elif power is not None and spectrum is not None:
-            wanted = wanted - screen @ (power * spectrum)
-        if wish.free is not None:
-            blocks.append((where.free(wish.free), -weight * np.eye(3)))
-        if wish.weight and blocks:
-            yield _Rows(tuple(blocks), weight * wanted)
+            target = target - screen @ (power * spectrum)
+        if goal.free is not None:
+            blocks.append((where.free(goal.free), -weight * np.eye(3)))
+        if goal.weight and blocks:
+            yield _Rows(tuple(blocks), weight * target)
 
 
-def _smooth(palette: Palette, where: Unknowns) -> Iterator[_Rows]:
+def _smoothness_rows(palette: Palette, where: Unknowns) -> Iterator[_Rows]:
     """Second differences of every designed spectrum (eq. 21)."""
     if not palette.smoothness:
         return
     wavelengths = palette.sensor.wavelengths
-    kernel = np.array([-1.0, 2.0, -1.0])
     count = len(wavelengths) - 2
-    differences = sum(
-        np.eye(count, len(wavelengths), shift) * value for shift, value in enumerate(kernel)
-    ) / (np.sqrt(count) * np.linalg.norm(kernel))
+    differences = -np.diff(np.eye(len(wavelengths)), 2, axis=0) / (np.sqrt(count) * np.sqrt(6))
     step = wavelengths[1] - wavelengths[0]
     block = palette.smoothness * (SPACING / step) ** 2 * differences
-    for part, place in _designed(palette, where):
-        del part
-        yield _Rows(((place, block),), np.zeros(count))
+    for _, position in _designed(palette, where):
+        yield _Rows(((position, block),), np.zeros(count))
 
 
-def _model_errors(palette: Palette, model: FactorModel, where: Unknowns) -> Iterator[_Rows]:
-    """The factor model's colours less those of full spectra, for all that a designed one meets (eq. 20)."""
+def _model_error_rows(palette: Palette, model: FactorModel, where: Unknowns) -> Iterator[_Rows]:
+    """Colours of the factor model less those of full spectra, for every product with a designed spectrum (eq. 20)."""
     if not palette.model_error:
         return
     screen = screen_matrix(palette.sensor)
@@ -126,33 +130,33 @@ def _model_errors(palette: Palette, model: FactorModel, where: Unknowns) -> Iter
     for material in palette.materials:
         for light in palette.lights:
             if material.samples is None and light.samples is not None:
-                seen = model.matrix * model.light(light.samples) @ model.projection
-                block, place = screen * light.samples - seen, where.material(material.name)
+                modelled = model.matrix * model.light(light.samples) @ model.projection
+                block, position = screen * light.samples - modelled, where.material(material.name)
             elif light.samples is None and material.samples is not None:
-                seen = model.matrix * model.reflectance(material.samples) @ model.light_projection
-                block, place = screen * material.samples - seen, where.light(light.name)
+                modelled = model.matrix * model.reflectance(material.samples) @ model.light_projection
+                block, position = screen * material.samples - modelled, where.light(light.name)
             else:
                 continue
-            yield _Rows(((place, weight * block),), np.zeros(3))
+            yield _Rows(((position, weight * block),), np.zeros(3))
 
 
 def _designed(palette: Palette, where: Unknowns) -> Iterator[tuple[SpectrumSpec, slice]]:
-    yield from ((part, where.light(part.name)) for part in palette.lights if part.designed)
-    yield from ((part, where.material(part.name)) for part in palette.materials if part.designed)
+    yield from ((spec, where.light(spec.name)) for spec in palette.lights if spec.designed)
+    yield from ((spec, where.material(spec.name)) for spec in palette.materials if spec.designed)
 
 
 def _bounds(palette: Palette, where: Unknowns) -> tuple[Array, Array]:
     low, high = np.empty(where.count), np.empty(where.count)
-    for name, (least, most) in palette.free.items():
-        low[where.free(name)], high[where.free(name)] = least, most
-    for part, place in _designed(palette, where):
-        low[place], high[place] = part.low, part.high
+    for name, (lowest, highest) in palette.free.items():
+        low[where.free(name)], high[where.free(name)] = lowest, highest
+    for spec, position in _designed(palette, where):
+        low[position], high[position] = spec.low, spec.high
     return low, high
 
 
-def undetermined(palette: Palette) -> ColourGoal | None:
-    """A wish whose light and material are both to be designed: no linear equation tells it."""
-    for wish in palette.goals:
-        if palette.material(wish.material).designed and palette.light(wish.light).designed:
-            return wish
+def underdetermined_goal(palette: Palette) -> ColourGoal | None:
+    """First goal whose light and material are both to be designed, which no linear equation describes."""
+    for goal in palette.goals:
+        if palette.material(goal.material).designed and palette.light(goal.light).designed:
+            return goal
     return None

@@ -1,4 +1,9 @@
-"""The linear model without sharpening's assumption: every reflection is an m × m matrix (Bergner, eq. 5–7)."""
+"""Linear model of reflection without the sharpening assumption: an m × m matrix per reflection.
+
+References
+----------
+S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, eq. 5–7.
+"""
 
 from __future__ import annotations
 
@@ -14,23 +19,53 @@ from uplift.design.palette.factor import FactorModel
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
-    """Products in the span of a factor model's basis: exact there, at m³ multiplications in place of m."""
+    """Products of spectra in the span of a basis. They are exact there, at m³ multiplications in place of m.
+
+    Parameters
+    ----------
+    model : FactorModel
+        The model that has the basis.
+    """
 
     model: FactorModel
 
     @cached_property
     def tensor(self) -> Array:
-        """(m, m, m) B⁺_i (B_j * B_k)."""
+        """Products of basis functions, B⁺_i (B_j * B_k), shape (m, m, m)."""
         basis = self.model.basis
         return np.einsum("in,nj,nk->ijk", self.model.projection, basis, basis, optimize=True)
 
     def reflection(self, coefficients: ArrayLike) -> Array:
-        """Λ (…, m, m) of a light or a surface with coefficients (…, m)."""
+        """Compute the matrix Λ of a light or a surface.
+
+        Parameters
+        ----------
+        coefficients : array_like, shape (..., m)
+            Coefficients of the light or the surface.
+
+        Returns
+        -------
+        ndarray, shape (..., m, m)
+            The matrix.
+        """
         return np.einsum("ijk,...k->...ij", self.tensor, np.asarray(coefficients, dtype=float))
 
     def product(self, first: ArrayLike, *others: ArrayLike) -> Array:
-        """Coefficients (…, m) of the product of spectra, projected into the span after every factor."""
-        found = np.asarray(first, dtype=float)
+        """Multiply spectra, projecting into the span after every factor.
+
+        Parameters
+        ----------
+        first : array_like, shape (..., m)
+            Coefficients of the first factor.
+        *others : array_like, shape (..., m)
+            Coefficients of the other factors.
+
+        Returns
+        -------
+        ndarray, shape (..., m)
+            Coefficients of the product.
+        """
+        product = np.asarray(first, dtype=float)
         for factor in others:
-            found = np.einsum("...ij,...j->...i", self.reflection(factor), found)
-        return found
+            product = np.einsum("...ij,...j->...i", self.reflection(factor), product)
+        return product

@@ -1,4 +1,4 @@
-"""The palette matrix: for every material under every light the colour wanted, obtained, and by the factor model."""
+"""Matrix of a design: target, obtained and modelled colour of every material under every light."""
 
 from __future__ import annotations
 
@@ -15,15 +15,20 @@ from uplift.design.palette.palette import ColourGoal, MinDifference
 
 @dataclass(frozen=True, eq=False)
 class Matrix:
-    """Linear RGB as on a screen, M materials by L lights.
+    """Linear RGB on a display, for M materials and L lights.
 
     Parameters
     ----------
-    wanted : (M, L, 3), NaN where nothing is.
-    obtained, factor : (M, L, 3) by full spectra, by the factor model.
-    missed : (M, L) ΔE00 from wanted to obtained, NaN where nothing is wanted.
-    model_error : (M, L) ΔE00 from full spectra to the factor model.
-    whites : (L, 3) the perfect reflector under each light.
+    target : ndarray, shape (M, L, 3)
+        Targets of the goals; NaN without a goal.
+    obtained, factor : ndarray, shape (M, L, 3)
+        Colours by full spectra, and by the factor model.
+    delta_e : ndarray, shape (M, L)
+        ΔE00 from target to obtained colour; NaN without a goal.
+    model_error : ndarray, shape (M, L)
+        ΔE00 from full spectra to the factor model.
+    whites : ndarray, shape (L, 3)
+        The perfect reflector under each light.
     """
 
     target: Array
@@ -35,44 +40,54 @@ class Matrix:
 
 
 def matrix(design: Design) -> Matrix:
-    """All colours of a design. ΔE00 are those of colours on a screen, against its white."""
+    """Compute all colours of a design.
+
+    Parameters
+    ----------
+    design : Design
+        The design.
+
+    Returns
+    -------
+    Matrix
+        Colours and their ΔE00 against the white of the display.
+    """
     palette, model = design.palette, design.model
     screen = screen_matrix(palette.sensor)
     obtained = (design.reflectances[:, None] * design.powers) @ screen.T
-    factor = model.rgb(
-        model.product(model.reflectance(design.reflectances)[:, None], model.light(design.powers))
-    )
-    wanted = np.full_like(obtained, np.nan)
-    for wish in palette.goals:
-        wanted[place(design, wish)] = wanted_colour(design, wish)
+    surfaces, lights = model.reflectance(design.reflectances), model.light(design.powers)
+    factor = model.rgb(model.product(surfaces[:, None], lights))
+    target = np.full_like(obtained, np.nan)
+    for goal in palette.goals:
+        target[cell_index(design, goal)] = target_colour(design, goal)
     return Matrix(
-        wanted,
+        target,
         obtained,
         factor,
-        delta_e_rgb(palette.sensor, wanted, obtained),
+        delta_e_rgb(palette.sensor, target, obtained),
         delta_e_rgb(palette.sensor, obtained, factor),
         design.powers @ screen.T,
     )
 
 
-def wanted_colour(design: Design, wish: ColourGoal) -> Array:
-    """(3,) linear RGB that a wish came to mean."""
-    if wish.rgb is not None:
-        return wish.rgb
-    assert wish.free is not None
-    return design.free[wish.free]
+def target_colour(design: Design, goal: ColourGoal) -> Array:
+    """Linear RGB (3,) of a goal; for a free colour the value that the design chose."""
+    if goal.rgb is not None:
+        return goal.rgb
+    assert goal.free is not None
+    return design.free[goal.free]
 
 
-def place(design: Design, wish: ColourGoal) -> tuple[int, int]:
-    """Row and column of a wish."""
-    rows = [part.name for part in design.palette.materials]
-    columns = [part.name for part in design.palette.lights]
-    return rows.index(wish.material), columns.index(wish.light)
+def cell_index(design: Design, goal: ColourGoal) -> tuple[int, int]:
+    """Row and column of a goal."""
+    rows = [material.name for material in design.palette.materials]
+    columns = [light.name for light in design.palette.lights]
+    return rows.index(goal.material), columns.index(goal.light)
 
 
-def difference(design: Design, colours: Matrix, apart: MinDifference) -> float:
+def difference(design: Design, colours: Matrix, pair: MinDifference) -> float:
     """ΔE00 between two materials under a light."""
     first, second = (
-        colours.obtained[place(design, ColourGoal(material, apart.light))] for material in apart.materials
+        colours.obtained[cell_index(design, ColourGoal(material, pair.light))] for material in pair.materials
     )
     return float(delta_e_rgb(design.palette.sensor, first, second))

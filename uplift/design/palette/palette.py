@@ -1,4 +1,4 @@
-"""A palette: lights, materials, and the colours that they shall make. What a spec says, as data."""
+"""Palette: lights, materials, and the colours that materials must have under lights."""
 
 from __future__ import annotations
 
@@ -11,12 +11,16 @@ from uplift.common.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class SpectrumSpec:
-    """A light or a material.
+    """A light or a material, given or to be designed.
 
     Parameters
     ----------
-    samples : (N,) its power or reflectance; None where it is to be designed.
-    low, high : bounds of what is designed, infinite for none.
+    name : str
+        Its name.
+    samples : ndarray, shape (N,), or None
+        Power or reflectance; None if it is to be designed.
+    low, high : float
+        Bounds of a designed spectrum, infinite for none.
     """
 
     name: str
@@ -26,12 +30,25 @@ class SpectrumSpec:
 
     @property
     def designed(self) -> bool:
+        """Whether the spectrum is to be designed."""
         return self.samples is None
 
 
 @dataclass(frozen=True, eq=False)
 class ColourGoal:
-    """A material's colour under a light: linear ``rgb`` (3,), or one that all wishes of the group ``free`` share."""
+    """Colour of a material under a light.
+
+    Parameters
+    ----------
+    material, light : str
+        Their names.
+    rgb : ndarray, shape (3,), optional
+        Target in linear RGB.
+    free : str, optional
+        Name of a free colour instead, which all goals of this name share.
+    weight : float
+        Weight in the least-squares problem, 0 or more.
+    """
 
     material: str
     light: str
@@ -45,7 +62,17 @@ class ColourGoal:
 
 @dataclass(frozen=True)
 class MinDifference:
-    """Two materials that shall differ under a light by at least so many ΔE00. Looked at, not designed for."""
+    """Least difference between two materials under a light. It is checked, not optimised.
+
+    Parameters
+    ----------
+    materials : tuple of str
+        Names of the two materials.
+    light : str
+        Name of the light.
+    delta_e : float
+        Least ΔE00.
+    """
 
     materials: tuple[str, str]
     light: str
@@ -54,14 +81,26 @@ class MinDifference:
 
 @dataclass(frozen=True, eq=False)
 class Palette:
-    """Lights (columns), materials (rows) and wishes, with the weights of Bergner, 3.3.
+    """Lights, materials and goals, with the weights of Bergner, section 3.3.
 
     Parameters
     ----------
-    free : for every free colour its lowest and highest linear RGB, (3,) each.
-    smoothness : ω_D, of the second differences of what is designed.
-    model_error : ω_F, of the difference between the colours of the factor model and of full spectra.
-    count : coefficients of the factor model.
+    sensor : Sensor
+        Wavelengths, observer and RGB space.
+    lights, materials : tuple of SpectrumSpec
+        Columns and rows of the matrix.
+    goals : tuple of ColourGoal
+        At most one for each material under each light.
+    free : mapping
+        Lowest and highest linear RGB (3,) of every free colour.
+    min_differences : tuple of MinDifference
+        Differences to check.
+    smoothness : float
+        Weight ω_D of the second differences of designed spectra.
+    model_error : float
+        Weight ω_F of the difference between the colours of the factor model and of full spectra.
+    count : int
+        Number of coefficients of the factor model.
     """
 
     sensor: Sensor
@@ -75,7 +114,31 @@ class Palette:
     count: int = 7
 
     def light(self, name: str) -> SpectrumSpec:
-        return next(part for part in self.lights if part.name == name)
+        """Find a light.
+
+        Parameters
+        ----------
+        name : str
+            Its name, which must be one of the palette's.
+
+        Returns
+        -------
+        SpectrumSpec
+            The light.
+        """
+        return next(light for light in self.lights if light.name == name)
 
     def material(self, name: str) -> SpectrumSpec:
-        return next(part for part in self.materials if part.name == name)
+        """Find a material.
+
+        Parameters
+        ----------
+        name : str
+            Its name, which must be one of the palette's.
+
+        Returns
+        -------
+        SpectrumSpec
+            The material.
+        """
+        return next(material for material in self.materials if material.name == name)

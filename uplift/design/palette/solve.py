@@ -1,4 +1,4 @@
-"""Least squares within bounds: the minimum of convex problems, so the global one (Bergner, 3.3)."""
+"""Linear least squares within bounds. The problem is convex, so the minimum is global (Bergner, section 3.3)."""
 
 from __future__ import annotations
 
@@ -13,59 +13,58 @@ from uplift.common.errors import UpliftWarning
 from uplift.common.threads import single_threaded_blas
 from uplift.design.palette.equations import Equations
 
-ENOUGH, MOST_STEPS = 1e-12, 1000
-"""Relative change at which the bounded solver stops, and steps after which it gives up."""
+TOLERANCE, MAX_ITERATIONS = 1e-12, 1000
+"""Relative change at which the bounded solver stops, and its limit of iterations."""
 
 Rows = NDArray[np.intp]
 
 
 def solve(problem: Equations) -> Array:
-    """x (n,) of least ‖M x − y‖ within the bounds.
+    """Minimise ‖M x − y‖ within the bounds, x (n,).
 
-    Without bounds by the pseudo-inverse: of several minima the shortest. With bounds by active sets (BVLS of Stark &
-    Parker 1995 in scipy's ``lsq_linear``). What has no equation in common is solved apart.
+    Without bounds the pseudo-inverse gives the minimum of least norm. With bounds an active-set method does: BVLS of
+    Stark & Parker 1995 in scipy's ``lsq_linear``. Independent blocks are solved one by one.
     """
-    found = np.zeros(problem.matrix.shape[1])
+    x = np.zeros(problem.matrix.shape[1])
     with single_threaded_blas():
-        for rows, columns in _apart(problem.matrix):
-            part = Equations(
+        for rows, columns in _independent_blocks(problem.matrix):
+            block = Equations(
                 problem.matrix[np.ix_(rows, columns)],
                 problem.values[rows],
                 problem.low[columns],
                 problem.high[columns],
             )
-            found[columns] = _solve_one(part)
-    return np.clip(found, problem.low, problem.high)  # by rounding alone it may lie outside
+            x[columns] = _solve_block(block)
+    return np.clip(x, problem.low, problem.high)  # removes rounding errors
 
 
-def _apart(matrix: Array) -> Iterator[tuple[Rows, Rows]]:
-    """Rows and columns of each part of M that shares nothing with the others."""
+def _independent_blocks(matrix: Array) -> Iterator[tuple[Rows, Rows]]:
+    """Rows and columns of each block of M that shares no entry with the others."""
     from scipy.sparse import block_array, csr_array
     from scipy.sparse.csgraph import connected_components
 
-    touched = csr_array(matrix != 0)
+    entries = csr_array(matrix != 0)
     rows = matrix.shape[0]
-    count, labels = connected_components(block_array([[None, touched], [touched.T, None]]), directed=False)
+    count, labels = connected_components(block_array([[None, entries], [entries.T, None]]), directed=False)
     for label in range(count):
         yield np.flatnonzero(labels[:rows] == label), np.flatnonzero(labels[rows:] == label)
 
 
-def _solve_one(problem: Equations) -> Array:
+def _solve_block(problem: Equations) -> Array:
     from scipy.optimize import lsq_linear
 
-    free = np.isinf(problem.low).all() and np.isinf(problem.high).all()
-    if free or not len(problem.values):
+    unbounded = np.isinf(problem.low).all() and np.isinf(problem.high).all()
+    if unbounded or not len(problem.values):
         return np.asarray(np.linalg.lstsq(problem.matrix, problem.values, rcond=None)[0])
-    found = lsq_linear(
+    result = lsq_linear(
         problem.matrix,
         problem.values,
         (problem.low, problem.high),
         method="bvls",
-        tol=ENOUGH,
-        max_iter=MOST_STEPS,
+        tol=TOLERANCE,
+        max_iter=MAX_ITERATIONS,
     )
-    if not found.success:
-        warnings.warn(
-            f"stopped after {MOST_STEPS} steps: colours may be a little off", UpliftWarning, stacklevel=3
-        )
-    return np.asarray(found.x)
+    if not result.success:
+        text = f"the solver stopped after {MAX_ITERATIONS} iterations: colours may be slightly off"
+        warnings.warn(UpliftWarning(text, code="design-not-converged"), stacklevel=4)
+    return np.asarray(result.x)
