@@ -121,6 +121,15 @@ def display_sensors(illuminants: Sequence[str], observer: str) -> tuple[Sensor, 
 def primaries(space: str) -> Primaries:
     """Return the primaries and white of an RGB space.
 
+    Parameters
+    ----------
+    space : str
+        RGB space.
+
+    Returns
+    -------
+    Primaries
+
     Raises
     ------
     UnknownNameError
@@ -133,6 +142,17 @@ def primaries(space: str) -> Primaries:
 def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:
     """Create a light on the wavelengths of `grid`.
 
+    Parameters
+    ----------
+    illuminant : str
+        Illuminant.
+    observer : str
+        Colour-matching functions.
+
+    Returns
+    -------
+    Light
+
     Raises
     ------
     UnknownNameError
@@ -144,7 +164,20 @@ def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:
 
 
 def aligned(sensor: Sensor, start: float = START, end: float = END, step: float = STEP) -> tuple[Any, Any]:
-    """Return the observer and illuminant of a sensor as objects of colour-science, from ``start`` to ``end`` nm."""
+    """Return the observer and illuminant of a sensor as objects of colour-science.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        The sensor.
+    start, end, step : float
+        Range and step in nm; outside the table, values are extrapolated as constants.
+
+    Returns
+    -------
+    tuple
+        Colour-matching functions and spectral distribution of the illuminant.
+    """
     colour = colour_science()
     shape = colour.SpectralShape(start, end, step)
     cmfs, light = colour.MSDS_CMFS[sensor.observer], colour.SDS_ILLUMINANTS[sensor.illuminant]
@@ -182,7 +215,18 @@ def axis_nodes(spacing: str, dim: int) -> Array:
 def matching_functions(
     observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
 ) -> Array:
-    """Return colour-matching functions (N, 3) from ``start`` to ``end`` nm.
+    """Return colour-matching functions.
+
+    Parameters
+    ----------
+    observer : str
+        Their name.
+    start, end, step : float
+        Range and step in nm; outside the table, values are extrapolated as constants.
+
+    Returns
+    -------
+    ndarray, shape (N, 3)
 
     Raises
     ------
@@ -193,7 +237,18 @@ def matching_functions(
 
 
 def illuminant_spd(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
-    """Return the relative spectral power (N,) of an illuminant from ``start`` to ``end`` nm.
+    """Return the relative spectral power of an illuminant.
+
+    Parameters
+    ----------
+    illuminant : str
+        Its name.
+    start, end, step : float
+        Range and step in nm; outside the table, values are extrapolated as constants.
+
+    Returns
+    -------
+    ndarray, shape (N,)
 
     Raises
     ------
@@ -206,7 +261,18 @@ def illuminant_spd(illuminant: str, start: float = START, end: float = END, step
 def display_primaries(
     display: str = CRT, start: float = START, end: float = END, step: float = STEP
 ) -> Array:
-    """Return the relative spectral power (N, 3) of the primaries of a display from ``start`` to ``end`` nm.
+    """Return the relative spectral power of the primaries of a display.
+
+    Parameters
+    ----------
+    display : str
+        Its name.
+    start, end, step : float
+        Range and step in nm; outside the table, values are extrapolated as constants.
+
+    Returns
+    -------
+    ndarray, shape (N, 3)
 
     Raises
     ------

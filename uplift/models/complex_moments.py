@@ -10,14 +10,11 @@ Markoff 1896, for the duality between bounded and unbounded moment problems.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.arrays import Array
-
-Complex = NDArray[np.complex128]
+from uplift.common.arrays import Array, Complex, Mask
 
 
-def dual(moments: Complex) -> tuple[Complex, NDArray[np.bool_]]:
+def dual(moments: Complex) -> tuple[Complex, Mask]:
     """Compute multipliers (n, C) of moments (n, C), the zeroth real, and their validity (n,).
 
     Internally the order is the first axis, so that all arithmetic runs along contiguous spectra.
@@ -46,7 +43,7 @@ def _exponential_moments(moments: Complex) -> Complex:
     return h
 
 
-def levinson(column: Complex) -> tuple[Complex, Array, NDArray[np.bool_]]:
+def levinson(column: Complex) -> tuple[Complex, Array, Mask]:
     """Solve T q = e₀ for Hermitian Toeplitz matrices T with first ``column`` (C, n), by Levinson's recursion.
 
     In Durbin's form, a solution of order k + 1 combines the padded solution of order k with its mirror image.

@@ -14,15 +14,13 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Complex, Mask
 from uplift.common.errors import UpliftError
 from uplift.models import complex_moments, real_moments
 from uplift.models.arctan import arctan
 from uplift.models.roots import moments_by_roots
 
-Complex = NDArray[np.complex128]
 RealOrComplex = TypeVar("RealOrComplex", bound=Array | Complex)
 """Real for a mirrored signal, which is even in the phase; complex on the full circle."""
 
@@ -139,7 +137,7 @@ def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
     )
 
 
-def _by_blocks(dual: Any, moments: RealOrComplex) -> tuple[RealOrComplex, NDArray[np.bool_]]:
+def _by_blocks(dual: Any, moments: RealOrComplex) -> tuple[RealOrComplex, Mask]:
     multipliers, valid = np.empty_like(moments), np.empty(len(moments), dtype=bool)
     for first in range(0, len(moments), _ROWS):
         block = slice(first, first + _ROWS)

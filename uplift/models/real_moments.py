@@ -11,12 +11,11 @@ Schur 1917, "Über Potenzreihen, die im Innern des Einheitskreises beschränkt s
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask
 
 
-def dual(moments: Array) -> tuple[Array, NDArray[np.bool_]]:
+def dual(moments: Array) -> tuple[Array, Mask]:
     """Compute multipliers (n, C) of moments (n, C), and their validity (n,).
 
     Internally the order is the first axis, so that all arithmetic runs along contiguous spectra.
@@ -54,7 +53,7 @@ def _series(moments: Array) -> tuple[Array, Array]:
     return sine[1:], np.sin(angle) * cosine[:-1] + np.cos(angle) * sine[:-1]
 
 
-def _recursion(upper: Array, lower: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+def _recursion(upper: Array, lower: Array) -> tuple[Array, Array, Mask]:
     """Compute polynomials A and B (C, 2, n), Π (1 − g²) (n,), and whether (n,) all |g| < 1, of ``upper / lower``.
 
     Each g is the first term of the quotient; the remainder is a quotient again, one order shorter.

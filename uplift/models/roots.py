@@ -8,11 +8,8 @@ imaginary part is π (g − ½).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.arrays import Array
-
-Complex = NDArray[np.complex128]
+from uplift.common.arrays import Array, Complex
 
 MAX_MULTIPLIER = 1e9
 """Larger multipliers are scaled down to this: spectra change by a billionth, and roots stay off the unit circle."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Complex
 from uplift.models import duality
 from uplift.models.phase import Phase
 
@@ -50,7 +50,7 @@ class Technique:
         half = Phase(warp="vision" if self.warped else "none")(wavelengths)
         return half if self.mirrored else 2 * half + np.pi
 
-    def moments(self, reflectance: Array, wavelengths: ArrayLike, moments: int) -> duality.Complex | Array:
+    def moments(self, reflectance: Array, wavelengths: ArrayLike, moments: int) -> Complex | Array:
         """Compute moments (n, moments + 1) of reflectances (n, N) at ascending wavelengths (N,) nm, end to end.
 
         They are exact for the interpolant that is linear in the phase, so samples within [0, 1] have moments of a
@@ -60,7 +60,7 @@ class Technique:
         found = _integrals(reflectance, phase, moments) / np.ptp(phase)
         return np.ascontiguousarray(found.real) if self.mirrored else found
 
-    def reconstruct(self, moments: duality.Complex | Array, wavelengths: ArrayLike) -> Array:
+    def reconstruct(self, moments: Complex | Array, wavelengths: ArrayLike) -> Array:
         """Compute the bounded maximum-entropy reflectances (n, N) of moments (n, C) at wavelengths (N,) nm.
 
         Raises `UpliftError` if no reflectance has these moments.
@@ -74,7 +74,7 @@ TECHNIQUES = tuple(Technique(mirrored, warped) for mirrored in (True, False) for
 """All techniques, in the order of the tables of the thesis."""
 
 
-def _integrals(values: Array, phase: Array, moments: int) -> duality.Complex:
+def _integrals(values: Array, phase: Array, moments: int) -> Complex:
     """Integrals (n, moments + 1) of g exp(−ijφ) dφ, with g linear between ``values`` (n, N) at phases (N,).
 
     Integrated by parts twice: a term of the two ends, and the slopes times the change of exp(−ijφ) in each interval.
