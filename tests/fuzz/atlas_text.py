@@ -1,12 +1,12 @@
-"""The reader of the ART measurement archive, against spoilt archives."""
+"""Fuzz target: the reader of ART measurement archives, with mutated archives."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from tests.fuzz.atlas_use import use
-from tests.fuzz.mutate import NUMBERS, Random, mutated
+from tests.fuzz.mutate import NUMBERS, Random, mutate
 from tests.fuzz.target import ROOT, Target
+from tests.fuzz.use_atlas import use_atlas
 
 ENTRY = b"""Entry ID:   %s
 ---------------------------------------------------------------------------
@@ -26,7 +26,7 @@ POINTS = ENTRY % (b"other", b"point sampled", b"{380, 0.5}, {500.5, 0.1}, {720, 
 HEADER = b"ART measurement archive version 1.1\nArchive content: cards\n"
 SHIPPED = (ROOT / "atlases" / "macbeth.txt").read_bytes()
 SEEDS = (HEADER + REGULAR + POINTS, REGULAR, POINTS + REGULAR, SHIPPED[: SHIPPED.index(b"Entry ID", 2000)])
-WORDS = (
+TOKENS = (
     b"Entry ID:", b"Type", b"reflectance spectrum", b"emission spectrum", b"regular", b"point sampled",
     b"yes", b"no",
     b"Fluorescence data", b"Maximum sample value", b"Start", b"Increment", b"Sampling information",
@@ -37,8 +37,8 @@ WORDS = (
 )  # fmt: skip
 
 
-def _write(random: Random, path: Path) -> None:
-    path.write_bytes(mutated(SEEDS[random.integers(len(SEEDS))], random, WORDS))
+def _generate(random: Random, path: Path) -> None:
+    path.write_bytes(mutate(SEEDS[random.integers(len(SEEDS))], random, TOKENS))
 
 
-TARGET = Target("atlas text", _write, use)
+TARGET = Target("atlas text", _generate, use_atlas)

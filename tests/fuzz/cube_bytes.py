@@ -1,4 +1,4 @@
-"""The cube loader against spoilt files: header lengths, headers and arrays, digests as they come."""
+"""Fuzz target: the cube reader, with mutated header lengths, headers and arrays, and mostly invalid digests."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from tests.fuzz.cube_use import use
-from tests.fuzz.mutate import NUMBERS, Random, mutated
+from tests.fuzz.mutate import NUMBERS, Random, mutate
 from tests.fuzz.target import ROOT, Target
+from tests.fuzz.use_cube import use_cube
 
 SEEDS = tuple((ROOT / "cubes" / f"{name}.uplift").read_bytes() for name in ("moments-8-macbeth", "sigmoid-8"))
-WORDS = (
+TOKENS = (
     b'"F64"', b'"F32"', b'"BF16"', b'"U8"', b'"I32"', b'"BOOL"', b'"F8_E4M3"', b"[512,9]", b"[512]",
     b"[4294967296,4294967296]",
     b"[1000000000,1000000000,1000000000]", b"[]", b"{", b"}", b"[", b"]", b'"', b"\\", b"\\u0000",
@@ -23,7 +23,7 @@ WORDS = (
     b"NaN", b"Infinity", b"true", b"\0", b"\xff", *NUMBERS,
 )  # fmt: skip
 LENGTHS = (0, 1, 7, 8, 1 << 20, 1 << 31, 1 << 40, (1 << 63) - 1, (1 << 64) - 1)
-HOSTILE = (
+EXTREME_VALUES = (
     -1,
     0,
     1,
@@ -44,7 +44,7 @@ HOSTILE = (
 
 
 def _parts(content: bytes) -> tuple[bytes, bytes]:
-    """Header and arrays."""
+    """Split into header and arrays."""
     length = int(struct.unpack("<Q", content[:8])[0])
     return content[8 : 8 + length], content[8 + length :]
 
@@ -54,12 +54,12 @@ def _with_header(header: bytes, arrays: bytes) -> bytes:
 
 
 def _anywhere(content: bytes, random: Random) -> bytes:
-    return mutated(content, random, WORDS)
+    return mutate(content, random, TOKENS)
 
 
 def _in_header(content: bytes, random: Random) -> bytes:
     header, arrays = _parts(content)
-    return _with_header(mutated(header, random, WORDS), arrays)
+    return _with_header(mutate(header, random, TOKENS), arrays)
 
 
 def _length(content: bytes, random: Random) -> bytes:
@@ -68,13 +68,13 @@ def _length(content: bytes, random: Random) -> bytes:
     return struct.pack("<Q", length) + content[8:]
 
 
-def _lie(content: bytes, random: Random) -> bytes:
-    """A header that is JSON and says what is not so of one array."""
+def _wrong_header(content: bytes, random: Random) -> bytes:
+    """Change one value of an array in the header, which stays valid JSON."""
     text, arrays = _parts(content)
     header: dict[str, Any] = json.loads(text)
     array = header[list(header)[random.integers(len(header))]]
     key = list(array)[random.integers(len(array))]
-    old, new = array[key], HOSTILE[random.integers(len(HOSTILE))]
+    old, new = array[key], EXTREME_VALUES[random.integers(len(EXTREME_VALUES))]
     if isinstance(old, list) and old and random.random() < 0.7:
         old[random.integers(len(old))] = new
     else:
@@ -82,8 +82,8 @@ def _lie(content: bytes, random: Random) -> bytes:
     return _with_header(json.dumps(header).encode(), arrays)
 
 
-def _twice(content: bytes, random: Random) -> bytes:
-    """A key that stands twice."""
+def _duplicate_key(content: bytes, random: Random) -> bytes:
+    """Repeat a key of the header."""
     text, arrays = _parts(content)
     items = list(json.loads(text).items())
     name, value = items[random.integers(len(items))]
@@ -92,12 +92,18 @@ def _twice(content: bytes, random: Random) -> bytes:
     return _with_header(text.rstrip()[:-1] + b"," + more + b"}", arrays)
 
 
-WAYS: tuple[Callable[[bytes, Random], bytes], ...] = (_anywhere, _in_header, _length, _lie, _twice)
+MUTATIONS: tuple[Callable[[bytes, Random], bytes], ...] = (
+    _anywhere,
+    _in_header,
+    _length,
+    _wrong_header,
+    _duplicate_key,
+)
 
 
-def _write(random: Random, path: Path) -> None:
+def _generate(random: Random, path: Path) -> None:
     content = SEEDS[random.integers(len(SEEDS))]
-    path.write_bytes(WAYS[random.integers(len(WAYS))](content, random))
+    path.write_bytes(MUTATIONS[random.integers(len(MUTATIONS))](content, random))
 
 
-TARGET = Target("cube, spoilt bytes", _write, use)
+TARGET = Target("cube, corrupted bytes", _generate, use_cube)

@@ -1,4 +1,4 @@
-"""Bytes spoilt at random: a few changes each, as accidents and attackers make them."""
+"""Random mutation of bytes, a few changes at a time."""
 
 from __future__ import annotations
 
@@ -13,67 +13,67 @@ NUMBERS = (
     b"nan", b"inf", b"-inf", b"-1", b"0", b"-0.0", b"1e999", b"1e-999", b"1_000", b"9" * 400, b"0x10", b"1,5",
     b"1e308", b"4294967296", b"1000000000", b"18446744073709551616", b"\xd9\xa3", b"",
 )  # fmt: skip
-"""What numbers should not be."""
+"""Texts in place of numbers that parsers may mishandle."""
 
 
-def mutated(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
-    """``content`` after one to eight changes; ``words`` are such as mean something to the reader."""
+def mutate(content: bytes, random: Random, tokens: Sequence[bytes]) -> bytes:
+    """Apply one to eight random changes to ``content``; ``tokens`` are those of the format."""
     for _ in range(int(random.integers(1, 9))):
-        content = CHANGES[random.integers(len(CHANGES))](content, random, words)
+        content = CHANGES[random.integers(len(CHANGES))](content, random, tokens)
     return content
 
 
-def _place(content: bytes, random: Random) -> int:
+def _position(content: bytes, random: Random) -> int:
     return int(random.integers(len(content) + 1))
 
 
 def _span(content: bytes, random: Random) -> tuple[int, int]:
-    """Mostly short."""
-    first = _place(content, random)
+    """Random span of log-uniform length."""
+    first = _position(content, random)
     return first, min(first + int(2 ** random.uniform(0, 10)), len(content))
 
 
-def _flip(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+def _flip(content: bytes, random: Random, tokens: Sequence[bytes]) -> bytes:
     if not content:
         return content
-    spoilt = bytearray(content)
-    spoilt[random.integers(len(content))] ^= 1 << int(random.integers(8))
-    return bytes(spoilt)
+    flipped = bytearray(content)
+    flipped[random.integers(len(content))] ^= 1 << int(random.integers(8))
+    return bytes(flipped)
 
 
-def _delete(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+def _delete(content: bytes, random: Random, tokens: Sequence[bytes]) -> bytes:
     first, last = _span(content, random)
     return content[:first] + content[last:]
 
 
-def _repeat(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+def _repeat(content: bytes, random: Random, tokens: Sequence[bytes]) -> bytes:
     first, last = _span(content, random)
     return content[:last] + content[first:last] * int(random.integers(1, 4)) + content[last:]
 
 
-def _insert(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
-    place = _place(content, random)
-    return content[:place] + words[random.integers(len(words))] + content[place:]
+def _insert(content: bytes, random: Random, tokens: Sequence[bytes]) -> bytes:
+    position = _position(content, random)
+    return content[:position] + tokens[random.integers(len(tokens))] + content[position:]
 
 
-def _noise(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
-    place = _place(content, random)
-    return content[:place] + random.bytes(int(random.integers(1, 9))) + content[place:]
+def _noise(content: bytes, random: Random, tokens: Sequence[bytes]) -> bytes:
+    position = _position(content, random)
+    return content[:position] + random.bytes(int(random.integers(1, 9))) + content[position:]
 
 
-def _cut(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
-    return content[: _place(content, random)] if random.random() < 0.2 else content
+def _cut(content: bytes, random: Random, tokens: Sequence[bytes]) -> bytes:
+    return content[: _position(content, random)] if random.random() < 0.2 else content
 
 
-def _replace_word(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
-    """One word that is there by another."""
-    old, new = (words[random.integers(len(words))] for _ in range(2))
+def _replace_token(content: bytes, random: Random, tokens: Sequence[bytes]) -> bytes:
+    """Replace a token by another."""
+    old, new = (tokens[random.integers(len(tokens))] for _ in range(2))
     return content.replace(old, new, int(random.integers(1, 4))) if old else content
 
 
-def _replace_number(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
-    """The digits around a place."""
-    first = last = _place(content, random)
+def _replace_number(content: bytes, random: Random, tokens: Sequence[bytes]) -> bytes:
+    """Replace the number around a position."""
+    first = last = _position(content, random)
     while first and content[first - 1 : first] in DIGITS:
         first -= 1
     while content[last : last + 1] in DIGITS and last < len(content):
@@ -81,7 +81,7 @@ def _replace_number(content: bytes, random: Random, words: Sequence[bytes]) -> b
     return content[:first] + NUMBERS[random.integers(len(NUMBERS))] + content[last:]
 
 
-def _swap_lines(content: bytes, random: Random, words: Sequence[bytes]) -> bytes:
+def _swap_lines(content: bytes, random: Random, tokens: Sequence[bytes]) -> bytes:
     lines = content.split(b"\n")
     one, other = random.integers(len(lines), size=2)
     lines[one], lines[other] = lines[other], lines[one]
@@ -90,5 +90,5 @@ def _swap_lines(content: bytes, random: Random, words: Sequence[bytes]) -> bytes
 
 DIGITS = {bytes([code]) for code in b"0123456789.+-eE"}
 CHANGES: tuple[Change, ...] = (
-    _flip, _delete, _repeat, _insert, _noise, _cut, _replace_word, _replace_number, _swap_lines,
+    _flip, _delete, _repeat, _insert, _noise, _cut, _replace_token, _replace_number, _swap_lines,
 )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The reader of palettes, and their design, against spoilt specs."""
+"""Fuzz target: the reader and the design of palettes, with mutated specifications."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.fuzz.mutate import NUMBERS, Random, mutated
+from tests.fuzz.mutate import NUMBERS, Random, mutate
 from tests.fuzz.target import ROOT, Target
 from uplift.colorimetry import observer
 from uplift.design.palette import FactorModel, design, matrix, read_palette, standard_model
@@ -16,7 +16,7 @@ SEEDS = tuple(
     path.read_bytes().replace(b"../../atlases", bytes(ROOT / "atlases"))
     for path in sorted((ROOT / "docs" / "palette").glob("*.toml"))
 )
-WORDS = (
+TOKENS = (
     b"lights", b"materials", b"colours", b"free", b"apart", b"design", b"bounds", b"illuminant", b"planck",
     b"luminance", b"atlas", b"entry", b"rgb", b"cube", b"weight", b"low", b"high", b"smoothness", b"model-error",
     b"coefficients", b"delta-e", b"day", b"lamp", b"true", b"false", b"#808080", b"[0.5, 0.2, 0.1]", b"D65",
@@ -30,17 +30,17 @@ def _model(count: int) -> FactorModel:
     return standard_model(observer.sensor(), count)
 
 
-def _write(random: Random, path: Path) -> None:
-    path.write_bytes(mutated(SEEDS[random.integers(len(SEEDS))], random, WORDS))
+def _generate(random: Random, path: Path) -> None:
+    path.write_bytes(mutate(SEEDS[random.integers(len(SEEDS))], random, TOKENS))
 
 
 def _use(path: Path) -> None:
-    """Raises `UpliftError` where it cannot be read, ValueError where what is designed are no colours."""
+    """Design the palette. Raises `UpliftError` for invalid files, ValueError for invalid spectra."""
     palette = read_palette(path)
     found = design(palette, _model(palette.count))
     matrix(found)
     if not (np.isfinite(found.powers).all() and np.isfinite(found.reflectances).all()):
-        raise ValueError("spectra that are no numbers")
+        raise ValueError("spectra that are not finite")
 
 
-TARGET = Target("palette", _write, _use)
+TARGET = Target("palette", _generate, _use)

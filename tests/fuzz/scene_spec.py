@@ -1,4 +1,4 @@
-"""The readers of a scene to plan, and of a plan, against spoilt TOML and JSON."""
+"""Fuzz targets: the readers of scene files and plans, with mutated TOML and JSON."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
-from tests.fuzz.mutate import NUMBERS, Random, mutated
+from tests.fuzz.mutate import NUMBERS, Random, mutate
 from tests.fuzz.target import ROOT, Target
 from uplift.io.scene_colours import file_digest
 from uplift.pipeline.options import Options
@@ -22,7 +22,7 @@ lights = ["D65", "FL11"]
 tolerance = 0.5
 quantile = 0.9
 """.encode()
-WORDS = (
+TOKENS = (
     b"textures", b"atlases", b"lights", b"tolerance", b"quantile", b"encoding", b"space", b"illuminant", b"observer",
     b"format", b"scene", b"build", b"cells", b"path", b"digest", b"dim", b"axis", b"coefficients", b"D65", b"sRGB",
     b"..", b"/", b"*", b"**", b"[", b"]", b"{", b"}", b"[[", b"=", b":", b",", b'"', b"'", b'"""', b"\\", b"\\u0000",
@@ -32,27 +32,27 @@ WORDS = (
 
 @functools.cache
 def _plan() -> bytes:
-    """A file as `uplift plan` writes it, of what its reader reads."""
+    """Make the part of a plan that its reader uses."""
     texture, atlas = ([{"path": str(path), "digest": file_digest(path)}] for path in (TEXTURE, ATLAS))
-    said = {
+    plan = {
         "format": FORMAT,
         "scene": {"encoding": "auto", "textures": texture, "atlases": atlas},
         "build": asdict(Options(dim=8)),
         "cells": "sparse",
     }
-    return json.dumps(said, indent=40).encode()  # mostly blank, so that not every change spoils it
+    return json.dumps(plan, indent=40).encode()  # mostly blanks, so that some mutations leave it valid
 
 
-def _write_scene_file(random: Random, path: Path) -> None:
-    path.write_bytes(mutated(SCENE_FILE, random, WORDS))
+def _generate_scene_file(random: Random, path: Path) -> None:
+    path.write_bytes(mutate(SCENE_FILE, random, TOKENS))
 
 
-def _write_plan(random: Random, path: Path) -> None:
-    path.write_bytes(mutated(_plan(), random, WORDS))
+def _generate_plan(random: Random, path: Path) -> None:
+    path.write_bytes(mutate(_plan(), random, TOKENS))
 
 
 def _use_scene_file(path: Path) -> None:
-    """What was read is looked at no further: a plan takes half a minute."""
+    """Read the file only, as planning takes half a minute."""
     read_scene_file(path).light_sources()
 
 
@@ -60,5 +60,5 @@ def _use_plan(path: Path) -> None:
     read_plan(path)
 
 
-SCENE_FILES = Target("scene to plan", _write_scene_file, _use_scene_file)
-PLANS = Target("plan", _write_plan, _use_plan)
+SCENE_FILES = Target("scene file", _generate_scene_file, _use_scene_file)
+PLANS = Target("plan", _generate_plan, _use_plan)

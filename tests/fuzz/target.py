@@ -1,4 +1,4 @@
-"""What is attacked: how its inputs are made, and what a user does with one."""
+"""Fuzz target: how to generate an input and how to use it."""
 
 from __future__ import annotations
 
@@ -13,8 +13,18 @@ ROOT = Path(__file__).parents[2]
 
 @dataclass(frozen=True)
 class Target:
-    """``write`` makes an input from random numbers, as a file; ``use`` may raise `UpliftError`, and nothing else."""
+    """A reader under test.
+
+    Parameters
+    ----------
+    name : str
+        Name for reports.
+    generate : callable
+        Write an input, made from a random generator, to a path.
+    use : callable
+        Read the input and use the result. It may raise `UpliftError` and no other exception.
+    """
 
     name: str
-    write: Callable[[np.random.Generator, Path], None]
+    generate: Callable[[np.random.Generator, Path], None]
     use: Callable[[Path], None]

@@ -1,4 +1,4 @@
-"""The cube loader against forgeries whose digest is right, so that the checks behind it are reached."""
+"""Fuzz target: the cube reader, with invalid content and a valid digest, which reaches the validation of content."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.cube.cube_files import forge
-from tests.fuzz.cube_use import use
 from tests.fuzz.mutate import Random
 from tests.fuzz.target import ROOT, Target
+from tests.fuzz.use_cube import use_cube
 from uplift.cube import CubeData, read
 from uplift.cube.file import POINT_TYPES
 from uplift.lattice import Lattice, PointTable
@@ -46,7 +46,7 @@ VALUES = (
 
 
 def _coarse(data: CubeData) -> CubeData:
-    """Every seventh node of the lattice: small, and a cube like any other."""
+    """Keep every seventh node of the lattice, which makes a small valid cube."""
     lattice = Lattice(data.lattice.nodes[::7])
     kept = data.lattice.index(7 * lattice.position(np.arange(lattice.size)))
     arrays = {name: getattr(data.points, name) for name in POINT_TYPES}
@@ -61,8 +61,8 @@ SEEDS = tuple(_coarse(read(ROOT / "cubes" / f"{name}.uplift")) for name in ("mom
 
 
 def _numbers(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
-    """Some numbers of an array."""
-    name = _some(tensors, random)
+    """Replace some numbers of an array."""
+    name = _choose(tensors, random)
     array = tensors[name] = tensors[name].copy()
     places = random.integers(max(array.size, 1), size=int(2 ** random.uniform(0, 10)))
     value = NUMBERS[random.integers(len(NUMBERS))]
@@ -72,21 +72,21 @@ def _numbers(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None
 
 
 def _noise(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
-    """An array of any numbers of some scale."""
-    name = _some(tensors, random)
+    """Replace an array by noise of a random scale."""
+    name = _choose(tensors, random)
     with np.errstate(all="ignore"):
         noise = random.normal(size=tensors[name].shape) * 10.0 ** random.integers(-12, 13)
         tensors[name] = noise.astype(tensors[name].dtype)
 
 
-def _kind(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
-    name = _some(tensors, random)
+def _type(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
+    name = _choose(tensors, random)
     with np.errstate(all="ignore"):
         tensors[name] = tensors[name].astype(TYPES[random.integers(len(TYPES))])
 
 
 def _shape(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
-    name = _some(tensors, random)
+    name = _choose(tensors, random)
     array = np.atleast_1d(tensors[name])
     shapes = (
         array[:-1],
@@ -102,14 +102,14 @@ def _shape(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
 
 
 def _missing(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
-    tensors.pop(_some(tensors, random))
+    tensors.pop(_choose(tensors, random))
 
 
-def _fact(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
-    """A value anywhere in the metadata, or a key taken away."""
+def _metadata(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
+    """Replace a value anywhere in the metadata, or remove a key."""
     place: Any = metadata
     while True:
-        key = _some(place, random)
+        key = _choose(place, random)
         inner = place[key]
         if not inner or not isinstance(inner, dict | list) or random.random() < 0.4:
             break
@@ -120,20 +120,20 @@ def _fact(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
         place[key] = VALUES[random.integers(len(VALUES))]
 
 
-def _some(keys: Any, random: Random) -> Any:
+def _choose(keys: Any, random: Random) -> Any:
     names = list(keys)
     return names[random.integers(len(names))]
 
 
-WAYS = (_numbers, _noise, _kind, _shape, _missing, _fact)
+MUTATIONS = (_numbers, _noise, _type, _shape, _missing, _metadata)
 
 
-def _write(random: Random, path: Path) -> None:
-    def spoil(tensors: Tensors, metadata: dict[str, Any]) -> None:
+def _generate(random: Random, path: Path) -> None:
+    def change(tensors: Tensors, metadata: dict[str, Any]) -> None:
         for _ in range(int(random.integers(1, 3))):
-            WAYS[random.integers(len(WAYS))](tensors, metadata, random)
+            MUTATIONS[random.integers(len(MUTATIONS))](tensors, metadata, random)
 
-    forge(SEEDS[random.integers(len(SEEDS))], path, spoil)
+    forge(SEEDS[random.integers(len(SEEDS))], path, change)
 
 
-TARGET = Target("cube, right digest", _write, use)
+TARGET = Target("cube, valid digest", _generate, use_cube)
