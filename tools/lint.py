@@ -29,6 +29,10 @@ DIALECT = {"told", "asked", "seen", "heard", "mended", "anew", "beside", "said"}
 """Words that no identifier contains."""
 
 
+FILE_KEYS = {"mended"}
+"""Keys of stored files, which keep their names."""
+
+
 def patterns() -> list[tuple[re.Pattern[str], str]]:
     """Return the banned expressions, each with the advice to show."""
     pairs = []
@@ -61,6 +65,8 @@ def prose(path: Path) -> Iterator[tuple[int, str]]:
             kind = tokenize.tok_name[token.type]
             if kind == "NAME" and set(token.string.lower().strip("_").split("_")) & DIALECT:
                 yield token.start[0], token.string.replace("_", " ")
+            elif token.string.strip("\"'") in FILE_KEYS:
+                continue
             elif kind in ("STRING", "COMMENT", "FSTRING_MIDDLE"):
                 for offset, line in enumerate(token.string.splitlines()):
                     yield token.start[0] + offset, re.sub(r"\{[^{}]*\}|`[^`]*`", " ", line)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
+import subprocess
+import sys
 import warnings
 
 import numpy as np
@@ -22,7 +24,7 @@ from uplift.common.errors import OptionError, UnknownNameError, UpliftWarning
 from uplift.cube import digest
 from uplift.lattice import Status
 from uplift.models import reflectance
-from uplift.pipeline import Options
+from uplift.pipeline.options import Options
 
 GRID = observer.grid()
 
@@ -245,6 +247,16 @@ def test_defaults_of_build_are_those_of_the_recorded_options():
     parameters = inspect.signature(uplift.build).parameters
     for field in dataclasses.fields(Options):
         assert parameters[field.name].default == field.default, field.name
+
+
+def test_a_build_without_a_scene_imports_nothing_above_the_core():
+    code = (
+        "import sys, uplift; uplift.build(dim=2, coefficients=3);"
+        "above = ('io', 'viz', 'report', 'scene', 'design', 'lab');"
+        "print([name for name in sys.modules if name.startswith(tuple(f'uplift.{each}' for each in above))])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
 
 
 def test_a_build_outside_srgb_names_the_colours_that_no_reflectance_has():

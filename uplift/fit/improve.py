@@ -46,7 +46,7 @@ class Improvement:
         Returns
         -------
         dict
-            ``step``, ``tried``, and ``mended``, the key of ``fixed`` in cube files.
+            ``step`` and ``tried``; the key of ``fixed`` is that of cube files.
         """
         return {"step": self.step, "tried": self.tried, "mended": self.fixed}
 

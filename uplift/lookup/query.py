@@ -129,7 +129,7 @@ def _block(cube: Cube, rgb: Array, requested: Array, at: Array, mode: str) -> It
             round_trip=round_trip[row],
             delta_e_2000=float(delta_e[row]),
             cell=(int(cell[0]), int(cell[1]), int(cell[2])),
-            statuses=tuple(map(Status, np.unique(data.points.status[corners[row]]).tolist())),
+            statuses=tuple(map(Status, sorted(set(data.points.status[corners[row]].tolist())))),
             entry=_entry(cube, rgb[row]),
             standard_error=None if errors is None else float(errors[row]),
             realisable=bool(realisable[row]),

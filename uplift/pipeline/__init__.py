@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from uplift.pipeline.build_cube import build
-from uplift.pipeline.options import Options
 from uplift.pipeline.provenance import recorded_atlas
 from uplift.pipeline.rebuild import rebuild
 
-__all__ = ["Options", "build", "rebuild", "recorded_atlas"]
+__all__ = ["build", "rebuild", "recorded_atlas"]

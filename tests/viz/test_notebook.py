@@ -1,0 +1,77 @@
+"""Cubes in notebooks: short text, escaped HTML, figures of spectra."""
+
+from __future__ import annotations
+
+import dataclasses
+import subprocess
+import sys
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from uplift.common.errors import ColourError
+from uplift.lookup import Cube
+from uplift.viz.notebook import MAX_SPECTRA, PRIMARIES
+
+COLOURS = np.array([[0.8, 0.2, 0.1], [0.1, 0.3, 0.8]])
+
+
+def test_repr_is_short(small_cube):
+    for each in (small_cube, small_cube.data, small_cube.data.points, small_cube.data.atlas):
+        assert len(repr(each)) < 200
+    assert "dim 8" in repr(small_cube)
+    assert "23 entries" in repr(small_cube)
+
+
+def test_facts_are_properties(small_cube):
+    data = small_cube.data
+    assert small_cube.dim == 8
+    assert small_cube.coefficient_count == 9
+    assert (small_cube.space, small_cube.illuminant) == ("sRGB", "D65")
+    assert small_cube.observer == data.sensor.observer
+    assert small_cube.atlas_names == data.atlas.names
+    np.testing.assert_array_equal(small_cube.wavelengths, data.sensor.wavelengths)
+
+
+@pytest.mark.parametrize("name", ["small_cube", "plain_cube"])
+def test_html_is_well_formed_and_states_the_facts(request, name):
+    cube = request.getfixturevalue(name)
+    root = ElementTree.fromstring(cube._repr_html_())
+    text = "".join(root.itertext())
+    assert "dim 8" in text
+    assert "sRGB under D65" in text
+    assert len(root.findall(".//span")) == len(cube.atlas_names)
+    assert root.find(".//{*}svg") is not None
+
+
+def test_names_are_escaped(small_cube):
+    names = ("<script>alert('&')</script>", *small_cube.atlas_names[1:])
+    atlas = dataclasses.replace(small_cube.data.atlas, names=names)
+    html = Cube(dataclasses.replace(small_cube.data, atlas=atlas))._repr_html_()
+    assert "<script>" not in html
+    assert ElementTree.fromstring(html).find(".//span").get("title") == names[0]
+
+
+def test_spectra_are_plotted_in_their_own_colours(small_cube):
+    lines = small_cube.plot(COLOURS, [450.0, 550.0, 650.0]).axes[0].lines[1::2]
+    spectra = small_cube.reflectance(COLOURS, [450.0, 550.0, 650.0])
+    for line, spectrum in zip(lines, spectra, strict=True):
+        np.testing.assert_array_equal(line.get_ydata(), spectrum)
+    assert lines[0].get_color() != lines[1].get_color()
+    assert len(small_cube.plot(PRIMARIES).axes[0].lines) == 2 * len(PRIMARIES)
+    assert len(PRIMARIES) <= MAX_SPECTRA
+
+
+def test_plot_raises_for_colours_out_of_gamut(small_cube):
+    with pytest.raises(ColourError):
+        small_cube.plot([1.5, 0, 0])
+
+
+def test_importing_and_querying_need_no_matplotlib():
+    code = (
+        "import sys, uplift; cube = uplift.load(); cube.reflectance([1, 1, 1]); repr(cube);"
+        "print({'matplotlib', 'markupsafe', 'uplift.viz'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"
