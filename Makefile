@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test bench peers accuracy study stability nightly determinism munsell docs atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette
+.PHONY: build lint test bench peers accuracy study stability nightly determinism munsell docs atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -26,7 +26,7 @@ lint: $(INSTALLED)
 test: lint
 	$(BIN)/pytest
 
-# Measurements are stored in docs/data; this renders the pages from them, and measures nothing.
+# Render the pages from the stored measurements in docs/data; nothing is measured.
 docs: $(INSTALLED)
 	$(BIN)/python -m tools.error_codes
 	$(BIN)/python -m tools.render_docs
@@ -35,12 +35,12 @@ bench: $(INSTALLED)
 	$(BIN)/python -m benchmarks.bench
 	$(BIN)/python -m tools.render_docs performance
 
-# Speed against accuracy of all methods: docs/chart.md and its pictures, and what `uplift chart --recommend` reads.
+# Speed and accuracy of all methods: docs/chart.md, its pictures, and the table of `uplift chart --recommend`.
 chart: $(INSTALLED)
 	$(BIN)/python -m benchmarks.chart
 	$(BIN)/python -m tools.render_docs chart
 
-# What `make bench` and `make chart` compare with where it finds it. Ceres is the system's: libceres-dev, cmake, g++.
+# Tools for comparison in `make bench` and `make chart`. Ceres comes from the system: libceres-dev, cmake, g++.
 peers: $(INSTALLED)
 	$(BIN)/pip install --quiet -c constraints.txt --no-build-isolation -e '.[peers]'
 
@@ -70,38 +70,42 @@ determinism: $(INSTALLED)
 	$(BIN)/python -m benchmarks.determinism
 	$(BIN)/python -m tools.render_docs stability
 
-# The ColorChecker as a renderer sees it: docs/render.md.
+# The ColorChecker rendered with Mitsuba: docs/render.md.
 demo-render: $(INSTALLED)
 	$(BIN)/python -m benchmarks.render
+	$(BIN)/python -m tools.render_docs render
 
-# What textures keep of real images, and take: docs/textures.md.
+# Accuracy, speed and memory of textures: docs/textures.md.
 textures: pictures
 	$(BIN)/python -m benchmarks.textures
 	$(BIN)/python -m tools.render_docs textures
 
-# What becomes of colours that no screen shows: docs/display.md and its picture.
+# Gamut mappings: docs/display.md and its picture.
 display: $(INSTALLED)
 	$(BIN)/python -m benchmarks.display
+	$(BIN)/python -m tools.render_docs display
 
-# Mixtures: ramps, who breaks which criterion, times: docs/mixing.md.
+# Mixing models: ramps, criteria, times: docs/mixing.md.
 mixing: $(INSTALLED)
 	$(BIN)/python -m benchmarks.mixing
 	$(BIN)/python -m tools.render_docs mixing
 
-# What cubes for a scene save: docs/scenes.md.
+# Cubes restricted to a scene: docs/scenes.md.
 scenes: pictures
 	$(BIN)/python -m benchmarks.scenes
+	$(BIN)/python -m tools.render_docs scenes
 
-# Plans for real images, and whether what they predict is so: docs/plan.md.
+# Scene plans for real images, and the accuracy of their predictions: docs/plan.md.
 plan: pictures
 	$(BIN)/python -m benchmarks.plan
+	$(BIN)/python -m tools.render_docs plan
 
-# The light dial in Chromium, frames a second: docs/palette-dial.md.
-.PHONY: dial
+# Frame rate of the relighting viewer in Chromium: docs/palette-dial.md.
 dial: $(INSTALLED)
 	$(BIN)/python -m benchmarks.dial
+	$(BIN)/python -m tools.render_docs palette-dial
 
-# How near the factor model of palettes comes, and the examples: docs/palette.md and its pictures.
+# Accuracy of the factor model of palettes, and the examples: docs/palette.md and its pictures.
 palette: $(INSTALLED)
 	$(BIN)/python -m benchmarks.palette
 	$(BIN)/python -m tools.render_docs palette
@@ -116,23 +120,23 @@ representations: $(INSTALLED)
 	$(BIN)/python -m benchmarks.representations
 	$(BIN)/python -m tools.render_docs representations
 
-# Pictures come with packages that nothing else needs.
+# Packages whose example images the benchmarks use.
 pictures: $(INSTALLED)
 	$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/pictures scikit-image==0.26.0 scikit-learn==1.9.1
 
-# 1,269 chips of the Munsell book, for `make study`: measurements that are not ours to pass on.
+# 1,269 chips of the Munsell book, for `make study`: they cannot be redistributed.
 munsell: $(INSTALLED)
 	$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/luxpy luxpy==1.12.5
 	$(BIN)/python tools/munsell.py $(OUT)/luxpy $(OUT)/munsell.csv
 
-# Data made by the project's own tools; commit what they write.
+# Shipped data; commit the result.
 atlases: $(INSTALLED)
 	$(BIN)/python tools/ship_atlases.py
 
 cubes: $(INSTALLED)
 	$(BIN)/python tools/store_cubes.py
 
-# Newer versions of everything: writes constraints.txt anew.
+# Update all pinned versions in constraints.txt.
 lock:
 	$(BIN)/pip install --quiet uv
 	$(BIN)/uv pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 --upgrade \

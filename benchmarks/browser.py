@@ -61,7 +61,7 @@ def chromium() -> str | None:
 
 
 class Browser:
-    """One tab. ``errors`` are what its console complained of, and exceptions that nobody caught."""
+    """One tab. ``errors`` are what its console complained of, and uncaught exceptions."""
 
     def __init__(self, write: int, read: int) -> None:
         self._write, self._read, self._rest = write, read, b""
@@ -132,8 +132,8 @@ class Browser:
 
     def screenshot(self, selector: str = "body", scale: float = 1.0) -> bytes:
         """An element, as far as the window shows it, as JPEG."""
-        told = self.evaluate(f"document.querySelector('{selector}').getBoundingClientRect().toJSON()")
-        clip = {name: told[name] for name in ("x", "y", "width", "height")} | {"scale": scale}
+        box = self.evaluate(f"document.querySelector('{selector}').getBoundingClientRect().toJSON()")
+        clip = {name: box[name] for name in ("x", "y", "width", "height")} | {"scale": scale}
         answer = self.call("Page.captureScreenshot", format="jpeg", quality=88, clip=clip)
         return base64.b64decode(answer["data"])
 

@@ -112,8 +112,8 @@ def by_moments(study: MomentsStudy, thesis: Thesis, count: int) -> dict[str, Any
 def by_warp(atlases: dict[str, uplift.Atlas], study: MomentsStudy, thesis: Thesis) -> list[dict[str, Any]]:
     """Return the errors of the mirrored, warped technique with several warps, by the floats stored."""
     rows = []
-    for name, warp in warps.made(study.measured).items():
-        with warps.in_place_of_ours(warp):
+    for name, warp in warps.candidates(study.measured).items():
+        with warps.replaced_warp(warp):
             other = study_moments(atlases, max(WARP_MOMENTS))
         rows.append(
             {"warp": name, "errors": {str(n + 1): pair(other.result(WARPED, n)) for n in WARP_MOMENTS}}

@@ -98,8 +98,8 @@ def _spectra(model: Model, sensor: Sensor, coefficients: Array) -> Array:
 
 def _difference(found: Array, exact: Array) -> Array:
     light = observer.light(LIGHT)
-    seen = (lab(spectra @ light.xyz.T, light.white) for spectra in (found, exact))
-    return delta_e_2000(*seen)
+    labs = (lab(spectra @ light.xyz.T, light.white) for spectra in (found, exact))
+    return delta_e_2000(*labs)
 
 
 if __name__ == "__main__":

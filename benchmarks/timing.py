@@ -1,19 +1,16 @@
-"""Whole processes, and where the repository lies; `uplift.lab.timing` times the rest."""
+"""Timing of processes; `uplift.lab.timing` times functions."""
 
 from __future__ import annotations
 
 import os
 import subprocess
 import time
-from pathlib import Path
 
 from uplift.lab.timing import Spread, spread
 
-ROOT = Path(__file__).parents[1]
-
 
 def process(command: list[str], runs: int, environment: dict[str, str] | None = None) -> tuple[Spread, float]:
-    """Wall seconds of a whole process and its peak memory in MB (Linux counts in kB)."""
+    """Return the wall seconds of a process and its peak memory in MB (Linux counts in kB)."""
     wall, peak = [], 0
     for _ in range(runs):
         begin = time.perf_counter()

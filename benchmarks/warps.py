@@ -1,4 +1,4 @@
-"""Warps to compare ours with: densities over wavelength, of colour-matching functions and fitted."""
+"""Warps for comparison: densities over wavelength, after the colour-matching functions and fitted."""
 
 from __future__ import annotations
 
@@ -26,26 +26,26 @@ TRIES = 1000
 
 
 @contextlib.contextmanager
-def in_place_of_ours(warp: Warp) -> Iterator[None]:
-    """Within the block, the warped techniques use another warp."""
+def replaced_warp(warp: Warp) -> Iterator[None]:
+    """Use another warp in the warped techniques."""
     with mock.patch.dict(phase.WARPS, vision=warp):
         yield
 
 
-def made(measured: Array) -> dict[str, Warp]:
-    """Our warp, two after the colour-matching functions, one fitted to reflectances (E, 401) at 1 nm."""
+def candidates(measured: Array) -> dict[str, Warp]:
+    """Return the default warp, two after the colour-matching functions, one fitted to reflectances (E, 401)."""
     sensor = observer.sensor()
-    seen = sensor.cmfs.sum(axis=1)
+    sensitivity = sensor.cmfs.sum(axis=1)
     return {
         "vision, ours": phase.WARPS["vision"],
-        "x̄ + ȳ + z̄": from_density(seen),
-        "(x̄ + ȳ + z̄) · D65": from_density(seen * sensor.power),
-        "fitted": fitted(measured, seen * sensor.power),
+        "x̄ + ȳ + z̄": from_density(sensitivity),
+        "(x̄ + ȳ + z̄) · D65": from_density(sensitivity * sensor.power),
+        "fitted": fitted(measured, sensitivity * sensor.power),
     }
 
 
 def from_density(density: Array) -> Warp:
-    """The warp whose slope is ``density`` (81,) on the observer's grid, and never quite nothing."""
+    """Return the warp with slope ``density`` (81,) on the observer's wavelengths, kept above zero."""
     grid = observer.grid()
     density = density / density.max() + 1e-6
     total = np.concatenate([[0], np.cumsum((density[1:] + density[:-1]) / 2)])
@@ -53,7 +53,7 @@ def from_density(density: Array) -> Warp:
 
 
 def fitted(measured: Array, density: Array) -> Warp:
-    """The warp with the least mean ΔE76 under D65 at `FITTED_MOMENTS` + 1 floats, sought from ``density`` (81,)."""
+    """Minimise mean ΔE76 under D65 at `FITTED_MOMENTS` + 1 floats, starting from ``density`` (81,)."""
     light, technique = observer.light("D65"), TECHNIQUES[0]
     original = lab(measured[:, :: len(measured[0]) // 80] @ light.xyz.T, light.white)
 
@@ -61,7 +61,7 @@ def fitted(measured: Array, density: Array) -> Warp:
         return from_density(np.exp(PchipInterpolator(KNOTS, knots)(observer.grid())))
 
     def error(knots: Array) -> float:
-        with in_place_of_ours(warp(knots)):
+        with replaced_warp(warp(knots)):
             moments = technique.moments(measured, fine_grid(), FITTED_MOMENTS)
             found = technique.reconstruct(moments, observer.grid())
         return float(delta_e_1976(lab(found @ light.xyz.T, light.white), original).mean())

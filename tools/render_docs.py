@@ -1,6 +1,6 @@
 """Render the pages of measurements: docs/templates/NAME.md.j2 filled from docs/data/NAME.json is docs/NAME.md.
 
-Nothing is measured here. The programs in benchmarks/ write the data. A template without data of its own uses that of
+Nothing is measured here. The programs in benchmarks/ write the data. A template without data uses that of
 other pages, by ``load`` (JSON) and ``rows`` (CSV).
 
 Examples
@@ -33,7 +33,7 @@ NAMED: dict[str, Callable[[float], str]] = {
     "error": viz_format.format_error,
     "build_time": viz_format.format_build_time,
 }
-"""Formats that are no format specification of Python: `time` takes nanoseconds, `size` bytes."""
+"""Formats in addition to the format specifications of Python: `time` takes nanoseconds, `size` bytes."""
 Row = Mapping[str, Any]
 
 

@@ -1,7 +1,7 @@
 """Munsell chips outside sRGB, and the distance of colours from those of the hue of a chip.
 
-The renotation (Newhall, Nickerson & Judd 1943) as in colour-science, without extrapolated chips. Its hues and lightnesses
-were judged equal by observers, independently of the colour spaces of the gamut mappings.
+The renotation (Newhall, Nickerson & Judd 1943) as in colour-science, without extrapolated chips. Observers judged its
+hues and lightnesses equal, independently of the colour spaces of the gamut mappings.
 """
 
 from __future__ import annotations

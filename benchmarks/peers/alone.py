@@ -1,4 +1,4 @@
-"""Each tool in a process of its own: none finds another's threads, compiled code or settings."""
+"""Each tool runs in a separate process, without the threads, compiled code or settings of the others."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from uplift.lab.timing import ONE_THREAD
 
 
 def alone(tool: Callable[[int], list[Peer]], runs: int) -> list[Peer]:
-    """The rows of ``tool``, timed ``runs`` times in a fresh process."""
+    """Return the rows of ``tool``, timed ``runs`` times in a fresh process."""
     before = dict(os.environ)
     os.environ.update(ONE_THREAD)
     try:

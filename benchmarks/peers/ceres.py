@@ -1,4 +1,4 @@
-"""The thesis's solver: Ceres with numeric differences (`benchmarks/ceres/fit.cpp`), built where it is installed."""
+"""The solver of the thesis: Ceres with numeric differences (`benchmarks/ceres/fit.cpp`), built if it is installed."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ import numpy as np
 
 from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge_multipliers, missing, model_of
-from benchmarks.timing import ROOT
+from benchmarks.record import ROOT
 from uplift.common.arrays import Array
 from uplift.lab.timing import spread
 
 SOURCE, BUILT = ROOT / "benchmarks" / "ceres", ROOT / "out" / "ceres"
 NEEDS = "Ceres with cmake and a C++ compiler (libceres-dev, cmake, g++)"
 STEPS = 12
-"""From each start. With Ceres's default, 50, the moments take twice the time and no more of them are fitted."""
+"""Iterations from each start. The default of Ceres, 50, doubles the time for moments and fits no more of them."""
 
 JOBS = (("sigmoid", 3, "sigmoid", 0.99), ("moments", 9, "moments", 0.5), ("moments", 9, "multipliers", 0.99))
-"""Model, coefficients, what the unknowns are, and the least share of points that must be fitted."""
+"""Model, coefficients, unknowns, and the minimum share of nodes that must be fitted."""
 IN = {"sigmoid": "", "moments": "in c, ", "multipliers": "in p, "}
 QUIET = {"GLOG_minloglevel": "3"}
-"""Ceres tells at length of every step that leaves the moments of reflectances: telling would be timed too."""
+"""Ceres logs every step outside the moments of reflectances, which would be timed too."""
 
 
 def ceres(runs: int) -> list[Peer]:
-    """Growing from the middle of the lattice, every point from its fitted neighbours."""
+    """Time Ceres, growing from the middle of the lattice, every node from its fitted neighbours."""
     program = _build()
     if program is None:
         return [missing("Ceres", NEEDS, model, count) for model, count, *_ in JOBS]
@@ -39,11 +39,11 @@ def ceres(runs: int) -> list[Peer]:
 
 
 def _build() -> Path | None:
-    """The program; None where cmake, a compiler or Ceres is missing."""
+    """Build the program; return None if cmake, a compiler or Ceres is missing."""
     program = BUILT / "fit"
     if shutil.which("cmake") is None or _cmake("-S", str(SOURCE), "-B", str(BUILT)).returncode:
         return None
-    program.unlink(missing_ok=True)  # built when Ceres was still there
+    program.unlink(missing_ok=True)  # of an earlier build
     _cmake("--build", str(BUILT)).check_returncode()
     return program if program.exists() else None
 
@@ -65,15 +65,15 @@ def _row(program: Path, name: str, count: int, unknowns: str, least: float, runs
 
 
 def _run(program: Path, unknowns: str, count: int) -> tuple[Array, dict[str, Any]]:
-    """Unknowns found (n, count), and what the program says of its work."""
+    """Return the solutions (n, count), and the statistics printed by the program."""
     with tempfile.TemporaryDirectory() as folder:
         scene, found = Path(folder, "scene.txt"), Path(folder, "found")
         scene.write_text(_scene())
         command = [str(program), str(scene), str(found), unknowns, str(count), str(STEPS)]
-        said = subprocess.run(
+        statistics = subprocess.run(
             command, env=os.environ | QUIET, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True
         ).stdout
-        return np.fromfile(found).reshape(-1, count), json.loads(said)
+        return np.fromfile(found).reshape(-1, count), json.loads(statistics)
 
 
 def _scene() -> str:

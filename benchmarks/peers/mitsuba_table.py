@@ -18,7 +18,7 @@ AT_ONCE = 4
 
 
 def mitsuba_table(runs: int) -> list[Peer]:
-    """The lattice's colours one by one, as Python can ask for them."""
+    """Time lookups of the lattice's colours, one per call."""
     try:
         import mitsuba
     except ImportError:

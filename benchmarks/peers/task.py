@@ -1,4 +1,4 @@
-"""What every peer is asked: the points of our sRGB lattice, or some of them, under our sensor; and the clock."""
+"""The task of every tool: nodes of the sRGB lattice under the default sensor; and its timing."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ DIM = 16
 
 @cache
 def sensor() -> Sensor:
-    """CIE 1931 observer, D65, linear sRGB."""
+    """Return the sensor: CIE 1931 observer, D65, linear sRGB."""
     return observer.sensor()
 
 
 @cache
 def lattice(dim: int = DIM) -> Lattice:
-    """Nodes spaced as sRGB."""
+    """Return a lattice with nodes spaced as sRGB."""
     return Lattice(observer.axis_nodes("srgb", dim))
 
 
 def some(count: int) -> Array:
-    """(count, 3) linear RGB: points of the lattice drawn at random, always the same."""
+    """Return linear RGB (count, 3) of random nodes of the lattice, always the same."""
     points = lattice().points
     return points[np.random.default_rng(16).choice(len(points), count, replace=False)]
 
 
 def measured(solve: Callable[[], Array], points: int, runs: int) -> tuple[Array, Spread]:
-    """What ``solve`` finds, and µs of CPU per point. Some peers are too slow to run once more for the answer."""
+    """Return the result of ``solve``, and µs of CPU per node. Some tools are too slow for a separate run."""
     found, seconds = np.empty(0), []
     for _ in range(runs):
         begin = time.process_time()

@@ -21,7 +21,7 @@ from uplift.models import Sigmoid
 TARGET = np.full((10, 3), 0.5)
 
 
-def test_judge_states_the_share_and_the_worst():
+def test_judge_returns_the_share_and_the_largest_residual():
     found = TARGET.copy()
     found[0, 1] += 2e-4
     answer = judge(found, TARGET, least=0.9)
@@ -48,40 +48,40 @@ def test_spectra_of_another_colour_are_a_wrong_answer(sensor):
     ("module", "tool", "name"),
     [("mitsuba", mitsuba_table, "Mitsuba"), ("optimistix", optimistix_dogleg, "optimistix")],
 )
-def test_an_absent_package_has_a_row_that_says_so(monkeypatch, module, tool, name):
+def test_an_absent_package_has_a_row_without_figures(monkeypatch, module, tool, name):
     monkeypatch.setitem(sys.modules, module, None)
     (row,) = tool(1)
     assert row.cpu is None
     assert row.notes == f"{name} is not installed"
 
 
-def test_absent_ceres_has_rows_that_say_so(monkeypatch):
+def test_absent_ceres_has_rows_without_figures(monkeypatch):
     monkeypatch.setattr(shutil, "which", lambda name: None)
     rows = ceres(1)
     assert [row.cpu for row in rows] == [None] * 3
     assert all("not installed" in row.notes for row in rows)
 
 
-def test_measured_gives_what_was_found_and_the_time_of_a_point():
+def test_measured_returns_the_result_and_the_time_per_node():
     found, cpu = measured(lambda: TARGET, 10, runs=2)
     assert found is TARGET
     assert cpu.runs == 2
 
 
-def test_some_points_are_the_lattice_s_own_and_always_the_same():
+def test_random_nodes_are_reproducible_and_belong_to_the_lattice():
     points = some(5)
     assert (points == some(5)).all()
     assert all((lattice().points == point).all(axis=1).any() for point in points)
 
 
-def told(runs: int) -> list[Peer]:
-    """A tool that tells the threads it was allowed."""
+def thread_limit(runs: int) -> list[Peer]:
+    """Return a row named after the number of threads allowed."""
     return [missing(os.environ["OPENBLAS_NUM_THREADS"], "nothing", "sigmoid", runs)]
 
 
-def test_a_tool_runs_alone_in_one_thread_and_leaves_our_environment(monkeypatch):
+def test_a_tool_runs_in_a_single_threaded_process_and_the_environment_is_restored(monkeypatch):
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
-    (row,) = alone(told, 3)
+    (row,) = alone(thread_limit, 3)
     assert (row.tool, row.count) == (ONE_THREAD["OPENBLAS_NUM_THREADS"], 3)
     assert os.environ["OPENBLAS_NUM_THREADS"] == "7"
 
