@@ -13,11 +13,11 @@ import uplift
 from benchmarks.record import ROOT, write
 from benchmarks.wavelengths import figures, meyer_comparison
 from benchmarks.wavelengths.bounces import LIGHTS, PATHS, bounces
+from benchmarks.wavelengths.experiments import run_trials
 from benchmarks.wavelengths.methods import SMOOTH, SPIKY, Comparison, compare, rows, summary
 from uplift.atlas import on_grid
 from uplift.common.arrays import Array
 from uplift.scene.wavelengths import grid, make_setup
-from uplift.scene.wavelengths.experiments import run_trials
 from uplift.scene.wavelengths.opponent import cone_space, opponent_space, xyz_space
 
 PICTURES = ROOT / "docs" / "wavelengths"

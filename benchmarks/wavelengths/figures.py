@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.wavelengths.experiments import Trials, bin_shares
 from benchmarks.wavelengths.methods import COUNTS, Comparison
 from uplift.scene.wavelengths import METHODS
-from uplift.scene.wavelengths.experiments import Trials, bin_shares
 from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_png
 
 COLOURS = ("#20509a", "#d1495b", "#2e8b57", "#c98a1b", "#7fa3d9")

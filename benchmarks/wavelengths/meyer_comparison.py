@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from benchmarks.wavelengths import printed
+from benchmarks.wavelengths.experiments import allocation_error
 from uplift.common.arrays import Array
 from uplift.scene.quadrature import QuadratureRule, UndefinedRule, gauss_rule
 from uplift.scene.wavelengths import RenderSetup
-from uplift.scene.wavelengths.experiments import allocation_error
 from uplift.scene.wavelengths.meyer import (
     POINTS,
     ChannelRules,

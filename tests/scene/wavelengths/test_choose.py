@@ -42,6 +42,12 @@ def test_target_is_met_and_one_wavelength_less_misses_it(spiky: RenderSetup) -> 
     assert choose(spiky, count=len(choice.sampling) - 1).errors.max > 1.5
 
 
+def test_target_skips_counts_without_a_rule(smooth: RenderSetup) -> None:
+    """Meyer's rules have at least four wavelengths."""
+    choice = choose(smooth, target=100, method="meyer")
+    assert len(choice.sampling) == 4
+
+
 def test_mean_target_needs_fewer_wavelengths_than_maximum(spiky: RenderSetup) -> None:
     assert len(choose(spiky, target=1.5, measure="mean").sampling) < len(choose(spiky, target=1.5).sampling)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.wavelengths.experiments import allocation_error, bin_shares, run_trials
 from benchmarks.wavelengths.printed import CHANNELS, rows
 from tests.helpers import raises
 from uplift.colorimetry import observer
@@ -12,7 +13,6 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.scene.quadrature import UndefinedRule
 from uplift.scene.wavelengths import RenderSetup, evaluate, grid, make_setup
-from uplift.scene.wavelengths.experiments import allocation_error, bin_shares, run_trials
 from uplift.scene.wavelengths.meyer import (
     allocations,
     channel_functions,

@@ -141,13 +141,18 @@ def _with_target(setup: RenderSetup, method: str, target: float, measure: str) -
             hint="give a tolerated ΔE00, such as 1",
         )
     for count in range(1, MAX_COUNT + 1):
-        choice = _with_count(setup, method, count)
+        try:
+            choice = _with_count(setup, method, count)
+        except OptionError as problem:
+            if problem.code != "undefined-rule":
+                raise
+            continue
         error = getattr(choice.errors, measure)
         if error <= target:
             return choice
     raise OptionError(
         f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method '{method}'; "
-        f"{MAX_COUNT} wavelengths reach {error:.3g}",
+        f"{len(choice.sampling)} wavelengths reach {error:.3g}",
         code="target-unreachable",
         hint="raise the target or choose another method",
     )
