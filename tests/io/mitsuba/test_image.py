@@ -88,8 +88,8 @@ def test_interface_of_textures(texture, small_cube):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"wrap_mode": "round"}, "wrap_mode must be one of repeat, mirror, clamp, got 'round'"),
-        ({"filter_type": "cubic"}, "filter_type must be one of bilinear, nearest, got 'cubic'"),
+        ({"wrap_mode": "round"}, "unknown wrap_mode 'round'; use one of repeat, mirror, clamp"),
+        ({"filter_type": "cubic"}, "unknown filter_type 'cubic'"),
         ({"image": 2 * IMAGE}, r"lies outside \[0, 1\]"),
         ({"image": IMAGE * np.nan}, r"lies outside \[0, 1\]"),
     ],

@@ -281,7 +281,7 @@ def layers(*names):
 @pytest.mark.parametrize(
     ("content", "code", "value"),
     [
-        ({"Z": np.zeros((4, 5), np.float32)}, "no-colour-channels", "got Z"),
+        ({"Z": np.zeros((4, 5), np.float32)}, "no-colour-channels", "among Z"),
         (layers("diffuse", "coat"), "ambiguous-colour-layers", "got coat, diffuse"),
         ({letter: np.zeros((4, 5), np.uint32) for letter in "RGB"}, "unsupported-colour-type", "got uint"),
     ],

@@ -143,9 +143,13 @@ def from_black_and_white(
     g1, g2 = (np.asarray(ground, dtype=float) for ground in grounds)
     R1, R2 = np.asarray(on_black, dtype=float), np.asarray(on_white, dtype=float)
     if not (np.abs(g2 - g1) > SLACK).all():
-        raise OptionError("K and S need two different grounds", code="equal-grounds")
+        raise OptionError(
+            "K and S need two different grounds", code="equal-grounds", hint="measure on black and on white"
+        )
     if not as_length(thickness):
-        raise OptionError("thickness must be greater than 0, got 0", code="invalid-thickness")
+        raise OptionError(
+            "thickness must be greater than 0, got 0", code="invalid-thickness", hint="1 is the unit"
+        )
     determinant = g2 - g1 + g1 * g2 * (R1 - R2)
     R0 = (R1 * g2 - R2 * g1) / determinant
     squared = ((1 + R1 * g1) * R2 - (1 + R2 * g2) * R1) / determinant + R0**2

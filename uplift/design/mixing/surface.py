@@ -105,7 +105,9 @@ class Surface:
         for value in (self.outside, self.inside):
             if not 0 <= value < 1:
                 raise OptionError(
-                    f"reflectance of a surface must be in [0, 1), got {value}", code="invalid-surface"
+                    f"reflectance of a surface must be in [0, 1), got {value}",
+                    code="invalid-surface",
+                    hint="0 is no surface",
                 )
 
     def apply(self, internal: ArrayLike) -> Array:

@@ -16,6 +16,7 @@ def as_amounts(parts: ArrayLike) -> Array:
         raise OptionError(
             f"parts of a mixture must be a sequence of finite numbers of at least 0, got {array.tolist()}",
             code="invalid-parts",
+            hint="pass one for each component",
         )
     return array
 
@@ -25,14 +26,18 @@ def as_shares(parts: ArrayLike) -> Array:
     array = as_amounts(parts)
     total = array.sum(axis=-1, keepdims=True)
     if not (total > 0).all():
-        raise OptionError("some part of a mixture must be greater than 0", code="invalid-parts")
+        raise OptionError(
+            "some part of a mixture must be greater than 0", code="invalid-parts", hint="raise one of them"
+        )
     return np.asarray(array / total)
 
 
 def as_length(value: float, name: str = "thickness") -> float:
     """Return a finite number of at least 0. Raises `OptionError` (``invalid-`` and the name)."""
     if not (np.isfinite(value) and value >= 0):
-        raise OptionError(f"{name} must be finite and at least 0, got {value}", code=f"invalid-{name}")
+        raise OptionError(
+            f"{name} must be finite and at least 0, got {value}", code=f"invalid-{name}", hint="1 is the unit"
+        )
     return float(value)
 
 

@@ -72,7 +72,9 @@ def write_coeff(
     """
     if not MIN_RES <= res <= MAX_RES:
         raise OptionError(
-            f"res must be from {MIN_RES} to {MAX_RES}, got {res}", code="resolution-out-of-range"
+            f"res must be from {MIN_RES} to {MAX_RES}, got {res}",
+            code="resolution-out-of-range",
+            hint=f"{RES} is the default",
         )
     with atomic_write(path, force=force) as temporary:
         scale = _scale(res)

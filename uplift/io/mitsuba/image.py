@@ -128,8 +128,9 @@ def _choice(props: Any, name: str, choices: tuple[str, ...]) -> str:
     chosen = str(props.get(name, choices[0]))
     if chosen not in choices:
         raise OptionError(
-            f"{name} must be one of {', '.join(choices)}, got '{chosen}'",
+            f"unknown {name} '{chosen}'",
             code=f"unknown-{name.replace('_', '-')}",
+            hint=f"use one of {', '.join(choices)}",
         )
     return chosen
 

@@ -53,6 +53,7 @@ def _make_texture(props: Any) -> Any:
         raise OptionError(
             f"an uplift texture must have one of {', '.join(SOURCES)}, got {len(sources)}",
             code="texture-source",
+            hint="pass one of them",
         )
     if sources == ["rgb"]:
         return _constant(cube, _parse_rgb(props["rgb"]))
@@ -85,7 +86,11 @@ def _parse_rgb(value: Any) -> Array:
         words = value.replace(",", " ").split() if isinstance(value, str) else value
         red, green, blue = (float(word) for word in words)
     except (TypeError, ValueError) as error:
-        raise OptionError(f"rgb must be three numbers, got {value!r}", code="invalid-rgb") from error
+        raise OptionError(
+            f"rgb must be three numbers, got {value!r}",
+            code="invalid-rgb",
+            hint="for example '0.8, 0.2, 0.1'",
+        ) from error
     return np.array([red, green, blue])
 
 

@@ -69,7 +69,12 @@ def check_slices(path: str | os.PathLike[str], *, force: bool = False) -> None:
         As `write_slices` raises it.
     """
     if Path(path).suffix.lower() != ".exr":
-        raise OutputError("the name of a file of slices must end in .exr", code="unknown-suffix", path=path)
+        raise OutputError(
+            "the name of a file of slices must end in .exr",
+            code="unknown-suffix",
+            path=path,
+            hint="name the file .exr, or write a contact sheet",
+        )
     check_output(path, force=force)
 
 

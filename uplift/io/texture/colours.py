@@ -131,6 +131,7 @@ def colour_channels(part: Part) -> RGBChannels | None:
         raise TextureError(
             f"colour channels must be 8-bit, 16-bit, half or float, got {min(types)}",
             code="unsupported-colour-type",
+            hint="convert them",
         )
     return red, green, blue
 
@@ -190,7 +191,9 @@ def check_encoding(encoding: str) -> None:
     """Raise `OptionError` (code ``unknown-encoding``) unless ``encoding`` is one of `ENCODINGS`."""
     if encoding not in ENCODINGS:
         raise OptionError(
-            f"encoding must be one of {', '.join(ENCODINGS)}, got '{encoding}'", code="unknown-encoding"
+            f"unknown encoding '{encoding}'",
+            code="unknown-encoding",
+            hint=f"use one of {', '.join(ENCODINGS)}",
         )
 
 

@@ -50,7 +50,7 @@ def colour_channels_by_part(image: Image) -> list[tuple[Part, RGBChannels | None
     if not any(rgb for _, rgb in found):
         names = ", ".join(dict.fromkeys(name for part in image.parts for name in part.channels))
         raise TextureError(
-            f"colour must be in channels R, G and B, or in Y, got {names}", code="no-colour-channels"
+            f"no colour channels among {names}", code="no-colour-channels", hint="name them R, G and B, or Y"
         )
     return found
 

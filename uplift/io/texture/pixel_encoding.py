@@ -134,6 +134,7 @@ class Spectrum(PixelEncoding):
             raise OptionError(
                 "wavelengths of a spectral image must ascend in steps of at least 1e-6 nm",
                 code="wavelengths-not-ascending",
+                hint="sort them and remove duplicates",
             )
         return names
 

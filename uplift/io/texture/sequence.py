@@ -221,7 +221,9 @@ def process_executor(count: int) -> Iterator[Executor]:
     """
     if count < 1:
         raise OptionError(
-            f"the number of processes must be at least 1, got {count}", code="too-few-processes"
+            f"the number of processes must be at least 1, got {count}",
+            code="too-few-processes",
+            hint="use 1 or more",
         )
     spawn = multiprocessing.get_context("spawn")  # JAX cannot be forked
     with ThreadPoolExecutor(1) if count == 1 else ProcessPoolExecutor(count, mp_context=spawn) as pool:

@@ -195,8 +195,8 @@ def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
 
 def _parts(handle: Any) -> Iterator[Part]:
     if handle.format_name() not in FORMATS:
-        problem = f"the format must be EXR, PNG, JPEG or TIFF, got {handle.format_name()}"
-        raise TextureError(problem, code="unsupported-image-format")
+        problem = f"unsupported image format {handle.format_name()}"
+        raise TextureError(problem, code="unsupported-image-format", hint=FORMAT_HINT)
     number = 0
     while handle.seek_subimage(number, 0):
         yield _part(handle.spec(), number)

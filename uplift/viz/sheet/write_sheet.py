@@ -72,7 +72,12 @@ def check_sheet(path: str | os.PathLike[str], *, force: bool = False) -> None:
         As `write_sheet` raises it.
     """
     if _suffix(path) not in WRITERS:
-        raise OutputError("the name of a sheet must end in .exr or .png", code="unknown-suffix", path=path)
+        raise OutputError(
+            "the name of a sheet must end in .exr or .png",
+            code="unknown-suffix",
+            path=path,
+            hint="name the file .exr or .png",
+        )
     check_output(path, force=force)
 
 
