@@ -33,7 +33,7 @@ def test_page_is_well_formed_and_complete(html, judged):
         assert heading in read.text
     for name in judged.entries.names:
         assert name in read.text
-    assert "No failures: all 512 points" in read.text
+    assert "No failures: all 512 nodes" in read.text
     assert judged.facts["digest"] in read.text
     assert "Left out, as they are outside sRGB: cyan." in read.text
     assert not re.search(r"\b(nan|inf|None)\b", read.text)
@@ -96,7 +96,7 @@ def test_names_are_escaped(small_cube, hostile):
 
 def test_points_over_the_threshold_are_listed(spoilt, macbeth):
     read = Page(page(assess(spoilt, "spoilt.uplift", 1, macbeth, ("D65",)), worst=0))
-    assert "2 lattice points of 512 over the threshold of 0.0001." in read.text
+    assert "2 nodes of 512 over the threshold of 0.0001." in read.text
     assert "2 over the threshold" in read.text
     assert "No failures" not in read.text
     for point in (100, 300):

@@ -44,7 +44,7 @@ def crowding(data: CubeData, entries: EntryErrors) -> Crowding:
     data : CubeData
         The cube.
     entries : EntryErrors
-        Errors of some or all of its own entries.
+        Errors of some or all of the cube's entries.
 
     Returns
     -------

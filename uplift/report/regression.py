@@ -21,7 +21,7 @@ LIMITS = {"rgb": 1e-6, "spectra_max": 1e-5, "spectra_rms": 1e-7} | {
     f"delta_e_{name}": 1e-4 for name in REGRESSION_LIGHTS
 }
 """Largest differences allowed between machines: some hundred times the effect of other instruction sets
-(docs/data/stability-determinism.json). On one machine there are none, whatever the number of threads."""
+(docs/data/stability-determinism.json). On one machine there are none, for any number of threads."""
 NODE_TOLERANCE = 1e-12
 """Largest difference of lattice nodes. The sRGB curve takes powers, which instruction sets round differently."""
 BOUNDARY_MARGIN = 1e-3

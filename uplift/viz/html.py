@@ -1,7 +1,7 @@
 """Self-contained HTML pages from Jinja2 templates.
 
-Templates are named by their path below the package, as ``report/templates/page.html.j2``, and lie beside the code
-that renders them. All values are escaped unless they are `markupsafe.Markup`; a name that a template does not
+Templates are named by their path below the package, as ``report/templates/page.html.j2``, and lie next to the
+code that renders them. All values are escaped unless they are `markupsafe.Markup`; a name that a template does not
 receive is an error. The filters are the functions of `uplift.viz.format` under their own names, and ``fixed``.
 """
 

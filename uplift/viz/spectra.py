@@ -1,4 +1,4 @@
-"""Pictures of spectra."""
+"""Plots of spectra."""
 
 from __future__ import annotations
 
@@ -9,24 +9,45 @@ from uplift.colorimetry.srgb import to_display_codes
 from uplift.lookup import Cube, QueryResult
 from uplift.viz.figure import new_figure, style_spectrum_axes, write_png
 
-NAMED = 12
-"""More lines than this are not named in a legend."""
+MAX_LEGEND = 12
+"""Largest number of lines with a legend."""
 
 
 def plot_spectra(
-    cube: Cube, answers: Sequence[QueryResult], path: str | os.PathLike[str], *, force: bool = False
+    cube: Cube, results: Sequence[QueryResult], path: str | os.PathLike[str], *, force: bool = False
 ) -> None:
-    """Draw reflectances over wavelength, each in its own colour, as a PNG. Raises `OutputError`."""
+    """Plot reflectances over wavelength as PNG, each in its own colour.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube that was queried.
+    results : sequence of QueryResult
+        The reflectances.
+    path : path-like
+        The file to write.
+    force : bool, default False
+        Replace an existing file.
+
+    Raises
+    ------
+    OutputError
+        If the file exists and ``force`` is false, or cannot be written.
+    """
     figure = new_figure(7.2, 4.0)
     axes = figure.subplots()
-    for answer in answers:
-        name = answer.entry or "#" + "".join(
-            f"{round(code):02x}" for code in cube.encode(answer.rgb).tolist()
+    for result in results:
+        codes = "".join(f"{round(code):02x}" for code in cube.encode(result.rgb).tolist())
+        colour = tuple(to_display_codes(result.rgb, cube.data.sensor) / 255)
+        axes.plot(result.wavelengths, result.reflectance, color="0.25", linewidth=3.4, solid_capstyle="round")
+        axes.plot(
+            result.wavelengths,
+            result.reflectance,
+            color=colour,
+            linewidth=2.4,
+            label=result.entry or f"#{codes}",
         )
-        colour = tuple(to_display_codes(answer.rgb, cube.data.sensor) / 255)
-        axes.plot(answer.wavelengths, answer.reflectance, color="0.25", linewidth=3.4, solid_capstyle="round")
-        axes.plot(answer.wavelengths, answer.reflectance, color=colour, linewidth=2.4, label=name)
     style_spectrum_axes(axes)
-    if len(answers) <= NAMED:
+    if len(results) <= MAX_LEGEND:
         axes.legend(frameon=False)
     write_png(figure, path, force=force)

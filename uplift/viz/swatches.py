@@ -1,4 +1,4 @@
-"""Strips of colour below one another, as a PNG: how one paint turns into another."""
+"""Strips of colour as PNG, such as the colours between two paints."""
 
 from __future__ import annotations
 
@@ -9,21 +9,36 @@ from dataclasses import dataclass
 from uplift.common.arrays import Array
 from uplift.viz.figure import INK, PALE, new_figure, write_png
 
-WIDTH, HEIGHT, TITLE = 7.2, 0.62, 0.24
-"""Inches of a picture, of a strip, and of its title."""
+WIDTH, HEIGHT, TITLE_HEIGHT = 7.2, 0.62, 0.24
+"""Inches of a picture's width, and of the heights of a strip and its title."""
 
 
 @dataclass(frozen=True, eq=False)
 class Strip:
-    """Colours (k, 3) as a screen takes them, in [0, 1], beneath a title."""
+    """Encoded colours (k, 3) in [0, 1] under a title."""
 
     title: str
     codes: Array
 
 
 def plot_strips(strips: Sequence[Strip], path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Draw strips, each as wide as the picture. Raises `OutputError`."""
-    figure = new_figure(WIDTH, len(strips) * (HEIGHT + TITLE) + 0.1)
+    """Plot strips of colour below one another as PNG.
+
+    Parameters
+    ----------
+    strips : sequence of Strip
+        The strips.
+    path : path-like
+        The file to write.
+    force : bool, default False
+        Replace an existing file.
+
+    Raises
+    ------
+    OutputError
+        If the file exists and ``force`` is false, or cannot be written.
+    """
+    figure = new_figure(WIDTH, len(strips) * (HEIGHT + TITLE_HEIGHT) + 0.1)
     for axes, strip in zip(figure.subplots(len(strips), 1, squeeze=False)[:, 0], strips, strict=True):
         axes.imshow(strip.codes[None], aspect="auto", interpolation="nearest")
         axes.set(xticks=(), yticks=())

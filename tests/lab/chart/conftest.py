@@ -8,7 +8,7 @@ import pytest
 from uplift.atlas import read_atlas
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.method import Family, Method, PreparedMethod
-from uplift.lab.chart.table import Chart, MethodResult, State
+from uplift.lab.chart.table import TEXTS, Chart, MethodResult, State
 from uplift.lab.chart.task import Effort, task
 
 FACTS = dict.fromkeys(("machine", "versions", "commit", "colours", "spectra", "effort"), "stated")
@@ -54,11 +54,9 @@ def row_of():
         numbers = {f"{key}_{kind}": error for key in ERRORS for kind in ("mean", "p99", "max")}
         numbers |= {"time_ns": time, "batch_ns": time, "single_ns": 10 * time, "bytes": 1e4, "build_s": 1.0}
         numbers |= {"batch_colours": 64, "round_trip_colours": 16, "unseen_spectra": 12, "own_spectra": 12}
-        texts = dict.fromkeys(("label", "title"), name) | dict.fromkeys(
-            ("mode", "ask", "note", "why", "build"), ""
-        )
+        texts = dict.fromkeys(TEXTS, "") | dict.fromkeys(("label", "title"), name)
         plain = {"family": "Mallett 2019", "source": "a test", "state": State.MEASURED, "numbers": numbers}
-        return MethodResult(**({"method": name} | texts | plain | fields))
+        return MethodResult(**(texts | {"method": name} | plain | fields))
 
     return row_of
 

@@ -100,7 +100,7 @@ def measure_one(family: Family, method: Method, task: Task) -> MethodResult:
         source=family.source,
         mode=method.mode,
         build=method.build,
-        ask=method.ask,
+        ask=method.call,
         note=method.note,
         state=state,
         why=why,

@@ -77,7 +77,7 @@ class Method:
         Label of its marker, by default the title.
     mode : str
         Mode of lookup, which determines the shape of the marker.
-    build, ask : str
+    build, call : str
         Command and call that give a user of this package the same; empty for other methods.
     note : str
         Remark for the reader.
@@ -93,7 +93,7 @@ class Method:
     label: str = ""
     mode: str = ""
     build: str = ""
-    ask: str = ""
+    call: str = ""
     note: str = ""
 
 

@@ -48,7 +48,7 @@ class Requirement:
     Raises
     ------
     OptionError
-        If there is no limit, or one is not a positive number.
+        Without a limit, or if one is not a positive number.
     UnknownNameError
         If the chart has no such light.
     """

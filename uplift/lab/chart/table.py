@@ -32,8 +32,8 @@ class MethodResult:
 
     Parameters
     ----------
-    method, title, label, family, source, mode, build, ask, note : str
-        As in `Method` and `Family`.
+    method, title, label, family, source, mode, build, note : str
+        As in `Method` and `Family`. The field `ask` is ``Method.call``.
     state : State
         Whether the method was measured.
     why : str

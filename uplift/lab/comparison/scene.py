@@ -139,7 +139,7 @@ def scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scene:
     Raises
     ------
     AtlasError
-        If there are no entries, or two of the same name.
+        If the atlases have no entries, or two of the same name.
     UnknownNameError
         If a light is not in the tables.
     """

@@ -159,7 +159,7 @@ def _methods(model: ModelName, counts: tuple[int, ...], atlas: bool) -> Iterator
                 label=f"{options.count} · {options.dim}³ {lookup.mode}",
                 mode=lookup.mode,
                 build=options.command,
-                ask=lookup.call,
+                call=lookup.call,
             )
 
 
