@@ -55,7 +55,7 @@ def read(document: Document) -> Atlas:
     if not entries:
         hint = "add entries, each beginning with a line 'Entry ID: …'"
         location = SourceLocation(document.path, len(document.lines))
-        raise location.error("archive-without-entries", "an archive needs at least one entry", hint)
+        raise location.error("an archive needs at least one entry", hint, code="archive-without-entries")
     return Atlas(
         tuple(item for item in entries if isinstance(item, Entry)),
         tuple(item for item in entries if isinstance(item, SkippedEntry)),
@@ -79,7 +79,7 @@ def _check_version(line: Line, location: SourceLocation) -> None:
     if not version.startswith("1."):
         problem = f"unknown archive version '{truncate(version)}'"
         hint = "write the archive as version 1.0, 1.1 or 1.2"
-        raise location.at(number).error("unknown-archive-version", problem, hint)
+        raise location.at(number).error(problem, hint, code="unknown-archive-version")
 
 
 def _entry(block: Block) -> Entry | SkippedEntry:
@@ -111,7 +111,7 @@ def _why_skipped(block: Block) -> str:
     if fold(kind) != REFLECTANCE:
         known = ", ".join(f"'{name}'" for name in (REFLECTANCE, *OTHER_TYPES[:4]))
         raise location.error(
-            "unknown-entry-type", f"unknown type '{truncate(kind)}'", f"the types are {known}"
+            f"unknown type '{truncate(kind)}'", f"the types are {known}", code="unknown-entry-type"
         )
     return "it is fluorescent (bispectral), not a plain reflectance" if _is_fluorescent(block) else ""
 
@@ -122,7 +122,7 @@ def _is_fluorescent(block: Block) -> bool:
     answer, location = block.fields.required("Fluorescence data")
     if fold(answer) not in ("yes", "no"):
         problem = f"'Fluorescence data' must be 'yes' or 'no', got '{truncate(answer)}'"
-        raise location.error("not-yes-or-no", problem, "write 'yes' or 'no'")
+        raise location.error(problem, "write 'yes' or 'no'", code="not-yes-or-no")
     return fold(answer) == "yes"
 
 
@@ -131,9 +131,9 @@ def _sampled(sampling: Fields, samples: SampleText) -> tuple[Array, Array]:
     kind, location = sampling.required("Type")
     if fold(kind) not in SAMPLINGS:
         raise location.error(
-            "unknown-sampling-type",
             f"unknown sampling type '{truncate(kind)}'",
             "write 'regular' or 'point sampled'",
+            code="unknown-sampling-type",
         )
     sampling.check_known(SAMPLINGS[fold(kind)])
     scale = _scale(sampling)
@@ -156,9 +156,9 @@ def _scale(sampling: Fields) -> float:
     scale = parse_number(text, location, f"'{SCALE}'")
     if not 0 < scale < float("inf"):
         raise location.error(
-            "invalid-scale",
             f"'{SCALE}' must be positive and finite, got {scale:g}",
             "write 100.0 for percent, 1.0 for values in [0, 1]",
+            code="invalid-scale",
         )
     return scale
 

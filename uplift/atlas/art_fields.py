@@ -32,7 +32,7 @@ class Fields:
         line, value = self.values.get(fold(key), (0, ""))
         if not value:
             raise self.location.error(
-                "field-missing", f"the field '{key}' is missing", f"add a line '{key} : …' to the entry"
+                f"the field '{key}' is missing", f"add a line '{key} : …' to the entry", code="field-missing"
             )
         return value, self.location.at(line)
 
@@ -42,7 +42,9 @@ class Fields:
         for key, (line, _) in self.values.items():
             if key not in map(fold, known):
                 hint = "the fields are " + ", ".join(f"'{name}'" for name in known)
-                raise self.location.at(line).error("unknown-field", f"unknown field '{truncate(key)}'", hint)
+                raise self.location.at(line).error(
+                    f"unknown field '{truncate(key)}'", hint, code="unknown-field"
+                )
 
 
 @dataclass(frozen=True)
@@ -88,11 +90,11 @@ def parse_fields(lines: Iterable[Line], location: SourceLocation) -> Fields:
         key, colon, value = text.partition(":")
         if not colon:
             raise location.at(number).error(
-                "unexpected-text", f"unexpected text '{truncate(text)}'", "write 'key : value'"
+                f"unexpected text '{truncate(text)}'", "write 'key : value'", code="unexpected-text"
             )
         if fold(key) in values:
             raise location.at(number).error(
-                "duplicate-field", f"the field '{truncate(key)}' is repeated", "remove one of the two"
+                f"the field '{truncate(key)}' is repeated", "remove one of the two", code="duplicate-field"
             )
         values[fold(key)] = number, value.strip()
     return Fields(values, location)
@@ -123,4 +125,4 @@ def _find(lines: list[Line], title: str, location: SourceLocation) -> int:
         if len(text) < 200 and fold(text) == fold(title):
             return i
     last = (content_lines(lines) or lines)[-1][0]
-    raise location.at(last).error("section-missing", f"the section '{title}' is missing", COMPLETE_ENTRY)
+    raise location.at(last).error(f"the section '{title}' is missing", COMPLETE_ENTRY, code="section-missing")

@@ -24,7 +24,9 @@ def extract_samples(lines: list[Line], location: SourceLocation) -> SampleText:
     """Extract the text between the braces that open on the first line with content. Raise `AtlasError`."""
     opening = content_lines(lines)[:1]
     if not opening or not opening[0][1].startswith("{"):
-        raise location.error("samples-missing", "the sample list, opened by '{', is missing", COMPLETE_ENTRY)
+        raise location.error(
+            "the sample list, opened by '{', is missing", COMPLETE_ENTRY, code="samples-missing"
+        )
     start = opening[0][0]
     first = start - lines[0][0]
     end = _closing(lines, first, location.at(start))
@@ -33,7 +35,7 @@ def extract_samples(lines: list[Line], location: SourceLocation) -> SampleText:
     if after or not text.endswith("}"):
         line = after[0][0] if after else lines[end][0]
         raise location.at(line).error(
-            "unexpected-text", "unexpected text after the sample list", "end the entry with '}'"
+            "unexpected text after the sample list", "end the entry with '}'", code="unexpected-text"
         )
     return SampleText(text[1:-1], location.at(start))
 
@@ -41,7 +43,9 @@ def extract_samples(lines: list[Line], location: SourceLocation) -> SampleText:
 def parse_values(samples: SampleText) -> list[float]:
     """Parse ``a, b, …``. Raise `AtlasError`."""
     if "{" in samples.text or "}" in samples.text:
-        raise samples.location.error("unexpected-braces", "braces within a regular sample list", WRITE_VALUES)
+        raise samples.location.error(
+            "braces within a regular sample list", WRITE_VALUES, code="unexpected-braces"
+        )
     return _numbers(samples.text, samples.location)
 
 
@@ -67,7 +71,7 @@ def _pair(opening: str, inside: str, location: SourceLocation) -> list[float]:
 
 
 def _pairs_error(location: SourceLocation) -> AtlasError:
-    return location.error("samples-not-paired", "the samples are not in pairs", WRITE_PAIRS)
+    return location.error("the samples are not in pairs", WRITE_PAIRS, code="samples-not-paired")
 
 
 def _closing(lines: list[Line], first: int, location: SourceLocation) -> int:
@@ -76,7 +80,7 @@ def _closing(lines: list[Line], first: int, location: SourceLocation) -> int:
         depth += text.count("{") - text.count("}")
         if depth <= 0:
             return i
-    raise location.error("samples-not-closed", "the sample list is not closed by '}'", COMPLETE_ENTRY)
+    raise location.error("the sample list is not closed by '}'", COMPLETE_ENTRY, code="samples-not-closed")
 
 
 def _numbers(text: str, location: SourceLocation) -> list[float]:

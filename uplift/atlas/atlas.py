@@ -275,7 +275,7 @@ def _read_only(samples: ArrayLike, key: str, location: SourceLocation) -> Array:
         array = np.array(samples, dtype=np.float64)
     except (TypeError, ValueError):
         raise location.error(
-            "samples-not-numeric", f"the {key} are not all numbers", "give an array of numbers"
+            f"the {key} are not all numbers", "give an array of numbers", code="samples-not-numeric"
         ) from None
     array.setflags(write=False)
     return array
@@ -284,4 +284,6 @@ def _read_only(samples: ArrayLike, key: str, location: SourceLocation) -> Array:
 def _duplicate_error(first: Entry, second: Entry) -> AtlasError:
     where = "" if first.path is None else f": first used at {first.path}:{first.line}"
     location = SourceLocation(second.path, second.line, second.name)
-    return location.error("duplicate-name", f"the name is taken{where}", "rename or remove one of the two")
+    return location.error(
+        f"the name is taken{where}", "rename or remove one of the two", code="duplicate-name"
+    )

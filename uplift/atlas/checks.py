@@ -23,12 +23,12 @@ SLACK = 1e-6
 def check_name(name: str, location: SourceLocation) -> None:
     """Check that a name is one line of text without surrounding blanks. Raise `AtlasError`."""
     if not name.strip():
-        raise location.error("name-missing", "an entry needs a name", "give every entry a unique name")
+        raise location.error("an entry needs a name", "give every entry a unique name", code="name-missing")
     if name != name.strip() or len(name.splitlines()) != 1 or "\0" in name:
         raise location.error(
-            "invalid-name",
             "the name has line breaks or surrounding blanks",
             "give the entry a name of one line",
+            code="invalid-name",
         )
 
 
@@ -44,10 +44,10 @@ def check_spectrum(wavelengths: Array, values: Array, location: SourceLocation) 
 def _check_shapes(wavelengths: Array, values: Array, location: SourceLocation) -> None:
     if wavelengths.ndim != 1 or wavelengths.shape != values.shape:
         problem = f"wavelengths and values must have the same shape (N,), got {wavelengths.shape} and {values.shape}"
-        raise location.error("shape-mismatch", problem, "give one wavelength for every value")
+        raise location.error(problem, "give one wavelength for every value", code="shape-mismatch")
     if len(wavelengths) < 2:
         problem = f"an entry needs at least 2 samples, got {len(wavelengths)}"
-        raise location.error("too-few-samples", problem, "add the missing samples")
+        raise location.error(problem, "add the missing samples", code="too-few-samples")
 
 
 def _check_finite(wavelengths: Array, values: Array, location: SourceLocation) -> None:
@@ -56,7 +56,7 @@ def _check_finite(wavelengths: Array, values: Array, location: SourceLocation) -
         i = bad[0]
         problem = f"sample {i + 1} is not finite: {values[i]:g} at {wavelengths[i]:g} nm"
         raise location.error(
-            "sample-not-finite", problem, "replace it by the measured value or remove the entry"
+            problem, "replace it by the measured value or remove the entry", code="sample-not-finite"
         )
 
 
@@ -64,13 +64,13 @@ def _check_ascending(wavelengths: Array, location: SourceLocation) -> None:
     if wavelengths[0] <= 0 or wavelengths[-1] > LONGEST:
         outside = wavelengths[0] if wavelengths[0] <= 0 else wavelengths[-1]
         problem = f"wavelengths must be in (0, {LONGEST:g}] nm, got {outside:g}"
-        raise location.error("wavelength-out-of-range", problem, "give wavelengths in nm")
+        raise location.error(problem, "give wavelengths in nm", code="wavelength-out-of-range")
     bad = np.flatnonzero(np.diff(wavelengths) < SLACK)
     if len(bad):
         i = bad[0]
         problem = f"wavelengths must ascend, got {wavelengths[i]:g} nm, then {wavelengths[i + 1]:g} nm"
         raise location.error(
-            "wavelengths-not-ascending", problem, "sort the samples by wavelength, each wavelength once"
+            problem, "sort the samples by wavelength, each wavelength once", code="wavelengths-not-ascending"
         )
 
 
@@ -79,7 +79,7 @@ def _check_coverage(wavelengths: Array, location: SourceLocation) -> None:
     if first > VISIBLE[0] + SLACK or last < VISIBLE[1] - SLACK:
         problem = f"an entry must cover {VISIBLE[0]:g}–{VISIBLE[1]:g} nm, got {first:g}–{last:g} nm"
         raise location.error(
-            "visible-range-not-covered", problem, "add the missing samples and give wavelengths in nm"
+            problem, "add the missing samples and give wavelengths in nm", code="visible-range-not-covered"
         )
 
 
@@ -91,4 +91,4 @@ def _check_scale(wavelengths: Array, values: Array, location: SourceLocation) ->
             f"reflectance must be in [{LOWEST:g}, {HIGHEST:g}], got {values[i]:g} at {wavelengths[i]:g} nm"
         )
         hint = "the scale (in atlas text 'Maximum sample value') is probably missing or wrong"
-        raise location.error("reflectance-out-of-range", problem, hint)
+        raise location.error(problem, hint, code="reflectance-out-of-range")

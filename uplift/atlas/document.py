@@ -39,7 +39,7 @@ class SourceLocation:
         """Return the location after ``text``, which starts here."""
         return self.at((self.line or 1) + text.count("\n")) if "\n" in text else self
 
-    def error(self, code: str, problem: str, hint: str) -> AtlasError:
+    def error(self, problem: str, hint: str, *, code: str) -> AtlasError:
         """Create an error at this location."""
         entry = None if self.entry is None else truncate(self.entry)
         return AtlasError(problem, code=code, path=self.path, line=self.line, entry=entry, hint=hint)
@@ -76,7 +76,9 @@ def read_document(path: StrPath) -> Document:
     data = _bytes(location)
     text = _decode(data, location)
     if not text.strip():
-        raise location.error("empty-file", "the file is empty", "name a file that contains atlas entries")
+        raise location.error(
+            "the file is empty", "name a file that contains atlas entries", code="empty-file"
+        )
     return Document(os.fspath(path), text, hashlib.sha256(data).hexdigest())
 
 
@@ -87,7 +89,7 @@ def _bytes(location: SourceLocation) -> bytes:
         code = READ_ERRORS.get(type(error), "unreadable-file")
         reason = str(getattr(error, "strerror", None) or error).lower()
         raise location.error(
-            code, f"cannot be read: {reason}", "name an atlas file that can be read"
+            f"cannot be read: {reason}", "name an atlas file that can be read", code=code
         ) from None
 
 
@@ -95,7 +97,7 @@ def _decode(data: bytes, location: SourceLocation) -> str:
     if b"\0" in data:
         line = data[: data.index(b"\0")].count(b"\n") + 1
         raise location.at(line).error(
-            "binary-file", "binary data (a NUL byte) instead of text", "save the atlas as UTF-8 text"
+            "binary data (a NUL byte) instead of text", "save the atlas as UTF-8 text", code="binary-file"
         )
     try:
         text = data.decode("utf-8-sig")
@@ -112,7 +114,7 @@ def parse_number(token: str, location: SourceLocation, label: str) -> float:
         return float(token)
     except ValueError:
         problem = f"{label} '{truncate(token)}' is not a number"
-        raise location.error("not-a-number", problem, "write a plain number such as 0.125") from None
+        raise location.error(problem, "write a plain number such as 0.125", code="not-a-number") from None
 
 
 def parse_nanometres(token: str, location: SourceLocation, label: str) -> float:

@@ -82,14 +82,14 @@ def _rows(document: Document) -> list[Row]:
     try:
         rows = list(_split(document, delimiter))
     except csv.Error as error:
-        raise location.error("not-a-table", f"not a readable table: {error}", LAYOUT) from None
+        raise location.error(f"not a readable table: {error}", LAYOUT, code="not-a-table") from None
     if len(rows) < 2:
-        raise location.at(1).error("not-an-atlas", NO_TABLE, LAYOUT)
+        raise location.at(1).error(NO_TABLE, LAYOUT, code="not-an-atlas")
     for row in rows:
         if len(row) != len(rows[0]):
             problem = f"a row must have {len(rows[0])} cells like the header row, got {len(row)}"
             hint = "fill in the missing cells or remove the row"
-            raise location.at(row[0].line).error("row-of-wrong-length", problem, hint)
+            raise location.at(row[0].line).error(problem, hint, code="row-of-wrong-length")
     return rows
 
 
@@ -128,9 +128,11 @@ def _orient(rows: list[Row], location: SourceLocation) -> list[Row]:
     columns = list(zip(*rows, strict=True))
     tables = [table for table in (rows, columns) if _numeric(table[0][1:])]
     if len(columns) < 2 or not tables:
-        raise location.at(rows[0][0].line).error("not-an-atlas", NO_TABLE, LAYOUT)
+        raise location.at(rows[0][0].line).error(NO_TABLE, LAYOUT, code="not-an-atlas")
     if _is_number(rows[0][0].text):
-        raise location.at(rows[0][0].line).error("header-row-missing", "the header row is missing", LAYOUT)
+        raise location.at(rows[0][0].line).error(
+            "the header row is missing", LAYOUT, code="header-row-missing"
+        )
     return next((table for table in tables if _covers(table[0][1:])), tables[0])
 
 
