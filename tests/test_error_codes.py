@@ -10,7 +10,7 @@ from uplift.common import errors
 
 from .conftest import ROOT
 
-CLASSES = set(errors.__all__)
+CLASSES = {name for name in errors.__all__ if isinstance(getattr(errors, name), type)}
 
 
 def without_code(text):
@@ -51,3 +51,9 @@ def test_listed_codes_are_those_of_the_source():
 def test_calls_yields_literal_codes():
     tree = ast.parse("raise OptionError('x', code='too-small')\nwarn(UpliftWarning('y', code='left-out'))")
     assert sorted(calls(tree)) == [("OptionError", "too-small"), ("UpliftWarning", "left-out")]
+
+
+def test_calls_yields_codes_of_unknown_names():
+    assert list(calls(ast.parse("raise unknown_name(x, known, 'RGB space')"))) == [
+        ("unknown_name", "unknown-rgb-space")
+    ]

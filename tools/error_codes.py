@@ -17,12 +17,18 @@ ROOT = Path(__file__).parents[1]
 TARGET = ROOT / "docs" / "data" / "errors.json"
 
 
+NAMED = {"unknown_name", "_look_up", "_samples"}
+"""Functions whose third argument is the kind of a name; an unknown name has the code ``unknown-`` and the kind."""
+
+
 def calls(tree: ast.AST) -> Iterator[tuple[str, str]]:
-    """Yield the function name and the code of every call with a literal ``code``."""
+    """Yield the function name and the code of every call with a literal ``code`` or a literal kind of name."""
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call):
             continue
         name = node.func.id if isinstance(node.func, ast.Name) else getattr(node.func, "attr", "")
+        if name in NAMED and len(node.args) > 2 and isinstance(node.args[2], ast.Constant):
+            yield name, "unknown-" + "-".join(str(node.args[2].value).casefold().split())
         for keyword in node.keywords:
             if keyword.arg == "code" and isinstance(keyword.value, ast.Constant):
                 yield name, str(keyword.value.value)
