@@ -1,4 +1,4 @@
-"""The documentation is true: commands exist, their options too, and the Python runs."""
+"""The documentation is valid: its commands and options exist, its Python runs, its links resolve."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ import pytest
 from uplift_cli.main import COMMANDS, main
 
 from tests.conftest import ROOT
+from tests.helpers import warns
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 README = PAGES[0].read_text(encoding="utf-8")
 
 
 def command_lines():
-    """Every ``uplift …`` line of the pages' code blocks."""
+    """Yield every ``uplift …`` line in code blocks of the pages."""
     for page in PAGES:
         for block in re.findall(r"```\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
             for line in block.splitlines():
@@ -26,7 +27,7 @@ def command_lines():
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_every_command_is_in_the_readme_and_its_help_has_examples(name):
+def test_readme_has_every_command_and_help_has_examples(name):
     assert f"**`uplift {name}`**" in README
     with click.Context(main, **main.context_settings) as context:
         command = main.get_command(context, name)
@@ -34,37 +35,37 @@ def test_every_command_is_in_the_readme_and_its_help_has_examples(name):
 
 
 @pytest.mark.parametrize("line", list(command_lines()))
-def test_every_command_line_parses(line):
+def test_command_lines_parse(line):
     name, *arguments = shlex.split(line)[1:]
     with click.Context(main, **main.context_settings) as context:
         command = main.get_command(context, name)
         command.make_context(name, arguments, parent=context)
 
 
-def test_there_are_command_lines_to_parse():
+def test_pages_have_command_lines():
     assert len(list(command_lines())) >= 8
 
 
-def test_a_line_with_an_option_that_does_not_exist_would_not_parse():
+def test_unknown_options_do_not_parse():
     with click.Context(main, **main.context_settings) as context, pytest.raises(click.NoSuchOption):
         main.get_command(context, "build").make_context("build", ["--dimension", "3"], parent=context)
 
 
-def test_the_readme_s_python_runs(tmp_path, monkeypatch):
+def test_python_of_the_readme_runs(tmp_path, monkeypatch):
     (tmp_path / "atlases").symlink_to(ROOT / "atlases")
     monkeypatch.chdir(tmp_path)
     (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    with pytest.warns(UserWarning, match="cyan"):
+    with warns("entry-out-of-gamut"):
         exec(compile(code, "README.md", "exec"), {})
 
 
-def test_links_lead_somewhere():
+def test_links_resolve():
     for page in PAGES:
         for target in re.findall(r"\]\((?!http)([^)#]+)\)", page.read_text(encoding="utf-8")):
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 
 
-def test_make_targets_that_the_pages_name_exist():
+def test_make_targets_exist():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for page in PAGES:
         for target in re.findall(r"`make ([\w-]+)`", " ".join(page.read_text(encoding="utf-8").split())):
