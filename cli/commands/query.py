@@ -157,7 +157,7 @@ def _read_colours(
     except OSError as error:
         raise ColourError(
             f"cannot be read: {error.strerror}",
-            code="unreadable-file",
+            code="file-unreadable",
             path=path,
             hint="give a CSV file of colours",
         ) from error

@@ -42,7 +42,7 @@ def _parse_labels(labels: tuple[str, ...]) -> dict[str, str] | None:
         name, sign, colour = label.partition("=")
         if not sign:
             raise OptionError(
-                f"label must be NAME=#rrggbb, got '{label}'", code="label-unreadable", hint="add a colour"
+                f"label must be NAME=#rrggbb, got '{label}'", code="invalid-label", hint="add a colour"
             )
         if name in colours:
             raise OptionError(

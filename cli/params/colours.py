@@ -63,7 +63,7 @@ def _check_range(colour: Colour, name: str, line: int, *, encoded: bool, bounded
     if encoded:
         if not all(0 <= number <= 255 for number in colour.numbers):
             problem = f"8-bit codes must be in [0, 255], got {values}"
-            raise ColourError(problem, code="codes-out-of-range", path=name, line=line)
+            raise ColourError(problem, code="invalid-codes", path=name, line=line)
     elif bounded:
         if not all(-SLACK <= number <= 1 + SLACK for number in colour.numbers):
             problem = f"linear RGB must be in [0, 1], got {values}"
@@ -110,7 +110,7 @@ def _parse(parts: Sequence[str]) -> Colour | None:
 
 def _unreadable(parts: Sequence[str], *, path: str | None = None, line: int | None = None) -> ColourError:
     problem = f"'{' '.join(parts)[:QUOTE_LENGTH]}' is not a colour"
-    return ColourError(problem, code="colour-unreadable", path=path, line=line, hint=SYNTAX)
+    return ColourError(problem, code="invalid-colour", path=path, line=line, hint=SYNTAX)
 
 
 def _hex(word: str) -> str | None:

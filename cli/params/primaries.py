@@ -28,7 +28,7 @@ def parse_primaries(text: str) -> Primaries:
     except ValueError as error:
         raise OptionError(
             f"primaries must be the name of a space or eight numbers, got '{text}'",
-            code="primaries-unreadable",
+            code="invalid-primaries",
             hint="give x,y of red, green, blue and white",
         ) from error
     return Primaries.of(numbers)

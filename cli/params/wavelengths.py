@@ -33,6 +33,6 @@ def _unreadable(text: str) -> Exception:
 
     return OptionError(
         f"wavelengths must be START:END:STEP or a list, got '{text}'",
-        code="wavelengths-unreadable",
+        code="invalid-wavelengths",
         hint="write for example 380:780:5 or 450,550,650, in nm",
     )

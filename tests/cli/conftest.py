@@ -55,7 +55,7 @@ def run(home: Path) -> Run:
 
 @pytest.fixture
 def refuse(run: Run, shown: list[click.ClickException]) -> Callable[..., UpliftError]:
-    """Run ``uplift`` with bad input and return the error, which must be reported on one line with a hint."""
+    """Run ``uplift`` with bad input and return the error, reported on one line that has a hint or the constraint."""
 
     def refuse(*args: object, **options: object) -> UpliftError:
         result = run(*args, code=2, **options)
@@ -64,7 +64,7 @@ def refuse(run: Run, shown: list[click.ClickException]) -> Callable[..., UpliftE
         assert isinstance(failure, UsageFailure), result.stderr
         (line,) = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
         assert line == f"error: {failure.message}"
-        assert "; " in line
+        assert "; " in line or " must " in line
         assert failure.error.where in line
         return failure.error
 

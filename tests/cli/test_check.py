@@ -94,4 +94,4 @@ def test_invalid_cubes_are_reported_before_any_build(refuse, stored, monkeypatch
     module = importlib.import_module("uplift.pipeline.rebuild")
     monkeypatch.setattr(module, "rebuild", lambda *_, **__: pytest.fail("rebuilt"))
     error = refuse("check", stored, "none.uplift")
-    assert (error.code, error.where) == ("file-not-found", "none.uplift")
+    assert (error.code, error.where) == ("cube-not-found", "none.uplift")

@@ -69,7 +69,7 @@ def test_files_are_replaced_only_with_force(run, refuse, home, cube):
 
 
 def test_invalid_input_is_an_error(refuse, home, cube):
-    assert refuse("export", "missing.uplift", "cube.csv").code == "file-not-found"
+    assert refuse("export", "missing.uplift", "cube.csv").code == "cube-not-found"
     assert refuse("export", cube, "cube.coeff", "--res", "1").code == "resolution-out-of-range"
     assert refuse("export", cube, "missing/cube.csv").code == "folder-missing"
     assert [path.name for path in home.iterdir()] == [cube]

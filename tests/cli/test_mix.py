@@ -111,14 +111,14 @@ def test_paint_over_an_image(run, refuse, home, cubes):
     assert read_channels(home / "hidden.exr", "RGB").std(axis=(0, 1)).max() < 1e-4
     run("mix", "--dye", "#c8342a", "--thickness", 0, *options, "-o", "bare.exr")
     np.testing.assert_allclose(read_channels(home / "bare.exr", "RGB"), rgb, atol=1e-5)
-    assert refuse("mix", BLUE, *options, "-o", "o.png").code == "unknown-suffix"
+    assert refuse("mix", BLUE, *options, "-o", "o.png").code == "unsupported-suffix"
     assert refuse("mix", "--light", BLUE, *options, "-o", "o.exr").code == "unknown-coat"
 
 
 @pytest.mark.parametrize(
     ("words", "code"),
     [
-        (("teal",), "colour-unreadable"),
+        (("teal",), "invalid-colour"),
         (("0:#ffffff",), "invalid-parts"),
         (("-1:#ffffff",), "invalid-parts"),
         (("1:1.5,0,0",), "rgb-out-of-gamut"),
@@ -126,8 +126,8 @@ def test_paint_over_an_image(run, refuse, home, cubes):
         (("#802020", "--thickness", "-1"), "invalid-thickness"),
         (("#802020", "--refractive-index", "0.5"), "invalid-refractive-index"),
         (("--filter", "#802020", "--thickness", "2"), "medium-not-applicable"),
-        (("#802020", "--cube", "none.uplift"), "file-not-found"),
-        (("#802020", "--atlas", "none.txt"), "file-not-found"),
+        (("#802020", "--cube", "none.uplift"), "cube-not-found"),
+        (("#802020", "--atlas", "none.txt"), "cannot-read"),
     ],
 )
 def test_invalid_input_is_an_error(refuse, words, code):

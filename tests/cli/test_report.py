@@ -95,10 +95,10 @@ def test_atlases_are_searched_for_in_given_folders(run, refuse, home, cube):
 def test_invalid_input_is_an_error_and_nothing_is_written(refuse, home, cube):
     (home / "text.uplift").write_text("not a cube")
     before = {path.name for path in home.iterdir()}
-    assert refuse("report", "none.uplift").code == "file-not-found"
+    assert refuse("report", "none.uplift").code == "cube-not-found"
     assert refuse("report", "text.uplift").code == "not-a-cube"
     assert refuse("report", cube, "--light", "D66").code == "unknown-illuminant"
-    assert refuse("report", cube, "--atlas", "none.txt").code == "file-not-found"
+    assert refuse("report", cube, "--atlas", "none.txt").code == "cannot-read"
     assert refuse("report", cube, "-o", "nowhere/page.html").code == "folder-missing"
     assert {path.name for path in home.iterdir()} == before
 

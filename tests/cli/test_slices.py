@@ -49,14 +49,14 @@ def test_nothing_is_written_if_one_file_exists(run, refuse, cube, home, exists):
 
 def test_the_cube_is_not_replaced(refuse, cube, home):
     before = (home / cube).read_bytes()
-    assert refuse("slices", cube, cube, "--force").code == "unknown-suffix"
+    assert refuse("slices", cube, cube, "--force").code == "unsupported-suffix"
     assert (home / cube).read_bytes() == before
 
 
 def test_invalid_cubes_are_errors(refuse, home):
     (home / "text.uplift").write_text("not a cube")
     assert refuse("slices", "text.uplift", "out.exr").code == "not-a-cube"
-    assert refuse("slices", "missing.uplift", "out.exr").code == "file-not-found"
+    assert refuse("slices", "missing.uplift", "out.exr").code == "cube-not-found"
     assert not (home / "out.exr").exists()
 
 

@@ -53,12 +53,12 @@ def test_sequences_continue_after_an_invalid_image(run, shown, frames, cubes):
     [
         (("none.exr", "out.exr"), "file-not-found"),
         (("none*.exr", "out"), "no-match"),
-        (("shot.0.exr", "out.png"), "unknown-suffix"),
+        (("shot.0.exr", "out.png"), "unsupported-suffix"),
         (("shot.0.exr", "shot.1.exr", "out.exr"), "not-a-folder"),
         (("shot.0.exr", "shot.1.exr", "shot.2.exr/out"), "not-a-folder"),
         (("shot.0.exr", "a.exr", "--store", "moments", "--wavelengths", "500"), "wavelengths-not-applicable"),
-        (("shot.0.exr", "a.exr", "--wavelengths", "500:400:5"), "wavelengths-unreadable"),
-        (("shot.0.exr", "a.exr", "--cube", "none.uplift"), "file-not-found"),
+        (("shot.0.exr", "a.exr", "--wavelengths", "500:400:5"), "invalid-wavelengths"),
+        (("shot.0.exr", "a.exr", "--cube", "none.uplift"), "cube-not-found"),
         (("shot.0.exr", "a.exr", "--store", "multipliers", "--depth", "half"), "unsupported-depth"),
     ],
 )

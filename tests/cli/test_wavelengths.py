@@ -91,7 +91,7 @@ def test_plot(choose, home):
         (["--target", "0.001", "--method", "uniform"], "target-unreachable"),
         (["--count", "3", "--method", "meyer"], "undefined-rule"),
         (["--wavelengths", "300:700:50"], "invalid-wavelengths"),
-        (["--wavelengths", "some"], "wavelengths-unreadable"),
+        (["--wavelengths", "some"], "invalid-wavelengths"),
         (["--count", "4", "--observer", "me"], "unknown-observer"),
     ],
 )
