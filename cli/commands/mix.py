@@ -159,7 +159,7 @@ def _check_usage(
     if output is not None and not output.lower().endswith(".exr"):
         raise OutputError(
             "painted images are OpenEXR files",
-            code="unsupported-suffix",
+            code="unknown-suffix",
             path=output,
             hint="give a file name ending in .exr",
         )

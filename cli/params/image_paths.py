@@ -23,7 +23,7 @@ def texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path]
         if folder.suffix.lower() != ".exr":
             raise OutputError(
                 "textures are OpenEXR files",
-                code="unsupported-suffix",
+                code="unknown-suffix",
                 path=target,
                 hint="give a file name ending in .exr, or a folder",
             )

@@ -115,7 +115,7 @@ def test_convert_replaces_files_only_with_force(invoke, refuse, tmp_path):
 
 def test_invalid_input_is_an_error(refuse):
     error = refuse("atlas", "none.txt")
-    assert (error.code, error.where) == ("cannot-read", "none.txt")
+    assert (error.code, error.where) == ("file-not-found", "none.txt")
     error = refuse("atlas", MACBETH, "--space", "sRGBB")
     assert error.code == "unknown-rgb-space"
     assert "'sRGB'" in error.hint

@@ -161,9 +161,9 @@ def test_files_are_replaced_only_with_force(run, refuse, home):
         (("--threshold", "0"), "threshold-out-of-range"),
         (("--threshold", "nan"), "threshold-out-of-range"),
         (("--threshold", "1"), "threshold-out-of-range"),
-        (("--atlas", "none.txt"), "cannot-read"),
+        (("--atlas", "none.txt"), "file-not-found"),
         (("--atlas", "empty.txt"), "empty-file"),
-        (("--atlas", "."), "cannot-read"),
+        (("--atlas", "."), "not-a-regular-file"),
     ],
 )
 def test_invalid_input_is_reported_before_the_build(refuse, monkeypatch, home, args, code):

@@ -111,7 +111,7 @@ def test_paint_over_an_image(run, refuse, home, cubes):
     assert read_channels(home / "hidden.exr", "RGB").std(axis=(0, 1)).max() < 1e-4
     run("mix", "--dye", "#c8342a", "--thickness", 0, *options, "-o", "bare.exr")
     np.testing.assert_allclose(read_channels(home / "bare.exr", "RGB"), rgb, atol=1e-5)
-    assert refuse("mix", BLUE, *options, "-o", "o.png").code == "unsupported-suffix"
+    assert refuse("mix", BLUE, *options, "-o", "o.png").code == "unknown-suffix"
     assert refuse("mix", "--light", BLUE, *options, "-o", "o.exr").code == "unknown-coat"
 
 
@@ -127,7 +127,7 @@ def test_paint_over_an_image(run, refuse, home, cubes):
         (("#802020", "--refractive-index", "0.5"), "invalid-refractive-index"),
         (("--filter", "#802020", "--thickness", "2"), "medium-not-applicable"),
         (("#802020", "--cube", "none.uplift"), "cube-not-found"),
-        (("#802020", "--atlas", "none.txt"), "cannot-read"),
+        (("#802020", "--atlas", "none.txt"), "file-not-found"),
     ],
 )
 def test_invalid_input_is_an_error(refuse, words, code):

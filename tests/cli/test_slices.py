@@ -49,7 +49,7 @@ def test_nothing_is_written_if_one_file_exists(run, refuse, cube, home, exists):
 
 def test_the_cube_is_not_replaced(refuse, cube, home):
     before = (home / cube).read_bytes()
-    assert refuse("slices", cube, cube, "--force").code == "unsupported-suffix"
+    assert refuse("slices", cube, cube, "--force").code == "unknown-suffix"
     assert (home / cube).read_bytes() == before
 
 

@@ -97,7 +97,7 @@ def test_files_are_replaced_only_with_force(run, refuse, home, tcs):
 @pytest.mark.parametrize(
     ("options", "code"),
     [
-        (("--atlas", "none.txt"), "cannot-read"),
+        (("--atlas", "none.txt"), "file-not-found"),
         (("--atlas", "tcs.txt", "--max-moments", 33), "moments-out-of-range"),
         (("--atlas", "tcs.txt", "--max-moments", -1), "moments-out-of-range"),
         (("--atlas", "tcs.txt", "--atlas", "copy/tcs.txt"), "duplicate-atlas"),

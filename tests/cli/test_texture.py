@@ -53,7 +53,7 @@ def test_sequences_continue_after_an_invalid_image(run, shown, frames, cubes):
     [
         (("none.exr", "out.exr"), "file-not-found"),
         (("none*.exr", "out"), "no-match"),
-        (("shot.0.exr", "out.png"), "unsupported-suffix"),
+        (("shot.0.exr", "out.png"), "unknown-suffix"),
         (("shot.0.exr", "shot.1.exr", "out.exr"), "not-a-folder"),
         (("shot.0.exr", "shot.1.exr", "shot.2.exr/out"), "not-a-folder"),
         (("shot.0.exr", "a.exr", "--store", "moments", "--wavelengths", "500"), "wavelengths-not-applicable"),
