@@ -122,11 +122,17 @@ def pages(docs: Path = DOCS) -> list[str]:
     return sorted(path.name.removesuffix(".md.j2") for path in (docs / "templates").glob("*.md.j2"))
 
 
-def render(name: str, docs: Path = DOCS) -> str:
-    """Return the text of a page, from its template and data below ``docs``."""
+def read_data(name: str, docs: Path = DOCS) -> dict[str, Any]:
+    """Return the data of a page: docs/data/NAME.json, empty if the page has none."""
+    path = docs / "data" / f"{name}.json"
+    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+
+
+def render(name: str, docs: Path = DOCS, data: Mapping[str, Any] | None = None) -> str:
+    """Return the text of a page, from its template below ``docs`` and its data, by default the stored one."""
 
     def load(part: str) -> Any:
-        return json.loads((docs / "data" / f"{part}.json").read_text(encoding="utf-8"))
+        return read_data(part, docs)
 
     def rows(path: str) -> list[Row]:
         return [
@@ -154,8 +160,7 @@ def render(name: str, docs: Path = DOCS) -> str:
         "where": where,
         "pick": pick,
     }
-    has_data = (docs / "data" / f"{name}.json").is_file()
-    return environment.get_template(f"{name}.md.j2").render(load(name) if has_data else {})
+    return environment.get_template(f"{name}.md.j2").render(load(name) if data is None else data)
 
 
 def _value(cell: str) -> Any:
