@@ -20,6 +20,8 @@ from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.report.calibration import Calibration, calibration
 
+__all__ = ["HoldoutSplit", "SpectrumErrors", "holdout", "pooled_calibration", "spectrum_errors"]
+
 MIN_ENTRIES = 8
 """Fewest entries within the RGB space of an atlas that is split."""
 HALF, NO_ATLAS, SIGMOID = "half the atlas", "without an atlas", "sigmoid"
@@ -42,7 +44,13 @@ class SpectrumErrors:
     delta_e: Array
 
     def means(self) -> Array:
-        """Mean rms, then mean ΔE00 under each light, as one array (1 + L,)."""
+        """Average over the spectra.
+
+        Returns
+        -------
+        ndarray, shape (1 + L,)
+            Mean rms, then mean ΔE00 under each light.
+        """
         return np.concatenate([[self.rms.mean()], self.delta_e.mean(axis=0)])
 
 
@@ -68,7 +76,20 @@ class HoldoutSplit:
 def spectrum_errors(
     predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS
 ) -> SpectrumErrors:
-    """Compare predicted with measured reflectances (n, N) on the wavelength grid of all sensors."""
+    """Compare predicted with measured reflectances.
+
+    Parameters
+    ----------
+    predicted, measured : ndarray, shape (n, N)
+        Reflectances on the wavelength grid of all sensors.
+    lights : sequence of str, optional
+        Names of the lights of ΔE00.
+
+    Returns
+    -------
+    SpectrumErrors
+        Errors of each spectrum.
+    """
     rms = np.sqrt(((predicted - measured) ** 2).mean(axis=1))
     delta_e = [delta_e_spectra(observer.light(name), predicted, measured) for name in lights]
     return SpectrumErrors(rms, np.stack(delta_e, axis=1))
@@ -116,7 +137,18 @@ def holdout(
 
 
 def pooled_calibration(splits: Sequence[HoldoutSplit]) -> Calibration | None:
-    """Calibration of the standard errors over all splits; None if the cubes have none."""
+    """Compare predicted standard errors with actual errors over all splits.
+
+    Parameters
+    ----------
+    splits : sequence of HoldoutSplit
+        Results of `holdout`.
+
+    Returns
+    -------
+    Calibration or None
+        None if the cubes predict no standard errors.
+    """
     pairs = [(split.actual, split.predicted) for split in splits if split.predicted is not None]
     if not pairs:
         return None

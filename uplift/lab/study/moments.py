@@ -22,6 +22,8 @@ from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.study.technique import TECHNIQUES, Technique
 
+__all__ = ["MomentsResult", "MomentsStudy", "fine_grid", "study_moments"]
+
 DEFAULT_MAX_MOMENTS, MAX_MOMENTS = 15, 32
 """Largest number of moments above the zeroth: in the thesis, and of cosines that a 5 nm grid still resolves."""
 MEASURES = ("delta_e_76_D65", *(f"delta_e_00_{name}" for name in REPORT_LIGHTS), "rms")
@@ -64,11 +66,37 @@ class MomentsStudy:
         return (ALL_ATLASES, *dict.fromkeys(self.atlases))
 
     def rows(self, group: str = ALL_ATLASES) -> NDArray[np.intp]:
-        """Indices of the entries of a group."""
+        """Find the entries of a group.
+
+        Parameters
+        ----------
+        group : str, optional
+            One of `groups`.
+
+        Returns
+        -------
+        ndarray
+            Indices of the entries.
+        """
         return np.array([row for row, atlas in enumerate(self.atlases) if group in (ALL_ATLASES, atlas)])
 
     def result(self, technique: Technique, moments: int, group: str = ALL_ATLASES) -> MomentsResult:
-        """Summarise the errors of a group for one technique and number of moments."""
+        """Summarise the errors of a group for one technique and number of moments.
+
+        Parameters
+        ----------
+        technique : Technique
+            One of `TECHNIQUES`.
+        moments : int
+            Number of moments above the zeroth, 0 to `max_moments`.
+        group : str, optional
+            One of `groups`.
+
+        Returns
+        -------
+        MomentsResult
+            Mean and largest errors.
+        """
         rows = self.rows(group)
         errors = self.errors[TECHNIQUES.index(technique), moments, rows]
         worst = int(rows[errors[:, 0].argmax()])
@@ -114,7 +142,13 @@ class MomentsResult:
 
 
 def fine_grid() -> Array:
-    """Wavelengths (401,) that moments are computed from: 380–780 nm at 1 nm."""
+    """Make the wavelengths that moments are computed from.
+
+    Returns
+    -------
+    ndarray, shape (401,)
+        380–780 nm at 1 nm.
+    """
     return np.arange(observer.START, observer.END + STEP / 2, STEP)
 
 

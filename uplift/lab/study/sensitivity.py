@@ -19,6 +19,8 @@ from uplift.lab.study.locality import Change, add_noise, build_baseline, remove_
 from uplift.lookup import Cube
 from uplift.pipeline.options import recorded_options
 
+__all__ = ["Sensitivity", "change_record", "study_sensitivity"]
+
 NOISE_DRAWS = 3
 
 
@@ -55,7 +57,13 @@ class Sensitivity:
         return red, green, blue
 
     def record(self) -> dict[str, Any]:
-        """Convert to JSON values."""
+        """Convert to JSON values.
+
+        Returns
+        -------
+        dict
+            Keys ``moves``, ``lipschitz`` and ``changes``.
+        """
         constants, boxes = self.lipschitz, self.lipschitz.boxes
         steepest_wavelength = self.cube.data.sensor.wavelengths[constants.wavelengths.argmax()]
         return {
@@ -74,7 +82,18 @@ class Sensitivity:
 
 
 def change_record(change: Change) -> dict[str, Any]:
-    """Convert a change to JSON values; radii are those of points that moved by more than half a ΔE00."""
+    """Convert a change to JSON values.
+
+    Parameters
+    ----------
+    change : Change
+        The change.
+
+    Returns
+    -------
+    dict
+        Numbers by name. Radii are those of points that moved by more than half a ΔE00.
+    """
     one_entry = bool(change.rgb_distance.size)
     return {
         "change": change.description,

@@ -22,6 +22,8 @@ from uplift.models import Moments, Sigmoid
 from uplift.pipeline import build
 from uplift.pipeline.options import ModelName
 
+__all__ = ["RunConfig", "RunResult", "run", "study_stability"]
+
 UPLIFT = "uplift"
 """Solver of this package; the others are the unknowns of a `PointwiseProblem`."""
 NO_ATLAS = "none"
@@ -108,7 +110,13 @@ class RunResult:
         return 1 - self.unfitted / self.realisable
 
     def record(self) -> dict[str, Any]:
-        """Convert to a flat record for JSON and CSV."""
+        """Convert to a flat record for JSON and CSV.
+
+        Returns
+        -------
+        dict
+            The fields of the configuration, the share of success, and the other fields.
+        """
         rest = asdict(self)
         return rest.pop("config") | {"success": self.success} | rest
 
@@ -153,7 +161,25 @@ def study_stability(
 
 
 def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
-    """Build one configuration and evaluate what is stored. Raises `UpliftError`."""
+    """Build one configuration and evaluate the stored points.
+
+    Parameters
+    ----------
+    config : RunConfig
+        The build.
+    atlases : mapping of str to Atlas
+        Atlases by name.
+
+    Returns
+    -------
+    RunResult
+        The result.
+
+    Raises
+    ------
+    UpliftError
+        The configuration cannot be built.
+    """
     return _run_uplift(config, atlases) if config.solver == UPLIFT else _run_pointwise(config)
 
 

@@ -14,6 +14,8 @@ from uplift.common.arrays import Array, Complex
 from uplift.models import duality
 from uplift.models.phase import Phase
 
+__all__ = ["TECHNIQUES", "Technique"]
+
 
 @dataclass(frozen=True)
 class Technique:
@@ -42,28 +44,79 @@ class Technique:
         return f"{'mirrored' if self.mirrored else 'unmirrored'}, {'warped' if self.warped else 'unwarped'}"
 
     def floats(self, moments: int) -> int:
-        """Count the numbers stored for the zeroth moment and ``moments`` more."""
+        """Count the real numbers stored per spectrum.
+
+        Parameters
+        ----------
+        moments : int
+            Number of moments above the zeroth.
+
+        Returns
+        -------
+        int
+            Real numbers.
+        """
         return moments + 1 if self.mirrored else 2 * moments + 1
 
     def phase(self, wavelengths: ArrayLike) -> Array:
-        """Map wavelengths (N,) in nm to phases (N,)."""
+        """Map wavelengths to phases.
+
+        Parameters
+        ----------
+        wavelengths : array_like, shape (N,)
+            Wavelengths in nm.
+
+        Returns
+        -------
+        ndarray, shape (N,)
+            Phases in radians.
+        """
         half = Phase(warp="vision" if self.warped else "none")(wavelengths)
         return half if self.mirrored else 2 * half + np.pi
 
     def moments(self, reflectance: Array, wavelengths: ArrayLike, moments: int) -> Complex | Array:
-        """Compute moments (n, moments + 1) of reflectances (n, N) at ascending wavelengths (N,) nm, end to end.
+        """Compute the moments of reflectances.
 
         They are exact for the interpolant that is linear in the phase, so samples within [0, 1] have moments of a
-        reflectance. Moments of a mirrored spectrum are real.
+        reflectance.
+
+        Parameters
+        ----------
+        reflectance : ndarray, shape (n, N)
+            Reflectances.
+        wavelengths : array_like, shape (N,)
+            Ascending wavelengths in nm that cover the range.
+        moments : int
+            Number of moments above the zeroth.
+
+        Returns
+        -------
+        ndarray, shape (n, moments + 1)
+            Moments, real for a mirrored spectrum and complex otherwise.
         """
         phase = self.phase(wavelengths)
         found = _integrals(reflectance, phase, moments) / np.ptp(phase)
         return np.ascontiguousarray(found.real) if self.mirrored else found
 
     def reconstruct(self, moments: Complex | Array, wavelengths: ArrayLike) -> Array:
-        """Compute the bounded maximum-entropy reflectances (n, N) of moments (n, C) at wavelengths (N,) nm.
+        """Compute bounded maximum-entropy reflectances from moments.
 
-        Raises `UpliftError` if no reflectance has these moments.
+        Parameters
+        ----------
+        moments : ndarray, shape (n, C)
+            Moments as computed by `moments`.
+        wavelengths : array_like, shape (N,)
+            Wavelengths in nm.
+
+        Returns
+        -------
+        ndarray, shape (n, N)
+            Reflectances.
+
+        Raises
+        ------
+        UpliftError
+            No reflectance has these moments.
         """
         multipliers = duality.multipliers_from_moments(moments)
         waves = duality.fourier_basis(self.phase(wavelengths), moments.shape[1])
