@@ -25,7 +25,7 @@ def codes():
 
 
 @pytest.fixture
-def made(spectral, tmp_path):
+def convert_image(spectral, tmp_path):
     """Function that converts an image and returns the outcome and the texture's channels."""
 
     def convert(source, uplifter=spectral):
@@ -40,29 +40,29 @@ def rgb_of(found):
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "interlaced.png", "palette.png"])
-def test_8_bit_images_are_decoded(name, codes, made, small_cube, tmp_path):
+def test_8_bit_images_are_decoded(name, codes, convert_image, small_cube, tmp_path):
     image = Image.fromarray(codes[..., :3])
     if name == "palette.png":
         image = image.quantize(16)
     image.save(tmp_path / name)
     expected = small_cube.decode(np.asarray(image.convert("RGB"), dtype=float))
-    _, found = made(tmp_path / name)
+    _, found = convert_image(tmp_path / name)
     np.testing.assert_allclose(rgb_of(found), expected, rtol=0, atol=1e-7)
 
 
-def test_a_jpeg_is_what_pillow_reads(codes, made, small_cube, tmp_path):
+def test_a_jpeg_is_what_pillow_reads(codes, convert_image, small_cube, tmp_path):
     smooth = Image.fromarray(codes[..., :3]).resize((64, 64), Image.Resampling.BICUBIC)
     smooth.save(tmp_path / "a.jpg", quality=95)
-    _, found = made(tmp_path / "a.jpg")
+    _, found = convert_image(tmp_path / "a.jpg")
     expected = np.asarray(Image.open(tmp_path / "a.jpg"), dtype=float)
     assert (
         np.abs(small_cube.encode(rgb_of(found)) - expected).max() <= 1
     )  # of 255: decoders round differently
 
 
-def test_grey_and_alpha(codes, made, small_cube, tmp_path):
+def test_grey_and_alpha(codes, convert_image, small_cube, tmp_path):
     Image.fromarray(codes[..., [0, 3]], "LA").save(tmp_path / "grey.png")
-    _, found = made(tmp_path / "grey.png")
+    _, found = convert_image(tmp_path / "grey.png")
     grey = small_cube.decode(codes[..., 0].astype(float))
     np.testing.assert_allclose(rgb_of(found), np.stack([grey] * 3, axis=-1), rtol=0, atol=1e-7)
     assert found["A"].dtype == np.float16
@@ -70,15 +70,15 @@ def test_grey_and_alpha(codes, made, small_cube, tmp_path):
     assert "Y" not in found
 
 
-def test_colours_are_not_multiplied_by_alpha(codes, made, small_cube, tmp_path):
+def test_colours_are_not_multiplied_by_alpha(codes, convert_image, small_cube, tmp_path):
     Image.fromarray(codes).save(tmp_path / "a.png")
-    _, found = made(tmp_path / "a.png")
+    _, found = convert_image(tmp_path / "a.png")
     expected = small_cube.decode(codes[..., :3].astype(float))
     np.testing.assert_allclose(rgb_of(found), expected, rtol=0, atol=1e-7)
 
 
 @pytest.mark.parametrize("suffix", ["png", "tif"])
-def test_16_bits_stay_16_bits(suffix, made, tmp_path):
+def test_16_bits_stay_16_bits(suffix, convert_image, tmp_path):
     """Against the curve of the standard, for every code of a ramp finer than 8 bits."""
     import OpenImageIO
 
@@ -90,33 +90,35 @@ def test_16_bits_stay_16_bits(suffix, made, tmp_path):
     assert image.open(str(tmp_path / f"a.{suffix}"), spec)
     assert image.write_image(np.ascontiguousarray(rgba))
     image.close()
-    _, found = made(tmp_path / f"a.{suffix}")
+    _, found = convert_image(tmp_path / f"a.{suffix}")
     share = rgba[..., :3] / 65535
     linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
     assert np.abs(rgb_of(found) - linear).max() < 8e-6  # half a code
     np.testing.assert_array_equal(np.rint(found["A"] * 65535.0), rgba[..., 3])
 
 
-def test_floats_are_linear_unless_the_encoding_is_given(colours, made, small_cube, spectral, tmp_path):
+def test_floats_are_linear_unless_the_encoding_is_given(
+    colours, convert_image, small_cube, spectral, tmp_path
+):
     Image.fromarray(colours[..., 0]).save(tmp_path / "float.tif")
-    _, found = made(tmp_path / "float.tif")
+    _, found = convert_image(tmp_path / "float.tif")
     np.testing.assert_array_equal(found["R"], colours[..., 0])
     encoded = texture.prepare(small_cube, texture.Moments(), encoding="encoded", threads=1)
-    _, found = made(tmp_path / "float.tif", encoded)
+    _, found = convert_image(tmp_path / "float.tif", encoded)
     np.testing.assert_allclose(found["R"], small_cube.decode(255.0 * colours[..., 0]), rtol=0, atol=1e-6)
     Image.fromarray((colours * 255).astype(np.uint8)).save(tmp_path / "linear.png")
     linear = texture.prepare(small_cube, texture.Moments(), encoding="linear", threads=1)
-    _, found = made(tmp_path / "linear.png", linear)
+    _, found = convert_image(tmp_path / "linear.png", linear)
     np.testing.assert_allclose(rgb_of(found), (colours * 255).astype(np.uint8) / 255, rtol=0, atol=1e-7)
 
 
-def test_only_invalid_pixels_are_clamped_and_counted(colours, made, spectral, tmp_path):
+def test_only_invalid_pixels_are_clamped_and_counted(colours, convert_image, spectral, tmp_path):
     bad = colours.copy()
     bad[1, 1] = np.nan
     bad[2, 2] = (np.inf, 0.5, -np.inf)
     bad[3, 3] = (-0.25, 0.5, 2)
     bad[4, 4, 0] = -1e-3
-    result, found = made(write_exr(tmp_path / "bad.exr", planes(bad)))
+    result, found = convert_image(write_exr(tmp_path / "bad.exr", planes(bad)))
     assert result.counts == texture.Counts(pixels=600, outside=2, not_finite=2, max_change=1)
     assert [warning.code for warning in result.warnings] == ["pixels-out-of-gamut", "pixels-not-finite"]
     assert [warning.path for warning in result.warnings] == [tmp_path / "bad.exr"] * 2
@@ -129,7 +131,7 @@ def test_only_invalid_pixels_are_clamped_and_counted(colours, made, spectral, tm
     np.testing.assert_array_equal(rgb_of(found), good)
     spectra = np.stack([found[name] for name in spectral.channels], axis=-1)
     np.testing.assert_allclose(spectra, spectral.cube.reflectance(good, WAVELENGTHS), atol=1e-6)
-    result, _ = made(write_exr(tmp_path / "good.exr", planes(good)))
+    result, _ = convert_image(write_exr(tmp_path / "good.exr", planes(good)))
     assert result.warnings == ()
 
 
@@ -141,12 +143,14 @@ def test_only_invalid_pixels_are_clamped_and_counted(colours, made, spectral, tm
         ("desaturate-oklab", "desaturated in Oklab"),
     ],
 )
-def test_pixels_outside_are_mapped_by_the_method(method, past_tense, colours, made, spectral, tmp_path):
+def test_pixels_outside_are_mapped_by_the_method(
+    method, past_tense, colours, convert_image, spectral, tmp_path
+):
     bad = colours.copy()
     bad[3, :5] = np.array([[-0.25, 0.5, 2], [8, 4, 1], [0.2, 0.6, -0.1], [-1, -1, -1], [7, 7, 7]])
     bad[4, 4] = (np.inf, 5, np.nan)
     source = write_exr(tmp_path / "bad.exr", planes(bad))
-    result, found = made(source, replace(spectral, out_of_gamut=method))
+    result, found = convert_image(source, replace(spectral, out_of_gamut=method))
     bad[4, 4] = (1, 1, 0)
     moved = map_to_gamut(bad, spectral.cube.data.sensor, method)
     np.testing.assert_array_equal(rgb_of(found), moved.rgb)
@@ -263,14 +267,14 @@ def test_bands_are_bounded_and_do_not_change_the_result(spectral, colours, tmp_p
     assert [each.done for each in rows] == sorted({each.done for each in rows})
 
 
-def test_an_image_of_another_space_triggers_a_warning(colours, made, tmp_path):
+def test_an_image_of_another_space_triggers_a_warning(colours, convert_image, tmp_path):
     acescg = (0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767)
     srgb = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)
-    result, _ = made(write_exr(tmp_path / "a.exr", planes(colours), chromaticities=acescg))
+    result, _ = convert_image(write_exr(tmp_path / "a.exr", planes(colours), chromaticities=acescg))
     (warning,) = result.warnings
     assert warning.code == "colour-space-mismatch"
     assert warning.problem == "the image states other primaries; its colours are read as sRGB"
-    result, _ = made(write_exr(tmp_path / "b.exr", planes(colours), chromaticities=srgb))
+    result, _ = convert_image(write_exr(tmp_path / "b.exr", planes(colours), chromaticities=srgb))
     assert result.warnings == ()
 
 

@@ -106,9 +106,9 @@ def test_the_header_identifies_the_cube_and_the_settings(spectral, small_cube, c
     assert header["uplift.illuminant"] == "D65"
     assert len(header["uplift.cube"]) == 64
     assert json.loads(header["uplift.model"]) == small_cube.data.model.describe()
-    made = json.loads(header["uplift.texture"])
-    assert made.pop("wavelengths") == list(WAVELENGTHS)
-    assert made == {"as": "spectrum", "depth": "float", "encoding": "auto", "out_of_gamut": "clip"}
+    settings = json.loads(header["uplift.texture"])
+    assert settings.pop("wavelengths") == list(WAVELENGTHS)
+    assert settings == {"as": "spectrum", "depth": "float", "encoding": "auto", "out_of_gamut": "clip"}
     srgb = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]
     np.testing.assert_allclose(header["chromaticities"], srgb, atol=2e-4)
 

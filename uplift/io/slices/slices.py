@@ -81,7 +81,7 @@ def check_slices(path: str | os.PathLike[str], *, force: bool = False) -> None:
 def channels(data: CubeData) -> dict[str, NDArray[Any]]:
     """Return the values (n,) of the nodes by channel name."""
     target = data.lattice.points
-    found: dict[str, NDArray[Any]] = {
+    values: dict[str, NDArray[Any]] = {
         **_rgb("", data.points.rgb),
         **_rgb("lattice.", data.points.rgb),
         **_rgb("target.", target),
@@ -91,10 +91,10 @@ def channels(data: CubeData) -> dict[str, NDArray[Any]]:
         "entry": data.points.entry,
     }
     if data.points.round is not None:
-        found["round"] = data.points.round
+        values["round"] = data.points.round
     if data.points.standard_error is not None:
-        found["standardError"] = data.points.standard_error
-    return found | {f"coefficient.{i:02}": column for i, column in enumerate(data.points.coefficients.T)}
+        values["standardError"] = data.points.standard_error
+    return values | {f"coefficient.{i:02}": column for i, column in enumerate(data.points.coefficients.T)}
 
 
 def _parts(data: CubeData) -> Iterator[Any]:

@@ -73,14 +73,14 @@ class Profile:
         str
             The difference, empty if the spaces agree.
         """
-        found = []
+        differences = []
         if self.primaries is None:
-            found.append("unreadable primaries")
+            differences.append("unreadable primaries")
         elif np.abs(conversion(self.primaries, sensor) - np.eye(3)).max() > MAX_PRIMARIES_DIFFERENCE:
-            found.append("other primaries")
+            differences.append("other primaries")
         if encoded:
-            found += self._curve_mismatch(sensor)
-        return " and ".join(found)
+            differences += self._curve_mismatch(sensor)
+        return " and ".join(differences)
 
     def _curve_mismatch(self, sensor: Sensor) -> list[str]:
         if self.greys is None:

@@ -111,9 +111,9 @@ def _write_parts(
     for layout in layouts:
         writer.start_part(layout.part.number)
         for first, band in _bands(image, layout):
-            values, found = _convert_band(converter, layout, band)
+            values, band_counts = _convert_band(converter, layout, band)
             writer.write_rows(first, values)
-            counts, done = counts + found, done + len(band)
+            counts, done = counts + band_counts, done + len(band)
             progress(Progress("rows", done, total))
     return counts
 

@@ -46,13 +46,13 @@ def part_layouts(converter: Converter, image: Image) -> list[PartLayout]:
 
 def colour_channels_by_part(image: Image) -> list[tuple[Part, RGBChannels | None]]:
     """Return every part and its colour channels. Raises `TextureError` if no part has any (``no-colour-channels``)."""
-    found = [(part, colour_channels(part)) for part in image.parts]
-    if not any(rgb for _, rgb in found):
+    parts = [(part, colour_channels(part)) for part in image.parts]
+    if not any(rgb for _, rgb in parts):
         names = ", ".join(dict.fromkeys(name for part in image.parts for name in part.channels))
         raise TextureError(
             f"no colour channels among {names}", code="no-colour-channels", hint="name them R, G and B, or Y"
         )
-    return found
+    return parts
 
 
 def _layout(converter: Converter, image: Image, part: Part, rgb: RGBChannels | None) -> PartLayout:
@@ -60,14 +60,14 @@ def _layout(converter: Converter, image: Image, part: Part, rgb: RGBChannels | N
     names = tuple(part.channels[index] for index in others)
     types = tuple(_lossless_type(part.types[index]) for index in others)
     if rgb is not None:
-        made = (*"RGB", *converter.channels)
-        if taken := set(made) & set(names):
+        converted = (*"RGB", *converter.channels)
+        if duplicates := set(converted) & set(names):
             raise TextureError(
-                f"channel '{min(taken)}' exists next to the colour and would be written twice",
+                f"channel '{min(duplicates)}' exists next to the colour and would be written twice",
                 code="duplicate-channel",
                 hint="remove that channel",
             )
-        names, types = (*made, *names), (*(converter.depth,) * len(made), *types)
+        names, types = (*converted, *names), (*(converter.depth,) * len(converted), *types)
     date = part.date or _modification_date(image)
     output = OutputPart(part.name, part.window, names, types, converter.header, date)
     decoder = make_decoder(converter.sensor, part, converter.encoding, converter.out_of_gamut)

@@ -152,17 +152,17 @@ class Image:
         channels = (0, len(part.channels)) if channel is None else (channel, channel + 1)
         if part.is_tiled:
             columns = (window.x, window.x + window.width)
-            found = self.handle.read_tiles(*columns, first, end, 0, 1, *channels, kind)
+            rows = self.handle.read_tiles(*columns, first, end, 0, 1, *channels, kind)
         else:
-            found = self.handle.read_scanlines(first, end, 0, *channels, kind)
+            rows = self.handle.read_scanlines(first, end, 0, *channels, kind)
         problem = self.handle.geterror()  # the only sign of a truncated JPEG
-        if found is None or problem:
+        if rows is None or problem:
             raise TextureError(
                 f"rows {first} to {end - 1} cannot be read: {_one_line(problem)}",
                 code="damaged-image",
                 hint="the file is damaged: write it again",
             )
-        return np.asarray(found)
+        return np.asarray(rows)
 
 
 @contextlib.contextmanager

@@ -15,11 +15,15 @@ from numpy.typing import NDArray
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Mask
 from uplift.cube.data import CubeData
+from uplift.viz.format import pluralise
 
 BACKGROUND = 0.03
 """Linear grey, on which both bright colours and black are visible. Absent nodes have this colour."""
 DECADES = 3
 """Decades of fitting distance below the threshold that the ramp spans."""
+
+KEY_STEPS = np.linspace(0, 1, 64)
+"""Positions along a ramp in a legend."""
 
 
 def _linear(*codes: str) -> Array:
@@ -52,40 +56,40 @@ class Panel:
 
 def panels(data: CubeData) -> tuple[Panel, ...]:
     """Return panels of lattice RGB, fitting distance and status, and of standard error and round if available."""
-    found = [_colour(data), _distance(data), _status(data)]
+    quantities = [_rgb_panel(data), _distance_panel(data), _status_panel(data)]
     if data.points.standard_error is not None:
-        found.append(_error(data.points.standard_error, data.error_illuminant))
+        quantities.append(_error_panel(data.points.standard_error, data.error_illuminant))
     if data.points.round is not None:
-        found.append(_round(data.points.round, data.points.round[data.points.present] < 0))
-    return tuple(replace(panel, colours=_present(data, panel.colours)) for panel in found)
+        quantities.append(_round_panel(data.points.round, data.points.round[data.points.present] < 0))
+    return tuple(replace(panel, colours=_grey_where_absent(data, panel.colours)) for panel in quantities)
 
 
-def _present(data: CubeData, colours: NDArray[np.floating]) -> NDArray[np.floating]:
+def _grey_where_absent(data: CubeData, colours: NDArray[np.floating]) -> NDArray[np.floating]:
     return np.where(data.points.present[:, None], colours, colours.dtype.type(BACKGROUND))
 
 
-def _colour(data: CubeData) -> Panel:
-    ramps = np.linspace(0, 1, 64)[:, None, None] * np.eye(3)
+def _rgb_panel(data: CubeData) -> Panel:
+    ramps = KEY_STEPS[:, None, None] * np.eye(3)
     directions = ("red rises to the right", "green rises upwards", "blue rises from tile to tile")
     keys = tuple(Key(ramps[:, i], direction) for i, direction in enumerate(directions))
     return Panel("Lattice RGB", data.points.rgb, keys)
 
 
-def _distance(data: CubeData) -> Panel:
+def _distance_panel(data: CubeData) -> Panel:
     within = np.clip(data.points.distance / data.threshold, 10.0**-DECADES, 1)
     over = data.points.distance > data.threshold
     low, high = data.threshold / 10**DECADES, data.threshold
     keys = (
-        Key(_ramp(np.linspace(0, 1, 64)), f"{low:g} or less to {high:g}, logarithmic"),
+        Key(_ramp(KEY_STEPS), f"{low:g} or less to {high:g}, logarithmic"),
         Key(
             HIGHLIGHT,
-            f"over the threshold: {_points(over)}; largest distance {data.points.distance.max():.2g}",
+            f"over the threshold: {_count(over)}; largest distance {data.points.distance.max():.2g}",
         ),
     )
     return Panel("Fitting distance", _highlight_where(over, 1 + np.log10(within) / DECADES), keys)
 
 
-def _status(data: CubeData) -> Panel:
+def _status_panel(data: CubeData) -> Panel:
     counts = data.points.counts().items()
     keys = (
         Key(colour[None], f"{label}: {count:,}")
@@ -94,30 +98,29 @@ def _status(data: CubeData) -> Panel:
     return Panel("Status", np.append(STATUS, STATUS[:1], axis=0)[data.points.status], tuple(keys))
 
 
-def _error(errors: NDArray[np.float32], light: str) -> Panel:
-    key = Key(_ramp(np.linspace(0, 1, 64)), f"0 to {errors.max():.2g} ΔE00 under {light}")
+def _error_panel(errors: NDArray[np.float32], light: str) -> Panel:
+    key = Key(_ramp(KEY_STEPS), f"0 to {errors.max():.2g} ΔE00 under {light}")
     return Panel("Standard error", _ramp(errors / errors.max()), (key,))
 
 
-def _round(rounds: NDArray[np.int16], not_fitted: Mask) -> Panel:
+def _round_panel(rounds: NDArray[np.int16], not_fitted: Mask) -> Panel:
     none, last = rounds < 0, max(int(rounds.max()), 0)
     keys = (
-        Key(_ramp(np.linspace(0, 1, 64)), f"0 to {last}"),
-        Key(HIGHLIGHT, f"fitted in no round: {_points(not_fitted)}"),
+        Key(_ramp(KEY_STEPS), f"0 to {last}"),
+        Key(HIGHLIGHT, f"fitted in no round: {_count(not_fitted)}"),
     )
     return Panel("Round", _highlight_where(none, rounds / max(last, 1)), keys)
 
 
-def _points(mask: Mask) -> str:
-    count = int(mask.sum())
-    return f"{count:,} point{'' if count == 1 else 's'}"
+def _count(mask: Mask) -> str:
+    return pluralise(int(mask.sum()), "point")
 
 
-def _highlight_where(mask: Mask, share: Array) -> Array:
-    return np.where(mask[:, None], HIGHLIGHT, _ramp(share))
+def _highlight_where(mask: Mask, position: Array) -> Array:
+    return np.where(mask[:, None], HIGHLIGHT, _ramp(position))
 
 
-def _ramp(share: Array) -> Array:
+def _ramp(position: Array) -> Array:
     """Return linear RGB (n, 3) for positions (n,) from dark, 0, to light, 1."""
     anchors = np.linspace(0, 1, len(RAMP))
-    return np.stack([np.interp(share, anchors, column) for column in RAMP.T], axis=-1)
+    return np.stack([np.interp(position, anchors, column) for column in RAMP.T], axis=-1)

@@ -109,12 +109,12 @@ class Layout:
 
 def compose(data: CubeData) -> Sheet:
     """Compose the sheet. Every node is a square of ``Layout.scale`` pixels, in the order of `blue_slices`."""
-    shown = panels(data)
-    layout = Layout(data.lattice.dim, len(shown))
+    all_panels = panels(data)
+    layout = Layout(data.lattice.dim, len(all_panels))
     width, height = layout.size
     image = np.full((height, width, 3), BACKGROUND, dtype=np.float32)
     labels = [_heading(data, layout)]
-    for number, panel in enumerate(shown):
+    for number, panel in enumerate(all_panels):
         _paint_tiles(image, layout, number, panel)
         _paint_keys(image, layout, number, panel.keys)
         labels += _captions(layout, number, panel)
