@@ -39,18 +39,18 @@ def _measure() -> Chart:
     from uplift.atlas import read_atlas
     from uplift.lab.chart.measure import measure
     from uplift.lab.chart.methods import select_methods
-    from uplift.lab.chart.task import task
+    from uplift.lab.chart.task import make_task
 
     atlases = {path.stem: read_atlas(path) for path in sorted((ROOT / "atlases").glob("*.txt"))}
     methods = select_methods()
     with click.progressbar(length=len(methods), label="methods", file=sys.stderr) as bar:
-        return measure(methods, task(atlases), lambda done: bar.update(1))
+        return measure(methods, make_task(atlases), lambda done: bar.update(1))
 
 
 def publish(chart: Chart) -> None:
     """Write the table, the pictures and the data of the page."""
     from uplift.common.files import check_folder, write_text
-    from uplift.lab.chart.page import page
+    from uplift.lab.chart.page import render_chart
     from uplift.lab.chart.picture import write_pictures
     from uplift.lab.chart.recommend import MEASURED
     from uplift.lab.chart.table import chart_csv
@@ -58,7 +58,7 @@ def publish(chart: Chart) -> None:
     folder = check_folder(ROOT / "docs" / "chart", (), force=True)
     write_text(chart_csv(chart), ROOT / "uplift" / "lab" / "chart" / MEASURED, force=True)
     picture = write_pictures(chart, folder / "chart.png", folder / "chart.svg", force=True)
-    write_text(page(chart, picture), folder / "chart.html", force=True)
+    write_text(render_chart(chart, picture), folder / "chart.html", force=True)
     store(chart)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 import uplift
 from benchmarks.record import ROOT
-from uplift.lab.timing import Spread, timed
+from uplift.lab.timing import Spread, time_calls
 from uplift.lookup import Cube, bulk
 
 WAVELENGTHS = np.linspace(400, 700, 16)
@@ -55,7 +55,7 @@ def _lookup(cube: Cube, what: str, dtype: str, threads: int, runs: int) -> Timin
         back = cube.data.sensor.rgb(cube.reflectance(rgb[:CHECKED], None, what, **options))
         worst, apart = float(np.abs(back - rgb[:CHECKED]).max()), None
     _check(what, worst if apart is None else apart, WORST[what])
-    wall, cpu = timed(query, runs)
+    wall, cpu = time_calls(query, runs)
     size, width = np.dtype(dtype).itemsize, _width(cube, what)
     row = size * width if what == "spectra" else 8 * cube.data.model.count
     bytes_each = 24 + 8 * row + size * width
@@ -88,7 +88,7 @@ def _bulk(cube: Cube, what: str, kind: str, rgb: np.ndarray[Any, Any], threads: 
     expected = cube.reflectance(rgb, WAVELENGTHS) if kind == "spectra" else cube.coefficients(rgb)
     apart = float(np.abs(found - expected).max())
     _check(what, apart, 1e-6)
-    wall, cpu = timed(lambda: sample(rgb), runs)
+    wall, cpu = time_calls(lambda: sample(rgb), runs)
     bytes_each = rgb.itemsize * 3 + 9 * 4 * _width(cube, kind)
     return _timing(what, rgb.dtype.name, threads, len(rgb), bytes_each, wall, cpu, apart) | {
         "prepare_s": prepared - begin,

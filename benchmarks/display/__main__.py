@@ -13,7 +13,7 @@ from benchmarks.display.spaces import ACESCG, SPACES, concavity, desaturate
 from benchmarks.record import ROOT, write
 from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.common.arrays import Array
-from uplift.lab.timing import Spread, timed
+from uplift.lab.timing import Spread, time_calls
 
 PICTURE = ROOT / "docs" / "display" / "ways.png"
 TIMED = 1 << 16
@@ -78,7 +78,7 @@ def cost(method: str) -> Spread:
     rgb = np.random.default_rng(0).normal(0.5, 1, (3 * TIMED, 3))
     rgb = rgb[((rgb < 0) | (rgb > 1)).any(axis=1)][:TIMED]
     map_to_gamut(rgb, SRGB, method)
-    _, cpu = timed(lambda: map_to_gamut(rgb, SRGB, method), RUNS)
+    _, cpu = time_calls(lambda: map_to_gamut(rgb, SRGB, method), RUNS)
     return cpu.scaled(1e9 / TIMED)
 
 

@@ -31,8 +31,8 @@ from uplift.lab.study.held_out import HoldoutSplit, holdout, spectrum_errors
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.models import Moments
-from uplift.report.calibration import calibration
-from uplift.report.smoothness import smoothness
+from uplift.report.calibration import check_calibration
+from uplift.report.smoothness import compute_smoothness
 
 DIM = 32
 COUNTS = (9, 13, 17)
@@ -128,7 +128,7 @@ def standard_errors(splits: Splits) -> list[dict[str, Any]]:
         actual, predicted = (
             np.concatenate([getattr(split, part) for split in parts]) for part in ("real", "stated")
         )
-        found = calibration(actual, predicted)
+        found = check_calibration(actual, predicted)
         quartiles = np.array_split(predicted.argsort(kind="stable"), 4)
         rows.append(
             {
@@ -184,7 +184,7 @@ def seed_starts(name: str) -> Iterator[dict[str, Any]]:
 
 def neighbour_steps(name: str | None, count: int) -> dict[str, Any]:
     """Return the rms difference between the spectra of neighbouring nodes."""
-    steps = smoothness(build(name, coefficients=count).data).differences
+    steps = compute_smoothness(build(name, coefficients=count).data).differences
     return {
         "atlas": name or "none",
         "coefficients": count,

@@ -14,7 +14,7 @@ from uplift.common.arrays import Array
 from uplift.design.mixing import coats, hsl, kubelka_munk, overpaint
 from uplift.design.mixing.mixers import SPECTRAL, mixers
 from uplift.design.mixing.pigments import Pigment
-from uplift.lab.timing import Spread, timed
+from uplift.lab.timing import Spread, time_calls
 from uplift.lookup import Cube
 
 MIXTURES, PIXELS, COLOURS = 20_000, 1_000_000, 1_000_000
@@ -91,5 +91,5 @@ def _over(paint: Pigment, grounds: Array) -> Array:
 def _ns(function: Callable[[], object], count: int) -> Spread:
     """Return CPU nanoseconds per item, warm."""
     function()
-    _, cpu = timed(function, RUNS)
+    _, cpu = time_calls(function, RUNS)
     return cpu.scaled(1e9 / count)

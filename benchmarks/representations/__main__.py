@@ -31,17 +31,17 @@ def _measure() -> None:
     from benchmarks.record import ROOT, write
     from benchmarks.representations import closed, results, thesis
     from uplift.common.files import check_folder
-    from uplift.lab.comparison.filters import tune
+    from uplift.lab.comparison.filters import tune_filters
     from uplift.lab.comparison.pictures import KINDS, write_picture
-    from uplift.lab.comparison.scene import scene
+    from uplift.lab.comparison.scene import make_scene
 
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     atlases = {path.stem: uplift.read_atlas(path) for path in sorted((ROOT / "atlases").glob("*.txt"))}
-    default, others = scene(atlases), scene(atlases, OTHER_LIGHTS)
+    default, others = make_scene(atlases), make_scene(atlases, OTHER_LIGHTS)
     main_comparison = _compare(default, "representations")
     other_comparison = _compare(others, "under other lights")
     with click.progressbar(length=24, label="filters", file=sys.stderr) as bar:
-        tuned = tune(default, progress=lambda done: bar.update(1))
+        tuned = tune_filters(default, progress=lambda done: bar.update(1))
     folder = check_folder(ROOT / "docs" / "representations", (), force=True)
     for kind in KINDS:
         write_picture(main_comparison, kind, folder / f"{kind}.png", force=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from benchmarks.representations.thesis import Printed
-from uplift.lab.comparison.filters import NONE, Tuned
+from uplift.lab.comparison.filters import NONE, TunedFilter
 from uplift.lab.comparison.measure import Comparison, RepresentationResult
 from uplift.lab.comparison.recommend import cheapest
 from uplift.lab.comparison.statistics import Statistics
@@ -70,7 +70,7 @@ def _statistics(errors: Statistics) -> Row:
     }
 
 
-def filters(tuned: Sequence[Tuned], thesis: ThesisFilters) -> list[Row]:
+def filters(tuned: Sequence[TunedFilter], thesis: ThesisFilters) -> list[Row]:
     """Return the best filter of each kind; ``change`` is relative to no filter, None for that row."""
     unfiltered = {(one.lights, one.count): one.statistics.mean for one in tuned if one.kind == NONE}
     rows = []

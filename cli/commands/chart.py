@@ -131,24 +131,24 @@ def _read(source: str) -> Chart:
 def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *, quick: bool) -> Chart:
     from uplift.lab.chart.measure import measure
     from uplift.lab.chart.methods import select_methods
-    from uplift.lab.chart.task import QUICK, Effort, task
+    from uplift.lab.chart.task import QUICK, Effort, make_task
 
     methods = select_methods(patterns, quick=quick)
-    colours_and_spectra = task(read_atlases(files), colours, QUICK if quick else Effort())
+    colours_and_spectra = make_task(read_atlases(files), colours, QUICK if quick else Effort())
     with progress_bar("methods") as progress:
         return measure(methods, colours_and_spectra, progress)
 
 
 def _write(chart: Chart, folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
-    from uplift.lab.chart.page import page
+    from uplift.lab.chart.page import render_chart
     from uplift.lab.chart.picture import write_pictures
     from uplift.lab.chart.table import chart_csv
 
     table, png, svg, html = (folder / name for name in FILES)
     write_text(chart_csv(chart), table, force=force)
     picture = write_pictures(chart, png, svg, force=force)
-    write_text(page(chart, picture), html, force=force)
+    write_text(render_chart(chart, picture), html, force=force)
 
 
 def _print_fronts(chart: Chart) -> None:

@@ -15,7 +15,7 @@ from ..params.options import force_option, format_option
 from ..startup import use_one_blas_thread
 
 if TYPE_CHECKING:
-    from uplift.lab.comparison.filters import Tuned
+    from uplift.lab.comparison.filters import TunedFilter
     from uplift.lab.comparison.measure import Comparison
     from uplift.lab.comparison.scene import Scene
 
@@ -109,12 +109,12 @@ def _folder(output: str | None, *, filters: bool, force: bool) -> Path | None:
 
 def _measure(
     files: tuple[str, ...], lights: tuple[str, ...], *, filters: bool, quick: bool
-) -> tuple[Comparison, tuple[Tuned, ...]]:
+) -> tuple[Comparison, tuple[TunedFilter, ...]]:
     from uplift.lab.comparison.measure import QUICK, Effort, compare
-    from uplift.lab.comparison.scene import scene
+    from uplift.lab.comparison.scene import make_scene
     from uplift.scene.representations.registry import all_representations
 
-    tested = scene(read_atlases(files), lights)
+    tested = make_scene(read_atlases(files), lights)
     tested = tested.thinned() if quick else tested
     with progress_bar("representations") as progress:
         effort = QUICK if quick else Effort()
@@ -122,17 +122,17 @@ def _measure(
     return comparison, _tune(tested, quick=quick) if filters else ()
 
 
-def _tune(tested: Scene, *, quick: bool) -> tuple[Tuned, ...]:
-    from uplift.lab.comparison.filters import tune
+def _tune(tested: Scene, *, quick: bool) -> tuple[TunedFilter, ...]:
+    from uplift.lab.comparison.filters import tune_filters
     from uplift.scene.representations.filters import COARSE_STRIDE, FINE_STRIDE
 
     with progress_bar("filters") as progress:
-        return tune(tested, COARSE_STRIDE if quick else FINE_STRIDE, progress=progress)
+        return tune_filters(tested, COARSE_STRIDE if quick else FINE_STRIDE, progress=progress)
 
 
-def _write(comparison: Comparison, tuned: tuple[Tuned, ...], folder: Path, *, force: bool) -> None:
+def _write(comparison: Comparison, tuned: tuple[TunedFilter, ...], folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
-    from uplift.lab.comparison.page import page
+    from uplift.lab.comparison.page import render_comparison
     from uplift.lab.comparison.pictures import write_picture
     from uplift.lab.comparison.table import filter_records, records
     from uplift.lab.study.records import write_csv
@@ -145,11 +145,11 @@ def _write(comparison: Comparison, tuned: tuple[Tuned, ...], folder: Path, *, fo
         kind: write_picture(comparison, kind, path, force=force)
         for kind, path in (("boxes", boxes), ("cost", cost))
     }
-    write_text(page(comparison, pictures, tuned), html, force=force)
+    write_text(render_comparison(comparison, pictures, tuned), html, force=force)
     click.echo(f"{folder}: {', '.join((*FILES, FILTERS) if tuned else FILES)}", err=True)
 
 
-def _print_table(comparison: Comparison, tuned: tuple[Tuned, ...]) -> None:
+def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
     from ..output.compare_tables import print_comparison, print_filters
 
     print_comparison(comparison)
@@ -157,7 +157,7 @@ def _print_table(comparison: Comparison, tuned: tuple[Tuned, ...]) -> None:
         print_filters(tuned)
 
 
-def _records(comparison: Comparison, tuned: tuple[Tuned, ...]) -> dict[str, Any]:
+def _records(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> dict[str, Any]:
     from uplift.lab.comparison.table import filter_records, records
 
     return {
@@ -167,11 +167,11 @@ def _records(comparison: Comparison, tuned: tuple[Tuned, ...]) -> dict[str, Any]
     }
 
 
-def _print_json(comparison: Comparison, tuned: tuple[Tuned, ...]) -> None:
+def _print_json(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
     click.echo(json_text(_records(comparison, tuned)))
 
 
-def _print_csv(comparison: Comparison, tuned: tuple[Tuned, ...]) -> None:
+def _print_csv(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
     from uplift.lab.study.records import records_csv
 
     tables = _records(comparison, tuned)
@@ -180,7 +180,7 @@ def _print_csv(comparison: Comparison, tuned: tuple[Tuned, ...]) -> None:
             click.echo(records_csv(tables[name]), nl=False)
 
 
-PRINTERS: dict[str, Callable[[Comparison, tuple[Tuned, ...]], None]] = {
+PRINTERS: dict[str, Callable[[Comparison, tuple[TunedFilter, ...]], None]] = {
     "table": _print_table,
     "json": _print_json,
     "csv": _print_csv,

@@ -22,9 +22,9 @@ def command(file: str | None, style: str) -> None:
       uplift info macbeth-32.uplift --format json | jq .status
     """
     from uplift.lookup import load
-    from uplift.report.summary import summary
+    from uplift.report.summary import summarise
 
-    fields = summary(load(file).data)
+    fields = summarise(load(file).data)
     if style == "json":
         click.echo(json_text(fields))
     else:

@@ -131,9 +131,9 @@ def _text(assessment: Assessment, style: str, worst: int) -> str:
         from uplift.report.json_export import to_json
 
         return json_text(to_json(assessment)) + "\n"
-    from uplift.report.page import page
+    from uplift.report.page import render_report
 
-    return page(assessment, worst)
+    return render_report(assessment, worst)
 
 
 def _summary(assessment: Assessment) -> str:

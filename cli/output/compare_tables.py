@@ -11,7 +11,7 @@ from .console import console
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from uplift.lab.comparison.filters import Tuned
+    from uplift.lab.comparison.filters import TunedFilter
     from uplift.lab.comparison.measure import Comparison
     from uplift.lab.comparison.statistics import Statistics
 
@@ -31,7 +31,7 @@ def print_comparison(comparison: Comparison) -> None:
         console().print(table)
 
 
-def print_filters(tuned: tuple[Tuned, ...]) -> None:
+def print_filters(tuned: tuple[TunedFilter, ...]) -> None:
     """Print the best filter of each kind."""
     from uplift.lab.comparison.statistics import HEADINGS
 

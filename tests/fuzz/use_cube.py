@@ -9,7 +9,7 @@ import numpy as np
 
 from uplift.common.errors import UpliftError
 from uplift.lookup import MODES, load, query
-from uplift.report.summary import summary
+from uplift.report.summary import summarise
 
 RGB = np.array([[0.2, 0.3, 0.4], [0, 0, 0], [1, 1, 1], [0.5, 0.5, 0.5], [0.9, 0.0, 0.1]])
 WAVELENGTHS = np.array([300.0, 380.0, 555.5, 780.0, 1000.0])
@@ -27,7 +27,7 @@ def use_cube(path: Path) -> None:
         raise ValueError("standard errors that are not finite")
     if not all(np.isfinite(result.round_trip).all() for result in query(cube, RGB)):
         raise ValueError("round trips that are not finite")
-    json.dumps(summary(cube.data), allow_nan=False)
+    json.dumps(summarise(cube.data), allow_nan=False)
     copy = path.with_suffix(".copy")
     try:
         cube.save(copy, force=True)

@@ -6,9 +6,9 @@ import functools
 
 import uplift
 from tests.conftest import MACBETH
-from uplift.lab.comparison.scene import Scene, scene
+from uplift.lab.comparison.scene import Scene, make_scene
 
 
 @functools.cache
 def colorchecker() -> Scene:
-    return scene({"macbeth": uplift.read_atlas(MACBETH)})
+    return make_scene({"macbeth": uplift.read_atlas(MACBETH)})

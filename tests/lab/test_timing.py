@@ -17,7 +17,7 @@ def test_spread_is_median_min_and_max():
 
 def test_all_runs_are_timed():
     calls = []
-    wall, cpu = timing.timed(lambda: calls.append(1), 4)
+    wall, cpu = timing.time_calls(lambda: calls.append(1), 4)
     assert len(calls) == wall.runs == cpu.runs == 4
     assert 0 <= wall.min <= wall.median <= wall.max
 

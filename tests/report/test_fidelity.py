@@ -20,13 +20,13 @@ from uplift.cube import AtlasTable
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
 from uplift.report.assessment import assess
-from uplift.report.calibration import Calibration, calibration
-from uplift.report.crowding import crowding
-from uplift.report.failures import MAX_LISTED, failures
+from uplift.report.calibration import Calibration, check_calibration
+from uplift.report.crowding import find_crowding
+from uplift.report.failures import MAX_LISTED, collect_failures
 from uplift.report.fidelity import entry_errors, from_other_atlas, from_own_atlas, from_stored_entries
-from uplift.report.round_trip import COLOURS, round_trips
-from uplift.report.smoothness import smoothness
-from uplift.viz.histogram import histogram, linear_edges, log_edges
+from uplift.report.round_trip import COLOURS, round_trip_errors
+from uplift.report.smoothness import compute_smoothness
+from uplift.viz.histogram import linear_edges, log_edges, make_histogram
 
 
 def delta_e(first, second, name):
@@ -144,12 +144,12 @@ def test_atlas_outside_the_space_gives_no_entries(small_cube, hostile):
 
 
 def test_round_trips_use_the_same_colours_every_time(small_cube):
-    found = round_trips(small_cube)
+    found = round_trip_errors(small_cube)
     assert found.keys() == MODES.keys()
     assert {len(values) for values in found.values()} == {COLOURS}
     assert found["spectra"].max() < 0.01
     assert found["refined"].max() < 0.01 < found["moments"].max()
-    again = round_trips(small_cube)
+    again = round_trip_errors(small_cube)
     assert all(np.array_equal(found[mode], again[mode]) for mode in MODES)
 
 
@@ -163,7 +163,7 @@ def test_smoothness_matches_explicit_loops(model):
             second = tuple(place + (axis == i) for i, place in enumerate(first))
             if max(second) < 4:
                 expected[first, second] = np.sqrt(np.mean((spectra[first] - spectra[second]) ** 2))
-    found = smoothness(data)
+    found = compute_smoothness(data)
     assert np.sort(found.differences) == pytest.approx(sorted(expected.values()), rel=1e-5)
     steepest = max(expected, key=expected.get)
     assert {tuple(rgb) for rgb in found.steepest.tolist()} == {
@@ -173,7 +173,7 @@ def test_smoothness_matches_explicit_loops(model):
 
 def test_crowding_matches_brute_force(crowded_cube):
     data, lights = crowded_cube.data, display_sensors(("A",), crowded_cube.data.sensor.observer)
-    found = crowding(data, entry_errors(crowded_cube, from_stored_entries(data), lights))
+    found = find_crowding(data, entry_errors(crowded_cube, from_stored_entries(data), lights))
     nodes, names = data.lattice.nodes, data.atlas.names
     steps = np.interp(data.atlas.rgb, nodes, np.arange(len(nodes)))
     expected = {}
@@ -251,7 +251,10 @@ def test_own_entries_give_no_calibration(judged, plain_cube, macbeth):
     assert judged.standard_error.mean == pytest.approx(judged.facts["mean_standard_error"])
     unknowing = assess(plain_cube, "plain.uplift", 1, macbeth, ("A",))
     assert (unknowing.standard_error, unknowing.facts["mean_standard_error"]) == (None, None)
-    assert (calibration(unknowing.entries.actual, unknowing.entries.predicted), unknowing.calibration) == (
+    assert (
+        check_calibration(unknowing.entries.actual, unknowing.entries.predicted),
+        unknowing.calibration,
+    ) == (
         None,
         None,
     )
@@ -274,27 +277,30 @@ def test_without_measurements_entries_are_compared_with_stored_spectra(crowded_c
 
 
 def test_failures_list_the_worst_points_first(spoilt, small_cube):
-    assert failures(small_cube.data).over_threshold == 0
-    found = failures(spoilt.data)
+    assert collect_failures(small_cube.data).over_threshold == 0
+    found = collect_failures(spoilt.data)
     assert (found.over_threshold, found.worst_points.tolist()) == (2, [300, 100])
     assert found.counts["unfitted"] == 2
     assert found.left_out == ("cyan",)
     nothing = dataclasses.replace(
         with_points(spoilt.data, distance=np.full(512, np.nan, np.float32)), provenance={}
     )
-    assert (failures(nothing).over_threshold, len(failures(nothing).worst_points)) == (512, MAX_LISTED)
+    assert (collect_failures(nothing).over_threshold, len(collect_failures(nothing).worst_points)) == (
+        512,
+        MAX_LISTED,
+    )
 
 
 def test_histogram_counts_every_value():
     values = np.array([0.0, 1e-12, 3e-7, 0.2, 0.2, 5.0])
     for edges in (log_edges(values, 1e-9), linear_edges(values)):
-        found = histogram(values, edges)
+        found = make_histogram(values, edges)
         assert found.counts.sum() == 6
         assert (np.diff(edges) > 0).all()
         assert (found.mean, found.largest) == (values.mean(), 5.0)
         assert edges[-1] >= 5
-    assert histogram(values, log_edges(values, 1e-9)).logarithmic
-    assert not histogram(values, linear_edges(values)).logarithmic
+    assert make_histogram(values, log_edges(values, 1e-9)).logarithmic
+    assert not make_histogram(values, linear_edges(values)).logarithmic
 
 
 @pytest.mark.parametrize("value", [0.0, 1e-15, 1.0, 0.024, 24.0, 777.0])

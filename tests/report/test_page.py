@@ -17,14 +17,14 @@ from uplift.lookup import MODES, Cube
 from uplift.report.assessment import assess
 from uplift.report.charts import histogram_chart, spectra_chart
 from uplift.report.json_export import to_json
-from uplift.report.page import page
+from uplift.report.page import render_report
 from uplift.viz.format import format_power_of_ten, format_scientific
-from uplift.viz.histogram import histogram, log_edges
+from uplift.viz.histogram import log_edges, make_histogram
 
 
 @pytest.fixture(scope="module")
 def html(judged):
-    return page(judged, worst=3)
+    return render_report(judged, worst=3)
 
 
 def test_page_is_well_formed_and_complete(html, judged):
@@ -64,7 +64,7 @@ def test_charts_are_xml_and_complete(html, judged):
 
 
 def test_same_cube_gives_the_same_page(html, judged):
-    assert page(judged, worst=3) == html
+    assert render_report(judged, worst=3) == html
 
 
 def test_table_and_spectra_are_sorted_worst_first(html, judged):
@@ -76,7 +76,7 @@ def test_table_and_spectra_are_sorted_worst_first(html, judged):
 
 
 def test_no_spectra_for_worst_0(judged):
-    text = page(judged, worst=0)
+    text = render_report(judged, worst=0)
     Page(text)
     assert 'class="grid"' not in text
 
@@ -84,7 +84,7 @@ def test_no_spectra_for_worst_0(judged):
 def test_names_are_escaped(small_cube, hostile):
     found = assess(small_cube, HOSTILE, 1, hostile, ("D65",))
     assert found.entries.names == (HOSTILE,)
-    html = page(found, worst=24)
+    html = render_report(found, worst=24)
     assert HOSTILE not in html
     read = Page(html)
     assert read.tags.count("script") == 1  # the page's own
@@ -95,7 +95,7 @@ def test_names_are_escaped(small_cube, hostile):
 
 
 def test_points_over_the_threshold_are_listed(spoilt, macbeth):
-    read = Page(page(assess(spoilt, "spoilt.uplift", 1, macbeth, ("D65",)), worst=0))
+    read = Page(render_report(assess(spoilt, "spoilt.uplift", 1, macbeth, ("D65",)), worst=0))
     assert "2 nodes of 512 over the threshold of 0.0001." in read.text
     assert "2 over the threshold" in read.text
     assert "No failures" not in read.text
@@ -104,7 +104,7 @@ def test_points_over_the_threshold_are_listed(spoilt, macbeth):
 
 
 def test_page_without_an_atlas_states_so(small_sigmoid_cube):
-    read = Page(page(assess(small_sigmoid_cube, "sigmoid.uplift", 1, None, ("D65",)), worst=24))
+    read = Page(render_report(assess(small_sigmoid_cube, "sigmoid.uplift", 1, None, ("D65",)), worst=24))
     assert "built without an atlas, and none was given" in read.text
     assert "Crowding" not in read.text
 
@@ -112,7 +112,7 @@ def test_page_without_an_atlas_states_so(small_sigmoid_cube):
 def test_close_entries_are_listed(crowded_cube, macbeth, hostile):
     for spectra, wanted in ((macbeth, "measured"), (hostile, "stored")):
         found = assess(crowded_cube, "crowded.uplift", 1, spectra, ("D65", "A"))
-        html = page(found, worst=0)
+        html = render_report(found, worst=0)
         section = html[html.index("<h2>Crowding") : html.index("<h2>Entries")]
         assert f"relative to the {wanted} spectrum" in section
         assert "uplift build --dim auto" in section
@@ -127,7 +127,7 @@ def test_close_entries_are_listed(crowded_cube, macbeth, hostile):
 
 def test_lost_entries_are_named(lossy_cube):
     found = assess(lossy_cube, "lossy.uplift", 1, None, ("D65",))
-    read = Page(page(found, worst=0))
+    read = Page(render_report(found, worst=0))
     assert "Lost, as an earlier entry has the same colour: über (that of grey)." in read.text
     assert "2 close entries" in read.text
     assert "; 1 lost" in read.text
@@ -139,7 +139,7 @@ def test_lost_entries_are_named(lossy_cube):
 def test_predicted_and_actual_errors_are_shown(small_cube, repository):
     other = read_atlas(repository / "atlases" / "cie2017.txt")
     found = assess(small_cube, "small.uplift", 1, other, ("D65",))
-    read, measured = Page(page(found, worst=0)), found.calibration
+    read, measured = Page(render_report(found, worst=0)), found.calibration
     assert f"predicted an error of ΔE00 {measured.predicted:.2f} under A; the actual error is" in read.text
     assert f"the actual error is {measured.actual:.2f} (root mean squares)" in read.text
     assert "The standard errors are too small" in read.text
@@ -158,7 +158,7 @@ def test_missing_standard_errors_are_explained(plain_cube, lossy_cube, macbeth):
     few = Cube(with_points(lossy_cube.data, standard_error=None))
     for cube, why in ((plain_cube, "built without an atlas, so no data"), (few, "its 2 entries are too few")):
         found = assess(cube, "none.uplift", 1, macbeth, ("D65",))
-        text = Page(page(found, worst=0)).text
+        text = Page(render_report(found, worst=0)).text
         assert "The cube has none: " in text
         assert why in text
         assert to_json(found)["standard_error"]["delta_e_2000"] is None
@@ -167,7 +167,7 @@ def test_missing_standard_errors_are_explained(plain_cube, lossy_cube, macbeth):
 
 
 def test_no_close_entries(macbeth_cube, macbeth):
-    read = Page(page(assess(macbeth_cube, "macbeth-32.uplift", 1, macbeth, ("D65",)), worst=0))
+    read = Page(render_report(assess(macbeth_cube, "macbeth-32.uplift", 1, macbeth, ("D65",)), worst=0))
     assert "No entry has another within a lattice step." in read.text
     assert "No close entries" in read.text
 
@@ -224,7 +224,7 @@ def test_charts_are_valid_xml():
     at = np.arange(380.0, 781.0, 5.0)
     values = np.geomspace(1e-8, 1e-3, 50)
     charts = [
-        histogram_chart(histogram(values, log_edges(values, 1e-9)), "distance", threshold=1e-4),
+        histogram_chart(make_histogram(values, log_edges(values, 1e-9)), "distance", threshold=1e-4),
         spectra_chart(at, np.full(81, 0.05), np.full(81, 0.06), None),
         spectra_chart(at, np.full(81, 0.5), np.full(81, 1.0), np.full(81, 0.4)),
     ]

@@ -77,7 +77,7 @@ def spread(values: list[float]) -> Spread:
     return Spread(statistics.median(values), min(values), max(values), len(values))
 
 
-def timed(function: Callable[[], object], runs: int) -> tuple[Spread, Spread]:
+def time_calls(function: Callable[[], object], runs: int) -> tuple[Spread, Spread]:
     """Measure repeated calls of a function.
 
     The caller has called it once to warm up. Asynchronous results must be complete when the function returns.

@@ -15,9 +15,9 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lookup import Cube
-from uplift.report.calibration import Calibration, calibration
-from uplift.report.crowding import Crowding, crowding
-from uplift.report.failures import Failures, failures
+from uplift.report.calibration import Calibration, check_calibration
+from uplift.report.crowding import Crowding, find_crowding
+from uplift.report.failures import Failures, collect_failures
 from uplift.report.fidelity import (
     EntryErrors,
     EntryQuery,
@@ -26,10 +26,10 @@ from uplift.report.fidelity import (
     from_own_atlas,
     from_stored_entries,
 )
-from uplift.report.round_trip import round_trips
-from uplift.report.smoothness import smoothness
-from uplift.report.summary import summary
-from uplift.viz.histogram import Histogram, histogram, linear_edges, log_edges
+from uplift.report.round_trip import round_trip_errors
+from uplift.report.smoothness import compute_smoothness
+from uplift.report.summary import summarise
+from uplift.viz.histogram import Histogram, linear_edges, log_edges, make_histogram
 
 MIN_ERROR = 1e-9
 """Smaller distances and ΔE00 are rounding errors and are counted in the lowest bin."""
@@ -50,7 +50,7 @@ class Assessment:
     data : CubeData
         The cube.
     facts : dict
-        The result of `summary`.
+        The result of `summarise`.
     failures : Failures
         Points over the threshold and missing entries.
     distance : Histogram
@@ -140,20 +140,20 @@ def assess(
     query = _entry_query(cube, atlas, own)
     errors = None if query is None or not query.names else entry_errors(cube, query, sensors)
     present = data.points.present
-    steps, distances = smoothness(data), data.points.distance[present]
+    steps, distances = compute_smoothness(data), data.points.distance[present]
     standard_errors = None if data.points.standard_error is None else data.points.standard_error[present]
     return Assessment(
         name=name,
         size=size,
         data=data,
-        facts=summary(data),
-        failures=failures(data),
-        distance=histogram(distances, log_edges(distances, MIN_ERROR)),
-        round_trips=_comparable(round_trips(cube), lambda values: log_edges(values, MIN_ERROR)),
+        facts=summarise(data),
+        failures=collect_failures(data),
+        distance=make_histogram(distances, log_edges(distances, MIN_ERROR)),
+        round_trips=_comparable(round_trip_errors(cube), lambda values: log_edges(values, MIN_ERROR)),
         standard_error=None
         if standard_errors is None
-        else histogram(standard_errors, linear_edges(standard_errors)),
-        smoothness=histogram(steps.differences, log_edges(steps.differences, MIN_STEP)),
+        else make_histogram(standard_errors, linear_edges(standard_errors)),
+        smoothness=make_histogram(steps.differences, log_edges(steps.differences, MIN_STEP)),
         steepest=steps.steepest,
         lights=sensors,
         sources=() if atlas is None else tuple(source.name for source in atlas.sources),
@@ -162,7 +162,7 @@ def assess(
         delta_e={} if errors is None else _comparable(_by_light(errors, sensors), linear_edges),
         out_of_gamut=() if query is None else query.out_of_gamut,
         not_covered=() if query is None else query.not_covered,
-        calibration=None if own or errors is None else calibration(errors.actual, errors.predicted),
+        calibration=None if own or errors is None else check_calibration(errors.actual, errors.predicted),
         crowding=_crowding(cube, errors if own else None, sensors),
     )
 
@@ -185,7 +185,7 @@ def _crowding(cube: Cube, measured: EntryErrors | None, lights: tuple[Sensor, ..
     stored = from_stored_entries(cube.data).answerable_by(cube)
     if not stored.names:
         return None
-    return crowding(cube.data, entry_errors(cube, stored, lights) if measured is None else measured)
+    return find_crowding(cube.data, entry_errors(cube, stored, lights) if measured is None else measured)
 
 
 def _by_light(errors: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Array]:
@@ -195,4 +195,4 @@ def _by_light(errors: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Arra
 def _comparable(values: dict[str, Array], edges: Callable[[Array], Array]) -> dict[str, Histogram]:
     """Histograms with common edges."""
     common = edges(np.concatenate(list(values.values())))
-    return {name: histogram(array, common) for name, array in values.items()}
+    return {name: make_histogram(array, common) for name, array in values.items()}

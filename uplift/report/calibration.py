@@ -56,7 +56,7 @@ class Calibration:
         }
 
 
-def calibration(actual: Array, predicted: Array | None) -> Calibration | None:
+def check_calibration(actual: Array, predicted: Array | None) -> Calibration | None:
     """Compare errors with standard errors.
 
     Parameters

@@ -36,7 +36,7 @@ class Crowding:
     lost: tuple[tuple[str, str], ...]
 
 
-def crowding(data: CubeData, entries: EntryErrors) -> Crowding:
+def find_crowding(data: CubeData, entries: EntryErrors) -> Crowding:
     """Find the entries that have another one within a lattice step.
 
     Parameters

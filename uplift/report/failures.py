@@ -43,7 +43,7 @@ class Failures:
     skipped: tuple[str, ...]
 
 
-def failures(data: CubeData) -> Failures:
+def collect_failures(data: CubeData) -> Failures:
     """Collect the failures that a cube records.
 
     Parameters

@@ -14,7 +14,7 @@ VISIBLE, LARGE = 1.0, 3.0
 """ΔE00: the difference that is just visible side by side, and one that is obvious."""
 
 
-def page(assessment: Assessment, worst: int) -> str:
+def render_report(assessment: Assessment, worst: int) -> str:
     """Render the report of a cube.
 
     Parameters

@@ -14,7 +14,7 @@ SEED = 20200617
 """All reports use the same random colours, so that they can be compared."""
 
 
-def round_trips(cube: Cube) -> dict[str, Array]:
+def round_trip_errors(cube: Cube) -> dict[str, Array]:
     """Compute the round-trip errors of random colours.
 
     Parameters

@@ -31,7 +31,7 @@ class Smoothness:
     steepest: Array
 
 
-def smoothness(data: CubeData) -> Smoothness:
+def compute_smoothness(data: CubeData) -> Smoothness:
     """Compare the spectra of all neighbours, each pair once.
 
     The lattice is processed by planes of equal red: spectra of two planes are in memory at a time.

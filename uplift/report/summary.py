@@ -9,7 +9,7 @@ import numpy as np
 from uplift.cube import CubeData, digest
 
 
-def summary(data: CubeData) -> dict[str, Any]:
+def summarise(data: CubeData) -> dict[str, Any]:
     """Summarise a cube, most general facts first.
 
     Parameters

@@ -42,7 +42,7 @@ class Histogram:
         return bool(self.edges[0] > 0)
 
 
-def histogram(values: ArrayLike, edges: Array) -> Histogram:
+def make_histogram(values: ArrayLike, edges: Array) -> Histogram:
     """Count values in bins.
 
     Parameters

@@ -9,7 +9,7 @@ from uplift.atlas import read_atlas
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.method import Family, Method, PreparedMethod
 from uplift.lab.chart.table import TEXTS, Chart, MethodResult, State
-from uplift.lab.chart.task import Effort, task
+from uplift.lab.chart.task import Effort, make_task
 
 FACTS = dict.fromkeys(("machine", "versions", "commit", "colours", "spectra", "effort"), "stated")
 HASTE = Effort(seconds_per_error=0.05, runs=3, lap=0.001, batch=64, builds=1)
@@ -27,7 +27,7 @@ ERRORS = (
 @pytest.fixture(scope="session")
 def small_task(repository):
     """Sixteen colours, the edges, and the ColorChecker, with short timings."""
-    return task({"macbeth": read_atlas(repository / "atlases" / "macbeth.txt")}, 16, HASTE)
+    return make_task({"macbeth": read_atlas(repository / "atlases" / "macbeth.txt")}, 16, HASTE)
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,7 @@ from uplift.common.progress import Progress
 from uplift.lab.chart.measure import MAX_CLAIM_RATIO, measure, measure_one
 from uplift.lab.chart.method import Claims, Method, NotInstalledError
 from uplift.lab.chart.methods.mallett2019 import FAMILIES
-from uplift.lab.chart.page import page
+from uplift.lab.chart.page import render_chart
 from uplift.lab.chart.panels import PANELS
 from uplift.lab.chart.table import State
 from uplift.lab.study.held_out import spectrum_errors
@@ -63,7 +63,7 @@ def test_broken_method_is_listed_and_not_drawn(small_task, greys, method_of):
     assert (good.state, bad.state) == (State.MEASURED, State.BROKEN)
     assert chart.measured == (good,)
     assert all(bad not in panel.front(chart) and panel.point(bad) is None for panel in PANELS)
-    (row,) = Page(page(chart, Markup(""))).table("method", "state", "reason")
+    (row,) = Page(render_chart(chart, Markup(""))).table("method", "state", "reason")
     assert [cell.text for cell in row] == [bad.title, "broken", bad.why]
 
 

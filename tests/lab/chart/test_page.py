@@ -10,7 +10,7 @@ import pytest
 from markupsafe import Markup
 
 from tests.pages import Page, external_links
-from uplift.lab.chart.page import page
+from uplift.lab.chart.page import render_chart
 from uplift.lab.chart.panels import PANELS
 from uplift.lab.chart.picture import write_pictures
 from uplift.lab.chart.table import State
@@ -43,7 +43,7 @@ def test_measured_methods_have_a_marker_in_every_panel(row_of, chart_of, folder)
 
 def test_page_is_self_contained_and_escapes_names(row_of, chart_of):
     rows = row_of(HOSTILE, 80, 0.4), row_of("wrong", 1, 1, state=State.BROKEN, why=HOSTILE, numbers={})
-    text = page(chart_of(*rows), Markup("<svg></svg>"))
+    text = render_chart(chart_of(*rows), Markup("<svg></svg>"))
     assert HOSTILE not in text
     assert not re.search(r'(?:src|href|url)\s*[=(]\s*["\']?(?:https?:)?//', text)
     assert external_links(text) == []
@@ -57,4 +57,4 @@ def test_page_is_self_contained_and_escapes_names(row_of, chart_of):
 
 def test_same_chart_gives_the_same_page(row_of, chart_of):
     chart = chart_of(row_of("one", 80, 0.4))
-    assert page(chart, Markup("")) == page(chart, Markup(""))
+    assert render_chart(chart, Markup("")) == render_chart(chart, Markup(""))

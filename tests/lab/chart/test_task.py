@@ -7,7 +7,7 @@ import numpy as np
 from tests.helpers import raises
 from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
 from uplift.common.errors import AtlasError, OptionError
-from uplift.lab.chart.task import edges, task
+from uplift.lab.chart.task import edges, make_task
 
 
 def shipped(repository, *names):
@@ -17,7 +17,7 @@ def shipped(repository, *names):
 def test_every_second_entry_builds_and_the_others_test(repository):
     # The first atlas has an odd number of entries; counting starts again with each atlas.
     atlases = shipped(repository, "vs", "macbeth")
-    found = task(atlases, 16)
+    found = make_task(atlases, 16)
     names = [entry.name for spectra in atlases.values() for entry in spectra.entries[::2]]
     assert list(found.kept.names) == names
     rows = {tuple(row) for row in found.own.round(12)}
@@ -27,7 +27,7 @@ def test_every_second_entry_builds_and_the_others_test(repository):
 
 
 def test_task_is_reproducible(small_task, repository):
-    again = task(shipped(repository, "macbeth"), 16)
+    again = make_task(shipped(repository, "macbeth"), 16)
     for name in ("rgb", "own", "unseen"):
         np.testing.assert_array_equal(getattr(again, name), getattr(small_task, name))
 
@@ -45,8 +45,8 @@ def test_edges_contain_every_corner_and_grey_once():
 
 def test_too_few_colours_or_entries_are_an_error(repository):
     with raises(OptionError, "too-few-colours"):
-        task(shipped(repository, "macbeth"), 15)
+        make_task(shipped(repository, "macbeth"), 15)
     at = np.arange(380.0, 781.0, 10.0)
     two = Atlas(tuple(Entry(name, at, np.full(len(at), 0.5)) for name in ("one", "other")))
     with raises(AtlasError, "too-few-entries"):
-        task({"two": two}, 16)
+        make_task({"two": two}, 16)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from uplift.lab.comparison.filters import NONE, tune
+from uplift.lab.comparison.filters import NONE, tune_filters
 from uplift.lab.comparison.measure import error_statistics
 from uplift.scene.representations.filtered_point_sampling import filtered_point_samples
 from uplift.scene.representations.filters import COARSE_STRIDE, candidates
@@ -15,7 +15,7 @@ from uplift.scene.representations.point_sampling import point_samples
 def tuned(checker):
     return {
         (one.lights, one.kind): one
-        for one in tune(checker, COARSE_STRIDE, ("tent", "lanczos", "mitchell"), (16,))
+        for one in tune_filters(checker, COARSE_STRIDE, ("tent", "lanczos", "mitchell"), (16,))
     }
 
 

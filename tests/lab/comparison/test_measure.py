@@ -14,8 +14,8 @@ from tests.lab.comparison.conftest import EFFORT
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import AtlasError, UnknownNameError, UpliftError
 from uplift.lab.comparison.measure import compare, error_statistics
-from uplift.lab.comparison.scene import QUICK_SURFACES, scene
-from uplift.lab.comparison.statistics import HEADINGS, statistics
+from uplift.lab.comparison.scene import QUICK_SURFACES, make_scene
+from uplift.lab.comparison.statistics import HEADINGS, compute_statistics
 from uplift.scene.representations.dense import xyz_weights
 from uplift.scene.representations.point_sampling import point_samples
 from uplift.scene.representations.samples import SampleRepresentation
@@ -38,7 +38,7 @@ def test_errors_match_explicit_loops(checker):
             pair = (lab(samples.xyz(product)[0], white), lab((power * surface) @ xyz_weights(), white))
             apart.append(float(delta_e_2000(*pair)))
     assert tuple(error_statistics(samples, checker, part)) == pytest.approx(
-        tuple(statistics(apart)), rel=1e-9
+        tuple(compute_statistics(apart)), rel=1e-9
     )
 
 
@@ -82,18 +82,18 @@ def test_findings_of_the_thesis_hold_for_the_colorchecker(found):
 def test_statistics_match_numpy():
     errors = np.random.default_rng(9).gamma(2.0, size=(4, 50))
     expected = [errors.mean(), errors.std(), *np.quantile(errors, (0.5, 0.025, 0.25, 0.75, 0.975))]
-    np.testing.assert_allclose(tuple(statistics(errors)), expected)
+    np.testing.assert_allclose(tuple(compute_statistics(errors)), expected)
     assert len(HEADINGS) == len(expected)
 
 
 def test_named_lights_form_one_set():
     atlases = {"macbeth": uplift.read_atlas(MACBETH)}
-    (part,) = scene(atlases, ["HP1", "LED-B3", "HP1"]).sets
+    (part,) = make_scene(atlases, ["HP1", "LED-B3", "HP1"]).sets
     assert part.title == "given lights (HP1, LED-B3)"
     with raises(UnknownNameError, "unknown-illuminant"):
-        scene(atlases, ["F2"])
+        make_scene(atlases, ["F2"])
     with raises(AtlasError, "no-entries"):
-        scene({"none": uplift.Atlas()})
+        make_scene({"none": uplift.Atlas()})
 
 
 def test_thinned_scene_keeps_the_first_and_last_surface(checker):

@@ -12,7 +12,7 @@ import pytest
 from tests.pages import Page
 from uplift.lab.comparison.cost import COSTS, front, numbered
 from uplift.lab.comparison.families import COLOURS, family_colour, family_colours
-from uplift.lab.comparison.page import page
+from uplift.lab.comparison.page import render_comparison
 from uplift.lab.comparison.pictures import KINDS, write_picture
 from uplift.lab.comparison.table import records
 from uplift.viz.figure import OTHER
@@ -58,14 +58,14 @@ def test_nothing_is_cheaper_and_more_accurate_than_the_front(found, cost):
 
 
 def test_page_contains_tooltips_and_tables(found, pictures):
-    text = page(found, pictures[0])
+    text = render_comparison(found, pictures[0])
     (data,) = re.findall(r'<script type="application/json" id="rows">(.*?)</script>', text, re.DOTALL)
     tooltips = json.loads(data)
     assert [one["title"] for one in tooltips] == list(numbered(found))
     assert all(len(one["lines"]) == 1 + 3 * len(found.sets) for one in tooltips)
     assert "Smooth lights (A, B, C)" in text
     assert "http" not in re.sub(r'xmlns="[^"]*"', "", text)
-    assert page(found, pictures[0]) == text
+    assert render_comparison(found, pictures[0]) == text
     read = Page(text)
     for name in found.sets:
         names = [result.name for result in found.of(name)]

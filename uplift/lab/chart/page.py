@@ -21,7 +21,7 @@ ERRORS = {
 """Columns of the table: headings by names of errors."""
 
 
-def page(chart: Chart, picture: Markup) -> str:
+def render_chart(chart: Chart, picture: Markup) -> str:
     """Render the page of a chart.
 
     Parameters

@@ -82,7 +82,7 @@ class Task:
     facts: Mapping[str, str]
 
 
-def task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | None = None) -> Task:
+def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | None = None) -> Task:
     """Make a task from measured spectra: of each atlas the first, third, … entry builds cubes, the others test them.
 
     Parameters

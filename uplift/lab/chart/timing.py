@@ -9,7 +9,7 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.lab.chart.task import Effort
-from uplift.lab.timing import Spread, timed
+from uplift.lab.timing import Spread, time_calls
 
 MIN_RUNS = 3
 MAX_LAPS = 15
@@ -24,7 +24,7 @@ def batch_times(uplift: Callable[[Array], object], effort: Effort) -> dict[str, 
     """Measure calls with many colours, fewer of them for slow methods; ns of all threads per colour."""
     rgb = np.random.default_rng(2).random((effort.batch, 3))
     uplift(rgb[:1])
-    _, trial = timed(lambda: uplift(rgb[:TRIAL]), 1)
+    _, trial = time_calls(lambda: uplift(rgb[:TRIAL]), 1)
     rgb = rgb[: max(int(MAX_LAPS * effort.lap * TRIAL / max(trial.median, 1e-9)), TRIAL)]
     return _numbers("batch", _repeated(lambda: uplift(rgb), len(rgb), effort), len(rgb))
 
@@ -33,7 +33,7 @@ def single_times(uplift: Callable[[Array], object], effort: Effort) -> dict[str,
     """Measure calls with one colour; ns of all threads per call."""
     colours = np.random.default_rng(3).random((SINGLE_COLOURS, 1, 3))
     uplift(colours[0])
-    _, once = timed(lambda: uplift(colours[1]), MIN_RUNS)
+    _, once = time_calls(lambda: uplift(colours[1]), MIN_RUNS)
     calls = max(1, min(int(effort.lap / 5 / max(once.median, 1e-9)), 1000))
 
     def run() -> None:
@@ -45,9 +45,9 @@ def single_times(uplift: Callable[[Array], object], effort: Effort) -> dict[str,
 
 def _repeated(run: Callable[[], object], colours: int, effort: Effort) -> Spread:
     """CPU seconds per colour, after a run that warms up and determines the number of the others."""
-    _, first = timed(run, 1)
+    _, first = time_calls(run, 1)
     runs = int(MAX_LAPS * effort.lap / max(first.median, 1e-9))
-    _, cpu = timed(run, min(max(runs, MIN_RUNS), effort.runs))
+    _, cpu = time_calls(run, min(max(runs, MIN_RUNS), effort.runs))
     return cpu.scaled(1 / colours)
 
 

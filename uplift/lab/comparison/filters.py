@@ -32,7 +32,7 @@ NONE = "none"
 
 
 @dataclass(frozen=True)
-class Tuned:
+class TunedFilter:
     """The best filter of a kind.
 
     Parameters
@@ -64,13 +64,13 @@ class Tuned:
         return ", ".join([f"extent {self.low_pass.extent}", *(f"{key} {value:g}" for key, value in named)])
 
 
-def tune(
+def tune_filters(
     scene: Scene,
     stride: int = FINE_STRIDE,
     kinds: Sequence[str] = tuple(KINDS),
     counts: Sequence[int] = COUNTS,
     progress: ProgressCallback = ignore_progress,
-) -> tuple[Tuned, ...]:
+) -> tuple[TunedFilter, ...]:
     """Search the best filter of each kind, for each number of samples and each set of lights.
 
     Parameters
@@ -92,7 +92,9 @@ def tune(
         Unfiltered samples first, then the filters.
     """
     results = [
-        Tuned(NONE, count, light_set.name, None, error_statistics(point_samples(count), scene, light_set))
+        TunedFilter(
+            NONE, count, light_set.name, None, error_statistics(point_samples(count), scene, light_set)
+        )
         for count in counts
         for light_set in scene.sets
     ]
@@ -100,7 +102,7 @@ def tune(
     for done, (kind, count) in enumerate(tasks, 1):
         for light_set, best in zip(scene.sets, _best(candidates(kind, stride), count, scene), strict=True):
             errors = error_statistics(filtered_point_samples(count, best), scene, light_set)
-            results.append(Tuned(kind, count, light_set.name, best, errors))
+            results.append(TunedFilter(kind, count, light_set.name, best, errors))
         progress(Progress("filters", done, len(tasks)))
     return tuple(results)
 

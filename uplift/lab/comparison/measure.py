@@ -13,8 +13,8 @@ from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.comparison.scene import LightSet, Scene
-from uplift.lab.comparison.statistics import Statistics, statistics
-from uplift.lab.timing import Spread, environment, timed
+from uplift.lab.comparison.statistics import Statistics, compute_statistics
+from uplift.lab.timing import Spread, environment, time_calls
 from uplift.scene.representations.representation import Representation
 
 
@@ -169,7 +169,7 @@ def error_statistics(representation: Representation, scene: Scene, light_set: Li
         If the representation returns values that are not finite.
     """
     surfaces = representation.encode_surface(scene.surfaces)
-    return statistics(_errors(representation, surfaces, light_set, scene, scene.reference(light_set)))
+    return compute_statistics(_errors(representation, surfaces, light_set, scene, scene.reference(light_set)))
 
 
 def _errors(
@@ -202,7 +202,7 @@ def _result(
         name=representation.name,
         family=representation.family,
         lights=light_set.name,
-        statistics=statistics(_errors(representation, surfaces, light_set, scene, reference)),
+        statistics=compute_statistics(_errors(representation, surfaces, light_set, scene, reference)),
         floats=float(representation.storage(surfaces).mean()),
         light_floats=float(representation.storage(representation.encode_light(light_set.powers)).mean()),
         ns=ns,
@@ -224,9 +224,9 @@ def _time(representation: Representation, surfaces: Any, light_set: LightSet, ef
             representation.multiply(light, surfaces)
 
     multiply(1)
-    _, once = timed(lambda: multiply(1), 1)
+    _, once = time_calls(lambda: multiply(1), 1)
     laps = max(1, round(effort.seconds / max(once.median, 1e-6)))
-    _, cpu = timed(lambda: multiply(laps), effort.runs)
+    _, cpu = time_calls(lambda: multiply(laps), effort.runs)
     return cpu.scaled(1e9 / (laps * len(lights) * effort.rows))
 
 

@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from uplift.lab.comparison.cost import numbered
 from uplift.lab.comparison.families import family_colours
-from uplift.lab.comparison.filters import Tuned
+from uplift.lab.comparison.filters import TunedFilter
 from uplift.lab.comparison.measure import Comparison
 from uplift.lab.comparison.statistics import HEADINGS
 from uplift.viz.format import format_error, format_time
@@ -23,7 +23,9 @@ SOURCES = (
 )
 
 
-def page(comparison: Comparison, pictures: Mapping[str, Markup], tuned: Sequence[Tuned] = ()) -> str:
+def render_comparison(
+    comparison: Comparison, pictures: Mapping[str, Markup], tuned: Sequence[TunedFilter] = ()
+) -> str:
     """Render the page of a comparison.
 
     Parameters

@@ -121,7 +121,7 @@ class Scene:
         return replace(self, names=tuple(self.names[row] for row in kept), surfaces=self.surfaces[kept])
 
 
-def scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scene:
+def make_scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scene:
     """Combine the entries of atlases with sets of lights.
 
     Parameters

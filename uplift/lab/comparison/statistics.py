@@ -41,7 +41,7 @@ class Statistics:
         return iter(astuple(self))
 
 
-def statistics(errors: ArrayLike) -> Statistics:
+def compute_statistics(errors: ArrayLike) -> Statistics:
     """Compute the statistics of errors.
 
     Parameters

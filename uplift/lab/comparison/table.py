@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
-from uplift.lab.comparison.filters import Tuned
+from uplift.lab.comparison.filters import TunedFilter
 from uplift.lab.comparison.measure import Comparison, RepresentationResult
 
 
@@ -26,7 +26,7 @@ def records(comparison: Comparison) -> list[dict[str, Any]]:
     return [_record(result) for result in comparison.results]
 
 
-def filter_records(tuned: Iterable[Tuned]) -> list[dict[str, Any]]:
+def filter_records(tuned: Iterable[TunedFilter]) -> list[dict[str, Any]]:
     """Convert tuned filters to records.
 
     Parameters

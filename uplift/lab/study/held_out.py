@@ -18,7 +18,7 @@ from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lookup import Cube
 from uplift.pipeline import build
-from uplift.report.calibration import Calibration, calibration
+from uplift.report.calibration import Calibration, check_calibration
 
 __all__ = ["HoldoutSplit", "SpectrumErrors", "holdout", "pooled_calibration", "spectrum_errors"]
 
@@ -153,7 +153,7 @@ def pooled_calibration(splits: Sequence[HoldoutSplit]) -> Calibration | None:
     if not pairs:
         return None
     actual, predicted = (np.concatenate(part) for part in zip(*pairs, strict=True))
-    return calibration(actual, predicted)
+    return check_calibration(actual, predicted)
 
 
 def _evaluate(cubes: dict[str, Cube], held_out: Atlas) -> HoldoutSplit:
