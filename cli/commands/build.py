@@ -15,10 +15,12 @@ from ..output.build_summary import print_improvements, print_summary
 from ..params.image_paths import expand_patterns
 from ..params.options import (
     LatticeDim,
+    atlas_option,
     coefficient_count,
     coefficients_options,
     encoding_option,
     force_option,
+    light_option,
     out_of_gamut_option,
     quiet_option,
     sensor_options,
@@ -35,7 +37,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 
 
 @click.command("build")
-@click.option("--atlas", "atlases", multiple=True, metavar="FILE", help="Measured spectra; repeatable.")
+@atlas_option("Measured spectra")
 @click.option(
     "-o",
     "--output",
@@ -60,13 +62,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 @click.option("--warp", default="none", show_default=True, help="Phase warp of the moments: none or vision.")
 @click.option("--axis", default="srgb", show_default=True, help="Spacing of the nodes: srgb or linear.")
 @sensor_options
-@click.option(
-    "--light",
-    "lights",
-    multiple=True,
-    metavar="NAME",
-    help="Illuminant under which entries must keep their colour; repeatable. [default: D65 A FL2 FL11 LED-B3]",
-)
+@light_option("Illuminant under which entries must keep their colour", "D65 A FL2 FL11 LED-B3")
 @click.option(
     "--threshold", default=1e-4, show_default=True, help="Largest residual of a node, |linear RGB|."
 )
@@ -86,7 +82,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 @verbose_option()
 def command(
     plan_path: str | None,
-    atlases: tuple[str, ...],
+    files: tuple[str, ...],
     output: str | None,
     images: tuple[str, ...],
     encoding: str,
@@ -126,8 +122,8 @@ def command(
         scene = _scene(images, encoding, method)
         given = {name: value for name, value in options.items() if value not in (None, ())}
         count = coefficient_count(coefficients, moments)
-        build = partial(build_cube, atlases or None, scene=scene, coefficients=count, **given)
-        name = _default_name(atlases, images, options)
+        build = partial(build_cube, files or None, scene=scene, coefficients=count, **given)
+        name = _default_name(files, images, options)
     else:
         build, name = _planned_build(plan_path, click.get_current_context())
     path = check_output(name if output is None else output, force=force)

@@ -10,7 +10,7 @@ import click
 from ..output.console import console
 from ..output.progress import progress_bar
 from ..params.atlases import SHIPPED, read_atlases
-from ..params.options import force_option
+from ..params.options import atlas_option, force_option
 from ..startup import enable_jit_cache, use_one_blas_thread
 
 if TYPE_CHECKING:
@@ -29,13 +29,7 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
     multiple=True,
     help="Methods by name, with '*' as a wildcard; repeatable.",
 )
-@click.option(
-    "--atlas",
-    "files",
-    metavar="FILE",
-    multiple=True,
-    help=f"Measured spectra; repeatable. [default: {SHIPPED}]",
-)
+@atlas_option("Measured spectra", SHIPPED)
 @click.option(
     "--colours",
     metavar="N",

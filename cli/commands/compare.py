@@ -11,7 +11,7 @@ import click
 from ..output.console import json_text
 from ..output.progress import progress_bar
 from ..params.atlases import SHIPPED, read_atlases
-from ..params.options import force_option, format_option
+from ..params.options import atlas_option, force_option, format_option, light_option, output_folder_option
 from ..startup import use_one_blas_thread
 
 if TYPE_CHECKING:
@@ -24,16 +24,8 @@ FILTERS = "compare-filters.csv"
 
 
 @click.command("compare")
-@click.option(
-    "--atlas", "files", metavar="FILE", multiple=True, help=f"Surfaces; repeatable. [default: {SHIPPED}]"
-)
-@click.option(
-    "--light",
-    "lights",
-    metavar="NAME",
-    multiple=True,
-    help="Illuminant by its name in colour-science; repeatable. [default: A, B, C, and FL2, FL7, FL11]",
-)
+@atlas_option("Surfaces", SHIPPED)
+@light_option("Illuminant", "A, B, C, and FL2, FL7, FL11")
 @click.option(
     "--target",
     metavar="ΔE00",
@@ -48,7 +40,7 @@ FILTERS = "compare-filters.csv"
 @click.option(
     "--quick", is_flag=True, help="At most forty surfaces, few repeats and a coarse search: seconds."
 )
-@click.option("-o", "--output", metavar="DIR", help="Folder for tables, plots and page.")
+@output_folder_option()
 @format_option("table", "json", "csv")
 @force_option()
 def command(

@@ -10,6 +10,7 @@ from ..output.mixtures import as_json, as_table, make_mixture, plot
 from ..output.paint_over import make_brush, paint
 from ..params.ingredients import make_resolver
 from ..params.options import (
+    atlas_option,
     cube_option,
     encoding_option,
     force_option,
@@ -66,13 +67,7 @@ WRITERS = {"table": as_table, "json": as_json}
     "keeps it constant.",
 )
 @cube_option()
-@click.option(
-    "--atlas",
-    "atlases",
-    multiple=True,
-    metavar="FILE",
-    help="Measured spectra whose entries are ingredients; repeatable.",
-)
+@atlas_option("Measured spectra whose entries are ingredients")
 @wavelengths_option()
 @out_of_gamut_option("scale", "mixtures and pixels")
 @format_option(*WRITERS)
@@ -97,7 +92,7 @@ def command(
     incidence: str,
     km_constants: str,
     cube_path: str | None,
-    atlases: tuple[str, ...],
+    files: tuple[str, ...],
     wavelengths: str | None,
     method: str,
     style: str,
@@ -133,7 +128,7 @@ def command(
         check_output(path, force=force)
     cube = load(cube_path)
     medium = _medium(thickness, INCIDENCES[incidence](refractive_index), km_constants)
-    resolver = make_resolver(cube, atlases, cube.resolve_wavelengths(parse_wavelengths(wavelengths)))
+    resolver = make_resolver(cube, files, cube.resolve_wavelengths(parse_wavelengths(wavelengths)))
     ingredients = resolver.ingredients(words)
     if over is not None and output is not None:
         paint(make_brush(cube, kind, ingredients, medium, encoding, method), over, output, force=force)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..output.console import json_text
-from ..params.options import atlas_folders_option, force_option, format_option
+from ..params.options import atlas_folders_option, atlas_option, force_option, format_option, light_option
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
@@ -18,21 +18,9 @@ if TYPE_CHECKING:
 
 @click.command("report")
 @click.argument("cube_path", metavar="CUBE", type=click.Path())
-@click.option(
-    "--atlas",
-    "atlases",
-    multiple=True,
-    metavar="OTHER",
-    help="Assess the cube with these measured spectra instead of its atlases; repeatable.",
-)
+@atlas_option("Measured spectra that replace the atlases of the cube")
 @atlas_folders_option()
-@click.option(
-    "--light",
-    "lights",
-    multiple=True,
-    metavar="NAME",
-    help="Illuminant to evaluate; repeatable. [default: D65 A FL2 FL7 FL11 LED-B3]",
-)
+@light_option("Illuminant to evaluate", "D65 A FL2 FL7 FL11 LED-B3")
 @click.option(
     "-o",
     "--output",
@@ -50,7 +38,7 @@ if TYPE_CHECKING:
 @force_option()
 def command(
     cube_path: str,
-    atlases: tuple[str, ...],
+    files: tuple[str, ...],
     folders: tuple[str, ...],
     lights: tuple[str, ...],
     output: str | None,
@@ -85,7 +73,7 @@ def command(
         _check_not_cube(check_output(path, force=force), cube_path)
     cube = load(cube_path)
     with spinner("evaluating the cube"):
-        assessment = _assess(cube, cube_path, atlases, folders, lights)
+        assessment = _assess(cube, cube_path, files, folders, lights)
         text = _text(assessment, style, worst)
     if path is None:
         click.echo(text, nl=False)
@@ -148,10 +136,8 @@ def _summary(assessment: Assessment) -> str:
             f"ΔE00 mean {entries.delta_e.mean():.2f}, worst {entries.worst[0]:.2f} ('{entries.names[0]}')"
         )
     if assessment.calibration is not None:
-        calibration = assessment.calibration
-        parts.append(
-            f"rms under {assessment.data.error_illuminant} {calibration.actual:.2f}, predicted {calibration.predicted:.2f}"
-        )
+        calibration, light = assessment.calibration, assessment.data.error_illuminant
+        parts.append(f"rms under {light} {calibration.actual:.2f}, predicted {calibration.predicted:.2f}")
     if assessment.crowding is not None:
         parts.append(pluralise(len(assessment.crowding.entries.names), "crowded entry", "crowded entries"))
     return ", ".join(parts)

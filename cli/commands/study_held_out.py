@@ -10,7 +10,7 @@ import click
 from ..output.console import console, json_text
 from ..output.progress import progress_bar
 from ..params.atlases import SHIPPED, read_atlases
-from ..params.options import coefficient_count, coefficients_options, format_option
+from ..params.options import atlas_option, coefficient_count, coefficients_options, format_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -20,9 +20,7 @@ Results = dict[str, "tuple[HoldoutSplit, ...]"]
 
 
 @click.command("held-out")
-@click.option(
-    "--atlas", "files", metavar="FILE", multiple=True, help=f"Atlas; repeatable. [default: {SHIPPED}]"
-)
+@atlas_option("Atlas", SHIPPED)
 @click.option("--splits", default=3, show_default=True, help="Number of splits of each atlas.")
 @click.option("--dim", default=32, show_default=True, help="Lattice nodes along each axis.")
 @coefficients_options

@@ -11,7 +11,7 @@ import click
 from ..output.console import console, json_text
 from ..output.progress import progress_bar
 from ..params.atlases import SHIPPED, read_atlases
-from ..params.options import force_option, format_option
+from ..params.options import atlas_option, force_option, format_option, output_folder_option
 
 if TYPE_CHECKING:
     from uplift.lab.study.moments import MomentsStudy
@@ -20,9 +20,7 @@ FILES = ("moments.csv", "moments.png", "moments-patches.png", "moments-worst.png
 
 
 @click.command("moments")
-@click.option(
-    "--atlas", "files", metavar="FILE", multiple=True, help=f"Atlas; repeatable. [default: {SHIPPED}]"
-)
+@atlas_option("Atlas", SHIPPED)
 @click.option(
     "--max-moments",
     metavar="N",
@@ -31,7 +29,7 @@ FILES = ("moments.csv", "moments.png", "moments-patches.png", "moments-worst.png
     show_default=True,
     help="Largest number of moments, up to 32.",
 )
-@click.option("-o", "--output", metavar="DIR", help="Folder for the table and the plots.")
+@output_folder_option()
 @format_option("table", "json", "csv")
 @force_option()
 def moments(files: tuple[str, ...], max_moments: int, output: str | None, style: str, force: bool) -> None:

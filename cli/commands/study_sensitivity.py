@@ -10,7 +10,7 @@ import click
 
 from ..output.console import console, json_text
 from ..output.progress import progress_bar
-from ..params.options import atlas_folders_option, force_option, format_option
+from ..params.options import atlas_folders_option, force_option, format_option, output_folder_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ RESULTS, STEEPNESS, LOCALITY = FILES = (
 @click.option(
     "--entries", default=24, show_default=True, help="Number of atlas entries to change, one at a time."
 )
-@click.option("-o", "--output", metavar="DIR", help="Folder for the results and the plots.")
+@output_folder_option()
 @format_option("table", "json")
 @force_option()
 def sensitivity(

@@ -12,7 +12,7 @@ import click
 from ..output.console import console, json_text
 from ..output.progress import progress_bar
 from ..params.atlases import read_atlases
-from ..params.options import force_option, format_option
+from ..params.options import atlas_option, force_option, format_option, output_folder_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -46,13 +46,7 @@ def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
 @click.option(
     "--thresholds", callback=_list_of(float), metavar="X,…", help="Largest residuals, |linear RGB|."
 )
-@click.option(
-    "--atlas",
-    "files",
-    metavar="FILE",
-    multiple=True,
-    help=f"Atlas in addition to the synthetic ones; repeatable. [default: {MACBETH} if it exists]",
-)
+@atlas_option("Atlas in addition to the synthetic ones", f"{MACBETH} if it exists")
 @click.option(
     "--atlases", callback=_list_of(str), metavar="NAME,…", help="Atlases to use by name, or 'none'."
 )
@@ -64,7 +58,7 @@ def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
     metavar="N,…",
     help="Lattices for the solver of scipy.",
 )
-@click.option("-o", "--output", metavar="DIR", help="Folder for the tables and the heat map.")
+@output_folder_option()
 @format_option("table", "json", "csv")
 @force_option()
 def stability(

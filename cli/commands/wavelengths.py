@@ -9,7 +9,7 @@ import click
 from ..output.progress import spinner
 from ..output.wavelengths_output import PRINTERS, Result
 from ..params.atlases import SHIPPED, read_atlases
-from ..params.options import force_option, format_option, sensor_options
+from ..params.options import atlas_option, force_option, format_option, light_option, sensor_options
 from ..params.wavelengths import parse_wavelengths
 
 if TYPE_CHECKING:
@@ -38,20 +38,8 @@ if TYPE_CHECKING:
     help="optimised: fit everything; meyer: Meyer's quadrature; the others use even wavelengths, sampled (uniform), "
     "averaged over bins (bins) or with fitted weights (fitted). [default: optimised]",
 )
-@click.option(
-    "--atlas",
-    "files",
-    metavar="FILE",
-    multiple=True,
-    help=f"Materials; repeatable. [default: {SHIPPED}]",
-)
-@click.option(
-    "--light",
-    "lights",
-    metavar="NAME",
-    multiple=True,
-    help="Illuminant of the scene; repeatable. [default: D65]",
-)
+@atlas_option("Materials", SHIPPED)
+@light_option("Illuminant of the scene", "D65")
 @sensor_options
 @format_option("table", "json", "csv")
 @click.option("--plot", "plot_path", metavar="PNG", help="Plot lights, wavelengths and weights.")

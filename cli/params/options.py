@@ -38,6 +38,25 @@ def cube_option() -> Decorator:
     )
 
 
+def atlas_option(help: str, default: str = "") -> Decorator:
+    """``--atlas`` as ``files``."""
+    return click.option("--atlas", "files", multiple=True, metavar="FILE", help=_repeatable(help, default))
+
+
+def light_option(help: str, default: str) -> Decorator:
+    """``--light`` as ``lights``."""
+    return click.option("--light", "lights", multiple=True, metavar="NAME", help=_repeatable(help, default))
+
+
+def _repeatable(help: str, default: str) -> str:
+    return f"{help}; repeatable." + (f" [default: {default}]" if default else "")
+
+
+def output_folder_option() -> Decorator:
+    """``--output`` of commands that write several files."""
+    return click.option("-o", "--output", metavar="DIR", help="Folder for tables and plots.")
+
+
 def fill_option() -> Decorator:
     """``--fill-missing``."""
     return click.option(
@@ -79,13 +98,8 @@ def encoding_option(subject: str = "colours") -> Decorator:
 
 def atlas_folders_option() -> Decorator:
     """``--atlas-dir`` as ``folders``."""
-    return click.option(
-        "--atlas-dir",
-        "folders",
-        multiple=True,
-        metavar="DIR",
-        help="Folder to search for atlases; repeatable.",
-    )
+    help = _repeatable("Folder to search for atlases", "")
+    return click.option("--atlas-dir", "folders", multiple=True, metavar="DIR", help=help)
 
 
 def format_option(*choices: str) -> Decorator:
