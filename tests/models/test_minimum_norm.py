@@ -15,55 +15,57 @@ POINTS = RNG.normal(size=(30, 9)) / (1 + np.arange(9))
 TARGETS = RNG.random((30, 3))
 
 
-def numeric_jacobian(ahead, multipliers, target):
+def numeric_jacobian(forward, multipliers, target):
     columns = []
     for j in range(len(multipliers)):
         nudge = 1e-6 * np.eye(len(multipliers))[j]
-        off = [residual(MODEL, ahead, (multipliers + s * nudge)[None], target[None])[0] for s in (-1, 1)]
-        columns.append((off[0] - off[1]) / 2e-6)
+        residuals = [
+            residual(MODEL, forward, (multipliers + s * nudge)[None], target[None])[0] for s in (-1, 1)
+        ]
+        columns.append((residuals[0] - residuals[1]) / 2e-6)
     return np.stack(columns, axis=1)
 
 
 def test_step_agrees_with_its_formula(sensor):
     """Δp = M⁻¹Jᵀ(J M⁻¹Jᵀ)⁻¹ r, J by differences and the rest by a dense solver."""
-    ahead = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
-    off = residual(MODEL, ahead, POINTS, TARGETS)
-    found = minimum_norm_step(MODEL, ahead, POINTS, off, np.zeros(len(POINTS)))
-    for p, t, r, dp in zip(POINTS, TARGETS, off, found, strict=True):
-        jacobian = numeric_jacobian(ahead, p, t)
-        weighted = (ahead.root @ ahead.root.T) @ jacobian.T
+    forward = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
+    residuals = residual(MODEL, forward, POINTS, TARGETS)
+    found = minimum_norm_step(MODEL, forward, POINTS, residuals, np.zeros(len(POINTS)))
+    for p, t, r, dp in zip(POINTS, TARGETS, residuals, found, strict=True):
+        jacobian = numeric_jacobian(forward, p, t)
+        weighted = (forward.root @ forward.root.T) @ jacobian.T
         expected = weighted @ np.linalg.solve(jacobian @ weighted, r)
         np.testing.assert_allclose(dp, expected, rtol=1e-4, atol=1e-6)
         np.testing.assert_allclose(jacobian @ dp, r, atol=1e-6)
 
 
 def test_step_has_no_component_in_the_null_space(sensor):
-    ahead = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
-    off = residual(MODEL, ahead, POINTS, TARGETS)
-    found = minimum_norm_step(MODEL, ahead, POINTS, off, np.zeros(len(POINTS)))
-    metric = np.linalg.inv(ahead.root @ ahead.root.T)
+    forward = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
+    residuals = residual(MODEL, forward, POINTS, TARGETS)
+    found = minimum_norm_step(MODEL, forward, POINTS, residuals, np.zeros(len(POINTS)))
+    metric = np.linalg.inv(forward.root @ forward.root.T)
     for p, t, dp in zip(POINTS, TARGETS, found, strict=True):
-        jacobian = numeric_jacobian(ahead, p, t)
+        jacobian = numeric_jacobian(forward, p, t)
         sideways = np.linalg.svd(jacobian)[2][3:]
         assert np.abs(sideways @ metric @ dp).max() < 1e-4 * np.linalg.norm(metric @ dp)
 
 
 def test_damping_shortens_the_step(sensor):
-    ahead = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
-    off = residual(MODEL, ahead, POINTS, TARGETS)
+    forward = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
+    residuals = residual(MODEL, forward, POINTS, TARGETS)
     free, damped = (
-        minimum_norm_step(MODEL, ahead, POINTS, off, np.full(len(POINTS), mu)) for mu in (0.0, 1.0)
+        minimum_norm_step(MODEL, forward, POINTS, residuals, np.full(len(POINTS), mu)) for mu in (0.0, 1.0)
     )
     assert (np.linalg.norm(damped, axis=1) < np.linalg.norm(free, axis=1)).all()
 
 
 def test_jax_and_numpy_agree(sensor):
-    ahead = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
-    off = residual(MODEL, ahead, POINTS, TARGETS)
-    here = minimum_norm_step(MODEL, ahead, POINTS, off, np.full(len(POINTS), 1e-2))
+    forward = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
+    residuals = residual(MODEL, forward, POINTS, TARGETS)
+    here = minimum_norm_step(MODEL, forward, POINTS, residuals, np.full(len(POINTS), 1e-2))
     with jax.enable_x64(True):
         there = minimum_norm_step(
-            MODEL, jax.device_put(ahead), *map(jnp.asarray, (POINTS, off, np.full(len(POINTS), 1e-2)))
+            MODEL, jax.device_put(forward), *map(jnp.asarray, (POINTS, residuals, np.full(len(POINTS), 1e-2)))
         )
         np.testing.assert_allclose(np.asarray(there), here, rtol=1e-8)
 
