@@ -107,7 +107,7 @@ class Surface:
                 raise OptionError(
                     f"reflectance of a surface must be in [0, 1), got {value}",
                     code="invalid-surface",
-                    hint="0 is no surface",
+                    hint="use 0 for a vehicle without a surface",
                 )
 
     def apply(self, internal: ArrayLike) -> Array:
