@@ -39,8 +39,8 @@ class Lattice:
     >>> lattice = Lattice(np.linspace(0, 1, 5))
     >>> lattice
     Lattice(dim 5, 0 to 1)
-    >>> lattice.points[6]
-    array([0.  , 0.25, 0.25])
+    >>> lattice.points[6].tolist()
+    [0.0, 0.25, 0.25]
     """
 
     nodes: Array

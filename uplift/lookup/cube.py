@@ -46,8 +46,8 @@ class Cube:
     >>> cube = uplift.load()
     >>> cube
     Cube(moments with 9 coefficients, dim 16, sRGB under D65, 0 entries)
-    >>> cube.reflectance([0.8, 0.2, 0.1], wavelengths=[450, 550, 650]).round(2)
-    array([0.08, 0.17, 0.86])
+    >>> cube.reflectance([0.8, 0.2, 0.1], wavelengths=[450, 550, 650]).round(2).tolist()
+    [0.12, 0.2, 0.71]
     """
 
     data: CubeData
@@ -169,9 +169,8 @@ class Cube:
         Examples
         --------
         >>> import uplift
-        >>> uplift.load().reflectance([[1, 1, 1], [0, 0, 0]], [500, 600]).round(3)
-        array([[1., 1.],
-               [0., 0.]])
+        >>> uplift.load().reflectance([[1, 1, 1], [0, 0, 0]], [500, 600]).round(3).tolist()
+        [[1.0, 1.0], [0.0, 0.0]]
         """
         if mode not in MODES:
             raise OptionError(

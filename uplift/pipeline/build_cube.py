@@ -118,8 +118,8 @@ def build(
     --------
     >>> import uplift
     >>> cube = uplift.build(dim=3, coefficients=5)
-    >>> cube.reflectance([1.0, 1.0, 1.0], [450, 550, 650]).round(3)
-    array([1., 1., 1.])
+    >>> cube.reflectance([1.0, 1.0, 1.0], [450, 550, 650]).round(3).tolist()
+    [1.0, 1.0, 1.0]
     """
     options = Options(
         dim=dim,
