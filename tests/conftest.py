@@ -1,4 +1,4 @@
-"""What many tests share. Building is dear, so cubes are built once a run, or read from ``cubes/``."""
+"""Fixtures of many tests. Builds are slow, so cubes are built once per run or read from ``cubes/``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.lookup import Cube
 
 ROOT = Path(__file__).parents[1]
-# Machines are shared: how long an example takes says nothing.
+# Times on shared machines are unreliable.
 settings.register_profile("uplift", deadline=None, print_blob=True)
 settings.load_profile("uplift")
 
@@ -30,7 +30,7 @@ def sensor() -> Sensor:
 
 @pytest.fixture(scope="session")
 def macbeth_cube() -> Cube:
-    """The main job: the ColorChecker at dim 32, with debug information. Built in this run."""
+    """The ColorChecker at dim 32 with debug information, built once per run."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         return uplift.build(MACBETH, dim=32, debug=True)
@@ -38,19 +38,19 @@ def macbeth_cube() -> Cube:
 
 @pytest.fixture(scope="session")
 def small_cube() -> Cube:
-    """The ColorChecker at dim 8 with 9 moments coefficients, as stored; costs no build."""
+    """The ColorChecker at dim 8 with 9 moment coefficients, as stored."""
     return uplift.load(ROOT / "cubes" / "moments-8-macbeth.uplift")
 
 
 @pytest.fixture(scope="session")
 def plain_cube() -> Cube:
-    """Dim 8 with 9 moments coefficients, no atlas, as stored; costs no build."""
+    """Dim 8 with 9 moment coefficients, without an atlas, as stored."""
     return uplift.load(ROOT / "cubes" / "moments-8.uplift")
 
 
 @pytest.fixture(scope="session")
 def small_sigmoid_cube() -> Cube:
-    """Dim 8, sigmoid, no atlas, as stored; costs no build."""
+    """The sigmoid at dim 8, without an atlas, as stored."""
     return uplift.load(ROOT / "cubes" / "sigmoid-8.uplift")
 
 

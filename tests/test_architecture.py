@@ -1,4 +1,4 @@
-"""The import contracts of pyproject.toml hold, and would not if somebody broke them."""
+"""The import contracts of pyproject.toml hold, and violations of them are detected."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LINT = "from importlinter.cli import lint_imports_command; lint_imports_command(
 
 
 def lint(folder):
-    """Run the linter on the packages of ``folder`` as they lie there."""
+    """Run the linter on the packages of ``folder``."""
     code = f"import sys; sys.path[:0] = [{str(folder)!r}]; {LINT}"
     done = subprocess.run(
         [sys.executable, "-c", code, "--no-cache"],
@@ -26,8 +26,8 @@ def lint(folder):
 
 
 @pytest.fixture
-def doctored(repository, tmp_path) -> Path:
-    """A copy of the code, to be broken; the command line under its installed name, as the linter needs it."""
+def copied_code(repository, tmp_path) -> Path:
+    """A copy of the code to modify, with the command line under its installed name."""
     shutil.copytree(repository / "uplift", tmp_path / "uplift", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(repository / "cli", tmp_path / "uplift_cli", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(repository / "pyproject.toml", tmp_path)
@@ -40,8 +40,8 @@ def test_the_contracts_hold(repository):
     assert "0 broken" in text
 
 
-def test_the_contracts_hold_for_a_copy(doctored):
-    code, text = lint(doctored)
+def test_the_contracts_hold_for_a_copy(copied_code):
+    code, text = lint(copied_code)
     assert code == 0, text
 
 
@@ -62,9 +62,9 @@ def test_the_contracts_hold_for_a_copy(doctored):
         ("uplift/report/summary.py", "import uplift_cli.output.console", "Data flows one way"),
     ],
 )
-def test_a_broken_contract_is_found(doctored, module, line, contract):
-    with (doctored / module).open("a", encoding="utf-8") as file:
+def test_violations_are_detected(copied_code, module, line, contract):
+    with (copied_code / module).open("a", encoding="utf-8") as file:
         file.write(f"\n\ndef broken():\n    {line}\n")
-    code, text = lint(doctored)
+    code, text = lint(copied_code)
     assert code == 1
     assert f"{contract} BROKEN" in text

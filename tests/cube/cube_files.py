@@ -1,4 +1,4 @@
-"""Cube files made on purpose: true ones, and forged ones whose digest is right all the same."""
+"""Forged cube files with valid digests."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from uplift.cube import CubeData, file
 
 
 def forge(data: CubeData, path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None]) -> Path:
-    """Write ``data`` after ``change(tensors, metadata)``, with the digest of what it was changed to."""
+    """Write ``data`` after ``change(tensors, metadata)``, with the digest of the changed content."""
     tensors, metadata = file._tensors(data), file._metadata(data)
     metadata = json.loads(json.dumps(metadata))
     change(tensors, metadata)
@@ -26,15 +26,15 @@ def forge(data: CubeData, path: Path, change: Callable[[dict[str, Any], dict[str
 
 
 def header_length(content: bytes) -> int:
-    """Bytes of the JSON header of a safetensors file."""
+    """Length of the JSON header of a safetensors file."""
     return int(struct.unpack("<Q", content[:8])[0])
 
 
 def with_header_length(content: bytes, length: int) -> bytes:
-    """The same file, claiming another length of its header."""
+    """The file with another length of its header."""
     return struct.pack("<Q", length) + content[8:]
 
 
 def with_header(content: bytes, header: bytes) -> bytes:
-    """The same arrays under another header."""
+    """The arrays with another header."""
     return struct.pack("<Q", len(header)) + header + content[8 + header_length(content) :]

@@ -1,4 +1,4 @@
-"""A cube made by hand: every number known, no fit."""
+"""A cube of known numbers, without a fit."""
 
 from __future__ import annotations
 

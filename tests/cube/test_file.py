@@ -1,4 +1,4 @@
-"""The cube file: what is written is read, and nothing else is."""
+"""Cube files: everything written is read back, and all other files are refused."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def assert_same_array(one, other):
     np.testing.assert_array_equal(one, other)
 
 
-def test_every_field_comes_back(data, path):
+def test_every_field_is_read_back(data, path):
     assert_same(read(path), data)
 
 
@@ -82,14 +82,14 @@ def test_without_debug_information_there_is_no_round(data, tmp_path):
     assert_same(read(tmp_path / "plain.uplift"), plain)
 
 
-def test_sigmoid_and_no_atlas_come_back(small_sigmoid_cube, tmp_path):
+def test_sigmoid_without_an_atlas_is_read_back(small_sigmoid_cube, tmp_path):
     write(small_sigmoid_cube.data, tmp_path / "sigmoid.uplift")
     found = read(tmp_path / "sigmoid.uplift")
     assert_same(found, small_sigmoid_cube.data)
     assert found.atlas.names == ()
 
 
-def test_names_in_any_script_come_back(data, tmp_path):
+def test_names_in_any_script_are_read_back(data, tmp_path):
     names = ("grün 'ü' \"q\" \\ \n \u2028 👍", *data.atlas.names[1:])
     renamed = dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, names=names))
     write(renamed, tmp_path / "cube.uplift")
@@ -103,7 +103,7 @@ def test_the_same_cube_gives_the_same_bytes(data, content, tmp_path):
     assert (tmp_path / "thrice.uplift").read_bytes() == content
 
 
-def test_an_existing_file_is_replaced_by_force_alone(data, path, content):
+def test_an_existing_file_is_replaced_with_force_only(data, path, content):
     with raises(OutputError, "file-exists"):
         write(data, path)
     write(data, path, force=True)
@@ -116,7 +116,7 @@ def test_the_digest_changes_with_any_content(data, name):
 
 
 def changed(data, name):
-    """The cube with one number of the field ``name`` changed by as little as can be."""
+    """The cube with one number of the field ``name`` changed by the smallest amount."""
     if name == "nodes":
         return dataclasses.replace(
             data, lattice=dataclasses.replace(data.lattice, nodes=nudged(data.lattice.nodes))
@@ -157,7 +157,7 @@ def test_a_missing_file_is_reported(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["", "a\0b", "x" * 300, "file/cube"])
-def test_what_cannot_be_a_file_is_a_missing_file(tmp_path, name):
+def test_impossible_file_names_are_missing_files(tmp_path, name):
     (tmp_path / "file").write_text("")
     refused(tmp_path / name, "cube-not-found")
 
@@ -165,13 +165,13 @@ def test_what_cannot_be_a_file_is_a_missing_file(tmp_path, name):
 @pytest.mark.parametrize(
     "content", [b"", b"\0" * 8, b"\xff" * 64, b"{}", b"Some text, and long enough to be a header length\n"]
 )
-def test_files_of_another_kind_are_refused(tmp_path, content):
+def test_files_of_other_formats_are_refused(tmp_path, content):
     path = tmp_path / "other"
     path.write_bytes(content)
     refused(path, "not-a-cube")
 
 
-def test_every_cut_is_refused(path, content):
+def test_truncated_files_are_refused(path, content):
     rng = np.random.default_rng(1)
     lengths = {*range(0, 16), *rng.integers(0, len(content), CUTS).tolist(), len(content) - 1}
     for length in lengths:
@@ -179,7 +179,7 @@ def test_every_cut_is_refused(path, content):
         refused(path)
 
 
-def test_anything_added_is_refused(path, content):
+def test_appended_bytes_are_refused(path, content):
     for more in (b"\0", b" ", content):
         path.write_bytes(content + more)
         refused(path)
@@ -196,7 +196,7 @@ def test_every_flipped_bit_is_refused(path, content):
         refused(path)
 
 
-def test_the_digest_catches_what_the_container_accepts(path, content):
+def test_the_digest_detects_damage_that_safetensors_accepts(path, content):
     for place in (8 + header_length(content), len(content) - 1):
         broken = bytearray(content)
         broken[place] ^= 1
@@ -209,7 +209,7 @@ def load_file_keys(content):
     return header(content).keys() - {"__metadata__"}
 
 
-def test_the_digest_catches_a_changed_fact(path, content):
+def test_the_digest_detects_changed_metadata(path, content):
     path.write_bytes(content.replace(b"sRGB", b"aRGB"))
     refused(path, "cube-damaged")
 
@@ -221,7 +221,7 @@ def test_forged_header_lengths_are_refused(path, content, length):
 
 
 @pytest.mark.parametrize("by", [-8, -1, 1, 8])
-def test_header_lengths_a_little_off_are_refused(path, content, by):
+def test_slightly_wrong_header_lengths_are_refused(path, content, by):
     path.write_bytes(with_header_length(content, header_length(content) + by))
     refused(path)
 
@@ -254,27 +254,27 @@ def test_a_deeply_nested_header_is_refused(path, content):
 @pytest.mark.parametrize(
     "metadata", [None, {}, {"other": "1"}, {KEY: "{}"}, {KEY: "[]"}, {KEY: "3"}, {KEY: "null"}]
 )
-def test_other_safetensors_files_are_no_cubes(tmp_path, metadata):
+def test_other_safetensors_files_are_refused(tmp_path, metadata):
     path = tmp_path / "other.safetensors"
     save_file({"weights": np.zeros((2, 2))}, path, metadata=metadata)
     refused(path, "not-a-cube")
 
 
 @pytest.mark.parametrize("text", ["", "{", "[" * 100_000, '"\ud800"'.encode("utf-8", "replace").decode()])
-def test_metadata_that_is_no_json_table_is_refused(tmp_path, text):
+def test_metadata_that_is_not_a_json_table_is_refused(tmp_path, text):
     save_file({"weights": np.zeros(2)}, tmp_path / "other.safetensors", metadata={KEY: text})
     refused(tmp_path / "other.safetensors")
 
 
 @pytest.mark.parametrize("version", [0, 2, 99, "3", None])
-def test_another_version_is_named_with_ours(data, tmp_path, version):
+def test_the_error_names_both_format_versions(data, tmp_path, version):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(version=version))
     error = refused(path, "cube-version")
     assert str(version) in error.problem
     assert str(VERSION) in error.problem
 
 
-def test_a_forgery_without_change_is_read(data, tmp_path):
+def test_an_unchanged_forgery_is_read(data, tmp_path):
     assert_same(read(forge(data, tmp_path / "cube", lambda tensors, metadata: None)), data)
 
 
@@ -286,7 +286,7 @@ def test_a_missing_array_is_named(data, tmp_path, name):
 
 
 @pytest.mark.parametrize("key", ["features", "model", "space", "threshold", "entries", "provenance"])
-def test_a_missing_fact_is_named(data, tmp_path, key):
+def test_missing_metadata_is_named(data, tmp_path, key):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.pop(key))
     error = refused(path, "cube-invalid")
     assert repr(key) in error.problem
@@ -302,7 +302,7 @@ def test_a_missing_fact_is_named(data, tmp_path, key):
         ("provenance", [None, 3, "text", [], [1]]),
     ],
 )
-def test_facts_of_another_kind_are_refused(data, tmp_path, key, values):
+def test_metadata_of_wrong_types_is_refused(data, tmp_path, key, values):
     for number, value in enumerate(values):
 
         def change(tensors, metadata, value=value):
@@ -350,7 +350,7 @@ def test_wrong_types_are_refused(data, tmp_path, name):
         "nodes",
     ],
 )
-def test_numbers_without_end_are_refused(data, tmp_path, name, bad):
+def test_numbers_that_are_not_finite_are_refused(data, tmp_path, name, bad):
     def change(tensors, metadata):
         tensors[name] = tensors[name].copy()
         tensors[name].flat[-1] = bad
@@ -359,13 +359,13 @@ def test_numbers_without_end_are_refused(data, tmp_path, name, bad):
 
 
 @pytest.mark.parametrize("threshold", [np.nan, np.inf, 0, -1e-4, "a"])
-def test_a_threshold_is_a_positive_number(data, tmp_path, threshold):
+def test_thresholds_that_are_not_positive_are_refused(data, tmp_path, threshold):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(threshold=threshold))
     refused(path, "cube-invalid", "invalid-threshold", "not-a-cube")
 
 
 @pytest.mark.parametrize("nodes", [[0.1, 1.0], [0.0, 0.9], [1.0, 0.0], [0.0, 0.0, 1.0], [1.0], [], 0.5])
-def test_a_lattice_runs_upwards_from_0_to_1(data, tmp_path, nodes):
+def test_nodes_that_do_not_increase_from_0_to_1_are_refused(data, tmp_path, nodes):
     def change(tensors, metadata):
         tensors["nodes"] = np.array(nodes)
 
@@ -411,7 +411,7 @@ def test_an_unknown_status_is_refused(data, tmp_path):
 
 
 @pytest.mark.parametrize("row", [-2, 23])
-def test_an_entry_out_of_the_table_is_refused(data, tmp_path, row):
+def test_an_unknown_entry_is_refused(data, tmp_path, row):
     assert len(data.atlas.names) == 23
 
     def change(tensors, metadata):
@@ -421,13 +421,13 @@ def test_an_entry_out_of_the_table_is_refused(data, tmp_path, row):
     refused(forge(data, tmp_path / "cube", change), "unknown-entry")
 
 
-def test_debug_information_that_is_promised_must_be_there(data, tmp_path):
+def test_announced_debug_information_must_be_present(data, tmp_path):
     plain = with_points(data, round=None)
     path = forge(plain, tmp_path / "cube", lambda tensors, metadata: metadata.update(features=["debug"]))
     assert "'round'" in refused(path, "cube-invalid").problem
 
 
-def test_the_cubes_of_the_project_are_read(repository):
+def test_the_stored_cubes_are_read(repository):
     cubes = sorted((repository / "cubes").glob("*.uplift"))
     assert len(cubes) == 8
     for path in cubes:
@@ -452,7 +452,7 @@ def test_the_cubes_of_the_project_are_read(repository):
         ("coefficients", lambda array: np.full_like(array, 1e31), "array-not-finite"),
     ],
 )
-def test_forged_arrays_that_no_lookup_can_use_are_refused(data, tmp_path, name, change, code):
+def test_arrays_that_break_lookups_are_refused(data, tmp_path, name, change, code):
     def forged(tensors, metadata):
         tensors[name] = change(tensors[name])
 
@@ -460,11 +460,11 @@ def test_forged_arrays_that_no_lookup_can_use_are_refused(data, tmp_path, name, 
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), [float("-inf")]])
-def test_what_is_no_number_in_the_provenance_is_refused(data, tmp_path, value):
+def test_numbers_of_the_provenance_must_be_finite(data, tmp_path, value):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata["provenance"].update(a=value))
     refused(path, "not-a-cube")
 
 
-def test_whole_numbers_without_end_are_refused(data, tmp_path):
+def test_integers_too_large_for_floats_are_refused(data, tmp_path):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(threshold=10**400))
     assert "OverflowError" in refused(path, "cube-invalid").problem

@@ -1,4 +1,4 @@
-"""Any cube that may be written reads back the same, and is written again as the same bytes."""
+"""Every valid cube is read back unchanged and written again as the same bytes."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def cubes(draw):
 
 @settings(max_examples=60)
 @given(cubes())
-def test_what_is_written_is_read_and_written_again_alike(data):
+def test_cubes_are_read_back_and_written_again_unchanged(data):
     with tempfile.TemporaryDirectory() as folder:
         first, second = Path(folder, "first"), Path(folder, "second")
         write(data, first)

@@ -1,4 +1,4 @@
-"""Files of sparse cubes: only what is present is stored, and what cannot be put in place is refused."""
+"""Files of sparse cubes: present points only, and errors for points without a place."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def data():
     return with_absent_points(whole, near_black(whole))
 
 
-def test_it_comes_back_bit_by_bit_and_takes_no_more_than_it_must(data, tmp_path):
+def test_sparse_cubes_are_read_back_and_take_no_space_for_absent_points(data, tmp_path):
     write(data, tmp_path / "part.uplift")
     write(hand_made(6), tmp_path / "whole.uplift")
     back = read(tmp_path / "part.uplift")
@@ -37,7 +37,7 @@ def test_it_comes_back_bit_by_bit_and_takes_no_more_than_it_must(data, tmp_path)
     assert saved[0] - saved[1] == pytest.approx((6**3 - 8) * row, abs=200)
 
 
-def test_points_of_cells_and_cells_of_points():
+def test_corner_points_and_complete_cells_are_inverse():
     lattice, cells = Lattice(np.linspace(0, 1, 4)), np.zeros(64, dtype=bool)
     cells[lattice.index(np.array([[0, 1, 2], [2, 2, 2]]))] = True
     points = lattice.corner_points(cells)
@@ -110,7 +110,7 @@ def test_forged_files_are_refused(data, tmp_path, change, code):
         read(forge(data, tmp_path / "forged.uplift", change))
 
 
-def test_a_whole_file_cannot_call_points_absent(tmp_path):
+def test_a_complete_file_has_no_absent_points(tmp_path):
     def change(tensors, metadata):
         tensors["status"] = tensors["status"].copy()
         tensors["status"][5] = Status.ABSENT
@@ -119,11 +119,11 @@ def test_a_whole_file_cannot_call_points_absent(tmp_path):
         read(forge(hand_made(), tmp_path / "forged.uplift", change))
 
 
-def test_an_unforged_one_is_not(data, tmp_path):
+def test_an_unchanged_sparse_file_is_read(data, tmp_path):
     assert not read(forge(data, tmp_path / "true.uplift", lambda *_: None)).points.present.all()
 
 
-def test_absent_points_are_background_on_sheets_and_nothing_in_slices(data, tmp_path):
+def test_absent_points_are_background_on_sheets_and_zero_in_slices(data, tmp_path):
     for panel in panels(data):
         assert (panel.colours[~data.points.present] == np.float32(BACKGROUND)).all() or np.allclose(
             panel.colours[~data.points.present], BACKGROUND

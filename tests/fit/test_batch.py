@@ -1,4 +1,4 @@
-"""Batches hold every row once, in two sizes; over several devices a build is the same."""
+"""Batches contain every row once, in two sizes; builds do not depend on the number of devices."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ uplift.build(sys.argv[1], dim=9).save(sys.argv[2])
 
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 def test_several_devices_build_the_same_cube(repository, tmp_path):
-    """Simulated devices; three, so that rows are shared out unevenly."""
+    """Three simulated devices distribute the rows unevenly."""
     macbeth, path = repository / "atlases" / "macbeth.txt", tmp_path / "several.uplift"
     flags = {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"}
     subprocess.run(

@@ -1,4 +1,4 @@
-"""Black, white, the primaries and what lies a millionth inside them: finite everywhere, and as exact as the rest."""
+"""Black, white, the primaries and colours near them: finite, and as exact as all others."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_answers_are_finite_reflectances(cube, mode):
 
 
 def test_multipliers_are_finite(cube):
-    """What a renderer evaluates."""
+    """Renderers evaluate multipliers."""
     data = cube.data
     multipliers = data.model.from_storage(cube.coefficients(ENDS))
     assert np.isfinite(multipliers).all()

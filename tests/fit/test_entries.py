@@ -1,4 +1,4 @@
-"""Atlas entries as spectra of the model: the colour exactly, spectrum and lights closely."""
+"""Fitted atlas entries: exact colour, close spectrum, close colours under other lights."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ def measured(sensor):
 
 def fitted(sensor, measured, lights=LIGHTS, weights=BALANCED):
     model = Moments(9)
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     shine = [observer.light(name) for name in lights]
-    found = fit_entries(model, ahead, measured, sensor.rgb(measured), shine, shine[0], 1e-6, weights)
-    return model.squash(found.multipliers @ ahead.basis.T)
+    found = fit_entries(model, forward, measured, sensor.rgb(measured), shine, shine[0], 1e-6, weights)
+    return model.squash(found.multipliers @ forward.basis.T)
 
 
 def mean_delta_e(name, first, second):
@@ -45,16 +45,16 @@ def test_colour_spectrum_and_lights_of_the_macbeth_entries(sensor, measured):
     assert mean_delta_e("FL11", spectra, measured) <= 0.60
 
 
-def test_the_lights_that_are_asked_for_are_those_that_hold(sensor, measured):
-    """Leaving FL11 out makes FL11 worse: the lights have a say."""
+def test_colours_are_kept_under_the_lights_of_the_objective(sensor, measured):
+    """Without FL11 in the objective, errors under FL11 grow."""
     without = fitted(sensor, measured, ("D65",))
     assert mean_delta_e("FL11", fitted(sensor, measured), measured) < 0.8 * mean_delta_e(
         "FL11", without, measured
     )
 
 
-def test_the_ends_stay_near_the_measurement(sensor, measured):
-    """The eye sees nothing there: without a say of their own they would go anywhere."""
+def test_the_ends_of_the_spectrum_follow_the_measurement(sensor, measured):
+    """The colour-matching functions vanish there, so only the weight of the ends constrains the fit."""
     ends = np.r_[:8, 73:81]
 
     def off(weights):
@@ -65,8 +65,8 @@ def test_the_ends_stay_near_the_measurement(sensor, measured):
 
 
 @pytest.mark.parametrize("model", [Moments(5), Sigmoid()], ids=lambda m: m.name)
-def test_the_derivative_is_that_of_the_residuals(sensor, measured, model):
-    """Against central differences, of a dark spectrum too, where L*a*b* has its straight part."""
+def test_jacobian_equals_central_differences(sensor, measured, model):
+    """Of a dark spectrum too, where L*a*b* is linear."""
     goal = objective(
         model, model.basis(sensor.wavelengths), [observer.light(name) for name in LIGHTS], BALANCED
     )
@@ -81,7 +81,7 @@ def test_the_derivative_is_that_of_the_residuals(sensor, measured, model):
         np.testing.assert_allclose(goal.jacobian(at), np.transpose(numeric), rtol=1e-5, atol=1e-8)
 
 
-def test_weighed_rows_sum_to_a_mean_square():
+def test_weighted_rows_sum_to_a_mean_square():
     difference = np.random.default_rng(0).normal(size=81)
     assert np.sum((shape_rows(81, BALANCED) @ difference) ** 2) == pytest.approx((difference**2).mean())
     bent = shape_rows(81, Weights(curvature=2.0)) @ difference
@@ -92,20 +92,20 @@ def test_weighed_rows_sum_to_a_mean_square():
     assert heavy[0] ** 2 == pytest.approx(3 * heavy[40] ** 2)
 
 
-def test_the_error_is_what_the_model_loses(sensor, measured):
+def test_error_is_the_difference_between_fit_and_measurement(sensor, measured):
     model = Moments(9)
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     light = observer.light("A")
-    found = fit_entries(model, ahead, measured, sensor.rgb(measured), [light], light, 1e-6)
-    spectra = model.squash(found.multipliers @ ahead.basis.T)
+    found = fit_entries(model, forward, measured, sensor.rgb(measured), [light], light, 1e-6)
+    spectra = model.squash(found.multipliers @ forward.basis.T)
     for row in range(len(measured)):
         assert found.error[row] == pytest.approx(mean_delta_e("A", spectra[row], measured[row]))
 
 
-def test_no_atlas_no_entries(sensor):
+def test_an_empty_atlas_has_no_fitted_entries(sensor):
     model = Moments(9)
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     light = observer.light("D65")
-    none = fit_entries(model, ahead, np.zeros((0, 81)), np.zeros((0, 3)), [light], light, 1e-6)
+    none = fit_entries(model, forward, np.zeros((0, 81)), np.zeros((0, 3)), [light], light, 1e-6)
     assert none.multipliers.shape == (0, 9)
     assert none.error.shape == (0,)

@@ -1,4 +1,4 @@
-"""Growth and improvement: whatever the seeds, the lattice is fitted, and every point says how."""
+"""Growth and improvement: the lattice is fitted from any seeds, and every point has its status."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ LATTICE = Lattice(observer.axis_nodes("srgb", 7))
 NOBODY = np.zeros((0, 3))
 
 
-def ahead_of(model, sensor):
+def forward_of(model, sensor):
     return forward_map(model, sensor.wavelengths, sensor.matrix)
 
 
 def fitted(model, sensor, lattice, rgb=NOBODY):
-    """A fit whose entries, if any, are greys of linear RGB (E, 3)."""
-    problem = Problem(model, ahead_of(model, sensor), lattice)
+    """Fit a lattice with entries of grey spectra at linear RGB (E, 3)."""
+    problem = Problem(model, forward_of(model, sensor), lattice)
     prior = Prior(sensor, smooth(model, problem.forward))
     return fit_lattice(problem, seed(lattice, rgb), np.zeros((len(rgb), model.count)), prior)
 
 
 def missed(model, sensor, lattice, coefficients):
-    """max |linear RGB| (n,) by which stored coefficients miss their points."""
+    """Distance (n,), max |linear RGB|, of stored coefficients from their targets."""
     spectra = reflectance(model, coefficients, sensor.wavelengths)
     return np.abs(sensor.rgb(spectra) - lattice.points).max(axis=1)
 
@@ -59,14 +59,14 @@ def test_tiny_lattices_are_fitted_to_their_corners(model, dim, sensor):
     assert missed(model, sensor, lattice, fit.points.coefficients).max() <= 1e-4
 
 
-def test_points_that_fail_from_their_start_are_taken_from_their_neighbours(sensor):
-    """All but the middle start so near black that no step helps; growth goes outward from there."""
+def test_points_that_fail_from_their_start_are_fitted_from_their_neighbours(sensor):
+    """All but the middle point start so near black that no step helps; growth proceeds outward from it."""
     rounds = []
     middle = LATTICE.size // 2
     start = np.full((LATTICE.size, 9), -1e9) * MODEL.constant()
     start[middle] = 0
     grown = grow(
-        Problem(MODEL, ahead_of(MODEL, sensor), LATTICE), lambda points: start[points], rounds.append
+        Problem(MODEL, forward_of(MODEL, sensor), LATTICE), lambda points: start[points], rounds.append
     )
     steps = np.abs(LATTICE.position(np.arange(LATTICE.size)) - LATTICE.position(np.array(middle))).max(axis=1)
     fitted = grown.round != NOT_FITTED
@@ -77,14 +77,14 @@ def test_points_that_fail_from_their_start_are_taken_from_their_neighbours(senso
     assert all(done.total == LATTICE.size for done in rounds)
 
 
-def test_from_the_prior_everything_is_fitted_at_once(sensor):
+def test_all_points_are_fitted_from_the_prior_in_the_first_round(sensor):
     fit = fitted(MODEL, sensor, LATTICE)
     assert (fit.points.round == 0).all()
     assert fit.improvements == ()
 
 
-def test_an_unrealisable_colour_is_left_unfitted_and_said_to_be(sensor):
-    """ProPhoto's green corner, nobody having said that no reflectance has it. The rest does not suffer."""
+def test_an_unrealisable_colour_has_status_unfitted(sensor):
+    """The green corner of ProPhoto RGB, not declared as unrealisable. Other points are not affected."""
     wide = observer.sensor("ProPhoto RGB", "D65")
     lattice = Lattice(np.linspace(0, 1, 3))
     fit = fitted(MODEL, wide, lattice)
@@ -97,27 +97,27 @@ def test_an_unrealisable_colour_is_left_unfitted_and_said_to_be(sensor):
     assert fit.improvements[0].tried > fit.improvements[0].fixed
 
 
-def test_improvement_mends_points_from_a_hopeless_start(sensor):
-    """Spectra so near black that their gradient has vanished; only a new start helps."""
-    ahead = ahead_of(MODEL, sensor)
+def test_improvement_fixes_points_with_a_vanishing_gradient(sensor):
+    """Spectra so near black that only a new start helps."""
+    forward = forward_of(MODEL, sensor)
     stuck = np.zeros((LATTICE.size, 9))
     stuck[:, 0] = -1e9
-    distance = np.abs(residual(MODEL, ahead, stuck, LATTICE.points)).max(axis=1)
-    steps = improve(Problem(MODEL, ahead, LATTICE), stuck, distance)
+    distance = np.abs(residual(MODEL, forward, stuck, LATTICE.points)).max(axis=1)
+    steps = improve(Problem(MODEL, forward, LATTICE), stuck, distance)
     assert (distance <= 1e-4).all()
     np.testing.assert_allclose(
-        np.abs(residual(MODEL, ahead, stuck, LATTICE.points)).max(axis=1), distance, atol=1e-12
+        np.abs(residual(MODEL, forward, stuck, LATTICE.points)).max(axis=1), distance, atol=1e-12
     )
     by_name = {step.step: step for step in steps}
     assert by_name["more iterations"].fixed == 1  # black itself
     assert by_name["from grey"].fixed > 300
 
 
-def test_improvement_leaves_what_is_well_alone(sensor):
-    ahead = ahead_of(MODEL, sensor)
+def test_improvement_does_not_change_fitted_points(sensor):
+    forward = forward_of(MODEL, sensor)
     fit = fitted(MODEL, sensor, LATTICE)
     multipliers = MODEL.from_storage(fit.points.coefficients)
     again = multipliers.copy()
-    steps = improve(Problem(MODEL, ahead, LATTICE), again, np.minimum(fit.points.distance, 1e-6))
+    steps = improve(Problem(MODEL, forward, LATTICE), again, np.minimum(fit.points.distance, 1e-6))
     np.testing.assert_array_equal(again, multipliers)
     assert steps == ()

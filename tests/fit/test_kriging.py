@@ -1,4 +1,4 @@
-"""Kriging of deviations against plain linear algebra, and errors that keep their word."""
+"""Kriging of deviations against dense linear algebra, and standard errors."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ def kernel(first, second):
     return np.exp(-np.linalg.norm(first[:, None] - second[None], axis=-1) / LENGTH)
 
 
-def test_at_an_entry_nearly_its_own_deviation_and_far_away_none():
+def test_deviation_is_that_of_the_entry_at_its_colour_and_vanishes_far_away():
     found, _ = krige(PLACES, DEVIATIONS)
     np.testing.assert_allclose(found(PLACES), DEVIATIONS, atol=5 * NUGGET)
     assert np.abs(found(PLACES[:1] + 1000)).max() < 1e-12
 
 
-def test_left_out_is_what_kriging_the_others_says():
+def test_leave_one_out_equals_kriging_of_the_other_entries():
     _, without = krige(PLACES, DEVIATIONS)
     for row in range(len(PLACES)):
         others = np.arange(len(PLACES)) != row
@@ -30,14 +30,14 @@ def test_left_out_is_what_kriging_the_others_says():
         np.testing.assert_allclose(without[row], again(PLACES[row : row + 1])[0], atol=1e-9)
 
 
-def test_between_two_entries_the_answer_of_the_closed_form():
+def test_two_entries_agree_with_the_closed_form():
     found, _ = krige(PLACES, DEVIATIONS)
-    asked = RNG.uniform(-20, 60, (5, 3))
+    queried = RNG.uniform(-20, 60, (5, 3))
     weights = np.linalg.solve(kernel(PLACES, PLACES) + NUGGET * np.eye(12), DEVIATIONS)
-    np.testing.assert_allclose(found(asked), kernel(asked, PLACES) @ weights, atol=1e-9)
+    np.testing.assert_allclose(found(queried), kernel(queried, PLACES) @ weights, atol=1e-9)
 
 
-def test_two_spectra_of_one_colour_average():
+def test_different_spectra_of_one_colour_are_averaged():
     found, _ = krige(np.zeros((2, 3)), np.array([[1.0], [3.0]]))
     assert found(np.zeros((1, 3)))[0, 0] == pytest.approx(2, abs=0.01)
 
@@ -52,16 +52,16 @@ def test_the_standard_error_grows_with_the_distance_to_the_entries():
 
 
 def test_errors_are_local():
-    """Where entries were hard to tell, the error is larger than where they were easy."""
+    """The error is larger where left-out entries were predicted badly."""
     places = np.array([[0.0, 0, 0], [3, 0, 0], [0, 3, 0], [80, 0, 0], [83, 0, 0], [80, 3, 0]])
     learnt = uncertainty(places, np.array([3.0, 3, 3, 0.3, 0.3, 0.3]), np.zeros(6))
     hard, easy = learnt(np.array([[0.0, 0, 2], [80, 0, 2]]))
     assert hard > 1.5 * easy
 
 
-def test_work_in_blocks_is_work_at_once(monkeypatch):
+def test_results_do_not_depend_on_the_size_of_blocks(monkeypatch):
     found, _ = krige(PLACES, DEVIATIONS)
-    asked = RNG.uniform(-20, 60, (50, 3))
-    whole = found(asked)
+    queried = RNG.uniform(-20, 60, (50, 3))
+    whole = found(queried)
     monkeypatch.setattr("uplift.fit.kriging.BLOCK_NUMBERS", 25)
-    np.testing.assert_allclose(found(asked), whole, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(found(queried), whole, rtol=1e-12, atol=1e-15)

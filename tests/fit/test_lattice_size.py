@@ -1,4 +1,4 @@
-"""How many lattice points an atlas needs."""
+"""The size of lattice that an atlas needs."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from uplift.models.minimum_norm import forward_map
 
 @pytest.fixture(scope="module")
 def stage(sensor):
-    """Problem, lights and the entries of the ColorChecker."""
+    """Arguments of the solver, lights and the entries of the ColorChecker."""
     model = Moments(9)
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     spectra = uplift.atlas.on_grid(uplift.read_atlas(MACBETH), sensor.wavelengths)
     spectra = spectra[sensor.contains(sensor.rgb(spectra))]
     lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3")]
-    entries = fit.fit_entries(model, ahead, spectra, sensor.rgb(spectra), lights, lights[1], 1e-6)
-    return (model, ahead, 1e-6), lights, entries
+    entries = fit.fit_entries(model, forward, spectra, sensor.rgb(spectra), lights, lights[1], 1e-6)
+    return (model, forward, 1e-6), lights, entries
 
 
-def test_what_the_trial_says_is_what_the_cube_does(stage, sensor, macbeth_cube):
-    """The fixture's cube has dim 32: asked for its corners' mixture at the entries, pins aside."""
+def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, macbeth_cube):
+    """The cube has dim 32; its lattice is evaluated at the entries without their boxes."""
     solver, lights, entries = stage
     data = macbeth_cube.data
     trial = lattice_error(*solver, data.lattice, lights, entries)
@@ -56,5 +56,5 @@ def test_the_smallest_lattice_that_keeps_all_entries_is_chosen(stage):
     assert spacing in ("srgb", "linear")
 
 
-def test_without_an_atlas_the_smallest_will_do():
+def test_without_an_atlas_the_smallest_lattice_is_chosen():
     assert uplift.build(dim="auto").data.lattice.dim == DIMS[0]

@@ -1,4 +1,4 @@
-"""The prior: an entry's own spectrum at its colour, and errors that keep their word on entries left out."""
+"""The prior: the spectrum of an entry at its colour, and standard errors of left-out entries."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ def some(entries, rows):
 
 @pytest.fixture(scope="module")
 def materials(problem, sensor):
-    """The materials of rawtoaces that sRGB holds."""
+    """The materials of rawtoaces within sRGB."""
     measured = resample(read_atlas(ATLASES / "rawtoaces.txt"), sensor.wavelengths).values
     return entries_of(problem, sensor, measured[sensor.contains(sensor.rgb(measured))])
 
 
-def test_at_an_entry_the_start_is_nearly_its_own_spectrum(problem, sensor, materials):
+def test_start_at_an_entry_is_nearly_its_spectrum(problem, sensor, materials):
     few = some(materials, np.arange(0, 160, 20))
     prior = fit.fit_prior(problem, sensor, few, LIGHT)
     apart = np.abs(
@@ -56,24 +56,24 @@ def test_at_an_entry_the_start_is_nearly_its_own_spectrum(problem, sensor, mater
     assert apart.max() < 0.01
 
 
-def test_far_from_all_entries_the_start_is_the_smooth_one(problem, sensor, materials):
+def test_start_far_from_all_entries_is_smooth(problem, sensor, materials):
     dark = materials.rgb.max(axis=1) < 0.2
     prior = fit.fit_prior(problem, sensor, some(materials, dark), LIGHT)
     white = np.ones((1, 3))
     np.testing.assert_allclose(prior(white), prior.smooth(white), atol=0.05)
 
 
-def test_too_few_entries_tell_nothing_of_errors(problem, sensor, materials):
+def test_too_few_entries_give_no_standard_error(problem, sensor, materials):
     for count, tells in ((0, False), (1, False), (MIN_ENTRIES - 1, False), (MIN_ENTRIES, True)):
         prior = fit.fit_prior(problem, sensor, some(materials, np.arange(count)), LIGHT)
         errors = prior.standard_error(np.full((1, 3), 0.3))
         assert (errors is not None) == tells
 
 
-def test_held_out_entries_miss_by_what_is_stated(problem, sensor, materials):
-    """Half the materials as atlas, the other half asked, several times over; stated and real ΔE00 agree.
+def test_errors_of_left_out_entries_agree_with_the_standard_error(problem, sensor, materials):
+    """Half the materials are the atlas, the other half is predicted; repeated several times.
 
-    Errors of materials have heavy tails: a split by itself is off by half as much again either way.
+    Errors of materials have heavy tails: a single split is off by up to half.
     """
     rng = np.random.default_rng(0)
     missed, stated = [], []
@@ -81,11 +81,11 @@ def test_held_out_entries_miss_by_what_is_stated(problem, sensor, materials):
         order = rng.permutation(len(materials.rgb))
         half = len(order) // 2
         prior = fit.fit_prior(problem, sensor, some(materials, order[:half]), LIGHT)
-        asked = some(materials, order[half:])
-        found = problem.solve(asked.rgb, prior(asked.rgb), 16).multipliers
+        queried = some(materials, order[half:])
+        found = problem.solve(queried.rgb, prior(queried.rgb), 16).multipliers
         spectra = problem.model.squash(found @ problem.forward.basis.T)
-        missed.append(delta_e_spectra(LIGHT, spectra, asked.measured))
-        stated.append(prior.standard_error(asked.rgb))
+        missed.append(delta_e_spectra(LIGHT, spectra, queried.measured))
+        stated.append(prior.standard_error(queried.rgb))
     missed, stated = np.concatenate(missed), np.concatenate(stated)
     assert 0.8 < np.sqrt((missed**2).mean() / (stated**2).mean()) < 1.25
     assert 0.65 < (missed < stated).mean() < 0.85

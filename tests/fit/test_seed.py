@@ -1,4 +1,4 @@
-"""Seeding: nobody is lost unsaid, primaries come first, the order of the atlas has no say."""
+"""Seeding: collisions are reported, primaries come first, and the order of the atlas does not matter."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def nearest_points(rgb):
 
 
 @given(atlases)
-def test_every_entry_has_its_primary_point_or_is_named_in_a_collision(rgb):
+def test_every_entry_has_a_primary_point_or_a_collision(rgb):
     seeds = seed(LATTICE, rgb)
     with_primary = set(seeds.entry[seeds.primary])
     lost = {collision.lost for collision in seeds.collisions}
@@ -29,7 +29,7 @@ def test_every_entry_has_its_primary_point_or_is_named_in_a_collision(rgb):
 
 
 @given(atlases)
-def test_no_point_is_given_twice_and_none_outside_the_entry_s_voxel(rgb):
+def test_points_are_unique_and_corners_of_the_cell_of_their_entry(rgb):
     seeds = seed(LATTICE, rgb)
     assert len(set(seeds.points)) == len(seeds.points)
     corners, _ = LATTICE.corners(rgb)
@@ -37,13 +37,13 @@ def test_no_point_is_given_twice_and_none_outside_the_entry_s_voxel(rgb):
 
 
 @given(atlases)
-def test_all_corners_of_all_voxels_are_taken(rgb):
+def test_all_corners_of_the_cells_of_entries_are_seeds(rgb):
     corners, _ = LATTICE.corners(rgb)
     assert set(seed(LATTICE, rgb).points) == set(corners.ravel())
 
 
 @given(atlases, st.randoms(use_true_random=False))
-def test_the_order_of_the_atlas_has_no_say(rgb, random):
+def test_seeds_do_not_depend_on_the_order_of_the_atlas(rgb, random):
     order = list(range(len(rgb)))
     random.shuffle(order)
     here, there = seed(LATTICE, rgb), seed(LATTICE, rgb[order])
@@ -51,7 +51,7 @@ def test_the_order_of_the_atlas_has_no_say(rgb, random):
     assert owners == {point: order[entry] for point, entry in zip(there.points, there.entry, strict=True)}
 
 
-def test_a_lone_entry_takes_its_eight_corners_nearest_first():
+def test_a_single_entry_owns_the_eight_corners_nearest_first():
     rgb = np.array([[0.33, 0.5, 0.71]])
     seeds = seed(LATTICE, rgb)
     apart = np.linalg.norm(LATTICE.points[seeds.points] - rgb, axis=1)
@@ -61,19 +61,19 @@ def test_a_lone_entry_takes_its_eight_corners_nearest_first():
     assert seeds.points[0] == nearest_points(rgb)[0]
 
 
-def test_neighbours_in_a_voxel_share_its_corners_fairly():
+def test_entries_in_one_cell_share_its_corners_evenly():
     rgb = np.array([[0.42, 0.42, 0.42], [0.58, 0.58, 0.58]])
     seeds = seed(LATTICE, rgb)
     assert np.bincount(seeds.entry).tolist() == [4, 4]
     assert seeds.collisions == ()
 
 
-def test_of_two_with_one_primary_point_the_nearer_has_it():
+def test_the_nearer_of_two_entries_owns_the_primary_point():
     rgb = np.array([[0.45, 0.4, 0.4], [0.41, 0.4, 0.4]])
     seeds = seed(LATTICE, rgb)
     assert seeds.collisions == ((1, 0),)
     assert seeds.entry[seeds.primary].tolist() == [1]
 
 
-def test_no_atlas_no_seeds():
+def test_an_empty_atlas_has_no_seeds():
     assert len(seed(LATTICE, np.zeros((0, 3))).points) == 0

@@ -16,24 +16,24 @@ TARGETS = RNG.uniform(0.05, 0.95, (40, 3))
 
 
 @pytest.mark.parametrize("model", [Moments(9), Sigmoid()], ids=["moments", "sigmoid"])
-def test_it_reaches_what_scipy_reaches(model, sensor):
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
-    found = solve(model, ahead, np.zeros((40, model.count)), TARGETS, tolerance=1e-9, max_passes=40)
+def test_distances_are_at_most_those_of_scipy(model, sensor):
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
+    found = solve(model, forward, np.zeros((40, model.count)), TARGETS, tolerance=1e-9, max_passes=40)
     for target, distance in zip(TARGETS, found.distance, strict=True):
         oracle = least_squares(
-            lambda p, target=target: residual(model, ahead, p[None], target[None])[0], np.zeros(model.count)
+            lambda p, target=target: residual(model, forward, p[None], target[None])[0], np.zeros(model.count)
         )
         assert distance <= 1e-9 or distance <= np.abs(oracle.fun).max() * 1.01
 
 
-def test_three_unknowns_have_one_answer(sensor):
-    """With as many unknowns as colours the spectrum is scipy's own, not only the colour."""
+def test_three_unknowns_have_the_multipliers_of_scipy(sensor):
+    """With as many unknowns as equations the solution is unique."""
     model = Sigmoid()
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
-    found = solve(model, ahead, np.zeros((40, 3)), TARGETS, tolerance=1e-12, max_passes=40)
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
+    found = solve(model, forward, np.zeros((40, 3)), TARGETS, tolerance=1e-12, max_passes=40)
     for target, multipliers in zip(TARGETS[:8], found.multipliers, strict=False):
         oracle = least_squares(
-            lambda p, target=target: residual(model, ahead, p[None], target[None])[0],
+            lambda p, target=target: residual(model, forward, p[None], target[None])[0],
             np.zeros(3),
             xtol=1e-15,
             ftol=1e-15,
@@ -44,49 +44,49 @@ def test_three_unknowns_have_one_answer(sensor):
 
 def test_the_distance_is_that_of_the_multipliers(sensor):
     model = Moments(5)
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
-    found = solve(model, ahead, np.zeros((40, 5)), TARGETS, tolerance=1e-3, max_passes=1)
-    expected = np.abs(residual(model, ahead, found.multipliers, TARGETS)).max(axis=1)
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
+    found = solve(model, forward, np.zeros((40, 5)), TARGETS, tolerance=1e-3, max_passes=1)
+    expected = np.abs(residual(model, forward, found.multipliers, TARGETS)).max(axis=1)
     np.testing.assert_allclose(found.distance, expected, atol=1e-12)
 
 
-def test_no_point_ends_further_than_it_began(sensor):
-    """Unrealisable targets: distance is data, and no step makes it worse."""
+def test_no_distance_increases(sensor):
+    """Unrealisable targets are not an error: the distance reports them."""
     model = Moments(9)
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     wild = RNG.uniform(-1, 2, (50, 3))
     start = RNG.normal(size=(50, 9))
-    before = (residual(model, ahead, start, wild) ** 2).sum(axis=1)
-    found = solve(model, ahead, start, wild, tolerance=1e-6, max_passes=3)
-    after = (residual(model, ahead, found.multipliers, wild) ** 2).sum(axis=1)
+    before = (residual(model, forward, start, wild) ** 2).sum(axis=1)
+    found = solve(model, forward, start, wild, tolerance=1e-6, max_passes=3)
+    after = (residual(model, forward, found.multipliers, wild) ** 2).sum(axis=1)
     assert (after <= before * (1 + 1e-12)).all()
     assert np.isfinite(found.multipliers).all()
     assert (found.distance > 1e-6).any()
 
 
-def test_the_batch_does_not_matter(sensor):
-    """Alone, among others, or in another size of batch: the same answer."""
+def test_solutions_do_not_depend_on_the_batch(sensor):
+    """A problem has the same solution alone, among others, and in batches of another size."""
     model = Moments(9)
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     many = np.resize(TARGETS, (CPU_BATCH_ROWS[0] + 5, 3))
-    crowd = solve(model, ahead, np.zeros((len(many), 9)), many, tolerance=1e-8, max_passes=8)
-    alone = solve(model, ahead, np.zeros((1, 9)), TARGETS[3:4], tolerance=1e-8, max_passes=8)
+    crowd = solve(model, forward, np.zeros((len(many), 9)), many, tolerance=1e-8, max_passes=8)
+    alone = solve(model, forward, np.zeros((1, 9)), TARGETS[3:4], tolerance=1e-8, max_passes=8)
     np.testing.assert_allclose(crowd.multipliers[3], alone.multipliers[0], rtol=1e-9)
     np.testing.assert_allclose(crowd.multipliers[len(TARGETS) + 3], crowd.multipliers[3], rtol=1e-9)
 
 
-def test_nothing_to_solve_is_nothing():
+def test_no_problems_have_no_solutions():
     model = Sigmoid()
-    ahead = forward_map(model, np.arange(380.0, 781, 5), np.ones((3, 81)) / 81)
+    forward = forward_map(model, np.arange(380.0, 781, 5), np.ones((3, 81)) / 81)
     assert (
-        len(solve(model, ahead, np.zeros((0, 3)), np.zeros((0, 3)), tolerance=1e-6, max_passes=1).distance)
+        len(solve(model, forward, np.zeros((0, 3)), np.zeros((0, 3)), tolerance=1e-6, max_passes=1).distance)
         == 0
     )
 
 
-def test_the_start_is_not_touched(sensor):
+def test_the_start_is_not_modified(sensor):
     model = Sigmoid()
     start = np.zeros((40, 3))
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
-    solve(model, ahead, start, TARGETS, tolerance=1e-6, max_passes=1)
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
+    solve(model, forward, start, TARGETS, tolerance=1e-6, max_passes=1)
     assert not start.any()

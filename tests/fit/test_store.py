@@ -1,4 +1,4 @@
-"""What a cube keeps of a fit: single precision where that is as good, and double where it is not."""
+"""Stored coefficients: single precision where it is accurate enough, double precision elsewhere."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ DIM = 9
 @pytest.fixture(scope="module")
 def problem():
     sensor, model = observer.sensor(), Moments(9)
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
-    return fit.Problem(model, ahead, Lattice(observer.axis_nodes("srgb", DIM)))
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
+    return fit.Problem(model, forward, Lattice(observer.axis_nodes("srgb", DIM)))
 
 
 def distance(problem, coefficients):
-    """By numpy alone, as a reader finds it."""
+    """Distance evaluated by numpy, as a lookup does."""
     rgb = problem.model.squash(problem.model.from_storage(coefficients) @ problem.forward.basis.T)
     return np.abs(problem.lattice.points - rgb @ problem.forward.sensor.T).max(axis=1)
 
 
 def greys(problem, level):
-    """Multipliers of flat spectra, one a lattice point."""
+    """Multipliers of a flat spectrum per lattice point."""
     return np.tan(np.pi * (np.asarray(level) - 0.5))[:, None] * problem.model.constant()
 
 
-def test_single_precision_where_it_costs_nothing(problem):
+def test_single_precision_is_used_where_it_is_accurate(problem):
     multipliers = greys(problem, np.linspace(0.01, 0.99, DIM**3))
     here = distance(problem, problem.model.to_storage(multipliers))
     stored = store(problem, multipliers.copy(), here, lambda done: None)
@@ -45,8 +45,8 @@ def test_single_precision_where_it_costs_nothing(problem):
     assert (stored.distance <= here + MAX_LOSS * problem.threshold).all()
 
 
-def test_double_precision_where_single_would_lose(problem, monkeypatch):
-    """With a threshold so small that even rounding counts, found in the last block: all are judged again."""
+def test_double_precision_is_used_where_single_is_inaccurate(problem, monkeypatch):
+    """The threshold is so small that rounding exceeds it in the last block: all points are evaluated again."""
     monkeypatch.setattr(sys.modules[store.__module__], "BLOCK_POINTS", 256)
     strict = replace(problem, threshold=1e-7)
     multipliers = greys(problem, np.concatenate([np.full(DIM**3 - 9, 0.5), np.linspace(0.9, 0.99, 9)]))
@@ -58,8 +58,8 @@ def test_double_precision_where_single_would_lose(problem, monkeypatch):
     np.testing.assert_allclose(stored.distance, here, atol=1e-7)
 
 
-def test_every_block_is_told_of(problem, monkeypatch):
+def test_progress_is_reported_for_every_block(problem, monkeypatch):
     monkeypatch.setattr(sys.modules[store.__module__], "BLOCK_POINTS", 256)
-    told = []
-    store(problem, greys(problem, np.full(DIM**3, 0.5)), np.full(DIM**3, np.inf), told.append)
-    assert [done.done for done in told] == [256, 512, 729]
+    events = []
+    store(problem, greys(problem, np.full(DIM**3, 0.5)), np.full(DIM**3, np.inf), events.append)
+    assert [done.done for done in events] == [256, 512, 729]

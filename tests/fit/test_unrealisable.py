@@ -1,4 +1,4 @@
-"""Every realisable colour is fitted; every other is named, and has the nearest that is."""
+"""Realisable colours are fitted; all others are reported and replaced by the nearest realisable colour."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ DIM = 17
 
 @pytest.mark.parametrize("space", SPACES)
 @pytest.mark.parametrize(("model", "count"), [("moments", 9), ("moments", 17), ("sigmoid", 3)])
-def test_all_that_is_realisable_is_fitted(space, model, count):
+def test_every_realisable_colour_is_fitted(space, model, count):
     data = uplift.build(dim=DIM, space=space, model=model, coefficients=count).data
     possible = solid(data.sensor.matrix).contains(data.lattice.points)
     assert Status.UNFITTED not in data.points.status
@@ -32,7 +32,7 @@ def test_all_that_is_realisable_is_fitted(space, model, count):
     np.testing.assert_array_equal(named, ~possible & (distance > data.threshold))
 
 
-def test_the_nearest_has_the_hue_and_the_luminance(sensor):
+def test_the_nearest_colour_has_the_same_hue_and_luminance(sensor):
     wide = observer.sensor("ITU-R BT.2020")
     lattice = Lattice(observer.axis_nodes("srgb", 9))
     beyond = unrealisable(lattice, wide, 1e-4)
@@ -47,7 +47,7 @@ def test_the_nearest_has_the_hue_and_the_luminance(sensor):
     assert unrealisable(lattice, sensor, 1e-4).points.size == 0  # all of sRGB is realisable
 
 
-def test_goals_are_the_targets_or_the_nearest():
+def test_goals_are_targets_or_nearest_realisable_colours():
     wide = observer.sensor("ITU-R BT.2020")
     model, lattice = Moments(9), Lattice(observer.axis_nodes("srgb", 5))
     beyond = unrealisable(lattice, wide, 1e-4)
@@ -58,10 +58,10 @@ def test_goals_are_the_targets_or_the_nearest():
     np.testing.assert_array_equal(problem.goal(points), expected[::-1])
 
 
-def test_a_query_says_what_no_reflectance_has():
+def test_a_query_reports_unrealisable_colours():
     cube = uplift.build(dim=5, space="ITU-R BT.2020")
-    asked = np.array([[0.0, 1, 0], [0.5, 0.5, 0.5], [0.05, 0.9, 0.05], [0.4, 0.7, 0.4]])
-    found = list(query(cube, asked))
-    expected = solid(cube.data.sensor.matrix).contains(asked)
+    queried = np.array([[0.0, 1, 0], [0.5, 0.5, 0.5], [0.05, 0.9, 0.05], [0.4, 0.7, 0.4]])
+    found = list(query(cube, queried))
+    expected = solid(cube.data.sensor.matrix).contains(queried)
     assert [answer.realisable for answer in found] == expected.tolist()
     assert expected.tolist() == [False, True, False, True]

@@ -1,4 +1,4 @@
-"""Boxes around entries: none overlap, and of one colour only the first has one."""
+"""Widths of entry boxes: no overlap, and no box for a colour that an earlier entry has."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ def test_no_two_boxes_overlap(rgb):
                 assert reaches[first] + reaches[second] <= apart + 1e-12
 
 
-def test_of_one_colour_only_the_first_is_kept():
+def test_only_the_first_entry_of_a_colour_has_a_box():
     rgb = np.array([[0.2, 0.2, 0.2], [0.2, 0.2, 0.2], [0.9, 0.9, 0.9], [0.2, 0.2, 0.2]])
     assert half_widths(LATTICE, rgb).tolist() == [MAX_HALF_WIDTH, 0, MAX_HALF_WIDTH, 0]
 
 
-def test_a_lone_entry_reaches_a_whole_step():
+def test_a_single_entry_has_the_largest_box():
     assert half_widths(LATTICE, np.array([[0.3, 0.4, 0.5]])).tolist() == [MAX_HALF_WIDTH]

@@ -1,4 +1,4 @@
-"""Entries as extra nodes, against the plain definition."""
+"""Entry boxes against their definition."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from uplift.lattice.entry_boxes import EntryBoxes
 LATTICE = Lattice(np.linspace(0, 1, 7) ** 2)
 unit = st.floats(0, 1)
 colours = arrays(float, st.tuples(st.integers(0, 10), st.just(3)), elements=unit, unique=True)
-asked = arrays(float, st.tuples(st.integers(1, 30), st.just(3)), elements=unit)
+queried = arrays(float, st.tuples(st.integers(1, 30), st.just(3)), elements=unit)
 
 
 def boxes(rgb):
     return EntryBoxes(LATTICE, rgb, half_widths(LATTICE, rgb))
 
 
-@given(colours, asked)
-def test_the_mixture_is_the_colour(entries, rgb):
+@given(colours, queried)
+def test_the_mixture_has_the_colour(entries, rgb):
     rows, entry, lattice_weight, exit_rgb = boxes(entries).find(rgb)
     assert ((lattice_weight >= 0) & (lattice_weight <= 1)).all()
     assert ((exit_rgb >= 0) & (exit_rgb <= 1)).all()
@@ -31,8 +31,8 @@ def test_the_mixture_is_the_colour(entries, rgb):
     np.testing.assert_allclose(mixed, rgb[rows], atol=1e-12)
 
 
-@given(colours, asked)
-def test_boxes_are_found_as_by_looking_at_each(entries, rgb):
+@given(colours, queried)
+def test_boxes_are_those_of_an_exhaustive_search(entries, rgb):
     found = boxes(entries)
     pinned = found.find(rgb)
     held = dict(zip(pinned.rows, zip(pinned.entry, pinned.lattice_weight, strict=True), strict=True))
@@ -46,7 +46,7 @@ def test_boxes_are_found_as_by_looking_at_each(entries, rgb):
             assert held[row][1] == pytest.approx(1, abs=1e-6)
 
 
-def test_at_an_entry_the_lattice_has_no_lattice_weight():
+def test_the_lattice_has_no_weight_at_an_entry():
     entries = np.array([[0.2, 0.3, 0.4], [0.0, 1.0, 0.5]])
     rows, entry, lattice_weight, _ = boxes(entries).find(entries)
     assert rows.tolist() == [0, 1]
@@ -54,7 +54,7 @@ def test_at_an_entry_the_lattice_has_no_lattice_weight():
     assert lattice_weight.tolist() == [0, 0]
 
 
-def test_on_the_face_of_a_box_the_lattice_has_all():
+def test_the_lattice_has_all_weight_on_the_face_of_a_box():
     found = boxes(np.array([[0.2, 0.3, 0.4]]))
     low, high = found.faces
     _, _, lattice_weight, exit_rgb = found.find(np.array([[low[0, 0], 0.3, 0.4], [0.2, high[0, 1], 0.41]]))
@@ -62,11 +62,11 @@ def test_on_the_face_of_a_box_the_lattice_has_all():
     np.testing.assert_allclose(exit_rgb[0], [low[0, 0], 0.3, 0.4])
 
 
-def test_no_entries_no_boxes():
+def test_no_entries_have_no_boxes():
     assert not boxes(np.zeros((0, 3))).find(np.full((2, 3), 0.5)).rows.size
 
 
-def test_cells_that_no_box_touches_are_known():
+def test_touched_cells_are_those_of_boxes():
     found = boxes(np.array([[0.2, 0.3, 0.4]]))
     rgb = np.random.default_rng(0).random((500, 3))
     cells = LATTICE.index(LATTICE.cell(rgb)[0])

@@ -16,14 +16,14 @@ UNEVEN = Lattice(np.array([0.0, 0.01, 0.2, 0.7, 1.0]))
 colours = arrays(float, (7, 3), elements=st.floats(0, 1))
 
 
-def test_points_count_with_blue_fastest():
+def test_points_are_numbered_blue_fastest():
     np.testing.assert_array_equal(UNEVEN.points[1], [0, 0, 0.01])
     np.testing.assert_array_equal(UNEVEN.points[5], [0, 0.01, 0])
     np.testing.assert_array_equal(UNEVEN.points[25], [0.01, 0, 0])
     assert len(UNEVEN.points) == UNEVEN.size == 125
 
 
-def test_index_and_position_undo_each_other():
+def test_index_and_position_are_inverse():
     every = np.arange(UNEVEN.size)
     np.testing.assert_array_equal(UNEVEN.index(UNEVEN.position(every)), every)
 
@@ -36,7 +36,7 @@ def test_weights_are_a_partition_of_unity_and_reproduce_the_colour(rgb):
     np.testing.assert_allclose((weights[:, :, None] * UNEVEN.points[points]).sum(axis=1), rgb, atol=1e-14)
 
 
-def test_a_node_has_all_the_weight():
+def test_a_point_has_all_weight_at_its_colour():
     points, weights = UNEVEN.corners(UNEVEN.points)
     owners = points[np.arange(UNEVEN.size), weights.argmax(axis=1)]
     np.testing.assert_array_equal(owners, np.arange(UNEVEN.size))
@@ -57,7 +57,7 @@ def test_nodes_must_increase(nodes):
         Lattice(np.array(nodes))
 
 
-def test_statuses_read_as_words():
+def test_statuses_have_labels():
     assert [status.label for status in Status] == [
         "atlas primary",
         "atlas corner",

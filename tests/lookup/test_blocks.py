@@ -1,4 +1,4 @@
-"""Long questions: blocks, tables, threads and types change nothing but the time and the room."""
+"""Large queries: results do not depend on blocks, tables, threads and types."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ def random_colours(count, seed=0):
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_threads_do_not_show(small_cube, mode):
+def test_reflectances_do_not_depend_on_threads(small_cube, mode):
     rgb = random_colours(2 * BLOCK + 5)
     alone = small_cube.reflectance(rgb, AT, mode)
     np.testing.assert_array_equal(small_cube.reflectance(rgb, AT, mode, threads=3), alone)
 
 
-def test_threads_do_not_show_in_coefficients(small_cube):
+def test_coefficients_do_not_depend_on_threads(small_cube):
     rgb = random_colours(2 * BLOCK + 5)
     np.testing.assert_array_equal(small_cube.coefficients(rgb, threads=2), small_cube.coefficients(rgb))
 
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("count", [3, 1000])
-def test_float32_is_the_same_to_float32(small_cube, mode, count):
+def test_float32_agrees_with_float64(small_cube, mode, count):
     rgb = random_colours(count)
     found = small_cube.reflectance(rgb, AT, mode, dtype=np.float32)
     assert found.dtype == np.float32
@@ -48,7 +48,7 @@ def test_float32_coefficients(small_sigmoid_cube):
 
 
 @pytest.mark.parametrize("mode", TABULATED)
-def test_a_table_of_all_points_gives_the_same(small_cube, monkeypatch, mode):
+def test_a_table_of_all_points_gives_equal_spectra(small_cube, monkeypatch, mode):
     entries = small_cube.data.atlas.rgb
     rgb = np.concatenate([random_colours(600), entries, entries + 1e-3])
     assert len(rgb) >= small_cube.data.lattice.size
@@ -58,7 +58,7 @@ def test_a_table_of_all_points_gives_the_same(small_cube, monkeypatch, mode):
 
 
 @pytest.mark.parametrize("dtype", [np.float16, int, "complex128", "paint", object, 3])
-def test_other_types_are_refused(small_cube, dtype):
+def test_unsupported_types_are_refused(small_cube, dtype):
     with raises(OptionError, "unsupported-dtype"):
         small_cube.reflectance([0.5, 0.5, 0.5], dtype=dtype)
     with raises(OptionError, "unsupported-dtype"):
@@ -66,12 +66,12 @@ def test_other_types_are_refused(small_cube, dtype):
 
 
 @pytest.mark.parametrize("threads", [0, -1, 1.0, "2", None, True])
-def test_no_number_of_threads_is_refused(small_cube, threads):
+def test_invalid_numbers_of_threads_are_refused(small_cube, threads):
     with raises(OptionError, "invalid-threads"):
         small_cube.reflectance([0.5, 0.5, 0.5], threads=threads)
 
 
-def test_what_goes_wrong_in_a_thread_comes_out():
+def test_errors_in_threads_are_raised():
     def fail(rows):
         raise ArithmeticError(len(rows))
 

@@ -1,4 +1,4 @@
-"""A cube that answers: shapes, kinds of input, what it refuses, codes."""
+"""Queries of a cube: shapes, types of input, errors, 8-bit codes."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def mode(request):
 
 
 @pytest.mark.parametrize("shape", [(), (1,), (5,), (2, 3), (2, 0), (0,), (4, 1, 2)])
-def test_reflectance_keeps_the_shape_of_the_question(small_cube, mode, shape):
+def test_reflectance_keeps_the_shape_of_the_input(small_cube, mode, shape):
     rgb = np.random.default_rng(0).random((*shape, 3))
     assert small_cube.reflectance(rgb, mode=mode).shape == (*shape, 81)
     assert small_cube.reflectance(rgb, [500, 600], mode).shape == (*shape, 2)
     assert small_cube.coefficients(rgb).shape == (*shape, 9)
 
 
-def test_blocks_do_not_show(small_cube, mode):
+def test_results_do_not_depend_on_blocks(small_cube, mode):
     rgb = random_colours(BLOCK + 2)
     together = small_cube.reflectance(rgb, [450.0, 650.0], mode)
     for start in (0, BLOCK - 2, BLOCK):
@@ -42,25 +42,25 @@ def test_blocks_do_not_show(small_cube, mode):
             np.testing.assert_allclose(alone, together[row], rtol=0, atol=1e-12)
 
 
-def test_order_of_the_question_is_that_of_the_answer(small_cube, mode):
+def test_results_are_in_the_order_of_the_input(small_cube, mode):
     rgb = random_colours(50)
     turned = small_cube.reflectance(rgb[::-1], mode=mode)[::-1]
     np.testing.assert_allclose(turned, small_cube.reflectance(rgb, mode=mode), rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("kind", [list, tuple, np.float32, np.float16, np.longdouble])
-def test_other_kinds_of_numbers_are_taken(small_cube, kind):
+def test_other_numeric_types_are_accepted(small_cube, kind):
     exact = np.array([0.5, 0.25, 0.125])
     rgb = kind(exact) if kind in (list, tuple) else exact.astype(kind)
     np.testing.assert_array_equal(small_cube.reflectance(rgb), small_cube.reflectance(exact))
     assert small_cube.reflectance(rgb).dtype == np.float64
 
 
-def test_integers_are_linear_values_too(small_cube):
+def test_integers_are_linear_values(small_cube):
     np.testing.assert_array_equal(small_cube.reflectance([1, 0, 1]), small_cube.reflectance([1.0, 0.0, 1.0]))
 
 
-def test_the_question_is_left_as_it_was(small_cube, mode):
+def test_the_input_is_not_modified(small_cube, mode):
     rgb = random_colours(3)
     rgb[0] = 1 + 1e-12
     before = rgb.copy()
@@ -68,13 +68,13 @@ def test_the_question_is_left_as_it_was(small_cube, mode):
     np.testing.assert_array_equal(rgb, before)
 
 
-def test_the_default_wavelengths_are_the_sensor_s(small_cube):
+def test_the_default_wavelengths_are_those_of_the_sensor(small_cube):
     at = small_cube.data.sensor.wavelengths
     np.testing.assert_array_equal(small_cube.wavelengths, at)
     np.testing.assert_array_equal(small_cube.reflectance(RED), small_cube.reflectance(RED, at))
 
 
-def test_wavelengths_come_in_any_order_and_number(small_cube, mode):
+def test_wavelengths_may_be_unordered_and_repeated(small_cube, mode):
     both = small_cube.reflectance(RED, [700, 400, 555.5, 400], mode)
     for column, wavelength in enumerate((700, 400, 555.5, 400)):
         single = small_cube.reflectance(RED, wavelength, mode)
@@ -83,7 +83,7 @@ def test_wavelengths_come_in_any_order_and_number(small_cube, mode):
     assert small_cube.reflectance(RED, range(380, 781, 5), mode).shape == (81,)
 
 
-def test_spectra_are_held_flat_outside_their_range(small_cube, small_sigmoid_cube, mode):
+def test_spectra_are_constant_outside_their_range(small_cube, small_sigmoid_cube, mode):
     rgb = random_colours(20)
     for cube in (small_cube, small_sigmoid_cube):
         for outside, end in [((1.0, 300.0, 379.9), 380.0), ((780.1, 1000.0, 1e9), 780.0)]:
@@ -123,7 +123,7 @@ def test_reflectances_lie_between_0_and_1(small_cube, small_sigmoid_cube, mode):
         np.zeros((3, 2)),
     ],
 )
-def test_what_is_no_colour_is_refused(small_cube, mode, rgb):
+def test_invalid_colours_are_refused(small_cube, mode, rgb):
     with pytest.raises(ColourError) as caught:
         small_cube.reflectance(rgb, mode=mode)
     assert "\n" not in str(caught.value)
@@ -131,7 +131,7 @@ def test_what_is_no_colour_is_refused(small_cube, mode, rgb):
         small_cube.coefficients(rgb)
 
 
-def test_one_bad_colour_among_many_is_quoted(small_cube):
+def test_the_error_quotes_the_invalid_colour(small_cube):
     rgb = random_colours(10)
     rgb[7] = (0.5, 1.25, 0)
     with raises(ColourError, "rgb-out-of-gamut") as caught:
@@ -139,7 +139,7 @@ def test_one_bad_colour_among_many_is_quoted(small_cube):
     assert "(0.5, 1.25, 0)" in caught.value.problem
 
 
-def test_rounding_takes_no_colour_out_of_the_space(small_cube, mode):
+def test_rounding_moves_no_colour_out_of_gamut(small_cube, mode):
     for bit in (1e-12, -1e-12):
         for base in ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (1.0, 0.5, 0.0)):
             near = small_cube.reflectance(np.array(base) + bit, mode=mode)
@@ -151,7 +151,7 @@ def test_rounding_takes_no_colour_out_of_the_space(small_cube, mode):
 
 
 @pytest.mark.parametrize("name", ["", "Spectra", "exact", None, 3])
-def test_unknown_modes_are_refused_with_the_known(small_cube, name):
+def test_unknown_modes_are_refused(small_cube, name):
     with raises(OptionError, "unknown-mode"):
         small_cube.reflectance(RED, mode=name)
 
@@ -171,7 +171,7 @@ def test_unknown_modes_are_refused_with_the_known(small_cube, name):
         {},
     ],
 )
-def test_bad_wavelengths_are_refused(small_cube, mode, wavelengths):
+def test_invalid_wavelengths_are_refused(small_cube, mode, wavelengths):
     with raises(OptionError, "invalid-wavelengths"):
         small_cube.reflectance(RED, wavelengths, mode)
 
@@ -182,7 +182,7 @@ def test_codes_decode_as_srgb(small_cube):
     np.testing.assert_allclose(small_cube.decode(codes), expected, rtol=0, atol=1e-15)
 
 
-def test_encoding_is_srgb_within_a_fiftieth_of_a_code(small_cube):
+def test_encoding_is_srgb_to_a_fiftieth_of_a_code(small_cube):
     rgb = np.linspace(0, 1, 5001)
     expected = 255 * colour.cctf_encoding(rgb, "sRGB")
     np.testing.assert_allclose(small_cube.encode(rgb), expected, rtol=0, atol=0.02)
@@ -196,19 +196,19 @@ def test_decoding_and_encoding_are_inverse(small_cube):
 
 
 @pytest.mark.parametrize("codes", [-1, 256, [0, 255.001, 3], np.nan, np.inf, "red", [[1], [2, 3]]])
-def test_codes_outside_are_refused(small_cube, codes):
+def test_codes_out_of_range_are_refused(small_cube, codes):
     with raises(ColourError, "invalid-codes"):
         small_cube.decode(codes)
 
 
-def test_a_saved_cube_answers_alike(small_cube, tmp_path, mode):
+def test_a_saved_cube_gives_equal_answers(small_cube, tmp_path, mode):
     small_cube.save(tmp_path / "cube.uplift")
     again = uplift.load(tmp_path / "cube.uplift")
     rgb = random_colours(50)
     np.testing.assert_array_equal(again.reflectance(rgb, mode=mode), small_cube.reflectance(rgb, mode=mode))
 
 
-def test_the_default_cube_is_srgb_without_an_atlas_and_fitted_everywhere():
+def test_the_default_cube_is_srgb_without_an_atlas_and_fully_fitted():
     data = uplift.load().data
     assert (data.sensor.space, data.sensor.illuminant) == ("sRGB", "D65")
     assert data.atlas.names == ()

@@ -1,4 +1,4 @@
-"""What a cube of a scene lacks, from another cube: exact in colour, whatever the model."""
+"""Missing points filled from another cube: exact colours in every model."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def sparse(whole):
     return Cube(with_absent_points(whole.data, near_black(whole.data)))
 
 
-def test_colours_come_back_and_what_was_there_stays(whole, sparse):
+def test_filling_keeps_present_points_and_has_exact_colours(whole, sparse):
     full = sparse.fill_missing()
     data, there = full.data, sparse.data.points.present
     assert data.points.present.all()
@@ -36,8 +36,8 @@ def test_colours_come_back_and_what_was_there_stays(whole, sparse):
     np.testing.assert_array_equal(data.points.status[there], whole.data.points.status[there])
 
 
-def test_the_spectra_are_those_of_the_package_s_own_cube(plain_cube):
-    """At lattice points, of the same model; single precision takes its share."""
+def test_filled_spectra_are_those_of_the_default_cube(plain_cube):
+    """At lattice points of the same model, up to single precision."""
     own, full = (
         uplift.load(),
         Cube(with_absent_points(plain_cube.data, near_black(plain_cube.data))).fill_missing(),
@@ -46,36 +46,38 @@ def test_the_spectra_are_those_of_the_package_s_own_cube(plain_cube):
     np.testing.assert_allclose(full.reflectance(points), own.reflectance(points, mode="refined"), atol=1e-5)
 
 
-def test_only_what_the_colours_lack_is_filled(sparse):
-    asked = RGB[~sparse.covers(RGB)][:1]
-    some = sparse.fill_missing(asked)
-    assert some.covers(asked).all()
+def test_only_the_points_that_the_colours_need_are_filled(sparse):
+    queried = RGB[~sparse.covers(RGB)][:1]
+    some = sparse.fill_missing(queried)
+    assert some.covers(queried).all()
     assert 0 < some.data.points.present.sum() - sparse.data.points.present.sum() <= 8
     for mode in MODES:
         np.testing.assert_allclose(
-            some.reflectance(asked, mode=mode), sparse.fill_missing().reflectance(asked, mode=mode), atol=1e-6
+            some.reflectance(queried, mode=mode),
+            sparse.fill_missing().reflectance(queried, mode=mode),
+            atol=1e-6,
         )
 
 
-def test_errors_at_filled_points_are_the_largest_of_the_cube(small_cube):
+def test_standard_errors_of_filled_points_are_the_largest_of_the_cube(small_cube):
     sparse = Cube(with_absent_points(small_cube.data, near_black(small_cube.data)))
     assert sparse.fill_missing().standard_error([1, 1, 1]) == pytest.approx(
         sparse.data.points.standard_error.max()
     )
 
 
-def test_a_whole_cube_has_nothing_to_fill(small_cube):
+def test_a_complete_cube_is_returned_unchanged(small_cube):
     assert small_cube.fill_missing() is small_cube
     assert small_cube.fill_missing(RGB) is small_cube
 
 
-def test_other_colours_are_refused(plain_cube):
+def test_a_cube_of_another_rgb_space_is_refused(plain_cube):
     wide = replace(plain_cube.data, sensor=replace(plain_cube.data.sensor, space="ITU-R BT.2020"))
     with raises(ColourError, "rgb-space-mismatch"):
         Cube(with_absent_points(wide, near_black(wide))).fill_missing()
 
 
-def test_another_cube_may_be_named_and_may_lack_the_colour_too(plain_cube, small_cube):
+def test_the_other_cube_may_be_chosen_and_may_not_cover_the_colour(plain_cube, small_cube):
     sparse = Cube(with_absent_points(plain_cube.data, near_black(plain_cube.data)))
     assert sparse.fill_missing([1, 1, 1], small_cube).covers([1, 1, 1])
     with raises(ColourError, "colour-not-in-scene"):

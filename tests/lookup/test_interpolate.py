@@ -1,4 +1,4 @@
-"""The four modes between lattice points: exact on nodes, near the colour elsewhere."""
+"""The four modes of interpolation: exact at nodes, near the colour elsewhere."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ def random_colours(count=1000, seed=3):
 
 
 def stored_spectra(data, wavelengths):
-    """(n, N) spectra of all lattice points, each by itself."""
+    """(n, N) spectra of all lattice points."""
     return data.model.squash(
         data.model.from_storage(data.points.coefficients) @ data.model.basis(wavelengths).T
     )
 
 
 def miss(cube, rgb, mode):
-    """(n,) max |linear RGB| between colours and what their spectra evaluate to."""
+    """(n,) max |linear RGB| of the round trip."""
     return np.abs(cube.data.sensor.rgb(cube.reflectance(rgb, mode=mode)) - rgb).max(axis=1)
 
 
@@ -33,13 +33,13 @@ def cube(request):
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments", "nearest"])
-def test_a_node_gets_its_own_spectrum(cube, mode):
+def test_a_point_has_its_stored_spectrum(cube, mode):
     at = [380.0, 500.0, 612.3, 780.0]
     found = cube.reflectance(cube.data.lattice.points, at, mode)
     np.testing.assert_allclose(found, stored_spectra(cube.data, np.array(at)), rtol=0, atol=1e-12)
 
 
-def test_refined_moves_a_node_s_spectrum_to_its_colour_and_no_further(cube):
+def test_refined_changes_the_spectrum_of_a_point_only_to_its_exact_colour(cube):
     # Lattice points miss their targets by up to 1e-6; a spectrum near 0 or 1 moves most for that.
     points = cube.data.lattice.points
     moved = np.abs(cube.reflectance(points, mode="refined") - cube.reflectance(points)).max(axis=1)
@@ -48,7 +48,7 @@ def test_refined_moves_a_node_s_spectrum_to_its_colour_and_no_further(cube):
     assert (miss(cube, points, "refined") <= miss(cube, points, "moments") + 1e-12).all()
 
 
-def test_a_node_s_coefficients_are_those_stored(cube):
+def test_a_point_has_its_stored_coefficients(cube):
     found = cube.coefficients(cube.data.lattice.points)
     np.testing.assert_allclose(found, cube.data.points.coefficients, rtol=1e-15, atol=1e-15)
 
@@ -141,15 +141,15 @@ def test_the_nearest_lattice_point_answers_where_no_entry_is_near(plain_cube):
     np.testing.assert_allclose(plain_cube.reflectance(rgb, mode="nearest"), expected, rtol=0, atol=1e-12)
 
 
-def test_of_an_entry_and_the_lattice_the_one_of_more_weight_is_nearest(small_cube):
+def test_nearest_is_the_entry_or_the_point_of_larger_weight(small_cube):
     data = small_cube.data
     own = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
     _, high = data.entry_boxes.faces
-    beside, off = (
+    inner, off = (
         data.atlas.rgb + 0.1 * (high - data.atlas.rgb),
         data.atlas.rgb + 0.95 * (high - data.atlas.rgb),
     )
-    np.testing.assert_allclose(small_cube.reflectance(beside, mode="nearest"), own, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(small_cube.reflectance(inner, mode="nearest"), own, rtol=0, atol=1e-12)
     apart = np.abs(small_cube.reflectance(off, mode="nearest") - own).max(axis=1)
     assert (apart > 1e-3).mean() > 0.7
     lattice = stored_spectra(data, data.sensor.wavelengths)
@@ -160,19 +160,19 @@ def test_of_an_entry_and_the_lattice_the_one_of_more_weight_is_nearest(small_cub
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_an_entry_gets_its_own_spectrum(small_cube, mode):
+def test_an_entry_has_its_stored_spectrum(small_cube, mode):
     data = small_cube.data
     own = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
     found = small_cube.reflectance(data.atlas.rgb, mode=mode)
     near = {"spectra": 1e-12, "moments": 1e-6, "refined": 1e-4, "nearest": 1e-12}
     np.testing.assert_allclose(found, own, rtol=0, atol=near[mode])
     if mode == "spectra":
-        by_itself = lattice_spectra(data, data.atlas.rgb, data.sensor.wavelengths)
-        assert np.abs(by_itself - own).max() > 0.01
+        lattice_only = lattice_spectra(data, data.atlas.rgb, data.sensor.wavelengths)
+        assert np.abs(lattice_only - own).max() > 0.01
 
 
-def test_on_the_way_through_an_entry_nothing_jumps(macbeth_cube):
-    """Nowhere faster than the lattice itself changes from point to point."""
+def test_spectra_are_continuous_through_entry_boxes(macbeth_cube):
+    """They change at most as fast as the lattice from point to point."""
     data, lattice = macbeth_cube.data, macbeth_cube.data.lattice
     grid = stored_spectra(data, data.sensor.wavelengths).reshape(*(lattice.dim,) * 3, -1)
     fastest = max(np.sqrt((np.diff(grid, axis=axis) ** 2).mean(axis=-1)).max() for axis in range(3))
@@ -184,7 +184,7 @@ def test_on_the_way_through_an_entry_nothing_jumps(macbeth_cube):
         assert np.sqrt((np.diff(found, axis=0) ** 2).mean(axis=1)).max() / 0.01 <= fastest
 
 
-def test_near_an_entry_the_colour_is_as_exact_as_anywhere(small_cube):
+def test_colours_near_an_entry_are_exact(small_cube):
     data = small_cube.data
     near = np.clip(
         np.repeat(data.atlas.rgb, 20, axis=0) + np.random.default_rng(1).normal(0, 0.02, (460, 3)), 0, 1
@@ -195,11 +195,11 @@ def test_near_an_entry_the_colour_is_as_exact_as_anywhere(small_cube):
     assert found.max() <= 1
 
 
-def test_the_standard_error_at_an_entry_is_its_own(small_cube):
+def test_the_standard_error_at_an_entry_is_its_error(small_cube):
     data = small_cube.data
     np.testing.assert_allclose(small_cube.standard_error(data.atlas.rgb), data.atlas.error, atol=1e-12)
     assert small_cube.standard_error([[0.1, 0.9, 0.1]])[0] > data.atlas.error.mean()
 
 
-def test_without_an_atlas_there_is_no_telling(plain_cube):
+def test_without_an_atlas_there_is_no_standard_error(plain_cube):
     assert plain_cube.standard_error([0.5, 0.5, 0.5]) is None

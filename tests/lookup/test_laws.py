@@ -1,4 +1,4 @@
-"""Laws of the interpolation: weights sum to 1, nodes have their own, neighbouring cells agree where they meet."""
+"""Laws of the interpolation: weights sum to 1, nodes keep their values, cells agree on common faces."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FACES = st.tuples(st.integers(1, 6), st.integers(0, 2), arrays(float, 3, element
 
 
 @given(rgb=colours)
-def test_weights_are_a_partition_of_unity_entries_included(small_cube, rgb):
+def test_weights_are_a_partition_of_unity_including_entries(small_cube, rgb):
     nodes = around(small_cube.data, rgb)
     assert (nodes.weights >= 0).all()
     assert ((nodes.lattice_weight >= 0) & (nodes.lattice_weight <= 1)).all()
@@ -26,20 +26,20 @@ def test_weights_are_a_partition_of_unity_entries_included(small_cube, rgb):
 
 
 @given(rgb=colours)
-def test_nodes_reproduce_the_colour_entries_included(small_cube, rgb):
+def test_nodes_reproduce_the_colour_including_entries(small_cube, rgb):
     data = small_cube.data
     found = around(data, rgb).weighted_sum(data.lattice.points, data.atlas.rgb)
     np.testing.assert_allclose(found, rgb, atol=1e-12)
 
 
-def test_entries_have_their_own_spectra(small_cube):
+def test_entries_have_their_stored_spectra(small_cube):
     data = small_cube.data
     own = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
     np.testing.assert_allclose(small_cube.reflectance(data.atlas.rgb), own, rtol=0, atol=1e-12)
 
 
 @given(face=FACES)
-def test_both_cells_of_a_face_answer_it_alike(small_cube, face):
+def test_both_cells_of_a_face_agree_on_it(small_cube, face):
     """The upper cell at its lower end, and the lower cell at its upper end."""
     node, axis, rgb = face
     data = small_cube.data
@@ -57,7 +57,7 @@ def test_both_cells_of_a_face_answer_it_alike(small_cube, face):
 
 
 @given(face=FACES)
-def test_a_hair_to_either_side_of_a_face_changes_an_answer_by_a_hair(small_cube, face):
+def test_answers_are_continuous_across_faces(small_cube, face):
     node, axis, rgb = face
     sides = np.repeat(rgb[None], 2, axis=0)
     sides[:, axis] = small_cube.data.lattice.nodes[node] + np.array([-1e-12, 1e-12])

@@ -1,4 +1,4 @@
-"""What a query says about a colour."""
+"""Results of detailed queries."""
 
 from __future__ import annotations
 
@@ -15,36 +15,36 @@ from uplift.lookup.blocks import BLOCK
 D65_WAVELENGTHS = colour.SpectralShape(380, 780, 5)
 
 
-def ask(cube, *rgb, **options):
+def results_of(cube, *rgb, **options):
     return list(query(cube, np.array(rgb, dtype=float), **options))
 
 
 def xyz(cube, reflectance):
-    """XYZ by colour-science's own integration, the perfect reflector at Y = 1."""
+    """XYZ by the integration of colour-science, with Y = 1 for the perfect reflector."""
     cmfs = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(D65_WAVELENGTHS)
     light = colour.SDS_ILLUMINANTS["D65"].copy().align(D65_WAVELENGTHS)
     sd = colour.SpectralDistribution(reflectance, D65_WAVELENGTHS.wavelengths)
     return colour.sd_to_XYZ(sd, cmfs, light, method="Integration") / 100
 
 
-def test_cells_are_counted_along_the_axes(small_cube):
+def test_cells_are_positions_along_the_axes(small_cube):
     nodes = small_cube.data.lattice.nodes
     inside = (nodes[:-1] + nodes[1:]) / 2
-    found = ask(small_cube, (inside[2], inside[0], inside[6]), (0, 0, 0), (1, 1, 1), (nodes[3], 1, 0))
+    found = results_of(small_cube, (inside[2], inside[0], inside[6]), (0, 0, 0), (1, 1, 1), (nodes[3], 1, 0))
     assert [answer.cell for answer in found] == [(2, 0, 6), (0, 0, 0), (6, 6, 6), (3, 6, 0)]
 
 
-def test_statuses_are_those_of_the_cell_s_corners(small_cube):
+def test_statuses_are_those_of_the_corners_of_the_cell(small_cube):
     data = small_cube.data
     grid = data.points.status.reshape(8, 8, 8)
     rgb = np.random.default_rng(5).random((100, 3))
-    seen = set()
+    found_statuses = set()
     for answer in query(small_cube, rgb):
         r, g, b = answer.cell
         expected = sorted(set(grid[r : r + 2, g : g + 2, b : b + 2].ravel().tolist()))
         assert [int(status) for status in answer.statuses] == expected
-        seen |= set(answer.statuses)
-    assert {Status.ATLAS_PRIMARY, Status.ATLAS_CORNER, Status.REGULAR} <= seen
+        found_statuses |= set(answer.statuses)
+    assert {Status.ATLAS_PRIMARY, Status.ATLAS_CORNER, Status.REGULAR} <= found_statuses
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -81,11 +81,11 @@ def test_no_entry_is_found_two_codes_away(small_cube, channel, by):
 
 
 def test_without_an_atlas_no_entry_is_found(small_sigmoid_cube):
-    assert ask(small_sigmoid_cube, (0.5, 0.5, 0.5))[0].entry is None
+    assert results_of(small_sigmoid_cube, (0.5, 0.5, 0.5))[0].entry is None
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_the_round_trip_is_what_colour_science_integrates(small_cube, mode):
+def test_the_round_trip_agrees_with_colour_science(small_cube, mode):
     rgb = np.random.default_rng(7).random((6, 3))
     for answer in query(small_cube, rgb, mode=mode):
         back = small_cube.data.sensor.xyz_to_rgb @ xyz(small_cube, answer.reflectance)
@@ -94,28 +94,28 @@ def test_the_round_trip_is_what_colour_science_integrates(small_cube, mode):
 
 def test_the_round_trip_is_srgb(small_cube):
     # colour-science rounds the matrix of sRGB to four digits, as the standard prints it.
-    (answer,) = ask(small_cube, (0.6, 0.3, 0.1))
+    (answer,) = results_of(small_cube, (0.6, 0.3, 0.1))
     white = colour.CCS_ILLUMINANTS["CIE 1931 2 Degree Standard Observer"]["D65"]
     back = colour.XYZ_to_sRGB(xyz(small_cube, answer.reflectance), white, apply_cctf_encoding=False)
     np.testing.assert_allclose(answer.round_trip, back, rtol=0, atol=5e-4)
 
 
 def test_the_colour_difference_is_that_of_colour_science(small_cube):
-    # Moments, as their round trips miss by something to be seen.
+    # Round trips of the mode "moments" have visible differences.
     rgb = np.random.default_rng(8).random((40, 3))
     white = xyz(small_cube, np.ones(81))
     xy = colour.XYZ_to_xy(white)
-    seen = []
+    differences = []
     for answer in query(small_cube, rgb, mode="moments"):
-        asked = colour.XYZ_to_Lab(np.linalg.solve(small_cube.data.sensor.xyz_to_rgb, answer.rgb), xy)
+        queried = colour.XYZ_to_Lab(np.linalg.solve(small_cube.data.sensor.xyz_to_rgb, answer.rgb), xy)
         given = colour.XYZ_to_Lab(xyz(small_cube, answer.reflectance), xy)
-        expected = colour.delta_E(asked, given, method="CIE 2000")
+        expected = colour.delta_E(queried, given, method="CIE 2000")
         assert answer.delta_e_2000 == pytest.approx(expected, abs=1e-9)
-        seen.append(expected)
-    assert max(seen) > 0.01
+        differences.append(expected)
+    assert max(differences) > 0.01
 
 
-def test_answers_come_in_order_across_blocks(small_cube):
+def test_results_are_in_order_across_blocks(small_cube):
     rgb = np.random.default_rng(9).random((BLOCK + 3, 3))
     found = list(query(small_cube, rgb, [500.0]))
     np.testing.assert_array_equal([answer.rgb for answer in found], rgb)
@@ -123,24 +123,24 @@ def test_answers_come_in_order_across_blocks(small_cube):
     np.testing.assert_allclose([answer.reflectance for answer in found[-3:]], expected, rtol=0, atol=1e-12)
 
 
-def test_no_question_no_answer(small_cube):
+def test_no_colours_have_no_results(small_cube):
     assert list(query(small_cube, np.zeros((0, 3)))) == []
 
 
-def test_rounding_takes_no_colour_out_of_the_space(small_cube):
-    for answer in ask(small_cube, np.full(3, 1 + 1e-12), np.full(3, -1e-12)):
+def test_rounding_moves_no_colour_out_of_gamut(small_cube):
+    for answer in results_of(small_cube, np.full(3, 1 + 1e-12), np.full(3, -1e-12)):
         assert answer.delta_e_2000 < 0.01
         assert all(0 <= step < 7 for step in answer.cell)
 
 
-def test_bad_questions_are_refused(small_cube):
+def test_invalid_queries_are_refused(small_cube):
     with raises(ColourError, "rgb-out-of-gamut"):
-        ask(small_cube, (0.5, 0.5, 1.5))
+        results_of(small_cube, (0.5, 0.5, 1.5))
     with raises(OptionError, "unknown-mode"):
-        ask(small_cube, (0.5, 0.5, 0.5), mode="exact")
+        results_of(small_cube, (0.5, 0.5, 0.5), mode="exact")
 
 
 @pytest.mark.parametrize("wavelengths", [[], [0], [np.nan], "red", [[400, 500], [600, 700]]])
-def test_bad_wavelengths_are_refused(small_cube, wavelengths):
+def test_invalid_wavelengths_are_refused(small_cube, wavelengths):
     with raises(OptionError, "invalid-wavelengths"):
-        ask(small_cube, (0.5, 0.5, 0.5), wavelengths=wavelengths)
+        results_of(small_cube, (0.5, 0.5, 0.5), wavelengths=wavelengths)

@@ -1,4 +1,4 @@
-"""The main job, and what it must show: the ColorChecker at several sizes, both models, with and without it."""
+"""Builds of the ColorChecker and without an atlas, in several sizes and both models."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def quietly(*args, **options):
 
 
 def fresh_distance(cube):
-    """max |target − RGB| of every point, from the stored coefficients alone."""
+    """max |target − RGB| of every point, from the stored coefficients only."""
     data = cube.data
     spectra = data.model.squash(data.model.from_storage(data.points.coefficients) @ data.model.basis(GRID).T)
     return np.abs(data.sensor.rgb(spectra) - data.lattice.points).max(axis=1)
@@ -48,7 +48,7 @@ def delta_e(cube, rgb, mode):
     return delta_e_rgb(sensor, rgb, back)
 
 
-def test_every_point_of_the_macbeth_cube_is_fitted_corners_included(macbeth_cube):
+def test_every_point_of_the_macbeth_cube_is_fitted(macbeth_cube):
     assert fresh_distance(macbeth_cube).max() <= 1e-4
     assert macbeth_cube.data.points.distance.max() <= 1e-4
     assert Status.UNFITTED not in macbeth_cube.data.points.status
@@ -75,7 +75,7 @@ def test_every_point_of_the_macbeth_cube_is_fitted_corners_included(macbeth_cube
         str(value if name != "atlas" else "macbeth" if value else "none") for name, value in options.items()
     ),
 )
-def test_every_point_is_fitted_whatever_the_size_model_and_atlas(options):
+def test_every_point_is_fitted_for_all_options(options):
     cube = quietly(options.pop("atlas"), **options)
     assert fresh_distance(cube).max() <= 1e-4
     assert Status.UNFITTED not in cube.data.points.status
@@ -84,13 +84,13 @@ def test_every_point_is_fitted_whatever_the_size_model_and_atlas(options):
 @pytest.mark.parametrize(
     ("mode", "mean", "most"), [("spectra", 1e-4, 0.05), ("moments", 0.02, np.inf), ("refined", 1e-3, 0.05)]
 )
-def test_20000_random_colours_come_back(macbeth_cube, mode, mean, most):
+def test_20000_random_colours_have_small_round_trip_errors(macbeth_cube, mode, mean, most):
     apart = delta_e(macbeth_cube, np.random.default_rng(20000).random((20000, 3)), mode)
     assert apart.mean() <= mean
     assert apart.max() <= most
 
 
-def test_entries_asked_at_their_own_colour_get_their_measurement_back(macbeth_cube):
+def test_queries_at_entries_return_their_measurements(macbeth_cube):
     atlas = macbeth_cube.data.atlas
     spectra = read_atlas(MACBETH)
     measured = on_grid(spectra, GRID)[[spectra.names.index(name) for name in atlas.names]]
@@ -99,8 +99,8 @@ def test_entries_asked_at_their_own_colour_get_their_measurement_back(macbeth_cu
     assert np.sqrt(((found - measured) ** 2).mean(axis=1)).mean() <= 0.02
 
 
-def test_the_atlas_makes_the_difference_under_other_lights(macbeth_cube):
-    """Macbeth colours under A: far closer to the measurements than a cube that has not seen them."""
+def test_the_atlas_improves_colours_under_other_lights(macbeth_cube):
+    """Under illuminant A, errors are far smaller than those of a cube without the atlas."""
     atlas = macbeth_cube.data.atlas
     spectra = read_atlas(MACBETH)
     measured = on_grid(spectra, GRID)[[spectra.names.index(name) for name in atlas.names]]
@@ -112,14 +112,14 @@ def test_the_atlas_makes_the_difference_under_other_lights(macbeth_cube):
     assert with_atlas < 0.2 * without
 
 
-def test_every_seeded_point_names_its_entry_and_no_other_does(macbeth_cube):
+def test_seeded_points_and_no_others_name_their_entry(macbeth_cube):
     data = macbeth_cube.data
     seeded = np.isin(data.points.status, [Status.ATLAS_PRIMARY, Status.ATLAS_CORNER])
     np.testing.assert_array_equal(seeded, data.points.entry >= 0)
     assert np.bincount(data.points.entry[data.points.status == Status.ATLAS_PRIMARY]).tolist() == [1] * 23
 
 
-def test_what_is_left_out_is_named_and_recorded():
+def test_entries_out_of_gamut_are_warned_about_and_recorded():
     with warns("entry-out-of-gamut") as caught:
         cube = uplift.build(MACBETH, dim=8)
     assert caught[0].entry == "cyan"
@@ -132,7 +132,7 @@ def greys(**levels):
     return Atlas(tuple(Entry(name, GRID, np.full(81, grey)) for name, grey in levels.items()))
 
 
-def test_crowded_entries_are_named_and_yet_exact():
+def test_crowded_entries_are_warned_about_and_exact():
     with warns("entry-crowded"):
         cube = uplift.build(greys(one=0.2, other=0.24), dim=4)
     assert cube.data.atlas.names == ("one", "other")
@@ -140,7 +140,7 @@ def test_crowded_entries_are_named_and_yet_exact():
         np.testing.assert_allclose(cube.reflectance([level] * 3), level, atol=1e-4)
 
 
-def test_two_entries_of_one_colour_are_named_and_the_first_is_answered():
+def test_duplicate_entries_are_warned_about_and_the_first_is_used():
     bumpy = np.full(81, 0.4) + 0.2 * np.sin(np.arange(81) / 3)
     colour = observer.sensor().rgb(bumpy)
     twins = Atlas((Entry("first", GRID, bumpy), Entry("second", GRID, bumpy)))
@@ -151,7 +151,7 @@ def test_two_entries_of_one_colour_are_named_and_the_first_is_answered():
     np.testing.assert_allclose(cube.reflectance(colour), own[0], atol=1e-5)
 
 
-def test_dim_auto_is_recorded_as_what_it_chose():
+def test_dim_auto_records_the_chosen_lattice():
     cube = uplift.build(greys(one=0.2, other=0.24), dim="auto")
     options = cube.data.provenance["options"]
     assert options["dim"] == cube.data.lattice.dim
@@ -160,7 +160,7 @@ def test_dim_auto_is_recorded_as_what_it_chose():
     )
 
 
-def test_the_perfect_reflector_is_a_welcome_entry():
+def test_the_perfect_reflector_can_be_an_entry():
     white = Atlas((Entry("white", GRID, np.ones(81)),))
     cube = uplift.build(white, dim=3)
     assert cube.data.atlas.names == ("white",)
@@ -174,8 +174,8 @@ def in_order():
 
 @settings(max_examples=3, phases=[Phase.generate])
 @given(order=st.permutations(range(24)))
-def test_the_order_of_the_atlas_sets_the_order_of_its_table_and_nothing_else(in_order, order):
-    """The bytes of every point are the same, but that it names its entry by its row; the table's to rounding."""
+def test_the_order_of_the_atlas_changes_only_the_order_of_its_table(in_order, order):
+    """Points are equal bit by bit, except for the row of their entry; the table is equal up to rounding."""
     spectra = read_atlas(MACBETH)
     shuffled = quietly(Atlas(tuple(spectra.entries[row] for row in order)), dim=5).data
     for name in ("coefficients", "rgb", "distance", "status", "standard_error"):
@@ -188,16 +188,16 @@ def test_the_order_of_the_atlas_sets_the_order_of_its_table_and_nothing_else(in_
     np.testing.assert_array_equal(np.append(row, -1)[in_order.points.entry], shuffled.points.entry)
 
 
-def test_batches_do_not_show(monkeypatch):
-    """In a wide space too, where some points go on for long."""
+def test_builds_do_not_depend_on_batches(monkeypatch):
+    """In a wide gamut, where some points need many iterations."""
     options = {"dim": 7, "space": "ITU-R BT.2020"}
     as_it_is = quietly(MACBETH, **options).data
     monkeypatch.setattr("uplift.fit.batch.CPU_BATCH_ROWS", (1024, 64))
     assert digest(quietly(MACBETH, **options).data) == digest(as_it_is)
 
 
-def test_threads_do_not_show():
-    """An atlas so large that BLAS shares its kriging out."""
+def test_builds_do_not_depend_on_threads():
+    """The atlas is large enough for BLAS to use several threads."""
     spectra = read_atlas(MACBETH.with_name("cie2017.txt"), MACBETH.with_name("babelcolor.txt"))
     digests = set()
     for threads in (1, 4):
@@ -209,7 +209,7 @@ def test_threads_do_not_show():
     assert len(digests) == 1
 
 
-def test_the_same_input_gives_the_same_bytes(tmp_path):
+def test_equal_input_gives_equal_bytes(tmp_path):
     for name in ("a", "b"):
         quietly(MACBETH, dim=5, debug=True).save(tmp_path / name)
     assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
@@ -259,7 +259,7 @@ def test_a_build_without_a_scene_imports_nothing_above_the_core():
     assert done.stdout == "[]\n"
 
 
-def test_a_build_outside_srgb_names_the_colours_that_no_reflectance_has():
+def test_builds_in_wide_gamuts_report_unrealisable_points():
     cube = uplift.build(dim=3, space="ProPhoto RGB", illuminant="D50")
     counts = cube.data.points.counts()
     assert counts["unrealisable"] > 0

@@ -1,4 +1,4 @@
-"""Bulk answers: those of numpy, whatever the shape, the size and the number of threads."""
+"""Bulk queries agree with numpy, for all shapes, sizes and numbers of threads."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def sample(small_cube):
 
 
 def colours(data, count=3000):
-    """Random ones, all nodes, and colours in, around and on the faces of the boxes of entries."""
+    """Random colours, all nodes, and colours in, around and on the faces of entry boxes."""
     rng = np.random.default_rng(5)
     low, high = data.entry_boxes.faces
     boxes = [
@@ -58,13 +58,13 @@ def test_coefficients_are_those_of_numpy(cube):
     )
 
 
-def test_an_entry_gets_its_own_spectrum(small_cube):
+def test_an_entry_has_its_stored_spectrum(small_cube):
     data = small_cube.data
     own = data.model.squash(data.model.from_storage(data.atlas.coefficients) @ data.model.basis(AT).T)
     np.testing.assert_allclose(bulk.spectra(small_cube, AT)(data.atlas.rgb), own, rtol=0, atol=1e-6)
 
 
-def test_nodes_closer_than_bins_are_told_apart():
+def test_nodes_closer_than_bins_are_distinguished():
     data = hand_made(lattice=Lattice(np.array([0.0, 1e-5, 2e-5, 1.0])))
     rng = np.random.default_rng(1)
     rgb = np.concatenate([rng.random((500, 3)), 3e-5 * rng.random((500, 3)), data.lattice.points])
@@ -73,12 +73,12 @@ def test_nodes_closer_than_bins_are_told_apart():
 
 
 @pytest.mark.parametrize("shape", [(), (1,), (5,), (2, 3), (2, 0), (0,), (4, 1, 2)])
-def test_answers_keep_the_shape_of_the_question(sample, shape):
+def test_results_keep_the_shape_of_the_input(sample, shape):
     rgb = np.random.default_rng(0).random((*shape, 3))
     assert sample(rgb).shape == (*shape, 9)
 
 
-def test_chunks_and_threads_do_not_show(small_cube, monkeypatch):
+def test_results_do_not_depend_on_chunks_and_threads(small_cube, monkeypatch):
     rgb = colours(small_cube.data)
     whole = bulk.spectra(small_cube, AT, threads=1)(rgb)
     monkeypatch.setattr("uplift.lookup.bulk.sampler.CHUNKS", (256, 64))
@@ -88,13 +88,13 @@ def test_chunks_and_threads_do_not_show(small_cube, monkeypatch):
 
 
 @pytest.mark.parametrize("kind", [np.float16, np.float32, np.longdouble, list])
-def test_other_kinds_of_numbers_are_taken(sample, kind):
+def test_other_numeric_types_are_accepted(sample, kind):
     exact = np.array([[0.5, 0.25, 0.125], [1, 0, 1]])
     rgb = exact.tolist() if kind is list else exact.astype(kind)
     np.testing.assert_array_equal(sample(rgb), sample(exact))
 
 
-def test_views_are_taken_and_left_alone(sample):
+def test_views_are_accepted_and_not_modified(sample):
     image = np.random.default_rng(0).random((8, 9, 4)).astype(np.float32)
     before = image.copy()
     view = image[::2, ::-1, :3]
@@ -105,7 +105,7 @@ def test_views_are_taken_and_left_alone(sample):
 @pytest.mark.parametrize(
     "rgb", [(np.nan, 0, 0), (0, np.inf, 0), (-0.001, 0, 0), (0, 1.001, 0), 0.5, (0.5, 0.5), "red", None, []]
 )
-def test_what_is_no_colour_is_refused(sample, small_cube, rgb):
+def test_invalid_colours_are_refused(sample, small_cube, rgb):
     with pytest.raises(ColourError) as caught:
         sample(rgb)
     with pytest.raises(ColourError) as expected:
@@ -113,7 +113,7 @@ def test_what_is_no_colour_is_refused(sample, small_cube, rgb):
     assert str(caught.value) == str(expected.value)
 
 
-def test_one_bad_colour_in_a_later_chunk_is_quoted(sample):
+def test_the_error_quotes_an_invalid_colour_of_a_later_chunk(sample):
     rgb = np.full((70_000, 3), 0.5)
     rgb[69_000] = (0.5, 1.25, 0)
     with raises(ColourError, "rgb-out-of-gamut") as caught:
@@ -121,13 +121,13 @@ def test_one_bad_colour_in_a_later_chunk_is_quoted(sample):
     assert "(0.5, 1.25, 0)" in caught.value.problem
 
 
-def test_rounding_takes_no_colour_out_of_the_space(sample):
+def test_rounding_moves_no_colour_out_of_gamut(sample):
     for base in ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (1.0, 0.5, 0.0)):
         for bit in (1e-12, -1e-12):
             np.testing.assert_allclose(sample(np.array(base) + bit), sample(base), rtol=0, atol=1e-6)
 
 
-def test_the_default_wavelengths_are_the_sensor_s(small_cube):
+def test_the_default_wavelengths_are_those_of_the_sensor(small_cube):
     rgb = [0.2, 0.3, 0.4]
     expected = small_cube.reflectance(rgb)
     np.testing.assert_allclose(bulk.spectra(small_cube)(rgb), expected, rtol=0, atol=1e-6)
@@ -139,7 +139,7 @@ def test_memory_is_that_of_the_tables(small_cube):
     assert 4 * size * len(AT) < bulk.spectra(small_cube, AT).nbytes < most
 
 
-def test_bad_wavelengths_and_threads_are_refused(small_cube):
+def test_invalid_wavelengths_and_threads_are_refused(small_cube):
     with raises(OptionError, "invalid-wavelengths"):
         bulk.spectra(small_cube, [0])
     for threads in (0, -1, 1.5, None, True):
@@ -149,7 +149,7 @@ def test_bad_wavelengths_and_threads_are_refused(small_cube):
             bulk.coefficients(small_cube, threads=threads)
 
 
-def test_misses_are_the_fitting_distances_around(small_cube):
+def test_rgb_errors_are_interpolated_fitting_distances(small_cube):
     data = small_cube.data
     found = bulk.max_rgb_error(small_cube)
     clear = ~np.isin(np.arange(data.lattice.size), data.entry_boxes.cells[0])  # of boxes of entries
