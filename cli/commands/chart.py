@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.console import console
+from ..output.console import console, make_table
 from ..output.progress import progress_bar
 from ..params.atlases import SHIPPED, read_atlases
 from ..params.options import atlas_option, force_option
@@ -146,18 +146,12 @@ def _write(chart: Chart, folder: Path, *, force: bool) -> None:
 
 
 def _print_fronts(chart: Chart) -> None:
-    from rich import box
-    from rich.table import Table
-
     from uplift.lab.chart.panels import PANELS
     from uplift.lab.chart.table import State
     from uplift.viz.format import format_size
 
-    table = Table(box=box.SIMPLE_HEAD, caption="Pareto fronts, from the fastest to the most accurate")
-    for heading in ("", "method"):
-        table.add_column(heading, no_wrap=True)
-    for heading in ("time", "error", "bytes"):
-        table.add_column(heading, justify="right", no_wrap=True)
+    caption = "Pareto fronts, from the fastest to the most accurate"
+    table = make_table(("", "method"), ("time", "error", "bytes"), caption=caption)
     for panel in PANELS:
         front = panel.front(chart)
         for row in front:

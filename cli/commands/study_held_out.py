@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.console import console, json_text
+from ..output.console import console, json_text, make_table
 from ..output.progress import progress_bar
 from ..params.atlases import SHIPPED, read_atlases
 from ..params.options import atlas_option, coefficient_count, coefficients_options, format_option
@@ -82,17 +82,11 @@ def _print_csv(results: Results) -> None:
 
 
 def _print_table(results: Results) -> None:
-    from rich import box
-    from rich.table import Table
     from rich.text import Text
 
     from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 
-    table = Table(box=box.SIMPLE_HEAD)
-    for heading in ("atlas", "cube"):
-        table.add_column(heading, no_wrap=True)
-    for heading in ("rms", *HELD_OUT_LIGHTS):
-        table.add_column(heading, justify="right", no_wrap=True)
+    table = make_table(("atlas", "cube"), ("rms", *HELD_OUT_LIGHTS))
     standard_errors = []
     for record in _records(results):
         cells = [f"{record['rms']:.4f}", *(f"{record[light]:.3f}" for light in HELD_OUT_LIGHTS)]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.console import console, json_text
+from ..output.console import console, json_text, make_table
 from ..output.progress import progress_bar
 from ..params.atlases import SHIPPED, read_atlases
 from ..params.options import atlas_option, force_option, format_option, output_folder_option
@@ -88,19 +88,14 @@ def _print_csv(study: MomentsStudy) -> None:
 
 
 def _print_table(study: MomentsStudy) -> None:
-    from rich import box
-    from rich.table import Table
-
     from uplift.lab.study.technique import TECHNIQUES
 
     caption = (
         f"mean / largest ΔE76 under D65 of {len(study.names)} entries\n"
         "n moments take n + 1 floats mirrored, 2n + 1 unmirrored"
     )
-    table = Table(box=box.SIMPLE_HEAD, caption=caption)
-    table.add_column("moments", justify="right")
-    for technique in TECHNIQUES:
-        table.add_column(technique.label.replace(" ", "\n"), justify="right", no_wrap=True)
+    headings = ("moments", *(technique.label.replace(" ", "\n") for technique in TECHNIQUES))
+    table = make_table((), headings, caption=caption)
     for count in range(study.max_moments + 1):
         results = [study.result(technique, count) for technique in TECHNIQUES]
         table.add_row(str(count), *(f"{one.mean[0]:.2f} / {one.max[0]:6.2f}" for one in results))

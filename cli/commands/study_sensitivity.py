@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.console import console, json_text
+from ..output.console import console, json_text, make_table
 from ..output.progress import progress_bar
 from ..params.options import atlas_folders_option, force_option, format_option, output_folder_option
 from ..startup import enable_jit_cache
@@ -87,19 +87,10 @@ def _print_json(result: Sensitivity) -> None:
 def _print_table(result: Sensitivity) -> None:
     from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 
-    record = result.record()
+    record, delta_e = result.record(), f"ΔE00 {NARROW_BAND_LIGHT}"
     _table(
-        (
-            "mode",
-            "step",
-            "rms",
-            "most",
-            "any wavelength",
-            f"ΔE00 {NARROW_BAND_LIGHT}",
-            "most",
-            "ΔE00 own",
-            "most",
-        ),
+        ("mode", "step"),
+        ("rms", "max", "max of a wavelength", delta_e, "max", "ΔE00 build", "max"),
         [tuple(move.values()) for move in record["moves"]],
     )
     steep = record["lipschitz"]
@@ -110,34 +101,26 @@ def _print_table(result: Sensitivity) -> None:
         f"steepest wavelength {steep['steepest_wavelength']:g} nm"
     )
     if record["changes"]:
-        heads = (
-            "change",
-            "moved",
-            "RGB radius",
-            "ΔE*ab radius",
-            f"ΔE00 {NARROW_BAND_LIGHT}",
-            "most",
-            "rms",
-            "most",
+        _table(
+            ("change",),
+            ("changed share", "RGB radius", "ΔE*ab radius", delta_e, "max", "rms", "max"),
+            [tuple(change.values()) for change in record["changes"]],
         )
-        _table(heads, [tuple(change.values()) for change in record["changes"]])
 
 
-def _table(heads: tuple[str, ...], rows: list[tuple[Any, ...]]) -> None:
-    from rich import box
-    from rich.table import Table
+def _table(texts: tuple[str, ...], numbers: tuple[str, ...], rows: list[tuple[Any, ...]]) -> None:
     from rich.text import Text
 
-    table = Table(box=box.SIMPLE_HEAD)
-    for head in heads:
-        table.add_column(
-            head, justify="left" if head in ("mode", "step", "change") else "right", no_wrap=True
-        )
+    table = make_table(texts, numbers)
     for row in rows:
-        table.add_row(
-            *(Text(cell if isinstance(cell, str) else "" if cell is None else f"{cell:.2g}") for cell in row)
-        )
+        table.add_row(*(Text(_cell(value)) for value in row))
     console().print(table)
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    return value if isinstance(value, str) else f"{value:.2g}"
 
 
 PRINTERS: dict[str, Callable[[Sensitivity], None]] = {"table": _print_table, "json": _print_json}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.console import console, json_text
+from ..output.console import console, json_text, make_table
 from ..output.progress import progress_bar
 from ..params.atlases import read_atlases
 from ..params.options import atlas_option, force_option, format_option, output_folder_option
@@ -131,15 +131,12 @@ def _print_csv(runs: Sequence[RunResult]) -> None:
 
 
 def _print_table(runs: Sequence[RunResult]) -> None:
-    from rich import box
-    from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=box.SIMPLE_HEAD)
-    for heading in ("solver", "model", "dim", "space", "threshold", "atlas"):
-        table.add_column(heading, no_wrap=True)
-    for heading in ("realisable", "unfitted", "rounds", "calls", "worst", "at", "s"):
-        table.add_column(heading, justify="right", no_wrap=True)
+    table = make_table(
+        ("solver", "model", "dim", "space", "threshold", "atlas"),
+        ("realisable", "unfitted", "rounds", "calls", "worst", "at", "s"),
+    )
     for run in runs:
         setting = run.config
         names = (setting.solver, setting.model_label, str(setting.dim), setting.space)

@@ -6,11 +6,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .console import console
+from .console import console, make_table
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from uplift.lab.comparison.filters import TunedFilter
     from uplift.lab.comparison.measure import Comparison
     from uplift.lab.comparison.statistics import Statistics
@@ -22,9 +20,8 @@ def print_comparison(comparison: Comparison) -> None:
     from uplift.viz.format import format_time
 
     for name, title in comparison.sets.items():
-        table = _table(
-            f"ΔE00 under {title}", ("representation",), (*HEADINGS, "floats", "of a light", "product")
-        )
+        numbers = (*HEADINGS, "floats", "of a light", "product")
+        table = make_table(("representation",), numbers, caption=f"ΔE00 under {title}")
         for row in comparison.of(name):
             cost = (f"{row.floats:.1f}", f"{row.light_floats:.1f}", format_time(row.ns.median))
             table.add_row(row.name, *_cells(row.statistics), *cost)
@@ -35,11 +32,8 @@ def print_filters(tuned: tuple[TunedFilter, ...]) -> None:
     """Print the best filter of each kind."""
     from uplift.lab.comparison.statistics import HEADINGS
 
-    table = _table(
-        "point sampling after the best low-pass filter of each kind",
-        ("lights", "samples", "filter", "parameters"),
-        HEADINGS,
-    )
+    caption = "point sampling after the best low-pass filter of each kind"
+    table = make_table(("lights", "samples", "filter", "parameters"), HEADINGS, caption=caption)
     for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
         table.add_row(one.lights, str(one.count), one.kind, one.parameters, *_cells(one.statistics))
     console().print(table)
@@ -62,18 +56,6 @@ def print_advice(comparison: Comparison, target: float) -> None:
                 f"{format_time(row.ns.median)} per product"
             )
         click.echo(f"{title}: {text}")
-
-
-def _table(caption: str, left: tuple[str, ...], right: tuple[str, ...]) -> Table:
-    from rich import box
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, caption=caption)
-    for heading in left:
-        table.add_column(heading, no_wrap=True)
-    for heading in right:
-        table.add_column(heading, justify="right", no_wrap=True)
-    return table
 
 
 def _cells(statistics: Statistics) -> list[str]:

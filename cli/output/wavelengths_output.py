@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .console import console, json_text
+from .console import console, json_text, make_table
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
@@ -82,20 +82,15 @@ def _rows(result: Result) -> Iterator[list[float]]:
 
 
 def _print_table(result: Result) -> None:
-    from rich import box
-    from rich.table import Table
-
     sampling = result.choice.sampling
-    table = Table(box=box.SIMPLE_HEAD, title=f"{len(sampling)} wavelengths, {result.choice.method}")
-    heads = [f"to {axis}" for axis in ("X", "Y", "Z", "R", "G", "B")]
-    for head in ("nm", *heads, *(f"power of {light}" for light in sampling.lights)):
-        table.add_column(head, justify="right", no_wrap=True)
+    weights = (f"to {axis}" for axis in "XYZRGB")
+    powers = (f"power of {light}" for light in sampling.lights)
+    title = f"{len(sampling)} wavelengths, {result.choice.method}"
+    table = make_table((), ("nm", *weights, *powers), title=title)
     for nm, *others in _rows(result):
         table.add_row(f"{nm:.1f}", *(f"{other:.4f}" for other in others))
-    errors_table = Table(box=box.SIMPLE_HEAD, title=f"ΔE00 of {len(result.materials)} materials")
-    errors_table.add_column("light")
-    for head in ("mean", "95th percentile", "max"):
-        errors_table.add_column(head, justify="right")
+    title = f"ΔE00 of {len(result.materials)} materials"
+    errors_table = make_table(("light",), ("mean", "95th percentile", "max"), title=title)
     errors_table.add_column("worst material")
     for name, errors in result.errors():
         numbers = (errors.mean, errors.p95, errors.max)
