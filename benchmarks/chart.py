@@ -37,14 +37,14 @@ def _read(source: str) -> Chart:
 
 def _measure() -> Chart:
     from uplift.atlas import read_atlas
-    from uplift.lab.chart.measure import measure
+    from uplift.lab.chart.measure import measure_methods
     from uplift.lab.chart.methods import select_methods
     from uplift.lab.chart.task import make_task
 
     atlases = {path.stem: read_atlas(path) for path in sorted((ROOT / "atlases").glob("*.txt"))}
     methods = select_methods()
     with click.progressbar(length=len(methods), label="methods", file=sys.stderr) as bar:
-        return measure(methods, make_task(atlases), lambda done: bar.update(1))
+        return measure_methods(methods, make_task(atlases), lambda done: bar.update(1))
 
 
 def publish(chart: Chart) -> None:

@@ -105,10 +105,10 @@ def command(
 
 
 def _recommend(source: str | None, requirement: Requirement) -> None:
-    from uplift.lab.chart.recommend import recommend, shipped_chart
+    from uplift.lab.chart.recommend import recommend_cube, shipped_chart
     from uplift.viz.format import format_error, format_size, format_time
 
-    row = recommend(_read(source) if source is not None else shipped_chart(), requirement)
+    row = recommend_cube(_read(source) if source is not None else shipped_chart(), requirement)
     numbers = row.numbers
     click.echo(
         f"{row.title}: {format_time(numbers['time_ns'])} per RGB, mean ΔE00 {format_error(numbers[requirement.error])} "
@@ -123,14 +123,14 @@ def _read(source: str) -> Chart:
 
 
 def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *, quick: bool) -> Chart:
-    from uplift.lab.chart.measure import measure
+    from uplift.lab.chart.measure import measure_methods
     from uplift.lab.chart.methods import select_methods
     from uplift.lab.chart.task import QUICK, Effort, make_task
 
     methods = select_methods(patterns, quick=quick)
     colours_and_spectra = make_task(read_atlases(files), colours, QUICK if quick else Effort())
     with progress_bar("methods") as progress:
-        return measure(methods, colours_and_spectra, progress)
+        return measure_methods(methods, colours_and_spectra, progress)
 
 
 def _write(chart: Chart, folder: Path, *, force: bool) -> None:

@@ -73,7 +73,7 @@ def check_calibration(actual: Array, predicted: Array | None) -> Calibration | N
 
     Examples
     --------
-    >>> calibration(np.array([1.0, 3.0]), np.array([2.0, 2.0]))
+    >>> check_calibration(np.array([1.0, 3.0]), np.array([2.0, 2.0]))
     Calibration(count=2, actual=2.23606797749979, predicted=2.0, within_one=0.5, within_two=1.0)
     """
     if predicted is None:

@@ -59,7 +59,7 @@ def make_histogram(values: ArrayLike, edges: Array) -> Histogram:
 
     Examples
     --------
-    >>> histogram([0.5, 1.5, 9.0], np.array([0.0, 1.0, 2.0])).counts.tolist()
+    >>> make_histogram([0.5, 1.5, 9.0], np.array([0.0, 1.0, 2.0])).counts.tolist()
     [1, 2]
     """
     array = np.asarray(values, dtype=float)

@@ -9,7 +9,7 @@ from markupsafe import Markup
 from tests.pages import Page
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.progress import Progress
-from uplift.lab.chart.measure import MAX_CLAIM_RATIO, measure, measure_one
+from uplift.lab.chart.measure import MAX_CLAIM_RATIO, measure_method, measure_methods
 from uplift.lab.chart.method import Claims, Method, NotInstalledError
 from uplift.lab.chart.methods.mallett2019 import FAMILIES
 from uplift.lab.chart.page import render_chart
@@ -49,7 +49,7 @@ BROKEN = {
 @pytest.mark.parametrize("name", BROKEN)
 def test_broken_answer_is_reported_and_not_timed(small_task, greys, method_of, name):
     uplift, claims, why = BROKEN[name]
-    row = measure_one(greys, method_of(uplift, claims=claims), small_task)
+    row = measure_method(greys, method_of(uplift, claims=claims), small_task)
     assert row.state == State.BROKEN
     assert why in row.why
     assert row.numbers == {}
@@ -58,7 +58,7 @@ def test_broken_answer_is_reported_and_not_timed(small_task, greys, method_of, n
 def test_broken_method_is_listed_and_not_drawn(small_task, greys, method_of):
     (mallett,) = FAMILIES
     broken = method_of(nan)
-    chart = measure([(mallett, mallett.methods[0]), (greys, broken)], small_task)
+    chart = measure_methods([(mallett, mallett.methods[0]), (greys, broken)], small_task)
     good, bad = chart.results
     assert (good.state, bad.state) == (State.MEASURED, State.BROKEN)
     assert chart.measured == (good,)
@@ -68,16 +68,16 @@ def test_broken_method_is_listed_and_not_drawn(small_task, greys, method_of):
 
 
 def test_answer_is_broken_only_if_far_off_its_claim(small_task, greys, method_of):
-    miss = measure_one(greys, method_of(grey), small_task).numbers["round_trip_mean"]
+    miss = measure_method(greys, method_of(grey), small_task).numbers["round_trip_mean"]
     for claimed, state in (
         (1.01 * miss / MAX_CLAIM_RATIO, State.MEASURED),
         (0.99 * miss / MAX_CLAIM_RATIO, State.BROKEN),
     ):
-        assert measure_one(greys, method_of(grey, claims=Claims(claimed)), small_task).state == state
+        assert measure_method(greys, method_of(grey, claims=Claims(claimed)), small_task).state == state
 
 
 def test_errors_are_those_of_the_holdout_study(small_task, greys, method_of):
-    numbers = measure_one(greys, method_of(grey), small_task).numbers
+    numbers = measure_method(greys, method_of(grey), small_task).numbers
     for prefix, measured in (("", small_task.unseen), ("own_", small_task.own)):
         errors = spectrum_errors(
             grey(small_task.sensor.rgb(measured), small_task.sensor.wavelengths), measured, CHART_LIGHTS
@@ -96,7 +96,7 @@ def test_batches_and_single_colours_are_timed(small_task, greys, method_of):
         sizes.append(len(rgb))
         return grey(rgb, wavelengths)
 
-    numbers = measure_one(greys, method_of(uplift), small_task).numbers
+    numbers = measure_method(greys, method_of(uplift), small_task).numbers
     assert {1, small_task.effort.batch} <= set(sizes)
     assert numbers["time_ns"] == numbers["batch_ns"]
     assert numbers["batch_ns_least"] <= numbers["batch_ns"] <= numbers["batch_ns_most"]
@@ -109,7 +109,7 @@ def test_method_without_batches_processes_fewer_colours(small_task, greys, metho
             pass
         return grey(rgb, wavelengths)
 
-    numbers = measure_one(greys, method_of(slow, batch=False), small_task).numbers
+    numbers = measure_method(greys, method_of(slow, batch=False), small_task).numbers
     assert "batch_ns" not in numbers
     assert numbers["time_ns"] == numbers["single_ns"]
     assert 3 <= numbers["round_trip_colours"] < len(small_task.rgb)
@@ -119,13 +119,13 @@ def test_missing_package_is_reported(small_task, greys):
     def prepare(task):
         raise NotInstalledError("it is not installed: pip install it")
 
-    row = measure_one(greys, Method("absent", "Absent", prepare), small_task)
+    row = measure_method(greys, Method("absent", "Absent", prepare), small_task)
     assert (row.state, row.why, row.numbers) == (State.MISSING, "it is not installed: pip install it", {})
 
 
 def test_chart_describes_test_set_and_environment(small_task, greys, method_of):
     events = []
-    chart = measure([(greys, method_of(grey))] * 2, small_task, events.append)
+    chart = measure_methods([(greys, method_of(grey))] * 2, small_task, events.append)
     assert events == [Progress("methods", 1, 2), Progress("methods", 2, 2)]
     assert "16 random" in chart.facts["colours"]
     assert "12 of 24 entries of macbeth" in chart.facts["spectra"]

@@ -12,7 +12,7 @@ from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
 from uplift.lab.chart import methods
-from uplift.lab.chart.measure import measure_one
+from uplift.lab.chart.measure import measure_method
 from uplift.lab.chart.method import Family
 from uplift.lab.chart.methods import FAMILIES, select_methods
 from uplift.lab.chart.methods.macadam1935 import boxes
@@ -111,12 +111,12 @@ def test_jakob_fit_has_the_colour(small_task):
 
 def test_mitsuba_is_measured_or_reported_as_missing(small_task, monkeypatch):
     (found,) = select_methods(("mitsuba3-table",))
-    row = measure_one(*found, small_task)
+    row = measure_method(*found, small_task)
     assert row.state in (State.MEASURED, State.MISSING)
     if row.state == State.MEASURED:
         assert row.numbers["bytes"] > 9e6
     monkeypatch.setitem(sys.modules, "mitsuba", None)
-    row = measure_one(*found, small_task)
+    row = measure_method(*found, small_task)
     assert (row.state, row.why) == (State.MISSING, "Mitsuba is not installed: pip install 'uplift[peers]'")
 
 

@@ -10,7 +10,7 @@ from uplift_cli.main import main
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.lab.chart.recommend import Requirement, recommend, shipped_chart
+from uplift.lab.chart.recommend import Requirement, recommend_cube, shipped_chart
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def chart(row_of, chart_of):
     ],
 )
 def test_fastest_accurate_enough_or_most_accurate_in_time(chart, requirement, name):
-    assert recommend(chart, requirement).method == name
+    assert recommend_cube(chart, requirement).method == name
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_fastest_accurate_enough_or_most_accurate_in_time(chart, requirement, na
 )
 def test_unmet_requirement_names_the_closest_cube(chart, requirement, closest):
     with raises(OptionError, "requirements-not-met") as caught:
-        recommend(chart, requirement)
+        recommend_cube(chart, requirement)
     assert caught.value.hint == closest
 
 
@@ -67,7 +67,7 @@ def test_conditions_are_described():
 
 def test_chart_without_cubes_is_an_error(row_of, chart_of):
     with raises(OptionError, "chart-without-cubes"):
-        recommend(chart_of(row_of("peer", 1, 1)), Requirement(time_ns=100))
+        recommend_cube(chart_of(row_of("peer", 1, 1)), Requirement(time_ns=100))
 
 
 @pytest.mark.parametrize("limit", [0, -1, float("nan"), float("inf")])
@@ -86,7 +86,7 @@ def test_limit_is_required_and_light_must_be_in_the_chart():
 
 
 def test_recommendation_of_the_shipped_chart_is_a_valid_command():
-    found = recommend(shipped_chart(), Requirement(time_ns=1e5))
+    found = recommend_cube(shipped_chart(), Requirement(time_ns=1e5))
     assert found.numbers["time_ns"] <= 1e5
     name, *arguments = shlex.split(found.build)[1:]
     with click.Context(main, **main.context_settings) as context:

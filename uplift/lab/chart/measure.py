@@ -33,7 +33,7 @@ class BrokenError(Exception):
     """An answer is wrong; the text gives the reason."""
 
 
-def measure(
+def measure_methods(
     methods: Iterable[tuple[Family, Method]], task: Task, progress: ProgressCallback = ignore_progress
 ) -> Chart:
     """Measure methods at a task.
@@ -54,7 +54,7 @@ def measure(
     """
     methods, results, begin, machine = list(methods), [], time.perf_counter(), environment()
     for family, method in methods:
-        results.append(measure_one(family, method, task))
+        results.append(measure_method(family, method, task))
         progress(Progress("methods", len(results), len(methods)))
     effort = task.effort
     summary = (
@@ -65,7 +65,7 @@ def measure(
     return Chart({**machine, **task.facts, "effort": summary}, tuple(results))
 
 
-def measure_one(family: Family, method: Method, task: Task) -> MethodResult:
+def measure_method(family: Family, method: Method, task: Task) -> MethodResult:
     """Measure one method.
 
     Parameters

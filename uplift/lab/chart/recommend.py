@@ -88,7 +88,7 @@ class Requirement:
         return f"{lights}, for {'materials of the atlas' if self.own else 'unseen materials'}"
 
 
-def recommend(chart: Chart, requirement: Requirement) -> MethodResult:
+def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
     """Choose a cube: the fastest that is accurate enough or, without a limit for the error, the most accurate in time.
 
     Parameters

@@ -62,7 +62,15 @@ class MethodResult:
 
 @dataclass(frozen=True)
 class Chart:
-    """Results of all methods, and the ``facts`` that all have in common."""
+    """Results of all methods.
+
+    Parameters
+    ----------
+    facts : mapping of str to str
+        Machine, versions and test set; see `FACTS`.
+    results : tuple of MethodResult
+        The results.
+    """
 
     facts: Mapping[str, str]
     results: tuple[MethodResult, ...]

@@ -56,7 +56,7 @@ def compute_statistics(errors: ArrayLike) -> Statistics:
 
     Examples
     --------
-    >>> statistics([1, 2, 3]).mean
+    >>> compute_statistics([1, 2, 3]).mean
     2.0
     """
     values = np.asarray(errors, dtype=float).ravel()
