@@ -1,4 +1,4 @@
-"""Chromium without a window, spoken to over two pipes in the DevTools protocol: real input, what it shows, its errors.
+"""Headless Chromium, controlled through two pipes by the DevTools protocol: input, screenshots and console errors.
 
 https://chromedevtools.github.io/devtools-protocol/
 """
@@ -141,10 +141,10 @@ class Browser:
         while b"\0" not in self._rest:
             if not select.select([self._read], [], [], PATIENCE)[0]:
                 raise TimeoutError("the browser does not answer")
-            found = os.read(self._read, 1 << 20)
-            if not found:
+            chunk = os.read(self._read, 1 << 20)
+            if not chunk:
                 raise RuntimeError("the browser is gone")
-            self._rest += found
+            self._rest += chunk
         message, _, self._rest = self._rest.partition(b"\0")
         return dict(json.loads(message))
 

@@ -20,7 +20,7 @@ BULK = 1_000_000
 CHECKED = 5000
 COLOURS = {"coefficients": 1_000_000, "spectra": 1_000_000, "moments": 200_000, "refined": 50_000}
 """Queries by what is looked up: fewer where lookups are slow."""
-WORST = {"coefficients": 1e-6, "spectra": 1e-5, "moments": 2e-2, "refined": 1e-6}
+MAX_ERRORS = {"coefficients": 1e-6, "spectra": 1e-5, "moments": 2e-2, "refined": 1e-6}
 """Largest permitted errors, for float32 too."""
 
 
@@ -49,17 +49,17 @@ def _lookup(cube: Cube, what: str, dtype: str, threads: int, runs: int) -> Timin
     options: dict[str, Any] = {"dtype": dtype, "threads": threads}
     if what == "coefficients":
         query = partial(cube.coefficients, rgb, **options)
-        worst, apart = None, float(np.abs(query() - cube.coefficients(rgb)).max())
+        error = float(np.abs(query() - cube.coefficients(rgb)).max())
     else:
         query = partial(cube.reflectance, rgb, WAVELENGTHS, what, **options)
         back = cube.data.sensor.rgb(cube.reflectance(rgb[:CHECKED], None, what, **options))
-        worst, apart = float(np.abs(back - rgb[:CHECKED]).max()), None
-    _check(what, worst if apart is None else apart, WORST[what])
+        error = float(np.abs(back - rgb[:CHECKED]).max())
+    _check(what, error, MAX_ERRORS[what])
     wall, cpu = time_calls(query, runs)
     size, width = np.dtype(dtype).itemsize, _width(cube, what)
     row = size * width if what == "spectra" else 8 * cube.data.model.count
     bytes_each = 24 + 8 * row + size * width
-    return _timing(what, dtype, threads, len(rgb), bytes_each, wall, cpu, worst if apart is None else apart)
+    return _timing(what, dtype, threads, len(rgb), bytes_each, wall, cpu, error)
 
 
 def time_bulk(cube: Cube, runs: int) -> list[Timing]:
@@ -83,14 +83,14 @@ def _bulk(cube: Cube, what: str, kind: str, rgb: np.ndarray[Any, Any], threads: 
     make = partial(bulk.spectra, cube, WAVELENGTHS) if kind == "spectra" else partial(bulk.coefficients, cube)
     sample = make(threads=threads)
     prepared = time.perf_counter()
-    found = sample(rgb)
+    result = sample(rgb)
     answered = time.perf_counter()
     expected = cube.reflectance(rgb, WAVELENGTHS) if kind == "spectra" else cube.coefficients(rgb)
-    apart = float(np.abs(found - expected).max())
-    _check(what, apart, 1e-6)
+    error = float(np.abs(result - expected).max())
+    _check(what, error, 1e-6)
     wall, cpu = time_calls(lambda: sample(rgb), runs)
     bytes_each = rgb.itemsize * 3 + 9 * 4 * _width(cube, kind)
-    return _timing(what, rgb.dtype.name, threads, len(rgb), bytes_each, wall, cpu, apart) | {
+    return _timing(what, rgb.dtype.name, threads, len(rgb), bytes_each, wall, cpu, error) | {
         "prepare_s": prepared - begin,
         "compile_s": max(answered - prepared - wall.median, 0),
     }
@@ -124,6 +124,6 @@ def _width(cube: Cube, what: str) -> int:
     return cube.data.model.count if what == "coefficients" else len(WAVELENGTHS)
 
 
-def _check(what: str, worst: float | None, limit: float) -> None:
-    if worst is None or not worst <= limit:
-        raise RuntimeError(f"{what}: error {worst} exceeds {limit}: nothing to time")
+def _check(what: str, error: float, limit: float) -> None:
+    if not error <= limit:
+        raise RuntimeError(f"{what}: error {error} exceeds {limit}: nothing to time")

@@ -31,15 +31,15 @@ def quadrature_errors() -> list[dict[str, Any]]:
     )
     importance = np.sqrt(sensor.light.xyz.sum(axis=0))
     _, _, order = qr(learn * importance, mode="economic", pivoting=True)
-    found = []
+    rows = []
     for count in COUNTS:
         nodes = np.sort(order[:count])
         free = np.linalg.lstsq(learn[:, nodes], learn @ sensor.matrix.T, rcond=None)[0]
         xyz = np.stack([nnls(learn[:, nodes], learn @ row)[0] for row in sensor.light.xyz], axis=1)
         weights = {"any_sign": free, "positive": xyz @ sensor.xyz_to_rgb.T}
         errors = {kind: _errors(held_out, sensor.matrix, nodes, one) for kind, one in weights.items()}
-        found.append({"wavelengths": count, **errors})
-    return found
+        rows.append({"wavelengths": count, **errors})
+    return rows
 
 
 def _errors(spectra: Array, matrix: Array, nodes: Array, weights: Array) -> list[float]:

@@ -37,21 +37,21 @@ class Build:
 def main() -> None:
     """Measure and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
-    found = list(pictures())
+    images = list(pictures())
     uplift.build(ATLAS, dim=32)  # compile before timing
-    sections = [measure(found, dim) for dim in DIMS]
+    sections = [measure(images, dim) for dim in DIMS]
     write("scenes", "make scenes", precision="full", runs=RUNS, sections=sections)
 
 
-def measure(found: list[Picture], dim: int) -> dict[str, Any]:
+def measure(images: list[Picture], dim: int) -> dict[str, Any]:
     """Compare the complete cube with a sparse cube for each image, and for all images."""
     complete = _build(dim, ())
     rows = [_row("complete cube", complete, complete)]
-    for picture in found:
+    for picture in images:
         sparse = _build(dim, (picture,))
         name = f"{picture.path.name} ({picture.package})"
         rows.append(_row(name, sparse, complete, _difference(sparse.cube, complete.cube, picture)))
-    rows.append(_row("all images", _build(dim, found), complete))
+    rows.append(_row("all images", _build(dim, images), complete))
     return {"dim": dim, "nodes": complete.cube.data.lattice.size, "rows": rows}
 
 

@@ -70,9 +70,9 @@ def precision(space: str, model: Model) -> dict[str, Any]:
 
 def _problem(model: Model, sensor: Sensor) -> fit.Problem:
     lattice = Lattice(observer.axis_nodes("srgb", DIM))
-    beyond = fit.unrealisable(lattice, sensor, THRESHOLD / 2)
-    ahead = forward_map(model, sensor.wavelengths, sensor.matrix)
-    return fit.Problem(model, ahead, lattice, THRESHOLD, beyond)
+    unrealisable = fit.unrealisable(lattice, sensor, THRESHOLD / 2)
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
+    return fit.Problem(model, forward, lattice, THRESHOLD, unrealisable)
 
 
 def _fitted(problem: fit.Problem, sensor: Sensor) -> tuple[Array, Array]:
@@ -96,9 +96,9 @@ def _spectra(model: Model, sensor: Sensor, coefficients: Array) -> Array:
         return np.concatenate([_spectra(model, sensor, part) for part in np.array_split(coefficients, 2)])
 
 
-def _difference(found: Array, exact: Array) -> Array:
+def _difference(spectra: Array, exact: Array) -> Array:
     light = observer.light(LIGHT)
-    labs = (lab(spectra @ light.xyz.T, light.white) for spectra in (found, exact))
+    labs = (lab(one @ light.xyz.T, light.white) for one in (spectra, exact))
     return delta_e_2000(*labs)
 
 

@@ -63,8 +63,8 @@ def fitted(measured: Array, density: Array) -> Warp:
     def error(knots: Array) -> float:
         with replaced_warp(warp(knots)):
             moments = technique.moments(measured, fine_grid(), FITTED_MOMENTS)
-            found = technique.reconstruct(moments, observer.grid())
-        return float(delta_e_1976(lab(found @ light.xyz.T, light.white), original).mean())
+            spectra = technique.reconstruct(moments, observer.grid())
+        return float(delta_e_1976(lab(spectra @ light.xyz.T, light.white), original).mean())
 
     start = np.log(np.interp(KNOTS, observer.grid(), density / density.max() + 3e-3))
     best = minimize(error, start, method="Powell", bounds=[BOUNDS] * len(KNOTS), options={"maxfev": TRIES})

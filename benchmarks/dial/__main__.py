@@ -135,8 +135,8 @@ def _design(coefficients: int) -> Design:
 
 
 def _view(coefficients: int, side: int) -> Relighting:
-    found = _design(coefficients)
-    return relighting("engine", found, cutaway(len(found.palette.materials), side))
+    palette_design = _design(coefficients)
+    return relighting("engine", palette_design, cutaway(len(palette_design.palette.materials), side))
 
 
 def _error(tab: Browser, view: Relighting) -> int:

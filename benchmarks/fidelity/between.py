@@ -74,18 +74,18 @@ def _ratio(spectra: Array, without: Array, measured: Array) -> Array:
 
 
 def _default(known: Array, values: Array, queried: Array, roughness: Array) -> tuple[Array, None]:
-    found, _ = krige(rgb_to_lab(SENSOR, known), values)
-    return found(rgb_to_lab(SENSOR, queried)), None
+    interpolate, _ = krige(rgb_to_lab(SENSOR, known), values)
+    return interpolate(rgb_to_lab(SENSOR, queried)), None
 
 
 def _default_in_metric(known: Array, values: Array, queried: Array, roughness: Array) -> tuple[Array, Array]:
-    found, left_out = krige(rgb_to_lab(SENSOR, known), values)
-    return found(rgb_to_lab(SENSOR, queried)), _covariance(values - left_out, roughness)
+    interpolate, left_out = krige(rgb_to_lab(SENSOR, known), values)
+    return interpolate(rgb_to_lab(SENSOR, queried)), _covariance(values - left_out, roughness)
 
 
 def _nearest(known: Array, values: Array, queried: Array, roughness: Array) -> tuple[Array, None]:
-    apart = np.linalg.norm(rgb_to_lab(SENSOR, known)[None] - rgb_to_lab(SENSOR, queried)[:, None], axis=-1)
-    return values[apart.argmin(axis=1)], None
+    distance = np.linalg.norm(rgb_to_lab(SENSOR, known)[None] - rgb_to_lab(SENSOR, queried)[:, None], axis=-1)
+    return values[distance.argmin(axis=1)], None
 
 
 def _nothing(known: Array, values: Array, queried: Array, roughness: Array) -> tuple[Array, None]:
@@ -93,8 +93,8 @@ def _nothing(known: Array, values: Array, queried: Array, roughness: Array) -> t
 
 
 def _trend(known: Array, values: Array, queried: Array, roughness: Array) -> tuple[Array, Array]:
-    found, residuals = _universal(known, values, queried)
-    return found, _covariance(residuals, roughness)
+    values, residuals = _universal(known, values, queried)
+    return values, _covariance(residuals, roughness)
 
 
 def _universal(known: Array, values: Array, queried: Array) -> tuple[Array, Array]:
@@ -139,8 +139,8 @@ def _spectra_deviations(kept: Materials, queried: Materials) -> Array:
     model = Moments(9)
     plain = smooth(model, forward(model))
     before, after = (solved(model, plain(part.rgb), part.rgb) for part in (kept, queried))
-    found, _ = krige(rgb_to_lab(SENSOR, kept.rgb), kept.measured - before)
-    return np.asarray(after + found(rgb_to_lab(SENSOR, queried.rgb)))
+    interpolate, _ = krige(rgb_to_lab(SENSOR, kept.rgb), kept.measured - before)
+    return np.asarray(after + interpolate(rgb_to_lab(SENSOR, queried.rgb)))
 
 
 def _spectra_trend(kept: Materials, queried: Materials) -> Array:

@@ -34,8 +34,11 @@ def lattice_errors(name: str, axis: str, fitted: fit.FittedEntries) -> dict[str,
     errors = {}
     for dim in DIMS[1::2]:
         problem = fit.Problem(MODEL, forward(MODEL), Lattice(observer.axis_nodes(axis, dim)))
-        found = lattice_error(problem, SENSOR.wavelengths, LIGHTS, fitted)
-        errors[str(dim)] = {"median": float(np.median(found)), "over": int((found > TOLERANCES[0]).sum())}
+        distances = lattice_error(problem, SENSOR.wavelengths, LIGHTS, fitted)
+        errors[str(dim)] = {
+            "median": float(np.median(distances)),
+            "over": int((distances > TOLERANCES[0]).sum()),
+        }
     return {"atlas": name, "entries": len(fitted.rgb), "axis": axis, "errors": errors}
 
 

@@ -128,15 +128,15 @@ def standard_errors(splits: Splits) -> list[dict[str, Any]]:
         actual, predicted = (
             np.concatenate([getattr(split, part) for split in parts]) for part in ("real", "stated")
         )
-        found = check_calibration(actual, predicted)
+        coverage = check_calibration(actual, predicted)
         quartiles = np.array_split(predicted.argsort(kind="stable"), 4)
         rows.append(
             {
                 "atlas": name,
                 "coefficients": count,
                 "all": [_root_mean_square(actual), _root_mean_square(predicted)],
-                "within_1": found.within_one,
-                "within_2": found.within_two,
+                "within_1": coverage.within_one,
+                "within_2": coverage.within_two,
                 "quartiles": [
                     [_root_mean_square(actual[part]), _root_mean_square(predicted[part])]
                     for part in quartiles
@@ -149,9 +149,9 @@ def standard_errors(splits: Splits) -> list[dict[str, Any]]:
 def _across(known: str, queried: str) -> HoldoutSplit:
     """Query a cube of one atlas for the colours of another."""
     cube, some = build(known), materials(queried)
-    found = cube.reflectance(some.rgb)
+    answers = cube.reflectance(some.rgb)
     light = observer.light(cube.data.error_illuminant)
-    return HoldoutSplit({}, delta_e_spectra(light, found, some.measured), cube.standard_error(some.rgb))
+    return HoldoutSplit({}, delta_e_spectra(light, answers, some.measured), cube.standard_error(some.rgb))
 
 
 def _root(errors: Array) -> float:
@@ -178,8 +178,8 @@ def seed_starts(name: str) -> Iterator[dict[str, Any]]:
         for half, rows in {"the other half": queried, "the known half": kept}.items():
             corners, weights = lattice.corners(some.rgb[rows])
             around = spectra_of(model, nodes[corners.ravel()]).reshape(*corners.shape, -1)
-            found = (weights[..., None] * around).sum(axis=1)
-            yield {"atlas": name, "start": label, "queried": half, **errors(found, some.take(rows))}
+            answers = (weights[..., None] * around).sum(axis=1)
+            yield {"atlas": name, "start": label, "queried": half, **errors(answers, some.take(rows))}
 
 
 def neighbour_steps(name: str | None, count: int) -> dict[str, Any]:

@@ -45,8 +45,8 @@ def measure() -> dict[str, Any]:
 def solved(model: Model, start: Array, rgb: Array, metric: Array | None = None) -> Array:
     """Return spectra (n, N) of linear RGB (n, 3) by minimum-norm steps from ``start`` (n, C)."""
     forward_rgb = forward_map(model, SENSOR.wavelengths, SENSOR.matrix, metric)
-    found = solve(model, forward_rgb, start, rgb, tolerance=1e-7, max_passes=24)
-    return np.asarray(model.squash(found.multipliers @ forward_rgb.basis.T))
+    solution = solve(model, forward_rgb, start, rgb, tolerance=1e-7, max_passes=24)
+    return np.asarray(model.squash(solution.multipliers @ forward_rgb.basis.T))
 
 
 def starts(names: tuple[str, ...]) -> list[dict[str, Any]]:

@@ -61,7 +61,7 @@ def _sets() -> dict[str, Pigment]:
     values = {
         name: np.array([line[1:] for line in lines[1:] if line[0] == name], dtype=float) for name in names
     }
-    return {name: Pigment(found[:, :3], found[:, 3:]) for name, found in values.items()}
+    return {name: Pigment(rows[:, :3], rows[:, 3:]) for name, rows in values.items()}
 
 
 def _error(name: str, p: float | None) -> float:

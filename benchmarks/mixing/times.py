@@ -52,9 +52,9 @@ def mixtures(cube: Cube) -> list[dict[str, Any]]:
 
 def _check(mix: Callable[[Array, Array], Array], rgb: Array, parts: Array) -> None:
     """Raise `RuntimeError` unless a batch gives the same results as single mixtures."""
-    found = mix(rgb[:CHECKED], parts[:CHECKED])
+    batch = mix(rgb[:CHECKED], parts[:CHECKED])
     expected = np.array([mix(one, share) for one, share in zip(rgb[:CHECKED], parts[:CHECKED], strict=True)])
-    if not np.allclose(found, expected, atol=1e-9):
+    if not np.allclose(batch, expected, atol=1e-9):
         raise RuntimeError("wrong result: nothing to time")
 
 

@@ -55,8 +55,8 @@ def _cmake(*words: str) -> subprocess.CompletedProcess[bytes]:
 def _row(program: Path, name: str, count: int, unknowns: str, least: float, runs: int) -> Peer:
     model, points = model_of(name, count), task.lattice().points
     done = [_run(program, unknowns, count) for _ in range(runs)]
-    found, facts = done[-1]
-    multipliers = model.from_storage(found) if unknowns == "moments" else found
+    solution, facts = done[-1]
+    multipliers = model.from_storage(solution) if unknowns == "moments" else solution
     answer = judge_multipliers(model, multipliers, task.sensor(), points, least=least)
     cpu = spread([each["cpu"] for _, each in done]).scaled(1e6 / len(points))
     starts = facts["solves"] / len(points)
@@ -67,13 +67,13 @@ def _row(program: Path, name: str, count: int, unknowns: str, least: float, runs
 def _run(program: Path, unknowns: str, count: int) -> tuple[Array, dict[str, Any]]:
     """Return the solutions (n, count), and the statistics printed by the program."""
     with tempfile.TemporaryDirectory() as folder:
-        scene, found = Path(folder, "scene.txt"), Path(folder, "found")
+        scene, solution = Path(folder, "scene.txt"), Path(folder, "found")
         scene.write_text(_scene())
-        command = [str(program), str(scene), str(found), unknowns, str(count), str(STEPS)]
+        command = [str(program), str(scene), str(solution), unknowns, str(count), str(STEPS)]
         statistics = subprocess.run(
             command, env=os.environ | QUIET, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True
         ).stdout
-        return np.fromfile(found).reshape(-1, count), json.loads(statistics)
+        return np.fromfile(solution).reshape(-1, count), json.loads(statistics)
 
 
 def _scene() -> str:

@@ -1,4 +1,4 @@
-"""``vmap`` of optimistix's Dogleg over many points: the ready-made solver on the same JAX."""
+"""``vmap`` of optimistix's Dogleg over many nodes: a general solver on the same JAX."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ COUNT = 9
 POINTS = 1024
 STEPS = 256
 TOLERANCE = 1e-6
-"""Of the step and the change of the residuals, relative and absolute; our solver goes on to a miss of as much."""
+"""Of the step and the change of the residuals, relative and absolute; that of the residual of this package."""
 
 
 def optimistix_dogleg(runs: int) -> list[Peer]:
-    """Moments by their multipliers, every point from grey; compiled before it is timed."""
+    """Time the fit of multipliers, every node from grey; compilation is separate."""
     try:
         import optimistix
     except ImportError:
@@ -31,12 +31,12 @@ def optimistix_dogleg(runs: int) -> list[Peer]:
     basis, weights = model.basis(sensor.wavelengths), sensor.matrix
     solver = optimistix.Dogleg(rtol=TOLERANCE, atol=TOLERANCE)
 
-    def miss(multipliers: jax.Array, rgb: jax.Array) -> jax.Array:
+    def residual(multipliers: jax.Array, rgb: jax.Array) -> jax.Array:
         return weights @ model.squash(basis @ multipliers) - rgb
 
     def one(rgb: jax.Array) -> jax.Array:
         start = jnp.zeros(COUNT)
-        return optimistix.least_squares(miss, solver, start, args=rgb, max_steps=STEPS, throw=False).value
+        return optimistix.least_squares(residual, solver, start, args=rgb, max_steps=STEPS, throw=False).value
 
     with jax.enable_x64(True):
         begin = time.process_time()
@@ -46,8 +46,8 @@ def optimistix_dogleg(runs: int) -> list[Peer]:
         def solve() -> Array:
             return np.asarray(compiled(jnp.asarray(target)))
 
-        found, cpu = task.measured(solve, POINTS, runs)
-    answer = judge_multipliers(model, found, sensor, target, least=0.99)
+        solution, cpu = task.measured(solve, POINTS, runs)
+    answer = judge_multipliers(model, solution, sensor, target, least=0.99)
     notes = f"in p; all points go on until the last has arrived; compilation, {seconds:.1f} s, is apart"
     tool = f"optimistix {version('optimistix')} Dogleg, `vmap`"
     return [Peer(tool, "moments", COUNT, POINTS, cpu, answer, notes)]

@@ -1,4 +1,4 @@
-"""Ours: whole lattices without an atlas, from nothing to the coefficients that a cube stores."""
+"""This package: lattices without an atlas, up to the stored coefficients."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MODELS = (("sigmoid", 3), ("moments", 3), ("moments", 5), ("moments", 9), ("mome
 
 
 def ours(runs: int) -> list[Peer]:
-    """Every model at every dim."""
+    """Time every model at every dim."""
     return [_lattice(name, count, dim, runs) for dim in DIMS for name, count in MODELS]
 
 
@@ -28,11 +28,11 @@ def _lattice(name: str, count: int, dim: int, runs: int) -> Peer:
     none = fit.fit_entries(model, problem.forward, measured, rgb, [reference], reference, problem.tolerance)
     seeds = fit.seed(lattice, rgb)
 
-    def whole() -> Array:
+    def fit_all() -> Array:
         prior = fit.fit_prior(problem, sensor, none, reference)
         return fit.fit_lattice(problem, seeds, none.multipliers, prior).points.coefficients
 
-    whole()  # compiles
-    stored, cpu = task.measured(whole, lattice.size, runs)
+    fit_all()  # compiles
+    stored, cpu = task.measured(fit_all, lattice.size, runs)
     answer = judge_multipliers(model, model.from_storage(stored), sensor, lattice.points, least=1.0)
     return Peer("uplift", name, count, lattice.size, cpu, answer, f"{dim}³, compiled before")

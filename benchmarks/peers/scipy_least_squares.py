@@ -1,4 +1,4 @@
-"""scipy's ``least_squares``, one point at a time: what a few lines of Python do."""
+"""scipy's ``least_squares``, one node at a time."""
 
 from __future__ import annotations
 
@@ -17,36 +17,36 @@ from uplift.models import Moments
 COUNT = 9
 POINTS = 32
 OUTSIDE = 1.0
-"""Residual of numbers that are not the moments of any reflectance: farther than any colour that counts."""
+"""Residual of numbers that are not the moments of any reflectance, larger than that of any colour."""
 
 
 def scipy_least_squares(runs: int) -> list[Peer]:
-    """Moments by their multipliers with the exact Jacobian, and by the moments with numeric differences."""
+    """Time the fit of multipliers with the exact Jacobian, and of moments with numeric differences."""
     model, sensor, target = Moments(COUNT), task.sensor(), task.some(POINTS)
     basis, weights = model.basis(sensor.wavelengths), sensor.matrix
 
-    def miss(multipliers: Array, rgb: Array) -> Array:
+    def residual(multipliers: Array, rgb: Array) -> Array:
         return weights @ model.squash(basis @ multipliers) - rgb
 
     def jacobian(multipliers: Array, rgb: Array) -> Array:
         return (weights * model.slope(basis @ multipliers)) @ basis
 
-    def miss_of_moments(moments: Array, rgb: Array) -> Array:
+    def residual_of_moments(moments: Array, rgb: Array) -> Array:
         try:
-            return miss(model.from_storage(moments), rgb)
+            return residual(model.from_storage(moments), rgb)
         except UpliftError:
             return np.full(3, OUTSIDE)
 
     def by_multipliers() -> Array:
-        return _each(lambda rgb: least_squares(miss, np.zeros(COUNT), jacobian, args=(rgb,)).x, target)
+        return _each(lambda rgb: least_squares(residual, np.zeros(COUNT), jacobian, args=(rgb,)).x, target)
 
     def by_moments() -> Array:
         grey = model.to_storage(np.zeros(COUNT))
-        return _each(lambda rgb: least_squares(miss_of_moments, grey, args=(rgb,)).x, target)
+        return _each(lambda rgb: least_squares(residual_of_moments, grey, args=(rgb,)).x, target)
 
     def row(solve: Callable[[], Array], stored: bool, least: float, notes: str) -> Peer:
-        found, cpu = task.measured(solve, POINTS, runs)
-        multipliers = model.from_storage(found) if stored else found
+        solution, cpu = task.measured(solve, POINTS, runs)
+        multipliers = model.from_storage(solution) if stored else solution
         answer = judge_multipliers(model, multipliers, sensor, target, least=least)
         tool = f"scipy {version('scipy')} `least_squares`"
         return Peer(tool, "moments", COUNT, POINTS, cpu, answer, notes)

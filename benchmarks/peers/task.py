@@ -37,9 +37,9 @@ def some(count: int) -> Array:
 
 def measured(solve: Callable[[], Array], points: int, runs: int) -> tuple[Array, Spread]:
     """Return the result of ``solve``, and µs of CPU per node. Some tools are too slow for a separate run."""
-    found, seconds = np.empty(0), []
+    solution, seconds = np.empty(0), []
     for _ in range(runs):
         begin = time.process_time()
-        found = solve()
+        solution = solve()
         seconds.append(time.process_time() - begin)
-    return found, spread(seconds).scaled(1e6 / points)
+    return solution, spread(seconds).scaled(1e6 / points)

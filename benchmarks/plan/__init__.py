@@ -1,1 +1,1 @@
-"""Plans for real textures, and whether what they predict is so."""
+"""Scene plans for real textures, and the accuracy of their predictions."""

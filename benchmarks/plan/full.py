@@ -170,10 +170,10 @@ def _integrated(reflectances: Array, light: str) -> Array:
     shape = colour.SpectralShape(380, 780, 5)
     cmfs = colour.MSDS_CMFS[observer.DEFAULT_OBSERVER].copy().align(shape)
     illuminant = colour.SDS_ILLUMINANTS[light].copy().align(shape)
-    found = colour.colorimetry.msds_to_XYZ_integration(
+    xyz = colour.colorimetry.msds_to_XYZ_integration(
         reflectances.astype(float), cmfs=cmfs, illuminant=illuminant, shape=shape
     )
-    return np.asarray(found) / 100
+    return np.asarray(xyz) / 100
 
 
 def _difference(expected: Array, rendered: Array, light: str) -> Array:

@@ -50,9 +50,9 @@ def main() -> None:
 
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     scene.start()
-    found = chart()
+    painted = chart()
     with tempfile.TemporaryDirectory() as folder:
-        renders = render(methods(found, Path(folder), DIM), LAYOUT, SPP)
+        renders = render(methods(painted, Path(folder), DIM), LAYOUT, SPP)
     captions = {
         key: "" if key[1] == REFERENCE else f"mean ΔE00 {errors.mean():.2f}, worst {errors.max():.1f}"
         for key, errors in renders.delta_e.items()
@@ -67,7 +67,7 @@ def main() -> None:
         variant=scene.VARIANT,
         dim=DIM,
         samples=LAYOUT.patch**2 * SPP,
-        **figures(found, renders),
+        **figures(painted, renders),
     )
 
 

@@ -93,10 +93,10 @@ def _camera(width: int, height: int) -> dict[str, Any]:
 
 def _light(illuminant: str) -> dict[str, Any]:
     """The illuminant, as bright as makes white's Y = 1."""
-    found = sensor(illuminant=illuminant)
-    step = found.wavelengths[1] - found.wavelengths[0]
-    luminous = (found.power * found.cmfs[:, 1]).sum() * step
-    return _regular(found.wavelengths, found.power * CIE_Y_INTEGRAL / luminous)
+    light_sensor = sensor(illuminant=illuminant)
+    step = light_sensor.wavelengths[1] - light_sensor.wavelengths[0]
+    luminous = (light_sensor.power * light_sensor.cmfs[:, 1]).sum() * step
+    return _regular(light_sensor.wavelengths, light_sensor.power * CIE_Y_INTEGRAL / luminous)
 
 
 def _regular(wavelengths: Array, values: Array) -> dict[str, Any]:

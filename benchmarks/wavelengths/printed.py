@@ -24,18 +24,18 @@ def rows(name: str) -> list[dict[str, str]]:
 
 def tables_1() -> Mapping[tuple[str, int], Nodes]:
     """Return tables 1a and 1b by channel and order; undefined orders are absent."""
-    found = rows("table1")
-    keys = dict.fromkeys((row["channel"], int(row["order"])) for row in found)
-    return {key: _nodes(found, "order", key[0], str(key[1])) for key in keys}
+    lines = rows("table1")
+    keys = dict.fromkeys((row["channel"], int(row["order"])) for row in lines)
+    return {key: _nodes(lines, "order", key[0], str(key[1])) for key in keys}
 
 
 def table_2(row: str) -> tuple[list[Nodes], float]:
     """Return a row of table 2: the rules of the channels, and the error."""
-    found = rows("table2")
-    error = next(float(one["error"]) for one in found if one["row"] == row)
-    return [_nodes(found, "row", channel, row) for channel in CHANNELS], error
+    lines = rows("table2")
+    error = next(float(one["error"]) for one in lines if one["row"] == row)
+    return [_nodes(lines, "row", channel, row) for channel in CHANNELS], error
 
 
-def _nodes(found: list[dict[str, str]], key: str, channel: str, value: str) -> Nodes:
-    own = [row for row in found if row["channel"] == channel and row[key] == value]
+def _nodes(lines: list[dict[str, str]], key: str, channel: str, value: str) -> Nodes:
+    own = [row for row in lines if row["channel"] == channel and row[key] == value]
     return tuple(np.array([float(row[part]) for row in own]) for part in ("wavelength", "weight"))
