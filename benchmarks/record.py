@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.lab.timing import Spread, environment
+from uplift.lab.timing import environment
 
 ROOT = Path(__file__).parents[1]
 DATA = ROOT / "docs" / "data"
@@ -23,9 +23,7 @@ def write(name: str, command: str, **figures: Any) -> None:
 
 
 def to_json(value: Any) -> Any:
-    """Convert a spread, another dataclass, or a number or array of numpy."""
-    if isinstance(value, Spread):
-        return {"median": value.median, "min": value.min, "max": value.max, "runs": value.runs}
+    """Convert a dataclass, or a number or array of numpy."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
     if isinstance(value, np.ndarray | np.generic):
