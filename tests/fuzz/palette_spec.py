@@ -37,9 +37,9 @@ def _generate(random: Random, path: Path) -> None:
 def _use(path: Path) -> None:
     """Design the palette. Raises `UpliftError` for invalid files, ValueError for invalid spectra."""
     palette = read_palette(path)
-    found = design(palette, _model(palette.count))
-    matrix(found)
-    if not (np.isfinite(found.powers).all() and np.isfinite(found.reflectances).all()):
+    result = design(palette, _model(palette.count))
+    matrix(result)
+    if not (np.isfinite(result.powers).all() and np.isfinite(result.reflectances).all()):
         raise ValueError("spectra that are not finite")
 
 

@@ -21,17 +21,17 @@ OPPONENT = (POINTS - 545) * BELL
 
 
 def _rule(points: np.ndarray, masses: np.ndarray, order: int) -> QuadratureRule:
-    found = gauss_rule(points, masses, order)
-    assert isinstance(found, QuadratureRule), found
-    return found
+    result = gauss_rule(points, masses, order)
+    assert isinstance(result, QuadratureRule), result
+    return result
 
 
 def _moment_error(rule: QuadratureRule, points: np.ndarray, masses: np.ndarray, degree: int) -> float:
     """Largest error over Legendre polynomials up to ``degree``, relative to the sum of the absolute masses."""
     middle, half = (points[0] + points[-1]) / 2, (points[-1] - points[0]) / 2
     exact = masses @ legendre.legvander((points - middle) / half, degree)
-    found = rule.weights @ legendre.legvander((rule.nodes - middle) / half, degree)
-    return float(np.abs(found - exact).max() / np.abs(masses).sum())
+    result = rule.weights @ legendre.legvander((rule.nodes - middle) / half, degree)
+    return float(np.abs(result - exact).max() / np.abs(masses).sum())
 
 
 @pytest.mark.parametrize("order", [1, 2, 5, 16, 40])
@@ -82,13 +82,13 @@ def _exact_nodes(points: list[int], masses: list[int], order: int) -> np.ndarray
 )
 def test_nodes_agree_with_elimination_in_fractions(masses: list[int], order: int) -> None:
     points = list(range(len(masses)))
-    found = gauss_rule(points, masses, order)
-    if isinstance(found, UndefinedRule):
+    result = gauss_rule(points, masses, order)
+    if isinstance(result, UndefinedRule):
         return
     expected = np.sort_complex(_exact_nodes(points, masses, order))
-    gap = np.diff(found.nodes).min() if order > 1 else 1.0
+    gap = np.diff(result.nodes).min() if order > 1 else 1.0
     if gap > 1e-2:  # np.roots is inaccurate for nearly double roots
-        np.testing.assert_allclose(found.nodes, expected, atol=1e-5)
+        np.testing.assert_allclose(result.nodes, expected, atol=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -101,10 +101,10 @@ def test_nodes_agree_with_elimination_in_fractions(masses: list[int], order: int
     ],
 )
 def test_undefined_order_states_its_reason(masses: list[int], order: int, reason: str) -> None:
-    found = gauss_rule(range(len(masses)), masses, order)
-    assert isinstance(found, UndefinedRule)
-    assert found.order == order
-    assert reason in found.reason
+    result = gauss_rule(range(len(masses)), masses, order)
+    assert isinstance(result, UndefinedRule)
+    assert result.order == order
+    assert reason in result.reason
 
 
 def test_order_above_an_undefined_one_exists() -> None:

@@ -66,14 +66,14 @@ def test_spectrum_errors_equal_their_definitions():
 
 def test_calibration_pools_splits_with_standard_errors():
     nothing = SpectrumErrors(np.zeros(2), np.zeros((2, 1)))
-    found = pooled_calibration(
+    result = pooled_calibration(
         [
             HoldoutSplit({"": nothing}, np.array([1.0, 3.0]), np.array([2.0, 2.0])),
             HoldoutSplit({"": nothing}, np.array([5.0, 9.0]), None),
         ]
     )
-    assert (found.count, found.predicted, found.within_one, found.within_two) == (2, 2, 0.5, 1)
-    assert found.actual == pytest.approx(5**0.5)
+    assert (result.count, result.predicted, result.within_one, result.within_two) == (2, 2, 0.5, 1)
+    assert result.actual == pytest.approx(5**0.5)
     assert pooled_calibration([HoldoutSplit({"": nothing}, np.zeros(2), None)]) is None
 
 

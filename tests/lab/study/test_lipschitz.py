@@ -27,9 +27,9 @@ def test_no_pair_of_colours_exceeds_the_constant(small_cube, steep):
     first = RNG.random((3000, 3))
     for size in (1.0, 1e-2, 1e-5):
         second = np.clip(first + size * RNG.normal(size=first.shape), 0, 1)
-        found = quotient(first, second, small_cube.reflectance(first), small_cube.reflectance(second))
-        assert found.max() <= steep.largest * (1 + 1e-6)
-        assert found.max() > 0.1 * steep.largest or size == 1.0
+        quotients = quotient(first, second, small_cube.reflectance(first), small_cube.reflectance(second))
+        assert quotients.max() <= steep.largest * (1 + 1e-6)
+        assert quotients.max() > 0.1 * steep.largest or size == 1.0
 
 
 def test_constant_is_attained_in_the_steepest_cell(small_cube, steep):
@@ -63,8 +63,8 @@ def test_constant_of_a_box_is_attained(small_cube, steep):
     nearby = corners + 1e-3 * (high - low) * RNG.normal(size=(len(corners), 200, 3))
     first = (middle + 0.5 * (nearby - middle)).reshape(-1, 3)
     second = first + 1e-5 * (high - low).min() * RNG.normal(size=first.shape)
-    found = quotient(first, second, small_cube.reflectance(first), small_cube.reflectance(second))
-    assert 0.9 * steep.boxes[entry] < found.max() <= steep.boxes[entry] * (1 + 1e-4)
+    quotients = quotient(first, second, small_cube.reflectance(first), small_cube.reflectance(second))
+    assert 0.9 * steep.boxes[entry] < quotients.max() <= steep.boxes[entry] * (1 + 1e-4)
 
 
 def test_constants_per_code_follow_the_transfer_curve(plain_cube):

@@ -32,8 +32,8 @@ def whole_study(repository):
 @pytest.fixture(params=["macbeth", ALL_ATLASES])
 def errors(request, macbeth_study, whole_study):
     """Function from technique, floats and measure to the mean error, for the ColorChecker and for all atlases."""
-    found = whole_study if request.param == ALL_ATLASES else macbeth_study
-    return lambda technique, floats, measure=0: found.result(technique, max_moments(technique, floats)).mean[
+    study = whole_study if request.param == ALL_ATLASES else macbeth_study
+    return lambda technique, floats, measure=0: study.result(technique, max_moments(technique, floats)).mean[
         measure
     ]
 
@@ -134,9 +134,9 @@ def test_moments_out_of_range_raise(count, repository):
 
 
 def test_largest_number_of_moments_gives_finite_errors(repository):
-    found = study_moments({"tcs": read_atlas(repository / "atlases" / "tcs.txt")}, MAX_MOMENTS)
-    assert np.isfinite(found.errors).all()
-    assert found.result(MNW, MAX_MOMENTS).max[0] < 0.1
+    study = study_moments({"tcs": read_atlas(repository / "atlases" / "tcs.txt")}, MAX_MOMENTS)
+    assert np.isfinite(study.errors).all()
+    assert study.result(MNW, MAX_MOMENTS).max[0] < 0.1
 
 
 def test_empty_atlases_raise():

@@ -19,9 +19,9 @@ LIGHT = observer.light("FL11")
 
 
 def test_answers_change_in_proportion_to_the_query(small_cube):
-    found = perturb(small_cube, LIGHT, 200)
-    assert [move.mode for move in found[::3]] == list(CONTINUOUS_MODES)
-    for wide, narrow, rounding in zip(found[::3], found[1::3], found[2::3], strict=True):
+    result = perturb(small_cube, LIGHT, 200)
+    assert [move.mode for move in result[::3]] == list(CONTINUOUS_MODES)
+    for wide, narrow, rounding in zip(result[::3], result[1::3], result[2::3], strict=True):
         assert wide.rms_mean == pytest.approx(4 * narrow.rms_mean, rel=0.1)
         assert wide.own_mean == pytest.approx(4 * narrow.own_mean, rel=0.05)
         assert 0 < rounding.rms_most < 1e-5
@@ -36,13 +36,13 @@ def base(repository):
 
 def test_removing_an_entry_changes_only_nearby_points(base):
     name = base.data.atlas.names[0]
-    found = remove_entry(base, name)
-    assert found.delta_e[found.lab_distance.argmin()] > 0
-    far = found.lab_distance > 60
+    result = remove_entry(base, name)
+    assert result.delta_e[result.lab_distance.argmin()] > 0
+    far = result.lab_distance > 60
     assert far.sum() > 100
-    assert found.delta_e[far].max() < 0.1 * found.delta_e.max()
-    assert 0 < found.moved < 0.1
-    assert found.radius(found.lab_distance) < 40
+    assert result.delta_e[far].max() < 0.1 * result.delta_e.max()
+    assert 0 < result.moved < 0.1
+    assert result.radius(result.lab_distance) < 40
 
 
 def test_distance_from_a_reversed_entry_is_to_its_old_or_new_colour(base):
@@ -53,11 +53,11 @@ def test_distance_from_a_reversed_entry_is_to_its_old_or_new_colour(base):
 
 
 def test_noise_on_all_entries_has_no_distance(base):
-    found = add_noise(base, 0)
-    assert found.rms.shape == (512,)
-    assert found.rgb_distance.size == 0
-    assert np.isnan(found.radius(found.rgb_distance))
-    assert found.delta_e.mean() < 0.1
+    result = add_noise(base, 0)
+    assert result.rms.shape == (512,)
+    assert result.rgb_distance.size == 0
+    assert np.isnan(result.radius(result.rgb_distance))
+    assert result.delta_e.mean() < 0.1
 
 
 def test_moved_share_and_radius_by_hand():
@@ -68,9 +68,9 @@ def test_moved_share_and_radius_by_hand():
 
 
 def test_cube_without_an_atlas_has_no_changes(plain_cube):
-    found = sensitivity.study_sensitivity(plain_cube, None, 5)
-    assert (found.noise, found.reversed, found.removed) == ([], [], [])
-    record = json.loads(json.dumps(found.record()))
+    result = sensitivity.study_sensitivity(plain_cube, None, 5)
+    assert (result.noise, result.reversed, result.removed) == ([], [], [])
+    record = json.loads(json.dumps(result.record()))
     assert record["changes"] == []
     assert record["lipschitz"]["largest_box"] is None
     assert record["lipschitz"]["largest"] >= record["lipschitz"]["median_cell"]

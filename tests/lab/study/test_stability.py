@@ -33,28 +33,28 @@ from uplift.models import Moments
 
 
 def test_build_is_evaluated_over_its_realisable_points():
-    found = run(RunConfig(dim=4, space="ITU-R BT.2020"), {})
+    result = run(RunConfig(dim=4, space="ITU-R BT.2020"), {})
     sensor, lattice = observer.sensor("ITU-R BT.2020"), Lattice(observer.axis_nodes("srgb", 4))
-    assert found.points == 64
-    assert found.realisable == solid(sensor.matrix).contains(lattice.points).sum() < 64
-    assert (found.unfitted, found.stand_ins, found.success) == (0, 0, 1)
-    assert found.worst <= found.config.threshold
-    assert lattice.points.tolist().count([found.r, found.g, found.b]) == 1
+    assert result.points == 64
+    assert result.realisable == solid(sensor.matrix).contains(lattice.points).sum() < 64
+    assert (result.unfitted, result.stand_ins, result.success) == (0, 0, 1)
+    assert result.worst <= result.config.threshold
+    assert lattice.points.tolist().count([result.r, result.g, result.b]) == 1
 
 
 def test_failed_points_are_counted_and_the_worst_is_reported():
     points = np.array([[0.0, 0, 0], [0.5, 0.5, 0.5], [1, 1, 1], [0, 1, 0]])
     realisable = np.array([True, True, True, False])
     distance = np.array([2e-4, 1e-5, 3e-3, 0.5])
-    found = stability._evaluate(
+    result = stability._evaluate(
         RunConfig(), points, realisable, distance, stand_ins=1, rounds=2, calls=3, seconds=4.0
     )
-    assert (found.points, found.realisable, found.unfitted, found.stand_ins) == (4, 3, 2, 1)
-    assert (found.worst, found.r, found.g, found.b) == (3e-3, 1, 1, 1)
-    assert found.success == pytest.approx(1 / 3)
-    assert found.record() == {
+    assert (result.points, result.realisable, result.unfitted, result.stand_ins) == (4, 3, 2, 1)
+    assert (result.worst, result.r, result.g, result.b) == (3e-3, 1, 1, 1)
+    assert result.success == pytest.approx(1 / 3)
+    assert result.record() == {
         **{"model": "moments", "coefficients": 9, "dim": 17, "space": "sRGB", "threshold": 1e-4},
-        **{"atlas": NO_ATLAS, "solver": "uplift", "success": found.success},
+        **{"atlas": NO_ATLAS, "solver": "uplift", "success": result.success},
         **{"points": 4, "realisable": 3, "unfitted": 2, "stand_ins": 1, "rounds": 2, "calls": 3},
         **{"worst": 3e-3, "r": 1, "g": 1, "b": 1, "seconds": 4.0},
     }
@@ -69,23 +69,23 @@ def test_study_runs_every_configuration_once_ordered_by_model(monkeypatch):
         return RunResult(setting, 1, 1, 0, 0, 0, 0, 0.0, 0, 0, 0, 0.0)
 
     monkeypatch.setattr(stability, "run", pretend)
-    found = study_stability(configs, {}, events.append)
-    assert [one.config for one in found] == ran == [configs[2], configs[0], configs[1]]
+    result = study_stability(configs, {}, events.append)
+    assert [one.config for one in result] == ran == [configs[2], configs[0], configs[1]]
     assert events == [Progress("builds", done, 3) for done in (1, 2, 3)]
 
 
 def test_design_contains_grids_sample_and_solver_runs_once():
     axes = DesignSpace(samples=10)
-    found = design(axes)
-    assert len(set(found)) == len(found)
+    result = design(axes)
+    assert len(set(result)) == len(result)
     for grid in grids(axes):
         for _, row in grid.rows():
-            assert set(row) <= set(found)
+            assert set(row) <= set(result)
             assert [getattr(setting, grid.axis) for setting in row] == list(grid.values)
     assert len(draw_sample(axes)) == 10
     assert draw_sample(axes) == draw_sample(axes)
     assert {setting.solver for setting in solver_runs(axes)} == {UPLIFT, IN_MOMENTS, IN_MULTIPLIERS}
-    five = {(setting.space, setting.model) for setting in found if setting.dim == 17}
+    five = {(setting.space, setting.model) for setting in result if setting.dim == 17}
     assert five >= {(space, model) for space in SPACES for model in ("moments", "sigmoid")}
 
 
@@ -131,7 +131,7 @@ def test_multipliers_fit_more_points_than_moments():
         fit_pointwise(PointwiseProblem(Moments(5), observer.sensor(), unknowns), lattice, threshold)
         for unknowns in (IN_MOMENTS, IN_MULTIPLIERS)
     )
-    failed = [int((found.distance > threshold).sum()) for found in (in_moments, in_multipliers)]
+    failed = [int((result.distance > threshold).sum()) for result in (in_moments, in_multipliers)]
     assert failed[1] < failed[0] < lattice.size / 2
     assert in_multipliers.distance.max() < 0.2 * in_moments.distance.max() < 0.2
     assert in_moments.starts > in_multipliers.starts >= lattice.size
@@ -141,10 +141,10 @@ def test_multipliers_fit_more_points_than_moments():
 def test_jacobian_agrees_with_wider_differences(unknowns):
     problem = PointwiseProblem(Moments(5), observer.sensor(), unknowns)
     x, rgb = problem.grey + np.array([0.01, -0.02, 0.03, 0.01, 0]), np.full(3, 0.4)
-    found = problem.jacobian(x, rgb)
+    result = problem.jacobian(x, rgb)
     for column, step in enumerate(1e-4 * np.eye(5)):
         difference = problem.residuals(x + step, rgb) - problem.residuals(x - step, rgb)
-        np.testing.assert_allclose(found[:, column], difference / 2e-4, atol=1e-5)
+        np.testing.assert_allclose(result[:, column], difference / 2e-4, atol=1e-5)
 
 
 def test_solver_in_moments_stops_at_their_boundary():

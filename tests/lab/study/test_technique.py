@@ -41,8 +41,8 @@ def test_moments_equal_the_integrals(technique):
     samples = np.array([380.0, 430, 520, 560, 640, 780])
     values = np.array([[0.1, 0.9, 0.3, 0.35, 1.0, 0.6]])
     phase = technique.phase(samples)
-    found = technique.moments(values, samples, 6)[0]
-    for j, moment in enumerate(found):
+    actual = technique.moments(values, samples, 6)[0]
+    for j, moment in enumerate(actual):
 
         def part(phi, function, j=j):
             return np.interp(phi, phase, values[0]) * function(-j * phi) / np.ptp(phase)
@@ -101,8 +101,8 @@ def test_spectrum_of_the_model_is_reconstructed(technique):
 def test_zeroth_moment_gives_the_mean_over_the_phase(technique):
     reflectance = bumps(5, fine_grid())
     mean = np.trapezoid(reflectance, technique.phase(fine_grid())) / np.ptp(technique.phase(fine_grid()))
-    found = technique.reconstruct(technique.moments(reflectance, fine_grid(), 0), observer.grid())
-    np.testing.assert_allclose(found, np.repeat(mean[:, None], 81, axis=1), rtol=0, atol=1e-12)
+    actual = technique.reconstruct(technique.moments(reflectance, fine_grid(), 0), observer.grid())
+    np.testing.assert_allclose(actual, np.repeat(mean[:, None], 81, axis=1), rtol=0, atol=1e-12)
 
 
 def test_symmetric_spectrum_has_zero_odd_mirrored_moments():
@@ -120,9 +120,9 @@ def test_symmetric_spectrum_has_zero_odd_mirrored_moments():
 @by_label(TECHNIQUES)
 def test_black_white_and_a_step_are_reconstructed(technique):
     extremes = np.stack([np.zeros(401), np.ones(401), (fine_grid() > 580).astype(float)])
-    found = technique.reconstruct(technique.moments(extremes, fine_grid(), 15), observer.grid())
-    assert ((found >= 0) & (found <= 1)).all()
-    np.testing.assert_allclose(found[:2], [[0] * 81, [1] * 81], atol=1e-4)
+    actual = technique.reconstruct(technique.moments(extremes, fine_grid(), 15), observer.grid())
+    assert ((actual >= 0) & (actual <= 1)).all()
+    np.testing.assert_allclose(actual[:2], [[0] * 81, [1] * 81], atol=1e-4)
 
 
 def test_storage_and_abbreviations():

@@ -54,13 +54,13 @@ def test_mercury_lines_are_spikes_and_daylight_has_none():
 def test_fourier_coefficients_equal_equation_4_7(count):
     table = np.random.default_rng(6).random((2, 81))
     phase = np.arange(1, 81) * 2 * np.pi / 80
-    found = fourier_coefficients(count).encode_light(dense(table))
+    actual = fourier_coefficients(count).encode_light(dense(table))
     table[:, 80] = (table[:, 0] + table[:, 80]) / 2
-    np.testing.assert_allclose(found[:, 0], table[:, 1:].mean(axis=1))  # ã_0 / 2 of eq. 4.7
+    np.testing.assert_allclose(actual[:, 0], table[:, 1:].mean(axis=1))  # ã_0 / 2 of eq. 4.7
     for order in range(1, count // 2 + 1):
         for place, wave in ((2 * order - 1, np.cos), (2 * order, np.sin)):
             np.testing.assert_allclose(
-                found[:, place], (table[:, 1:] @ wave(order * phase)) * 2 / 80, atol=1e-12
+                actual[:, place], (table[:, 1:] @ wave(order * phase)) * 2 / 80, atol=1e-12
             )
 
 
@@ -87,10 +87,10 @@ def test_spikes_multiply_exactly_on_constant_spectra(make):
     light[0, 40] += 30.0
     surface[0, 60] += 0.5
     surface[0, 40] += 0.6
-    found = one.multiply(one.encode_light(dense(light)), one.encode_surface(dense(surface)))
-    assert found.spikes.positions.tolist() == [40, 60]
-    np.testing.assert_allclose(one.xyz(found), dense(light * surface) @ xyz_weights(), rtol=1e-6)
-    assert one.storage(found).tolist() == [7 + 4]
+    actual = one.multiply(one.encode_light(dense(light)), one.encode_surface(dense(surface)))
+    assert actual.spikes.positions.tolist() == [40, 60]
+    np.testing.assert_allclose(one.xyz(actual), dense(light * surface) @ xyz_weights(), rtol=1e-6)
+    assert one.storage(actual).tolist() == [7 + 4]
 
 
 def test_enhanced_sums_of_a_smooth_spectrum_are_riemann_sums(every):

@@ -17,9 +17,9 @@ from uplift.scene.representations.trigonometric_moments import trigonometric_mom
 
 
 def test_moments_equal_the_integrals(checker):
-    found = trigonometric_moments(9).encode_surface(checker.surfaces)
+    actual = trigonometric_moments(9).encode_surface(checker.surfaces)
     exact = Technique(mirrored=True, warped=False).moments(checker.surfaces, wavelengths(), 8)
-    np.testing.assert_allclose(found, exact, atol=2e-5)
+    np.testing.assert_allclose(actual, exact, atol=2e-5)
 
 
 def test_fit_recovers_sigmoids():
@@ -37,16 +37,16 @@ def test_linear_model_of_all_components_is_exact(checker, lit):
     power, surfaces = checker.powers[:1], checker.surfaces[:5]
     model = linear_model(6, power, surfaces)  # five products and the light
     light = model.encode_light(np.tile(power, (5, 1)))
-    found = model.xyz(model.multiply(light, model.encode_surface(surfaces)))
-    np.testing.assert_allclose(found, (power * surfaces) @ xyz_weights(), rtol=1e-6)
+    actual = model.xyz(model.multiply(light, model.encode_surface(surfaces)))
+    np.testing.assert_allclose(actual, (power * surfaces) @ xyz_weights(), rtol=1e-6)
     np.testing.assert_allclose(model.basis.T @ model.basis, np.eye(6), atol=1e-12)
 
 
 def test_linear_model_has_errors_outside_its_scene(checker, lit):
     model = linear_model(6, checker.powers[:1], checker.surfaces[:5])
     surfaces = checker.surfaces[5:10]
-    found = model.xyz(model.multiply(model.encode_light(lit("A")[:5]), model.encode_surface(surfaces)))
-    assert np.abs(found - (lit("A")[:5] * surfaces) @ xyz_weights()).max() > 1e-3
+    actual = model.xyz(model.multiply(model.encode_light(lit("A")[:5]), model.encode_surface(surfaces)))
+    assert np.abs(actual - (lit("A")[:5] * surfaces) @ xyz_weights()).max() > 1e-3
 
 
 @pytest.mark.parametrize("paths", [1, 8])
@@ -68,10 +68,10 @@ def test_hero_wavelengths_are_unbiased_and_variance_falls_with_paths(checker):
     spread = []
     for paths in (1, 8):
         hero = HeroWavelengths(paths)
-        found = hero.xyz(hero.encode_light(np.tile(power, (4000, 1))))
-        error = found.std(axis=0) / np.sqrt(len(found))
-        assert (np.abs(found.mean(axis=0) - power @ xyz_weights()) < 4 * error + 1e-5).all()
-        spread.append(found.std(axis=0).max())
+        actual = hero.xyz(hero.encode_light(np.tile(power, (4000, 1))))
+        error = actual.std(axis=0) / np.sqrt(len(actual))
+        assert (np.abs(actual.mean(axis=0) - power @ xyz_weights()) < 4 * error + 1e-5).all()
+        spread.append(actual.std(axis=0).max())
     assert spread[1] < spread[0] / 8**0.5
 
 

@@ -30,8 +30,8 @@ def test_grey_under_constant_light_is_exact(every, name):
     one = every[name]
     greys = np.array([[0.2], [0.5], [0.9]]) * np.ones(401)
     light = one.encode_light(np.full((3, 401), 2.0))
-    found = one.xyz(one.multiply(light, one.encode_surface(greys)))
-    np.testing.assert_allclose(found, 2 * greys @ xyz_weights(), rtol=2e-4)
+    actual = one.xyz(one.multiply(light, one.encode_surface(greys)))
+    np.testing.assert_allclose(actual, 2 * greys @ xyz_weights(), rtol=2e-4)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -75,7 +75,7 @@ def test_error_falls_with_size_under_smooth_light(every, checker, lit, family):
     worst = []
     for count in SIZES:
         one = every[f"{family}{count}"]
-        found = one.xyz(one.multiply(one.encode_light(lit("A")), one.encode_surface(checker.surfaces)))
-        worst.append(np.abs(found - dense).max())
+        actual = one.xyz(one.multiply(one.encode_light(lit("A")), one.encode_surface(checker.surfaces)))
+        worst.append(np.abs(actual - dense).max())
     assert worst == sorted(worst, reverse=True)
     assert worst[0] > 30 * worst[3]

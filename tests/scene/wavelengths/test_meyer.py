@@ -35,7 +35,7 @@ def cmfs() -> Array:
 
 
 @pytest.fixture(scope="module")
-def found(cmfs: Array) -> OpponentSpace:
+def opponent(cmfs: Array) -> OpponentSpace:
     return opponent_space(grid(), cmfs)
 
 
@@ -44,14 +44,14 @@ def setting_c(checker: Array) -> RenderSetup:
     return make_setup(checker, ["C"])
 
 
-def test_matrices_equal_the_printed_ones(cmfs: Array, found: OpponentSpace) -> None:
+def test_matrices_equal_the_printed_ones(cmfs: Array, opponent: OpponentSpace) -> None:
     np.testing.assert_allclose(cone_space(grid(), cmfs).matrix, _matrix("SML"), atol=1.5e-4)
-    np.testing.assert_allclose(found.space.matrix, _matrix("AC1C2"), atol=1.5e-4)
+    np.testing.assert_allclose(opponent.space.matrix, _matrix("AC1C2"), atol=1.5e-4)
 
 
-def test_eigenvalues_equal_the_printed_ones(found: OpponentSpace) -> None:
+def test_eigenvalues_equal_the_printed_ones(opponent: OpponentSpace) -> None:
     printed = [float(row["eigenvalue"]) for row in rows("matrices") if row["eigenvalue"]]
-    np.testing.assert_allclose(found.eigenvalues, printed, rtol=3e-3)
+    np.testing.assert_allclose(opponent.eigenvalues, printed, rtol=3e-3)
 
 
 def test_chromaticities_of_the_cones_are_the_confusion_points(cmfs: Array) -> None:
@@ -60,15 +60,15 @@ def test_chromaticities_of_the_cones_are_the_confusion_points(cmfs: Array) -> No
     np.testing.assert_allclose(chromaticities, [[0.171, -0.003], [1.14, -0.14], [0.735, 0.265]], atol=1e-12)
 
 
-def test_opponent_channels_are_uncorrelated(cmfs: Array, found: OpponentSpace) -> None:
+def test_opponent_channels_are_uncorrelated(cmfs: Array, opponent: OpponentSpace) -> None:
     """Karhunen–Loève channels are orthogonal, and scaling each channel keeps them so."""
-    channels = cmfs @ found.space.matrix.T
+    channels = cmfs @ opponent.space.matrix.T
     gram = channels.T @ channels
     assert np.abs(gram - np.diag(np.diag(gram))).max() < 1e-9 * gram.max()
 
 
-def test_rules_equal_tables_1a_and_1b(cmfs: Array, found: OpponentSpace) -> None:
-    ours = quadrature_rules(found.space, grid(), cmfs)
+def test_rules_equal_tables_1a_and_1b(cmfs: Array, opponent: OpponentSpace) -> None:
+    ours = quadrature_rules(opponent.space, grid(), cmfs)
     printed = rows("table1")
     pairs, undefined = [], []
     for channel, orders in zip(CHANNELS, ours, strict=True):
@@ -88,10 +88,10 @@ def test_rules_equal_tables_1a_and_1b(cmfs: Array, found: OpponentSpace) -> None
 
 
 def test_four_wavelength_rule_equals_table_2(
-    cmfs: Array, found: OpponentSpace, setting_c: RenderSetup
+    cmfs: Array, opponent: OpponentSpace, setting_c: RenderSetup
 ) -> None:
-    ours = quadrature_rules(found.space, grid(), cmfs)
-    shared = four_wavelength_rule(ours, channel_functions(found.space, grid(), cmfs))
+    ours = quadrature_rules(opponent.space, grid(), cmfs)
+    shared = four_wavelength_rule(ours, channel_functions(opponent.space, grid(), cmfs))
     stated = [row for row in rows("table2") if row["row"] == "2"]
     nodes = np.concatenate([rule.nodes for rule in shared])
     weights = np.concatenate([rule.weights for rule in shared])
@@ -101,21 +101,21 @@ def test_four_wavelength_rule_equals_table_2(
     # Our ColorChecker is another measurement than the paper's.
     for way, row in ((shared, "2"), ((ours[0][3], ours[1][2], ours[2][1]), "1")):
         expected = next(float(r["error"]) for r in rows("table2") if r["row"] == row)
-        assert allocation_error(setting_c, found.space, way) == pytest.approx(expected, rel=0.03)
+        assert allocation_error(setting_c, opponent.space, way) == pytest.approx(expected, rel=0.03)
 
 
 def test_figure_6_opponent_space_needs_the_fewest_wavelengths(
-    cmfs: Array, found: OpponentSpace, setting_c: RenderSetup
+    cmfs: Array, opponent: OpponentSpace, setting_c: RenderSetup
 ) -> None:
     """Averaged over all allocations of a total, as in the paper."""
-    spaces = (found.space, cone_space(grid(), cmfs), xyz_space())
+    spaces = (opponent.space, cone_space(grid(), cmfs), xyz_space())
     curves = [dict(zip(*run_trials(setting_c, space).by_total, strict=True)) for space in spaces]
     for total in range(4, 31):
         assert curves[0][total] < min(curves[1][total], curves[2][total]), total
 
 
-def test_figure_7_favours_a_and_balanced_shares(found: OpponentSpace, setting_c: RenderSetup) -> None:
-    tried = run_trials(setting_c, found.space)
+def test_figure_7_favours_a_and_balanced_shares(opponent: OpponentSpace, setting_c: RenderSetup) -> None:
+    tried = run_trials(setting_c, opponent.space)
     parts = bin_shares(tried)
     middle = np.abs(parts.corners.mean(axis=1) - 1 / 3).max(axis=1) < 0.2
     assert parts.errors[middle].mean() < parts.errors[~middle].mean()
@@ -123,8 +123,8 @@ def test_figure_7_favours_a_and_balanced_shares(found: OpponentSpace, setting_c:
     assert tried.errors[most == 0].mean() < min(tried.errors[most == channel].mean() for channel in (1, 2))
 
 
-def test_small_triangles_average_the_trials_inside(found: OpponentSpace, setting_c: RenderSetup) -> None:
-    tried = run_trials(setting_c, found.space)
+def test_small_triangles_average_the_trials_inside(opponent: OpponentSpace, setting_c: RenderSetup) -> None:
+    tried = run_trials(setting_c, opponent.space)
     parts = bin_shares(tried, divisions=4)
     np.testing.assert_allclose(parts.corners.sum(axis=2), 1)
     assert parts.corners.min() >= 0
@@ -149,15 +149,15 @@ def test_printed_weights_of_every_order_have_the_same_sum() -> None:
 
 @pytest.mark.parametrize("count", [4, 5, 12])
 def test_meyer_takes_the_best_allocation(
-    smooth: RenderSetup, count: int, found: OpponentSpace, cmfs: Array
+    smooth: RenderSetup, count: int, opponent: OpponentSpace, cmfs: Array
 ) -> None:
     chosen = meyer(smooth, count)
     assert len(chosen) == count
     np.testing.assert_allclose((chosen.powers @ chosen.to_xyz)[:, 1], 1, rtol=1e-12)
     reached = evaluate(smooth, chosen).mean
-    for way in allocations(quadrature_rules(found.space, grid(), cmfs), count):
+    for way in allocations(quadrature_rules(opponent.space, grid(), cmfs), count):
         assert sum(map(len, way)) == count
-        assert evaluate(smooth, combine_rules(smooth, found.space, way).balanced()).mean >= reached
+        assert evaluate(smooth, combine_rules(smooth, opponent.space, way).balanced()).mean >= reached
 
 
 @pytest.mark.parametrize("count", [1, 3, 31])

@@ -32,11 +32,11 @@ def test_jacobian_agrees_with_central_differences(spiky: RenderSetup) -> None:
     small = FitProblem(spiky.only(range(0, 24, 5)))
     start = prefiltered_uniform(small.setup, 3)
     unknowns = small.pack(start)
-    found = small.jacobian(unknowns)
+    result = small.jacobian(unknowns)
     for column, step in enumerate(np.maximum(1e-6 * np.abs(unknowns), 1e-9)):
         up, down = (unknowns + sign * step * np.eye(len(unknowns))[column] for sign in (1, -1))
         slope = (small.residuals(up) - small.residuals(down)) / (2 * step)
-        np.testing.assert_allclose(found[:, column], slope, rtol=1e-4, atol=1e-4 * np.abs(found).max())
+        np.testing.assert_allclose(result[:, column], slope, rtol=1e-4, atol=1e-4 * np.abs(result).max())
 
 
 def test_unpack_inverts_pack(spiky: RenderSetup) -> None:
@@ -77,13 +77,13 @@ def test_uniform_wavelengths_are_point_sampled_and_balanced(spiky: RenderSetup) 
 def test_fit_is_not_negative_and_powers_are_proportional_to_the_lights(
     spiky: RenderSetup, count: int
 ) -> None:
-    found = optimise(spiky, count)
-    assert len(found) == count
-    assert found.to_xyz.min() >= 0
-    assert found.powers.min() >= 0
-    assert (np.diff(found.wavelengths) > 0).all()
-    nearby = prefiltered(spiky, found.wavelengths).powers.sum(axis=0)
-    ratio = found.powers.sum(axis=0) / nearby
+    result = optimise(spiky, count)
+    assert len(result) == count
+    assert result.to_xyz.min() >= 0
+    assert result.powers.min() >= 0
+    assert (np.diff(result.wavelengths) > 0).all()
+    nearby = prefiltered(spiky, result.wavelengths).powers.sum(axis=0)
+    ratio = result.powers.sum(axis=0) / nearby
     assert np.ptp(ratio) < 1e-9 * ratio.max()
 
 
@@ -100,9 +100,9 @@ def test_fit_beats_other_methods_on_unseen_materials(
 
 
 def test_white_remains_neutral(spiky: RenderSetup) -> None:
-    found = optimise(spiky, 8)
+    result = optimise(spiky, 8)
     white = make_setup(np.ones((1, 391)), spiky.lights)
-    assert evaluate(white, found).max < 0.3
+    assert evaluate(white, result).max < 0.3
 
 
 def test_one_material_and_more_materials_than_are_fitted(checker: Array) -> None:
@@ -117,10 +117,10 @@ def test_one_material_and_more_materials_than_are_fitted(checker: Array) -> None
 
 def test_weights_for_given_wavelengths_beat_prefiltering(spiky: RenderSetup) -> None:
     nm = midpoints(7)
-    found = fit_at(spiky, nm[::-1])
-    np.testing.assert_array_equal(found.wavelengths, nm)
-    assert min(found.to_xyz.min(), found.powers.min()) >= 0
-    ours = evaluate(spiky, found).mean
+    result = fit_at(spiky, nm[::-1])
+    np.testing.assert_array_equal(result.wavelengths, nm)
+    assert min(result.to_xyz.min(), result.powers.min()) >= 0
+    ours = evaluate(spiky, result).mean
     assert (
         evaluate(spiky, optimise(spiky, 7)).mean
         < ours

@@ -94,8 +94,8 @@ def build_baseline(atlas: Atlas, light: Light, **options: Any) -> Baseline:
 
 def remove_entry(base: Baseline, name: str) -> Change:
     """Rebuild without an entry."""
-    kept = [entry for entry in base.entries if entry.name != name]
-    return _compare(base, f"{name} left out", kept, name)
+    remaining = [entry for entry in base.entries if entry.name != name]
+    return _compare(base, f"{name} left out", remaining, name)
 
 
 def reverse_entry(base: Baseline, name: str) -> Change:

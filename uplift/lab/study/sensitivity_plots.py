@@ -79,12 +79,12 @@ def plot_locality(changes: Sequence[Change], path: StrPath, *, force: bool = Fal
 def _scatter(axes: Any, distance: Array, delta_e: Array) -> None:
     """Draw the density of points, and their maximum and median over the distance."""
     delta_e = np.maximum(delta_e, MIN_DELTA_E)
-    drawn = delta_e > MIN_DELTA_E
-    farthest = float(distance[drawn].max(initial=0.1))
+    visible = delta_e > MIN_DELTA_E
+    farthest = float(distance[visible].max(initial=0.1))
     highest = max(float(delta_e.max()), 2 * MOVED_DELTA_E)
     axes.hexbin(
-        distance[drawn],
-        delta_e[drawn],
+        distance[visible],
+        delta_e[visible],
         yscale="log",
         bins="log",
         gridsize=(60, 34),

@@ -126,7 +126,7 @@ def grids(space: DesignSpace) -> tuple[Grid, ...]:
     """Make the grids of a design, without repetition."""
     default = space.fixed()
     wide_and_small = space.fixed(space=SPACES[-1], dim=SMALL_DIM)
-    chosen = [
+    axes = [
         ("space", space.spaces, default),
         ("threshold", space.thresholds, default),
         ("threshold", space.thresholds, wide_and_small),
@@ -134,7 +134,7 @@ def grids(space: DesignSpace) -> tuple[Grid, ...]:
         ("dim", space.dims, default),
     ]
     by_title = {}
-    for axis, values, fixed in chosen:
+    for axis, values, fixed in axes:
         rest = ", ".join(_describe(name, value) for name, value in fixed.items() if name != axis)
         title = f"by {axis}: {rest}"
         by_title[title] = Grid(title, axis, values, space.variants, fixed)

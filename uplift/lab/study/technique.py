@@ -95,8 +95,8 @@ class Technique:
             Moments, real for a mirrored spectrum and complex otherwise.
         """
         phase = self.phase(wavelengths)
-        found = _integrals(reflectance, phase, moments) / np.ptp(phase)
-        return np.ascontiguousarray(found.real) if self.mirrored else found
+        on_circle = _integrals(reflectance, phase, moments) / np.ptp(phase)
+        return np.ascontiguousarray(on_circle.real) if self.mirrored else on_circle
 
     def reconstruct(self, moments: Complex | Array, wavelengths: ArrayLike) -> Array:
         """Compute bounded maximum-entropy reflectances from moments.
@@ -136,7 +136,7 @@ def _integrals(values: Array, phase: Array, moments: int) -> Complex:
     turn = np.exp(-1j * phase[:, None] * orders)
     ends = values[:, -1:] * turn[-1] - values[:, :1] * turn[0]
     slopes = np.diff(values, axis=1) / np.diff(phase)
-    found = np.empty((len(values), moments + 1), dtype=complex)
-    found[:, 0] = np.trapezoid(values, phase, axis=1)
-    found[:, 1:] = 1j * ends / orders + slopes @ np.diff(turn, axis=0) / orders**2
-    return found
+    integrals = np.empty((len(values), moments + 1), dtype=complex)
+    integrals[:, 0] = np.trapezoid(values, phase, axis=1)
+    integrals[:, 1:] = 1j * ends / orders + slopes @ np.diff(turn, axis=0) / orders**2
+    return integrals

@@ -70,8 +70,8 @@ class HeroWavelengths:
         heroes = (np.arange(self.paths) + rng.random((pixels, self.paths))) / self.paths
         rotated = (heroes[:, :, None] + np.arange(WAVELENGTHS) / WAVELENGTHS) % 1
         low, high = _cumulative(np.array([START, END]))
-        drawn = CENTRE + np.arctanh(low + (high - low) * rotated) / STEEPNESS
-        return np.asarray(np.clip(drawn, START, END).reshape(pixels, -1))
+        wavelengths = CENTRE + np.arctanh(low + (high - low) * rotated) / STEEPNESS
+        return np.asarray(np.clip(wavelengths, START, END).reshape(pixels, -1))
 
 
 def _cumulative(wavelengths: Array) -> Array:

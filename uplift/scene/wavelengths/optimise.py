@@ -66,5 +66,5 @@ def _with_nearby_powers(setup: RenderSetup, sampling: Sampling) -> Sampling:
 def _thinned(setup: RenderSetup) -> RenderSetup:
     """Thin the materials to `MAX_FITTED_PAIRS` and append the perfect reflector, which keeps white neutral."""
     limit = max(MAX_FITTED_PAIRS // len(setup.lights), MIN_FITTED)
-    kept = setup.only(np.unique(np.linspace(0, len(setup.reflectances) - 1, limit).astype(int)))
-    return replace(kept, reflectances=np.vstack([kept.reflectances, np.ones(len(setup.wavelengths))]))
+    thinned = setup.only(np.unique(np.linspace(0, len(setup.reflectances) - 1, limit).astype(int)))
+    return replace(thinned, reflectances=np.vstack([thinned.reflectances, np.ones(len(setup.wavelengths))]))
