@@ -9,6 +9,9 @@ from __future__ import annotations
 DEFAULT_ILLUMINANT = "D65"
 """Illuminant that RGB refers to by default."""
 
+ERROR_ILLUMINANT = "A"
+"""Illuminant of the standard errors that a cube stores."""
+
 SCENE_LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3")
 """Lights under which entries keep their measured colours, and lights of a scene that names none."""
 

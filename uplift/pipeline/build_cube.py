@@ -15,7 +15,7 @@ import numpy as np
 from uplift import fit
 from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.colorimetry import observer as observers
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Indices, StrPath
 from uplift.common.errors import UpliftWarning
@@ -30,8 +30,6 @@ from uplift.pipeline.options import AUTO, AXES, ModelName, Options, check_memory
 
 MAX_NAMES = 6
 """Entries that a warning names."""
-ERROR_ILLUMINANT = "A"
-"""Illuminant of standard errors."""
 STACK_LEVEL = 5
 """Frames between a warning and the caller of `build`, whose decorator adds two."""
 

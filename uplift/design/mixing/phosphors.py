@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry import observer
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.common.arrays import Array
 from uplift.design.mixing import filters
 
@@ -50,7 +51,7 @@ class Monitor:
         return np.maximum(filters.stack(curves, thickness) @ self.to_rgb.T, 0)
 
 
-def make_monitor(primaries: str = observer.CRT, white: str = "D65") -> Monitor:
+def make_monitor(primaries: str = observer.CRT, white: str = DEFAULT_ILLUMINANT) -> Monitor:
     """Make a monitor of named primaries.
 
     The curve of white is scaled to a maximum of 1 (Fishkin 1983, section 7.2), so that no curve amplifies light.

@@ -11,6 +11,7 @@ from typing import Annotated
 from pydantic import AfterValidator, BeforeValidator, Field
 
 from uplift.colorimetry import observer
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError
@@ -51,12 +52,12 @@ class SceneFile:
     path: Path
     textures: tuple[Path, ...]
     atlases: tuple[Path, ...] = ()
-    lights: tuple[str, ...] = ("D65", "A", "FL2", "FL11", "LED-B3")
+    lights: tuple[str, ...] = SCENE_LIGHTS
     tolerance: float = 1.0
     quantile: float = 0.975
     encoding: str = "auto"
     space: str = "sRGB"
-    illuminant: str = "D65"
+    illuminant: str = DEFAULT_ILLUMINANT
     observer: str = observer.DEFAULT_OBSERVER
 
     def sensor(self) -> Sensor:
