@@ -90,7 +90,10 @@ def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, im
     assert before.code == "pixels-out-of-gamut"
     assert f"{result.counts.outside} of 30 pixels lie outside [0, 1]: scaled" in before.problem
     assert after.code == "painted-pixels-out-of-gamut"
-    assert f"{result.counts.painted_outside} painted pixels lie outside [0, 1]: scaled" in after.problem
+    assert (
+        f"{result.counts.painted_outside} of 30 pixels lie outside [0, 1] after painting: scaled"
+        in after.problem
+    )
     found = read_channels(tmp_path / "out.exr", "RGB")
     assert ((found >= 0) & (found <= 1)).all()
     strict = overpaint.prepare(small_cube, dye, out_of_gamut="error", threads=1)

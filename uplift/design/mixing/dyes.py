@@ -40,7 +40,7 @@ def transmittance(absorption: ArrayLike, concentration: float = 1.0, thickness: 
     ndarray of shape (..., N)
         Transmittance in [0, 1].
     """
-    amount = as_length(concentration, "concentration") * as_length(thickness)
+    amount = as_length(concentration, "concentration", code="invalid-concentration") * as_length(thickness)
     return np.exp(-amount * np.asarray(absorption, dtype=float))
 
 

@@ -102,7 +102,7 @@ def from_opaque(reflectance: ArrayLike, grading: float = GRADING) -> Pigment:
         Absorption and scattering (..., N).
     """
     R = np.clip(np.asarray(reflectance, dtype=float), DARKEST, 1)
-    S = R ** as_length(grading, "grading")
+    S = R ** as_length(grading, "grading", code="invalid-grading")
     return Pigment(S * absorption_over_scattering(R), S)
 
 

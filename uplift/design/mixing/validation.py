@@ -32,11 +32,11 @@ def as_shares(parts: ArrayLike) -> Array:
     return np.asarray(array / total)
 
 
-def as_length(value: float, name: str = "thickness") -> float:
-    """Return a finite number of at least 0. Raises `OptionError` (``invalid-`` and the name)."""
+def as_length(value: float, name: str = "thickness", code: str = "invalid-thickness") -> float:
+    """Return a finite number of at least 0. Raises `OptionError` with ``code``."""
     if not (np.isfinite(value) and value >= 0):
         raise OptionError(
-            f"{name} must be finite and at least 0, got {value}", code=f"invalid-{name}", hint="1 is the unit"
+            f"{name} must be finite and at least 0, got {value}", code=code, hint="1 is the unit"
         )
     return float(value)
 

@@ -69,8 +69,11 @@ def _texture_class(variant: str) -> type:
         def __init__(self, props: Any, image: Image) -> None:
             super().__init__(props)
             self.image = image
-            self.nearest = _choice(props, "filter_type", ("bilinear", "nearest")) == "nearest"
-            self.wrap = _choice(props, "wrap_mode", tuple(wraps))
+            self.nearest = (
+                _choice(props, "filter_type", ("bilinear", "nearest"), code="unknown-filter-type")
+                == "nearest"
+            )
+            self.wrap = _choice(props, "wrap_mode", tuple(wraps), code="unknown-wrap-mode")
             self.to_uv = mi.Transform3f(np.array(_uv_transform(props), dtype=np.float32))
             self.texels = mi.Texture2f(
                 mi.TensorXf(image.multipliers),
@@ -123,13 +126,13 @@ def texture_class() -> Any:
     return _texture_class(mitsuba.variant())
 
 
-def _choice(props: Any, name: str, choices: tuple[str, ...]) -> str:
+def _choice(props: Any, name: str, choices: tuple[str, ...], code: str) -> str:
     """Return a property; the first choice is the default. Raises `OptionError`."""
     chosen = str(props.get(name, choices[0]))
     if chosen not in choices:
         raise OptionError(
             f"unknown {name} '{chosen}'",
-            code=f"unknown-{name.replace('_', '-')}",
+            code=code,
             hint=f"use one of {', '.join(choices)}",
         )
     return chosen

@@ -80,28 +80,32 @@ class Counts:
         tuple of UpliftWarning
             The warnings. They are not emitted.
         """
-        total, past = f"of {self.pixels:,} pixels", PAST_TENSE[method]
-        change = f"a component by up to {self.max_change:.3g}"
-        table = {
-            "pixels-out-of-gamut": (self.outside, f"{total} lie outside [0, 1]: {past}, {change}"),
-            "pixels-not-finite": (
-                self.not_finite,
-                f"{total} are not finite: NaN is replaced by 0, infinity is clamped",
-            ),
-            "pixels-unrealisable": (
-                self.unrealisable,
-                f"{total} are close to unrealisable colours: their spectra have less chroma",
-            ),
-            "painted-pixels-out-of-gamut": (
-                self.painted_outside,
-                f"painted pixels lie outside [0, 1]: {past}",
-            ),
-        }
-        return tuple(
-            UpliftWarning(f"{count:,} {text}", code=code, path=path)
-            for code, (count, text) in table.items()
-            if count
+        past, change = PAST_TENSE[method], f"a component by up to {self.max_change:.3g}"
+        counts = (self.outside, self.not_finite, self.unrealisable, self.painted_outside)
+        outside, not_finite, unrealisable, painted = (
+            f"{count:,} of {self.pixels:,} pixels" for count in counts
         )
+        warnings = (
+            UpliftWarning(
+                f"{outside} lie outside [0, 1]: {past}, {change}", code="pixels-out-of-gamut", path=path
+            ),
+            UpliftWarning(
+                f"{not_finite} are not finite: NaN is replaced by 0, infinity is clamped",
+                code="pixels-not-finite",
+                path=path,
+            ),
+            UpliftWarning(
+                f"{unrealisable} are close to unrealisable colours: their spectra have less chroma",
+                code="pixels-unrealisable",
+                path=path,
+            ),
+            UpliftWarning(
+                f"{painted} lie outside [0, 1] after painting: {past}",
+                code="painted-pixels-out-of-gamut",
+                path=path,
+            ),
+        )
+        return tuple(warning for count, warning in zip(counts, warnings, strict=True) if count)
 
 
 def colour_channels(part: Part) -> RGBChannels | None:
