@@ -55,5 +55,5 @@ def test_cheapest_of_a_measured_comparison_is_within_the_target(found):
 
 @pytest.mark.parametrize("target", [0, -1, float("nan"), float("inf")])
 def test_target_must_be_positive(target):
-    with raises(OptionError, "target-out-of-range"):
+    with raises(OptionError, "target-not-positive"):
         cheapest(FOUND, "smooth", target)

@@ -32,7 +32,7 @@ def check_target(target: float) -> float:
     1.0
     """
     if not (math.isfinite(target) and target > 0):
-        raise OptionError(f"target must be a positive ΔE00, got {target:g}", code="target-out-of-range")
+        raise OptionError(f"target must be a positive ΔE00, got {target:g}", code="target-not-positive")
     return target
 
 
