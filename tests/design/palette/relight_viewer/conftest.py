@@ -1,4 +1,4 @@
-"""A page of arbitrary numbers, since a page knows nothing of where they come from, and a browser to show it."""
+"""Fixtures: a relighting of random numbers, and a browser to show its page."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from uplift.design.palette.relight_viewer.relighting import Lights, Materials, R
 
 
 def arbitrary(lights=3, materials=4, m=7, size=(40, 56), title="Arbitrary"):
-    """Weights of 0 to 1 with empty rows; colours within the screen's and beyond."""
+    """Relighting with empty rows of pixels, and with colours inside and outside the display gamut."""
     draw = np.random.default_rng(lights + 10 * materials + 100 * m)
     weights = draw.dirichlet(np.full(materials, 0.3), size) * draw.uniform(0, 1, (*size, 1))
     weights[:5] = 0
@@ -36,7 +36,7 @@ def arbitrary(lights=3, materials=4, m=7, size=(40, 56), title="Arbitrary"):
 
 
 @pytest.fixture(scope="package")
-def shown():
+def view():
     return arbitrary()
 
 
@@ -53,8 +53,8 @@ def tab():
 def opened(tab, tmp_path):
     """A function that shows a page in the browser."""
 
-    def show(shown):
-        (tmp_path / "page.html").write_text(page(shown), encoding="utf-8")
+    def show(view):
+        (tmp_path / "page.html").write_text(page(view), encoding="utf-8")
         tab.open(tmp_path / "page.html")
         return tab
 

@@ -1,19 +1,18 @@
-"""The built-in picture shows every material, and nothing but materials."""
+"""Default picture: every material is visible, and layers are where ray marching finds them."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from uplift.design.palette.relight_viewer import cutaway as made
-from uplift.design.palette.relight_viewer.cutaway import cutaway
+from uplift.design.palette.relight_viewer.cutaway import BALL, CORE, OFFSETS, RADIUS, SKIN, _axes, cutaway
 
 SIZE = 24
 DEPTHS = np.linspace(1, -1, 4001)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 24])
-def test_every_material_is_seen_and_no_pixel_shows_more_than_all(count):
+def test_every_material_is_visible_and_weights_sum_to_at_most_1(count):
     weights = cutaway(count, size=160)
     assert weights.shape == (160, 160, count)
     assert weights.dtype == np.float32
@@ -24,28 +23,24 @@ def test_every_material_is_seen_and_no_pixel_shows_more_than_all(count):
 
 
 def marched(x, y, layers):
-    """Layer of the opened ball that a ray at (x, y) meets first, by steps of a thousandth; None for none."""
+    """Layer and depth at which a ray at (x, y) first meets the opened ball, by ray marching; None if it misses."""
     points = np.stack([np.full_like(DEPTHS, x), np.full_like(DEPTHS, y), DEPTHS], axis=1)
     radius = np.linalg.norm(points, axis=1)
-    solid = (radius < 1) & ~(points @ made._axes() > 0).all(axis=1)
+    solid = (radius < 1) & ~(points @ _axes() > 0).all(axis=1)
     if not solid.any():
         return None
-    depth = (1 - radius[solid.argmax()]) * (layers - 1 + made.CORE)
+    depth = (1 - radius[solid.argmax()]) * (layers - 1 + CORE)
     return min(int(depth), layers - 1), depth
 
 
 @pytest.mark.parametrize("count", [1, 4])
-def test_layers_are_where_a_march_through_the_ball_finds_them(count):
+def test_layers_agree_with_ray_marching(count):
     layers, first = max(count - 1, 1), min(1, count - 1)
     weights = cutaway(count, SIZE)[: SIZE * 3 // 4, :, first:]
     compared = 0
     for row in range(3, SIZE * 3 // 4 - 1):
         for column in range(SIZE):
-            samples = [
-                sample(row + down, column + across, layers)
-                for across in made.OFFSETS
-                for down in made.OFFSETS
-            ]
+            samples = [sample(row + down, column + across, layers) for across in OFFSETS for down in OFFSETS]
             if None in samples:
                 continue
             met = {found[0] for found in samples if found[0] is not None}
@@ -55,10 +50,10 @@ def test_layers_are_where_a_march_through_the_ball_finds_them(count):
 
 
 def sample(row, column, layers):
-    """(layer,), (None,) for none; None where the march is too coarse to tell."""
-    radius = made.RADIUS * made.SKIN
-    x = ((column + 0.5) * 2 / SIZE - 1 - made.BALL[0]) / radius
-    y = (1 - (row + 0.5) * 2 / SIZE - made.BALL[1]) / radius
+    """(layer,), or (None,) for a miss; None where ray marching is too coarse."""
+    radius = RADIUS * SKIN
+    x = ((column + 0.5) * 2 / SIZE - 1 - BALL[0]) / radius
+    y = (1 - (row + 0.5) * 2 / SIZE - BALL[1]) / radius
     if abs(np.hypot(x, y) - 1) < 0.01:
         return None
     found = marched(x, y, layers)

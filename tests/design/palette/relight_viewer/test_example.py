@@ -1,4 +1,4 @@
-"""docs/palette-dial/engine.toml does what docs/palette-dial.md says of it, in the picture too."""
+"""docs/palette-dial/engine.toml has the properties that docs/palette-dial.md states, in the picture too."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ DAY, LAMP, NIGHT = range(3)
 
 @pytest.fixture(scope="module")
 def colours(model, repository):
-    """By whole spectra, and as the picture is drawn: (4, 3, 3) linear RGB each."""
+    """By full spectra, and as drawn in the picture: linear RGB (4, 3, 3) each."""
     palette = read_palette(repository / "docs" / "palette-dial" / "engine.toml")
     found = matrix(design(palette, model))
-    return {"whole": found.obtained, "drawn": found.factor}
+    return {"full": found.obtained, "drawn": found.factor}
 
 
-@pytest.mark.parametrize(("kind", "alike"), [("whole", 0.2), ("drawn", 4)])
-def test_an_engine_s_parts_are_alike_by_day_and_part_under_the_lamp(colours, sensor, kind, alike):
+@pytest.mark.parametrize(("kind", "alike"), [("full", 0.2), ("drawn", 4)])
+def test_engine_parts_match_by_day_and_differ_under_the_lamp(colours, sensor, kind, alike):
     found = colours[kind]
     assert (delta_e_rgb(sensor, found[BLOCK:, DAY], found[BLOCK, DAY]) < alike).all()
     assert delta_e_rgb(sensor, found[BLOCK, DAY], found[BLOCK, LAMP]) < alike
@@ -29,7 +29,7 @@ def test_an_engine_s_parts_are_alike_by_day_and_part_under_the_lamp(colours, sen
         assert delta_e_rgb(sensor, *found[list(pair), LAMP]) > 5
 
 
-@pytest.mark.parametrize("kind", ["whole", "drawn"])
-def test_the_haze_is_gone_by_night(colours, sensor, kind):
+@pytest.mark.parametrize("kind", ["full", "drawn"])
+def test_the_haze_is_invisible_by_night(colours, sensor, kind):
     assert delta_e_rgb(sensor, colours[kind][HAZE, NIGHT], np.zeros(3)) < 1
     assert delta_e_rgb(sensor, colours[kind][HAZE, DAY], np.zeros(3)) > 30

@@ -1,15 +1,15 @@
-// What the hands have set, and what follows from it. Positions are on a disc of radius 1; y points down, as on screens.
-const dot = (these, those) => these.reduce((total, value, k) => total + value * those[k], 0);
-const times = (matrix, vector) => matrix.map(row => dot(row, vector));
-const sum = (weights, rows) => rows[0].map((_, k) => dot(weights, rows.map(row => row[k])));
+// Weights of the lights. Positions are on a disc of radius 1 with y pointing down.
+const dot = (a, b) => a.reduce((total, value, k) => total + value * b[k], 0);
+const multiply = (matrix, vector) => matrix.map(row => dot(row, vector));
+const weightedSum = (weights, rows) => rows[0].map((_, k) => dot(weights, rows.map(row => row[k])));
 
-// Lights stand on the rim, the first at the top.
-function places(count) {
-  const turn = j => (2 * Math.PI * j) / count - Math.PI / 2;
-  return Array.from({ length: count }, (_, j) => [Math.cos(turn(j)), Math.sin(turn(j))]);
+// Positions of the lights on the rim, the first at the top.
+function rimPositions(count) {
+  const angle = j => (2 * Math.PI * j) / count - Math.PI / 2;
+  return Array.from({ length: count }, (_, j) => [Math.cos(angle(j)), Math.sin(angle(j))]);
 }
 
-// Shares of the lights at a position: by the inverse square of their distance, all of one where it stands.
+// Shares of the lights at a position by the inverse square of their distance; 1 for a light at the position itself.
 function shares([x, y], lights) {
   const squares = lights.map(([u, v]) => (x - u) ** 2 + (y - v) ** 2);
   const here = squares.findIndex(square => square < 1e-12);
@@ -18,7 +18,7 @@ function shares([x, y], lights) {
   return squares.map(square => 1 / square / total);
 }
 
-function onDisc([x, y]) {
+function clampToDisc([x, y]) {
   const radius = Math.max(1, Math.hypot(x, y));
   return [x / radius, y / radius];
 }

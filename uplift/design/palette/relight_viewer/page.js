@@ -1,71 +1,71 @@
-// Hands set where the dial stands, the lights' sliders and exposure; a frame shows what follows from them.
+// State: position of the dial, sliders of the lights, exposure. Each frame shows the picture for the current state.
 const numbers = JSON.parse(byId("numbers").textContent);
 const { lights, materials, wavelengths, power, white, colours, toRgb } = numbers;
-const stands = places(lights.length);
-const START = stands[0];
+const positions = rimPositions(lights.length);
+const START = positions[0];
 const picture = byId("picture").getContext("2d");
 const image = picture.createImageData(picture.canvas.width, picture.canvas.height);
 const out = new Uint32Array(image.data.buffer).fill(opaque(0, 0, 0));
-const [pixels, labels] = await Promise.all([unpackedHalves("pixels"), unpacked("labels", 1)]);
+const [pixels, labels] = await Promise.all([unpackHalves("pixels"), unpackBytes("labels", 1)]);
 const gains = lights.map((_, j) => byId(`gain-${j}`));
 const exposure = byId("exposure");
 let position = START;
-let due = 0;
+let frame = 0;
 
 const percent = share => `${Math.round(100 * share)} %`;
-const weights = () => shares(position, stands).map((share, j) => (share * gains[j].value) / 100);
+const weights = () => shares(position, positions).map((share, j) => (share * gains[j].value) / 100);
 
-// One frame: the picture first, then what tells of it. Exposure is of the screen, not of the light.
+// One frame: the picture first, then the texts. Exposure scales the display, not the lights.
 function show() {
-  due = 0;
+  frame = 0;
   const mix = weights();
   const stops = 2 ** exposure.value;
-  const lamp = sum(mix, numbers.light);
-  const matrix = Float64Array.from(toRgb.flatMap(row => row.map((value, k) => stops * value * lamp[k])));
+  const source = weightedSum(mix, numbers.light);
+  const matrix = Float64Array.from(toRgb.flatMap(row => row.map((value, k) => stops * value * source[k])));
   const clipped = light(pixels, labels, matrix, out);
   picture.putImageData(image, 0, 0);
-  tell(mix, clipped);
-  showPatches(mix, lamp, stops);
+  showTexts(mix, clipped);
+  showPatches(mix, source, stops);
   showSpectrum(wavelengths, power, mix);
 }
 
-function tell(mix, clipped) {
+function showTexts(mix, clipped) {
   showDial(position, lights.map((name, j) => `${name} ${percent(mix[j])}`).join(", "), Math.max(...mix));
-  mix.forEach((weight, j) => (byId(`gain-${j}-told`).value = percent(weight)));
-  byId("exposure-told").value = `${exposure.value > 0 ? "+" : ""}${Number(exposure.value).toFixed(2)} EV`;
+  mix.forEach((weight, j) => (byId(`gain-${j}-text`).value = percent(weight)));
+  byId("exposure-text").value = `${exposure.value > 0 ? "+" : ""}${Number(exposure.value).toFixed(2)} EV`;
   const share = (100 * clipped) / out.length;
   byId("clipped").textContent = clipped ? `Clipped: ${Math.max(share, 0.1).toFixed(1)} % of the picture` : "";
 }
 
-function showPatches(mix, lamp, stops) {
-  const bright = rgb => rgb.map(linear => stops * linear);
-  patch("white", bright(sum(mix, white)));
+function showPatches(mix, source, stops) {
+  const expose = rgb => rgb.map(linear => stops * linear);
+  patch("white", expose(weightedSum(mix, white)));
   materials.forEach((_, i) => {
-    const factor = times(toRgb, lamp.map((value, k) => value * numbers.material[i][k]));
-    patch(i, bright(sum(mix, colours[i])), bright(factor));
+    const factor = multiply(toRgb, source.map((value, k) => value * numbers.material[i][k]));
+    patch(i, expose(weightedSum(mix, colours[i])), expose(factor));
   });
 }
 
 function patch(name, ...halves) {
-  const told = halves.map(hex);
-  const parts = told.map(colour => Object.assign(document.createElement("i"), { style: `background:${colour}` }));
+  const codes = halves.map(hex);
+  const parts = codes.map(colour => Object.assign(document.createElement("i"), { style: `background:${colour}` }));
   byId(`mixed-${name}`).replaceChildren(...parts);
-  const marks = halves.map((rgb, half) => told[half] + (beyond(...rgb) ? " clipped" : ""));
-  byId(`mixed-${name}-told`).textContent = [...new Set(marks)].join(" | ");
+  const texts = halves.map((rgb, half) => codes[half] + (isClipped(...rgb) ? " clipped" : ""));
+  byId(`mixed-${name}-text`).textContent = [...new Set(texts)].join(" | ");
 }
 
-function soon() {
-  due ||= requestAnimationFrame(show);
+function requestFrame() {
+  frame ||= requestAnimationFrame(show);
 }
 
 function move(to) {
-  position = onDisc(to);
-  soon();
+  position = clampToDisc(to);
+  requestFrame();
 }
 
-function alone(j) {
+function selectLight(j) {
   gains[j].value = 100;
-  move(stands[j]);
+  move(positions[j]);
 }
 
 const dial = byId("dial");
@@ -81,21 +81,21 @@ dial.addEventListener("pointermove", event => {
   if (dial.hasPointerCapture(event.pointerId)) follow(event);
 });
 
-const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+const DIRECTIONS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 dial.addEventListener("keydown", event => {
   if (event.ctrlKey || event.altKey || event.metaKey) return;
-  const way = WAYS[event.key];
+  const direction = DIRECTIONS[event.key];
   const step = event.shiftKey ? 0.2 : 0.02;
-  if (way) move([position[0] + step * way[0], position[1] + step * way[1]]);
+  if (direction) move([position[0] + step * direction[0], position[1] + step * direction[1]]);
   else if (event.key === "0") move([0, 0]);
-  else if (event.key >= "1" && event.key <= "9" && event.key <= lights.length) move(stands[event.key - 1]);
+  else if (event.key >= "1" && event.key <= "9" && event.key <= lights.length) move(positions[event.key - 1]);
   else return;
   event.preventDefault();
 });
 
-for (const slider of [...gains, exposure]) slider.addEventListener("input", soon);
+for (const slider of [...gains, exposure]) slider.addEventListener("input", requestFrame);
 for (const button of document.querySelectorAll("[data-light]"))
-  button.addEventListener("click", () => alone(Number(button.dataset.light)));
+  button.addEventListener("click", () => selectLight(Number(button.dataset.light)));
 byId("reset").addEventListener("click", () => {
   for (const slider of [...gains, exposure]) slider.value = slider.defaultValue;
   move(START);

@@ -1,107 +1,139 @@
-"""Pictures of one's own: an image of labels, or weights as a renderer writes them, a channel a material."""
+"""Pictures from files: an 8-bit image of labels, or a float image with a channel of weights per material."""
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.common.arrays import StrPath
 from uplift.common.errors import OptionError, TextureError, unknown_name
 from uplift.io.texture.colours import colour_channels
 from uplift.io.texture.source import Part, Values, open_image
 
-MOST = 1 << 20
+MAX_PIXELS = 1 << 20
 """Pixels that a page can light in real time."""
+MAX_LISTED = 4
+"""Unknown colours that an error lists."""
 
 Weights = NDArray[np.float32]
 
 
-def read_weights(
-    path: str | os.PathLike[str], names: Sequence[str], labels: Mapping[str, str] | None = None
-) -> Weights:
-    """(H, W, n) how much of each of the materials ``names`` a pixel shows, read from an image.
+def read_weights(path: StrPath, names: Sequence[str], labels: Mapping[str, str] | None = None) -> Weights:
+    """Read the amount of each material in each pixel of an image.
 
-    Where its channels are floats, they are the weights, and are called like the materials. Any other image is 8-bit:
-    its colours, as ``labels`` (material: ``#rrggbb``) tells them, are the materials, and alpha is their weight. Without
-    ``labels`` greys of 1, 2, … are the materials in their order. Black that is no label shows nothing.
+    Float channels are the weights of the materials that they are named after. In an 8-bit image each colour is the
+    label of a material, and alpha is its weight. Black that is not a label has weight 0.
 
-    Raises `TextureError` for an image that is neither, `OptionError` and `UnknownNameError` for labels.
+    Parameters
+    ----------
+    path : path-like
+        The image.
+    names : sequence of str
+        Names of the n materials.
+    labels : mapping, optional
+        Colours ``#rrggbb`` by name of the material. The default is the greys 1, 2, … in the order of the names.
+
+    Returns
+    -------
+    ndarray, shape (H, W, n)
+        Weights in single precision.
+
+    Raises
+    ------
+    TextureError
+        If the image cannot be read, is too large, or is neither an image of labels nor one of weights.
+    OptionError, UnknownNameError
+        If labels are invalid.
     """
-    codes = _numbered(names) if labels is None else _told(names, labels)
+    codes = _grey_codes(names) if labels is None else _parse_labels(names, labels)
     with open_image(path) as image:
         part = image.parts[0]
         width, height = part.window.width, part.window.height
-        if width * height > MOST:
-            hint = f"scale it, without smoothing, to at most {MOST:,} pixels"
-            raise TextureError(f"is too large: {width} × {height}", path=path, hint=hint)
+        if width * height > MAX_PIXELS:
+            raise TextureError(
+                f"image must have at most {MAX_PIXELS:,} pixels, got {width} × {height}",
+                code="image-too-large",
+                path=path,
+                hint="scale it down without interpolation",
+            )
         values = np.concatenate([band for _, band in image.bands(part)])
-    try:
-        return _labelled(part, values, codes, len(names)) if part.max_code else _channels(part, values, names)
-    except TextureError as error:
-        raise TextureError(error.problem, path=path, hint=error.hint) from error
+    if part.max_code:
+        return _weights_of_labels(path, part, values, codes, len(names))
+    return _weights_of_channels(path, part, values, names)
 
 
-def _numbered(names: Sequence[str]) -> dict[int, int]:
-    """Row of the material by 24-bit colour: the greys in order."""
+def _grey_codes(names: Sequence[str]) -> dict[int, int]:
+    """Index of the material by 24-bit colour: greys in order."""
     return {0x10101 * (row + 1): row for row in range(min(len(names), 255))}
 
 
-def _told(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, int]:
-    """The same from labels."""
+def _parse_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, int]:
+    """Index of the material by 24-bit colour."""
     codes: dict[int, int] = {}
     for name, label in labels.items():
         if name not in names:
             raise unknown_name(name, names, "material")
         if not re.fullmatch("#[0-9a-fA-F]{6}", label):
-            raise OptionError(f"'{label}' is no colour of '{name}'", hint="write it as #rrggbb")
+            text = f"label of '{name}' must be #rrggbb, got '{label}'"
+            raise OptionError(text, code="invalid-colour", hint="write six hexadecimal digits")
         code = int(label[1:], 16)
         if code in codes:
-            raise OptionError(f"'{label}' stands for two materials", hint="give each a colour of its own")
+            text = f"labels must be distinct, got '{label}' for two materials"
+            raise OptionError(text, code="duplicate-label", hint="give each material its own colour")
         codes[code] = list(names).index(name)
     return codes
 
 
-def _labelled(part: Part, values: Values, codes: Mapping[int, int], count: int) -> Weights:
-    places = colour_channels(part)
-    if places is None or part.max_code != 255:
-        raise TextureError("holds no 8-bit colours", hint="make it an 8-bit PNG of labels")
-    red, green, blue = (values[..., place].astype(np.int32) for place in places)
-    found = (red << 16) | (green << 8) | blue
-    alpha = values[..., part.channels.index("A")] / 255 if "A" in part.channels else np.ones(found.shape)
-    alpha = np.where((found == 0) & (0 not in codes), 0, alpha)
-    _check_known(found[alpha > 0], codes)
-    shown = np.zeros((*found.shape, count), dtype=np.float32)
+def _weights_of_labels(
+    path: StrPath, part: Part, values: Values, codes: Mapping[int, int], count: int
+) -> Weights:
+    channels = colour_channels(part)
+    if channels is None or part.max_code != 255:
+        text = "an image of labels must have 8-bit colours"
+        raise TextureError(text, code="not-a-label-image", path=path, hint="convert it to an 8-bit PNG")
+    red, green, blue = (values[..., channel].astype(np.int32) for channel in channels)
+    pixels = (red << 16) | (green << 8) | blue
+    alpha = values[..., part.channels.index("A")] / 255 if "A" in part.channels else np.ones(pixels.shape)
+    alpha = np.where((pixels == 0) & (0 not in codes), 0, alpha)
+    _check_labels(path, pixels[alpha > 0], codes)
+    weights = np.zeros((*pixels.shape, count), dtype=np.float32)
     for code, row in codes.items():
-        shown[..., row] = np.where(found == code, alpha, 0)
-    return shown
+        weights[..., row] = np.where(pixels == code, alpha, 0)
+    return weights
 
 
-def _check_known(found: NDArray[np.int32], codes: Mapping[int, int]) -> None:
-    kinds, counts = np.unique(found, return_counts=True)
-    strange = ~np.isin(kinds, list(codes))
-    if strange.any():
-        often = kinds[strange][counts[strange].argsort()[::-1][:4]]
-        listed = ", ".join(f"#{code:06x}" for code in often)
+def _check_labels(path: StrPath, pixels: NDArray[np.int32], codes: Mapping[int, int]) -> None:
+    colours, counts = np.unique(pixels, return_counts=True)
+    unknown = ~np.isin(colours, list(codes))
+    if not unknown.any():
+        return
+    frequent = colours[unknown][counts[unknown].argsort()[::-1][:MAX_LISTED]]
+    listed = ", ".join(f"#{code:06x}" for code in frequent)
+    more = ", …" if unknown.sum() > MAX_LISTED else ""
+    raise TextureError(
+        f"every colour must be a label, got {counts[unknown].sum():,} pixels of {listed}{more}",
+        code="unknown-label",
+        path=path,
+        hint="give each colour a label, and draw without antialiasing",
+    )
+
+
+def _weights_of_channels(path: StrPath, part: Part, values: Values, names: Sequence[str]) -> Weights:
+    present = [row for row, name in enumerate(names) if name in part.channels]
+    if not present:
         raise TextureError(
-            f"{counts[strange].sum():,} pixels have no material: {listed}{', …' if strange.sum() > 4 else ''}",
-            hint="give each colour to a material with a label, and draw without smoothed edges",
+            f"an image of weights must have a channel named after a material ({', '.join(names)})",
+            code="no-material-channels",
+            path=path,
+            hint="rename its channels, or use an 8-bit image of labels",
         )
-
-
-def _channels(part: Part, values: Values, names: Sequence[str]) -> Weights:
-    missing = [name for name in names if name not in part.channels]
-    if len(missing) == len(names):
-        hint = f"call its channels like the materials ({', '.join(names)}), or use an 8-bit image of labels"
-        raise TextureError("has no channel called like a material", hint=hint)
-    shown = np.zeros((*values.shape[:2], len(names)), dtype=np.float32)
-    for row, name in enumerate(names):
-        if name not in missing:
-            shown[..., row] = values[..., part.channels.index(name)]
-    if not (np.isfinite(shown).all() and shown.min() >= 0):
-        raise TextureError(
-            "holds weights that are negative or not finite", hint="mend them: weights are from 0"
-        )
-    return shown
+    weights = np.zeros((*values.shape[:2], len(names)), dtype=np.float32)
+    for row in present:
+        weights[..., row] = values[..., part.channels.index(names[row])]
+    if not (np.isfinite(weights).all() and weights.min() >= 0):
+        text = "weights must be finite and not negative"
+        raise TextureError(text, code="invalid-weights", path=path, hint="correct the image")
+    return weights

@@ -1,4 +1,4 @@
-"""What the page holds: a picture in the coefficients of a factor model, and the lights to put on it."""
+"""Picture in the coefficients of a factor model, and the lights to put on it."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from uplift.common.errors import OptionError
 from uplift.design.palette.design import Design
 from uplift.design.palette.matrix import matrix
 
-MOST = 255
-"""Materials that labels tell apart."""
+MAX_MATERIALS = 255
+"""Materials that 8-bit labels distinguish, as 0 means none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,10 +22,14 @@ class Lights:
 
     Parameters
     ----------
-    names : one a light, L of them.
-    power : (L, N) spectral power; a flat one of 1 has luminance 1.
-    coefficients : (L, m) of the factor model.
-    white : (L, 3) linear sRGB of the perfect reflector, by whole spectra.
+    names : tuple of str
+        Names of the L lights.
+    power : ndarray, shape (L, N)
+        Spectral powers; a flat power of 1 has luminance 1.
+    coefficients : ndarray, shape (L, m)
+        Coefficients of the factor model.
+    white : ndarray, shape (L, 3)
+        Linear sRGB of the perfect reflector, by full spectra.
     """
 
     names: tuple[str, ...]
@@ -40,9 +44,12 @@ class Materials:
 
     Parameters
     ----------
-    names : one a material, n of them.
-    coefficients : (n, m) of the factor model.
-    colours : (n, L, 3) linear sRGB under each light, by whole spectra.
+    names : tuple of str
+        Names of the n materials.
+    coefficients : ndarray, shape (n, m)
+        Coefficients of the factor model.
+    colours : ndarray, shape (n, L, 3)
+        Linear sRGB under each light, by full spectra.
     """
 
     names: tuple[str, ...]
@@ -52,14 +59,26 @@ class Materials:
 
 @dataclass(frozen=True, eq=False)
 class Relighting:
-    """A picture rendered without light, which comes last (Bergner, Möller & Drew 2004, 2.2.2 and 5.1).
+    """A picture rendered without light, which is applied last.
 
     Parameters
     ----------
-    title : the palette's name.
-    weights : (H, W, n) how much of each material a pixel shows, its shading included, from 0.
-    to_rgb : (3, m) from coefficients to linear sRGB.
-    wavelengths : (N,) nm of the lights' power.
+    title : str
+        Title of the page.
+    weights : ndarray, shape (H, W, n)
+        Amount of each material in each pixel, including shading; 0 or more.
+    materials : Materials
+        The materials.
+    lights : Lights
+        The lights.
+    to_rgb : ndarray, shape (3, m)
+        From coefficients to linear sRGB.
+    wavelengths : ndarray, shape (N,)
+        Wavelengths of the powers in nm.
+
+    References
+    ----------
+    S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, sections 2.2.2 and 5.1.
     """
 
     title: str
@@ -71,34 +90,66 @@ class Relighting:
 
     @property
     def pixels(self) -> NDArray[np.float32]:
-        """(H, W, m) coefficients."""
+        """Coefficients of the pixels, (H, W, m)."""
         return self.weights @ self.materials.coefficients.astype(np.float32)
 
     @property
     def labels(self) -> NDArray[np.uint8]:
-        """(H, W) the material that a pixel shows most of, counted from 1; 0 where it shows none."""
+        """Predominant material of each pixel (H, W), counted from 1; 0 for none."""
         return np.where(self.weights.any(axis=-1), 1 + self.weights.argmax(axis=-1), 0).astype(np.uint8)
 
     def rgb(self, mix: ArrayLike) -> Array:
-        """(H, W, 3) linear sRGB under ``mix`` (L,) of the lights, what the screen cannot show included."""
+        """Light the picture.
+
+        Parameters
+        ----------
+        mix : array_like, shape (L,)
+            Weights of the lights.
+
+        Returns
+        -------
+        ndarray, shape (H, W, 3)
+            Linear sRGB, not clipped.
+        """
         light = np.asarray(mix, dtype=float) @ self.lights.coefficients
         return self.pixels @ (self.to_rgb * light).T
 
 
-def relighting(title: str, found: Design, weights: NDArray[np.float32]) -> Relighting:
-    """A picture of a palette's materials, to be lit by its lights; ``weights`` (H, W, n) are as in `Relighting`.
+def relighting(title: str, design: Design, weights: NDArray[np.float32]) -> Relighting:
+    """Prepare a picture of a palette's materials to be lit by its lights.
 
-    Raises `OptionError` for more materials than labels can tell apart.
+    Parameters
+    ----------
+    title : str
+        Title of the page.
+    design : Design
+        The design of the palette.
+    weights : ndarray, shape (H, W, n)
+        Amount of each material in each pixel.
+
+    Returns
+    -------
+    Relighting
+        The picture with lights and materials.
+
+    Raises
+    ------
+    OptionError
+        If there are more than 255 materials.
     """
-    palette, model, colours = found.palette, found.model, matrix(found)
-    if len(palette.materials) > MOST:
-        raise OptionError(f"{len(palette.materials)} materials in a picture", hint=f"show {MOST} at most")
-    lights, materials = (tuple(part.name for part in parts) for parts in (palette.lights, palette.materials))
+    palette, model, colours = design.palette, design.model, matrix(design)
+    if len(palette.materials) > MAX_MATERIALS:
+        raise OptionError(
+            f"a picture must have at most {MAX_MATERIALS} materials, got {len(palette.materials)}",
+            code="too-many-materials",
+        )
+    materials = tuple(material.name for material in palette.materials)
+    lights = tuple(light.name for light in palette.lights)
     return Relighting(
         title=title,
         weights=weights,
-        materials=Materials(materials, model.reflectance(found.reflectances), colours.obtained),
-        lights=Lights(lights, found.powers, model.light(found.powers), colours.whites),
+        materials=Materials(materials, model.reflectance(design.reflectances), colours.obtained),
+        lights=Lights(lights, design.powers, model.light(design.powers), colours.whites),
         to_rgb=model.matrix,
         wavelengths=model.wavelengths,
     )
