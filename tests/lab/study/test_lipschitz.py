@@ -39,12 +39,12 @@ def test_constant_is_attained_in_the_steepest_cell(small_cube, steep):
     inward = 1 - 2 * CORNERS
     corners = nodes[low + CORNERS]
     sides = nodes[low + 1] - nodes[low]
-    ways = RNG.normal(size=(400, 3))
-    ways = np.concatenate([np.abs(ways), np.eye(3)])
+    directions = RNG.normal(size=(400, 3))
+    directions = np.concatenate([np.abs(directions), np.eye(3)])
     best = 0.0
     for corner, sign in zip(corners, inward, strict=True):
         for mirror in ((1, 1, 1), (1, 1, -1), (1, -1, 1), (-1, 1, 1)):
-            step = 1e-4 * sides.min() * ways * mirror
+            step = 1e-4 * sides.min() * directions * mirror
             start = corner + sign * 1e-3 * sides
             before = lattice_spectra(data, start[None], data.sensor.wavelengths)
             after = lattice_spectra(data, start + step, data.sensor.wavelengths)
@@ -110,11 +110,11 @@ def test_answers_agree_on_both_sides_of_the_face_of_a_box(small_cube, steep):
     low, high = data.entry_boxes.faces
     entry = np.flatnonzero(data.atlas.half_width)
     middle = data.atlas.rgb[entry]
-    for way in (1, -1):
-        face = np.where(way > 0, high[entry], low[entry])
+    for sign in (1, -1):
+        face = np.where(sign > 0, high[entry], low[entry])
         inside = middle + 0.4 * (face - middle)
-        inside[:, 0] = face[:, 0] - way * 1e-9
+        inside[:, 0] = face[:, 0] - sign * 1e-9
         outside = inside.copy()
-        outside[:, 0] = np.clip(face[:, 0] + way * 1e-9, 0, 1)
+        outside[:, 0] = np.clip(face[:, 0] + sign * 1e-9, 0, 1)
         moved = np.abs(small_cube.reflectance(outside) - small_cube.reflectance(inside)).max()
         assert moved <= 2e-9 * steep.largest * np.sqrt(81)

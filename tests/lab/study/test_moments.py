@@ -20,7 +20,7 @@ MW, MNW, NMW, NMNW = TECHNIQUES
 
 
 @pytest.fixture(scope="module")
-def whole_study(repository):
+def full_study(repository):
     """Study of all shipped atlases."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
@@ -30,9 +30,9 @@ def whole_study(repository):
 
 
 @pytest.fixture(params=["macbeth", ALL_ATLASES])
-def errors(request, macbeth_study, whole_study):
+def errors(request, macbeth_study, full_study):
     """Function from technique, floats and measure to the mean error, for the ColorChecker and for all atlases."""
-    study = whole_study if request.param == ALL_ATLASES else macbeth_study
+    study = full_study if request.param == ALL_ATLASES else macbeth_study
     return lambda technique, floats, measure=0: study.result(technique, max_moments(technique, floats)).mean[
         measure
     ]
@@ -74,10 +74,10 @@ def test_warping_has_the_least_error_with_few_floats(errors):
         assert min(TECHNIQUES, key=lambda technique: errors(technique, floats)) == MW
 
 
-def test_statements_of_the_page_on_warp_and_shape(whole_study):
+def test_statements_of_the_page_on_warp_and_shape(full_study):
     warped, unwarped = (
         np.array(
-            [[whole_study.result(one, count).mean, whole_study.result(one, count).max] for count in range(16)]
+            [[full_study.result(one, count).mean, full_study.result(one, count).max] for count in range(16)]
         )
         for one in (MW, MNW)
     )
@@ -87,36 +87,36 @@ def test_statements_of_the_page_on_warp_and_shape(whole_study):
     assert set(range(2, 15)) == set(floats[better[:, 1, 0]])
     assert better[8, 0, 1:-1].all()
     rms = [
-        [whole_study.result(one, max_moments(one, floats)).mean[-1] for one in TECHNIQUES]
+        [full_study.result(one, max_moments(one, floats)).mean[-1] for one in TECHNIQUES]
         for floats in (9, 13, 16)
     ]
     assert all(min(row[2:]) > 3 * min(row[:2]) for row in rms)
     assert not better[[floats - 1 for floats in FLOATS], 0, -1].any()
 
 
-def test_statements_of_the_page_on_the_thesis(whole_study):
+def test_statements_of_the_page_on_the_thesis(full_study):
     thesis = read_thesis()
     assert len(thesis) == 64
     for technique in (MW, MNW):
-        assert whole_study.result(technique, 8).mean[0] == pytest.approx(thesis[technique, 8][0], abs=0.2)
-        assert whole_study.result(technique, 8).max[0] == pytest.approx(thesis[technique, 8][1], abs=0.35)
-    assert whole_study.result(MW, 2).mean[0] > 5 * thesis[MW, 2][0]
+        assert full_study.result(technique, 8).mean[0] == pytest.approx(thesis[technique, 8][0], abs=0.2)
+        assert full_study.result(technique, 8).max[0] == pytest.approx(thesis[technique, 8][1], abs=0.35)
+    assert full_study.result(MW, 2).mean[0] > 5 * thesis[MW, 2][0]
     assert all(mean > 0.2 for mean, _ in thesis.values())
-    assert whole_study.result(NMNW, 15).mean[0] < 0.02
+    assert full_study.result(NMNW, 15).mean[0] < 0.02
 
 
-def test_groups_partition_the_entries(whole_study):
-    counts = [len(whole_study.rows(group)) for group in whole_study.groups]
+def test_groups_partition_the_entries(full_study):
+    counts = [len(full_study.rows(group)) for group in full_study.groups]
     assert counts[0] == sum(counts[1:]) == 396
-    worst = whole_study.result(MW, 8)
-    home = whole_study.result(MW, 8, whole_study.atlases[worst.worst])
+    worst = full_study.result(MW, 8)
+    home = full_study.result(MW, 8, full_study.atlases[worst.worst])
     assert (home.worst, home.max[0]) == (worst.worst, worst.max[0])
-    assert whole_study.errors[0, 8, worst.worst, 0] == worst.max[0]
+    assert full_study.errors[0, 8, worst.worst, 0] == worst.max[0]
 
 
-def test_results_of_an_atlas_do_not_depend_on_others(whole_study, macbeth_study):
+def test_results_of_an_atlas_do_not_depend_on_others(full_study, macbeth_study):
     np.testing.assert_allclose(
-        whole_study.errors[:, :, whole_study.rows("macbeth")], macbeth_study.errors, rtol=0, atol=1e-9
+        full_study.errors[:, :, full_study.rows("macbeth")], macbeth_study.errors, rtol=0, atol=1e-9
     )
 
 

@@ -62,15 +62,15 @@ def test_failed_points_are_counted_and_the_worst_is_reported():
 
 def test_study_runs_every_configuration_once_ordered_by_model(monkeypatch):
     configs = [RunConfig(dim=8), RunConfig("sigmoid", 3), RunConfig(dim=4), RunConfig(dim=8)]
-    ran, events = [], []
+    runs, events = [], []
 
-    def pretend(setting, atlases):
-        ran.append(setting)
-        return RunResult(setting, 1, 1, 0, 0, 0, 0, 0.0, 0, 0, 0, 0.0)
+    def fake_run(config, atlases):
+        runs.append(config)
+        return RunResult(config, 1, 1, 0, 0, 0, 0, 0.0, 0, 0, 0, 0.0)
 
-    monkeypatch.setattr(stability, "run", pretend)
+    monkeypatch.setattr(stability, "run", fake_run)
     result = study_stability(configs, {}, events.append)
-    assert [one.config for one in result] == ran == [configs[2], configs[0], configs[1]]
+    assert [one.config for one in result] == runs == [configs[2], configs[0], configs[1]]
     assert events == [Progress("builds", done, 3) for done in (1, 2, 3)]
 
 

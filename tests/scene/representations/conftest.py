@@ -22,12 +22,12 @@ def every(checker):
 
 
 @pytest.fixture
-def lit(checker):
+def light_powers(checker):
     """Function of the name of a light that returns its powers (24, 401), one row per patch."""
 
-    def lit(name):
+    def light_powers(name):
         part = next(part for part in checker.sets if name in part.lights)
         power = part.powers[part.lights.index(name)]
         return np.tile(power, (len(checker.surfaces), 1))
 
-    return lit
+    return light_powers

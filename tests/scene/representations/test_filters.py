@@ -76,10 +76,10 @@ def test_pieces_of_the_mitchell_filter_meet_and_sum_to_one(b, c):
 
 def test_candidates_are_every_combination_once():
     for kind, made in KINDS.items():
-        tried = candidates(kind)
+        filters = candidates(kind)
         sizes = [len(values) for values in made.choices.values()]
-        assert len(set(tried)) == len(tried) == len(EXTENTS) * int(np.prod(sizes))
-        assert set(candidates(kind, COARSE_STRIDE)) < set(tried)
+        assert len(set(filters)) == len(filters) == len(EXTENTS) * int(np.prod(sizes))
+        assert set(candidates(kind, COARSE_STRIDE)) < set(filters)
 
 
 def test_candidates_have_finite_matrices():

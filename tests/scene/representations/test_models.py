@@ -33,7 +33,7 @@ def test_sigmoids_approach_black_and_white():
     np.testing.assert_allclose(evaluate(Sigmoid(), fit_sigmoids(Sigmoid(), table), grid()), table, atol=0.01)
 
 
-def test_linear_model_of_all_components_is_exact(checker, lit):
+def test_linear_model_of_all_components_is_exact(checker, light_powers):
     power, surfaces = checker.powers[:1], checker.surfaces[:5]
     model = linear_model(6, power, surfaces)  # five products and the light
     light = model.encode_light(np.tile(power, (5, 1)))
@@ -42,11 +42,13 @@ def test_linear_model_of_all_components_is_exact(checker, lit):
     np.testing.assert_allclose(model.basis.T @ model.basis, np.eye(6), atol=1e-12)
 
 
-def test_linear_model_has_errors_outside_its_scene(checker, lit):
+def test_linear_model_has_errors_outside_its_scene(checker, light_powers):
     model = linear_model(6, checker.powers[:1], checker.surfaces[:5])
     surfaces = checker.surfaces[5:10]
-    actual = model.xyz(model.multiply(model.encode_light(lit("A")[:5]), model.encode_surface(surfaces)))
-    assert np.abs(actual - (lit("A")[:5] * surfaces) @ xyz_weights()).max() > 1e-3
+    actual = model.xyz(
+        model.multiply(model.encode_light(light_powers("A")[:5]), model.encode_surface(surfaces))
+    )
+    assert np.abs(actual - (light_powers("A")[:5] * surfaces) @ xyz_weights()).max() > 1e-3
 
 
 @pytest.mark.parametrize("paths", [1, 8])

@@ -35,29 +35,33 @@ def test_grey_under_constant_light_is_exact(every, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_colour_is_linear_in_the_light(every, checker, lit, name):
+def test_colour_is_linear_in_the_light(every, checker, light_powers, name):
     one, surfaces = every[name], every[name].encode_surface(checker.surfaces)
-    once, twice = (one.xyz(one.multiply(one.encode_light(k * lit("FL11")), surfaces)) for k in (1, 2))
+    once, twice = (
+        one.xyz(one.multiply(one.encode_light(k * light_powers("FL11")), surfaces)) for k in (1, 2)
+    )
     np.testing.assert_allclose(twice, 2 * once, rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if not name.startswith("HW")])
-def test_rows_are_independent(every, checker, lit, name):
+def test_rows_are_independent(every, checker, light_powers, name):
     """Hero wavelengths are omitted: a row is a pixel with its own random numbers."""
     one = every[name]
-    whole = one.xyz(one.multiply(one.encode_light(lit("FL2")), one.encode_surface(checker.surfaces)))
-    part = one.xyz(one.multiply(one.encode_light(lit("FL2")[5:7]), one.encode_surface(checker.surfaces[5:7])))
+    whole = one.xyz(one.multiply(one.encode_light(light_powers("FL2")), one.encode_surface(checker.surfaces)))
+    part = one.xyz(
+        one.multiply(one.encode_light(light_powers("FL2")[5:7]), one.encode_surface(checker.surfaces[5:7]))
+    )
     np.testing.assert_allclose(part, whole[5:7], rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_product_can_be_multiplied_again(every, checker, lit, name):
+def test_product_can_be_multiplied_again(every, checker, light_powers, name):
     one, surfaces = every[name], every[name].encode_surface(checker.surfaces)
-    once = one.multiply(one.encode_light(lit("A")), surfaces)
+    once = one.multiply(one.encode_light(light_powers("A")), surfaces)
     twice = one.xyz(one.multiply(once, surfaces))
     assert np.isfinite(twice).all()
     np.testing.assert_array_equal(one.storage(once) >= 3, True)
-    dense = (lit("A") * checker.surfaces**2) @ xyz_weights()
+    dense = (light_powers("A") * checker.surfaces**2) @ xyz_weights()
     if name in ("PS32", "PF32", "RS32", "RE32", "GQ32", "TM17", "LM16"):
         np.testing.assert_allclose(twice, dense, atol=0.01)
 
@@ -70,12 +74,14 @@ def test_number_in_the_name_is_the_storage_of_a_smooth_spectrum(every, name):
 
 
 @pytest.mark.parametrize("family", ["PS", "PF", "RS", "GQ"])
-def test_error_falls_with_size_under_smooth_light(every, checker, lit, family):
-    dense = (lit("A") * checker.surfaces) @ xyz_weights()
+def test_error_falls_with_size_under_smooth_light(every, checker, light_powers, family):
+    dense = (light_powers("A") * checker.surfaces) @ xyz_weights()
     worst = []
     for count in SIZES:
         one = every[f"{family}{count}"]
-        actual = one.xyz(one.multiply(one.encode_light(lit("A")), one.encode_surface(checker.surfaces)))
+        actual = one.xyz(
+            one.multiply(one.encode_light(light_powers("A")), one.encode_surface(checker.surfaces))
+        )
         worst.append(np.abs(actual - dense).max())
     assert worst == sorted(worst, reverse=True)
     assert worst[0] > 30 * worst[3]

@@ -25,7 +25,7 @@ def test_errors_are_those_of_a_renderer_with_count_wavelengths(smooth: RenderSet
                 sampling.powers[light, i] * float(smooth.curves(nm)[material])
                 for i, nm in enumerate(sampling.wavelengths)
             ]
-            apart = observer.colour_science().delta_E(
+            delta_e = observer.colour_science().delta_E(
                 smooth.lab[light, material],
                 observer.colour_science().XYZ_to_Lab(
                     np.array(radiance) @ sampling.to_xyz,
@@ -33,7 +33,7 @@ def test_errors_are_those_of_a_renderer_with_count_wavelengths(smooth: RenderSet
                 ),
                 method="CIE 2000",
             )
-            assert choice.errors.delta_e[light, material] == pytest.approx(apart, abs=1e-6), name
+            assert choice.errors.delta_e[light, material] == pytest.approx(delta_e, abs=1e-6), name
 
 
 def test_target_is_met_and_one_wavelength_less_misses_it(spiky: RenderSetup) -> None:

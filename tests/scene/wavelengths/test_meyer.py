@@ -68,10 +68,10 @@ def test_opponent_channels_are_uncorrelated(cmfs: Array, opponent: OpponentSpace
 
 
 def test_rules_equal_tables_1a_and_1b(cmfs: Array, opponent: OpponentSpace) -> None:
-    ours = quadrature_rules(opponent.space, grid(), cmfs)
+    rules = quadrature_rules(opponent.space, grid(), cmfs)
     printed = rows("table1")
     pairs, undefined = [], []
-    for channel, orders in zip(CHANNELS, ours, strict=True):
+    for channel, orders in zip(CHANNELS, rules, strict=True):
         for order, rule in orders.items():
             own = [row for row in printed if (row["channel"], row["order"]) == (channel, str(order))]
             if isinstance(rule, UndefinedRule):
@@ -90,18 +90,18 @@ def test_rules_equal_tables_1a_and_1b(cmfs: Array, opponent: OpponentSpace) -> N
 def test_four_wavelength_rule_equals_table_2(
     cmfs: Array, opponent: OpponentSpace, setting_c: RenderSetup
 ) -> None:
-    ours = quadrature_rules(opponent.space, grid(), cmfs)
-    shared = four_wavelength_rule(ours, channel_functions(opponent.space, grid(), cmfs))
-    stated = [row for row in rows("table2") if row["row"] == "2"]
+    rules = quadrature_rules(opponent.space, grid(), cmfs)
+    shared = four_wavelength_rule(rules, channel_functions(opponent.space, grid(), cmfs))
+    printed_rows = [row for row in rows("table2") if row["row"] == "2"]
     nodes = np.concatenate([rule.nodes for rule in shared])
     weights = np.concatenate([rule.weights for rule in shared])
-    np.testing.assert_allclose(nodes, [float(row["wavelength"]) for row in stated], atol=0.101)
-    printed = np.array([float(row["weight"]) for row in stated])
+    np.testing.assert_allclose(nodes, [float(row["wavelength"]) for row in printed_rows], atol=0.101)
+    printed = np.array([float(row["weight"]) for row in printed_rows])
     np.testing.assert_allclose(weights * (printed[0] / weights[0]), printed, atol=2e-4)
     # Our ColorChecker is another measurement than the paper's.
-    for way, row in ((shared, "2"), ((ours[0][3], ours[1][2], ours[2][1]), "1")):
+    for allocation, row in ((shared, "2"), ((rules[0][3], rules[1][2], rules[2][1]), "1")):
         expected = next(float(r["error"]) for r in rows("table2") if r["row"] == row)
-        assert allocation_error(setting_c, opponent.space, way) == pytest.approx(expected, rel=0.03)
+        assert allocation_error(setting_c, opponent.space, allocation) == pytest.approx(expected, rel=0.03)
 
 
 def test_figure_6_opponent_space_needs_the_fewest_wavelengths(
@@ -115,25 +115,25 @@ def test_figure_6_opponent_space_needs_the_fewest_wavelengths(
 
 
 def test_figure_7_favours_a_and_balanced_shares(opponent: OpponentSpace, setting_c: RenderSetup) -> None:
-    tried = run_trials(setting_c, opponent.space)
-    parts = bin_shares(tried)
-    middle = np.abs(parts.corners.mean(axis=1) - 1 / 3).max(axis=1) < 0.2
-    assert parts.errors[middle].mean() < parts.errors[~middle].mean()
-    most = tried.counts.argmax(axis=1)
-    assert tried.errors[most == 0].mean() < min(tried.errors[most == channel].mean() for channel in (1, 2))
+    trials = run_trials(setting_c, opponent.space)
+    bins = bin_shares(trials)
+    middle = np.abs(bins.corners.mean(axis=1) - 1 / 3).max(axis=1) < 0.2
+    assert bins.errors[middle].mean() < bins.errors[~middle].mean()
+    most = trials.counts.argmax(axis=1)
+    assert trials.errors[most == 0].mean() < min(trials.errors[most == channel].mean() for channel in (1, 2))
 
 
 def test_small_triangles_average_the_trials_inside(opponent: OpponentSpace, setting_c: RenderSetup) -> None:
-    tried = run_trials(setting_c, opponent.space)
-    parts = bin_shares(tried, divisions=4)
-    np.testing.assert_allclose(parts.corners.sum(axis=2), 1)
-    assert parts.corners.min() >= 0
-    for corners, stated in zip(parts.corners, parts.errors, strict=True):
-        inside = np.linalg.solve(corners.T, tried.shares.T).min(axis=0)
-        within, touching = tried.errors[inside > 1e-6], tried.errors[inside > -1e-6]
-        assert touching.min() <= stated <= touching.max()
+    trials = run_trials(setting_c, opponent.space)
+    bins = bin_shares(trials, divisions=4)
+    np.testing.assert_allclose(bins.corners.sum(axis=2), 1)
+    assert bins.corners.min() >= 0
+    for corners, error in zip(bins.corners, bins.errors, strict=True):
+        inside = np.linalg.solve(corners.T, trials.shares.T).min(axis=0)
+        within, touching = trials.errors[inside > 1e-6], trials.errors[inside > -1e-6]
+        assert touching.min() <= error <= touching.max()
         if len(within) == len(touching):
-            assert stated == pytest.approx(within.mean())
+            assert error == pytest.approx(within.mean())
 
 
 def test_printed_weights_of_every_order_have_the_same_sum() -> None:
@@ -155,9 +155,9 @@ def test_meyer_takes_the_best_allocation(
     assert len(chosen) == count
     np.testing.assert_allclose((chosen.powers @ chosen.to_xyz)[:, 1], 1, rtol=1e-12)
     reached = evaluate(smooth, chosen).mean
-    for way in allocations(quadrature_rules(opponent.space, grid(), cmfs), count):
-        assert sum(map(len, way)) == count
-        assert evaluate(smooth, combine_rules(smooth, opponent.space, way).balanced()).mean >= reached
+    for allocation in allocations(quadrature_rules(opponent.space, grid(), cmfs), count):
+        assert sum(map(len, allocation)) == count
+        assert evaluate(smooth, combine_rules(smooth, opponent.space, allocation).balanced()).mean >= reached
 
 
 @pytest.mark.parametrize("count", [1, 3, 31])

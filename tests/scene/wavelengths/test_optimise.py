@@ -94,9 +94,9 @@ def test_fit_beats_other_methods_on_unseen_materials(
     odd = np.arange(24) % 2 == 1
     for setup, factor in ((smooth, 1.5), (spiky, 3.0)):
         unseen = setup.only(odd)
-        ours = evaluate(unseen, optimise(setup.only(~odd), count)).mean
+        error = evaluate(unseen, optimise(setup.only(~odd), count)).mean
         for method in ("meyer", "uniform", "bins"):
-            assert factor * ours < choose(unseen, count=count, method=method).errors.mean, method
+            assert factor * error < choose(unseen, count=count, method=method).errors.mean, method
 
 
 def test_white_remains_neutral(spiky: RenderSetup) -> None:
@@ -120,10 +120,10 @@ def test_weights_for_given_wavelengths_beat_prefiltering(spiky: RenderSetup) -> 
     result = fit_at(spiky, nm[::-1])
     np.testing.assert_array_equal(result.wavelengths, nm)
     assert min(result.to_xyz.min(), result.powers.min()) >= 0
-    ours = evaluate(spiky, result).mean
+    error = evaluate(spiky, result).mean
     assert (
         evaluate(spiky, optimise(spiky, 7)).mean
-        < ours
+        < error
         < evaluate(spiky, prefiltered_uniform(spiky, 7)).mean / 1.5
     )
 
