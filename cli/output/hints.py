@@ -36,6 +36,7 @@ HINTS = {
     "scene-without-colours": "name an image with --scene, or build without --scene",
     "sparse-cube": "use --fill-missing where the command has it, or a cube built without --scene",
     "target-not-positive": "give --target above 0",
+    "target-out-of-range": "give --target above 0",
     "threshold-out-of-range": "use --threshold 1e-6 to 0.1",
     "too-few-colours": "use --colours 16 or more",
     "unknown-coat": "use --pigment or --dye",
