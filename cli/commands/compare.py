@@ -102,14 +102,14 @@ def _folder(output: str | None, *, filters: bool, force: bool) -> Path | None:
 def _measure(
     files: tuple[str, ...], lights: tuple[str, ...], *, filters: bool, quick: bool
 ) -> tuple[Comparison, tuple[TunedFilter, ...]]:
-    from uplift.lab.comparison.measure import QUICK, Effort, compare
+    from uplift.lab.comparison.measure import QUICK, TimingOptions, compare
     from uplift.lab.comparison.scene import make_scene
     from uplift.scene.representations.registry import all_representations
 
     tested = make_scene(read_atlases(files), lights)
     tested = tested.thinned() if quick else tested
     with progress_bar("representations") as progress:
-        effort = QUICK if quick else Effort()
+        effort = QUICK if quick else TimingOptions()
         comparison = compare(tested, all_representations(tested.powers, tested.surfaces), effort, progress)
     return comparison, _tune(tested, quick=quick) if filters else ()
 

@@ -18,7 +18,6 @@ from uplift.report.assessment import assess
 from uplift.report.charts import histogram_chart, spectra_chart
 from uplift.report.json_export import to_json
 from uplift.report.page import render_report
-from uplift.viz.format import format_power_of_ten, format_scientific
 from uplift.viz.histogram import log_edges, make_histogram
 
 
@@ -199,25 +198,6 @@ def test_json_without_entries_and_with_failures(spoilt):
     found = json.loads(json.dumps(to_json(assess(spoilt, "spoilt.uplift", 1, None, ("A",))), allow_nan=False))
     assert (found["entries"], found["delta_e_2000"]) == ([], {})
     assert [point["distance"] for point in found["failures"]["worst"]] == pytest.approx([0.02, 0.01])
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (0, "0"),
-        (1.6e-5, "1.6\u00a0×\u00a010⁻⁵"),
-        (0.0271, "0.0271"),
-        (2.7, "2.70"),
-        (506.2, "506"),
-        (np.nan, "not finite"),
-    ],
-)
-def test_scientific_notation(value, text):
-    assert format_scientific(value) == text
-
-
-def test_powers_of_ten():
-    assert (format_power_of_ten(1e-9), format_power_of_ten(1.0)) == ("10⁻⁹", "10⁰")
 
 
 def test_charts_are_valid_xml():

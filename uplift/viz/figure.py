@@ -8,7 +8,7 @@ import os
 import re
 from typing import Any, Literal
 
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from uplift.common.files import atomic_write
 
@@ -125,13 +125,15 @@ def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False)
         FigureCanvasAgg(figure).print_png(temporary, metadata={"Software": "uplift"})
 
 
-def to_svg(figure: Any) -> Markup:
+def to_svg(figure: Any, label: str = "") -> Markup:
     """Render a figure as an ``svg`` element for a page that sets its size.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
         The figure.
+    label : str, optional
+        Text that screen readers read in place of the texts in the figure.
 
     Returns
     -------
@@ -151,4 +153,5 @@ def to_svg(figure: Any) -> Markup:
     head, body = text.split(">", 1)
     head = re.sub(r' (?:width|height|version|xmlns:xlink)="[^"]*"', "", head)
     body = re.sub(r">\s+<", "><", body).strip()
-    return Markup(f"{head}>{body}")
+    role = f' role="img" aria-label="{escape(label)}"' if label else ""
+    return Markup(f"{head}{role}>{body}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.lab.comparison_scenes import colorchecker
-from uplift.lab.comparison.measure import Comparison, Effort, compare
+from uplift.lab.comparison.measure import Comparison, TimingOptions, compare
 from uplift.lab.comparison.scene import Scene
 from uplift.scene.representations.enhanced_riemann import enhanced_riemann
 from uplift.scene.representations.point_sampling import point_samples
@@ -13,7 +13,7 @@ from uplift.scene.representations.riemann_sums import riemann_sums
 from uplift.scene.representations.sun_composite import sun_composite
 from uplift.scene.representations.trigonometric_moments import trigonometric_moments
 
-EFFORT = Effort(runs=3, seconds=0.001, rows=32)
+EFFORT = TimingOptions(runs=3, seconds=0.001, rows=32)
 
 
 @pytest.fixture(scope="session")

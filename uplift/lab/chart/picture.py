@@ -52,7 +52,7 @@ def write_pictures(chart: Chart, png: Path, svg: Path, *, force: bool = False) -
     with matplotlib.rc_context(STYLE):
         figure = draw(chart)
         write_png(figure, png, force=force)
-        element = to_svg(figure)
+        element = to_svg(figure, "Error over time of all methods, a panel for each error")
     write_text(element, svg, force=force)
     return element
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from uplift.lab.comparison.filters import TunedFilter, tune_filters
 from uplift.lab.comparison.measure import (
     Comparison,
-    Effort,
     RepresentationResult,
+    TimingOptions,
     compare,
     error_statistics,
 )
@@ -17,11 +17,11 @@ from uplift.lab.comparison.table import filter_records, records
 
 __all__ = [
     "Comparison",
-    "Effort",
     "LightSet",
     "RepresentationResult",
     "Scene",
     "Statistics",
+    "TimingOptions",
     "TunedFilter",
     "cheapest",
     "check_target",

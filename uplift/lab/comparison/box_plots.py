@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from uplift.lab.comparison.cost import MIN_ERROR
 from uplift.lab.comparison.families import family_colour
 from uplift.lab.comparison.measure import Comparison, RepresentationResult
 from uplift.viz.figure import GREY, INK, new_figure, style_axes
@@ -13,8 +14,6 @@ from uplift.viz.scatter import style_title
 
 WIDTH, PANEL_HEIGHT = 13.2, 4.0
 """Inches."""
-MIN_ERROR = 1e-3
-"""ΔE00 at which the axis ends."""
 VISIBLE = 1.0
 """ΔE00 that is just visible side by side; the thesis prints smaller ones in bold."""
 

@@ -19,7 +19,7 @@ from uplift.scene.representations.representation import Representation
 
 
 @dataclass(frozen=True)
-class Effort:
+class TimingOptions:
     """Accuracy of the timings.
 
     Parameters
@@ -37,7 +37,7 @@ class Effort:
     rows: int = 1024
 
 
-QUICK = Effort(runs=3, seconds=0.005, rows=256)
+QUICK = TimingOptions(runs=3, seconds=0.005, rows=256)
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ class Comparison:
 def compare(
     scene: Scene,
     representations: Sequence[Representation],
-    effort: Effort | None = None,
+    effort: TimingOptions | None = None,
     progress: ProgressCallback = ignore_progress,
 ) -> Comparison:
     """Measure representations under every set of lights of a scene.
@@ -134,7 +134,7 @@ def compare(
     results = []
     for done, representation in enumerate(representations, 1):
         surfaces = representation.encode_surface(scene.surfaces)
-        times = _times(representation, scene, effort or Effort())
+        times = _times(representation, scene, effort or TimingOptions())
         results += [
             _result(representation, surfaces, light_set, scene, reference, ns)
             for light_set, reference, ns in zip(scene.sets, references, times, strict=True)
@@ -209,14 +209,16 @@ def _result(
     )
 
 
-def _times(representation: Representation, scene: Scene, effort: Effort) -> list[Spread]:
+def _times(representation: Representation, scene: Scene, effort: TimingOptions) -> list[Spread]:
     """CPU time of a product, in ns, for each set: each of its lights in turn, with many surfaces per call."""
     surfaces = np.resize(scene.surfaces, (effort.rows, scene.surfaces.shape[1]))
     encoded = representation.encode_surface(surfaces)
     return [_time(representation, encoded, light_set, effort) for light_set in scene.sets]
 
 
-def _time(representation: Representation, surfaces: Any, light_set: LightSet, effort: Effort) -> Spread:
+def _time(
+    representation: Representation, surfaces: Any, light_set: LightSet, effort: TimingOptions
+) -> Spread:
     lights = [_repeat_light(representation, power, effort.rows) for power in light_set.powers]
 
     def multiply(laps: int) -> None:

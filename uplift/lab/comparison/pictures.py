@@ -12,6 +12,11 @@ from uplift.viz.figure import STYLE, to_svg, write_png
 
 KINDS = {"boxes": box_plots.draw, "cost": cost.draw}
 """Functions that draw a comparison, by kind."""
+LABELS = {
+    "boxes": "Box plots of the errors of all representations",
+    "cost": "Error over cost of all representations",
+}
+"""Texts for screen readers."""
 
 
 def write_picture(
@@ -45,4 +50,4 @@ def write_picture(
     with matplotlib.rc_context(STYLE):
         figure = KINDS[kind](comparison)
         write_png(figure, path, force=force)
-        return to_svg(figure)
+        return to_svg(figure, LABELS[kind])

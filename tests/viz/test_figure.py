@@ -1,0 +1,47 @@
+"""SVG and PNG output."""
+
+from __future__ import annotations
+
+import re
+from xml.etree import ElementTree
+
+import matplotlib
+
+from tests.helpers import raises
+from uplift.common.errors import OutputError
+from uplift.viz.figure import STYLE, new_figure, style_axes, to_svg, write_png
+
+
+def drawn(value):
+    with matplotlib.rc_context(STYLE):
+        figure = new_figure(2, 1)
+        axes = figure.subplots()
+        axes.plot([0, value], marker="o")
+        style_axes(axes)
+        return to_svg(figure, 'a < "b"')
+
+
+def test_svg_is_a_labelled_element_without_size():
+    element = ElementTree.fromstring(drawn(1))
+    assert element.get("aria-label") == 'a < "b"'
+    assert element.get("role") == "img"
+    assert element.get("viewBox")
+    assert element.get("width") is None
+
+
+def test_equal_figures_have_equal_svg_and_others_share_no_identifier():
+    assert drawn(1) == drawn(1)
+    first, second = (set(re.findall(r' id="([^"]+)"', drawn(value))) for value in (1, 2))
+    assert first
+    assert not first & second
+
+
+def test_png_does_not_replace_a_file(tmp_path):
+    path = tmp_path / "figure.png"
+    write_png(new_figure(1, 1), path)
+    stored = path.read_bytes()
+    with raises(OutputError, "file-exists"):
+        write_png(new_figure(2, 1), path)
+    assert path.read_bytes() == stored
+    write_png(new_figure(1, 1), path, force=True)
+    assert path.read_bytes() == stored
