@@ -116,7 +116,7 @@ class ColourSet:
         return boxes.required_points(occupied_cells(boxes.lattice, self.rgb))
 
     def describe(self) -> list[dict[str, Any]]:
-        """Empty, as there is no source file."""
+        """An empty list: colours have no source files."""
         return []
 
 
