@@ -46,7 +46,7 @@ def _parse_labels(labels: tuple[str, ...]) -> dict[str, str] | None:
             )
         if name in colours:
             raise OptionError(
-                f"label '{name}' has two colours", code="duplicate-label", hint="give one colour per material"
+                f"label '{name}' has two colours", code="repeated-label", hint="give one colour per material"
             )
         colours[name] = colour
     return colours or None

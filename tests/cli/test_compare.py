@@ -83,7 +83,7 @@ def test_lights_replace_the_default_sets(run, macbeth):
     ("arguments", "code"),
     [
         (("--light", "F2"), "unknown-illuminant"),
-        (("--target", 0), "target-out-of-range"),
+        (("--target", 0), "target-not-positive"),
         (("-o", "file"), "folder-not-created"),
         (("-o", "out"), "file-exists"),
     ],

@@ -170,6 +170,12 @@ def test_hints_name_options_that_exist():
         assert {word.strip(",.;:'()") for word in hint.split() if word.startswith("--")} <= known, hint
 
 
+def test_hints_are_for_codes_that_exist(repository):
+    files = [*(repository / "uplift").rglob("*.py"), *(repository / "cli").rglob("*.py")]
+    sources = "".join(path.read_text(encoding="utf-8") for path in files if path.name != "hints.py")
+    assert [code for code in HINTS if f'"{code}"' not in sources] == []
+
+
 def test_command_line_is_importable_only_by_its_installed_name(repository):
     importlib.import_module("uplift_cli")
     done = subprocess.run(
