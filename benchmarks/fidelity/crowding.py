@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.fidelity.materials import SENSOR, entries, forward, large, materials
+from benchmarks.fidelity.materials import entries, forward, large, materials
 from uplift import fit
 from uplift.colorimetry import observer
 from uplift.fit.lattice_size import DIMS, lattice_error
@@ -16,6 +16,7 @@ from uplift.pipeline.options import AXES, Options
 
 TOLERANCES = (0.5, 1.0)
 MODEL = Moments(9)
+RESIDUAL = fit.solver_tolerance(Options.threshold)
 LIGHTS = [observer.light(name) for name in Options.lights]
 
 
@@ -33,8 +34,8 @@ def lattice_errors(name: str, axis: str, fitted: fit.FittedEntries) -> dict[str,
     """Return the median error at the entries, and how many exceed the smaller tolerance, by dim."""
     errors = {}
     for dim in DIMS[1::2]:
-        problem = fit.Problem(MODEL, forward(MODEL), Lattice(observer.axis_nodes(axis, dim)))
-        distances = lattice_error(problem, SENSOR.wavelengths, LIGHTS, fitted)
+        lattice = Lattice(observer.axis_nodes(axis, dim))
+        distances = lattice_error(MODEL, forward(MODEL), RESIDUAL, lattice, LIGHTS, fitted)
         errors[str(dim)] = {
             "median": float(np.median(distances)),
             "over": int((distances > TOLERANCES[0]).sum()),
@@ -44,8 +45,7 @@ def lattice_errors(name: str, axis: str, fitted: fit.FittedEntries) -> dict[str,
 
 def automatic(name: str, fitted: fit.FittedEntries, tolerance: float) -> dict[str, Any]:
     """Return the lattice that ``--dim auto`` chooses."""
-    problem = fit.Problem(MODEL, forward(MODEL), Lattice(observer.axis_nodes("srgb", 2)))
     axis, dim, over = fit.choose_lattice(
-        problem, SENSOR.wavelengths, LIGHTS, fitted, observer.axis_nodes, AXES, tolerance
+        MODEL, forward(MODEL), RESIDUAL, LIGHTS, fitted, observer.axis_nodes, AXES, tolerance
     )
     return {"atlas": name, "tolerance": tolerance, "dim": dim, "axis": axis, "entries_over": over}
