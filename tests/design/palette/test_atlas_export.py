@@ -11,7 +11,7 @@ from matplotlib.image import imread
 import uplift
 from tests.helpers import raises, warns
 from uplift.colorimetry.srgb import hex_codes
-from uplift.common.errors import OutputError, PaletteError, UpliftWarning
+from uplift.common.errors import OutputError, PaletteError
 from uplift.design.palette import design, matrix, plot_matrix, plot_spectra, write_designed
 from uplift.design.palette.palette import SpectrumSpec
 
@@ -35,7 +35,7 @@ def test_an_exported_atlas_has_the_designed_spectra(found, tmp_path):
 def test_an_atlas_of_designs_constrains_a_cube(found, tmp_path):
     """The cube reproduces the colour of a designed material."""
     write_designed(found, tmp_path / "out.txt")
-    with pytest.warns(UpliftWarning, match="crowded"):
+    with warns("entry-crowded"):
         cube = uplift.build(tmp_path / "out.txt", dim=3, coefficients=5)
     assert cube.data.atlas.names == ("fox", "moss")
     colour = found.palette.sensor.rgb(found.reflectances[0])
