@@ -128,7 +128,7 @@ def test_lost_entries_are_named(lossy_cube):
     found = assess(lossy_cube, "lossy.uplift", 1, None, ("D65",))
     read = Page(render_report(found, worst=0))
     assert "Lost, as an earlier entry has the same colour: über (that of grey)." in read.text
-    assert "2 close entries" in read.text
+    assert "2 crowded entries" in read.text
     assert "; 1 lost" in read.text
     values = json.loads(json.dumps(to_json(found), allow_nan=False))["crowding"]
     assert values["lost"] == [{"name": "über", "same_colour": "grey"}]
@@ -168,7 +168,7 @@ def test_missing_standard_errors_are_explained(plain_cube, lossy_cube, macbeth):
 def test_no_close_entries(macbeth_cube, macbeth):
     read = Page(render_report(assess(macbeth_cube, "macbeth-32.uplift", 1, macbeth, ("D65",)), worst=0))
     assert "No entry has another within a lattice step." in read.text
-    assert "No close entries" in read.text
+    assert "No crowded entries" in read.text
 
 
 def test_json_holds_the_numbers_of_the_assessment(judged):
