@@ -86,13 +86,13 @@ def fronts(chart: Chart) -> list[dict[str, Any]]:
 
     rows = []
     for panel in PANELS:
-        seconds = 1.0 if panel.across == "build_s" else 1e-9
+        seconds = 1.0 if panel.time == "build_s" else 1e-9
         front = panel.front(chart)
         rows += [
             {
                 "panel": panel.title if row is front[0] else "",
                 "method": row.title,
-                "time_s": row.numbers[panel.across] * seconds,
+                "time_s": row.numbers[panel.time] * seconds,
                 "error": row.numbers[f"{panel.error}_mean"],
             }
             for row in front

@@ -126,7 +126,7 @@ def standard_errors(splits: Splits) -> list[dict[str, Any]]:
     rows = []
     for (name, count), parts in (splits | others).items():
         actual, predicted = (
-            np.concatenate([getattr(split, part) for split in parts]) for part in ("real", "stated")
+            np.concatenate([getattr(split, part) for split in parts]) for part in ("actual", "predicted")
         )
         coverage = check_calibration(actual, predicted)
         quartiles = np.array_split(predicted.argsort(kind="stable"), 4)

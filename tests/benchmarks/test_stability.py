@@ -24,7 +24,7 @@ def test_statements_on_failures(figures):
     five = [row for row in ours if (row["dim"], row["threshold"], row["atlas"]) == (17, 1e-4, NO_ATLAS)]
     assert {row["space"] for row in five} == set(SPACES)
     assert {row["model"] for row in five} == {"moments", "sigmoid"}
-    assert {row["threshold"] for row in ours if row["stand_ins"]} == {1e-6}
+    assert max(row["threshold"] for row in ours if row["stand_ins"]) < 1e-4
     assert not any(row["stand_ins"] for row in ours if row["space"] == "sRGB")
     unfitted = {row["coefficients"]: row["unfitted"] for row in rows if row["solver"] == IN_MOMENTS}
     assert unfitted[3] < unfitted[5] < unfitted[9]
