@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.cli.conftest import home, refuse, run  # noqa: F401
+from tests.cli.conftest import home, misuse, refuse, run, shown  # noqa: F401
 from uplift.cube import read
 
 
@@ -48,17 +48,23 @@ def test_json_output_equals_the_file(run, here):
 
 def test_existing_files_are_kept_without_force(refuse, here):
     (here / "kitchen.plan.html").write_text("mine")
-    assert "kitchen.plan.html: exists already; use --force" in refuse("plan", "kitchen.toml")
+    error = refuse("plan", "kitchen.toml")
+    assert (error.code, str(error.path)) == ("file-exists", "kitchen.plan.html")
+    assert (here / "kitchen.plan.html").read_text() == "mine"
 
 
-def test_an_invalid_scene_file_is_reported_on_one_line(refuse, here):
+def test_an_invalid_scene_file_is_refused_with_its_line(refuse, here):
     (here / "bad.toml").write_text('textures = "wood.exr"\ntolerence = 1\n')
-    message = refuse("plan", "bad.toml")
-    assert message.startswith("bad.toml:2: tolerence: unknown key; did you mean 'tolerance'")
+    error = refuse("plan", "bad.toml")
+    assert (error.code, error.where) == ("unknown-key", "bad.toml:2")
 
 
 def test_other_files_are_refused_as_plans(refuse, here):
-    assert refuse("build", "--plan", "wood.exr").startswith("wood.exr: ")
-    assert refuse("build", "--plan", "there.json").startswith("there.json: ")
     (here / "deep.json").write_text("[" * 100_000)
-    assert refuse("build", "--plan", "deep.json").startswith("deep.json: ")
+    for name, code in (
+        ("wood.exr", "not-utf8"),
+        ("there.json", "file-not-found"),
+        ("deep.json", "nesting-too-deep"),
+    ):
+        error = refuse("build", "--plan", name)
+        assert (error.code, error.where) == (code, name)
