@@ -39,6 +39,7 @@ HINTS = {
     "rgb-out-of-gamut": "map it inside with --out-of-gamut, or use --encoded for 8-bit codes",
     "rgb-space-mismatch": "build the cube with the image in --scene, or without --scene",
     "scene-without-colours": "name an image with --scene, or build without --scene",
+    "source-changed": "plan again with 'uplift plan SCENE.toml'",
     "sparse-cube": "use --fill-missing where the command has it, or a cube built without --scene",
     "target-not-positive": "give --target above 0",
     "threshold-out-of-range": "use --threshold 1e-6 to 0.1",
