@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.cli.conftest import home, misuse, refuse, run, shown  # noqa: F401
+from tests.cli.conftest import home, refuse, run, shown  # noqa: F401
 from uplift.cube import read
 
 
