@@ -97,7 +97,7 @@ def main() -> None:
 
     \b
     Examples:
-      uplift build --atlas atlases/macbeth.txt --dim 32
+      uplift build --atlas macbeth --dim 32
       uplift query --cube macbeth-32.uplift '#cc3319'
       uplift query 0.8 0.2 0.1 --format json
       uplift check cubes/*.uplift

@@ -52,7 +52,6 @@ def test_unknown_options_do_not_parse():
 
 
 def test_python_of_the_readme_runs(tmp_path, monkeypatch):
-    (tmp_path / "atlases").symlink_to(ROOT / "atlases")
     monkeypatch.chdir(tmp_path)
     (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
     with warns("entry-out-of-gamut"):

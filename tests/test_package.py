@@ -1,4 +1,4 @@
-"""The wheel holds the library, the command line and the default cube, and nothing else."""
+"""The wheel holds the library, the command line, the default cube and the atlases, and nothing else."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 
 import uplift
 
-FOLDERS = {"uplift": "uplift", "cli": "uplift_cli"}
+FOLDERS = {"uplift": "uplift", "cli": "uplift_cli", "atlases": "uplift_atlases"}
 
 
 def source_files(repository):
@@ -50,7 +50,7 @@ def test_every_module_is_in_it(wheel, repository):
         modules = [
             path.relative_to(repository / here).as_posix() for path in (repository / here).rglob("*.py")
         ]
-        assert len(modules) > 10
+        assert len(modules) > 10 or here == "atlases"
         assert {f"{there}/{module}" for module in modules} <= set(wheel.namelist())
 
 
@@ -70,13 +70,17 @@ def test_the_licence_is_in_it(wheel, repository):
 def test_nothing_else_is_in_it(wheel, repository):
     assert {name.split("/")[0] for name in wheel.namelist()} == {
         "uplift",
+        "uplift_atlases",
         "uplift_cli",
         f"uplift-{uplift.__version__}.dist-info",
     }
     data = {name for name in wheel.namelist() if ".dist-info/" not in name and not name.endswith(".py")}
     tracked = {name for name in source_files(repository) if not name.endswith(".py")}
-    assert data == {name for name in tracked if name.startswith("uplift/")}
-    assert {Path(name).suffix for name in data} == {".css", ".csv", ".h", ".j2", ".js", ".typed", ".uplift"}
+    library = {name for name in tracked if name.startswith("uplift/")}
+    atlases = {f"uplift_{name}" for name in tracked if name.startswith("atlases/")}
+    assert data == library | atlases
+    assert {Path(name).suffix for name in library} == {".css", ".csv", ".h", ".j2", ".js", ".typed", ".uplift"}
+    assert {Path(name).suffix for name in atlases} == {".md", ".txt"}
 
 
 def test_the_command_is_installed_as_uplift(wheel):
@@ -97,6 +101,9 @@ def test_it_works_from_where_it_is_installed(wheel, tmp_path):
     code = (
         f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import uplift, uplift_cli.main as cli\n"
         f"assert uplift.__file__.startswith({str(tmp_path)!r}) and cli.__file__.startswith({str(tmp_path)!r})\n"
+        "from uplift.atlas import shipped_atlases\n"
+        f"assert all(str(atlas.path).startswith({str(tmp_path)!r}) for atlas in shipped_atlases())\n"
+        "assert len(uplift.read_atlas('macbeth')) == 24\n"
         "cli.main(['query', '#ffffff', '--format', 'csv', '--wavelengths', '550'])"
     )
     done = subprocess.run(

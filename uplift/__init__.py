@@ -2,7 +2,7 @@
 
     import uplift
 
-    cube = uplift.build("atlases/macbeth.txt", dim=32)
+    cube = uplift.build("macbeth", dim=32)
     cube.save("macbeth.uplift")
 
     cube = uplift.load("macbeth.uplift")

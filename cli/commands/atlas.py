@@ -1,4 +1,4 @@
-"""``uplift atlas``: list the entries of atlases, or convert between formats."""
+"""``uplift atlas``: list the shipped atlases or the entries of atlases, or convert between formats."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import click
 
 from ..output.atlas_listing import Listing, Row, list_entries
 from ..output.console import console, json_text
+from ..output.shipped_listing import print_shipped
 from ..params.options import force_option, format_option, sensor_options
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @click.command("atlas")
-@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path())
+@click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
 @sensor_options
 @format_option("table", "json", "csv")
 @click.option(
@@ -38,17 +39,26 @@ def command(
 ) -> None:
     """List the entries of atlas files: wavelength range, colour, gamut and warnings.
 
+    Without FILE, lists the atlases that are installed with uplift, with source and licence. Their names are valid
+    wherever an atlas file is: where no file of the name exists, the shipped atlas is read.
+
     An atlas contains measured reflectances, as an ART measurement archive (text) or as a CSV table with a row or a
     column per sample. Several files are read as one atlas. --convert writes CSV if OUT ends in .csv, and an ART
     measurement archive otherwise.
 
     \b
     Examples:
-      uplift atlas atlases/macbeth.txt
-      uplift atlas --space "Display P3" --illuminant A atlases/macbeth.txt
+      uplift atlas macbeth
+      uplift atlas
+      uplift atlas --space "Display P3" --illuminant A macbeth
       uplift atlas --format json atlases/*.txt
       uplift atlas paints.csv --convert paints.txt
     """
+    if not files:
+        if convert is not None:
+            raise click.UsageError("--convert needs a FILE to convert.")
+        print_shipped(style)
+        return
     from uplift.atlas import read_atlas
 
     atlas = read_atlas(*files)

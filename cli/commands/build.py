@@ -98,7 +98,7 @@ def command(
 
     \b
     Examples:
-      uplift build --atlas atlases/macbeth.txt --dim 32
+      uplift build --atlas macbeth --dim 32
       uplift build --atlas paints.csv --atlas macbeth.txt --coefficients 17 -o book.uplift
       uplift build --atlas paints.csv --dim auto --auto-tolerance 1
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'

@@ -9,7 +9,7 @@ import click
 
 from ..output.console import console, make_table
 from ..output.progress import progress_bar
-from ..params.atlases import SHIPPED, read_atlases
+from ..params.atlases import DEFAULT_ATLASES, read_atlases
 from ..params.options import atlas_option, force_option
 from ..startup import enable_jit_cache, use_one_blas_thread
 
@@ -29,7 +29,7 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
     multiple=True,
     help="Methods by name, with '*' as a wildcard; repeatable.",
 )
-@atlas_option("Measured spectra", SHIPPED)
+@atlas_option("Measured spectra", DEFAULT_ATLASES)
 @click.option(
     "--colours",
     metavar="N",

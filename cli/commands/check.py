@@ -38,7 +38,7 @@ def command(
     of nodes by status. The exit code is 0 if all differences are within their limits and 1 otherwise.
 
     Atlases are identified by name and content. They are searched for in --atlas-dir, the cube's folder, the current
-    folder and 'atlases'.
+    folder, 'atlases' and the shipped atlases.
     """
     enable_jit_cache()
     from uplift.lookup import load

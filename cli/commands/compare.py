@@ -10,7 +10,7 @@ import click
 
 from ..output.console import json_text
 from ..output.progress import progress_bar
-from ..params.atlases import SHIPPED, read_atlases
+from ..params.atlases import DEFAULT_ATLASES, read_atlases
 from ..params.options import atlas_option, force_option, format_option, light_option, output_folder_option
 from ..startup import use_one_blas_thread
 
@@ -24,7 +24,7 @@ FILTERS = "compare-filters.csv"
 
 
 @click.command("compare")
-@atlas_option("Surfaces", SHIPPED)
+@atlas_option("Surfaces", DEFAULT_ATLASES)
 @light_option("Illuminant", "A, B, C, and FL2, FL7, FL11")
 @click.option(
     "--target",

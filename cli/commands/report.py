@@ -53,12 +53,12 @@ def command(
     \b
     Examples:
       uplift report macbeth-32.uplift
-      uplift report macbeth-32.uplift --atlas atlases/cie2017.txt -o unseen.html
+      uplift report macbeth-32.uplift --atlas cie2017 -o unseen.html
       uplift report macbeth-32.uplift --light D50 --light FL4 --worst 6
       uplift report macbeth-32.uplift --format json | jq .failures
 
     The measured spectra are those of the cube's atlases. Atlases are identified by name and content, and searched for
-    in --atlas-dir, the cube's folder, the current folder and 'atlases'.
+    in --atlas-dir, the cube's folder, the current folder, 'atlases' and the shipped atlases.
 
     --atlas evaluates entries of other atlases at their own colours. This shows how well the cube predicts unseen
     materials, and whether its standard errors are calibrated.

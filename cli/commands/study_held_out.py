@@ -9,7 +9,7 @@ import click
 
 from ..output.console import console, json_text, make_table
 from ..output.progress import progress_bar
-from ..params.atlases import SHIPPED, read_atlases
+from ..params.atlases import DEFAULT_ATLASES, read_atlases
 from ..params.options import atlas_option, coefficient_count, coefficients_options, format_option
 from ..startup import enable_jit_cache
 
@@ -20,7 +20,7 @@ Results = dict[str, "tuple[HoldoutSplit, ...]"]
 
 
 @click.command("held-out")
-@atlas_option("Atlas", SHIPPED)
+@atlas_option("Atlas", DEFAULT_ATLASES)
 @click.option("--splits", default=3, show_default=True, help="Number of splits of each atlas.")
 @click.option("--dim", default=32, show_default=True, help="Lattice nodes along each axis.")
 @coefficients_options
@@ -36,7 +36,7 @@ def held_out(
     \b
     Examples:
       uplift study held-out --atlas paints.csv
-      uplift study held-out --atlas atlases/rawtoaces.txt --coefficients 17 --splits 10
+      uplift study held-out --atlas rawtoaces --coefficients 17 --splits 10
       uplift study held-out --format json
     """
     enable_jit_cache()

@@ -10,7 +10,7 @@ import click
 
 from ..output.console import console, json_text, make_table
 from ..output.progress import progress_bar
-from ..params.atlases import SHIPPED, read_atlases
+from ..params.atlases import DEFAULT_ATLASES, read_atlases
 from ..params.options import atlas_option, force_option, format_option, output_folder_option
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ FILES = ("moments.csv", "moments.png", "moments-patches.png", "moments-worst.png
 
 
 @click.command("moments")
-@atlas_option("Atlas", SHIPPED)
+@atlas_option("Atlas", DEFAULT_ATLASES)
 @click.option(
     "--max-moments",
     metavar="N",
@@ -45,7 +45,7 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
     \b
     Examples:
       uplift study moments
-      uplift study moments --atlas atlases/macbeth.txt --output out --force
+      uplift study moments --atlas macbeth --output out --force
       uplift study moments --max-moments 8 --format json
     """
     from uplift.common.files import check_folder

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from uplift.lab.study.stability_design import DesignSpace
 
 FILES = ("stability.csv", "stability.json", "stability.png")
-MACBETH = "atlases/macbeth.txt"
+MACBETH = "macbeth"
 
 
 def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None]:
@@ -46,7 +46,7 @@ def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
 @click.option(
     "--thresholds", callback=_list_of(float), metavar="X,…", help="Largest residuals, |linear RGB|."
 )
-@atlas_option("Atlas in addition to the synthetic ones", f"{MACBETH} if it exists")
+@atlas_option("Atlas in addition to the synthetic ones", MACBETH)
 @click.option(
     "--atlases", callback=_list_of(str), metavar="NAME,…", help="Atlases to use by name, or 'none'."
 )
@@ -86,10 +86,7 @@ def stability(
     from uplift.lab.study.stability import NO_ATLAS, study_stability
     from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES
 
-    if not files and Path(MACBETH).exists():
-        files = (MACBETH,)
-    measured = read_atlases(files) if files else {}
-    atlases = measured | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
+    atlases = read_atlases(files or (MACBETH,)) | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
     given = {name: value for name, value in options.items() if value is not None}
     axes = replace(
         design.QUICK_DESIGN if quick else design.DesignSpace(), **({"atlases": (NO_ATLAS, *atlases)} | given)

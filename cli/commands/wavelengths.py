@@ -8,7 +8,7 @@ import click
 
 from ..output.progress import spinner
 from ..output.wavelengths_output import PRINTERS, Result
-from ..params.atlases import SHIPPED, read_atlases
+from ..params.atlases import DEFAULT_ATLASES, read_atlases
 from ..params.options import atlas_option, force_option, format_option, light_option, sensor_options
 from ..params.wavelengths import parse_wavelengths
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     help="optimised: fit everything; meyer: Meyer's quadrature; the others use even wavelengths, sampled (uniform), "
     "averaged over bins (bins) or with fitted weights (fitted). [default: optimised]",
 )
-@atlas_option("Materials", SHIPPED)
+@atlas_option("Materials", DEFAULT_ATLASES)
 @light_option("Illuminant of the scene", "D65")
 @sensor_options
 @format_option("table", "json", "csv")
@@ -71,7 +71,7 @@ def command(
       uplift wavelengths --target 1 --light D65 --light FL11 --plot wavelengths.png
       uplift wavelengths --target 0.5 --measure p95 --atlas paints.csv --format json
       uplift wavelengths --wavelengths 400:700:20 --light A --light LED-B3 --format csv
-      uplift wavelengths --count 4 --method meyer --light C --atlas atlases/macbeth.txt
+      uplift wavelengths --count 4 --method meyer --light C --atlas macbeth
     """
     if sum(option is not None for option in (count, target, given)) != 1:
         raise click.UsageError("Give one of --count, --target and --wavelengths.")

@@ -8,27 +8,31 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
 
-SHIPPED = "atlases/*.txt"
+LOCAL = "atlases/*.txt"
+DEFAULT_ATLASES = f"{LOCAL} if there are any, or else the shipped atlases"
+"""Default of ``--atlas``, as the help states it."""
 
 
 def read_atlases(files: tuple[str, ...]) -> dict[str, Atlas]:
-    """Return atlases by the stems of their file names; without files, those in ``atlases``. Raises `AtlasError`."""
+    """Return atlases by the stems of their file names; without files, the default ones. Raises `AtlasError`."""
     from uplift.atlas import read_atlas
     from uplift.common.errors import AtlasError
 
-    paths = [Path(file) for file in files] or sorted(Path().glob(SHIPPED))
-    if not paths:
-        raise AtlasError(
-            f"no file matches {SHIPPED}", code="no-atlases", hint="name atlases with --atlas FILE"
-        )
     atlases: dict[str, Atlas] = {}
-    for path in paths:
-        if path.stem in atlases:
+    for file in files or _default_files():
+        name = Path(file).stem
+        if name in atlases:
             raise AtlasError(
-                f"another atlas has the name '{path.stem}' too",
+                f"another atlas has the name '{name}' too",
                 code="duplicate-atlas",
-                path=path,
+                path=file,
                 hint="rename one of the files",
             )
-        atlases[path.stem] = read_atlas(path)
+        atlases[name] = read_atlas(file)
     return atlases
+
+
+def _default_files() -> list[Path]:
+    from uplift.atlas import shipped_atlases
+
+    return sorted(Path().glob(LOCAL)) or [shipped.path for shipped in shipped_atlases()]

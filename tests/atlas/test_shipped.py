@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import runpy
+from pathlib import Path
 
 import colour
 import numpy as np
 import pytest
 
+import uplift
 from tests.atlas.atlas_texts import ATLASES
-from tests.helpers import warns
-from uplift.atlas import on_grid, read_atlas
+from tests.helpers import raises, warns
+from uplift.atlas import on_grid, read_atlas, shipped_atlases
+from uplift.atlas.shipped import find_atlas_file
+from uplift.common.errors import AtlasError
 
 GRID = np.arange(380.0, 785.0, 5.0)
 SHIPPED = {
@@ -22,6 +26,13 @@ SHIPPED = {
     "tcs.txt": (14, 360, 830, 5),
     "vs.txt": (15, 360, 830, 5),
 }
+
+
+@pytest.fixture
+def empty_folder(tmp_path, monkeypatch):
+    """An empty working folder."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
 
 
 @pytest.mark.parametrize("file", SHIPPED)
@@ -74,3 +85,67 @@ def test_tool_writes_the_same_bytes(tmp_path):
     tool["main"](tmp_path)
     for file in SHIPPED:
         assert (tmp_path / file).read_bytes() == (ATLASES / file).read_bytes()
+
+
+def test_list_states_name_content_source_licence_and_entries():
+    atlases = shipped_atlases()
+    assert [atlas.path.name for atlas in atlases] == sorted(SHIPPED)
+    for atlas in atlases:
+        count = SHIPPED[atlas.path.name][0]
+        header = read_atlas(ATLASES / atlas.path.name).sources[0].header
+        assert (atlas.name, atlas.entries) == (atlas.path.stem, count)
+        assert (atlas.content, atlas.source, atlas.licence) == (
+            header.content,
+            header.copyright,
+            header.licence,
+        )
+
+
+def test_bare_name_reads_the_shipped_atlas_from_an_empty_folder(empty_folder):
+    assert read_atlas("macbeth").sources == read_atlas(ATLASES / "macbeth.txt").sources
+
+
+def test_name_of_a_missing_file_reads_the_shipped_atlas_with_a_warning(empty_folder):
+    with warns("shipped-atlas") as caught:
+        atlas = read_atlas("macbeth.txt", "pmc")
+    assert caught[0].where == "macbeth.txt"
+    assert [source.name for source in atlas.sources] == ["macbeth.txt", "pmc.txt"]
+
+
+@pytest.mark.parametrize("name", ["macbeth", "macbeth.txt"])
+def test_existing_file_takes_precedence(empty_folder, name):
+    (empty_folder / name).write_text("name,380,780\nwhite,1,1\n")
+    assert read_atlas(name).names == ("white",)
+
+
+def test_broken_link_is_not_replaced_by_a_shipped_atlas(empty_folder):
+    (empty_folder / "macbeth.txt").symlink_to("gone.txt")
+    with raises(AtlasError, "file-not-found"):
+        read_atlas("macbeth.txt")
+
+
+@pytest.mark.parametrize("path", ["macbet", "Macbeth.txt", "atlases/macbeth.txt"])
+def test_hint_names_the_nearest_shipped_atlas(empty_folder, path):
+    with raises(AtlasError, "file-not-found") as caught:
+        read_atlas(path)
+    assert caught.value.where == path
+    assert "'macbeth'" in caught.value.hint
+
+
+def test_hint_names_no_shipped_atlas_for_other_names(empty_folder):
+    with raises(AtlasError, "file-not-found") as caught:
+        read_atlas("paints.txt")
+    assert "shipped" not in caught.value.hint
+
+
+def test_cube_records_the_file_of_a_shipped_atlas(empty_folder):
+    with pytest.warns(uplift.UpliftWarning):
+        cube = uplift.build("macbeth", dim=3, coefficients=4)
+    (source,) = read_atlas(ATLASES / "macbeth.txt").sources
+    assert cube.data.provenance["atlases"] == [{"name": source.name, "digest": source.digest}]
+
+
+def test_relative_paths_start_in_the_folder(empty_folder):
+    (empty_folder / "macbeth.txt").write_text("name,380,780\nwhite,1,1\n")
+    assert find_atlas_file("macbeth", empty_folder) == shipped_atlases()[2].path
+    assert Path(find_atlas_file("macbeth.txt", empty_folder)) == empty_folder / "macbeth.txt"

@@ -116,17 +116,58 @@ def test_convert_replaces_files_only_with_force(invoke, refuse, tmp_path):
 def test_invalid_input_is_an_error(refuse):
     error = refuse("atlas", "none.txt")
     assert (error.code, error.where) == ("file-not-found", "none.txt")
+    assert "'macbeth'" in refuse("atlas", "macbet.txt").hint
     error = refuse("atlas", MACBETH, "--space", "sRGBB")
     assert error.code == "unknown-rgb-space"
     assert "'sRGB'" in error.hint
 
 
-def test_files_are_required(misuse):
-    misuse("atlas")
+def test_shipped_atlases_are_listed_without_a_file(invoke):
+    lines = invoke().stdout.splitlines()
+    assert lines[1].split() == ["name", "entries", "content", "source", "licence"]
+    (row,) = [line.split() for line in lines if line.startswith("  macbeth ")]
+    assert row[:4] == ["macbeth", "24", "24", "patches"]
+    assert "BSD-3-Clause" in row
+
+
+def test_list_of_shipped_atlases_in_json_and_csv(invoke):
+    atlases = json.loads(invoke("--format", "json").stdout)["atlases"]
+    assert [atlas["name"] for atlas in atlases] == sorted(path.stem for path in ATLASES.glob("*.txt"))
+    for atlas in atlases:
+        file = read_atlas(atlas["path"])
+        assert atlas["entries"] == len(file)
+        assert atlas["digest"] == file.sources[0].digest
+        assert "colour-science" in atlas["source"]
+        assert "BSD-3-Clause" in atlas["licence"]
+    rows = list(csv.DictReader(io.StringIO(invoke("--format", "csv").stdout)))
+    assert [(row["name"], int(row["entries"]), row["licence"]) for row in rows] == [
+        (atlas["name"], atlas["entries"], atlas["licence"]) for atlas in atlases
+    ]
+
+
+def test_convert_needs_a_file(misuse, tmp_path):
+    assert "--convert" in misuse("atlas", "--convert", tmp_path / "out.csv")
+
+
+def test_names_of_shipped_atlases_work_in_an_empty_folder(invoke, home):
+    expected = invoke(MACBETH).stdout
+    result = invoke("macbeth")
+    assert (result.stdout, result.stderr) == (expected, "")
+    result = invoke("macbeth.txt")
+    assert result.stdout == expected
+    (warning,) = warning_lines(result)
+    assert warning.startswith("macbeth.txt: ")
+
+
+def test_a_file_takes_precedence_over_the_shipped_atlas(invoke, home):
+    (home / "macbeth.txt").write_text("name,380,780\nwhite,1,1\n")
+    result = invoke("macbeth.txt")
+    assert "1 entries" in result.stdout
+    assert result.stderr == ""
 
 
 def test_help_has_one_example_per_line(invoke):
-    assert "\n    uplift atlas atlases/macbeth.txt\n" in invoke("--help").stdout
+    assert "\n    uplift atlas macbeth\n" in invoke("--help").stdout
 
 
 def test_help_has_the_default_observer(invoke):

@@ -135,9 +135,5 @@ def test_invalid_input_is_an_error(refuse, home, macbeth, arguments, code):
     assert [path.name for path in home.iterdir()] in (["file"], ["chart", "file"], ["file", "chart"])
 
 
-def test_atlases_are_required(refuse):
-    assert refuse("chart").code == "no-atlases"
-
-
 def test_requirements_need_recommend(misuse):
     assert "--recommend" in misuse("chart", "--time-ns", 100)

@@ -77,7 +77,8 @@ def test_update_replaces_only_cubes_that_differ(run, stored, modified):
     run("check", modified)
 
 
-def test_atlases_are_searched_for_in_given_folders(run, refuse, home, macbeth, recwarn):
+def test_atlases_are_searched_for_in_given_folders(run, refuse, home, monkeypatch, macbeth, recwarn):
+    monkeypatch.setattr("uplift.pipeline.provenance.shipped_atlases", tuple)
     with pytest.warns(uplift.UpliftWarning):
         uplift.build(macbeth, dim=3, coefficients=4).save(home / "cube.uplift")
     error = refuse("check", "cube.uplift")
@@ -88,6 +89,11 @@ def test_atlases_are_searched_for_in_given_folders(run, refuse, home, macbeth, r
     assert "passed" in run("check", "cube.uplift", "--atlas-dir", "there").stdout
     (home / "there" / "macbeth.txt").write_text("Entry ID: changed\n")
     assert refuse("check", "cube.uplift", "--atlas-dir", "there").code == "atlas-changed"
+
+
+def test_shipped_atlases_are_found_in_any_folder(run, home, cubes):
+    shutil.copy(cubes / "moments-8-macbeth.uplift", home)
+    assert "passed" in run("check", "moments-8-macbeth.uplift").stdout
 
 
 def test_invalid_cubes_are_reported_before_any_build(refuse, stored, monkeypatch):

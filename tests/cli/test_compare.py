@@ -94,7 +94,3 @@ def test_invalid_input_is_an_error(refuse, home, macbeth, arguments, code):
     (home / "out" / "compare.csv").write_text("mine")
     assert refuse("compare", "--atlas", macbeth, *arguments).code == code
     assert (home / "out" / "compare.csv").read_text() == "mine"
-
-
-def test_atlases_are_required(refuse):
-    assert refuse("compare").code == "no-atlases"

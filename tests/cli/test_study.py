@@ -77,6 +77,13 @@ def test_default_atlases_are_those_of_the_working_folder(run, home, tcs):
     assert {row["atlas"] for row in rows} == {"all", "tcs"}
 
 
+def test_shipped_atlases_are_the_default_in_other_folders(run, home, repository):
+    rows = csv.DictReader(io.StringIO(run("study", "moments", "--max-moments", 0, "--format", "csv").stdout))
+    assert {row["atlas"] for row in rows} == {"all"} | {
+        path.stem for path in (repository / "atlases").glob("*.txt")
+    }
+
+
 def test_few_entries_and_few_moments_are_drawn_too(run, home):
     (home / "greys.csv").write_text("name,400,500,600,700\ngrey,0.5,0.5,0.5,0.5\n")
     run("study", "moments", "--atlas", "greys.csv", "--max-moments", 0, "-o", ".")
@@ -103,7 +110,6 @@ def test_files_are_replaced_only_with_force(run, refuse, home, tcs):
         (("--atlas", "tcs.txt", "--atlas", "copy/tcs.txt"), "duplicate-atlas"),
         (("--atlas", "tcs.txt", "-o", "file"), "folder-not-created"),
         (("--atlas", "tcs.txt", "-o", "none/out"), "folder-not-created"),
-        ((), "no-atlases"),
     ],
 )
 def test_invalid_input_is_an_error(refuse, home, tcs, options, code):

@@ -21,7 +21,8 @@ from uplift.report.regression import compare_rebuilt
 
 @pytest.fixture
 def home(tmp_path, monkeypatch):
-    """An empty working folder."""
+    """An empty working folder, without shipped atlases."""
+    monkeypatch.setattr("uplift.pipeline.provenance.shipped_atlases", tuple)
     (tmp_path / "home").mkdir()
     monkeypatch.chdir(tmp_path / "home")
     return tmp_path / "home"
@@ -88,6 +89,18 @@ def test_atlases_are_found_next_to_the_cube_in_the_working_folder_and_in_atlases
 def test_a_missing_atlas_is_named(tiny_cube, home):
     error = rebuild_error("atlas-not-found", tiny_cube, home / "cube.uplift", [home / "none"])
     assert "macbeth.txt" in error.problem
+
+
+def test_a_shipped_atlas_is_found_in_any_folder(tiny_cube, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "macbeth.txt").write_text("Entry ID: other\n", encoding="utf-8")
+    assert digest(rebuild(tiny_cube, tmp_path / "cube.uplift").data) == digest(tiny_cube.data)
+
+
+def test_a_shipped_atlas_of_other_content_is_not_used(tiny_cube, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    cube = with_provenance(tiny_cube, atlases=[{"name": "macbeth.txt", "digest": "0" * 64}])
+    rebuild_error("atlas-not-found", cube, tmp_path / "cube.uplift")
 
 
 def test_a_changed_atlas_is_refused(tiny_cube, repository, home):

@@ -10,6 +10,7 @@ from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source, merge
 from uplift.atlas.distributions import from_distributions
 from uplift.atlas.document import read_document
 from uplift.atlas.resample import Clip, Resampled, on_grid, resample
+from uplift.atlas.shipped import ShippedAtlas, find_atlas_file, shipped_atlases
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OutputError
 from uplift.common.files import write_text
@@ -20,6 +21,7 @@ __all__ = [
     "Entry",
     "Header",
     "Resampled",
+    "ShippedAtlas",
     "SkippedEntry",
     "Source",
     "from_distributions",
@@ -27,6 +29,7 @@ __all__ = [
     "on_grid",
     "read_atlas",
     "resample",
+    "shipped_atlases",
     "write_atlas",
 ]
 
@@ -37,7 +40,8 @@ def read_atlas(*paths: StrPath) -> Atlas:
     Parameters
     ----------
     *paths : path-like
-        Files, in the order of their entries.
+        Files, in the order of their entries. Where a file does not exist, a shipped atlas of that name is read, with or
+        without the suffix ``.txt``; see `shipped_atlases`.
 
     Returns
     -------
@@ -51,16 +55,18 @@ def read_atlas(*paths: StrPath) -> Atlas:
     Warns
     -----
     UpliftWarning
-        An entry was skipped (``entry-skipped``), or a table was read as percent (``values-in-percent``).
+        An entry was skipped (``entry-skipped``), a table was read as percent (``values-in-percent``), or a shipped atlas
+        replaces a missing file (``shipped-atlas``); the name ``macbeth`` without a suffix gives no warning.
 
     Examples
     --------
     >>> import uplift
-    >>> macbeth = uplift.read_atlas("atlases/macbeth.txt")
+    >>> macbeth = uplift.read_atlas("macbeth")
     >>> macbeth["orange"]
     Entry('orange', 81 samples, 380–780 nm)
     """
-    atlas = merge(_read(path) for path in paths)
+    found = list(map(find_atlas_file, paths))
+    atlas = merge(map(_read, found))
     for skipped in atlas.skipped:
         warnings.warn(skipped.warning(), stacklevel=2)
     return atlas

@@ -63,6 +63,12 @@ def read(document: Document) -> Atlas:
     )
 
 
+def read_header(document: Document) -> Header:
+    """Read the statements of an archive about itself. Raise `AtlasError`."""
+    preamble, _ = split_entries(document)
+    return _header(preamble, SourceLocation(document.path))
+
+
 def _header(lines: list[Line], location: SourceLocation) -> Header:
     if lines and fold(lines[0][1]).startswith(fold(MAGIC)):
         _check_version(lines[0], location)

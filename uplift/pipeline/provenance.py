@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from uplift.atlas import Atlas, read_atlas
+from uplift.atlas import Atlas, read_atlas, shipped_atlases
 from uplift.atlas.document import read_document
 from uplift.common.arrays import StrPath
 from uplift.common.errors import CubeFileError, UpliftWarning
@@ -20,7 +20,7 @@ def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = (
     """Read the atlas that a cube was built from. Warnings of the first build are not repeated.
 
     The files are searched by name and digest in ``folders``, next to the cube, in the working folder, and in the
-    folder ``atlases`` in or next to each of these.
+    folder ``atlases`` in or next to each of these, and by digest among the shipped atlases.
 
     Parameters
     ----------
@@ -81,6 +81,9 @@ def _find(path: StrPath, name: str, digest: str, folders: Sequence[Path]) -> Pat
     for candidate in candidates:
         if read_document(candidate).digest == digest:
             return candidate
+    for shipped in shipped_atlases():
+        if shipped.digest == digest:
+            return shipped.path
     hint = "pass the folder that contains it, or build the cube again"
     if candidates:
         problem = f"its atlas '{name}' has changed ({candidates[0]})"

@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from uplift import lookup
 from uplift.atlas import Atlas, on_grid, read_atlas
+from uplift.atlas.shipped import find_atlas_file
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.errors import unknown_name
@@ -66,7 +67,7 @@ class AtlasMaterial(SpecModel):
 
     def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
         """Spectrum on the wavelengths of the sensor. Raises `AtlasError` and `UnknownNameError`."""
-        atlas = read_atlas(folder / self.atlas)
+        atlas = read_atlas(find_atlas_file(self.atlas, folder))
         entries = tuple(entry for entry in atlas.entries if entry.name == self.entry)
         if not entries:
             raise unknown_name(self.entry, atlas.names, "entry")

@@ -1,0 +1,58 @@
+"""Printers of the list of shipped atlases."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .console import console, json_text
+
+if TYPE_CHECKING:
+    from uplift.atlas import ShippedAtlas
+
+COLUMNS = ("name", "entries", "content", "source", "licence")
+
+
+def print_shipped(style: str) -> None:
+    """Print the shipped atlases as table, JSON or CSV."""
+    from uplift.atlas import shipped_atlases
+
+    PRINTERS[style](shipped_atlases())
+
+
+def _print_json(atlases: Iterable[ShippedAtlas]) -> None:
+    rows = [_record(atlas) | {"path": str(atlas.path), "digest": atlas.digest} for atlas in atlases]
+    click.echo(json_text({"atlases": rows}))
+
+
+def _print_csv(atlases: Iterable[ShippedAtlas]) -> None:
+    from uplift.common.csv import csv_text
+
+    click.echo(csv_text(COLUMNS, (list(_record(atlas).values()) for atlas in atlases)), nl=False)
+
+
+def _print_table(atlases: Iterable[ShippedAtlas]) -> None:
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, caption="use a name as --atlas NAME, or in place of FILE")
+    for title in COLUMNS:
+        fixed = title in ("name", "entries")
+        table.add_column(title, justify="right" if title == "entries" else "left", no_wrap=fixed, overflow="fold")
+    for atlas in atlases:
+        table.add_row(*(Text(str(value)) for value in _record(atlas).values()))
+    console().print(table)
+
+
+def _record(atlas: ShippedAtlas) -> dict[str, Any]:
+    return {name: getattr(atlas, name) for name in COLUMNS}
+
+
+PRINTERS: dict[str, Callable[[Iterable[ShippedAtlas]], None]] = {
+    "table": _print_table,
+    "json": _print_json,
+    "csv": _print_csv,
+}
