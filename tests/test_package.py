@@ -18,7 +18,7 @@ FOLDERS = {"uplift": "uplift", "cli": "uplift_cli", "atlases": "uplift_atlases"}
 
 
 def source_files(repository):
-    """What git tracks, and what it would track if asked to; paths from the root."""
+    """What git tracks, and what it would track if added; paths from the root."""
     args = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     listed = subprocess.run(args, cwd=repository, capture_output=True, check=True).stdout.decode()
     return [name for name in listed.split("\0") if name and (repository / name).is_file()]
@@ -59,7 +59,7 @@ def test_the_default_cube_is_in_it_byte_for_byte(wheel, repository):
     assert wheel.read(cube) == (repository / cube).read_bytes()
 
 
-def test_type_checkers_are_told(wheel):
+def test_type_checkers_find_the_marker_file(wheel):
     assert "uplift/py.typed" in wheel.namelist()
 
 

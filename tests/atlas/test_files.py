@@ -56,7 +56,7 @@ def test_unreadable_files_raise(tmp_path):
     for path, code, reason in [
         (tmp_path / "none.txt", "file-not-found", "no such file"),
         (tmp_path, "not-a-regular-file", "is a directory"),
-        ("a\0b", "unreadable-file", "null"),
+        ("a\0b", "file-unreadable", "null"),
     ]:
         with raises(AtlasError, code) as caught:
             read_atlas(path)
@@ -69,7 +69,7 @@ def test_unreadable_files_raise(tmp_path):
 def test_file_without_permission_raises(save):
     path = save(PLAIN)
     path.chmod(0)
-    with raises(AtlasError, "unreadable-file"):
+    with raises(AtlasError, "file-unreadable"):
         read_atlas(path)
 
 

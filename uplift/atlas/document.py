@@ -20,7 +20,7 @@ READ_ERRORS: dict[type[Exception], str] = {
     FileNotFoundError: "file-not-found",
     IsADirectoryError: "not-a-regular-file",
 }
-"""Codes of errors in reading; others are ``unreadable-file``."""
+"""Codes of errors in reading; others are ``file-unreadable``."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def _bytes(location: SourceLocation) -> bytes:
     try:
         return Path(location.path or "").read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        code = READ_ERRORS.get(type(error), "unreadable-file")
+        code = READ_ERRORS.get(type(error), "file-unreadable")
         reason = str(getattr(error, "strerror", None) or error).lower()
         raise location.error(
             f"cannot be read: {reason}", "name an atlas file that can be read", code=code

@@ -48,7 +48,7 @@ class CubeOptions:
     @property
     def command(self) -> str:
         """Return the command that builds the cube."""
-        model = f"--moments {self.count - 1}" if self.model == Moments.name else f"--model {self.model}"
+        model = f"--coefficients {self.count}" if self.model == Moments.name else f"--model {self.model}"
         return f"uplift build {'--atlas FILE ' if self.atlas else ''}--dim {self.dim} {model}"
 
 
