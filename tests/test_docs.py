@@ -69,3 +69,10 @@ def test_make_targets_exist():
     for page in PAGES:
         for target in re.findall(r"`make ([\w-]+)`", " ".join(page.read_text(encoding="utf-8").split())):
             assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
+
+
+def test_files_that_the_pages_name_exist():
+    for page in [*PAGES, ROOT / "CONTRIBUTING.md"]:
+        named = re.findall(r"`((?:uplift|cli|tests|benchmarks|tools|docs|atlases)/[\w./-]+)`", page.read_text("utf-8"))
+        missing = [name for name in named if "NAME" not in name and not (ROOT / name).exists()]
+        assert missing == [], page.name

@@ -82,7 +82,7 @@ def _facts(cube: Cube) -> dict[str, str]:
     points, size = cube.data.points.present, cube.data.lattice.size
     return {
         "model": f"{cube.data.model.name}, {cube.coefficient_count} coefficients",
-        "lattice": f"dim {cube.dim}, {np.count_nonzero(points):,} of {size:,} points",
+        "lattice": f"dim {cube.dim}, {np.count_nonzero(points):,} of {size:,} nodes",
         "RGB space": f"{cube.space} under {cube.illuminant}",
         "observer": cube.observer,
         "atlas entries": f"{len(cube.atlas_names):,}",
