@@ -1,7 +1,8 @@
 """Reproducibility of builds: ``make determinism`` writes docs/data/stability-determinism.json.
 
-Threads, cores, devices and batch sizes must not change a byte. Instruction sets may; the largest difference is what
-`uplift check` has to allow between machines (`uplift.report.regression`).
+Threads, cores, devices and batch sizes must not change a byte. Instruction sets must not change the nodes of the
+lattice. They may change spectra; the largest difference is what `uplift check` has to allow between machines
+(`uplift.report.regression`).
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
 
 import uplift
 from benchmarks.record import ROOT, write
@@ -62,19 +64,24 @@ SAME = (
     Setting("batches of 1024 and 64", batch=(1024, 64)),
     Setting("batches of 4000 and 100", batch=(4000, 100)),
 )
+NUMPY_SSE4 = {"NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR"}
+"""numpy at its baseline. A feature is disabled by its own name only, those above it must be named too."""
+NUMPY_AVX2 = {"NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR"}
+WITHOUT_AVX512 = NUMPY_AVX2 | {"XLA_FLAGS": "--xla_cpu_max_isa=AVX2", "OPENBLAS_CORETYPE": "Haswell"}
+"""Environment of a process that computes as on a CPU with AVX2 and without AVX-512."""
 APART = (
+    Setting("numpy without AVX-512", NUMPY_AVX2),
+    Setting("numpy without AVX2", NUMPY_SSE4),
+    Setting("XLA with AVX2", {"XLA_FLAGS": "--xla_cpu_max_isa=AVX2"}),
     Setting("XLA with AVX", {"XLA_FLAGS": "--xla_cpu_max_isa=AVX"}),
     Setting("XLA with SSE 4.2", {"XLA_FLAGS": "--xla_cpu_max_isa=SSE4_2"}),
-    Setting("BLAS for Sandy Bridge", {"OPENBLAS_CORETYPE": "Sandybridge"}),
-    Setting("BLAS for Nehalem", {"OPENBLAS_CORETYPE": "Nehalem"}),
-    Setting("numpy without AVX2", {"NPY_DISABLE_CPU_FEATURES": "X86_V3"}),
+    Setting("BLAS for Haswell (AVX2)", {"OPENBLAS_CORETYPE": "Haswell"}),
+    Setting("BLAS for Sandy Bridge (AVX)", {"OPENBLAS_CORETYPE": "Sandybridge"}),
+    Setting("BLAS for Nehalem (SSE 4.2)", {"OPENBLAS_CORETYPE": "Nehalem"}),
+    Setting("all three without AVX-512", WITHOUT_AVX512),
     Setting(
         "all three without AVX",
-        {
-            "XLA_FLAGS": "--xla_cpu_max_isa=SSE4_2",
-            "OPENBLAS_CORETYPE": "Nehalem",
-            "NPY_DISABLE_CPU_FEATURES": "X86_V3",
-        },
+        NUMPY_SSE4 | {"XLA_FLAGS": "--xla_cpu_max_isa=SSE4_2", "OPENBLAS_CORETYPE": "Nehalem"},
     ),
 )
 
@@ -103,6 +110,7 @@ def main(into: str | None, batch: tuple[int, int] | None) -> None:
         apart=[
             {
                 "setting": name,
+                "different_nodes": sum(not row["nodes_same"] for row in rows),
                 "measures": {one: max(row["measures"][one] for row in rows) for one in LIMITS},
                 "status_changes": sum(not row["status_same"] for row in rows),
             }
@@ -110,8 +118,10 @@ def main(into: str | None, batch: tuple[int, int] | None) -> None:
         ],
         limits=dict(LIMITS),
     )
-    different = [row for row in same if not row["same_bytes"]]
-    click.echo(f"{len(same)} builds that must have the same bytes, {len(different)} differ: {different}")
+    different = [row for row in same if not row["same_bytes"]] + [row for row in apart if not row["nodes_same"]]
+    click.echo(
+        f"{len(same)} builds must have the same bytes, {len(apart)} others the same nodes; failures: {different}"
+    )
     click.echo(f"across instruction sets at most {worst}")
     raise SystemExit(bool(different))
 
@@ -159,12 +169,14 @@ def _rows(setting: Setting, base: Path, folder: Path) -> list[Row]:
     rows = []
     for number, case in enumerate(CASES):
         one, other = base / f"{number}.uplift", folder / f"{number}.uplift"
-        comparison = compare_rebuilt(other, uplift.load(one).data, uplift.load(other).data)
+        first, second = uplift.load(one).data, uplift.load(other).data
+        comparison = compare_rebuilt(other, first, second)
         rows.append(
             {
                 "setting": setting.name,
                 "cube": case,
                 "same_bytes": one.read_bytes() == other.read_bytes(),
+                "nodes_same": np.array_equal(first.lattice.nodes, second.lattice.nodes),
                 "measures": comparison.measures,
                 "status_same": comparison.stored_counts == comparison.rebuilt_counts,
             }

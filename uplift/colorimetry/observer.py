@@ -13,6 +13,7 @@ import numpy as np
 from uplift.colorimetry.gamut import Primaries
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.colorimetry.sensor import Light, Sensor
+from uplift.colorimetry.srgb import decode_portably
 from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
 
@@ -187,6 +188,8 @@ def aligned(sensor: Sensor, start: float = START, end: float = END, step: float 
 def axis_nodes(spacing: str, dim: int) -> Array:
     """Return the positions of the nodes of a lattice axis in linear RGB.
 
+    They are the same doubles on every CPU, so cubes of one dim and spacing have equal nodes wherever they were built.
+
     Parameters
     ----------
     spacing : {"srgb", "linear"}
@@ -208,7 +211,7 @@ def axis_nodes(spacing: str, dim: int) -> Array:
     if spacing == "linear":
         return even
     if spacing == "srgb":
-        return np.asarray(colour_science().models.eotf_sRGB(even), dtype=float)
+        return decode_portably(even)
     raise unknown_name(spacing, ("srgb", "linear"), "axis spacing")
 
 

@@ -6,12 +6,16 @@ of a cube.
 
 from __future__ import annotations
 
+import decimal
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.gamut import SRGB, Gamut, conversion, map_to_gamut
 from uplift.common.arrays import Array
 
+POWER_DIGITS = 40
+"""Decimal digits of the powers in `decode_portably`: more than twice those of a double."""
 DISPLAY_MAPPING = "desaturate"
 """Gamut mapping of swatches: it keeps luminance and dominant wavelength."""
 
@@ -30,6 +34,35 @@ def decode(codes: Array) -> Array:
         Linear values of the same shape.
     """
     return np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
+
+
+def decode_portably(codes: Array) -> Array:
+    """Convert encoded sRGB to linear values, with the same doubles on every CPU.
+
+    The powers of numpy and of C libraries differ in the last bit between instruction sets (AVX-512 and others). Here
+    they are computed in decimal arithmetic and rounded once; every other operation is a single one of IEEE 754, which
+    defines its rounding. This is slow and intended for the nodes of a lattice axis.
+
+    Parameters
+    ----------
+    codes : ndarray, shape (n,)
+        Encoded values in [0, 1].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Linear values.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> decode_portably(np.array([0.0, 0.5, 1.0])).tolist()
+    [0.0, 0.21404114048223255, 1.0]
+    """
+    context, exponent = decimal.Context(prec=POWER_DIGITS), decimal.Decimal(2.4)
+    bases = ((codes + 0.055) / 1.055).tolist()
+    powers = [float(context.power(decimal.Decimal(base), exponent)) for base in bases]
+    return np.where(codes <= 0.04045, codes / 12.92, powers)
 
 
 def encode(linear: ArrayLike) -> Array:
