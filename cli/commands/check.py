@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from uplift.common.errors import UpliftError
+
 from ..output.console import console, json_text
+from ..output.diagnostics import UsageFailure, error_object
 from ..params.options import atlas_folders_option, format_option, quiet_option, verbose_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
+    from uplift.common.progress import ProgressCallback
+    from uplift.lookup import Cube
     from uplift.report.regression import RebuildDifference
 
 
@@ -37,43 +43,88 @@ def command(
     The comparison covers lattice RGB, spectra (largest and rms difference), ΔE00 under D65, A and FL11, and the number
     of nodes by status. The exit code is 0 if all differences are within their limits and 1 otherwise.
 
+    A cube that cannot be read or rebuilt, or that has another lattice, has failed; the others are still checked.
+    --update replaces every failed cube that can be rebuilt.
+
     Atlases are identified by name and content. They are searched for in --atlas-dir, the cube's folder, the current
     folder, 'atlases' and the shipped atlases.
     """
     enable_jit_cache()
+    from ..output.progress import build_progress
+
+    with build_progress(quiet=quiet, verbose=verbose) as progress:
+        results = [_check(Path(file), folders, progress) for file in dict.fromkeys(files)]
+    if style == "json":
+        click.echo(json_text([_object(result) for result in results]))
+    elif not quiet:
+        _table(results)
+    replaced = [result for result in results if update and not result.passed and result.rebuilt]
+    failed = [result for result in results if not result.passed and result not in replaced]
+    for result in failed:
+        if result.error and style != "json":
+            UsageFailure(result.error).show()
+    for result in replaced:
+        result.replace()
+    if failed:
+        raise SystemExit(1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Result:
+    """Result of the check of one cube: a comparison, or the error that prevented it."""
+
+    path: Path
+    rebuilt: Cube | None
+    comparison: RebuildDifference | None = None
+    error: UpliftError | None = None
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """Measures over their limits, or the code of the error."""
+        if self.comparison:
+            return self.comparison.failures
+        return (self.error.code,) if self.error else ()
+
+    @property
+    def passed(self) -> bool:
+        return not self.failures
+
+    def replace(self) -> None:
+        """Replace the stored cube by the rebuilt one."""
+        if self.rebuilt:
+            self.rebuilt.save(self.path, force=True)
+            click.echo(f"{self.path}: replaced", err=True)
+
+
+def _check(path: Path, folders: Sequence[str], progress: ProgressCallback) -> _Result:
     from uplift.lookup import load
     from uplift.pipeline.rebuild import rebuild
     from uplift.report.regression import compare_rebuilt
 
-    from ..output.progress import build_progress
-
-    stored = {Path(file): load(file) for file in files}
-    with build_progress(quiet=quiet, verbose=verbose) as progress:
-        rebuilt = {path: rebuild(cube, path, folders, progress=progress) for path, cube in stored.items()}
-    comparisons = [compare_rebuilt(path, cube.data, rebuilt[path].data) for path, cube in stored.items()]
-    if style == "json":
-        click.echo(json_text([_object(comparison) for comparison in comparisons]))
-    elif not quiet:
-        _table(comparisons)
-    failed = [comparison.path for comparison in comparisons if comparison.failures]
-    if failed and not update:
-        raise SystemExit(1)
-    for path in failed:
-        rebuilt[path].save(path, force=True)
-        click.echo(f"{path}: replaced", err=True)
+    rebuilt = None
+    try:
+        stored = load(path)
+        rebuilt = rebuild(stored, path, folders, progress=progress)
+        return _Result(path, rebuilt, comparison=compare_rebuilt(path, stored.data, rebuilt.data))
+    except UpliftError as error:
+        return _Result(path, rebuilt, error=error)
 
 
-def _object(comparison: RebuildDifference) -> dict[str, object]:
+def _object(result: _Result) -> dict[str, object]:
+    comparison, error = result.comparison, result.error
     return {
-        "cube": str(comparison.path),
-        "passed": not comparison.failures,
-        "failures": list(comparison.failures),
-        "measures": comparison.measures,
-        "status": {"stored": comparison.stored_counts, "rebuilt": comparison.rebuilt_counts},
+        "cube": str(result.path),
+        "passed": result.passed,
+        "failures": list(result.failures),
+        "measures": comparison.measures if comparison else {},
+        "status": {"stored": comparison.stored_counts, "rebuilt": comparison.rebuilt_counts}
+        if comparison
+        else {},
+        "error": error_object(error) if error else None,
     }
 
 
-def _table(comparisons: Sequence[RebuildDifference]) -> None:
+def _table(results: Sequence[_Result]) -> None:
     from rich.table import Table
 
     from uplift.report.regression import LIMITS
@@ -85,23 +136,26 @@ def _table(comparisons: Sequence[RebuildDifference]) -> None:
         table.add_column(headings.get(name, name.replace("delta_e_", "ΔE00 ")), justify="right", no_wrap=True)
     table.add_column("status", no_wrap=True)
     table.add_column("", no_wrap=True)
-    for comparison in comparisons:
-        table.add_row(*_row(comparison))
+    for result in results:
+        table.add_row(*_row(result))
     table.add_row(
         "[dim]limit[/dim]", *(f"[dim]{limit:.0e}[/dim]" for limit in LIMITS.values()), "[dim]same[/dim]", ""
     )
     console().print(table)
 
 
-def _row(comparison: RebuildDifference) -> list[str]:
+def _row(result: _Result) -> list[str]:
     from rich.markup import escape
 
     from uplift.report.regression import LIMITS
 
     def cell(name: str, text: str) -> str:
-        return f"[bold red]{text}[/]" if name in comparison.failures else text
+        return f"[bold red]{text}[/]" if name in result.failures else text
 
-    measures = [cell(name, f"{comparison.measures[name]:.1e}") for name in LIMITS]
-    status = cell("status", "same" if "status" not in comparison.failures else "differs")
-    verdict = "[bold red]FAILED[/]" if comparison.failures else "[green]passed[/]"
-    return [escape(str(comparison.path)), *measures, status, verdict]
+    if result.comparison:
+        cells = [cell(name, f"{result.comparison.measures[name]:.1e}") for name in LIMITS]
+        cells.append(cell("status", "differs" if "status" in result.failures else "same"))
+    else:
+        cells = ["–"] * (len(LIMITS) + 1)
+    verdict = "[green]passed[/]" if result.passed else "[bold red]FAILED[/]"
+    return [escape(str(result.path)), *cells, verdict]

@@ -35,12 +35,15 @@ class UsageFailure(click.ClickException):
     def show(self, file: Any = None) -> None:
         """Print the error to standard error."""
         if self.as_json:
-            text = json.dumps(
-                {"error": self.error.to_json() | {"hint": hint_for(self.error)}}, ensure_ascii=False
-            )
+            text = json.dumps({"error": error_object(self.error)}, ensure_ascii=False)
         else:
             text = f"{click.style('error:', fg='red', bold=True)} {self.message}"
         click.echo(text, err=True)
+
+
+def error_object(error: UpliftError) -> dict[str, Any]:
+    """Return an error as plain values for JSON, with the hint of the command line."""
+    return error.to_json() | {"hint": hint_for(error)}
 
 
 def show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:

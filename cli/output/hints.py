@@ -29,7 +29,7 @@ HINTS = {
     "invalid-primaries": "give --primaries as x,y of red, green, blue and white, or the name of an RGB space",
     "invalid-thickness": "use --thickness 0 or more",
     "invalid-wavelengths": "write START:END:STEP or a list in nm, such as 380:780:5",
-    "lattice-mismatch": "build the cube again",
+    "lattice-mismatch": "build the cube again, or replace it with --update",
     "limit-not-positive": "give --time-ns and --delta-e above 0",
     "no-atlases": "name atlases with --atlas FILE",
     "no-moments": "use --store multipliers, or a cube of moments",

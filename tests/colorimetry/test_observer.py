@@ -6,6 +6,7 @@ import colour
 import numpy as np
 import pytest
 
+import uplift
 from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.errors import UnknownNameError
@@ -57,6 +58,18 @@ def test_axes_run_from_0_to_1(spacing):
     assert nodes[0] == 0
     assert nodes[-1] == 1
     assert (np.diff(nodes) > 0).all()
+
+
+@pytest.mark.parametrize("dim", [2, 3, 8, 16, 33, 128])
+def test_srgb_nodes_agree_with_colour_science(dim):
+    expected = colour.models.eotf_sRGB(np.linspace(0, 1, dim))
+    np.testing.assert_allclose(observer.axis_nodes("srgb", dim), expected, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("name", ["moments-8", "moments-16"])
+def test_stored_nodes_are_reproduced_exactly(name, repository):
+    nodes = uplift.load(repository / "cubes" / f"{name}.uplift").data.lattice.nodes
+    np.testing.assert_array_equal(observer.axis_nodes("srgb", len(nodes)), nodes)
 
 
 @pytest.mark.parametrize(
