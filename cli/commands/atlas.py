@@ -49,7 +49,6 @@ def command(
     \b
     Examples:
       uplift atlas macbeth
-      uplift atlas
       uplift atlas --space "Display P3" --illuminant A macbeth
       uplift atlas --format json atlases/*.txt
       uplift atlas paints.csv --convert paints.txt

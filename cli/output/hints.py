@@ -31,7 +31,6 @@ HINTS = {
     "invalid-wavelengths": "write START:END:STEP or a list in nm, such as 380:780:5",
     "lattice-mismatch": "build the cube again, or replace it with --update",
     "limit-not-positive": "give --time-ns and --delta-e above 0",
-    "no-atlases": "name atlases with --atlas FILE",
     "no-moments": "use --store multipliers, or a cube of moments",
     "no-requirements": "give --time-ns, --delta-e or both",
     "not-a-chart": "name the CSV file that 'uplift chart' wrote",
