@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test bench peers accuracy study stability nightly determinism munsell docs atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial
+.PHONY: build lint test bench peers accuracy study stability nightly determinism munsell docs atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -119,6 +119,11 @@ wavelengths: $(INSTALLED)
 representations: $(INSTALLED)
 	$(BIN)/python -m benchmarks.representations
 	$(BIN)/python -m tools.render_docs representations
+
+# Size and import time of the dependencies: docs/dependencies.md.
+dependencies: $(INSTALLED)
+	$(BIN)/python -m benchmarks.dependencies
+	$(BIN)/python -m tools.render_docs dependencies
 
 # Packages whose example images the benchmarks use.
 pictures: $(INSTALLED)

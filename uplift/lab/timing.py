@@ -133,7 +133,7 @@ def commit() -> str:
     """
     if not _git("ls-files", "--", __file__):
         return "unknown"
-    changed = _git("status", "--porcelain", "--", "uplift", "cli", "benchmarks")
+    changed = _git("status", "--porcelain", "--", ":/uplift", ":/cli", ":/benchmarks")
     return _git("rev-parse", "--short=12", "HEAD") + (" with changes" if changed else "")
 
 
