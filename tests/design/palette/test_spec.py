@@ -121,6 +121,15 @@ def test_paths_start_in_the_folder_of_the_spec(tmp_path, monkeypatch):
     assert read_palette(spec).material("x").samples is not None
 
 
+def test_shipped_atlas_by_name(tmp_path):
+    spec = tmp_path / "spec.toml"
+    text = 'lights.day.illuminant = "D65"\nmaterials.x = { atlas = "macbeth", entry = "orange" }\n'
+    spec.write_text(text, encoding="utf-8")
+    by_name = read_palette(spec).material("x").samples
+    spec.write_text(text.replace('"macbeth"', f'"{MACBETH.as_posix()}"'), encoding="utf-8")
+    np.testing.assert_array_equal(by_name, read_palette(spec).material("x").samples)
+
+
 APART = '[[apart]]\nmaterials = ["new", "new"]\n'
 HEAD = 'lights.day.illuminant = "D65"\nmaterials.new.design = true\n'
 
