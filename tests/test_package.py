@@ -79,7 +79,15 @@ def test_nothing_else_is_in_it(wheel, repository):
     library = {name for name in tracked if name.startswith("uplift/")}
     atlases = {f"uplift_{name}" for name in tracked if name.startswith("atlases/")}
     assert data == library | atlases
-    assert {Path(name).suffix for name in library} == {".css", ".csv", ".h", ".j2", ".js", ".typed", ".uplift"}
+    assert {Path(name).suffix for name in library} == {
+        ".css",
+        ".csv",
+        ".h",
+        ".j2",
+        ".js",
+        ".typed",
+        ".uplift",
+    }
     assert {Path(name).suffix for name in atlases} == {".md", ".txt"}
 
 

@@ -41,7 +41,9 @@ def _print_table(atlases: Iterable[ShippedAtlas]) -> None:
     table = Table(box=box.SIMPLE_HEAD, caption="use a name as --atlas NAME, or in place of FILE")
     for title in COLUMNS:
         fixed = title in ("name", "entries")
-        table.add_column(title, justify="right" if title == "entries" else "left", no_wrap=fixed, overflow="fold")
+        table.add_column(
+            title, justify="right" if title == "entries" else "left", no_wrap=fixed, overflow="fold"
+        )
     for atlas in atlases:
         table.add_row(*(Text(str(value)) for value in _record(atlas).values()))
     console().print(table)
