@@ -1,4 +1,4 @@
-"""Installed size and import time of the run-time dependencies, and the packages that use them: ``make dependencies``."""
+"""Installed size and import time of the run-time dependencies, and who uses them: ``make dependencies``."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ EXTRAS = ("cluster", "mitsuba")
 class Dependency:
     """Cost of a dependency.
 
-    ``size`` counts the bytes of the files of the distribution, ``saved`` those of all distributions that would not be installed without
-    it. ``seconds`` is the time to import the modules that the source uses, in a new process. ``used_by`` are the
-    packages that import it, ``extra`` is empty for a required dependency.
+    ``size`` counts the bytes of the files of the distribution, ``saved`` those of all distributions that would not be
+    installed without it. ``seconds`` is the time to import the modules that the source uses, in a new process.
+    ``used_by`` are the packages that import it, ``extra`` is empty for a required dependency.
     """
 
     name: str

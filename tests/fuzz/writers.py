@@ -153,7 +153,7 @@ def no_permission(count: int, random: np.random.Generator, folder: Path) -> Tall
 
 
 def _save(path: Path, cube: Path, setup: str) -> str:
-    """Save a cube in a process that runs ``setup`` first, and return its standard error: the code of an `UpliftError`."""
+    """Save a cube in a process that runs ``setup`` first; return its standard error, the code of an `UpliftError`."""
     code = SAVE_ONCE.format(setup=setup)
     return subprocess.run(
         [sys.executable, "-c", code, path, cube], capture_output=True, text=True, cwd=ROOT, check=False

@@ -55,8 +55,8 @@ def read_atlas(*paths: StrPath) -> Atlas:
     Warns
     -----
     UpliftWarning
-        An entry was skipped (``entry-skipped``), a table was read as percent (``values-in-percent``), or a shipped atlas
-        replaces a missing file (``shipped-atlas``); the name ``macbeth`` without a suffix gives no warning.
+        An entry was skipped (``entry-skipped``), a table was read as percent (``values-in-percent``), or a shipped
+        atlas replaces a missing file (``shipped-atlas``); the name ``macbeth`` without a suffix gives no warning.
 
     Examples
     --------

@@ -59,7 +59,7 @@ def decode_portably(codes: Array) -> Array:
     >>> decode_portably(np.array([0.0, 0.5, 1.0])).tolist()
     [0.0, 0.21404114048223255, 1.0]
     """
-    context, exponent = decimal.Context(prec=POWER_DIGITS), decimal.Decimal(2.4)
+    context, exponent = decimal.Context(prec=POWER_DIGITS), decimal.Decimal.from_float(2.4)
     bases = ((codes + 0.055) / 1.055).tolist()
     powers = [float(context.power(decimal.Decimal(base), exponent)) for base in bases]
     return np.where(codes <= 0.04045, codes / 12.92, powers)

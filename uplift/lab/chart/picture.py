@@ -58,7 +58,7 @@ def write_pictures(chart: Chart, png: Path, svg: Path, *, force: bool = False) -
 
 
 def draw(chart: Chart) -> Any:
-    """Return the matplotlib figure. Artists have the identifiers ``marker-<panel>-<row>``, ``whisker-…``, ``label-…``."""
+    """Return the matplotlib figure; its artists are named ``marker-<panel>-<row>``, ``whisker-…`` and ``label-…``."""
     figure, cells = new_panels(math.ceil((len(PANELS) + 1) / COLUMNS), COLUMNS, PANEL_SIZE, MARGINS)
     cells = cells.ravel()
     for number, (axes, panel) in enumerate(zip(cells, PANELS, strict=False)):

@@ -5,8 +5,8 @@ other. The norm of the Jacobian (N × 3) is then convex along every axis, and la
 derivatives are the differences along three edges.
 
 The box of an entry e is divided into pyramids by its faces. Within a pyramid, the answer is the spectrum of the entry
-plus a homogeneous function of degree one in x − e: the Jacobian is constant along a ray, and on a face linear in each of
-its two coordinates between the nodes of the lattice. The maximum over the cube is thus one of finitely many values.
+plus a homogeneous function of degree one in x − e: the Jacobian is constant along a ray, and on a face linear in each
+of its two coordinates between the nodes of the lattice. The maximum over the cube is one of finitely many values.
 (docs/mathematics.md, section 8)
 """
 
