@@ -1,7 +1,7 @@
 """Lattice fit one point at a time by scipy's least squares, in moments or in multipliers.
 
 Tódová 2020, *Constrained Spectral Uplifting*, sections 3.1.2 and 3.1.3: numeric differences, three residuals, and
-growth from the middle of the lattice, where each point starts from the unknowns of a fitted neighbour. The thesis solves for
+growth from the middle of the lattice. Each point starts from the unknowns of a fitted neighbour. The thesis solves for
 moments c. The same method for multipliers p shows the benefit of these.
 """
 
