@@ -14,7 +14,8 @@ import click
 
 from uplift.common.errors import OutputError, UpliftError, UpliftWarning
 
-from .output.diagnostics import OUTPUT_FORMAT, UsageFailure, show_warning
+from .output.diagnostics import UsageFailure, show_warning
+from .params.options import OUTPUT_FORMAT
 from .params.renamed import renamed_option
 
 GROUPS = {

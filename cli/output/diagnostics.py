@@ -11,9 +11,6 @@ from uplift.common.errors import UpliftError, UpliftWarning
 
 from .hints import describe, hint_for
 
-OUTPUT_FORMAT = "uplift.output-format"
-"""Key of the context's ``meta`` under which ``--format`` is kept."""
-
 
 class UsageFailure(click.ClickException):
     """Bad input: one line on standard error and exit code 2.

@@ -7,11 +7,11 @@ from typing import Any
 
 import click
 
-from ..output.diagnostics import OUTPUT_FORMAT
-
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 DEFAULT_COEFFICIENTS = 9
+OUTPUT_FORMAT = "uplift.output-format"
+"""Key of the context's ``meta`` under which ``--format`` is kept."""
 
 
 class LatticeDim(click.ParamType):  # type: ignore[type-arg]

@@ -95,7 +95,7 @@ def test_html_of_large_atlases_is_limited():
 def test_repr_imports_nothing_heavy():
     code = (
         "import sys; from uplift.atlas import Atlas, Entry; repr(Atlas((Entry('a', [380, 780], [0, 1]),)));"
-        "print({'scipy', 'colour', 'jinja2', 'uplift.atlas.html'} & set(sys.modules))"
+        "print({'scipy', 'colour', 'jinja2', 'uplift.viz.notebook'} & set(sys.modules))"
     )
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "set()"

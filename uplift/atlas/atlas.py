@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
+from importlib import import_module
 from typing import overload
 
 import numpy as np
@@ -14,6 +15,9 @@ from uplift.atlas.checks import check_name, check_spectrum
 from uplift.atlas.document import SourceLocation
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, UpliftWarning, unknown_name
+
+NOTEBOOK = "uplift.viz.notebook"
+"""Module of the HTML table. It lies above this one, so it is imported by name, when a notebook shows an atlas."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,9 +232,7 @@ class Atlas:
         return f"Atlas({', '.join(parts)})"
 
     def _repr_html_(self) -> str:
-        from uplift.atlas.html import atlas_table
-
-        return atlas_table(self)
+        return str(import_module(NOTEBOOK).atlas_html(self))
 
     @property
     def names(self) -> tuple[str, ...]:

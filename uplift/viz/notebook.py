@@ -1,4 +1,4 @@
-"""Cubes in notebooks: a figure of spectra, and an HTML summary. `uplift.Cube` imports this module when needed."""
+"""Cubes and atlases in notebooks: figures of spectra, and HTML. `Cube` and `Atlas` import it when needed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ import numpy as np
 from markupsafe import Markup, escape
 from numpy.typing import ArrayLike
 
+from uplift.atlas import Atlas, resample
 from uplift.colorimetry.gamut import as_rgb
+from uplift.colorimetry.observer import sensor
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.lookup import Cube
@@ -19,9 +21,13 @@ if TYPE_CHECKING:
 
 MAX_SWATCHES = 64
 MAX_SPECTRA = 24
+MAX_ROWS = 100
+"""Entries of an atlas shown."""
 PRIMARIES = np.array([[0.8, 0.1, 0.1], [0.1, 0.8, 0.1], [0.1, 0.1, 0.8], [0.8, 0.8, 0.8], [0.2, 0.2, 0.2]])
 """Linear RGB shown for a cube without an atlas."""
 SWATCH = "display:inline-block;width:1.4em;height:1.4em;margin:1px;background:"
+SPARKLINE = (120, 24)
+"""Width and height of the plot of an entry in pixels; the height is reflectance from 0 to 1."""
 
 
 def plot_cube(cube: Cube, rgb: ArrayLike, wavelengths: ArrayLike | None = None) -> Figure:
@@ -76,6 +82,42 @@ def cube_html(cube: Cube) -> Markup:
     return Markup("<div><table>{}</table><div>{}</div><div style='max-width:36em'>{}</div></div>").format(
         rows, _swatches(cube), plot
     )
+
+
+def atlas_html(atlas: Atlas) -> Markup:
+    """Format an atlas as a table: a swatch under D65, the name and a small plot of each entry.
+
+    Parameters
+    ----------
+    atlas : Atlas
+        The atlas.
+
+    Returns
+    -------
+    Markup
+        An HTML element; all text is escaped.
+    """
+    shown, screen = atlas[:MAX_ROWS], sensor()
+    spectra = resample(shown, screen.wavelengths).values
+    codes = hex_codes(screen.rgb(spectra), screen)
+    rows = Markup().join(
+        Markup("<tr><td><span style='{}{}'></span></td><td>{}</td><td>{}</td></tr>").format(
+            SWATCH, code, name, _sparkline(values)
+        )
+        for name, code, values in zip(shown.names, codes, spectra, strict=True)
+    )
+    more = len(atlas) - len(shown)
+    rows += Markup("<tr><td></td><td colspan='2'>and {} more</td></tr>").format(more) if more else ""
+    return Markup("<table><caption>{}</caption>{}</table>").format(repr(atlas), rows)
+
+
+def _sparkline(values: Array) -> Markup:
+    """Draw reflectances (N,) in [0, 1] as an SVG line."""
+    width, height = SPARKLINE
+    x = np.linspace(0, width, len(values))
+    points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, height * (1 - values), strict=True))
+    line = Markup("<polyline points='{}' fill='none' stroke='currentColor' stroke-width='1'/>").format(points)
+    return Markup("<svg width='{}' height='{}'>{}</svg>").format(width, height, line)
 
 
 def _facts(cube: Cube) -> dict[str, str]:

@@ -9,8 +9,8 @@ from uplift.colorimetry import observer
 from uplift.common.progress import Progress
 from uplift.lattice import Lattice
 from uplift.pipeline.options import AXES
+from uplift.scene.plan.arguments import cube_args
 from uplift.scene.plan.colours import occupied_cells
-from uplift.scene.plan.commands import cube_args
 from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import EvaluationSet

@@ -14,7 +14,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
 from uplift.common.progress import Progress
 from uplift.lookup import Cube
-from uplift.scene.plan.commands import compare_command
+from uplift.scene.plan.arguments import compare_command
 from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet

@@ -15,7 +15,7 @@ from uplift.common.progress import Progress
 from uplift.io import texture
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
-from uplift.scene.plan.commands import storage_args
+from uplift.scene.plan.arguments import storage_args
 from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import EvaluationSet

@@ -9,7 +9,7 @@ import numpy as np
 
 from uplift.common.progress import Progress
 from uplift.lookup import Cube
-from uplift.scene.plan.commands import wavelength_args
+from uplift.scene.plan.arguments import wavelength_args
 from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import EvaluationSet
