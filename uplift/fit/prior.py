@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
+from uplift.fit.base import Base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import Kriging, Uncertainty, krige, uncertainty
 from uplift.fit.problem import Problem
 from uplift.fit.smooth import TABLE, Smooth, smooth
 from uplift.fit.unrealisable import unrealisable
-from uplift.models import evaluate
+from uplift.models import Model, evaluate
 
 MIN_ENTRIES = 8
 """Entries needed to estimate errors."""
@@ -28,28 +29,31 @@ BLOCK_POINTS = 1 << 15
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Prior:
-    """Smooth spectra and, with an atlas, the interpolated deviation of its entries from them.
+    """Base spectra and, with an atlas, the interpolated deviation of its entries from them.
 
     Parameters
     ----------
+    model : Model
+        Spectrum model.
     sensor : Sensor
         RGB space of the colours.
-    smooth : Smooth
-        Smooth spectra.
+    base : Base
+        Spectra expected far from all entries.
     kriging : Kriging, optional
         Deviation of the atlas entries; None without an atlas.
     uncertainty : Uncertainty, optional
         Expected errors; None for an atlas of fewer than 8 entries.
     """
 
+    model: Model
     sensor: Sensor
-    smooth: Smooth
+    base: Base
     kriging: Kriging | None = None
     uncertainty: Uncertainty | None = None
 
     def __call__(self, rgb: Array) -> Array:
         """Multipliers (n, C) to start from at linear RGB (n, 3); at the colour of an entry, those of the entry."""
-        start = self.smooth(rgb)
+        start = self.model.from_storage(self.base.coefficients(rgb))
         return start if self.kriging is None else start + self.kriging(rgb_to_lab(self.sensor, rgb))
 
     def standard_error(self, rgb: Array) -> Array | None:
@@ -90,7 +94,31 @@ class Prior:
         return errors
 
 
-def fit_prior(problem: Problem, sensor: Sensor, entries: FittedEntries, error_light: Light) -> Prior:
+def smooth_base(problem: Problem, sensor: Sensor) -> Smooth:
+    """Make the base of smooth spectra.
+
+    Parameters
+    ----------
+    problem : Problem
+        Spectrum model and solver.
+    sensor : Sensor
+        RGB space of the colours.
+
+    Returns
+    -------
+    Smooth
+        Smooth spectra of the realisable colours.
+    """
+    return smooth(problem.model, problem.forward, outside=unrealisable(TABLE, sensor, MARGIN))
+
+
+def fit_prior(
+    problem: Problem,
+    sensor: Sensor,
+    entries: FittedEntries,
+    error_light: Light,
+    base: Base | None = None,
+) -> Prior:
     """Fit the prior to atlas entries. The order of the entries does not change the rounding of sums.
 
     Parameters
@@ -103,22 +131,25 @@ def fit_prior(problem: Problem, sensor: Sensor, entries: FittedEntries, error_li
         Atlas entries.
     error_light : Light
         Light of the standard errors.
+    base : Base, optional
+        Spectra expected far from all entries. Smooth spectra by default.
 
     Returns
     -------
     Prior
         The prior.
     """
-    start = smooth(problem.model, problem.forward, outside=unrealisable(TABLE, sensor, MARGIN))
+    model, base = problem.model, base or smooth_base(problem, sensor)
     if not len(entries):
-        return Prior(sensor, start)
+        return Prior(model, sensor, base)
     order = np.lexsort(entries.rgb.T)
     entries = FittedEntries(*(getattr(entries, key.name)[order] for key in fields(FittedEntries)))
     locations = rgb_to_lab(sensor, entries.rgb)
-    kriging, deviations = krige(locations, entries.multipliers - start(entries.rgb))
+    start = model.from_storage(base.coefficients(entries.rgb))
+    kriging, deviations = krige(locations, entries.multipliers - start)
     if len(entries) < MIN_ENTRIES:
-        return Prior(sensor, start, kriging)
-    left_out = problem.solve(entries.rgb, start(entries.rgb) + deviations, MAX_PASSES).multipliers
-    spectra = evaluate(problem.model, left_out, sensor.wavelengths)
+        return Prior(model, sensor, base, kriging)
+    left_out = problem.solve(entries.rgb, start + deviations, MAX_PASSES).multipliers
+    spectra = evaluate(model, left_out, sensor.wavelengths)
     errors = delta_e_spectra(error_light, spectra, entries.measured)
-    return Prior(sensor, start, kriging, uncertainty(locations, errors, entries.error))
+    return Prior(model, sensor, base, kriging, uncertainty(locations, errors, entries.error))

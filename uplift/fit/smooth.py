@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.common.arrays import Array
+from uplift.fit.base import Base
 from uplift.fit.quadrature_jit import quadrature_jit
 from uplift.fit.solve import solve
 from uplift.fit.unrealisable import NONE, Unrealisable
@@ -32,7 +33,7 @@ NO_FREEDOM = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Smooth:
+class Smooth(Base):
     """Start of a fit without measurements.
 
     Parameters
@@ -41,7 +42,7 @@ class Smooth:
         Spectrum model.
     table : Lattice
         Lattice of brightened colours.
-    coefficients : ndarray, shape (17³, C), optional
+    nodes : ndarray, shape (17³, C), optional
         Coefficients at the points of the table; None where no table is needed.
     brightening, grey : float
         Powers, see `BRIGHTENING` and `GREY`.
@@ -49,17 +50,21 @@ class Smooth:
 
     model: Model
     table: Lattice
-    coefficients: Array | None
+    nodes: Array | None
     brightening: float = BRIGHTENING
     grey: float = GREY
 
     def __call__(self, rgb: Array) -> Array:
         """Multipliers (n, C) of nearly the colours (n, 3), linear RGB in [0, 1], for the solver to finish."""
-        if self.coefficients is None:
-            return _grey(self.model, rgb, self.grey)
+        return self.model.from_storage(self.coefficients(rgb))
+
+    def coefficients(self, rgb: Array) -> Array:
+        """Coefficients (n, C) of nearly the colours (n, 3), linear RGB in [0, 1]; see `Base`."""
+        if self.nodes is None:
+            return self.model.to_storage(_grey(self.model, rgb, self.grey))
         factor = np.maximum(rgb.max(axis=1), MIN_LEVEL)[:, None] ** self.brightening
-        bright = weighted_sum(self.coefficients, *self.table.corners(np.minimum(rgb / factor, 1)))
-        return self.model.from_storage(factor * bright)
+        bright = weighted_sum(self.nodes, *self.table.corners(np.minimum(rgb / factor, 1)))
+        return factor * bright
 
 
 def smooth(
