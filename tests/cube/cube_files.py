@@ -20,9 +20,14 @@ def forge(data: CubeData, path: Path, change: Callable[[dict[str, Any], dict[str
     metadata = json.loads(json.dumps(metadata))
     change(tensors, metadata)
     tensors = {name: np.ascontiguousarray(array) for name, array in tensors.items()}
-    metadata["digest"] = file._digest(tensors, metadata)
-    save_file(tensors, path, metadata={file.KEY: file._json(metadata)})
+    metadata["digest"] = file._digest(tensors, forged_json(metadata))
+    save_file(tensors, path, metadata={file.KEY: forged_json(metadata)})
     return path
+
+
+def forged_json(metadata: dict[str, Any]) -> str:
+    """JSON text as in cube files, but with NaN and infinity."""
+    return json.dumps(metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":"))
 
 
 def header_length(content: bytes) -> int:

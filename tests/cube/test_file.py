@@ -12,7 +12,7 @@ from safetensors.numpy import load_file, save_file
 from tests.cube.cube_files import forge, header_length, with_header, with_header_length
 from tests.helpers import raises, with_points
 from uplift.common.errors import CubeFileError, OutputError
-from uplift.cube import digest, read, write
+from uplift.cube import digest, file, read, write
 from uplift.cube.file import KEY, POINT_TYPES, SENSOR_ARRAYS, VERSION
 from uplift.lattice import Status
 
@@ -468,3 +468,20 @@ def test_numbers_of_the_provenance_must_be_finite(data, tmp_path, value):
 def test_integers_too_large_for_floats_are_refused(data, tmp_path):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(threshold=10**400))
     assert "OverflowError" in refused(path, "cube-invalid").problem
+
+
+@pytest.mark.parametrize(
+    "provenance", [{"options": {"within": float("nan")}}, {"options": {"within": 1e999}}, {"a": {1, 2}}]
+)
+def test_a_cube_that_cannot_be_read_back_leaves_the_old_file(data, path, content, provenance):
+    with raises(OutputError, "cube-unreadable"):
+        write(dataclasses.replace(data, provenance=provenance), path, force=True)
+    assert path.read_bytes() == content
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_files_are_read_back_before_they_replace_another(data, path, content, monkeypatch):
+    monkeypatch.setattr(file, "_write", lambda data, path: path.write_bytes(content[:-1] + b"x"))
+    with raises(OutputError, "cube-unreadable"):
+        write(data, path, force=True)
+    assert path.read_bytes() == content

@@ -23,11 +23,11 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import UpliftError, unknown_name
+from uplift.common.quoting import format_value, shorten
 
 __all__ = [
     "SpecFile",
     "SpecModel",
-    "format_value",
     "problem",
     "read_json",
     "read_toml",
@@ -38,8 +38,6 @@ MAX_BYTES = 16 << 20
 """Largest file that is read."""
 MAX_DEPTH = 32
 """Deepest nesting of tables and lists."""
-MAX_VALUE = 40
-"""Characters of a received value in a message."""
 MAX_PROBLEM = 400
 """Characters of a message."""
 TYPE_CODES = {
@@ -314,33 +312,10 @@ def read_json(path: StrPath, error: type[UpliftError]) -> SpecFile:
     return _checked(SpecFile(Path(path), "", values, error))
 
 
-def format_value(value: object) -> str:
-    """Format a received value for a message.
-
-    Parameters
-    ----------
-    value : object
-        Any value of a file.
-
-    Returns
-    -------
-    str
-        Its representation, at most `MAX_VALUE` characters of it.
-    """
-    try:
-        return _shorten(repr(value))
-    except ValueError:  # Python does not print integers of more than 4300 digits
-        return "an integer of thousands of digits"
-
-
 def _one_line(text: str) -> str:
     """Text without control characters, which keys and values of a file may contain."""
     text = re.sub(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+", " ", text)
     return text if len(text) <= MAX_PROBLEM else f"{text[:MAX_PROBLEM]}…"
-
-
-def _shorten(text: str) -> str:
-    return text if len(text) <= MAX_VALUE else f"{text[:MAX_VALUE]}…"
 
 
 def _read_text(path: Path, error: type[UpliftError]) -> str:
@@ -393,7 +368,7 @@ def _dotted(keys: tuple[Key, ...]) -> str:
     """Key path as text: ``apart[2].light``."""
     text = ""
     for key in keys:
-        text += f"[{key}]" if isinstance(key, int) else f".{_shorten(key)}" if text else _shorten(key)
+        text += f"[{key}]" if isinstance(key, int) else f".{shorten(key)}" if text else shorten(key)
     return text
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.errors import CubeFileError, UpliftError
+from uplift.common.errors import CubeFileError, OutputError, UpliftError
 from uplift.common.files import atomic_write
 from uplift.cube import sparse
 from uplift.cube.checks import ATLAS_ARRAYS, POINT_TYPES, SENSOR_ARRAYS, check
@@ -37,7 +37,7 @@ INVALID = (AttributeError, KeyError, MemoryError, OverflowError, TypeError, Valu
 
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write a cube file, atomically.
+    """Write a cube file, atomically. The new file is read back before it replaces an existing one.
 
     Parameters
     ----------
@@ -51,15 +51,19 @@ def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) 
     Raises
     ------
     OutputError
-        The file exists and ``force`` is false, or cannot be written.
+        The file exists and ``force`` is false, cannot be written, or does not read back (``cube-unreadable``).
     """
-    from safetensors.numpy import save
-
-    tensors, metadata = contents(data)
-    metadata["digest"] = _digest(tensors, metadata)
     with atomic_write(path, force=force) as temporary:
-        # safetensors' own save_file uses another temporary file, which would remain if this process were killed.
-        temporary.write_bytes(save(tensors, metadata={KEY: _json(metadata)}))
+        try:
+            _write(data, temporary)
+            read(temporary)
+        except CubeFileError as error:
+            raise OutputError(
+                f"the cube would not be readable: {error.problem}",
+                code="cube-unreadable",
+                path=path,
+                hint="an existing file is unchanged",
+            ) from error
 
 
 def read(path: str | os.PathLike[str]) -> CubeData:
@@ -93,7 +97,7 @@ def read(path: str | os.PathLike[str]) -> CubeData:
             hint="build the cube again, or use the version of uplift that wrote it",
         )
     digest = metadata.pop("digest", None)
-    if digest != _digest(tensors, metadata):
+    if digest != _digest(tensors, _json(metadata)):
         raise _error(path, "is damaged: the content does not match its digest", "cube-damaged")
     try:
         data = _data(tensors, metadata)
@@ -119,7 +123,8 @@ def digest(data: CubeData) -> str:
     str
         SHA-256 in hexadecimal.
     """
-    return _digest(*contents(data))
+    tensors, metadata = contents(data)
+    return _digest(tensors, _json(metadata))
 
 
 def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
@@ -138,6 +143,15 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
         JSON values.
     """
     return _tensors(data), _metadata(data)
+
+
+def _write(data: CubeData, path: Path) -> None:
+    from safetensors.numpy import save
+
+    tensors, metadata = contents(data)
+    metadata["digest"] = _digest(tensors, _json(metadata))
+    # safetensors' own save_file uses another temporary file, which would remain if this process were killed.
+    path.write_bytes(save(tensors, metadata={KEY: _json(metadata)}))
 
 
 def _load(path: Path) -> tuple[Tensors, dict[str, Any]]:
@@ -165,11 +179,16 @@ def _error(path: Path, problem: str, code: str) -> CubeFileError:
 
 
 def _json(metadata: Mapping[str, Any]) -> str:
-    return json.dumps(metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":"))
+    try:
+        return json.dumps(
+            metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":"), allow_nan=False
+        )
+    except (TypeError, ValueError, RecursionError) as error:
+        raise CubeFileError(f"the metadata are not JSON values ({error})", code="invalid-metadata") from error
 
 
-def _digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
-    content = hashlib.sha256(_json(metadata).encode())
+def _digest(tensors: Tensors, metadata: str) -> str:
+    content = hashlib.sha256(metadata.encode())
     for name in sorted(tensors):
         array = np.ascontiguousarray(tensors[name])
         content.update(f"{name} {array.dtype.str} {array.shape}".encode())

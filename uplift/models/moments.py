@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.quoting import format_value
 from uplift.models import duality
 from uplift.models.arctan import arctan, arctan_difference
 from uplift.models.duality import Quadrature
@@ -65,7 +66,8 @@ class Moments(Model):
     def __post_init__(self) -> None:
         if not MIN_COUNT <= self.count <= MAX_COUNT:
             raise OptionError(
-                f"coefficients of the moments model must be in [{MIN_COUNT}, {MAX_COUNT}], got {self.count}",
+                f"coefficients of the moments model must be in [{MIN_COUNT}, {MAX_COUNT}], "
+                f"got {format_value(self.count)}",
                 code="coefficients-out-of-range",
                 hint="the count includes the zeroth moment",
             )

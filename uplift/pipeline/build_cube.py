@@ -128,14 +128,14 @@ def build(
         space=space,
         illuminant=illuminant,
         observer=observer,
-        lights=tuple(lights),
+        lights=(lights,) if isinstance(lights, str) else tuple(lights),
         threshold=threshold,
         auto_tolerance=auto_tolerance,
         debug=debug,
     )
     check_memory(options)
     colours = None if scene is None else _as_scene(scene)
-    sensor = observers.sensor(space, illuminant, observer)
+    sensor = observers.sensor(options.space, options.illuminant, options.observer)
     spectrum_model = options.spectrum_model()
     forward = forward_map(spectrum_model, sensor.wavelengths, sensor.matrix)
     scene_lights = [observers.light(name, observer) for name in options.lights]
@@ -143,7 +143,7 @@ def build(
 
     atlas = _as_atlas(atlas)
     names, rgb, measured = _entries_in_gamut(atlas, sensor)
-    tolerance = fit.solver_tolerance(threshold)
+    tolerance = fit.solver_tolerance(options.threshold)
     entries = fit.fit_entries(spectrum_model, forward, measured, rgb, scene_lights, error_light, tolerance)
 
     options = _with_dim(options, forward, scene_lights, entries)
@@ -163,9 +163,9 @@ def build(
             model=spectrum_model,
             lattice=lattice,
             sensor=sensor,
-            threshold=threshold,
+            threshold=options.threshold,
             atlas=AtlasTable(names, rgb, stored, boxes.half_width, entries.error),
-            points=fitted.points if debug else replace(fitted.points, round=None),
+            points=fitted.points if options.debug else replace(fitted.points, round=None),
             error_illuminant=ERROR_ILLUMINANT,
             provenance=_provenance(options, atlas, names, colours, fitted),
         )

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Integral, Real
 from typing import Any, Literal
 
 import numpy as np
@@ -11,13 +13,18 @@ import numpy as np
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.common.errors import OptionError, unknown_name
+from uplift.common.quoting import format_value
 from uplift.models import Model, Moments, Phase, Sigmoid
 
 AUTO: Literal["auto"] = "auto"
 AXES = ("srgb", "linear")
 ModelName = Literal["moments", "sigmoid"]
 MODELS: tuple[ModelName, ...] = ("moments", "sigmoid")
-MAX_THRESHOLD = 0.1
+MIN_THRESHOLD, MAX_THRESHOLD = 1e-12, 0.1
+"""Linear RGB. Smaller distances are lost in the rounding of double precision."""
+MAX_AUTO_TOLERANCE = 100.0
+"""ΔE00 between black and white."""
+MAX_LIGHTS = 64
 PROCESS_BYTES = 500_000_000
 """Memory of a build without its lattice."""
 
@@ -34,7 +41,7 @@ class Options:
     Raises
     ------
     OptionError
-        A value outside its range.
+        A value of another type (``option-type``) or outside its range.
     UnknownNameError
         An unknown model or axis.
     """
@@ -53,21 +60,27 @@ class Options:
     debug: bool = False
 
     def __post_init__(self) -> None:
-        _check_dim(self.dim)
+        for name, convert in CONVERSIONS.items():
+            object.__setattr__(self, name, convert(name, getattr(self, name)))
         self.spectrum_model()
         if self.axis not in AXES:
-            raise unknown_name(str(self.axis), AXES, "axis spacing")
+            raise unknown_name(self.axis, AXES, "axis spacing")
         if not self.lights:
             raise OptionError("lights must name at least one illuminant, got none", code="no-lights")
-        if not 0 < self.threshold <= MAX_THRESHOLD:
+        if len(self.lights) > MAX_LIGHTS:
             raise OptionError(
-                f"threshold must be in (0, {MAX_THRESHOLD}], got {self.threshold:g}",
+                f"lights must name at most {MAX_LIGHTS} illuminants, got {len(self.lights)}",
+                code="too-many-lights",
+            )
+        if not MIN_THRESHOLD <= self.threshold <= MAX_THRESHOLD:
+            raise OptionError(
+                f"threshold must be in [{MIN_THRESHOLD:g}, {MAX_THRESHOLD}], got {self.threshold:g}",
                 code="threshold-out-of-range",
                 hint="use 1e-6 to 0.1",
             )
-        if not 0 <= self.auto_tolerance < np.inf:
+        if not 0 <= self.auto_tolerance <= MAX_AUTO_TOLERANCE:
             raise OptionError(
-                f"auto_tolerance must be a finite ΔE00 of 0 or more, got {self.auto_tolerance:g}",
+                f"auto_tolerance must be a ΔE00 in [0, {MAX_AUTO_TOLERANCE:g}], got {self.auto_tolerance:g}",
                 code="auto-tolerance-out-of-range",
             )
 
@@ -83,7 +96,7 @@ class Options:
             return Moments(self.coefficients, Phase(observer.START, observer.END, self.warp))
         if self.model == Sigmoid.name:
             return Sigmoid(observer.START, observer.END)
-        raise unknown_name(str(self.model), MODELS, "model")
+        raise unknown_name(self.model, MODELS, "model")
 
 
 def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
@@ -92,15 +105,74 @@ def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
     return current | {"lights": tuple(options["lights"])}
 
 
-def _check_dim(dim: object) -> None:
-    if dim == AUTO:
-        return
-    if not isinstance(dim, int):
-        raise OptionError(f"dim must be a whole number or 'auto', got {dim!r}", code="dim-not-a-number")
-    if dim < 2:
+def _dim(name: str, value: object) -> int | Literal["auto"]:
+    if isinstance(value, str) and value == AUTO:
+        return AUTO
+    if isinstance(value, bool) or not isinstance(value, Integral):
         raise OptionError(
-            f"dim must be at least 2, got {dim}", code="dim-too-small", hint="use dim=2 or more"
+            f"dim must be a whole number or 'auto', got {format_value(value)}", code="dim-not-a-number"
         )
+    if value < 2:
+        raise OptionError(
+            f"dim must be at least 2, got {format_value(int(value))}",
+            code="dim-too-small",
+            hint="use dim=2 or more",
+        )
+    return int(value)
+
+
+def _whole(name: str, value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise _wrong_type(name, "a whole number", value)
+    return int(value)
+
+
+def _number(name: str, value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise _wrong_type(name, "a number", value)
+    try:
+        return float(value)
+    except OverflowError:
+        return np.inf
+
+
+def _text(name: str, value: object) -> str:
+    if not isinstance(value, str):
+        raise _wrong_type(name, "text", value)
+    return str(value)
+
+
+def _texts(name: str, value: object) -> tuple[str, ...]:
+    if not isinstance(value, tuple | list):
+        raise _wrong_type(name, "a sequence of names", value)
+    return tuple(_text(name, each) for each in value)
+
+
+def _flag(name: str, value: object) -> bool:
+    if not isinstance(value, bool | np.bool_):
+        raise _wrong_type(name, "True or False", value)
+    return bool(value)
+
+
+def _wrong_type(name: str, kind: str, value: object) -> OptionError:
+    return OptionError(f"{name} must be {kind}, got {format_value(value)}", code="option-type")
+
+
+CONVERSIONS: dict[str, Callable[[str, object], Any]] = {
+    "dim": _dim,
+    "model": _text,
+    "coefficients": _whole,
+    "warp": _text,
+    "axis": _text,
+    "space": _text,
+    "illuminant": _text,
+    "observer": _text,
+    "lights": _texts,
+    "threshold": _number,
+    "auto_tolerance": _number,
+    "debug": _flag,
+}
+"""Function by option that returns a plain value for JSON. Raises `OptionError` for other types."""
 
 
 def check_memory(options: Options) -> None:
@@ -112,7 +184,7 @@ def check_memory(options: Options) -> None:
     if need > have:
         largest = int(max((have - PROCESS_BYTES) / _point_bytes(coefficients), 8) ** (1 / 3))
         raise OptionError(
-            f"dim {dim} needs about {_gigabytes(need)} of memory, this machine has {_gigabytes(have)}",
+            f"dim {format_value(dim)} needs about {_gigabytes(need)} of memory, this machine has {_gigabytes(have)}",
             code="dim-too-large",
             hint=f"use dim={largest} or less",
         )

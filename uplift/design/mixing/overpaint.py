@@ -130,7 +130,7 @@ def prepare(
     sensor = cube.data.sensor
     header = {
         "chromaticities": exr.chromaticities(sensor),
-        "uplift.mix": json.dumps(dict(recipe or {})),
+        "uplift.mix": json.dumps(dict(recipe or {}), allow_nan=False),
     }
     sampler = bulk.spectra(cube, threads=1)
     return Overpainter(sensor, "float", encoding, out_of_gamut, (), header, coat, sampler, threads)

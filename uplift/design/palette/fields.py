@@ -12,7 +12,8 @@ from pydantic import AfterValidator, Field, PlainValidator
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.common.spec_file import format_value, problem
+from uplift.common.quoting import format_value
+from uplift.common.spec_file import problem
 
 MAX_NUMBER = 1e6
 """Larger numbers are typing errors, and make the equations ill-conditioned."""

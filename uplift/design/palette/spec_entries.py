@@ -15,7 +15,8 @@ from uplift.atlas.shipped import find_atlas_file
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.errors import unknown_name
-from uplift.common.spec_file import SpecModel, format_value, problem, resolves
+from uplift.common.quoting import format_value
+from uplift.common.spec_file import SpecModel, problem, resolves
 from uplift.design.palette.fields import Bounds, Colour, Name, NonNegative, Number, SpecColour, TrueFlag
 from uplift.design.palette.lights import MAX_KELVIN, MIN_KELVIN, illuminant, planck
 from uplift.design.palette.palette import SpectrumSpec

@@ -42,7 +42,7 @@ def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
         "multipliers": data.model.from_storage(data.points.coefficients[data.points.present]),
         "atlas.multipliers": data.model.from_storage(data.atlas.coefficients),
         "atlas.names": np.array(data.atlas.names, dtype=np.str_),
-        "metadata": np.array(json.dumps(metadata, ensure_ascii=False)),
+        "metadata": np.array(json.dumps(metadata, ensure_ascii=False, allow_nan=False)),
     }
     with atomic_write(path, force=force) as temporary, temporary.open("wb") as file:
         np.savez(file, allow_pickle=False, **arrays)

@@ -29,7 +29,7 @@ def attributes(data: CubeData) -> dict[str, Any]:
         "chromaticities": chromaticities(data.sensor),
         "uplift.cube": digest(data),
         "uplift.dim": data.lattice.dim,
-        "uplift.model": json.dumps(data.model.describe(), sort_keys=True),
+        "uplift.model": json.dumps(data.model.describe(), sort_keys=True, allow_nan=False),
         "uplift.space": data.sensor.space,
         "uplift.illuminant": data.sensor.illuminant,
         "uplift.observer": data.sensor.observer,

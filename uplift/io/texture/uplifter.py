@@ -108,7 +108,7 @@ def prepare(
     check_method(out_of_gamut)
     channels = pixels.channels(cube)
     settings = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
-    description = json.dumps({**pixels.describe(cube), **settings})
+    description = json.dumps({**pixels.describe(cube), **settings}, allow_nan=False)
     header = {**exr.attributes(cube.data), "uplift.texture": description, **pixels.header()}
     return Uplifter(
         cube.data.sensor,

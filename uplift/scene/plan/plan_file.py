@@ -15,7 +15,8 @@ from pydantic.dataclasses import dataclass as pydantic_dataclass
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.common.spec_file import SpecFile, SpecModel, format_value, read_json, resolves
+from uplift.common.quoting import format_value
+from uplift.common.spec_file import SpecFile, SpecModel, read_json, resolves
 from uplift.io.scene_colours import Images, file_digest
 from uplift.lookup import Cube
 from uplift.pipeline import build
