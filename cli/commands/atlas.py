@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from uplift.atlas import Atlas
-
 
 @click.command("atlas")
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
@@ -60,20 +58,22 @@ def command(
         return
     from uplift.atlas import read_atlas
 
-    atlas = read_atlas(*files)
     if convert is not None:
-        _convert(atlas, convert, force)
+        _convert(files, convert, force)
         return
+    atlas = read_atlas(*files)
     from uplift.colorimetry.observer import DEFAULT_OBSERVER, sensor
 
     PRINTERS[style](list_entries(atlas, sensor(space, illuminant, observer or DEFAULT_OBSERVER)))
 
 
-def _convert(atlas: Atlas, path: str, force: bool) -> None:
-    from uplift.atlas import write_atlas
+def _convert(files: tuple[str, ...], path: str, force: bool) -> None:
+    from uplift.atlas import read_atlas, write_atlas
     from uplift.common.files import check_output
 
-    write_atlas(atlas, check_output(path, force=force))
+    check_output(path, inputs=files, force=force)
+    atlas = read_atlas(*files)
+    write_atlas(atlas, path, force=force)
     click.echo(f"{path}: {len(atlas)} entries", err=True)
 
 

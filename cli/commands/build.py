@@ -116,17 +116,19 @@ def command(
     from ..output.progress import build_progress
 
     build: Callable[..., Cube]
+    inputs: tuple[str | Path | None, ...]
     if plan_path is None:
         from uplift.pipeline import build as build_cube
 
         scene = _scene(images, encoding, method)
+        inputs = (*files, *(scene.paths if scene else ()))
         given = {name: value for name, value in options.items() if value not in (None, ())}
         count = coefficient_count(coefficients, moments)
         build = partial(build_cube, files or None, scene=scene, coefficients=count, **given)
         name = _default_name(files, images, options)
     else:
-        build, name = _planned_build(plan_path, click.get_current_context())
-    path = check_output(name if output is None else output, force=force)
+        build, name, inputs = _planned_build(plan_path, click.get_current_context())
+    path = check_output(name if output is None else output, inputs=inputs, force=force)
     begin = time.perf_counter()
     with build_progress(quiet=quiet, verbose=verbose) as progress:
         cube = build(progress=progress)
@@ -149,8 +151,13 @@ def _scene(images: tuple[str, ...], encoding: str, method: str) -> Images | None
     return None
 
 
-def _planned_build(path: str, context: click.Context) -> tuple[Callable[..., Cube], str]:
-    """Return the build of a plan and the cube's name. Raises click's error for options that contradict the plan."""
+def _planned_build(
+    path: str, context: click.Context
+) -> tuple[Callable[..., Cube], str, tuple[str | Path, ...]]:
+    """Return the build of a plan, the cube's name and the files to read.
+
+    Raises click's error for options that contradict the plan.
+    """
     from uplift.scene.plan import read_plan
     from uplift.scene.plan.commands import cube_name
 
@@ -160,7 +167,9 @@ def _planned_build(path: str, context: click.Context) -> tuple[Callable[..., Cub
     ]
     if others := [each.opts[-1] for each in given if each.name not in ALLOWED_WITH_PLAN]:
         raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
-    return partial(read_plan(path).build, debug=context.params["debug"]), cube_name(path)
+    plan = read_plan(path)
+    build = partial(plan.build, debug=context.params["debug"])
+    return build, cube_name(path), (path, *plan.textures, *plan.atlases)
 
 
 def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], options: dict[str, Any]) -> str:

@@ -97,7 +97,7 @@ def command(
         raise click.UsageError("--time-ns, --delta-e, --light and --atlas-materials require --recommend.")
     from uplift.common.files import check_folder
 
-    folder = check_folder(output, FILES, force=force)
+    folder = check_folder(output, FILES, inputs=files, force=force)
     chart = _read(source) if source is not None else _measure(files, patterns, colours, quick=quick)
     _write(chart, folder, force=force)
     _print_fronts(chart)

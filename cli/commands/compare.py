@@ -78,7 +78,7 @@ def command(
         from uplift.lab.comparison.recommend import check_target
 
         check_target(target)
-    folder = _folder(output, filters=filters, force=force)
+    folder = _folder(output, files, filters=filters, force=force)
     comparison, tuned = _measure(files, lights, filters=filters, quick=quick)
     if folder is not None:
         _write(comparison, tuned, folder, force=force)
@@ -90,13 +90,14 @@ def command(
     PRINTERS[style](comparison, tuned)
 
 
-def _folder(output: str | None, *, filters: bool, force: bool) -> Path | None:
+def _folder(output: str | None, inputs: tuple[str, ...], *, filters: bool, force: bool) -> Path | None:
     """Create the output folder and check its files before the work. Raises `OutputError`."""
     from uplift.common.files import check_folder
 
     if output is None:
         return None
-    return check_folder(output, (*FILES, FILTERS) if filters else FILES, force=force)
+    names = (*FILES, FILTERS) if filters else FILES
+    return check_folder(output, names, inputs=inputs, force=force)
 
 
 def _measure(

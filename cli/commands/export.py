@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -59,12 +58,10 @@ def command(
             "--res applies to --format coeff only: other formats keep the nodes of the cube."
         )
     out = out or Path(cube).stem + SUFFIXES[style]
-    if os.path.realpath(out) == os.path.realpath(cube):
-        raise click.UsageError("OUT is the cube itself.")
     from uplift.common.files import check_output
     from uplift.lookup import load
 
-    path = check_output(out, force=force)
+    path = check_output(out, inputs=[cube], force=force)
     options = {} if res is None else {"res": res}
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
     click.echo(f"{path}: {WRITERS[style](loaded.data, path, force=force, **options)}")

@@ -119,13 +119,12 @@ def command(
       uplift mix --light '#ff0000' 0.5:'#00ff00'
       uplift mix '#c8342a/#401008' --thickness 0.4 --over painting.exr -o painted.exr
     """
-    from uplift.common.files import check_output
+    from uplift.common.files import check_outputs
     from uplift.design.mixing.surface import INCIDENCES
     from uplift.lookup import load
 
     _check_usage(kind, ground, over, output, swatches)
-    for path in filter(None, (swatches, output)):
-        check_output(path, force=force)
+    check_outputs((swatches, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
     medium = _medium(thickness, INCIDENCES[incidence](refractive_index), km_constants)
     resolver = make_resolver(cube, files, cube.resolve_wavelengths(parse_wavelengths(wavelengths)))

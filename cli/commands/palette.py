@@ -66,13 +66,12 @@ def command(
       uplift palette docs/palette-dial/engine.toml --html engine.html
       uplift palette docs/palette/vanish.toml --format json > vanish.json
     """
-    from uplift.common.files import check_output
+    from uplift.common.files import check_outputs
     from uplift.design.palette import design, matrix, read_palette, standard_model, unmet_goals
 
-    for path in (atlas, matrix_path, spectra_path, html):
-        if path is not None:
-            check_output(path, force=force)
     palette = read_palette(spec)
+    outputs = (atlas, matrix_path, spectra_path, html)
+    check_outputs(outputs, inputs=(*palette.sources, image), force=force)
     picture = read_picture(palette, html, image, labels)
     solution = design(palette, standard_model(palette.sensor, palette.count))
     PRINTERS[style](solution, matrix(solution), unmet_goals(solution))

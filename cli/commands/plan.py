@@ -50,15 +50,15 @@ def command(scene: str, output: str | None, style: str, force: bool) -> None:
     HTML page lists all measurements.
     """
     enable_jit_cache()
-    from uplift.common.files import check_output, write_text
+    from uplift.common.files import check_outputs, write_text
     from uplift.scene.plan import plan, read_scene_file, to_json
     from uplift.scene.plan.page import page
 
     path = Path(f"{Path(scene).stem}.plan.json" if output is None else output)
     html = path.with_suffix(".html")
-    for target in (path, html):
-        check_output(target, force=force)
     scene_file = read_scene_file(scene)
+    inputs = (scene_file.path, *scene_file.textures, *scene_file.atlases)
+    check_outputs((path, html), inputs=inputs, force=force)
     with stage_spinner() as progress:
         result = plan(scene_file, progress=progress)
     fields = to_json(result, path)

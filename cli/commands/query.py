@@ -97,7 +97,7 @@ def command(
     from uplift.lookup import load, query
 
     if plot_path is not None:
-        check_output(plot_path, force=force)
+        check_output(plot_path, inputs=(cube_path, input_path), force=force)
     cube = load(cube_path)
     bounded = method == "error" and primaries is None
     rgb = _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded)

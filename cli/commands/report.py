@@ -70,7 +70,7 @@ def command(
 
     path = _path(output, cube_path, style)
     if path is not None:
-        _check_not_cube(check_output(path, force=force), cube_path)
+        check_output(path, inputs=(cube_path, *files), force=force)
     cube = load(cube_path)
     with spinner("evaluating the cube"):
         assessment = _assess(cube, cube_path, files, folders, lights)
@@ -87,14 +87,6 @@ def _path(output: str | None, cube: str, style: str) -> Path | None:
     if output is not None:
         return Path(output)
     return Path(f"{Path(cube).stem}.html") if style == "html" else None
-
-
-def _check_not_cube(path: Path, cube: str) -> None:
-    """Raise `OutputError` rather than replace the cube by its report."""
-    from uplift.common.errors import OutputError
-
-    if path.exists() and Path(cube).exists() and path.samefile(cube):
-        raise OutputError("is the cube itself", code="same-file", path=path, hint="give another file with -o")
 
 
 def _assess(

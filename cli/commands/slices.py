@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-
 import click
 
 from ..params.options import force_option
@@ -32,12 +30,12 @@ def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
     """
     if out is None and sheet is None:
         raise click.UsageError("Nothing to write: give OUT.exr, --sheet FILE, or both.")
-    if out is not None and sheet is not None and os.path.realpath(out) == os.path.realpath(sheet):
-        raise click.UsageError("OUT.exr and --sheet name the same file.")
+    from uplift.common.files import check_outputs
     from uplift.cube import read
     from uplift.io.slices import check_slices, write_slices
     from uplift.viz.sheet import check_sheet, write_sheet
 
+    check_outputs((out, sheet), inputs=[cube], force=force)
     if out is not None:
         check_slices(out, force=force)
     if sheet is not None:

@@ -53,7 +53,7 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
 
     atlases = read_atlases(files)
     if output is not None:
-        check_folder(output, FILES, force=force)
+        check_folder(output, FILES, inputs=files, force=force)
     with progress_bar("reconstructions") as progress:
         study = study_moments(atlases, max_moments, progress)
     if output is not None:

@@ -59,7 +59,7 @@ def sensitivity(
     loaded = load(cube)
     atlas = recorded_atlas(loaded.data, cube, folders) if cube is not None and entries else None
     if output is not None:
-        check_folder(output, FILES if atlas else FILES[:2], force=force)
+        check_folder(output, FILES if atlas else FILES[:2], inputs=[cube], force=force)
     with progress_bar("builds") as progress:
         result = study_sensitivity(loaded, atlas, entries, progress)
     if output is not None:

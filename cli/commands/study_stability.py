@@ -92,7 +92,7 @@ def stability(
         design.QUICK_DESIGN if quick else design.DesignSpace(), **({"atlases": (NO_ATLAS, *atlases)} | given)
     )
     if output is not None:
-        check_folder(output, FILES, force=force)
+        check_folder(output, FILES, inputs=files, force=force)
     with progress_bar("builds") as progress:
         runs = study_stability(design.design(axes), atlases, progress)
     if output is not None:

@@ -84,7 +84,7 @@ def command(
     from uplift.scene import wavelengths
 
     if plot_path is not None:
-        check_output(plot_path, force=force)
+        check_output(plot_path, inputs=files, force=force)
     observer = observer or DEFAULT_OBSERVER
     camera = sensor(space, illuminant, observer)
     atlas: Atlas = merge(read_atlases(files).values())

@@ -51,7 +51,6 @@ def test_format_option_overrides_the_suffix(run, home, cube):
         ((), "--format"),
         (("cube.exr",), "--format"),
         (("cube.h", "--res", "8"), "--res"),
-        ((f"./{STEM}.uplift", "--format", "csv", "--force"), "OUT"),
     ],
 )
 def test_wrong_usage(misuse, home, cube, cubes, arguments, option):

@@ -104,12 +104,6 @@ def test_invalid_input_is_an_error_and_nothing_is_written(refuse, home, cube):
     assert {path.name for path in home.iterdir()} == before
 
 
-def test_the_cube_is_not_replaced_by_its_report(refuse, home, cube):
-    before = (home / cube).read_bytes()
-    assert refuse("report", cube, "-o", f"./{cube}", "--force").code == "same-file"
-    assert (home / cube).read_bytes() == before
-
-
 def test_wrong_usage(misuse, cube):
     assert "--worst" in misuse("report", cube, "--worst", "-1")
     assert "CUBE" in misuse("report")

@@ -34,10 +34,6 @@ def test_an_output_is_required(misuse, cube):
     assert "--sheet" in misuse("slices", cube)
 
 
-def test_outputs_must_differ(misuse, cube):
-    assert "same file" in misuse("slices", cube, "a.exr", "--sheet", "./a.exr")
-
-
 @pytest.mark.parametrize("exists", ["out.exr", "sheet.png"])
 def test_nothing_is_written_if_one_file_exists(run, refuse, cube, home, exists):
     (home / exists).write_text("old")
@@ -45,12 +41,6 @@ def test_nothing_is_written_if_one_file_exists(run, refuse, cube, home, exists):
     assert (error.code, error.where) == ("file-exists", exists)
     assert {path.name for path in home.iterdir()} == {cube, exists}
     run("slices", cube, "out.exr", "--sheet", "sheet.png", "--force")
-
-
-def test_the_cube_is_not_replaced(refuse, cube, home):
-    before = (home / cube).read_bytes()
-    assert refuse("slices", cube, cube, "--force").code == "unknown-suffix"
-    assert (home / cube).read_bytes() == before
 
 
 def test_invalid_cubes_are_errors(refuse, home):

@@ -80,5 +80,8 @@ def test_out_of_gamut(run, refuse, frames, cubes):
     assert "--out-of-gamut" in hint_for(error)
 
 
-def test_images_are_not_replaced(refuse, frames):
-    assert refuse("texture", "shot.*.exr", ".").code == "file-exists"
+def test_textures_do_not_replace_any_image_of_the_sequence(refuse, frames):
+    before = {path.name: path.read_bytes() for path in frames.iterdir()}
+    for words in (("shot.*.exr",), ("shot.1.exr", "shot.0.exr")):
+        assert refuse("texture", *words, ".", "--force").code == "output-is-input"
+    assert {path.name: path.read_bytes() for path in frames.iterdir()} == before

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import signal
@@ -14,8 +15,9 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from tests.helpers import raises
+from uplift.common import files
 from uplift.common.errors import OutputError
-from uplift.common.files import atomic_write, check_output
+from uplift.common.files import atomic_write, check_output, check_outputs
 
 AS_ROOT = os.name == "nt" or not hasattr(os, "geteuid") or os.geteuid() == 0
 
@@ -80,6 +82,77 @@ def test_existing_file_is_replaced_only_with_force(tmp_path):
     assert path.read_text() == "old"
     write(path, "new", force=True)
     assert path.read_text() == "new"
+
+
+@pytest.mark.parametrize("links", [True, False])
+def test_file_that_appears_during_the_work_is_not_replaced(tmp_path, monkeypatch, links):
+    if not links:
+
+        def link(source, target):
+            raise OSError(errno.EPERM, "Operation not permitted")
+
+        monkeypatch.setattr(os, "link", link)
+    path = tmp_path / "out.txt"
+    for name in ("out-2.txt", "out-3.txt"):
+        with raises(OutputError, "file-appeared") as caught, atomic_write(path) as temporary:
+            temporary.write_text("ours")
+            path.write_text("theirs")
+        assert str(tmp_path / name) in caught.value.problem
+        assert (tmp_path / name).read_text() == "ours"
+        assert path.read_text() == "theirs"
+        path.unlink()
+    assert sorted(os.listdir(tmp_path)) == ["out-2.txt", "out-3.txt"]
+    with atomic_write(path, force=True) as temporary:
+        temporary.write_text("ours")
+        path.write_text("theirs")
+    assert path.read_text() == "ours"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no modes on Windows")
+@pytest.mark.parametrize("mode", [0o600, 0o444, 0o666, 0o200])
+def test_replaced_file_keeps_its_permissions(tmp_path, mode):
+    path = tmp_path / "old"
+    path.write_text("old")
+    path.chmod(mode)
+    write(path, "new", force=True)
+    assert stat.S_IMODE(path.stat().st_mode) == mode
+
+
+@pytest.mark.skipif(not AS_ROOT or os.name == "nt", reason="only root gives files away")
+def test_replaced_file_keeps_its_owner(tmp_path):
+    path = tmp_path / "old"
+    path.write_text("old")
+    os.chown(path, 1234, 5678)
+    write(path, "new", force=True)
+    assert (path.stat().st_uid, path.stat().st_gid) == (1234, 5678)
+
+
+def test_outputs_are_checked_before_any_is_written(tmp_path):
+    (tmp_path / "last").write_text("old")
+    with raises(OutputError, "file-exists"):
+        check_outputs([tmp_path / "first", None, tmp_path / "last"])
+    check_outputs([tmp_path / "first", None, tmp_path / "last"], inputs=[None, "macbeth"], force=True)
+    for other in (tmp_path / "first", tmp_path / "none" / ".." / "first"):
+        (tmp_path / "none").mkdir(exist_ok=True)
+        with raises(OutputError, "duplicate-output"):
+            check_outputs([tmp_path / "first", other])
+
+
+def test_inputs_are_not_replaced(tmp_path):
+    path = tmp_path / "in"
+    path.write_text("")
+    (tmp_path / "link").symlink_to(path)
+    for output in (path, tmp_path / "link", tmp_path / "." / "in"):
+        with raises(OutputError, "output-is-input"):
+            check_output(output, inputs=[None, "none", path], force=True)
+
+
+def test_temporary_files_can_be_removed_before_the_process_ends(tmp_path):
+    with contextlib.suppress(OutputError), atomic_write(tmp_path / "new") as temporary:
+        assert temporary.exists()
+        files.remove_temporaries()
+        assert not temporary.exists()
+    assert os.listdir(tmp_path) == []
 
 
 def test_check_leaves_no_trace(tmp_path):

@@ -72,8 +72,8 @@ def read_atlas(*paths: StrPath) -> Atlas:
     return atlas
 
 
-def write_atlas(atlas: Atlas, path: StrPath, header: Header | None = None) -> None:
-    """Write an atlas atomically, replacing an existing file.
+def write_atlas(atlas: Atlas, path: StrPath, header: Header | None = None, *, force: bool = True) -> None:
+    """Write an atlas atomically.
 
     Parameters
     ----------
@@ -83,11 +83,14 @@ def write_atlas(atlas: Atlas, path: StrPath, header: Header | None = None) -> No
         The file. With the suffix ``.csv`` it is a table, otherwise atlas text.
     header : Header, optional
         Statements about the archive, by default those of the sources. A table has no header.
+    force : bool, default True
+        Replace an existing file.
 
     Raises
     ------
     OutputError
-        The atlas is empty, the path cannot be written, or the entries of a table differ in sampling.
+        The atlas is empty, the path cannot be written, the file exists and ``force`` is false, or the entries of a
+        table differ in sampling.
     """
     if not atlas.entries:
         raise OutputError(
@@ -98,7 +101,7 @@ def write_atlas(atlas: Atlas, path: StrPath, header: Header | None = None) -> No
         )
     is_table = os.fspath(path).lower().endswith(".csv")
     text = table.text(atlas) if is_table else art_write.text(atlas, header or _merge_headers(atlas))
-    write_text(text, path, force=True)
+    write_text(text, path, force=force)
 
 
 def _read(path: StrPath) -> Atlas:

@@ -8,7 +8,6 @@ from uplift.atlas import Atlas, Entry, Header, write_atlas
 from uplift.atlas.checks import HIGHEST, LOWEST
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PaletteError, UpliftWarning
-from uplift.common.files import check_output
 from uplift.design.palette.design import Design
 
 CONTENT = "Reflectances designed by uplift palette"
@@ -86,7 +85,7 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
             code="no-designed-material",
             hint="design one with bounds within [0, 1]",
         )
-    write_atlas(atlas, check_output(path, force=force), Header(content=CONTENT))
+    write_atlas(atlas, path, Header(content=CONTENT), force=force)
     return len(atlas)
 
 

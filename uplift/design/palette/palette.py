@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
@@ -101,6 +102,8 @@ class Palette:
         Weight ω_F of the difference between the colours of the factor model and of full spectra.
     count : int
         Number of coefficients of the factor model.
+    sources : tuple of Path
+        Files that the palette was read from.
     """
 
     sensor: Sensor
@@ -112,6 +115,7 @@ class Palette:
     smoothness: float = 0.001
     model_error: float = 0.1
     count: int = 7
+    sources: tuple[Path, ...] = ()
 
     def light(self, name: str) -> SpectrumSpec:
         """Find a light.

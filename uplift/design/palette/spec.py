@@ -16,12 +16,14 @@ from uplift.design.palette.factor import COUNTS
 from uplift.design.palette.fields import Name, NonNegative, SpecColour
 from uplift.design.palette.palette import ColourGoal, MinDifference, Palette
 from uplift.design.palette.spec_entries import (
+    AtlasMaterial,
     Difference,
     FreeGoal,
     FreeRange,
     Goal,
     LightTable,
     MaterialTable,
+    RgbMaterial,
 )
 
 Count = Annotated[float, Field(strict=True, ge=COUNTS[0], le=COUNTS[-1], multiple_of=1)]
@@ -85,7 +87,17 @@ def read_palette(path: StrPath) -> Palette:
         smoothness=table.smoothness,
         model_error=table.model_error,
         count=int(table.coefficients),
+        sources=(file.path, *(folder / name for name in _files(table))),
     )
+
+
+def _files(table: _PaletteTable) -> Iterator[str]:
+    """Names of the atlases and cubes in a spec."""
+    for material in table.materials.values():
+        if isinstance(material, AtlasMaterial):
+            yield material.atlas
+        elif isinstance(material, RgbMaterial) and material.cube is not None:
+            yield material.cube
 
 
 def _goals(file: SpecFile, table: _PaletteTable, sensor: Sensor) -> Iterator[ColourGoal]:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from uplift.common.errors import UpliftWarning
+from uplift.common.files import check_output
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.texture.colours import Counts
 from uplift.io.texture.converter import Converter
@@ -82,7 +83,7 @@ def convert(
     TextureError
         The image cannot be read, or has no colour channels.
     OutputError
-        ``target`` cannot be written, or exists and ``force`` is off.
+        ``target`` cannot be written, exists and ``force`` is off, or is ``source``.
     OptionError
         The image has encoded floats, and the gamut mapping is neither ``clip`` nor ``error``.
     ColourError
@@ -90,6 +91,7 @@ def convert(
         the nodes for it.
     """
     begin = time.perf_counter()
+    check_output(target, inputs=[source], force=force)
     with open_image(source) as image:
         layouts = part_layouts(converter, image)
         with open_writer(target, [each.output for each in layouts], force=force) as writer:

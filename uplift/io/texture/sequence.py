@@ -12,7 +12,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from uplift.common.errors import OptionError, TextureError, UpliftError
-from uplift.common.files import check_output
+from uplift.common.files import check_outputs
 from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.pixel_encoding import PixelEncoding
 from uplift.io.texture.source import open_image
@@ -167,7 +167,7 @@ def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
     TextureError
         Two images have the same target (code ``duplicate-target``).
     OutputError
-        A target cannot be written, or exists.
+        A target cannot be written, exists, or is an image or the cube of any job.
     """
     jobs = list(jobs)
     for target in {job.target for job in jobs}:
@@ -179,8 +179,9 @@ def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
                 hint="write them to different folders",
             )
     remaining = [job for job in jobs if not (resume and _is_up_to_date(job))]
-    for job in remaining:
-        check_output(job.target, force=job.force)
+    inputs = [path for job in jobs for path in (job.source, job.settings.cube)]
+    for force in (False, True):
+        check_outputs([job.target for job in remaining if job.force == force], inputs=inputs, force=force)
     return remaining
 
 

@@ -1,0 +1,102 @@
+"""No command replaces a file that it reads, and all outputs are checked before any is written."""
+
+from __future__ import annotations
+
+import shutil
+
+import numpy as np
+import pytest
+
+from tests.io.texture.conftest import planes, write_exr
+
+PALETTE = """
+[lights]
+day = {illuminant = "D65"}
+
+[materials]
+card = {atlas = "atlas.txt", entry = "blue"}
+paint = {rgb = [0.5, 0.5, 0.5], cube = "cube.uplift"}
+"""
+SCENE = """
+textures = ["image.exr"]
+atlases = ["atlas.txt"]
+"""
+INPUTS = ("atlas.txt", "cube.uplift", "image.exr", "colours.csv", "palette.toml", "scene.toml")
+
+
+@pytest.fixture
+def inputs(home, cubes, macbeth):
+    """A file of each kind in the working folder, and links to it."""
+    shutil.copy(macbeth, home / "atlas.txt")
+    shutil.copy(cubes / "moments-8-macbeth.uplift", home / "cube.uplift")
+    write_exr(home / "image.exr", planes(np.full((2, 2, 3), 0.5, np.float32)))
+    (home / "colours.csv").write_text("0.5,0.5,0.5\n")
+    (home / "palette.toml").write_text(PALETTE)
+    (home / "scene.toml").write_text(SCENE)
+    (home / "link.exr").symlink_to("image.exr")
+    return {name: (home / name).read_bytes() for name in INPUTS}
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "atlas atlas.txt --convert ./atlas.txt",
+        "build --atlas atlas.txt -o atlas.txt",
+        "build --scene image.exr -o link.exr",
+        "export cube.uplift cube.uplift --format csv",
+        "mix #c8342a --over image.exr -o image.exr",
+        "mix #c8342a --over image.exr -o link.exr",
+        "mix black --atlas atlas.txt --swatches atlas.txt",
+        "palette palette.toml --matrix palette.toml",
+        "palette palette.toml --atlas atlas.txt",
+        "palette palette.toml --spectra cube.uplift",
+        "palette palette.toml --html image.exr --image image.exr",
+        "plan scene.toml -o scene.toml",
+        "plan scene.toml -o image.exr",
+        "plan scene.toml -o atlas.txt",
+        "query --cube cube.uplift #c8342a --plot cube.uplift",
+        "query --input colours.csv --plot colours.csv",
+        "report cube.uplift -o cube.uplift",
+        "report cube.uplift --atlas atlas.txt -o atlas.txt",
+        "slices cube.uplift cube.uplift",
+        "slices cube.uplift --sheet cube.uplift",
+        "texture image.exr image.exr",
+        "texture image.exr link.exr",
+        "texture image.exr .",
+        "wavelengths --count 4 --atlas atlas.txt --plot atlas.txt",
+    ],
+)
+def test_inputs_are_not_replaced(refuse, home, inputs, words):
+    assert refuse(*words.split(), "--force").code == "output-is-input"
+    assert {name: (home / name).read_bytes() for name in INPUTS} == inputs
+    assert {path.name for path in home.iterdir()} == {*INPUTS, "link.exr"}
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "palette palette.toml --matrix new.png --spectra {}",
+        "plan scene.toml -o {}.json",
+        "slices cube.uplift new.exr --sheet {}",
+        "texture image.exr link.exr {}",
+    ],
+)
+def test_nothing_is_written_if_one_output_exists(refuse, home, inputs, words):
+    for name in ("old.png", "old.html"):
+        (home / name).write_text("old")
+    folder = home / "out"
+    folder.mkdir()
+    (folder / "link.exr").write_text("old")
+    before = {path.name for path in home.iterdir()}
+    old = "out" if "texture" in words else "old" if "plan" in words else "old.png"
+    assert refuse(*words.format(old).split()).code == "file-exists"
+    assert {path.name for path in home.iterdir()} == before
+    assert {path.name for path in folder.iterdir()} == {"link.exr"}
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["palette palette.toml --matrix a.png --spectra ./a.png", "slices cube.uplift a.exr --sheet ./a.exr"],
+)
+def test_outputs_differ(refuse, inputs, words):
+    assert refuse(*words.split(), "--force").code == "duplicate-output"
