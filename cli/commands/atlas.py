@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 import click
 
 from ..output.atlas_listing import Listing, Row, list_entries
-from ..output.console import console, json_text
+from ..output.console import has_colours, make_table, print_csv, print_json, say, show
 from ..output.shipped_listing import print_shipped
 from ..params.options import force_option, format_option, sensor_options
 
 if TYPE_CHECKING:
-    from rich.console import Console
-    from rich.table import Table
+    from ..output.tables import SafeTable
 
 
 @click.command("atlas")
@@ -74,7 +73,7 @@ def _convert(files: tuple[str, ...], path: str, force: bool) -> None:
     check_output(path, inputs=files, force=force)
     atlas = read_atlas(*files)
     write_atlas(atlas, path, force=force)
-    click.echo(f"{path}: {len(atlas)} entries", err=True)
+    say(f"{path}: {len(atlas)} entries", err=True)
 
 
 def _print_json(listing: Listing) -> None:
@@ -88,41 +87,36 @@ def _print_json(listing: Listing) -> None:
         "entries": rows,
         "skipped": [asdict(skipped) for skipped in listing.atlas.skipped],
     }
-    click.echo(json_text(fields))
+    print_json(fields)
 
 
 def _print_csv(listing: Listing) -> None:
-    from uplift.common.csv import csv_text
-
     header = ["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"]
     rows = (
         [row.name, row.start, row.end, row.step, *row.rgb, str(row.in_gamut).lower(), "; ".join(row.warnings)]
         for row in listing.rows
     )
-    click.echo(csv_text(header, rows), nl=False)
+    print_csv(header, rows)
 
 
 def _print_table(listing: Listing) -> None:
-    out = console()
-    out.print(_table(listing, out))
-    out.print(_summary(listing), markup=False)
+    show(_table(listing))
+    say(_summary(listing))
 
 
-def _table(listing: Listing, out: Console) -> Table:
-    from rich import box
-    from rich.table import Table
+def _table(listing: Listing) -> SafeTable:
     from rich.text import Text
 
     sensor = listing.sensor
-    table = Table(box=box.SIMPLE_HEAD, caption=f"linear {sensor.space} under {sensor.illuminant}")
-    swatches = out.color_system is not None
+    table = make_table(caption=f"linear {sensor.space} under {sensor.illuminant}")
+    swatches = has_colours()
     for title in [""] * swatches + ["name", "range (nm)", "step", "R", "G", "B", "gamut", "warnings"]:
         right = title in ("step", "R", "G", "B")
         table.add_column(title, justify="right" if right else "left", no_wrap=right, overflow="fold")
     for row in listing.rows:
         red, green, blue = row.swatch
         swatch = [Text("   ", style=f"on rgb({red},{green},{blue})")] * swatches
-        table.add_row(*swatch, *map(Text, _cells(row)))
+        table.add_row(*swatch, *_cells(row))
     return table
 
 

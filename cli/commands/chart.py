@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.console import console, make_table
+from ..output.console import make_table, say, show
 from ..output.progress import progress_bar
 from ..params.atlases import DEFAULT_ATLASES, read_atlases
 from ..params.options import atlas_option, force_option
@@ -101,7 +101,7 @@ def command(
     chart = _read(source) if source is not None else _measure(files, patterns, colours, quick=quick)
     _write(chart, folder, force=force)
     _print_fronts(chart)
-    click.echo(f"{folder}: {', '.join(FILES)}", err=True)
+    say(f"{folder}: {', '.join(FILES)}", err=True)
 
 
 def _recommend(source: str | None, requirement: Requirement) -> None:
@@ -110,10 +110,12 @@ def _recommend(source: str | None, requirement: Requirement) -> None:
 
     row = recommend_cube(_read(source) if source is not None else shipped_chart(), requirement)
     numbers = row.numbers
-    click.echo(
+    say(
         f"{row.title}: {format_time(numbers['time_ns'])} per RGB, mean ΔE00 {format_error(numbers[requirement.error])} "
-        f"{requirement.description}, {format_size(numbers['bytes'])}\n  {row.build}\n  {row.ask}"
+        f"{requirement.description}, {format_size(numbers['bytes'])}"
     )
+    say(f"  {row.build}")
+    say(f"  {row.ask}")
 
 
 def _read(source: str) -> Chart:
@@ -163,7 +165,7 @@ def _print_fronts(chart: Chart) -> None:
                 format_size(row.numbers["bytes"]),
                 end_section=row is front[-1],
             )
-    console().print(table)
+    show(table)
     for row in chart.results:
         if row.state != State.MEASURED:
-            click.echo(f"{row.method}: {row.state}, not drawn: {row.why}")
+            say(f"{row.method}: {row.state}, not drawn: {row.why}")

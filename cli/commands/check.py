@@ -11,12 +11,14 @@ import click
 
 from uplift.common.errors import UpliftError
 
-from ..output.console import console, json_text
+from ..output.console import make_table, print_json, say, show
 from ..output.diagnostics import UsageFailure, error_object
 from ..params.options import atlas_folders_option, format_option, quiet_option, verbose_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
+    from rich.text import Text
+
     from uplift.common.progress import ProgressCallback
     from uplift.lookup import Cube
     from uplift.report.regression import RebuildDifference
@@ -55,7 +57,7 @@ def command(
     with build_progress(quiet=quiet, verbose=verbose) as progress:
         results = [_check(Path(file), folders, progress) for file in dict.fromkeys(files)]
     if style == "json":
-        click.echo(json_text([_object(result) for result in results]))
+        print_json([_object(result) for result in results])
     elif not quiet:
         _table(results)
     replaced = [result for result in results if update and not result.passed and result.rebuilt]
@@ -93,7 +95,7 @@ class _Result:
         """Replace the stored cube by the rebuilt one."""
         if self.rebuilt:
             self.rebuilt.save(self.path, force=True)
-            click.echo(f"{self.path}: replaced", err=True)
+            say(f"{self.path}: replaced", err=True)
 
 
 def _check(path: Path, folders: Sequence[str], progress: ProgressCallback) -> _Result:
@@ -125,37 +127,31 @@ def _object(result: _Result) -> dict[str, object]:
 
 
 def _table(results: Sequence[_Result]) -> None:
-    from rich.table import Table
-
     from uplift.report.regression import LIMITS
 
-    table = Table(box=None, pad_edge=False)
     headings = {"rgb": "RGB", "spectra_max": "spectra max", "spectra_rms": "rms"}
-    table.add_column("cube", no_wrap=True)
-    for name in LIMITS:
-        table.add_column(headings.get(name, name.replace("delta_e_", "ΔE00 ")), justify="right", no_wrap=True)
+    measures = (headings.get(name, name.replace("delta_e_", "ΔE00 ")) for name in LIMITS)
+    table = make_table(("cube",), measures, box=None, pad_edge=False)
     table.add_column("status", no_wrap=True)
     table.add_column("", no_wrap=True)
     for result in results:
         table.add_row(*_row(result))
-    table.add_row(
-        "[dim]limit[/dim]", *(f"[dim]{limit:.0e}[/dim]" for limit in LIMITS.values()), "[dim]same[/dim]", ""
-    )
-    console().print(table)
+    table.add_row("limit", *(f"{limit:.0e}" for limit in LIMITS.values()), "same", "", style="dim")
+    show(table)
 
 
-def _row(result: _Result) -> list[str]:
-    from rich.markup import escape
+def _row(result: _Result) -> list[str | Text]:
+    from rich.text import Text
 
     from uplift.report.regression import LIMITS
 
-    def cell(name: str, text: str) -> str:
-        return f"[bold red]{text}[/]" if name in result.failures else text
+    def cell(name: str, text: str) -> Text:
+        return Text(text, style="bold red" if name in result.failures else "")
 
     if result.comparison:
         cells = [cell(name, f"{result.comparison.measures[name]:.1e}") for name in LIMITS]
         cells.append(cell("status", "differs" if "status" in result.failures else "same"))
     else:
-        cells = ["–"] * (len(LIMITS) + 1)
-    verdict = "[green]passed[/]" if result.passed else "[bold red]FAILED[/]"
-    return [escape(str(result.path)), *cells, verdict]
+        cells = [Text("–")] * (len(LIMITS) + 1)
+    verdict = Text("passed", style="green") if result.passed else Text("FAILED", style="bold red")
+    return [str(result.path), *cells, verdict]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.console import json_text
+from ..output.console import print_csv_text, print_json, say
 from ..output.progress import progress_bar
 from ..params.atlases import DEFAULT_ATLASES, read_atlases
 from ..params.options import atlas_option, force_option, format_option, light_option, output_folder_option
@@ -139,7 +139,7 @@ def _write(comparison: Comparison, tuned: tuple[TunedFilter, ...], folder: Path,
         for kind, path in (("boxes", boxes), ("cost", cost))
     }
     write_text(render_comparison(comparison, pictures, tuned), html, force=force)
-    click.echo(f"{folder}: {', '.join((*FILES, FILTERS) if tuned else FILES)}", err=True)
+    say(f"{folder}: {', '.join((*FILES, FILTERS) if tuned else FILES)}", err=True)
 
 
 def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
@@ -161,7 +161,7 @@ def _records(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> dict[str
 
 
 def _print_json(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
-    click.echo(json_text(_records(comparison, tuned)))
+    print_json(_records(comparison, tuned))
 
 
 def _print_csv(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
@@ -170,7 +170,7 @@ def _print_csv(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
     tables = _records(comparison, tuned)
     for name in ("representations", "filters"):
         if tables[name]:
-            click.echo(records_csv(tables[name]), nl=False)
+            print_csv_text(records_csv(tables[name]))
 
 
 PRINTERS: dict[str, Callable[[Comparison, tuple[TunedFilter, ...]], None]] = {

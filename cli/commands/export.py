@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..output.console import say
 from ..output.progress import spinner
 from ..params.options import fill_option, force_option
 from ..startup import enable_jit_cache
@@ -64,7 +65,7 @@ def command(
     path = check_output(out, inputs=[cube], force=force)
     options = {} if res is None else {"res": res}
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
-    click.echo(f"{path}: {WRITERS[style](loaded.data, path, force=force, **options)}")
+    say(f"{path}: {WRITERS[style](loaded.data, path, force=force, **options)}")
 
 
 def _format_of(out: str | None) -> str:

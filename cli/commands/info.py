@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from ..output.console import console, json_text
+from ..output.console import make_table, print_json, say, show
 from ..params.options import format_option
 
 
@@ -26,25 +26,22 @@ def command(file: str | None, style: str) -> None:
 
     fields = summarise(load(file).data)
     if style == "json":
-        click.echo(json_text(fields))
+        print_json(fields)
     else:
         _table(file or "packaged cube", fields)
 
 
 def _table(name: str, fields: dict[str, Any]) -> None:
-    from rich.table import Table
-    from rich.text import Text
-
-    click.echo(name)
-    table = Table(show_header=False, box=None, pad_edge=False)
+    say(name)
+    table = make_table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
     provenance = fields.pop("provenance")
     options = provenance.pop("options", {})
     for section in (fields, provenance, {f"option {key}": value for key, value in options.items()}):
         for key, value in section.items():
-            table.add_row(key.replace("_", " "), Text(_text(value)))
-    console().print(table)
+            table.add_row(key.replace("_", " "), _text(value))
+    show(table)
 
 
 def _text(value: Any) -> str:

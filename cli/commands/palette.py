@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from ..output.console import say
 from ..output.palette_page import read_picture, write_page
 from ..output.palette_tables import PRINTERS
 from ..params.options import force_option, format_option
@@ -87,10 +88,10 @@ def _write(
 
     if atlas is not None:
         count = write_designed(design, atlas, force=force)
-        click.echo(f"{atlas}: {count} designed materials", err=True)
+        say(f"{atlas}: {count} designed materials", err=True)
     if matrix_path is not None:
         plot_matrix(design, matrix(design), matrix_path, force=force)
-        click.echo(f"{matrix_path}: matrix of colours", err=True)
+        say(f"{matrix_path}: matrix of colours", err=True)
     if spectra_path is not None:
         plot_spectra(design, spectra_path, force=force)
-        click.echo(f"{spectra_path}: spectra", err=True)
+        say(f"{spectra_path}: spectra", err=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.console import console, json_text
+from ..output.console import json_text, make_table, print_json, say, show
 from ..output.progress import stage_spinner
 from ..params.options import force_option, format_option
 from ..startup import enable_jit_cache
@@ -65,16 +65,13 @@ def command(scene: str, output: str | None, style: str, force: bool) -> None:
     write_text(json_text(fields) + "\n", path, force=force)
     write_text(page(result, path), html, force=force)
     if style == "json":
-        click.echo(json_text(fields))
+        print_json(fields)
     else:
         _print_summary(result, fields["lines"])
-    click.echo(f"{path}, {html}", err=True)
+    say(f"{path}, {html}", err=True)
 
 
 def _print_summary(plan: Plan, lines: list[str]) -> None:
-    from rich import box
-    from rich.table import Table
-
     from uplift.scene.plan.summary import (
         describe_error,
         describe_metamerism,
@@ -83,7 +80,7 @@ def _print_summary(plan: Plan, lines: list[str]) -> None:
         worst_case,
     )
 
-    table = Table(box=box.SIMPLE_HEAD)
+    table = make_table()
     table.add_column("smallest sufficient")
     table.add_column("")
     table.add_column("cumulative ΔE00", justify="right", no_wrap=True)
@@ -91,8 +88,9 @@ def _print_summary(plan: Plan, lines: list[str]) -> None:
     table.add_column("options")
     for row in summary_rows(plan):
         table.add_row(row.title, row.chosen, row.error, row.cost, row.cli_args)
-    click.echo(f"{plan.scene.path.name}: {verdict(plan)} ({worst_case(plan.confirmed)})")
-    console().print(table)
+    say(f"{plan.scene.path.name}: {verdict(plan)} ({worst_case(plan.confirmed)})")
+    show(table)
     for line in lines:
-        click.echo(f"  {line}")
-    click.echo(f"\n{describe_error(plan)}. {describe_metamerism(plan)}")
+        say(f"  {line}")
+    say()
+    say(f"{describe_error(plan)}. {describe_metamerism(plan)}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.console import json_text
+from ..output.console import emit, json_text, say
 from ..params.options import atlas_folders_option, atlas_option, force_option, format_option, light_option
 
 if TYPE_CHECKING:
@@ -76,10 +76,10 @@ def command(
         assessment = _assess(cube, cube_path, files, folders, lights)
         text = _text(assessment, style, worst)
     if path is None:
-        click.echo(text, nl=False)
+        emit(text, nl=False)
     else:
         write_text(text, path, force=force)
-        click.echo(f"{path}: {_summary(assessment)}")
+        say(f"{path}: {_summary(assessment)}")
 
 
 def _path(output: str | None, cube: str, style: str) -> Path | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from ..output.console import say
 from ..params.options import force_option
 
 
@@ -43,7 +44,7 @@ def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
     data = read(cube)
     if out is not None:
         write_slices(data, out, force=force)
-        click.echo(f"{out}: {data.lattice.dim} blue slices")
+        say(f"{out}: {data.lattice.dim} blue slices")
     if sheet is not None:
         write_sheet(data, sheet, force=force)
-        click.echo(f"{sheet}: contact sheet")
+        say(f"{sheet}: contact sheet")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.console import console, json_text, make_table
+from ..output.console import make_table, print_csv, print_json, say, show
 from ..output.progress import progress_bar
 from ..params.atlases import DEFAULT_ATLASES, read_atlases
 from ..params.options import atlas_option, coefficient_count, coefficients_options, format_option
@@ -69,20 +69,18 @@ def _records(results: Results) -> list[dict[str, Any]]:
 
 
 def _print_json(results: Results) -> None:
-    click.echo(json_text(_records(results)))
+    print_json(_records(results))
 
 
 def _print_csv(results: Results) -> None:
     from uplift.colorimetry.lights import HELD_OUT_LIGHTS
-    from uplift.common.csv import csv_text
 
     header = ["atlas", "cube", "colours", "rms", *HELD_OUT_LIGHTS]
     rows = ([record[key] for key in header] for record in _records(results))
-    click.echo(csv_text(header, rows), nl=False)
+    print_csv(header, rows)
 
 
 def _print_table(results: Results) -> None:
-    from rich.text import Text
 
     from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 
@@ -90,12 +88,12 @@ def _print_table(results: Results) -> None:
     standard_errors = []
     for record in _records(results):
         cells = [f"{record['rms']:.4f}", *(f"{record[light]:.3f}" for light in HELD_OUT_LIGHTS)]
-        table.add_row(Text(record["atlas"]), record["cube"], *cells)
+        table.add_row(record["atlas"], record["cube"], *cells)
         if record.get("standard_error"):
             standard_errors.append((record["atlas"], record["standard_error"]))
-    console().print(table)
+    show(table)
     for name, errors in standard_errors:
-        click.echo(
+        say(
             f"{name}: predicted standard error ΔE00 {errors['stated']:.2f}, actual {errors['real']:.2f}; "
             f"{errors['within_one']:.0%} within one, {errors['within_two']:.0%} within two"
         )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.console import console, json_text, make_table
+from ..output.console import make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar
 from ..params.atlases import DEFAULT_ATLASES, read_atlases
 from ..params.options import atlas_option, force_option, format_option, output_folder_option
@@ -71,20 +71,20 @@ def _write(study: MomentsStudy, folder: Path, *, force: bool) -> None:
     plot_errors({"all entries": curves(study)}, errors, force=force)
     plot_patches(study, patches, force=force)
     plot_worst(study, worst, force=force)
-    click.echo(f"{folder}: {', '.join(FILES)}", err=True)
+    say(f"{folder}: {', '.join(FILES)}", err=True)
 
 
 def _print_json(study: MomentsStudy) -> None:
     from uplift.lab.study.moments_table import records
 
-    click.echo(json_text(records(study)))
+    print_json(records(study))
 
 
 def _print_csv(study: MomentsStudy) -> None:
     from uplift.lab.study.moments_table import records
     from uplift.lab.study.records import records_csv
 
-    click.echo(records_csv(records(study)), nl=False)
+    print_csv_text(records_csv(records(study)))
 
 
 def _print_table(study: MomentsStudy) -> None:
@@ -99,7 +99,7 @@ def _print_table(study: MomentsStudy) -> None:
     for count in range(study.max_moments + 1):
         results = [study.result(technique, count) for technique in TECHNIQUES]
         table.add_row(str(count), *(f"{one.mean[0]:.2f} / {one.max[0]:6.2f}" for one in results))
-    console().print(table)
+    show(table)
 
 
 PRINTERS: dict[str, Callable[[MomentsStudy], None]] = {

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.console import console, json_text, make_table
+from ..output.console import json_text, make_table, print_json, say, show
 from ..output.progress import progress_bar
 from ..params.options import atlas_folders_option, force_option, format_option, output_folder_option
 from ..startup import enable_jit_cache
@@ -77,11 +77,11 @@ def _write(result: Sensitivity, folder: Path, *, force: bool) -> None:
     if result.removed:
         plot_locality(result.removed, folder / LOCALITY, force=force)
         written.append(LOCALITY)
-    click.echo(f"{folder}: {', '.join(written)}", err=True)
+    say(f"{folder}: {', '.join(written)}", err=True)
 
 
 def _print_json(result: Sensitivity) -> None:
-    click.echo(json_text(result.record()))
+    print_json(result.record())
 
 
 def _print_table(result: Sensitivity) -> None:
@@ -95,7 +95,7 @@ def _print_table(result: Sensitivity) -> None:
     )
     steep = record["lipschitz"]
     where = ", ".join(f"{value:.4f}" for value in steep["steepest_cell"])
-    click.echo(
+    say(
         f"Lipschitz constant {steep['largest']:.3g} rms per unit of linear RGB (median of the cells "
         f"{steep['median_cell']:.2g}), {steep['largest_per_code']:.2g} per 8-bit code; steepest cell at {where}, "
         f"steepest wavelength {steep['steepest_wavelength']:g} nm"
@@ -109,12 +109,10 @@ def _print_table(result: Sensitivity) -> None:
 
 
 def _table(texts: tuple[str, ...], numbers: tuple[str, ...], rows: list[tuple[Any, ...]]) -> None:
-    from rich.text import Text
-
     table = make_table(texts, numbers)
     for row in rows:
-        table.add_row(*(Text(_cell(value)) for value in row))
-    console().print(table)
+        table.add_row(*map(_cell, row))
+    show(table)
 
 
 def _cell(value: Any) -> str:

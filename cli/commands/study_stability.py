@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.console import console, json_text, make_table
+from ..output.console import json_text, make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar
 from ..params.atlases import read_atlases
 from ..params.options import atlas_option, force_option, format_option, output_folder_option
@@ -110,7 +110,7 @@ def _write(axes: DesignSpace, runs: Sequence[RunResult], folder: Path, *, force:
     write_csv([run.record() for run in runs], table, force=force)
     write_text(_json(runs) + "\n", text, force=force)
     plot_map(grids(axes), {run.config: run for run in runs}, picture, force=force)
-    click.echo(f"{folder}: {', '.join(FILES)}", err=True)
+    say(f"{folder}: {', '.join(FILES)}", err=True)
 
 
 def _json(runs: Sequence[RunResult]) -> str:
@@ -118,18 +118,16 @@ def _json(runs: Sequence[RunResult]) -> str:
 
 
 def _print_json(runs: Sequence[RunResult]) -> None:
-    click.echo(_json(runs))
+    print_json([run.record() for run in runs])
 
 
 def _print_csv(runs: Sequence[RunResult]) -> None:
     from uplift.lab.study.records import records_csv
 
-    click.echo(records_csv([run.record() for run in runs]), nl=False)
+    print_csv_text(records_csv([run.record() for run in runs]))
 
 
 def _print_table(runs: Sequence[RunResult]) -> None:
-    from rich.text import Text
-
     table = make_table(
         ("solver", "model", "dim", "space", "threshold", "atlas"),
         ("realisable", "unfitted", "rounds", "calls", "worst", "at", "s"),
@@ -142,15 +140,15 @@ def _print_table(runs: Sequence[RunResult]) -> None:
         table.add_row(
             *names,
             f"{setting.threshold:g}",
-            Text(setting.atlas),
+            setting.atlas,
             *facts,
             where,
             f"{run.seconds:.2f}",
             style="bold red" if run.unfitted else None,
         )
-    console().print(table)
+    show(table)
     failed = [run for run in runs if run.unfitted]
-    click.echo(
+    say(
         f"{len(runs)} builds, {sum(run.realisable for run in runs)} realisable nodes: "
         f"{sum(run.unfitted for run in failed)} unfitted in {len(failed)} builds"
     )

@@ -12,6 +12,7 @@ import click
 
 from uplift.common.progress import Progress
 
+from ..output.console import say
 from ..output.diagnostics import UsageFailure
 from ..output.progress import progress_bar
 from ..params.image_paths import texture_paths
@@ -170,4 +171,4 @@ def _print_summary(target: str, converted: list[Conversion], skipped: int, secon
     size = sum(conversion.target.stat().st_size for conversion in converted)
     suffix = f", {skipped} skipped" if skipped else ""
     count = f"{len(converted)} texture{'s' * (len(converted) != 1)}{suffix}"
-    click.echo(f"{target}: {count}, {pixels:,} pixels, {size / 1e6:.1f} MB, {seconds:.1f} s")
+    say(f"{target}: {count}, {pixels:,} pixels, {size / 1e6:.1f} MB, {seconds:.1f} s")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
+from .console import say
 
 if TYPE_CHECKING:
     from uplift.cube import CubeData
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def print_improvements(cube: Cube) -> None:
     """Print a line for each improvement step to standard error."""
     for step in cube.data.provenance["improvements"]:
-        click.echo(f"improvement, {step['step']}: tried {step['tried']}, fixed {step['mended']}", err=True)
+        say(f"improvement, {step['step']}: tried {step['tried']}, fixed {step['mended']}", err=True)
 
 
 def print_summary(cube: Cube, path: Path, seconds: float) -> None:
@@ -33,7 +33,7 @@ def print_summary(cube: Cube, path: Path, seconds: float) -> None:
         accuracy += f" except {unrealisable} unrealisable ones, stored with less chroma"
     worst = data.points.distance[data.points.status != Status.UNREALISABLE].max(initial=0)
     entries = f"{len(data.atlas.names)} atlas entries, " if data.provenance["atlases"] else ""
-    click.echo(
+    say(
         f"{path}: {_node_count(data)}, {entries}{accuracy} (worst {worst:.1e}), "
         f"{counts['improved']} improved, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
     )

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import click
-
-from .console import console, make_table
+from .console import make_table, say, show
 
 if TYPE_CHECKING:
     from uplift.lab.comparison.filters import TunedFilter
@@ -25,7 +23,7 @@ def print_comparison(comparison: Comparison) -> None:
         for row in comparison.of(name):
             cost = (f"{row.floats:.1f}", f"{row.light_floats:.1f}", format_time(row.ns.median))
             table.add_row(row.name, *_cells(row.statistics), *cost)
-        console().print(table)
+        show(table)
 
 
 def print_filters(tuned: tuple[TunedFilter, ...]) -> None:
@@ -36,7 +34,7 @@ def print_filters(tuned: tuple[TunedFilter, ...]) -> None:
     table = make_table(("lights", "samples", "filter", "parameters"), HEADINGS, caption=caption)
     for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
         table.add_row(one.lights, str(one.count), one.kind, one.parameters, *_cells(one.statistics))
-    console().print(table)
+    show(table)
 
 
 def print_advice(comparison: Comparison, target: float) -> None:
@@ -55,7 +53,7 @@ def print_advice(comparison: Comparison, target: float) -> None:
                 f"{row.floats:.4g} floats per surface, {row.light_floats:.4g} per light, "
                 f"{format_time(row.ns.median)} per product"
             )
-        click.echo(f"{title}: {text}")
+        say(f"{title}: {text}")
 
 
 def _cells(statistics: Statistics) -> list[str]:

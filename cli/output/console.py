@@ -1,36 +1,107 @@
-"""Tables and JSON on standard output."""
+"""Standard output and standard error: the one door through which text reaches the terminal.
+
+Texts may come from files. `say` and the cells of `make_table` escape what a terminal would obey; `emit` prints text
+that is safe already; `print_json` and `print_csv` print data.
+"""
 
 from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
+
+import click
+
+from uplift.common.text import json_escapes, printable
 
 if TYPE_CHECKING:
     from rich.console import Console
-    from rich.table import Table
+
+    from uplift.common.csv import CsvWriter
+
+    from .tables import SafeTable
 
 PIPE_WIDTH = 160
 """Width of tables that do not go to a terminal, in characters."""
+
+
+def say(text: str = "", *, err: bool = False) -> None:
+    """Print one line with control characters escaped."""
+    click.echo(printable(text), err=err)
+
+
+def emit(text: str, *, err: bool = False, nl: bool = True) -> None:
+    """Print text of our own, which may have several lines and colours."""
+    click.echo(text, err=err, nl=nl)
+
+
+def print_json(values: Any, indent: int | None = 2) -> None:
+    """Print standard JSON."""
+    emit(terminal_json(values, indent))
+
+
+def terminal_json(values: Any, indent: int | None = None) -> str:
+    """Return standard JSON, in the characters that standard output has."""
+    text = json_text(values, indent)
+    return text if _is_unicode(sys.stdout) else json.dumps(json.loads(text), indent=indent)
+
+
+def print_csv(header: Sequence[object], rows: Iterable[Sequence[object]]) -> None:
+    """Print a table as CSV."""
+    writer = csv_writer()
+    writer.write(header)
+    for row in rows:
+        writer.write(row)
+
+
+def csv_writer() -> CsvWriter:
+    """Return a writer of CSV to standard output."""
+    from uplift.common.csv import CsvWriter
+
+    return CsvWriter(_Lines())
+
+
+def print_csv_text(text: str) -> None:
+    """Print CSV."""
+    _Lines().write(text)
+
+
+class _Lines:
+    """Standard output with control characters escaped, but for the ends of lines."""
+
+    def write(self, text: str) -> int:
+        sys.stdout.write("\n".join(map(printable, text.split("\n"))))
+        return len(text)
 
 
 def console() -> Console:
     """Return a rich console on standard output."""
     from rich.console import Console
 
-    console = Console(file=sys.stdout, highlight=False)
+    console = Console(file=sys.stdout, highlight=False, markup=False, emoji=False)
     if not console.is_terminal:
         console.width = max(console.width, PIPE_WIDTH)
     return console
 
 
-def make_table(texts: Iterable[str], numbers: Iterable[str], **options: Any) -> Table:
+def has_colours() -> bool:
+    """Return whether standard output shows colours."""
+    return console().color_system is not None
+
+
+def show(*tables: SafeTable) -> None:
+    """Print tables."""
+    console().print(*tables)
+
+
+def make_table(texts: Iterable[str] = (), numbers: Iterable[str] = (), **options: Any) -> SafeTable:
     """Return a table with left-aligned columns of text followed by right-aligned columns of numbers."""
     from rich import box
-    from rich.table import Table
 
-    table = Table(box=box.SIMPLE_HEAD, **options)
+    from .tables import SafeTable
+
+    table = SafeTable(**{"box": box.SIMPLE_HEAD} | options)
     for heading in texts:
         table.add_column(heading, no_wrap=True)
     for heading in numbers:
@@ -40,4 +111,8 @@ def make_table(texts: Iterable[str], numbers: Iterable[str], **options: Any) -> 
 
 def json_text(values: Any, indent: int | None = 2) -> str:
     """Return standard JSON. Raises ValueError for NaN and infinity, which it cannot represent."""
-    return json.dumps(values, indent=indent, ensure_ascii=False, allow_nan=False)
+    return json_escapes(json.dumps(values, indent=indent, ensure_ascii=False, allow_nan=False))
+
+
+def _is_unicode(stream: Any) -> bool:
+    return (getattr(stream, "encoding", None) or "utf-8").lower().startswith("utf")

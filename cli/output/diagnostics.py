@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import click
 
 from uplift.common.errors import UpliftError, UpliftWarning
 
+from .console import emit, json_text
 from .hints import describe, hint_for
 
 
@@ -32,10 +32,10 @@ class UsageFailure(click.ClickException):
     def show(self, file: Any = None) -> None:
         """Print the error to standard error."""
         if self.as_json:
-            text = json.dumps({"error": error_object(self.error)}, ensure_ascii=False)
+            text = json_text({"error": error_object(self.error)}, indent=None)
         else:
             text = f"{click.style('error:', fg='red', bold=True)} {self.message}"
-        click.echo(text, err=True)
+        emit(text, err=True)
 
 
 def error_object(error: UpliftError) -> dict[str, Any]:
@@ -46,4 +46,4 @@ def error_object(error: UpliftError) -> dict[str, Any]:
 def show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
     """Print warnings of the library on one line each, and no others; replaces `warnings.showwarning`."""
     if isinstance(message, UpliftWarning):
-        click.echo(f"{click.style('warning:', fg='yellow', bold=True)} {describe(message)}", err=True)
+        emit(f"{click.style('warning:', fg='yellow', bold=True)} {describe(message)}", err=True)

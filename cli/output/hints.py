@@ -59,6 +59,4 @@ def hint_for(diagnostic: Diagnostic) -> str:
 
 def describe(diagnostic: Diagnostic) -> str:
     """Return one line: location, problem and hint."""
-    text = f"{diagnostic.where}: {diagnostic.problem}" if diagnostic.where else diagnostic.problem
-    hint = hint_for(diagnostic)
-    return f"{text}; {hint}" if hint else text
+    return diagnostic.describe(hint_for(diagnostic))

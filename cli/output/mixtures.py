@@ -6,13 +6,11 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import click
-
 from uplift.common.errors import UpliftWarning
 
 from ..params.ingredients import library_ingredients
-from .console import json_text
-from .query_output import display_codes, format_rgb, hex_code, print_columns, print_fields, sparkline
+from .console import emit, print_json
+from .query_output import format_rgb, hex_code, patch, print_columns, print_fields, sparkline
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -92,7 +90,7 @@ def as_json(cube: Cube, mixture: Mixture) -> None:
         "spectrum": mixture.spectrum.tolist(),
         "ramp": steps[1:],
     }
-    click.echo(json_text(fields, indent=None))
+    print_json(fields, indent=None)
 
 
 def as_table(cube: Cube, mixture: Mixture) -> None:
@@ -100,22 +98,25 @@ def as_table(cube: Cube, mixture: Mixture) -> None:
     rgb, spectrum = mixture.rgb[0], mixture.spectrum
     fields = {
         mixture.kind: mixture.recipe,
-        "linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}  {click.style(' ' * 8, bg=display_codes(cube, rgb))}",
+        "linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}",
         **_ramp(cube, mixture),
         "spectrum": f"{sparkline(spectrum / max(1, spectrum.max()))}  "
         f"{mixture.wavelengths[0]:g}–{mixture.wavelengths[-1]:g} nm",
     }
-    print_fields(fields)
-    click.echo()
+    patches = {
+        "linear RGB": patch(cube, rgb),
+        "ramp": "".join(patch(cube, step, 4) for step in mixture.rgb[1:]),
+    }
+    print_fields(fields, patches)
+    emit("")
     print_columns(mixture.wavelengths, spectrum)
 
 
 def _ramp(cube: Cube, mixture: Mixture) -> dict[str, str]:
-    """Return patches and hex codes of the ramp; empty for a single ingredient."""
+    """Return hex codes of the ramp; empty for a single ingredient."""
     if len(mixture.names) < 2:
         return {}
-    patches = "".join(click.style("    ", bg=display_codes(cube, step)) for step in mixture.rgb[1:])
-    return {"ramp": patches + "  " + " ".join(hex_code(cube, step) for step in mixture.rgb[1:])}
+    return {"ramp": " ".join(hex_code(cube, step) for step in mixture.rgb[1:])}
 
 
 def plot(cube: Cube, mixture: Mixture, path: str, *, force: bool) -> None:

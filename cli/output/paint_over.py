@@ -6,10 +6,9 @@ import warnings
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-import click
-
 from ..params.ingredients import library_ingredients
 from ..startup import enable_jit_cache
+from .console import say
 from .progress import progress_bar
 
 if TYPE_CHECKING:
@@ -43,4 +42,4 @@ def paint(brush: Overpainter, image: str, output: str, *, force: bool) -> None:
         painted = convert(brush, image, output, force=force, progress=progress)
     for warning in painted.warnings:
         warnings.warn(warning, stacklevel=1)
-    click.echo(f"{output}: {painted.counts.pixels:,} pixels painted over")
+    say(f"{output}: {painted.counts.pixels:,} pixels painted over")

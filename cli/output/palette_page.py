@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
 from uplift.common.errors import OptionError
+
+from .console import say
 
 if TYPE_CHECKING:
     import numpy as np
@@ -63,4 +63,4 @@ def write_page(
 
     weights = cutaway(len(design.palette.materials)) if picture is None else picture
     write_text(page(relighting(Path(spec).stem, design, weights)), path, force=force)
-    click.echo(f"{path}: relighting page", err=True)
+    say(f"{path}: relighting page", err=True)

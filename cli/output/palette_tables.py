@@ -6,44 +6,38 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-import click
-
-from .console import console, json_text
+from .console import has_colours, make_table, print_json, say, show
 
 if TYPE_CHECKING:
-    from rich.table import Table
     from rich.text import Text
 
     from uplift.common.arrays import Array
     from uplift.design.palette import Design, Matrix, UnmetGoal
     from uplift.design.palette.palette import SpectrumSpec
 
+    from .tables import SafeTable
+
 
 LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of the model. * designed"
 
 
 def _print_table(design: Design, colours: Matrix, unmet: Sequence[UnmetGoal]) -> None:
-    out = console()
-    out.print(_table(design, colours, coloured=out.color_system is not None))
-    out.print(LEGEND, markup=False)
+    show(_table(design, colours, coloured=has_colours()))
+    say(LEGEND)
     for goal in unmet:
-        click.echo(f"not met: {goal}")
+        say(f"not met: {goal}")
     if not unmet:
-        click.echo("all goals are met")
+        say("all goals are met")
 
 
-def _table(design: Design, colours: Matrix, *, coloured: bool) -> Table:
-    from rich import box
-    from rich.table import Table
-    from rich.text import Text
-
-    table = Table(box=box.SIMPLE_HEAD)
+def _table(design: Design, colours: Matrix, *, coloured: bool) -> SafeTable:
+    table = make_table()
     table.add_column("")
     for light in design.palette.lights:
         table.add_column(_name(light), no_wrap=True)
     for row, material in enumerate(design.palette.materials):
         cells = (_cell(colours, (row, column), coloured) for column in range(len(design.palette.lights)))
-        table.add_row(Text(_name(material)), *cells)
+        table.add_row(_name(material), *cells)
     return table
 
 
@@ -89,7 +83,7 @@ def _print_json(design: Design, colours: Matrix, unmet: Sequence[UnmetGoal]) -> 
         "to_rgb": design.model.matrix.tolist(),
         "missed": [str(goal) for goal in unmet],
     }
-    click.echo(json_text(fields))
+    print_json(fields)
 
 
 def _part(part: SpectrumSpec, samples: Array, coefficients: Array) -> dict[str, object]:

@@ -6,9 +6,9 @@ import contextlib
 import sys
 from collections.abc import Iterator
 
-import click
-
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+
+from .console import say
 
 STAGES = {"images": "reading images", "fit": "fitting", "store": "storing"}
 """Descriptions of the stages of a build."""
@@ -68,7 +68,7 @@ def stage_spinner() -> Iterator[ProgressCallback]:
 
 def _print_line(event: Progress) -> None:
     detail = f", {event.detail}" if event.detail else ""
-    click.echo(f"{STAGES[event.stage]}: {event.done} of {event.total}{detail}", err=True)
+    say(f"{STAGES[event.stage]}: {event.done} of {event.total}{detail}", err=True)
 
 
 @contextlib.contextmanager

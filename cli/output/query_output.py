@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from .console import console, json_text
+from uplift.common.text import printable
+
+from .console import csv_writer, emit, make_table, print_json, say, show, terminal_json
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -22,12 +23,12 @@ Writer = Callable[["Cube", Iterable["QueryResult"], bool], None]
 def as_json(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
     """Print one object for a colour given on the command line, else an array."""
     if single:
-        click.echo(json_text(_object(cube, next(iter(results))), indent=None))
+        print_json(_object(cube, next(iter(results))), indent=None)
         return
     for number, result in enumerate(results):
         separator = "[\n" if number == 0 else ",\n"
-        click.echo(separator + json_text(_object(cube, result), indent=None), nl=False)
-    click.echo("\n]")
+        emit(separator + terminal_json(_object(cube, result)), nl=False)
+    emit("\n]")
 
 
 def _object(cube: Cube, result: QueryResult) -> dict[str, Any]:
@@ -48,14 +49,14 @@ def _object(cube: Cube, result: QueryResult) -> dict[str, Any]:
 
 def as_csv(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
     """Print a row per colour: r, g, b, round-trip ΔE00, standard error, entry, reflectance at each wavelength."""
-    writer = csv.writer(sys.stdout, lineterminator="\n")
+    writer = csv_writer()
     for number, result in enumerate(results):
         if number == 0:
             wavelengths = [f"{wavelength:g}" for wavelength in result.wavelengths]
-            writer.writerow(["r", "g", "b", "delta_e_2000", "standard_error", "entry", *wavelengths])
+            writer.write(["r", "g", "b", "delta_e_2000", "standard_error", "entry", *wavelengths])
         expected = "" if result.standard_error is None else result.standard_error
         numbers = [*result.rgb.tolist(), result.delta_e_2000, expected]
-        writer.writerow([*numbers, result.entry or "", *result.reflectance.tolist()])
+        writer.write([*numbers, result.entry or "", *result.reflectance.tolist()])
 
 
 def as_table(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
@@ -68,10 +69,9 @@ def as_table(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
 
 def _print_details(cube: Cube, result: QueryResult) -> None:
     data = cube.data
-    patch = click.style("        ", bg=display_codes(cube, result.rgb))
     fields = {
         **_mapped(cube, result),
-        "linear RGB": f"{format_rgb(result.rgb)}  {hex_code(cube, result.rgb)}  {patch}",
+        "linear RGB": f"{format_rgb(result.rgb)}  {hex_code(cube, result.rgb)}",
         "cell": f"{result.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in result.statuses)}",
         "round trip": f"{format_rgb(result.round_trip)}  ΔE00 {result.delta_e_2000:.2g} ({data.sensor.illuminant})",
         **(
@@ -83,8 +83,8 @@ def _print_details(cube: Cube, result: QueryResult) -> None:
         "std. error": _standard_error(cube, result),
         "spectrum": f"{sparkline(result.reflectance)}  {result.wavelengths[0]:g}–{result.wavelengths[-1]:g} nm",
     }
-    print_fields(fields)
-    click.echo()
+    print_fields(fields, {"linear RGB": patch(cube, result.rgb)})
+    emit("")
     print_columns(result.wavelengths, result.reflectance)
 
 
@@ -104,10 +104,16 @@ def _standard_error(cube: Cube, result: QueryResult) -> str:
     return f"ΔE00 {result.standard_error:.2g} ({cube.data.error_illuminant}) to a measured material"
 
 
-def print_fields(fields: dict[str, str]) -> None:
-    """Print names and values in two columns."""
+def print_fields(fields: Mapping[str, str], patches: Mapping[str, str]) -> None:
+    """Print names and values in two columns, and on a terminal the patches of colour that belong to a value."""
     for name, text in fields.items():
-        click.echo(f"{name:<12}{text}")
+        patch = f"  {patches[name]}" if sys.stdout.isatty() and patches.get(name) else ""
+        emit(f"{name:<12}{printable(text)}{patch}")
+
+
+def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
+    """Return a patch of colour for a terminal, ``width`` characters wide."""
+    return click.style(" " * width, bg=display_codes(cube, rgb))
 
 
 def print_columns(wavelengths: Array, reflectance: Array) -> None:
@@ -118,16 +124,14 @@ def print_columns(wavelengths: Array, reflectance: Array) -> None:
     ]
     height = -(-len(cells) // 4)
     for line in range(height):
-        click.echo("  ".join(cells[line::height]))
+        say("  ".join(cells[line::height]))
 
 
 def _print_lines(cube: Cube, results: Iterable[QueryResult]) -> None:
-    from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=None, pad_edge=False)
-    for heading in ("", "hex", "linear RGB", "ΔE00", "atlas entry", "spectrum"):
-        table.add_column(heading, no_wrap=True)
+    headings = ("", "hex", "linear RGB", "ΔE00", "atlas entry", "spectrum")
+    table = make_table(headings, box=None, pad_edge=False)
     for result in results:
         red, green, blue = display_codes(cube, result.rgb)
         table.add_row(
@@ -135,10 +139,10 @@ def _print_lines(cube: Cube, results: Iterable[QueryResult]) -> None:
             hex_code(cube, result.rgb),
             " ".join(f"{value:.3f}" for value in result.rgb),
             f"{result.delta_e_2000:.2g}",
-            Text(result.entry or ""),
+            result.entry or "",
             sparkline(result.reflectance, 20),
         )
-    console().print(table)
+    show(table)
 
 
 def _codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
-import click
-
-from .console import console, json_text
+from .console import make_table, print_csv, print_json, show
 
 if TYPE_CHECKING:
     from uplift.atlas import ShippedAtlas
@@ -24,29 +22,23 @@ def print_shipped(style: str) -> None:
 
 def _print_json(atlases: Iterable[ShippedAtlas]) -> None:
     rows = [_record(atlas) | {"path": str(atlas.path), "digest": atlas.digest} for atlas in atlases]
-    click.echo(json_text({"atlases": rows}))
+    print_json({"atlases": rows})
 
 
 def _print_csv(atlases: Iterable[ShippedAtlas]) -> None:
-    from uplift.common.csv import csv_text
-
-    click.echo(csv_text(COLUMNS, (list(_record(atlas).values()) for atlas in atlases)), nl=False)
+    print_csv(COLUMNS, (list(_record(atlas).values()) for atlas in atlases))
 
 
 def _print_table(atlases: Iterable[ShippedAtlas]) -> None:
-    from rich import box
-    from rich.table import Table
-    from rich.text import Text
-
-    table = Table(box=box.SIMPLE_HEAD, caption="use a name as --atlas NAME, or in place of FILE")
+    table = make_table(caption="use a name as --atlas NAME, or in place of FILE")
     for title in COLUMNS:
         fixed = title in ("name", "entries")
         table.add_column(
             title, justify="right" if title == "entries" else "left", no_wrap=fixed, overflow="fold"
         )
     for atlas in atlases:
-        table.add_row(*(Text(str(value)) for value in _record(atlas).values()))
-    console().print(table)
+        table.add_row(*(str(value) for value in _record(atlas).values()))
+    show(table)
 
 
 def _record(atlas: ShippedAtlas) -> dict[str, Any]:

@@ -6,9 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import click
-
-from .console import console, json_text, make_table
+from .console import make_table, print_csv, print_json, show
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
@@ -53,7 +51,7 @@ def _print_json(result: Result) -> None:
         "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
         "errors": {name: _statistics(result, errors) for name, errors in result.errors()},
     }
-    click.echo(json_text(fields))
+    print_json(fields)
 
 
 def _statistics(result: Result, errors: ColourErrors) -> dict[str, Any]:
@@ -61,11 +59,9 @@ def _statistics(result: Result, errors: ColourErrors) -> dict[str, Any]:
 
 
 def _print_csv(result: Result) -> None:
-    from uplift.common.csv import csv_text
-
     lights = result.choice.sampling.lights
     header = ["wavelength", *"XYZ", *"rgb", *(f"power {light}" for light in lights)]
-    click.echo(csv_text(header, _rows(result)), nl=False)
+    print_csv(header, _rows(result))
 
 
 def _rows(result: Result) -> Iterator[list[float]]:
@@ -95,7 +91,7 @@ def _print_table(result: Result) -> None:
     for name, errors in result.errors():
         numbers = (errors.mean, errors.p95, errors.max)
         errors_table.add_row(name, *(f"{number:.3f}" for number in numbers), result.worst(errors))
-    console().print(table, errors_table)
+    show(table, errors_table)
 
 
 PRINTERS: dict[str, Callable[[Result], None]] = {

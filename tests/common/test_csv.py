@@ -5,7 +5,9 @@ from __future__ import annotations
 import csv
 import io
 
-from uplift.common.csv import csv_text
+import pytest
+
+from uplift.common.csv import csv_text, plain_cell
 
 
 def test_cells_survive_a_round_trip():
@@ -24,3 +26,19 @@ def test_lines_end_with_lf():
 
 def test_text_can_be_quoted():
     assert csv_text(["name", 400.0], [["1", 0.5]], quote_text=True) == '"name",400.0\n"1",0.5\n'
+
+
+@pytest.mark.parametrize(
+    "name", ["=1+2", "+cmd|' /C calc'!A0", "-x", "@SUM(A1)", "\t=1", "'=1", "''-x", "＝1"]
+)
+def test_formulas_are_neutralised_and_come_back(name):
+    (cell,) = next(csv.reader(io.StringIO(csv_text([name], []), newline="")))
+    assert cell == f"'{name}"
+    assert plain_cell(cell) == name
+
+
+@pytest.mark.parametrize("cell", ["-1.5", "+3e-5", -2.5, "a-b", "it's", "'quoted'", None, ""])
+def test_numbers_and_other_text_stay(cell):
+    text = csv_text(["x", cell], [])
+    assert "'" not in text.replace(str(cell), "")
+    assert plain_cell(str(cell)) == str(cell)

@@ -6,10 +6,13 @@ import re
 from xml.etree import ElementTree
 
 import matplotlib
+import pytest
+from markupsafe import escape
 
 from tests.helpers import raises
 from uplift.common.errors import OutputError
-from uplift.viz.figure import STYLE, new_figure, style_axes, to_svg, write_png
+from uplift.common.text import printable
+from uplift.viz.figure import STYLE, figure_text, new_figure, style_axes, to_svg, write_png
 
 
 def drawn(value):
@@ -45,3 +48,23 @@ def test_png_does_not_replace_a_file(tmp_path):
     assert path.read_bytes() == stored
     write_png(new_figure(1, 1), path, force=True)
     assert path.read_bytes() == stored
+
+
+@pytest.mark.parametrize("text", [r"$\frac{A$", "$$", r"a\$b", "_hidden", "a\x00\x1b[2Jb", "\ud800", "{$x$}"])
+def test_text_of_files_is_drawn_as_it_is(text):
+    with matplotlib.rc_context(STYLE):
+        figure = new_figure(3, 2)
+        axes = figure.subplots()
+        axes.plot([0, 1], label=figure_text(text))
+        axes.set_title(figure_text(text))
+        axes.legend()
+        svg = to_svg(figure)
+    ElementTree.fromstring(svg)
+    assert svg.count(str(escape(printable(text)))) >= 2  # title and legend
+
+
+def test_mathematics_would_fail_without_figure_text():
+    figure = new_figure(3, 2)
+    figure.subplots().set_title(r"$\frac{A$")
+    with pytest.raises(ValueError, match="frac"):
+        to_svg(figure)

@@ -14,7 +14,7 @@ import numpy as np
 from uplift.atlas.atlas import Atlas, Entry, Source
 from uplift.atlas.checks import HIGHEST, SLACK, VISIBLE
 from uplift.atlas.document import Document, SourceLocation, parse_nanometres, parse_number, without_unit
-from uplift.common.csv import csv_text
+from uplift.common.csv import csv_text, plain_cell
 from uplift.common.errors import OutputError, UpliftWarning
 
 DELIMITERS = ",;\t"
@@ -100,7 +100,8 @@ def _split(document: Document, delimiter: str) -> Iterator[Row]:
         while cells and not cells[-1].strip():  # spreadsheets pad rows
             cells.pop()
         if cells:
-            yield tuple(Cell(_decimal_point(cell.strip(), delimiter), line) for cell in cells)
+            plain = (plain_cell(cell.strip()) for cell in cells)
+            yield tuple(Cell(_decimal_point(cell, delimiter), line) for cell in plain)
         line = reader.line_num + 1
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from uplift.common.text import printable
+
 if TYPE_CHECKING:
     from uplift.common.arrays import StrPath
 
@@ -75,9 +77,24 @@ class Diagnostic(Exception):  # noqa: N818
         return ": ".join(parts)
 
     def __str__(self) -> str:
-        """One line: location, problem, hint."""
+        """One line: location, problem, hint, as `describe` of the library's own hint."""
+        return self.describe(self.hint)
+
+    def describe(self, hint: str) -> str:
+        """One line with another hint.
+
+        Parameters
+        ----------
+        hint : str
+            How to solve the problem; empty for none.
+
+        Returns
+        -------
+        str
+            Location, problem and hint, with control characters escaped.
+        """
         text = f"{self.where}: {self.problem}" if self.where else self.problem
-        return f"{text}; {self.hint}" if self.hint else text
+        return printable(f"{text}; {hint}" if hint else text)
 
     def to_json(self) -> dict[str, Any]:
         """Plain values for machines.

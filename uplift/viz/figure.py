@@ -11,6 +11,7 @@ from typing import Any, Literal
 from markupsafe import Markup, escape
 
 from uplift.common.files import atomic_write
+from uplift.common.text import printable
 
 __all__ = [
     "ACCENT",
@@ -20,6 +21,7 @@ __all__ = [
     "OTHER",
     "PALE",
     "STYLE",
+    "figure_text",
     "new_figure",
     "style_axes",
     "style_spectrum_axes",
@@ -49,10 +51,36 @@ STYLE: dict[str, Any] = {
 }
 """For `matplotlib.rc_context`."""
 
+HAIR_SPACE = "\u200a"
 _NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 _UNUSED = re.compile(r' id="[\w.]+_\d+"|<!--.*?-->|<defs>\s*<style.*?</style>\s*</defs>', re.DOTALL)
 """Names of groups, comments, and a style sheet that would apply to the whole page."""
 _IDENTIFIER = re.compile(r'(id="|#)([mp][0-9a-f]{10})(?=["\)])')
+
+
+def figure_text(text: str) -> str:
+    """Prepare text that comes from a file for a figure, which shows it as it is.
+
+    matplotlib reads text between dollar signs as mathematics, and leaves labels that begin with an underscore out of
+    legends.
+
+    Parameters
+    ----------
+    text : str
+        Any text.
+
+    Returns
+    -------
+    str
+        Text for matplotlib, control characters escaped.
+
+    Examples
+    --------
+    >>> figure_text("$5 a tube")
+    '\\\\$5 a tube'
+    """
+    shown = printable(text).replace("$", r"\$")
+    return f"{HAIR_SPACE}{shown}" if shown.startswith("_") else shown
 
 
 def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Any:
@@ -153,5 +181,5 @@ def to_svg(figure: Any, label: str = "") -> Markup:
     head, body = text.split(">", 1)
     head = re.sub(r' (?:width|height|version|xmlns:xlink)="[^"]*"', "", head)
     body = re.sub(r">\s+<", "><", body).strip()
-    role = f' role="img" aria-label="{escape(label)}"' if label else ""
+    role = f' role="img" aria-label="{escape(printable(label))}"' if label else ""
     return Markup(f"{head}{role}>{body}")

@@ -1,12 +1,16 @@
 """Self-contained HTML pages from Jinja2 templates.
 
-Templates are named by their path below the package, as ``report/templates/page.html.j2``, and lie next to the
-code that renders them. All values are escaped unless they are `markupsafe.Markup`; a name that a template does not
-receive is an error. The filters are the functions of `uplift.viz.format` under their own names, and ``fixed``.
+A page loads nothing and runs no script but its own, by its content security policy. Templates are named by their path
+below the package, as ``report/templates/page.html.j2``, and lie next to the code that renders them. All values are
+escaped unless they are `markupsafe.Markup`; a name that a template does not receive is an error. The filters are the
+functions of `uplift.viz.format` under their own names, and ``fixed``.
 """
 
 from __future__ import annotations
 
+import base64
+import hashlib
+import json
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -14,6 +18,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
+from uplift.common.text import json_escapes, printable
 from uplift.viz import format as formats
 
 __all__ = ["Markup", "render", "resource"]
@@ -59,20 +64,53 @@ def resource(*paths: str) -> Markup:
     return Markup("".join(files("uplift").joinpath(path).read_text(encoding="utf-8") for path in paths))
 
 
+def content_security_policy(script: str) -> str:
+    """Return the policy of a page: no addresses, and no script but one.
+
+    Parameters
+    ----------
+    script : str
+        Text of the script; empty for none.
+
+    Returns
+    -------
+    str
+        For ``<meta http-equiv="Content-Security-Policy">``.
+    """
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    scripts = f"'sha256-{digest}'" if script else "'none'"
+    return (
+        f"default-src 'none'; script-src {scripts}; style-src 'unsafe-inline'; img-src data:; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
 @cache
 def _environment() -> jinja2.Environment:
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("uplift", ""),
         autoescape=True,
+        finalize=_finalize,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.policies["json.dumps_kwargs"] = {"ensure_ascii": False, "allow_nan": False}
-    environment.globals["resource"] = resource
+    environment.policies["json.dumps_function"] = _json
+    environment.globals |= {"resource": resource, "content_security_policy": content_security_policy}
     environment.filters |= {name: getattr(formats, name) for name in formats.__all__}
     environment.filters["fixed"] = _fixed
     return environment
+
+
+def _finalize(value: Any) -> Any:
+    """Escape control characters and marks of writing direction in texts, which come from files."""
+    if isinstance(value, str) and not isinstance(value, Markup):
+        return "\n".join(map(printable, value.split("\n")))
+    return value
+
+
+def _json(values: Any, **options: Any) -> str:
+    return json_escapes(json.dumps(values, **options | {"ensure_ascii": False, "allow_nan": False}))
 
 
 def _fixed(value: float, digits: int) -> str:

@@ -13,6 +13,7 @@ from uplift.colorimetry.gamut import as_rgb
 from uplift.colorimetry.observer import sensor
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
+from uplift.common.text import printable
 from uplift.lookup import Cube
 from uplift.viz.figure import GREY, new_figure, style_spectrum_axes, to_svg
 
@@ -102,7 +103,7 @@ def atlas_html(atlas: Atlas) -> Markup:
     codes = hex_codes(screen.rgb(spectra), screen)
     rows = Markup().join(
         Markup("<tr><td><span style='{}{}'></span></td><td>{}</td><td>{}</td></tr>").format(
-            SWATCH, code, name, _sparkline(values)
+            SWATCH, code, printable(name), _sparkline(values)
         )
         for name, code, values in zip(shown.names, codes, spectra, strict=True)
     )
@@ -135,7 +136,7 @@ def _swatches(cube: Cube) -> Markup:
     names = cube.atlas_names[:MAX_SWATCHES]
     rgb: Array = cube.data.atlas.rgb[:MAX_SWATCHES]
     swatches = Markup().join(
-        Markup("<span title='{}' style='{}{}'></span>").format(name, SWATCH, code)
+        Markup("<span title='{}' style='{}{}'></span>").format(printable(name), SWATCH, code)
         for name, code in zip(names, hex_codes(rgb, cube.data.sensor), strict=True)
     )
     more = len(cube.atlas_names) - len(names)

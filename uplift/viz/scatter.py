@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.viz.figure import GREY, INK, new_figure, style_axes
+from uplift.viz.figure import GREY, INK, figure_text, new_figure, style_axes
 from uplift.viz.labels import place_labels
 
 MARKER: dict[str, Any] = {
@@ -121,7 +121,7 @@ def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array)
     )
     texts = [
         axes.annotate(
-            label.text,
+            figure_text(label.text),
             (0, 0),
             xycoords="figure points",
             fontsize=7.5,

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.lookup import Cube, QueryResult
-from uplift.viz.figure import new_figure, style_spectrum_axes, write_png
+from uplift.viz.figure import figure_text, new_figure, style_spectrum_axes, write_png
 
 MAX_LEGEND = 12
 """Largest number of lines with a legend."""
@@ -45,7 +45,7 @@ def plot_spectra(
             result.reflectance,
             color=colour,
             linewidth=2.4,
-            label=result.entry or f"#{codes}",
+            label=figure_text(result.entry or f"#{codes}"),
         )
     style_spectrum_axes(axes)
     if len(results) <= MAX_LEGEND:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from uplift.common.arrays import Array
-from uplift.viz.figure import INK, PALE, new_figure, write_png
+from uplift.viz.figure import INK, PALE, figure_text, new_figure, write_png
 
 WIDTH, HEIGHT, TITLE_HEIGHT = 7.2, 0.62, 0.24
 """Inches of a picture's width, and of the heights of a strip and its title."""
@@ -43,5 +43,5 @@ def plot_strips(strips: Sequence[Strip], path: str | os.PathLike[str], *, force:
         axes.imshow(strip.codes[None], aspect="auto", interpolation="nearest")
         axes.set(xticks=(), yticks=())
         axes.spines[:].set(color=PALE, linewidth=0.6)
-        axes.set_title(strip.title, loc="left", fontsize=9, color=INK, pad=3)
+        axes.set_title(figure_text(strip.title), loc="left", fontsize=9, color=INK, pad=3)
     write_png(figure, path, force=force)

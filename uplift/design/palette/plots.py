@@ -11,7 +11,7 @@ from uplift.common.arrays import Array, StrPath
 from uplift.design.palette.design import Design
 from uplift.design.palette.matrix import Matrix
 from uplift.design.palette.palette import SpectrumSpec
-from uplift.viz.figure import BAND, GREY, INK, new_figure, style_axes, write_png
+from uplift.viz.figure import BAND, GREY, INK, figure_text, new_figure, style_axes, write_png
 
 CELL, NAMES, TOP = (1.5, 1.0), 1.35, 0.75
 """Sizes in inches of a cell, the column of names, and the row of lights."""
@@ -122,13 +122,15 @@ def _frame(axes: Any, corner: tuple[float, float], size: tuple[float, float]) ->
 
 def _name(axes: Any, at: tuple[float, float], spec: SpectrumSpec, ha: str) -> None:
     weight = "bold" if spec.designed else "normal"
-    axes.text(*at, _short(spec.name), fontsize=9, fontweight=weight, color=INK, ha=ha, va="center")
+    axes.text(
+        *at, figure_text(_short(spec.name)), fontsize=9, fontweight=weight, color=INK, ha=ha, va="center"
+    )
 
 
 def _lines(axes: Any, wavelengths: Array, specs: tuple[SpectrumSpec, ...], samples: Array) -> None:
     for spec, row in zip(specs, samples, strict=True):
         dash = "-" if spec.designed else (0, (4, 2))
-        axes.plot(wavelengths, row, linewidth=1.8, linestyle=dash, label=_short(spec.name))
+        axes.plot(wavelengths, row, linewidth=1.8, linestyle=dash, label=figure_text(_short(spec.name)))
     axes.margins(x=0.01)
     axes.legend(frameon=False, fontsize=8)
     style_axes(axes)

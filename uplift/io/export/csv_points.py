@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 from collections.abc import Iterator
 from itertools import chain
@@ -10,6 +9,7 @@ from itertools import chain
 import numpy as np
 
 from uplift.common.arrays import Indices
+from uplift.common.csv import CsvWriter
 from uplift.common.files import atomic_write
 from uplift.cube import CubeData
 from uplift.lattice import Status
@@ -47,11 +47,12 @@ def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
         atomic_write(path, force=force) as temporary,
         temporary.open("w", encoding="utf-8", newline="") as file,
     ):
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(_column_names(data))
+        writer = CsvWriter(file)
+        writer.write(_column_names(data))
         nodes = np.flatnonzero(data.points.present)
         for first in range(0, len(nodes), BLOCK):
-            writer.writerows(_rows(data, nodes[first : first + BLOCK]))
+            for row in _rows(data, nodes[first : first + BLOCK]):
+                writer.write(row)
     return len(nodes)
 
 

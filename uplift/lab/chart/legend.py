@@ -7,7 +7,7 @@ from typing import Any
 
 from uplift.lab.chart.methods import FAMILIES
 from uplift.lab.chart.table import Chart
-from uplift.viz.figure import GREY, OTHER
+from uplift.viz.figure import GREY, OTHER, figure_text
 from uplift.viz.format import format_size
 from uplift.viz.scatter import FRONT_LINE, LEGEND, MARKER
 
@@ -56,6 +56,6 @@ def _draw_key(
     from matplotlib.lines import Line2D
 
     handles = [Line2D([], [], **(MARKER | style)) for _, style in entries]
-    names = [name for name, _ in entries]
+    names = [figure_text(name) for name, _ in entries]
     key = axes.legend(handles, names, title=title, loc="upper left", bbox_to_anchor=corner, **LEGEND)
     axes.add_artist(key)

@@ -11,7 +11,7 @@ import numpy as np
 from uplift.common.arrays import Array, Mask, StrPath
 from uplift.lab.study.stability import RunConfig, RunResult
 from uplift.lab.study.stability_design import Grid
-from uplift.viz.figure import new_figure, write_png
+from uplift.viz.figure import figure_text, new_figure, write_png
 
 HIGHLIGHT, FAINT, INK = "#ff5a00", "#ffcfae", "#1b2733"
 RAMP = ("#eef5f8", "#a9cfe3", "#5a9fcb", "#20609a", "#0b1d51")
@@ -78,7 +78,7 @@ def plot_map(
         for axes, quantity in zip(row, QUANTITIES, strict=True):
             _draw_panel(axes, grid, table, quantity)
         row[0].set_title(grid.title, loc="left", fontsize=9, color=INK)
-        row[0].set_yticks(range(len(grid.variants)), [label for label, _ in grid.rows()])
+        row[0].set_yticks(range(len(grid.variants)), [figure_text(label) for label, _ in grid.rows()])
     for axes, quantity in zip(panels[0], QUANTITIES, strict=True):
         axes.text(0, 1.32, quantity.title, transform=axes.transAxes, weight="bold", color=INK)
     write_png(figure, path, force=force)
@@ -114,4 +114,4 @@ def _colours(values: Array, failed: Mask, stand_ins: Mask) -> Array:
 def _short(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.0e}".replace("e-0", "e-")
-    return str(value).removeprefix("ITU-R ").removesuffix(" RGB")
+    return figure_text(str(value).removeprefix("ITU-R ").removesuffix(" RGB"))

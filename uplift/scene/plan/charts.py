@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from uplift.scene.plan.decision import Decision
-from uplift.viz.figure import ACCENT, GREY, INK, PALE, STYLE, new_figure, to_svg
+from uplift.viz.figure import ACCENT, GREY, INK, PALE, STYLE, figure_text, new_figure, to_svg
 from uplift.viz.html import Markup
 
 SIZE = 4.6, 2.6
@@ -38,7 +38,7 @@ def trials_chart(decision: Decision) -> Markup:
 
 def _annotate(axes: Any, name: str, point: list[float], *, above: bool, selected: bool) -> None:
     axes.annotate(
-        name,
+        figure_text(name),
         point,
         xytext=(5, 5 if above or selected else -11),
         textcoords="offset points",

@@ -14,6 +14,7 @@ from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write, check_output
 from uplift.cube.data import CubeData
 from uplift.io.slices import exr
+from uplift.viz.figure import figure_text
 from uplift.viz.sheet.sheet import Label, compose
 
 TEXT_GREY = 0.75
@@ -110,7 +111,7 @@ def _draw_text(image: Image, labels: tuple[Label, ...]) -> Image:
     height, width = image.shape[:2]
     figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="none")
     for label in labels:
-        text = figure.text(label.x / width, 1 - label.y / height, label.text, **STYLE)
+        text = figure.text(label.x / width, 1 - label.y / height, figure_text(label.text), **STYLE)
         text.set_fontsize(label.size * 72 / DPI)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import re
 
 import numpy as np
 import pytest
@@ -177,6 +178,7 @@ def test_console_errors_are_recorded(tab, view, tmp_path):
     script = (
         "<script>console.error('broken', 1); setTimeout(() => { throw new Error('torn'); })</script></body>"
     )
+    html = re.sub('<meta http-equiv="Content-Security-Policy".*?>', "", html)
     (tmp_path / "page.html").write_text(html.replace("</body>", script), encoding="utf-8")
     tab.open(tmp_path / "page.html")
     tab.canvas("picture")

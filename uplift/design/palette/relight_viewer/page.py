@@ -51,7 +51,7 @@ def page(relighting: Relighting) -> str:
         numbers=_numbers(relighting),
         pixels=pack(to_half(relighting.pixels)),
         labels=pack(relighting.labels),
-        scripts=resource(*(f"{FOLDER}/{name}" for name in SCRIPTS)),
+        script=resource(*(f"{FOLDER}/{name}" for name in SCRIPTS)),
     )
 
 

@@ -1,0 +1,71 @@
+"""Text that came from elsewhere, made safe to show: names in files, file names, arguments.
+
+A name may hold characters that a terminal obeys (escape sequences, carriage returns), that reorder a line (marks of
+writing direction) or that have no encoding (lone surrogates). `printable` writes them as escapes, as Python does in a
+literal, so that a text is one line and looks like what it is.
+"""
+
+from __future__ import annotations
+
+import re
+
+__all__ = ["json_escapes", "printable"]
+
+_UNPRINTABLE = re.compile(
+    "[\x00-\x1f\x7f-\x9f"  # controls, among them the newline
+    "\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"  # direction, line breaks, invisible
+    "\ud800-\udfff\U000e0000-\U000e007f]"  # no encoding; invisible
+)
+
+
+def printable(text: str) -> str:
+    """Escape the characters that a terminal would obey or cannot show.
+
+    Parameters
+    ----------
+    text : str
+        Any text.
+
+    Returns
+    -------
+    str
+        One line without control characters, marks of writing direction, and lone surrogates.
+
+    Examples
+    --------
+    >>> printable("red\\x1b[2J\\nΔE00")
+    'red\\\\x1b[2J\\\\nΔE00'
+    """
+    return _UNPRINTABLE.sub(_python_escape, text)
+
+
+def json_escapes(text: str) -> str:
+    """Escape the same characters in JSON text, which keeps its meaning.
+
+    Parameters
+    ----------
+    text : str
+        JSON on one or more lines. Its strings hold such characters, and nothing else of it does but line breaks.
+
+    Returns
+    -------
+    str
+        JSON of the same values.
+
+    Examples
+    --------
+    >>> json_escapes('"\\u202e"') == '"' + "\\\\u202e" + '"'
+    True
+    """
+    return _UNPRINTABLE.sub(_json_escape, text)
+
+
+def _python_escape(match: re.Match[str]) -> str:
+    return match[0].encode("unicode_escape").decode("ascii")
+
+
+def _json_escape(match: re.Match[str]) -> str:
+    units = match[0].encode("utf-16-be", "surrogatepass")
+    if match[0] in "\n\r\t":  # between values; within strings the encoder has escaped them
+        return match[0]
+    return "".join(f"\\u{units[i]:02x}{units[i + 1]:02x}" for i in range(0, len(units), 2))
