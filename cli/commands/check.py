@@ -48,8 +48,8 @@ def command(
     A cube that cannot be read or rebuilt, or that has another lattice, has failed; the others are still checked.
     --update replaces every failed cube that can be rebuilt.
 
-    Atlases are identified by name and content. They are searched for in --atlas-dir, the cube's folder, the current
-    folder, 'atlases' and the shipped atlases.
+    Atlases are identified by name and content. They are searched for in --atlas-dir, the cube's folder, 'atlases'
+    in these, and the shipped atlases.
     """
     enable_jit_cache()
     from ..output.progress import build_progress

@@ -58,7 +58,7 @@ def command(
       uplift report macbeth-32.uplift --format json | jq .failures
 
     The measured spectra are those of the cube's atlases. Atlases are identified by name and content, and searched for
-    in --atlas-dir, the cube's folder, the current folder, 'atlases' and the shipped atlases.
+    in --atlas-dir, the cube's folder, 'atlases' in these, and the shipped atlases.
 
     --atlas evaluates entries of other atlases at their own colours. This shows how well the cube predicts unseen
     materials, and whether its standard errors are calibrated.

@@ -55,7 +55,8 @@ def test_files_without_an_atlas_raise(save, content, code):
 def test_unreadable_files_raise(tmp_path):
     for path, code, reason in [
         (tmp_path / "none.txt", "file-not-found", "no such file"),
-        (tmp_path, "not-a-regular-file", "is a directory"),
+        (tmp_path, "not-a-regular-file", "a folder"),
+        ("/dev/zero", "not-a-regular-file", "a device"),
         ("a\0b", "file-unreadable", "null"),
     ]:
         with raises(AtlasError, code) as caught:

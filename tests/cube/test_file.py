@@ -156,7 +156,7 @@ def test_a_missing_file_is_reported(tmp_path):
     refused(tmp_path / "none.uplift", "cube-not-found")
 
 
-@pytest.mark.parametrize("name", ["", "a\0b", "x" * 300, "file/cube"])
+@pytest.mark.parametrize("name", ["a\0b", "x" * 300, "file/cube"])
 def test_impossible_file_names_are_missing_files(tmp_path, name):
     (tmp_path / "file").write_text("")
     refused(tmp_path / name, "cube-not-found")
@@ -288,7 +288,7 @@ def test_a_missing_array_is_named(data, tmp_path, name):
 @pytest.mark.parametrize("key", ["features", "model", "space", "threshold", "entries", "provenance"])
 def test_missing_metadata_is_named(data, tmp_path, key):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.pop(key))
-    error = refused(path, "cube-invalid")
+    error = refused(path, "invalid-metadata")
     assert repr(key) in error.problem
 
 
@@ -358,10 +358,10 @@ def test_numbers_that_are_not_finite_are_refused(data, tmp_path, name, bad):
     refused(forge(data, tmp_path / "cube", change))
 
 
-@pytest.mark.parametrize("threshold", [np.nan, np.inf, 0, -1e-4, "a"])
-def test_thresholds_that_are_not_positive_are_refused(data, tmp_path, threshold):
+@pytest.mark.parametrize("threshold", [np.nan, np.inf, 0, 5e-324, 1e-13, 0.2, True, -1e-4, "a"])
+def test_thresholds_out_of_range_are_refused(data, tmp_path, threshold):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(threshold=threshold))
-    refused(path, "cube-invalid", "invalid-threshold", "not-a-cube")
+    refused(path, "invalid-metadata", "not-a-cube")
 
 
 @pytest.mark.parametrize("nodes", [[0.1, 1.0], [0.0, 0.9], [1.0, 0.0], [0.0, 0.0, 1.0], [1.0], [], 0.5])
@@ -399,7 +399,7 @@ def test_sigmoids_without_a_range_are_refused(small_sigmoid_cube, tmp_path, ends
     path = forge(
         small_sigmoid_cube.data, tmp_path / "cube", lambda tensors, metadata: metadata.update(model=model)
     )
-    refused(path, "cube-invalid", "invalid-model-range", "not-a-cube")
+    refused(path, "invalid-metadata", "invalid-model-range", "not-a-cube")
 
 
 def test_an_unknown_status_is_refused(data, tmp_path):
@@ -467,7 +467,7 @@ def test_numbers_of_the_provenance_must_be_finite(data, tmp_path, value):
 
 def test_integers_too_large_for_floats_are_refused(data, tmp_path):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(threshold=10**400))
-    assert "OverflowError" in refused(path, "cube-invalid").problem
+    refused(path, "invalid-metadata")
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ def cubes(draw):
     return replace(
         DATA,
         threshold=draw(st.floats(1e-9, 0.1)),
-        atlas=replace(DATA.atlas, names=names, error=draw(arrays(float, 2, elements=NUMBERS))),
+        atlas=replace(DATA.atlas, names=names, error=draw(arrays(float, 2, elements=st.floats(0, 1e30)))),
         points=PointTable(
             coefficients=draw(arrays(float, (8, 3), elements=NUMBERS)),
             rgb=DATA.points.rgb,

@@ -20,6 +20,10 @@ SLACK = 1e-6
 """Tolerance in nm for the ends of a range, as start + n × increment is rounded."""
 
 
+MAX_NAME = 1000
+"""Characters of a name."""
+
+
 def check_name(name: str, location: SourceLocation) -> None:
     """Check that a name is one line of text without surrounding blanks. Raise `AtlasError`."""
     if not name.strip():
@@ -28,6 +32,12 @@ def check_name(name: str, location: SourceLocation) -> None:
         raise location.error(
             "the name has line breaks or surrounding blanks",
             "give the entry a name of one line",
+            code="invalid-name",
+        )
+    if len(name) > MAX_NAME or (not name.isascii() and name != name.encode(errors="ignore").decode()):
+        raise location.error(
+            f"the name must have at most {MAX_NAME} characters, all of them valid Unicode",
+            "give the entry a shorter name",
             code="invalid-name",
         )
 

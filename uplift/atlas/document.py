@@ -7,20 +7,17 @@ import hashlib
 import os
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import AtlasError
+from uplift.common.input_file import read_bytes
 
 MAX_QUOTED = 40
 """Characters of an invalid token or name that a message quotes."""
 
 
-READ_ERRORS: dict[type[Exception], str] = {
-    FileNotFoundError: "file-not-found",
-    IsADirectoryError: "not-a-regular-file",
-}
-"""Codes of errors in reading; others are ``file-unreadable``."""
+MAX_BYTES = 64 << 20
+"""Largest file that is read, some 100,000 entries."""
 
 
 @dataclass(frozen=True)
@@ -73,24 +70,13 @@ def read_document(path: StrPath) -> Document:
         The file is missing, unreadable, empty or binary.
     """
     location = SourceLocation(os.fspath(path))
-    data = _bytes(location)
+    data = read_bytes(path, AtlasError, limit=MAX_BYTES, hint="name an atlas file that can be read")
     text = _decode(data, location)
     if not text.strip():
         raise location.error(
             "the file is empty", "name a file that contains atlas entries", code="empty-file"
         )
     return Document(os.fspath(path), text, hashlib.sha256(data).hexdigest())
-
-
-def _bytes(location: SourceLocation) -> bytes:
-    try:
-        return Path(location.path or "").read_bytes()
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        code = READ_ERRORS.get(type(error), "file-unreadable")
-        reason = str(getattr(error, "strerror", None) or error).lower()
-        raise location.error(
-            f"cannot be read: {reason}", "name an atlas file that can be read", code=code
-        ) from None
 
 
 def _decode(data: bytes, location: SourceLocation) -> str:

@@ -10,7 +10,6 @@ Only modules that read such files import this one: it loads pydantic.
 
 from __future__ import annotations
 
-import json
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
@@ -23,6 +22,8 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import UpliftError, unknown_name
+from uplift.common.input_file import read_bytes
+from uplift.common.json_text import TOO_DEEP, InvalidJsonError, check_values, parse_json
 from uplift.common.quoting import format_value, shorten
 
 __all__ = [
@@ -36,8 +37,7 @@ __all__ = [
 
 MAX_BYTES = 16 << 20
 """Largest file that is read."""
-MAX_DEPTH = 32
-"""Deepest nesting of tables and lists."""
+HINT = "check the format of the file"
 MAX_PROBLEM = 400
 """Characters of a message."""
 TYPE_CODES = {
@@ -256,11 +256,14 @@ def read_toml(path: StrPath, error: type[UpliftError]) -> SpecFile:
     UpliftError
         For a file that cannot be read, is too large, nests too deeply or is not TOML.
     """
-    text = _read_text(Path(path), error)
+    text = _read_text(path, error)
     try:
         values = tomllib.loads(text)
+        check_values(values)
     except RecursionError:
-        raise _too_deep(path, error) from None
+        raise error(TOO_DEEP, code="nesting-too-deep", path=path, hint=HINT) from None
+    except InvalidJsonError as cause:
+        raise error(cause.problem, code=cause.code, path=path, hint=HINT) from cause
     except ValueError as cause:  # TOMLDecodeError, and integers of too many digits
         at = re.search(r"at line (\d+)", str(cause))
         line = int(at[1]) if at else max(len(text.splitlines()), 1)
@@ -269,7 +272,7 @@ def read_toml(path: StrPath, error: type[UpliftError]) -> SpecFile:
         raise error(
             f"not a valid TOML file: {reason}", code="invalid-toml", path=path, line=line, hint=hint
         ) from cause
-    return _checked(SpecFile(Path(path), text, values, error))
+    return SpecFile(Path(path), text, values, error)
 
 
 def read_json(path: StrPath, error: type[UpliftError]) -> SpecFile:
@@ -292,24 +295,21 @@ def read_json(path: StrPath, error: type[UpliftError]) -> SpecFile:
     UpliftError
         For a file that cannot be read, is too large, nests too deeply or is not a JSON object.
     """
-    text = _read_text(Path(path), error)
+    text = _read_text(path, error)
     try:
-        values = json.loads(text)
-    except RecursionError:
-        raise _too_deep(path, error) from None
-    except ValueError as cause:  # JSONDecodeError, and integers of too many digits
-        line = getattr(cause, "lineno", None)
+        values = parse_json(text)
+    except InvalidJsonError as cause:
         raise error(
-            f"not a valid JSON file: {cause}",
-            code="invalid-json",
+            f"not a valid JSON file: {cause.problem}",
+            code=cause.code,
             path=path,
-            line=line,
-            hint="check the format of the file",
+            line=cause.line,
+            hint=HINT,
         ) from cause
     if not isinstance(values, dict):
         text = f"not a JSON object: {format_value(values)}"
-        raise error(text, code="invalid-json", path=path, hint="check the format of the file")
-    return _checked(SpecFile(Path(path), "", values, error))
+        raise error(text, code="invalid-json", path=path, hint=HINT)
+    return SpecFile(Path(path), "", values, error)
 
 
 def _one_line(text: str) -> str:
@@ -318,50 +318,12 @@ def _one_line(text: str) -> str:
     return text if len(text) <= MAX_PROBLEM else f"{text[:MAX_PROBLEM]}…"
 
 
-def _read_text(path: Path, error: type[UpliftError]) -> str:
+def _read_text(path: StrPath, error: type[UpliftError]) -> str:
+    data = read_bytes(path, error, limit=MAX_BYTES, hint="check the path")
     try:
-        with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
-        if len(data) > MAX_BYTES:
-            raise error(
-                f"must not exceed {MAX_BYTES:,} bytes",
-                code="file-too-large",
-                path=path,
-                hint="check the format of the file",
-            )
         return data.decode("utf-8")
-    except FileNotFoundError as cause:
-        raise error("no such file", code="file-not-found", path=path, hint="check the path") from cause
     except UnicodeDecodeError as cause:
         raise error("not a UTF-8 text file", code="not-utf8", path=path, hint="save it in UTF-8") from cause
-    except UpliftError:
-        raise
-    except (OSError, ValueError) as cause:  # ValueError for a null byte in the path
-        reason = getattr(cause, "strerror", None) or cause
-        raise error(
-            f"cannot be read: {reason}", code="file-unreadable", path=path, hint="check the path"
-        ) from cause
-
-
-def _checked(file: SpecFile) -> SpecFile:
-    """Refuse what nests deeply: it would exhaust the stack of recursive code."""
-    level: list[Any] = [file.values]
-    for _ in range(MAX_DEPTH):
-        level = [each for value in level for each in _children(value)]
-        if not level:
-            return file
-    raise _too_deep(file.path, file.error)
-
-
-def _children(value: object) -> Iterable[Any]:
-    if isinstance(value, dict):
-        return value.values()
-    return value if isinstance(value, list) else ()
-
-
-def _too_deep(path: StrPath, error: type[UpliftError]) -> UpliftError:
-    text = f"tables and lists must not nest more than {MAX_DEPTH} levels deep"
-    return error(text, code="nesting-too-deep", path=path, hint="check the format of the file")
 
 
 def _dotted(keys: tuple[Key, ...]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -25,19 +25,63 @@ POINT_TYPES: dict[str, tuple[str, ...]] = {
 """Types of the arrays of `PointTable`."""
 ATLAS_ARRAYS = {"rgb": "rgb", "coefficients": "coefficients", "reach": "half_width", "error": "error"}
 """Attributes of `AtlasTable` by their names in the file."""
+STORED_TYPES = {
+    "F64": "float64",
+    "F32": "float32",
+    "U8": "uint8",
+    "I32": "int32",
+    "I16": "int16",
+    "U32": "uint32",
+}
+"""Names of the types in numpy, by their names in the file."""
+NOT_NEGATIVE = (
+    "distance",
+    "standard_error",
+    "atlas.error",
+    "sensor.wavelengths",
+    "sensor.power",
+    "sensor.decoding",
+)
 MAX_VALUE = 1e30
 """Limit of all numbers: far above those of any cube, and their squares do not overflow."""
 MAX_CONDITION = 1e6
 """Limit of the condition number of the matrix from XYZ to RGB."""
 
+Tensors = Mapping[str, NDArray[Any]]
+
+
+def check_tensors(tensors: Tensors, points: int, coefficients: int, entries: int) -> None:
+    """Check type, shape and range of every array as it is stored, before anything is computed from it.
+
+    Parameters
+    ----------
+    tensors : mapping of str to ndarray
+        Arrays by their names in the file.
+    points : int
+        Number of points in the file.
+    coefficients, entries : int
+        Number of coefficients of a spectrum, and of atlas entries.
+
+    Raises
+    ------
+    CubeFileError
+        The first condition that is not met, by its code.
+    """
+    for name, array, shape, types in _arrays(tensors, points, coefficients, entries):
+        fits = array.shape == shape and array.dtype.name in types
+        require(fits, "invalid-array", f"{name} must be {' or '.join(types)} of shape {shape}")
+        low = 0 if name in NOT_NEGATIVE else -MAX_VALUE
+        problem = f"{name} must have numbers in [{low:g}, {MAX_VALUE:g}]"
+        require(_in_range(array, low, MAX_VALUE), "array-not-finite", problem)
+
 
 def check(data: CubeData, stored: int) -> None:
-    """Check everything that a lookup relies on.
+    """Check everything else that a lookup relies on.
 
     Parameters
     ----------
     data : CubeData
-        The cube.
+        The cube, of arrays that `check_tensors` accepts.
     stored : int
         Number of points in its file.
 
@@ -46,14 +90,9 @@ def check(data: CubeData, stored: int) -> None:
     CubeFileError
         The first condition that is not met, by its code.
     """
-    _check_arrays(data)
     _check_sensor(data)
-    atlas, points, sensor = data.atlas, data.points, data.sensor
-    texts = (*atlas.names, sensor.space, sensor.illuminant, sensor.observer, data.error_illuminant)
-    require(all(isinstance(text, str) for text in texts), "invalid-names", "every name must be text")
-    require(isinstance(data.provenance, dict), "invalid-provenance", "the provenance must be a table")
+    atlas, points = data.atlas, data.points
     require(tuple(data.lattice.nodes[[0, -1]]) == (0, 1), "invalid-nodes", "the nodes must run from 0 to 1")
-    require(0 < data.threshold < np.inf, "invalid-threshold", "the threshold must be a positive number")
     require(bool((points.status < len(Status)).all()), "unknown-status", "every status must be known")
     present = np.count_nonzero(points.present)
     require(present == stored, "absent-points-stored", "absent points must not be stored")
@@ -73,29 +112,21 @@ def require(condition: bool, code: str, problem: str) -> None:
         raise CubeFileError(problem, code=code)
 
 
-def _check_arrays(data: CubeData) -> None:
-    for name, array, shape, types in _arrays(data):
-        fits = array.shape == shape and array.dtype.name in types
-        require(fits, "invalid-array", f"{name} must be {' or '.join(types)} of shape {shape}")
-        require(_in_range(array, -MAX_VALUE, MAX_VALUE), "array-not-finite", f"{name} must be finite")
-
-
-def _arrays(data: CubeData) -> Iterator[tuple[str, NDArray[Any], tuple[int, ...], tuple[str, ...]]]:
-    """Name, array, shape and types of every array of the cube."""
-    points, count, entries = data.lattice.size, data.model.count, len(data.atlas.names)
-    samples = len(data.sensor.wavelengths)
-    double = ("float64",)
-    yield "nodes", data.lattice.nodes, (data.lattice.dim,), double
-    columns = {"coefficients": (count,), "rgb": (3,)}
+def _arrays(
+    tensors: Tensors, points: int, coefficients: int, entries: int
+) -> Iterator[tuple[str, NDArray[Any], tuple[int, ...], tuple[str, ...]]]:
+    """Name, array, shape and types of every array but the numbers of the points."""
+    samples = tensors["sensor.wavelengths"].size
+    columns, double = {"coefficients": (coefficients,), "rgb": (3,)}, ("float64",)
+    yield "nodes", tensors["nodes"], (tensors["nodes"].size,), double
     for name, types in POINT_TYPES.items():
-        array = getattr(data.points, name)
-        if array is not None:
-            yield name, array, (points, *columns.get(name, ())), types
+        if name in tensors:
+            yield name, tensors[name], (points, *columns.get(name, ())), types
     shapes = ((samples,), (samples, 3), (samples,), (3, 3), (256,))
     for name, shape in zip(SENSOR_ARRAYS, shapes, strict=True):
-        yield f"sensor.{name}", getattr(data.sensor, name), shape, double
-    for name, attribute in ATLAS_ARRAYS.items():
-        yield f"atlas.{name}", getattr(data.atlas, attribute), (entries, *columns.get(name, ())), double
+        yield f"sensor.{name}", tensors[f"sensor.{name}"], shape, double
+    for name in ATLAS_ARRAYS:
+        yield f"atlas.{name}", tensors[f"atlas.{name}"], (entries, *columns.get(name, ())), double
 
 
 def _check_sensor(data: CubeData) -> None:
@@ -108,6 +139,8 @@ def _check_sensor(data: CubeData) -> None:
     is_white = _in_range(white, 1 - 1e-6, 1 + 1e-6)
     require(is_white, "invalid-white", "the perfect reflector must have RGB (1, 1, 1)")
     require(bool(condition < MAX_CONDITION), "invalid-primaries", "the RGB space must have three primaries")
+    ascending = bool((np.diff(sensor.wavelengths) > 0).all())
+    require(ascending, "sensor-wavelengths", "the wavelengths of the sensor must ascend")
     increasing = bool((np.diff(sensor.decoding) >= 0).all())
     require(increasing, "invalid-decoding", "the decoding of 8-bit codes must not decrease")
 

@@ -18,9 +18,20 @@ from numpy.typing import NDArray
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.errors import CubeFileError, OutputError, UpliftError
 from uplift.common.files import atomic_write
+from uplift.common.json_text import parse_json
+from uplift.common.quoting import format_value
 from uplift.cube import sparse
-from uplift.cube.checks import ATLAS_ARRAYS, POINT_TYPES, SENSOR_ARRAYS, check
+from uplift.cube.checks import (
+    ATLAS_ARRAYS,
+    POINT_TYPES,
+    SENSOR_ARRAYS,
+    STORED_TYPES,
+    check,
+    check_tensors,
+    require,
+)
 from uplift.cube.data import AtlasTable, CubeData
+from uplift.cube.metadata import check_metadata
 from uplift.lattice import Lattice, PointTable
 from uplift.models import from_description
 
@@ -34,6 +45,8 @@ FEATURES = {"debug": "round", "errors": "standard_error"}
 """Optional arrays by the features that announce them."""
 INVALID = (AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError, UpliftError)
 """Errors caused by the content of a file."""
+MAX_REASON = 200
+"""Characters of an error of another library."""
 
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -87,11 +100,9 @@ def read(path: str | os.PathLike[str]) -> CubeData:
     """
     path = Path(path)
     tensors, metadata = _load(path)
-    if metadata.get("format") != FORMAT:
-        raise _error(path, "is not an uplift cube", "not-a-cube")
     if metadata.get("version") != VERSION:
         raise CubeFileError(
-            f"must have format version {VERSION}, got {metadata.get('version')}",
+            f"must have format version {VERSION}, got {format_value(metadata.get('version'))}",
             code="cube-version",
             path=path,
             hint="build the cube again, or use the version of uplift that wrote it",
@@ -100,12 +111,13 @@ def read(path: str | os.PathLike[str]) -> CubeData:
     if digest != _digest(tensors, _json(metadata)):
         raise _error(path, "is damaged: the content does not match its digest", "cube-damaged")
     try:
+        check_metadata(metadata)
         data = _data(tensors, metadata)
         check(data, stored=len(tensors["status"]))
     except CubeFileError as error:
         raise _error(path, f"is not a valid cube: {error.problem}", error.code) from error
     except INVALID as error:
-        problem = f"is not a valid cube ({type(error).__name__}: {error})"
+        problem = f"is not a valid cube ({type(error).__name__}: {_shown(error)})"
         raise _error(path, problem, "cube-invalid") from error
     return data
 
@@ -158,20 +170,40 @@ def _load(path: Path) -> tuple[Tensors, dict[str, Any]]:
     from safetensors import SafetensorError, safe_open
 
     if not os.path.isfile(path):  # Path.is_file raises for impossible names
-        raise CubeFileError("no such file", code="cube-not-found", path=path, hint="build the cube first")
+        raise _not_a_file(path)
     try:
         with safe_open(path, framework="numpy") as file:
-            metadata = json.loads((file.metadata() or {}).get(KEY, "{}"), parse_constant=_reject_constant)
+            metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
+            if not isinstance(metadata, dict) or metadata.get("format") != FORMAT:
+                raise _error(path, "is not an uplift cube", "not-a-cube")
+            for name in file.keys():  # noqa: SIM118  not a dictionary
+                if file.get_slice(name).get_dtype() not in STORED_TYPES:
+                    raise _error(
+                        path, f"has an array of an unknown type, {ascii(name)[:40]}", "invalid-array"
+                    )
             tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
-    except (SafetensorError, ValueError, TypeError, OSError, RecursionError) as error:
-        raise _error(path, f"is not a cube file, or is truncated ({error})", "not-a-cube") from error
-    if not isinstance(metadata, dict):
-        raise _error(path, "is not an uplift cube", "not-a-cube")
+    except CubeFileError:
+        raise
+    except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
+        raise _error(path, f"is not a cube file, or is truncated ({_shown(error)})", "not-a-cube") from error
     return tensors, metadata
 
 
-def _reject_constant(text: str) -> None:
-    raise ValueError(f"{text} is not a finite number")
+def _not_a_file(path: Path) -> CubeFileError:
+    if os.path.exists(path):
+        return CubeFileError(
+            "must be a file, got a folder, a device or a pipe",
+            code="not-a-regular-file",
+            path=path,
+            hint="name a cube file",
+        )
+    return CubeFileError("no such file", code="cube-not-found", path=path, hint="build the cube first")
+
+
+def _shown(error: Exception) -> str:
+    """Text of an error of another library, which may quote the file."""
+    text = str(error)[:MAX_REASON]
+    return text if text.isprintable() else ascii(text)
 
 
 def _error(path: Path, problem: str, code: str) -> CubeFileError:
@@ -233,13 +265,20 @@ def _features(data: CubeData) -> list[str]:
 
 
 def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
+    model, features = from_description(metadata["model"]), metadata["features"]
+    check_tensors(tensors, len(tensors["status"]), model.count, len(metadata["entries"]))
     lattice = Lattice(tensors["nodes"])
-    if sparse.FEATURE in metadata["features"]:
+    require(
+        metadata["dim"] == lattice.dim, "invalid-metadata", f"dim must be {lattice.dim}, the number of nodes"
+    )
+    if sparse.FEATURE in features:
         tensors = sparse.scatter(tensors, POINT_TYPES, lattice.size)
-    absent = {array for feature, array in FEATURES.items() if feature not in metadata["features"]}
+    points = len(tensors["status"])
+    require(points == lattice.size, "invalid-array", f"there must be {lattice.size} points, got {points}")
+    absent = {array for feature, array in FEATURES.items() if feature not in features}
     arrays: dict[str, Any] = {name: None if name in absent else tensors[name] for name in POINT_TYPES}
     return CubeData(
-        model=from_description(metadata["model"]),
+        model=model,
         lattice=lattice,
         sensor=Sensor(
             metadata["space"],

@@ -14,17 +14,15 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.common.errors import OptionError, unknown_name
 from uplift.common.quoting import format_value
+from uplift.cube.metadata import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
 from uplift.models import Model, Moments, Phase, Sigmoid
 
 AUTO: Literal["auto"] = "auto"
 AXES = ("srgb", "linear")
 ModelName = Literal["moments", "sigmoid"]
 MODELS: tuple[ModelName, ...] = ("moments", "sigmoid")
-MIN_THRESHOLD, MAX_THRESHOLD = 1e-12, 0.1
-"""Linear RGB. Smaller distances are lost in the rounding of double precision."""
 MAX_AUTO_TOLERANCE = 100.0
 """ΔE00 between black and white."""
-MAX_LIGHTS = 64
 PROCESS_BYTES = 500_000_000
 """Memory of a build without its lattice."""
 
@@ -102,7 +100,7 @@ class Options:
 def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
     """Return options read from a cube under their present names."""
     current = {RENAMED.get(name, name): value for name, value in options.items()}
-    return current | {"lights": tuple(options["lights"])}
+    return {name: tuple(value) if isinstance(value, list) else value for name, value in current.items()}
 
 
 def _dim(name: str, value: object) -> int | Literal["auto"]:

@@ -14,13 +14,14 @@ from uplift.cube import CubeData
 
 REBUILD = "build the cube again"
 """Hint for cubes whose build cannot be repeated."""
+MAX_FILE_NAME = 255
 
 
 def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = ()) -> Atlas | None:
     """Read the atlas that a cube was built from. Warnings of the first build are not repeated.
 
-    The files are searched by name and digest in ``folders``, next to the cube, in the working folder, and in the
-    folder ``atlases`` in or next to each of these, and by digest among the shipped atlases.
+    The files are searched by name and digest in ``folders``, in the folder of the cube, and in folders ``atlases`` in
+    these, and by digest among the shipped atlases. A recorded name never opens a file elsewhere.
 
     Parameters
     ----------
@@ -41,10 +42,9 @@ def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = (
     CubeFileError
         The cube does not record its atlas, or a file is missing or has changed.
     """
-    try:
-        sources = [(str(source["name"]), str(source["digest"])) for source in data.provenance["atlases"]]
-    except (KeyError, TypeError) as error:
-        raise missing_provenance(path) from error
+    if "atlases" not in data.provenance:
+        raise missing_provenance(path)
+    sources = [(source["name"], source["digest"]) for source in data.provenance["atlases"]]
     if not sources:
         return None
     candidates = _search_path(path, folders)
@@ -72,12 +72,17 @@ def missing_provenance(path: StrPath) -> CubeFileError:
 
 
 def _search_path(path: StrPath, folders: Iterable[StrPath]) -> list[Path]:
-    roots = [*map(Path, folders), Path(path).resolve().parent, Path.cwd()]
-    return [folder for root in roots for folder in (root, root / "atlases", root.parent / "atlases")]
+    roots = [*map(Path, folders), Path(path).resolve().parent]
+    return [folder for root in roots for folder in (root, root / "atlases")]
+
+
+def _is_plain(name: str) -> bool:
+    """Whether a name is that of a file in a folder, without a path on any system."""
+    return not set(name) & set("/\\:\0") and name not in ("", ".", "..") and len(name) <= MAX_FILE_NAME
 
 
 def _find(path: StrPath, name: str, digest: str, folders: Sequence[Path]) -> Path:
-    candidates = [folder / name for folder in folders if (folder / name).is_file()]
+    candidates = [file for folder in folders if (file := folder / name).is_file()] if _is_plain(name) else []
     for candidate in candidates:
         if read_document(candidate).digest == digest:
             return candidate

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from uplift.colorimetry.sensor import Sensor
@@ -15,7 +15,7 @@ from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
 from uplift.lookup import Cube
 from uplift.pipeline.build_cube import build
-from uplift.pipeline.options import recorded_options
+from uplift.pipeline.options import Options, recorded_options
 from uplift.pipeline.provenance import REBUILD, missing_provenance, recorded_atlas
 
 
@@ -76,10 +76,7 @@ def rebuild(
     CubeFileError
         The cube does not record its options, was filled from another cube, or an atlas file is missing or changed.
     """
-    try:
-        options = recorded_options(dict(stored.data.provenance["options"]))
-    except (KeyError, TypeError, ValueError) as error:
-        raise missing_provenance(path) from error
+    options = _recorded_options(stored.data, path)
     if "filled" in stored.data.provenance:
         raise CubeFileError(
             "was filled from another cube and cannot be rebuilt",
@@ -92,7 +89,28 @@ def rebuild(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         try:
-            return build(atlas, scene=scene, progress=progress, **options)
-        except (TypeError, OptionError, UnknownNameError) as error:
-            problem = f"records options that this version does not have ({error})"
-            raise CubeFileError(problem, code="unknown-recorded-options", path=path, hint=REBUILD) from error
+            return build(atlas, scene=scene, progress=progress, **asdict(options))
+        except (OptionError, UnknownNameError) as error:
+            raise _unknown_options(error, path) from error
+
+
+def _recorded_options(data: CubeData, path: StrPath) -> Options:
+    if not data.provenance.get("options"):
+        raise missing_provenance(path)
+    try:
+        options = Options(**recorded_options(data.provenance["options"]))
+    except (TypeError, OptionError, UnknownNameError) as error:
+        raise _unknown_options(error, path) from error
+    if options.dim != data.lattice.dim:
+        raise CubeFileError(
+            f"records dim {options.dim}, but has {data.lattice.dim} nodes along each axis",
+            code="lattice-mismatch",
+            path=path,
+            hint=REBUILD,
+        )
+    return options
+
+
+def _unknown_options(error: Exception, path: StrPath) -> CubeFileError:
+    problem = f"records options that this version does not have ({error})"
+    return CubeFileError(problem, code="unknown-recorded-options", path=path, hint=REBUILD)

@@ -4,18 +4,28 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 import os
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from enum import StrEnum
-from pathlib import Path
 
 from uplift.common.csv import csv_text
 from uplift.common.errors import ChartFileError
+from uplift.common.input_file import read_bytes
+from uplift.common.quoting import format_value, shorten
 
 FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 """Columns with the same text in all rows."""
+MAX_BYTES = 16 << 20
+"""Largest file that is read."""
+MAX_NUMBER = 1e30
+NUMBER = re.compile(r"[0-9]+(\.[0-9]*)?([eE][+-]?[0-9]+)?")
+REQUIRED = ("bytes", "time_ns", "single_ns", "round_trip_mean", "round_trip_colours", "unseen_spectra")
+"""Numbers of every method that was measured."""
+KINDS = ("mean", "p99", "max")
+"""Suffixes of the numbers of an error, which come together."""
+HINT = "give the CSV file of a chart"
 
 
 class State(StrEnum):
@@ -124,14 +134,11 @@ def read_chart(path: str | os.PathLike[str]) -> Chart:
     ChartFileError
         If the file cannot be read or is not a valid chart.
     """
+    data = read_bytes(path, ChartFileError, limit=MAX_BYTES, hint=HINT)
     try:
-        text = Path(path).read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        raise _chart_error(
-            path,
-            "cannot be read",
-            "file-not-found" if isinstance(error, FileNotFoundError) else "file-unreadable",
-        ) from error
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise _chart_error(path, "not a UTF-8 text file", "not-utf8") from error
     return parse_chart(text, path)
 
 
@@ -172,11 +179,35 @@ def _result(line: dict[str, str]) -> MethodResult:
     if None in line or None in line.values():
         raise ValueError("lines differ in length")
     texts = {name: line[name] for name in TEXTS if name != "state"}
-    numbers = {name: float(line[name]) for name in line if name not in (*TEXTS, *FACTS) and line[name]}
-    if not all(map(math.isfinite, numbers.values())):
-        raise ValueError(f"'{line['method']}' has a number that is not finite")
-    return MethodResult(**texts, state=State(line["state"]), numbers=numbers)
+    numbers = {
+        name: _number(line, name) for name in line if name not in (*TEXTS, *FACTS) and line[name].strip()
+    }
+    state = State(line["state"])
+    if state == State.MEASURED:
+        for name in _required(numbers):
+            if name not in numbers:
+                raise ValueError(f"{format_value(line['method'])} has no {name}")
+    return MethodResult(**texts, state=state, numbers=numbers)
+
+
+def _number(line: dict[str, str], name: str) -> float:
+    text = line[name].strip()
+    value = float(text) if NUMBER.fullmatch(text) else -1
+    if not 0 <= value <= MAX_NUMBER:
+        raise ValueError(f"{shorten(name)} must be in [0, {MAX_NUMBER:g}], got {format_value(text)}")
+    return value
+
+
+def _required(numbers: Mapping[str, float]) -> Iterator[str]:
+    """Names of the numbers that a measured method with these has."""
+    yield from REQUIRED
+    for name in numbers:
+        stem, _, kind = name.rpartition("_")
+        if kind in KINDS:
+            yield from (f"{stem}_{each}" for each in KINDS)
+    if "batch_ns" in numbers:
+        yield "batch_colours"
 
 
 def _chart_error(path: str | os.PathLike[str], problem: str, code: str) -> ChartFileError:
-    return ChartFileError(problem, code=code, path=path, hint="give the CSV file of a chart")
+    return ChartFileError(problem, code=code, path=path, hint=HINT)
