@@ -103,8 +103,10 @@ def test_resume_leaves_out_complete_newer_textures(jobs):
     assert texture.pending(forced) == forced
 
     data = target.read_bytes()
-    target.write_bytes(data[:-100])
-    assert texture.pending(forced, resume=True) == forced
+    middle = bytes([data[len(data) // 2] ^ 1])
+    for damaged in (data[:-100], data[: len(data) // 2] + middle + data[len(data) // 2 + 1 :]):
+        target.write_bytes(damaged)
+        assert texture.pending(forced, resume=True) == forced
     target.write_bytes(data)
     assert texture.pending(forced, resume=True) == []
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import namedtuple
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +11,10 @@ import pytest
 from PIL import Image
 
 from tests.helpers import raises
-from tests.io.texture.conftest import planes, small_tiles, write_exr
+from tests.io.texture.conftest import planes, write_exr
 from uplift.common.errors import OutputError, TextureError
 from uplift.io import texture
-from uplift.io.texture import writer
+from uplift.io.texture import conversion, writer
 
 
 @pytest.fixture
@@ -72,16 +73,24 @@ def test_an_interruption_leaves_nothing(spectral, source, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["in.exr"]
 
 
-@pytest.mark.parametrize("kind", [OpenEXR.scanlineimage, OpenEXR.tiledimage])
-def test_truncated_files_are_incomplete(kind, tmp_path):
-    plane = np.random.default_rng(0).random((50, 60)).astype(np.float32)
-    tiles = {"tiles": small_tiles()} if kind == OpenEXR.tiledimage else {}
-    header = {"type": kind, **tiles}
-    parts = [OpenEXR.Part({**header}, {"Z": plane}, "a"), OpenEXR.Part({**header}, {"Z": plane}, "b")]
-    OpenEXR.File(parts).write(str(tmp_path / "complete.exr"))
-    data = (tmp_path / "complete.exr").read_bytes()
-    assert writer.is_complete(tmp_path / "complete.exr")
-    for share in (0, 0.01, 0.3, 0.6, 0.99):
-        (tmp_path / "cut.exr").write_bytes(data[: int(share * len(data))])
-        assert not writer.is_complete(tmp_path / "cut.exr"), share
-    assert not writer.is_complete(tmp_path / "none.exr")
+def test_a_disk_that_is_too_small_is_reported_at_the_first_rows(spectral, source, tmp_path, monkeypatch):
+    rows = []
+    monkeypatch.setattr(conversion, "MAX_BAND_BYTES", 1)
+    Usage = namedtuple("Usage", "free")
+    monkeypatch.setattr("shutil.disk_usage", lambda folder: Usage(2500))
+    with raises(OutputError, "not-enough-space") as caught:
+        texture.convert(spectral, source, tmp_path / "out.exr", progress=rows.append)
+    assert caught.value.path == tmp_path / "out.exr"
+    assert rows == []
+    assert [path.name for path in tmp_path.iterdir()] == ["in.exr"]
+    monkeypatch.setattr("shutil.disk_usage", lambda folder: Usage(20_000))
+    texture.convert(spectral, source, tmp_path / "out.exr")
+
+
+def test_the_image_itself_is_not_replaced(spectral, source, tmp_path):
+    before = source.read_bytes()
+    (tmp_path / "link.exr").symlink_to(source)
+    for target in (source, tmp_path / "link.exr"):
+        with raises(OutputError, "output-is-input"):
+            texture.convert(spectral, source, target, force=True)
+    assert source.read_bytes() == before

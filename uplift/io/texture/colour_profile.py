@@ -7,7 +7,6 @@ profiles with lookup tables only the tone curve is known.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -94,18 +93,22 @@ def read_profile(spec: Any) -> Profile | None:
     if (chromaticities := spec.getattribute("chromaticities")) is not None:
         return Profile("", _primaries(chromaticities), None)
     if (points := spec.getattribute("CICP")) is not None:
+        if not isinstance(points, tuple) or len(points) < 2:
+            return Profile("CICP", None, None)
         greys = GREY_CODES if points[1] == H273_SRGB_TRANSFER else None
         return Profile(f"CICP {points[0]}, {points[1]}", H273_PRIMARIES.get(points[0]), greys)
     if (data := spec.getattribute("ICCProfile")) is not None:
         name = spec.get_string_attribute("ICCProfile:profile_description") or "an ICC profile without a name"
-        return _read_icc(name, np.asarray(data, dtype=np.uint8).tobytes())
+        is_bytes = isinstance(data, np.ndarray) and data.dtype == np.uint8
+        return _read_icc(name, data.tobytes()) if is_bytes else Profile(name, None, None)
     return None
 
 
-def _primaries(numbers: Iterable[float]) -> Primaries | None:
+def _primaries(numbers: Any) -> Primaries | None:
+    """Return primaries; None for impossible ones, and for values of another type, as an attribute may have any."""
     try:
         return Primaries.of([float(number) for number in numbers])
-    except OptionError:
+    except (OptionError, TypeError, ValueError):
         return None
 
 

@@ -17,12 +17,10 @@ from uplift.io.texture.colours import Counts
 from uplift.io.texture.converter import Converter
 from uplift.io.texture.part_layout import PartLayout, part_layouts
 from uplift.io.texture.source import Image, Values, open_image
-from uplift.io.texture.writer import Writer, open_writer
+from uplift.io.texture.writer import ROWS_PER_CHUNK, Writer, open_writer
 
 MAX_BAND_BYTES = 1 << 27
 """Size of a band to write."""
-ROWS_PER_CHUNK = 16
-"""Rows that OpenEXR compresses together."""
 
 
 @dataclass(frozen=True)
@@ -113,9 +111,7 @@ def _write_parts(
     for layout in layouts:
         writer.start_part(layout.part.number)
         for first, band in _bands(image, layout):
-            values, band_counts = _convert_band(converter, layout, band)
-            writer.write_rows(first, values)
-            counts, done = counts + band_counts, done + len(band)
+            counts, done = counts + _write_band(converter, layout, writer, first, band), done + len(band)
             progress(Progress("rows", done, total))
     return counts
 
@@ -127,6 +123,13 @@ def _bands(image: Image, layout: PartLayout) -> Iterator[tuple[int, Values]]:
     for first, band in image.bands(layout.part):
         for start in range(0, len(band), step):
             yield first + start, band[start : start + step]
+
+
+def _write_band(converter: Converter, layout: PartLayout, writer: Writer, first: int, band: Values) -> Counts:
+    """Convert and write a band. Its arrays are gone before those of the next, which halves the memory."""
+    values, counts = _convert_band(converter, layout, band)
+    writer.write_rows(first, values)
+    return counts
 
 
 def _convert_band(converter: Converter, layout: PartLayout, band: Values) -> tuple[Values, Counts]:

@@ -13,11 +13,11 @@ from pathlib import Path
 
 from uplift.common.errors import OptionError, TextureError, UpliftError
 from uplift.common.files import check_outputs
+from uplift.io.texture import exr_file
 from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.pixel_encoding import PixelEncoding
 from uplift.io.texture.source import open_image
 from uplift.io.texture.uplifter import Uplifter, prepare
-from uplift.io.texture.writer import is_complete
 from uplift.lookup import load
 
 
@@ -155,7 +155,8 @@ def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
     jobs : iterable of Job
         All jobs.
     resume : bool
-        Whether to leave out images whose textures are complete, newer than the image, and of the same settings.
+        Whether to leave out images whose textures agree with their checksums, are newer than the image, and of the
+        same settings.
 
     Returns
     -------
@@ -186,7 +187,7 @@ def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
 
 
 def _is_up_to_date(job: Job) -> bool:
-    """Return whether the texture is complete, newer than its image, and of the same cube and settings."""
+    """Return whether the texture is intact, newer than its image, and of the same cube and settings."""
     try:
         if job.target.stat().st_mtime < job.source.stat().st_mtime:
             return False
@@ -198,7 +199,7 @@ def _is_up_to_date(job: Job) -> bool:
             equal = all(image.header_text(name) == header[name] for name in ("uplift.cube", "uplift.texture"))
     except TextureError:
         return False
-    return equal and is_complete(job.target)
+    return equal and exr_file.is_intact(job.target)
 
 
 @contextlib.contextmanager

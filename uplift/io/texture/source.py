@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,8 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.errors import ColourError, TextureError, UpliftWarning
+from uplift.common.memory import total_memory
+from uplift.io.texture import exr_file
 from uplift.io.texture.colour_profile import Profile, read_profile
 
 FORMATS = ("openexr", "png", "jpeg", "tiff")
@@ -26,6 +29,9 @@ UINT32_SCALE = 2**32 - 1
 """OpenImageIO divides 32-bit integers by this number."""
 MAX_EXACT_INTEGER = 1 << 24
 """Integers up to this number pass through 32-bit floats."""
+PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+PNG_INTERLACE = 28
+"""Offset of the byte that tells whether a PNG file is interlaced, and can only be decoded in one piece."""
 FORMAT_HINT = "use an EXR, PNG, JPEG or TIFF image"
 
 Values = NDArray[Any]
@@ -121,13 +127,6 @@ class Image:
             for problem in dict.fromkeys(problems)
         )
 
-    def last_row(self, part: Part) -> Values:
-        """Return the last row (1, width, channels). Raises `TextureError` if it is missing."""
-        self.handle.seek_subimage(part.number, 0)
-        end = part.window.y + part.window.height
-        start = end - 1 - (part.window.height - 1) % part.rows_per_block if part.is_tiled else end - 1
-        return self._band(part, start, end)[-1:]
-
     def _band(self, part: Part, first: int, end: int) -> Values:
         if part.max_code:
             return self._read(part, first, end, part.types[0])
@@ -150,11 +149,12 @@ class Image:
 
         window, kind = part.window, OpenImageIO.TypeDesc(dtype)
         channels = (0, len(part.channels)) if channel is None else (channel, channel + 1)
-        if part.is_tiled:
-            columns = (window.x, window.x + window.width)
-            rows = self.handle.read_tiles(*columns, first, end, 0, 1, *channels, kind)
-        else:
-            rows = self.handle.read_scanlines(first, end, 0, *channels, kind)
+        with _silence(is_png=self.handle.format_name() == "png"):
+            if part.is_tiled:
+                columns = (window.x, window.x + window.width)
+                rows = self.handle.read_tiles(*columns, first, end, 0, 1, *channels, kind)
+            else:
+                rows = self.handle.read_scanlines(first, end, 0, *channels, kind)
         problem = self.handle.geterror()  # the only sign of a truncated JPEG
         if rows is None or problem:
             raise TextureError(
@@ -172,7 +172,8 @@ def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
     Raises
     ------
     TextureError
-        The file is missing, damaged, of another format, or has several values per pixel.
+        The file is missing, damaged, of another format, has several values per pixel, too many channels or
+        attributes, names that are not text, or blocks of rows that do not fit into memory.
     """
     import OpenImageIO
 
@@ -180,17 +181,86 @@ def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
     config["oiio:UnassociatedAlpha"] = 1  # keep colours as stored, not multiplied by alpha
     if not path.is_file():
         raise TextureError("no such file", code="file-not-found", path=path, hint=FORMAT_HINT)
-    handle = OpenImageIO.ImageInput.open(os.fspath(path), config)
-    if handle is None:
-        problem = _one_line(OpenImageIO.geterror())
-        raise TextureError(problem, code="unreadable-image", path=path, hint=FORMAT_HINT)
+    OpenImageIO.attribute(
+        "limits:imagesize_MB", 0
+    )  # bands are read, which `_check_memory` compares with memory
+    with _with_path(path):
+        start = _read_start(path)
+        if start.startswith(exr_file.MAGIC):
+            exr_file.check_size(path)
+        with _silence(is_png=start.startswith(PNG_SIGNATURE)):
+            handle = OpenImageIO.ImageInput.open(os.fspath(path), config)
+        if handle is None:
+            problem = _one_line(OpenImageIO.geterror())
+            raise TextureError(problem, code="unreadable-image", hint=FORMAT_HINT)
+        try:
+            parts = tuple(_parts(handle))
+            for part in parts:
+                _check_names(part)
+                _check_memory(part, is_interlaced=_is_interlaced(start))
+            yield Image(path, parts, handle)
+        finally:
+            handle.close()
+
+
+@contextlib.contextmanager
+def _with_path(path: Path) -> Iterator[None]:
+    """Add the path to errors of the block that have none."""
     try:
-        yield Image(path, tuple(_parts(handle)), handle)
+        yield
     except (TextureError, ColourError) as error:
         error.path = path if error.path is None else error.path
         raise
-    finally:
-        handle.close()
+
+
+def _read_start(path: Path) -> bytes:
+    try:
+        with path.open("rb") as file:
+            return file.read(PNG_INTERLACE + 1)
+    except OSError as error:
+        problem = f"cannot be read: {error.strerror}"
+        raise TextureError(problem, code="unreadable-image", hint=FORMAT_HINT) from error
+
+
+def _is_interlaced(start: bytes) -> bool:
+    return start.startswith(PNG_SIGNATURE) and start[PNG_INTERLACE:] == b"\1"
+
+
+class _Silence:
+    """Standard error of the process, closed while any thread reads a PNG file: libpng prints a line per error.
+
+    OpenImageIO returns the same text as an error.
+    """
+
+    def __init__(self) -> None:
+        self._lock, self._count, self._saved = threading.Lock(), 0, -1
+
+    def __enter__(self) -> None:
+        with self._lock:
+            self._count += 1
+            if self._count > 1:
+                return
+            with contextlib.suppress(OSError):  # no standard error
+                self._saved = os.dup(2)
+                null = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(null, 2)
+                os.close(null)
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._count -= 1
+            if self._count == 0 and self._saved >= 0:
+                os.dup2(self._saved, 2)
+                os.close(self._saved)
+                self._saved = -1
+
+
+_PNG_SILENCE = _Silence()
+
+
+def _silence(*, is_png: bool) -> contextlib.AbstractContextManager[None]:
+    """Return a context in which libpng does not print its errors; an empty one for other formats."""
+    return _PNG_SILENCE if is_png else contextlib.nullcontext()
 
 
 def _parts(handle: Any) -> Iterator[Part]:
@@ -220,8 +290,43 @@ def _part(spec: Any, number: int) -> Part:
         rows_per_block=spec.tile_height or max(spec.get_int_attribute("oiio:RowsPerChunk", 1), 1),
         is_tiled=bool(spec.tile_width),
         profile=read_profile(spec),
-        date=spec.get_string_attribute("DateTime") or None,
+        date=_text(spec, "DateTime") or None,
     )
+
+
+def _text(spec: Any, name: str) -> str:
+    """Return a text attribute, empty if it is missing or not UTF-8."""
+    text = str(spec.get_string_attribute(name))
+    return text if _is_text(text) else ""
+
+
+def _check_names(part: Part) -> None:
+    """Raise `TextureError` for names of the part or its channels that are not UTF-8."""
+    for name in (part.name, *part.channels):
+        if not _is_text(name):
+            raise TextureError(
+                f"names of parts and channels must be UTF-8, got {name!a}",
+                code="name-not-text",
+                hint="rename it",
+            )
+
+
+def _is_text(name: str) -> bool:
+    """Return whether a text of OpenImageIO is Unicode. Bytes that are not UTF-8 become lone surrogates."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in name)
+
+
+def _check_memory(part: Part, *, is_interlaced: bool) -> None:
+    """Raise `TextureError` if the rows that must be decoded together do not fit into memory."""
+    rows = part.window.height if is_interlaced else min(part.rows_per_block, part.window.height)
+    needed, total = rows * part.window.width * len(part.channels) * 4, total_memory()
+    if total is not None and needed > total:
+        raise TextureError(
+            f"blocks of {rows} rows must be decoded together and need {needed / 1e9:.1f} GB, "
+            f"more than the memory of {total / 1e9:.1f} GB",
+            code="image-too-large",
+            hint="write the image with smaller tiles or strips, or without interlacing",
+        )
 
 
 def _one_line(message: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +14,13 @@ import numpy as np
 
 from uplift.common.errors import OutputError, TextureError
 from uplift.common.files import atomic_write
-from uplift.io.texture.source import Values, Window, open_image
+from uplift.io.texture import exr_file
+from uplift.io.texture.source import Values, Window
+
+ROWS_PER_CHUNK = 16
+"""Rows that OpenEXR compresses together as ZIP."""
+SPACE_MARGIN = 2
+"""Factor by which the rest of an image may compress better than the rows written so far."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +65,10 @@ class Writer:
         import OpenImageIO
 
         self._path, self._specs = path, [part.spec() for part in parts]
+        self._specs[0].attribute(exr_file.CHECKSUM, exr_file.NO_CHECKSUM)
+        self._heights = [part.window.height for part in parts]
+        self._total = sum(part.window.height * part.window.width * len(part.channels) for part in parts)
+        self._written = 0
         handle = OpenImageIO.ImageOutput.create("openexr")
         if handle is None:
             raise OSError(OpenImageIO.geterror())
@@ -72,17 +83,38 @@ class Writer:
             self._check(self._handle.open(os.fspath(self._path), spec, "AppendSubimage"))
 
     def write_rows(self, first: int, values: Values) -> None:
-        """Write rows (k, width, channels) from row ``first``. Raises `OSError`."""
+        """Write rows (k, width, channels) from row ``first``. Raises `OSError`, and `OutputError` as `_check_space`."""
         self._check(self._handle.write_scanlines(first, first + len(values), 0, np.ascontiguousarray(values)))
+        self._written += values.size
+        self._check_space()
 
     def close(self) -> None:
-        """Finish the file. Raises `OSError`."""
+        """Finish the file, check that all of it is there, and add its checksum. Raises `OSError` and `OutputError`."""
         self._check(self._handle.close())
+        try:  # a disk that fills up with the last bytes gives no other sign
+            exr_file.check_chunks(self._path, self._heights, ROWS_PER_CHUNK)
+        except TextureError as error:
+            raise OutputError(
+                "the file is incomplete", code="incomplete-write", hint="free space on the disk"
+            ) from error
+        exr_file.seal(self._path)
 
     def abort(self) -> None:
         """Close an incomplete file and ignore errors."""
         self._handle.close()
         self._handle.geterror()  # otherwise it is printed when the process ends
+
+    def _check_space(self) -> None:
+        """Raise `OutputError` at the first rows if the rest of the image will not fit on the disk."""
+        size = self._path.stat().st_size
+        rest = size * (self._total - self._written) / self._written
+        free = shutil.disk_usage(self._path.parent).free
+        if rest / SPACE_MARGIN > free:
+            raise OutputError(
+                f"the file needs about {(size + rest) / 1e9:.2g} GB, and {(size + free) / 1e9:.2g} GB are free",
+                code="not-enough-space",
+                hint="free space on the disk, or write fewer wavelengths or half floats",
+            )
 
     def _check(self, ok: bool) -> None:
         if not ok:
@@ -98,23 +130,9 @@ def open_writer(
         writer = Writer(temporary, parts)
         try:
             yield writer
-        except BaseException:
+            writer.close()
+        except BaseException as error:
             writer.abort()
+            if isinstance(error, OutputError):
+                error.path = path if error.path is None else error.path
             raise
-        writer.close()
-        # A disk that fills up with the last bytes gives no other sign.
-        if not is_complete(temporary):
-            raise OutputError(
-                "the file is incomplete", code="incomplete-write", path=path, hint="free space on the disk"
-            )
-
-
-def is_complete(path: Path) -> bool:
-    """Return whether the last rows of all parts can be read."""
-    try:
-        with open_image(path) as image:
-            for part in image.parts:
-                image.last_row(part)
-    except TextureError:
-        return False
-    return True
