@@ -11,7 +11,7 @@ CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limi
 
 
 def total_memory() -> int | None:
-    """Return the memory in bytes that this process may have at most, None if the system does not tell.
+    """Return the memory in bytes that this process may have at most, None if the system does not state it.
 
     Returns
     -------

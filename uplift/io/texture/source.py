@@ -31,7 +31,7 @@ MAX_EXACT_INTEGER = 1 << 24
 """Integers up to this number pass through 32-bit floats."""
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 PNG_INTERLACE = 28
-"""Offset of the byte that tells whether a PNG file is interlaced, and can only be decoded in one piece."""
+"""Offset of the byte that marks an interlaced PNG file, which can only be decoded in one piece."""
 FORMAT_HINT = "use an EXR, PNG, JPEG or TIFF image"
 
 Values = NDArray[Any]
