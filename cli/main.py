@@ -1,4 +1,4 @@
-"""``uplift``: find the command, run it, and print errors and warnings of the library on one line each."""
+"""``uplift``: find the command, run it, and print errors and warnings on one line each."""
 
 from __future__ import annotations
 
@@ -6,17 +6,20 @@ import errno
 import importlib
 import sys
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import partial
 from typing import Any
 
 import click
 
 from uplift.common.errors import OutputError, UpliftError, UpliftWarning
 
-from .output.diagnostics import UsageFailure, show_warning
+from .output.diagnostics import InternalFailure, UsageFailure, show_usage_error, show_warning
+from .output.streams import finish_stdout, prepare_streams
 from .params.options import OUTPUT_FORMAT
 from .params.renamed import renamed_option
+from .startup import draw_without_window
 
 GROUPS = {
     "Cubes": ("build", "query", "texture", "mix", "export"),
@@ -28,6 +31,8 @@ GROUPS = {
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 SUMMARY_LENGTH = 200
 """Characters of a command's summary in the help; enough for all of them."""
+LOST_PIPE, INTERRUPTED = 1, 130
+"""Exit codes of a command whose reader closed the pipe, and of one ended by Ctrl-C."""
 DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -58,42 +63,115 @@ class LazyGroup(click.Group):
             with formatter.section(title):
                 formatter.write_dl(rows)
 
+    def main(self, *args: Any, **options: Any) -> Any:
+        """Run the command line and exit: 0, 1 for a failed check, 2 for bad input, 70 for an internal error."""
+        run: Callable[[], Any] = partial(super().main, *args, **options | {"standalone_mode": False})
+        if not options.get("standalone_mode", True):
+            return run()
+        prepare_streams()
+        draw_without_window()
+        sys.exit(_exit_code(run))
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; raise `UsageFailure` for errors of the library."""
-        with warnings.catch_warnings(), _usage_failures(ctx):
+        with warnings.catch_warnings(), _failures(ctx):
             warnings.simplefilter("always", UpliftWarning)
             warnings.showwarning = show_warning
             result = super().invoke(ctx)
-            sys.stdout.flush()  # a full disk must be noticed while errors can still be reported
+            finish_stdout()  # a full disk must be noticed while errors can still be reported
             return result
 
 
+def _exit_code(run: Callable[[], Any]) -> int:
+    """Run, report what fails on one line, and return the exit code."""
+    try:
+        result = _result(run)
+        finish_stdout()  # help and version
+        return result if isinstance(result, int) else 0
+    except UsageFailure as failure:
+        return _report(failure)
+    except click.ClickException as error:
+        show_usage_error(error)
+        return error.exit_code
+    except click.Abort:
+        return INTERRUPTED
+    except BrokenPipeError:  # the reader closed the pipe
+        return LOST_PIPE
+    except OSError as error:
+        return _report(UsageFailure(_system_error(error)))
+    finally:
+        with suppress(OSError):
+            finish_stdout()
+
+
+def _result(run: Callable[[], Any]) -> Any:
+    try:
+        return run()
+    except SystemExit as end:
+        return end.code
+
+
+def _report(failure: UsageFailure) -> int:
+    failure.show()
+    return failure.exit_code
+
+
 @contextmanager
-def _usage_failures(ctx: click.Context) -> Iterator[None]:
-    """Turn errors of the library, full disks and renamed options into `UsageFailure`."""
+def _failures(ctx: click.Context) -> Iterator[None]:
+    """Turn errors of the library and of the system, renamed options and internal errors into `UsageFailure`."""
+    as_json = partial(_is_json, ctx)
     try:
         yield
     except UpliftError as error:
-        raise _failure(ctx, error) from error
+        raise UsageFailure(error, as_json=as_json()) from error
+    except BrokenPipeError:
+        raise
     except OSError as error:
-        if error.errno not in DISK_FULL:
-            raise
-        problem = f"standard output cannot be written: {error.strerror}"
-        raise _failure(ctx, OutputError(problem, code="disk-full", hint="free some space")) from error
+        raise UsageFailure(_system_error(error), as_json=as_json()) from error
+    except MemoryError as error:
+        raise UsageFailure(_memory_error(), as_json=as_json()) from error
     except click.NoSuchOption as error:
         renamed = renamed_option(error)
         if renamed is None:
             raise
-        raise _failure(ctx, renamed) from error
+        raise UsageFailure(renamed, as_json=as_json()) from error
+    except (click.ClickException, click.exceptions.Exit, click.Abort):
+        raise
+    except Exception as error:
+        if "RESOURCE_EXHAUSTED" in str(error):  # of JAX
+            raise UsageFailure(_memory_error(), as_json=as_json()) from error
+        if ctx.params["traceback"]:
+            raise
+        raise InternalFailure(error, as_json=as_json()) from error
 
 
-def _failure(ctx: click.Context, error: UpliftError) -> UsageFailure:
-    return UsageFailure(error, as_json=ctx.meta.get(OUTPUT_FORMAT) == "json")
+def _is_json(ctx: click.Context) -> bool:
+    return ctx.meta.get(OUTPUT_FORMAT) == "json"
+
+
+def _system_error(error: OSError) -> UpliftError:
+    """Return the error of the library for one of the system that it does not translate."""
+    reason = error.strerror or str(error)
+    if error.errno in DISK_FULL:
+        problem = f"standard output cannot be written: {reason}"
+        return OutputError(problem, code="disk-full", hint="free some space")
+    if error.errno == errno.EBADF:
+        problem = "standard output cannot be written: it is closed"
+        return OutputError(problem, code="output-closed", hint="leave standard output open")
+    path = error.filename if isinstance(error.filename, str) else None
+    return OutputError(reason, code="system-error", path=path, hint="check the path and its permissions")
+
+
+def _memory_error() -> UpliftError:
+    return UpliftError("not enough memory", code="out-of-memory", hint="use a smaller input, or more memory")
 
 
 @click.command(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="uplift", message="uplift %(version)s")
-def main() -> None:
+@click.option(
+    "--traceback", is_flag=True, envvar="UPLIFT_TRACEBACK", help="Show the traceback of an internal error."
+)
+def main(traceback: bool) -> None:
     """Convert RGB colours to reflectance spectra that agree with measured ones.
 
     \b

@@ -5,6 +5,11 @@ from __future__ import annotations
 import os
 
 
+def draw_without_window() -> None:
+    """Use the backend of matplotlib that needs no display; one that the user prefers may not exist."""
+    os.environ["MPLBACKEND"] = "agg"
+
+
 def enable_jit_cache() -> None:
     """Keep compiled JAX code in the user's cache folder, so that later commands do not compile it again."""
     from platformdirs import user_cache_dir

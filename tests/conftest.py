@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from pathlib import Path
 
@@ -17,6 +18,9 @@ ROOT = Path(__file__).parents[1]
 # Times on shared machines are unreliable.
 settings.register_profile("uplift", deadline=None, print_blob=True)
 settings.load_profile("uplift")
+
+# The command line must not hide internal errors.
+os.environ["UPLIFT_TRACEBACK"] = "1"
 
 ATLASES = ROOT / "atlases"
 MACBETH = ATLASES / "macbeth.txt"

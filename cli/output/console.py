@@ -28,12 +28,12 @@ PIPE_WIDTH = 160
 
 def say(text: str = "", *, err: bool = False) -> None:
     """Print one line with control characters escaped."""
-    click.echo(printable(text), err=err)
+    emit(printable(text), err=err)
 
 
 def emit(text: str, *, err: bool = False, nl: bool = True) -> None:
     """Print text of our own, which may have several lines and colours."""
-    click.echo(text, err=err, nl=nl)
+    click.echo(text, sys.stderr if err else sys.stdout, nl=nl)
 
 
 def print_json(values: Any, indent: int | None = 2) -> None:

@@ -1,15 +1,24 @@
-"""Errors and warnings of the library on standard error."""
+"""Errors and warnings on standard error: one line each."""
 
 from __future__ import annotations
 
+import contextlib
+import traceback
+from pathlib import Path
 from typing import Any
 
 import click
 
 from uplift.common.errors import UpliftError, UpliftWarning
+from uplift.common.text import printable
 
 from .console import emit, json_text
 from .hints import describe, hint_for
+
+INTERNAL_ERROR = 70
+"""Exit code of an error of uplift itself, EX_SOFTWARE of sysexits.h."""
+MAX_DETAIL = 200
+"""Characters of the message of an internal error."""
 
 
 class UsageFailure(click.ClickException):
@@ -32,10 +41,32 @@ class UsageFailure(click.ClickException):
     def show(self, file: Any = None) -> None:
         """Print the error to standard error."""
         if self.as_json:
-            text = json_text({"error": error_object(self.error)}, indent=None)
+            _print(json_text({"error": error_object(self.error)}, indent=None))
         else:
-            text = f"{click.style('error:', fg='red', bold=True)} {self.message}"
-        emit(text, err=True)
+            _print_error(self.message)
+
+
+class InternalFailure(UsageFailure):
+    """An exception that uplift does not expect: one line on standard error and exit code 70."""
+
+    exit_code = INTERNAL_ERROR
+
+    def __init__(self, error: Exception, *, as_json: bool = False) -> None:
+        place = traceback.extract_tb(error.__traceback__)[-1:]
+        where = "".join(f" in {Path(frame.filename).name}:{frame.lineno}" for frame in place)
+        detail = " ".join(str(error).split())[:MAX_DETAIL]
+        problem = f"internal error, please report it: {type(error).__name__}{where}" + (
+            f": {detail}" if detail else ""
+        )
+        report = UpliftError(problem, code="internal-error", hint="'uplift --traceback COMMAND …' shows more")
+        super().__init__(report, as_json=as_json)
+
+
+def show_usage_error(error: click.ClickException) -> None:
+    """Print an error of the command line on one line, with the command that shows the help."""
+    message = " ".join(error.format_message().split())
+    context = getattr(error, "ctx", None)
+    _print_error(printable(message) + (f" See '{context.command_path} --help'." if context else ""))
 
 
 def error_object(error: UpliftError) -> dict[str, Any]:
@@ -46,4 +77,15 @@ def error_object(error: UpliftError) -> dict[str, Any]:
 def show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
     """Print warnings of the library on one line each, and no others; replaces `warnings.showwarning`."""
     if isinstance(message, UpliftWarning):
-        emit(f"{click.style('warning:', fg='yellow', bold=True)} {describe(message)}", err=True)
+        _print(f"{click.style('warning:', fg='yellow', bold=True)} {describe(message)}")
+
+
+def _print_error(text: str) -> None:
+    _print(f"{click.style('error:', fg='red', bold=True)} {text}")
+
+
+def _print(text: str) -> None:
+    with contextlib.suppress(
+        OSError
+    ):  # nowhere else is left to report it; the exit code shows that it failed
+        emit(text, err=True)

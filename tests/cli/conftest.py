@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import click
 import pytest
+import uplift_cli.main
 from click.testing import CliRunner, Result
 from uplift_cli.main import main
 from uplift_cli.output.diagnostics import UsageFailure
@@ -31,14 +31,17 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def shown(monkeypatch: pytest.MonkeyPatch) -> list[click.ClickException]:
     """Errors that were printed, in order."""
     errors: list[click.ClickException] = []
-    for kind in (UsageFailure, click.UsageError):
-
-        def show(self: Any, file: Any = None, original: Callable[..., None] = kind.show) -> None:
-            errors.append(self)
-            original(self, file)
-
-        monkeypatch.setattr(kind, "show", show)
+    for owner, name in ((UsageFailure, "show"), (uplift_cli.main, "show_usage_error")):
+        monkeypatch.setattr(owner, name, _recorded(getattr(owner, name), errors))
     return errors
+
+
+def _recorded(show: Callable[..., None], errors: list[click.ClickException]) -> Callable[..., None]:
+    def record(error: click.ClickException) -> None:
+        errors.append(error)
+        show(error)
+
+    return record
 
 
 @pytest.fixture
@@ -80,6 +83,7 @@ def misuse(run: Run, shown: list[click.ClickException]) -> Callable[..., str]:
         assert result.stdout == ""
         failure = shown.pop()
         assert isinstance(failure, click.UsageError), result.stderr
+        assert result.stderr.count("\n") == 1
         return failure.format_message()
 
     return misuse

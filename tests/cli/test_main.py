@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import importlib
 import json
 import subprocess
@@ -17,6 +18,7 @@ from uplift_cli.params.renamed import RENAMED
 
 import uplift
 from uplift.common.errors import UpliftError, UpliftWarning
+from uplift.common.text import printable
 
 from .conftest import warning_lines
 
@@ -107,10 +109,70 @@ def test_json_output_has_json_errors(failing, run):
     assert result.stderr.count("\n") == 1
 
 
-def test_other_exceptions_are_not_caught(failing, home):
+@pytest.fixture
+def net(monkeypatch):
+    """Let the command line report internal errors, as users have it."""
+    monkeypatch.delenv("UPLIFT_TRACEBACK")
+
+
+def test_internal_errors_are_not_caught_in_tests(failing, home):
     failing(RuntimeError("a bug"))
     result = CliRunner().invoke(main, ["info", "x"])
     assert isinstance(result.exception, RuntimeError)
+
+
+BUGS = (
+    RuntimeError("a bug\nof two lines\x1b[2J"),
+    KeyError("name"),
+    ZeroDivisionError(),
+    RecursionError("too deep"),
+    UnicodeEncodeError("utf-8", "\udcff", 0, 1, "surrogates"),
+    AssertionError("x" * 9999),
+)
+
+
+@pytest.mark.usefixtures("net")
+@pytest.mark.parametrize("bug", BUGS, ids=lambda bug: type(bug).__name__)
+def test_internal_errors_are_one_line_with_exit_code_70(failing, run, bug):
+    failing(bug)
+    result = run("info", "x", code=70)
+    assert result.stdout == ""
+    assert result.stderr.startswith(
+        f"error: internal error, please report it: {type(bug).__name__} in test_main.py:"
+    )
+    assert "uplift --traceback" in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert printable(result.stderr[:-1]) == result.stderr[:-1]
+    assert len(result.stderr) < 500
+
+
+@pytest.mark.usefixtures("net")
+def test_internal_errors_are_json_for_json_output(failing, run):
+    failing(KeyError("name"))
+    result = run("info", "x", "--format", "json", code=70)
+    assert json.loads(result.stderr)["error"]["code"] == "internal-error"
+
+
+@pytest.mark.usefixtures("net")
+def test_traceback_shows_more(failing, home):
+    failing(KeyError("name"))
+    result = CliRunner().invoke(main, ["--traceback", "info", "x"])
+    assert isinstance(result.exception, KeyError)
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (MemoryError(), "out-of-memory"),
+        (RuntimeError("RESOURCE_EXHAUSTED: Out of memory allocating 9 bytes."), "out-of-memory"),
+        (PermissionError(13, "Permission denied", "x"), "system-error"),
+        (OSError(errno.ENOSPC, "No space left on device"), "disk-full"),
+        (OSError(errno.EBADF, "Bad file descriptor"), "output-closed"),
+    ],
+)
+def test_failures_of_the_system_are_errors(failing, refuse, error, code):
+    failing(error)
+    assert refuse("info", "x").code == code
 
 
 def test_warnings_of_the_library_are_one_line_each_and_others_are_ignored(monkeypatch, run):
