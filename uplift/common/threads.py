@@ -2,19 +2,54 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
+
+
+class _SharedLimit:
+    """One thread in pools of the process, from the first caller to the last one."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._callers = 0
+        self._limits: Any = None
+
+    def __enter__(self) -> None:
+        from threadpoolctl import threadpool_limits
+
+        with self._lock:
+            if not self._callers:
+                self._limits = threadpool_limits(1, user_api="blas")
+            self._callers += 1
+
+    def __exit__(self, *error: object) -> None:
+        from threadpoolctl import OpenBLASController
+
+        with self._lock:
+            self._callers -= 1
+            if not self._callers:
+                # The limit can otherwise be restored by the thread only that set it.
+                OpenBLASController.clear_controlling_thread(force=True)
+                self._limits.restore_original_limits()
+
+
+_LIMIT = _SharedLimit()
 
 
 @contextmanager
 def single_threaded_blas() -> Iterator[None]:
-    """Limit BLAS to one thread.
+    """Limit BLAS to one thread, until the last of several concurrent callers is done.
 
     The matrices of this package are small, so threads would wait for each other. Results then also do not depend on the
     number of threads, which changes the rounding of sums. The threads of XLA are not affected: they distribute rows.
     """
     import scipy.linalg  # noqa: F401  loads its own BLAS, and only loaded libraries can be limited
-    from threadpoolctl import threadpool_limits
+    from threadpoolctl import ThreadpoolController
 
-    with threadpool_limits(1, user_api="blas"):
+    per_thread = ThreadpoolController().select(
+        threading_layer="openmp"
+    )  # its limits hold for the calling thread
+    with per_thread.limit(limits=1, user_api="blas"), _LIMIT:
         yield
