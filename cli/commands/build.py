@@ -19,6 +19,8 @@ from ..params.options import (
     coefficient_count,
     coefficients_options,
     encoding_option,
+    entry_coefficient_count,
+    entry_coefficients_options,
     force_option,
     light_option,
     out_of_gamut_option,
@@ -59,6 +61,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 )
 @click.option("--model", default="moments", show_default=True, help="Spectrum model: moments or sigmoid.")
 @coefficients_options
+@entry_coefficients_options
 @click.option("--warp", default="none", show_default=True, help="Phase warp of the moments: none or vision.")
 @click.option("--axis", default="srgb", show_default=True, help="Spacing of the nodes: srgb or linear.")
 @sensor_options
@@ -92,6 +95,8 @@ def command(
     verbose: bool,
     coefficients: int | None,
     moments: int | None,
+    entry_coefficients: int | None,
+    entry_moments: int | None,
     **options: Any,
 ) -> None:
     """Build an uplifting cube constrained by measured spectra.
@@ -123,8 +128,9 @@ def command(
         scene = _scene(images, encoding, method)
         inputs = (*files, *(scene.paths if scene else ()))
         given = {name: value for name, value in options.items() if value not in (None, ())}
-        count = coefficient_count(coefficients, moments)
-        build = partial(build_cube, files or None, scene=scene, coefficients=count, **given)
+        given["coefficients"] = coefficient_count(coefficients, moments)
+        given["entry_coefficients"] = entry_coefficient_count(entry_coefficients, entry_moments)
+        build = partial(build_cube, files or None, scene=scene, **given)
         name = _default_name(files, images, options)
     else:
         build, name, inputs = _planned_build(plan_path, click.get_current_context())

@@ -22,6 +22,8 @@ HINTS = {
     "dim-not-a-number": "use --dim with a number, or --dim auto",
     "dim-too-small": "use --dim 2 or more",
     "encoded-floats-not-mapped": "use --out-of-gamut clip, or --encoding linear",
+    "entries-mismatch": "build the cube again, or replace it with --update",
+    "entry-coefficients-out-of-range": "use --entry-coefficients from --coefficients to 17",
     "entry-crowded": "use --dim auto for a lattice that is large enough; 'uplift report' shows details",
     "file-exists": "use --force to replace it, or choose another name",
     "invalid-chart": "name the CSV file that 'uplift chart' wrote",

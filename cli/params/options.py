@@ -9,7 +9,7 @@ import click
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
-DEFAULT_COEFFICIENTS = 9
+DEFAULT_COEFFICIENTS, MAX_COEFFICIENTS = 9, 17
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
 
@@ -163,6 +163,30 @@ def coefficient_count(coefficients: int | None, moments: int | None) -> int:
     if moments is not None:
         return moments + 1
     return DEFAULT_COEFFICIENTS if coefficients is None else coefficients
+
+
+def entry_coefficients_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """``--entry-coefficients``, and ``--entry-moments``, which counts one less; see `entry_coefficient_count`."""
+    coefficients = click.option(
+        "--entry-coefficients",
+        type=int,
+        metavar="N",
+        help=f"Coefficients per spectrum of an atlas entry, from --coefficients to {MAX_COEFFICIENTS}. "
+        f"[default: {MAX_COEFFICIENTS}]",
+    )
+    moments = click.option("--entry-moments", type=int, hidden=True)
+    return coefficients(moments(function))
+
+
+def entry_coefficient_count(coefficients: int | None, moments: int | None) -> int:
+    """Return the number of coefficients that ``--entry-coefficients`` or ``--entry-moments`` gives."""
+    if coefficients is not None and moments is not None:
+        raise click.UsageError(
+            "--entry-moments N is the same as --entry-coefficients N+1: give one of the two."
+        )
+    if moments is not None:
+        return moments + 1
+    return MAX_COEFFICIENTS if coefficients is None else coefficients
 
 
 def force_option() -> Decorator:

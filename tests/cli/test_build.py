@@ -156,6 +156,7 @@ def test_files_are_replaced_only_with_force(run, refuse, home):
         (("--axis", "log"), "unknown-axis-spacing"),
         (("--moments", "1"), "coefficients-out-of-range"),
         (("--moments", "17"), "coefficients-out-of-range"),
+        (("--entry-moments", "17"), "entry-coefficients-out-of-range"),
         (("--coefficients", "2"), "coefficients-out-of-range"),
         (("--coefficients", "18"), "coefficients-out-of-range"),
         (("--threshold", "0"), "threshold-out-of-range"),
@@ -188,6 +189,14 @@ def test_coefficients_count_one_more_than_moments(run, misuse, home):
         run("build", "--dim", 2, *options, "-o", name)
     assert (home / "a").read_bytes() == (home / "b").read_bytes()
     assert "--coefficients" in misuse("build", "--coefficients", 4, "--moments", 3)
+
+
+def test_entries_have_the_given_number_of_coefficients(run, misuse, home):
+    for name, *options in (("a", "--entry-coefficients", 12), ("b", "--entry-moments", 11), ("c",)):
+        run("build", "--atlas", "macbeth", "--dim", 2, "--moments", 3, *options, "-o", name)
+    counts = {name: uplift.load(home / name).entry_coefficient_count for name in "abc"}
+    assert counts == {"a": 12, "b": 12, "c": 17}
+    assert "--entry-coefficients" in misuse("build", "--entry-coefficients", 12, "--entry-moments", 11)
 
 
 def test_progress_bars_need_a_terminal(home):

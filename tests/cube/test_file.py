@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube import digest, file, read, write
 from uplift.cube.file import KEY, POINT_TYPES, SENSOR_ARRAYS, VERSION
 from uplift.lattice import Status
+from uplift.models import Moments, Phase
 
 FLIPS, CUTS = 1500, 200
 
@@ -58,6 +60,8 @@ def assert_same(one, other):
     assert_same_array(one.lattice.nodes, other.lattice.nodes)
     assert_same_array(one.atlas.rgb, other.atlas.rgb)
     assert_same_array(one.atlas.coefficients, other.atlas.coefficients)
+    assert_same_array(one.entry_spectra.coefficients, other.entry_spectra.coefficients)
+    assert one.entry_spectra.model == other.entry_spectra.model
     assert one.atlas.names == other.atlas.names
     assert one.model == other.model
     assert one.threshold == other.threshold
@@ -110,7 +114,9 @@ def test_an_existing_file_is_replaced_with_force_only(data, path, content):
     assert path.read_bytes() == content
 
 
-@pytest.mark.parametrize("name", [*POINT_TYPES, "nodes", "atlas", "sensor", "threshold", "provenance"])
+@pytest.mark.parametrize(
+    "name", [*POINT_TYPES, "nodes", "atlas", "spectra", "sensor", "threshold", "provenance"]
+)
 def test_the_digest_changes_with_any_content(data, name):
     assert digest(changed(data, name)) != digest(data)
 
@@ -123,6 +129,11 @@ def changed(data, name):
         )
     if name == "atlas":
         return dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, rgb=nudged(data.atlas.rgb)))
+    if name == "spectra":
+        spectra = dataclasses.replace(
+            data.atlas.spectra, coefficients=nudged(data.atlas.spectra.coefficients)
+        )
+        return dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, spectra=spectra))
     if name == "sensor":
         return dataclasses.replace(
             data, sensor=dataclasses.replace(data.sensor, cmfs=nudged(data.sensor.cmfs))
@@ -278,14 +289,18 @@ def test_an_unchanged_forgery_is_read(data, tmp_path):
     assert_same(read(forge(data, tmp_path / "cube", lambda tensors, metadata: None)), data)
 
 
-@pytest.mark.parametrize("name", ["nodes", "atlas.rgb", "sensor.power", *POINT_TYPES])
+@pytest.mark.parametrize(
+    "name", ["nodes", "atlas.rgb", "atlas.entry_coefficients", "sensor.power", *POINT_TYPES]
+)
 def test_a_missing_array_is_named(data, tmp_path, name):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: tensors.pop(name))
     error = refused(path, "cube-invalid")
     assert repr(name) in error.problem
 
 
-@pytest.mark.parametrize("key", ["features", "model", "space", "threshold", "entries", "provenance"])
+@pytest.mark.parametrize(
+    "key", ["features", "model", "entry_model", "space", "threshold", "entries", "provenance"]
+)
 def test_missing_metadata_is_named(data, tmp_path, key):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.pop(key))
     error = refused(path, "invalid-metadata")
@@ -297,6 +312,7 @@ def test_missing_metadata_is_named(data, tmp_path, key):
     [
         ("features", [None, 3]),
         ("model", [None, 3, "text", [], [1], {"a": 1}]),
+        ("entry_model", [None, 3, "text", [], [1], {"a": 1}]),
         ("threshold", [None, "text", [], {"a": 1}]),
         ("entries", [None, 3, "text", [], [1], {"a": 1}]),
         ("provenance", [None, 3, "text", [], [1]]),
@@ -312,7 +328,9 @@ def test_metadata_of_wrong_types_is_refused(data, tmp_path, key, values):
         refused(path)
 
 
-@pytest.mark.parametrize("name", [*POINT_TYPES, "atlas.rgb", "atlas.coefficients", "nodes"])
+@pytest.mark.parametrize(
+    "name", [*POINT_TYPES, "atlas.rgb", "atlas.coefficients", "atlas.entry_coefficients", "nodes"]
+)
 def test_wrong_shapes_are_refused(data, tmp_path, name):
     def change(tensors, metadata):
         tensors[name] = tensors[name][:-1]
@@ -345,6 +363,7 @@ def test_wrong_types_are_refused(data, tmp_path, name):
         "distance",
         "atlas.rgb",
         "atlas.coefficients",
+        "atlas.entry_coefficients",
         "atlas.reach",
         "sensor.power",
         "nodes",
@@ -393,11 +412,30 @@ def test_unknown_models_are_refused(data, tmp_path, model):
     refused(path)
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"name": "sigmoid", "start": 380.0, "end": 780.0},
+        {"name": "moments", "count": 8, "phase": {"start": 380.0, "end": 780.0, "warp": "none"}},
+        {"name": "moments", "count": 17, "phase": {"start": 400.0, "end": 780.0, "warp": "none"}},
+        {"name": "moments", "count": 17, "phase": {"start": 380.0, "end": 780.0, "warp": "vision"}},
+    ],
+)
+def test_models_of_entries_that_do_not_extend_that_of_nodes_are_refused(data, tmp_path, change):
+    def forged(tensors, metadata):
+        metadata["entry_model"] = change
+        tensors["atlas.entry_coefficients"] = np.full((23, change.get("count", 3)), 0.1)
+
+    refused(forge(data, tmp_path / "cube", forged), "invalid-entry-model")
+
+
 @pytest.mark.parametrize("ends", [(380.0, 380.0), ("a", 780.0), (None, 780.0), (380.0, float("nan"))])
 def test_sigmoids_without_a_range_are_refused(small_sigmoid_cube, tmp_path, ends):
     model = {"name": "sigmoid", "start": ends[0], "end": ends[1]}
     path = forge(
-        small_sigmoid_cube.data, tmp_path / "cube", lambda tensors, metadata: metadata.update(model=model)
+        small_sigmoid_cube.data,
+        tmp_path / "cube",
+        lambda tensors, metadata: metadata.update(model=model, entry_model=model),
     )
     refused(path, "invalid-metadata", "invalid-model-range", "not-a-cube")
 
@@ -425,6 +463,27 @@ def test_announced_debug_information_must_be_present(data, tmp_path):
     plain = with_points(data, round=None)
     path = forge(plain, tmp_path / "cube", lambda tensors, metadata: metadata.update(features=["debug"]))
     assert "'round'" in refused(path, "cube-invalid").problem
+
+
+FORMAT_3 = Path(__file__).parent / "format-3.uplift"
+
+
+def test_a_cube_of_format_3_is_read_and_written_in_the_present_format(tmp_path):
+    """Its entries have as many coefficients as its nodes."""
+    data = read(FORMAT_3)
+    assert data.entry_spectra.model == data.model == Moments(9, Phase(380.0, 780.0))
+    assert data.entry_spectra.coefficients is data.atlas.coefficients
+    assert len(data.atlas.names) == 23
+    write(data, tmp_path / "cube.uplift")
+    assert_same(read(tmp_path / "cube.uplift"), data)
+    assert f'\\"version\\":{VERSION}'.encode() in (tmp_path / "cube.uplift").read_bytes()
+
+
+def test_damage_to_a_cube_of_format_3_is_detected(tmp_path):
+    content = bytearray(FORMAT_3.read_bytes())
+    content[-1] ^= 1
+    (tmp_path / "cube.uplift").write_bytes(content)
+    refused(tmp_path / "cube.uplift", "cube-damaged")
 
 
 def test_the_stored_cubes_are_read(repository):

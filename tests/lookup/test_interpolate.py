@@ -143,7 +143,7 @@ def test_the_nearest_lattice_point_answers_where_no_entry_is_near(plain_cube):
 
 def test_nearest_is_the_entry_or_the_point_of_larger_weight(small_cube):
     data = small_cube.data
-    own = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
+    own = reflectance(data.entry_spectra.model, data.entry_spectra.coefficients, data.sensor.wavelengths)
     _, high = data.entry_boxes.faces
     inner, off = (
         data.atlas.rgb + 0.1 * (high - data.atlas.rgb),
@@ -162,7 +162,7 @@ def test_nearest_is_the_entry_or_the_point_of_larger_weight(small_cube):
 @pytest.mark.parametrize("mode", MODES)
 def test_an_entry_has_its_stored_spectrum(small_cube, mode):
     data = small_cube.data
-    own = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
+    own = reflectance(data.entry_spectra.model, data.entry_spectra.coefficients, data.sensor.wavelengths)
     found = small_cube.reflectance(data.atlas.rgb, mode=mode)
     near = {"spectra": 1e-12, "moments": 1e-6, "refined": 1e-4, "nearest": 1e-12}
     np.testing.assert_allclose(found, own, rtol=0, atol=near[mode])

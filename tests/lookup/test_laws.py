@@ -34,7 +34,7 @@ def test_nodes_reproduce_the_colour_including_entries(small_cube, rgb):
 
 def test_entries_have_their_stored_spectra(small_cube):
     data = small_cube.data
-    own = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
+    own = reflectance(data.entry_spectra.model, data.entry_spectra.coefficients, data.sensor.wavelengths)
     np.testing.assert_allclose(small_cube.reflectance(data.atlas.rgb), own, rtol=0, atol=1e-12)
 
 

@@ -23,7 +23,6 @@ from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
 from uplift.common.errors import OptionError, UnknownNameError, UpliftWarning
 from uplift.cube import digest
 from uplift.lattice import Status
-from uplift.models import reflectance
 from uplift.pipeline.options import Options
 
 GRID = observer.grid()
@@ -147,8 +146,35 @@ def test_duplicate_entries_are_warned_about_and_the_first_is_used():
     with warns("entry-duplicate") as caught:
         cube = uplift.build(twins, dim=4)
     assert "'second'" in caught[0].problem
-    own = reflectance(cube.data.model, cube.data.atlas.coefficients[:1], GRID)
+    own = cube.data.entry_spectra.reflectance(np.array([0]), GRID)
     np.testing.assert_allclose(cube.reflectance(colour), own[0], atol=1e-5)
+
+
+def test_entries_have_more_coefficients_than_nodes():
+    """The nodes, and interpolated coefficients, are those of a build with as many."""
+    more, same = (quietly(MACBETH, dim=4, entry_coefficients=count).data for count in (17, 9))
+    assert (more.entry_spectra.model.count, more.model.count) == (17, 9)
+    assert same.atlas.spectra is None
+    np.testing.assert_array_equal(more.points.coefficients, same.points.coefficients)
+    np.testing.assert_array_equal(more.atlas.coefficients, same.atlas.coefficients)
+    assert more.atlas.error.mean() < same.atlas.error.mean() / 3
+    spectra = more.entry_spectra.reflectance(np.arange(23), GRID)
+    np.testing.assert_allclose(more.sensor.rgb(spectra), more.atlas.rgb, atol=1e-6)
+
+
+@pytest.mark.parametrize("options", [{"model": "sigmoid"}, {"coefficients": 17}])
+def test_models_without_more_coefficients_store_entries_once(options):
+    assert uplift.build(greys(one=0.2), dim=3, **options).data.atlas.spectra is None
+
+
+def test_a_cube_without_an_atlas_has_one_model():
+    assert uplift.build(dim=3).data.atlas.spectra is None
+
+
+@pytest.mark.parametrize("count", [8, 18])
+def test_entries_cannot_have_fewer_coefficients_than_nodes_or_more_than_17(count):
+    with raises(OptionError, "entry-coefficients-out-of-range"):
+        uplift.build(dim=3, entry_coefficients=count)
 
 
 def test_dim_auto_records_the_chosen_lattice():

@@ -164,6 +164,13 @@ def test_options_recorded_under_earlier_names_are_accepted(tiny_cube, repository
     assert digest(again.data) == digest(tiny_cube.data)
 
 
+def test_options_of_file_version_3_give_entries_with_as_many_coefficients_as_nodes(tiny_cube, repository):
+    options = dict(tiny_cube.data.provenance["options"])
+    del options["entry_coefficients"]
+    again = rebuild(with_provenance(tiny_cube, options=options), "cube.uplift", [repository / "atlases"])
+    assert again.entry_coefficient_count == again.coefficient_count
+
+
 @pytest.mark.parametrize("provenance", [{}, {"options": {}}, {"options": {"dim": 8}}, {"atlases": []}])
 def test_a_cube_without_provenance_cannot_be_rebuilt(small_cube, provenance):
     cube = Cube(dataclasses.replace(small_cube.data, provenance=provenance))

@@ -81,7 +81,26 @@ def test_nan_in_the_spectra_fails(data):
     assert {"spectra_max", "spectra_rms", "delta_e_A"} <= set(failures)
 
 
-def test_measures_are_the_largest_and_the_rms(data):
+def with_atlas(data, **changes):
+    return dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, **changes))
+
+
+def test_changed_entry_fails_the_spectra(data):
+    coefficients = data.atlas.spectra.coefficients.copy()
+    coefficients[3, 12] += 1e-3
+    spectra = dataclasses.replace(data.atlas.spectra, coefficients=coefficients)
+    found = compare_rebuilt(PATH, data, with_atlas(data, spectra=spectra))
+    assert "spectra_max" in found.failures
+    assert "rgb" not in found.failures
+
+
+def test_other_entries_cannot_be_compared(data):
+    with raises(CubeFileError, "entries-mismatch"):
+        compare_rebuilt(PATH, data, with_atlas(data, names=data.atlas.names[::-1]))
+
+
+def test_measures_are_the_largest_and_the_rms(plain_cube):
+    data = plain_cube.data
     other = with_points(data, coefficients=data.points.coefficients[::-1].copy())
     at = data.sensor.wavelengths
     first, second = (

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from uplift.cube.data import AtlasTable, CubeData
+from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
 from uplift.cube.file import contents, digest, read, write
 
 __all__ = [
     "AtlasTable",
     "CubeData",
+    "EntrySpectra",
     "contents",
     "digest",
     "read",

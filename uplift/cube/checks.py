@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from uplift.common.errors import CubeFileError
 from uplift.cube.data import CubeData
 from uplift.lattice import Status
+from uplift.models import Model
 
 SENSOR_ARRAYS = ("wavelengths", "cmfs", "power", "xyz_to_rgb", "decoding")
 POINT_TYPES: dict[str, tuple[str, ...]] = {
@@ -25,6 +26,8 @@ POINT_TYPES: dict[str, tuple[str, ...]] = {
 """Types of the arrays of `PointTable`."""
 ATLAS_ARRAYS = {"rgb": "rgb", "coefficients": "coefficients", "reach": "half_width", "error": "error"}
 """Attributes of `AtlasTable` by their names in the file."""
+ENTRY_COEFFICIENTS = "atlas.entry_coefficients"
+"""Coefficients of `EntrySpectra`: name in the file."""
 STORED_TYPES = {
     "F64": "float64",
     "F32": "float32",
@@ -50,7 +53,9 @@ MAX_CONDITION = 1e6
 Tensors = Mapping[str, NDArray[Any]]
 
 
-def check_tensors(tensors: Tensors, points: int, coefficients: int, entries: int) -> None:
+def check_tensors(
+    tensors: Tensors, points: int, coefficients: int, entries: int, entry_coefficients: int
+) -> None:
     """Check type, shape and range of every array as it is stored, before anything is computed from it.
 
     Parameters
@@ -60,14 +65,16 @@ def check_tensors(tensors: Tensors, points: int, coefficients: int, entries: int
     points : int
         Number of points in the file.
     coefficients, entries : int
-        Number of coefficients of a spectrum, and of atlas entries.
+        Number of coefficients of a node, and of atlas entries.
+    entry_coefficients : int
+        Number of coefficients of an entry.
 
     Raises
     ------
     CubeFileError
         The first condition that is not met, by its code.
     """
-    for name, array, shape, types in _arrays(tensors, points, coefficients, entries):
+    for name, array, shape, types in _arrays(tensors, points, coefficients, entries, entry_coefficients):
         fits = array.shape == shape and array.dtype.name in types
         require(fits, "invalid-array", f"{name} must be {' or '.join(types)} of shape {shape}")
         low = 0 if name in NOT_NEGATIVE else -MAX_VALUE
@@ -91,6 +98,7 @@ def check(data: CubeData, stored: int) -> None:
         The first condition that is not met, by its code.
     """
     _check_sensor(data)
+    _check_entry_model(data.model, data.entry_spectra.model)
     atlas, points = data.atlas, data.points
     require(tuple(data.lattice.nodes[[0, -1]]) == (0, 1), "invalid-nodes", "the nodes must run from 0 to 1")
     require(bool((points.status < len(Status)).all()), "unknown-status", "every status must be known")
@@ -113,7 +121,7 @@ def require(condition: bool, code: str, problem: str) -> None:
 
 
 def _arrays(
-    tensors: Tensors, points: int, coefficients: int, entries: int
+    tensors: Tensors, points: int, coefficients: int, entries: int, entry_coefficients: int
 ) -> Iterator[tuple[str, NDArray[Any], tuple[int, ...], tuple[str, ...]]]:
     """Name, array, shape and types of every array but the numbers of the points."""
     samples = tensors["sensor.wavelengths"].size
@@ -127,6 +135,14 @@ def _arrays(
         yield f"sensor.{name}", tensors[f"sensor.{name}"], shape, double
     for name in ATLAS_ARRAYS:
         yield f"atlas.{name}", tensors[f"atlas.{name}"], (entries, *columns.get(name, ())), double
+    if ENTRY_COEFFICIENTS in tensors:
+        yield ENTRY_COEFFICIENTS, tensors[ENTRY_COEFFICIENTS], (entries, entry_coefficients), double
+
+
+def _check_entry_model(model: Model, entry_model: Model) -> None:
+    one, other = ({**each.describe(), "count": None} for each in (model, entry_model))
+    extends = one == other and entry_model.count >= model.count
+    require(extends, "invalid-entry-model", "the model of the entries must extend that of the nodes")
 
 
 def _check_sensor(data: CubeData) -> None:

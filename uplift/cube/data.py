@@ -8,10 +8,54 @@ from functools import cached_property
 from typing import Any
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.lattice import Lattice, PointTable
 from uplift.lattice.entry_boxes import EntryBoxes
-from uplift.models import Model
+from uplift.models import Model, evaluate
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EntrySpectra:
+    """The spectra that answer the colours of atlas entries.
+
+    Entries are few and nodes are many, so the entries may have more coefficients than the nodes: the model is that of
+    the cube, with the same or a larger number of coefficients.
+
+    Parameters
+    ----------
+    model : Model
+        Spectrum model of the entries.
+    coefficients : ndarray, shape (E, K)
+        Coefficients of the spectra in this model.
+    """
+
+    model: Model
+    coefficients: Array
+
+    def __repr__(self) -> str:
+        return f"EntrySpectra({len(self.coefficients)} of {self.model.count} coefficients)"
+
+    @cached_property
+    def multipliers(self) -> Array:
+        """(E, K) multipliers of the spectra."""
+        return self.model.from_storage(self.coefficients)
+
+    def reflectance(self, entries: Indices, wavelengths: Array) -> Array:
+        """Evaluate the spectra of entries.
+
+        Parameters
+        ----------
+        entries : ndarray of int, shape (k,)
+            Rows of the entries.
+        wavelengths : ndarray, shape (N,)
+            Wavelengths in nm.
+
+        Returns
+        -------
+        ndarray, shape (k, N)
+            Reflectance in [0, 1].
+        """
+        return evaluate(self.model, self.multipliers[entries], wavelengths)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -25,11 +69,15 @@ class AtlasTable:
     rgb : ndarray, shape (E, 3)
         Linear RGB.
     coefficients : ndarray, shape (E, C)
-        Coefficients of the fitted spectra.
+        Coefficients of the entries in the model of the nodes, for uses that need one number of coefficients:
+        interpolated coefficients, textures of moments, exported tables. Spectra are evaluated from
+        `CubeData.entry_spectra`.
     half_width : ndarray, shape (E,)
         Half the width of each entry box in lattice steps, 0 to 1. 0 for an entry whose colour an earlier entry has.
     error : ndarray, shape (E,)
         ΔE00 between fitted and measured spectrum under `CubeData.error_illuminant`.
+    spectra : EntrySpectra, optional
+        The entries with more coefficients than the nodes; None if they have as many.
     """
 
     names: tuple[str, ...]
@@ -37,6 +85,7 @@ class AtlasTable:
     coefficients: Array
     half_width: Array
     error: Array
+    spectra: EntrySpectra | None = None
 
     def __repr__(self) -> str:
         return f"AtlasTable({len(self.names)} entries)"
@@ -79,8 +128,16 @@ class CubeData:
         sensor = self.sensor
         return (
             f"CubeData({self.model.name} with {self.model.count} coefficients, dim {self.lattice.dim}, "
-            f"{sensor.space} under {sensor.illuminant}, {len(self.atlas.names)} entries)"
+            f"{sensor.space} under {sensor.illuminant}, {len(self.atlas.names)} entries{self._entry_count()})"
         )
+
+    def _entry_count(self) -> str:
+        return "" if self.atlas.spectra is None else f" with {self.entry_spectra.model.count} coefficients"
+
+    @cached_property
+    def entry_spectra(self) -> EntrySpectra:
+        """The spectra that answer the colours of the entries, in the model of the nodes or with more coefficients."""
+        return self.atlas.spectra or EntrySpectra(self.model, self.atlas.coefficients)
 
     @cached_property
     def entry_boxes(self) -> EntryBoxes:

@@ -23,6 +23,7 @@ from uplift.common.quoting import format_value
 from uplift.cube import sparse
 from uplift.cube.checks import (
     ATLAS_ARRAYS,
+    ENTRY_COEFFICIENTS,
     POINT_TYPES,
     SENSOR_ARRAYS,
     STORED_TYPES,
@@ -30,13 +31,15 @@ from uplift.cube.checks import (
     check_tensors,
     require,
 )
-from uplift.cube.data import AtlasTable, CubeData
+from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
 from uplift.cube.metadata import check_metadata
 from uplift.lattice import Lattice, PointTable
 from uplift.models import from_description
 
 FORMAT = "uplift cube"
-VERSION = 3
+VERSION = 4
+READABLE = (3, 4)
+"""Versions that are read. The entries of version 3 have as many coefficients as the nodes."""
 KEY = "uplift"
 """The only metadata entry: safetensors does not keep the order of several."""
 
@@ -100,9 +103,9 @@ def read(path: str | os.PathLike[str]) -> CubeData:
     """
     path = Path(path)
     tensors, metadata = _load(path)
-    if metadata.get("version") != VERSION:
+    if metadata.get("version") not in READABLE:
         raise CubeFileError(
-            f"must have format version {VERSION}, got {format_value(metadata.get('version'))}",
+            f"must have format version {' or '.join(map(str, READABLE))}, got {format_value(metadata.get('version'))}",
             code="cube-version",
             path=path,
             hint="build the cube again, or use the version of uplift that wrote it",
@@ -111,6 +114,8 @@ def read(path: str | os.PathLike[str]) -> CubeData:
     if digest != _digest(tensors, _json(metadata)):
         raise _error(path, "is damaged: the content does not match its digest", "cube-damaged")
     try:
+        if metadata["version"] < VERSION:
+            metadata["entry_model"] = metadata.get("model")
         check_metadata(metadata)
         data = _data(tensors, metadata)
         check(data, stored=len(tensors["status"]))
@@ -232,6 +237,8 @@ def _tensors(data: CubeData) -> Tensors:
     tensors: Tensors = {"nodes": data.lattice.nodes}
     tensors |= {f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR_ARRAYS}
     tensors |= {f"atlas.{name}": getattr(data.atlas, attribute) for name, attribute in ATLAS_ARRAYS.items()}
+    if data.atlas.spectra is not None:
+        tensors[ENTRY_COEFFICIENTS] = data.atlas.spectra.coefficients
     for name, kinds in POINT_TYPES.items():
         array = getattr(data.points, name)
         if array is not None:
@@ -248,6 +255,7 @@ def _metadata(data: CubeData) -> dict[str, Any]:
         "version": VERSION,
         "features": _features(data),
         "model": data.model.describe(),
+        "entry_model": data.entry_spectra.model.describe(),
         "dim": data.lattice.dim,
         "space": data.sensor.space,
         "illuminant": data.sensor.illuminant,
@@ -265,8 +273,9 @@ def _features(data: CubeData) -> list[str]:
 
 
 def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
-    model, features = from_description(metadata["model"]), metadata["features"]
-    check_tensors(tensors, len(tensors["status"]), model.count, len(metadata["entries"]))
+    model, entry_model = (from_description(metadata[key]) for key in ("model", "entry_model"))
+    features = metadata["features"]
+    check_tensors(tensors, len(tensors["status"]), model.count, len(metadata["entries"]), entry_model.count)
     lattice = Lattice(tensors["nodes"])
     require(
         metadata["dim"] == lattice.dim, "invalid-metadata", f"dim must be {lattice.dim}, the number of nodes"
@@ -291,6 +300,9 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
         atlas=AtlasTable(
             tuple(metadata["entries"]),
             **{attribute: tensors[f"atlas.{name}"] for name, attribute in ATLAS_ARRAYS.items()},
+            spectra=(
+                None if entry_model == model else EntrySpectra(entry_model, tensors[ENTRY_COEFFICIENTS])
+            ),
         ),
         provenance=metadata["provenance"],
         points=PointTable(**arrays),

@@ -137,20 +137,22 @@ PROVENANCE = _table(
     },
     others=True,
 )
+MODEL = _table(
+    {"name": _text},
+    {
+        "count": _count,
+        "phase": _table({"start": _number(), "end": _number(), "warp": _text}),
+        "start": _number(),
+        "end": _number(),
+    },
+)
 METADATA = _table(
     {
         "format": _text,
         "version": _count,
         "features": _list(_text, MAX_OPTIONS),
-        "model": _table(
-            {"name": _text},
-            {
-                "count": _count,
-                "phase": _table({"start": _number(), "end": _number(), "warp": _text}),
-                "start": _number(),
-                "end": _number(),
-            },
-        ),
+        "model": MODEL,
+        "entry_model": MODEL,
         "dim": _count,
         "space": _text,
         "illuminant": _text,

@@ -17,10 +17,17 @@ from uplift.common.errors import ColourError, OptionError
 from uplift.cube import CubeData, read, write
 from uplift.lookup.blocks import Function, blockwise
 from uplift.lookup.fill import fill_missing, missing_points
-from uplift.lookup.interpolate import MODES, coefficients, standard_error
-from uplift.lookup.node_table import TABULATED, tabulate
+from uplift.lookup.interpolate import MODES, coefficients, extended_coefficients, standard_error
+from uplift.lookup.node_table import TABULATED, tabulate, tabulate_coefficients
 from uplift.lookup.nodes import covers
-from uplift.lookup.validation import as_colours, as_float_type, as_floats, as_thread_count, as_wavelengths
+from uplift.lookup.validation import (
+    as_coefficient_count,
+    as_colours,
+    as_float_type,
+    as_floats,
+    as_thread_count,
+    as_wavelengths,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -86,8 +93,13 @@ class Cube:
 
     @property
     def coefficient_count(self) -> int:
-        """Coefficients per spectrum."""
+        """Coefficients per spectrum of a lattice point."""
         return self.data.model.count
+
+    @property
+    def entry_coefficient_count(self) -> int:
+        """Coefficients per spectrum of an atlas entry: as many as a lattice point has, or more."""
+        return self.data.entry_spectra.model.count
 
     @property
     def atlas_names(self) -> tuple[str, ...]:
@@ -95,14 +107,25 @@ class Cube:
         return self.data.atlas.names
 
     def coefficients(
-        self, rgb: ArrayLike, *, dtype: DTypeLike = np.float64, threads: int = 1
+        self,
+        rgb: ArrayLike,
+        count: int | None = None,
+        *,
+        dtype: DTypeLike = np.float64,
+        threads: int = 1,
     ) -> NDArray[Any]:
-        """Interpolate the coefficients of the model between the lattice points.
+        """Interpolate the coefficients of the model between the lattice points and atlas entries.
+
+        All spectra of a result have one number of coefficients. With the number of the lattice the entries have their
+        exact colours, and spectra fitted with as few coefficients. With the number of the entries they have their
+        spectra, and those of the lattice do not change.
 
         Parameters
         ----------
         rgb : array_like, shape (..., 3)
             Linear RGB in [0, 1].
+        count : int, optional
+            `coefficient_count`, the default, or `entry_coefficient_count`.
         dtype : {float64, float32}, default float64
             Type of the result.
         threads : int, default 1
@@ -110,7 +133,7 @@ class Cube:
 
         Returns
         -------
-        ndarray, shape (..., C)
+        ndarray, shape (..., count)
             Coefficients.
 
         Raises
@@ -118,15 +141,20 @@ class Cube:
         ColourError
             A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
         OptionError
-            An unsupported type, or fewer than one thread.
+            An unsupported count or type, or fewer than one thread.
         """
-        return blockwise(
-            partial(coefficients, self.data),
+        width = as_coefficient_count(count, self.data)
+        colours, kind, threads = (
             as_colours(rgb, self.data.sensor),
-            self.coefficient_count,
             as_float_type(dtype),
             as_thread_count(threads),
         )
+        function: Function = partial(coefficients, self.data)
+        if width != self.coefficient_count:
+            function = partial(extended_coefficients, self.data)
+            if self._is_table_worthwhile(colours.size // 3, width * kind.itemsize):
+                function = tabulate_coefficients(self.data, width, kind, threads).values
+        return blockwise(function, colours, width, kind, threads)
 
     def reflectance(
         self,

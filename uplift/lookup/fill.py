@@ -97,7 +97,7 @@ def _fit_to_other(data: CubeData, other: CubeData, rgb: Array) -> Array:
     spectra = refined(other, rgb, data.sensor.wavelengths)
     linear = data.model.unsquash(np.clip(spectra, MIN_REFLECTANCE, 1 - MIN_REFLECTANCE))
     start = np.linalg.lstsq(data.model.basis(data.sensor.wavelengths), linear.T, rcond=None)[0].T
-    return refine_to_rgb(data, np.ascontiguousarray(start), rgb)
+    return refine_to_rgb(data, data.model, np.ascontiguousarray(start), rgb)
 
 
 def _require_same_rgb(first: Sensor, second: Sensor) -> None:

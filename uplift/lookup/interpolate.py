@@ -5,6 +5,9 @@ moments   weighted coefficients; one reconstruction instead of eight
 refined   ``moments``, then minimum-norm steps to the exact colour
 nearest   the spectrum of the node of largest weight, of another colour
 
+In the box of an entry all modes but ``nearest`` mix the answer of the lattice, where the ray leaves the box, with the
+spectrum of the entry. Spectra mix exactly; lattice and entry may have different numbers of coefficients.
+
 All of it in float64: the conversion from moments to multipliers amplifies rounding errors.
 """
 
@@ -15,10 +18,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
 from uplift.lattice import weighted_sum
-from uplift.lookup.nodes import around
+from uplift.lookup.nodes import Nodes, around
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models import evaluate, reflectance
 
@@ -26,6 +29,21 @@ from uplift.models import evaluate, reflectance
 def coefficients(data: CubeData, rgb: Array) -> Array:
     """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1]."""
     return around(data, rgb).weighted_sum(data.points.coefficients, data.atlas.coefficients)
+
+
+def extended_coefficients(data: CubeData, rgb: Array) -> Array:
+    """Weighted coefficients (n, K) of the nodes' spectra, as many as the entries have."""
+    nodes, points = _unique_points(around(data, rgb))
+    lattice = extend_coefficients(data, data.points.coefficients[points])
+    return nodes.weighted_sum(lattice, data.entry_spectra.coefficients)
+
+
+def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
+    """Coefficients (m, K) in the model of the entries of the lattice spectra with coefficients (m, C)."""
+    multipliers = data.model.from_storage(coefficients)
+    extended = data.entry_spectra.model.to_storage(_append_zeros(data, multipliers))
+    extended[:, : data.model.count] = coefficients
+    return extended
 
 
 def standard_error(data: CubeData, rgb: Array) -> Array:
@@ -36,19 +54,18 @@ def standard_error(data: CubeData, rgb: Array) -> Array:
 
 def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) as weighted spectra of the nodes."""
-    nodes = around(data, rgb)
-    points, point = np.unique(nodes.points, return_inverse=True)
-    entries, entry = np.unique(nodes.entry, return_inverse=True)
-    return replace(nodes, points=point.reshape(nodes.points.shape), entry=entry).weighted_sum(
-        reflectance(data.model, data.points.coefficients[points], wavelengths),
-        reflectance(data.model, data.atlas.coefficients[entries], wavelengths),
-    )
+    nodes, points = _unique_points(around(data, rgb))
+    values = reflectance(data.model, data.points.coefficients[points], wavelengths)
+    lattice = weighted_sum(values, nodes.points, nodes.weights)
+    return nodes.mix(lattice, _entry_spectra(data, nodes, wavelengths))
 
 
 def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the nearest node, lattice point or atlas entry."""
-    found = around(data, rgb).nearest(data.points.coefficients, data.atlas.coefficients)
-    return reflectance(data.model, found, wavelengths)
+    points, rows, entry = around(data, rgb).nearest()
+    values = reflectance(data.model, data.points.coefficients[points], wavelengths)
+    values[rows] = data.entry_spectra.reflectance(entry, wavelengths)
+    return values
 
 
 def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
@@ -60,18 +77,69 @@ def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 
 
 def moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of the weighted coefficients."""
-    return reflectance(data.model, coefficients(data, rgb), wavelengths)
+    """Reflectance (n, N) of the weighted coefficients of the lattice, mixed with entries."""
+    nodes = around(data, rgb)
+    lattice = reflectance(data.model, _lattice_coefficients(data, nodes), wavelengths)
+    return nodes.mix(lattice, _entry_spectra(data, nodes, wavelengths))
 
 
 def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of the weighted coefficients, moved to the exact colour."""
-    return evaluate(data.model, refined_multipliers(data, rgb), wavelengths)
+    """Reflectance (n, N) of the weighted coefficients of the lattice and of entries, moved to exact colours."""
+    nodes = around(data, rgb)
+    lattice, entry = _exact_multipliers(data, nodes, rgb)
+    return nodes.mix(
+        evaluate(data.model, lattice, wavelengths),
+        evaluate(data.entry_spectra.model, entry, wavelengths),
+    )
 
 
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
     """Multipliers (n, C) that start from the weighted coefficients and have exactly the colours (n, 3)."""
-    return refine_to_rgb(data, data.model.from_storage(coefficients(data, rgb)), rgb)
+    return refine_to_rgb(data, data.model, data.model.from_storage(coefficients(data, rgb)), rgb)
+
+
+def extended_multipliers(data: CubeData, rgb: Array) -> Array:
+    """Multipliers (n, K), as many as the entries have, with exactly the colours (n, 3).
+
+    Outside entry boxes they have the spectra of mode ``refined``, inside the same coefficients.
+    """
+    nodes, model = around(data, rgb), data.entry_spectra.model
+    lattice, entry = _exact_multipliers(data, nodes, rgb)
+    extended = _append_zeros(data, lattice)
+    inside = replace(nodes, rows=np.arange(len(nodes.rows)))
+    mixed = inside.mix(model.to_storage(extended[nodes.rows]), model.to_storage(entry))
+    extended[nodes.rows] = refine_to_rgb(data, model, model.from_storage(mixed), rgb[nodes.rows])
+    return extended
+
+
+def _exact_multipliers(data: CubeData, nodes: Nodes, rgb: Array) -> tuple[Array, Array]:
+    """Multipliers (n, C) of the lattice and (k, K) of entries, whose spectra mix to exactly the colours (n, 3)."""
+    start = data.model.from_storage(_lattice_coefficients(data, nodes))
+    lattice = refine_to_rgb(data, data.model, start, nodes.lattice_rgb(rgb))
+    spectra, (entries, row) = data.entry_spectra, np.unique(nodes.entry, return_inverse=True)
+    own = refine_to_rgb(data, spectra.model, spectra.multipliers[entries], data.atlas.rgb[entries])
+    return lattice, own[row]
+
+
+def _append_zeros(data: CubeData, multipliers: Array) -> Array:
+    """Multipliers (m, K) in the model of the entries of the spectra with multipliers (m, C)."""
+    return np.pad(multipliers, ((0, 0), (0, data.entry_spectra.model.count - data.model.count)))
+
+
+def _lattice_coefficients(data: CubeData, nodes: Nodes) -> Array:
+    return weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
+
+
+def _unique_points(nodes: Nodes) -> tuple[Nodes, Indices]:
+    """The nodes with rows of the returned lattice points (m,) in place of point numbers."""
+    points, row = np.unique(nodes.points, return_inverse=True)
+    return replace(nodes, points=row.reshape(nodes.points.shape)), points
+
+
+def _entry_spectra(data: CubeData, nodes: Nodes, wavelengths: Array) -> Array:
+    """Reflectance (k, N) of the entry of each colour in a box."""
+    entries, row = np.unique(nodes.entry, return_inverse=True)
+    return data.entry_spectra.reflectance(entries, wavelengths)[row]
 
 
 Mode = Callable[[CubeData, Array, Array], Array]

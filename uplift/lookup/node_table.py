@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -10,6 +11,7 @@ from numpy.typing import DTypeLike
 from uplift.common.arrays import Array, Values
 from uplift.cube import CubeData
 from uplift.lookup.blocks import blockwise
+from uplift.lookup.interpolate import extend_coefficients
 from uplift.lookup.nodes import around
 from uplift.models import reflectance
 
@@ -43,11 +45,18 @@ class NodeTable:
 
     def spectra(self, rgb: Array) -> Values:
         """Reflectance (n, N) in mode ``spectra``."""
-        return np.clip(around(self.data, rgb).weighted_sum(self.lattice, self.atlas), 0, 1)
+        return np.clip(self.values(rgb), 0, 1)
 
     def nearest(self, rgb: Array) -> Values:
         """Reflectance (n, N) in mode ``nearest``."""
-        return around(self.data, rgb).nearest(self.lattice, self.atlas)
+        points, rows, entry = around(self.data, rgb).nearest()
+        values = self.lattice[points]
+        values[rows] = self.atlas[entry]
+        return values
+
+    def values(self, rgb: Array) -> Values:
+        """Weighted values (n, K) of the nodes."""
+        return around(self.data, rgb).weighted_sum(self.lattice, self.atlas)
 
 
 def tabulate(
@@ -55,17 +64,30 @@ def tabulate(
 ) -> NodeTable:
     """Compute the reflectances of all nodes at wavelengths (N,) in nm: dim³ × N numbers."""
 
-    def spectra(coefficients: Array) -> Values:
-        return blockwise(
-            lambda rows: reflectance(data.model, rows, wavelengths),
-            coefficients,
-            len(wavelengths),
-            dtype,
-            threads,
-        )
+    present = blockwise(
+        lambda rows: reflectance(data.model, rows, wavelengths),
+        data.points.coefficients[data.points.present],
+        len(wavelengths),
+        dtype,
+        threads,
+    )
+    entries = np.arange(len(data.atlas.names))
+    own = data.entry_spectra.reflectance(entries, wavelengths).astype(dtype, copy=False)
+    return NodeTable.of_present_points(data, present, own)
 
+
+def tabulate_coefficients(
+    data: CubeData, count: int, dtype: DTypeLike = np.float64, threads: int = 1
+) -> NodeTable:
+    """Tabulate the coefficients of all nodes, ``count`` each: as many as the nodes or the entries have."""
     present = data.points.coefficients[data.points.present]
-    return NodeTable.of_present_points(data, spectra(present), spectra(data.atlas.coefficients))
+    entries = data.atlas.coefficients
+    if count != data.model.count:
+        present = blockwise(partial(extend_coefficients, data), present, count, dtype, threads)
+        entries = data.entry_spectra.coefficients
+    return NodeTable.of_present_points(
+        data, present.astype(dtype, copy=False), entries.astype(dtype, copy=False)
+    )
 
 
 TABULATED = {"spectra": NodeTable.spectra, "nearest": NodeTable.nearest}

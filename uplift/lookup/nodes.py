@@ -32,6 +32,8 @@ class Nodes:
         Their entries.
     lattice_weight : ndarray, shape (k,)
         Weight of the lattice; the entry has the rest.
+    exit_rgb : ndarray, shape (k, 3)
+        Linear RGB at which the lattice is evaluated.
     """
 
     points: Indices
@@ -39,24 +41,32 @@ class Nodes:
     rows: Indices
     entry: Indices
     lattice_weight: Array
+    exit_rgb: Array
 
     def weighted_sum(self, lattice: Values, atlas: Values) -> Values:
         """Weighted sums (n, K) of the values of lattice points (dim³, K) and entries (E, K), in their type."""
         total = weighted_sum(lattice, self.points, self.weights)
-        weight = self.lattice_weight.astype(total.dtype)[:, None]
-        total[self.rows] = weight * total[self.rows] + (1 - weight) * atlas[self.entry]
-        return total
+        return self.mix(total, atlas[self.entry])
 
-    def nearest(self, lattice: Values, atlas: Values) -> Values:
-        """Values (n, K) of the node of largest weight, from lattice points (dim³, K) and entries (E, K)."""
+    def mix(self, lattice: Values, entry: Values) -> Values:
+        """Mix values (n, K) of the lattice, in place, with those (k, K) of the entries whose boxes contain colours."""
+        weight = self.lattice_weight.astype(lattice.dtype)[:, None]
+        lattice[self.rows] = weight * lattice[self.rows] + (1 - weight) * entry
+        return lattice
+
+    def nearest(self) -> tuple[Indices, Indices, Indices]:
+        """Return the nodes of largest weight: lattice points (n,), and rows and entries (m,) where it is an entry."""
         best = self.weights.argmax(axis=1)[:, None]
-        points, weights = (
-            np.take_along_axis(part, best, axis=1)[:, 0] for part in (self.points, self.weights)
-        )
-        values = lattice[points].astype(np.result_type(lattice, atlas), copy=False)
+        points = np.take_along_axis(self.points, best, axis=1)[:, 0]
+        weights = np.take_along_axis(self.weights, best, axis=1)[:, 0]
         is_entry = self.lattice_weight * (1 + weights[self.rows]) <= 1
-        values[self.rows[is_entry]] = atlas[self.entry[is_entry]]
-        return values
+        return points, self.rows[is_entry], self.entry[is_entry]
+
+    def lattice_rgb(self, rgb: Array) -> Array:
+        """Return the colours (n, 3) at which the lattice is evaluated for linear RGB (n, 3)."""
+        evaluated = rgb.copy()
+        evaluated[self.rows] = self.exit_rgb
+        return evaluated
 
 
 def around(data: CubeData, rgb: Array) -> Nodes:
@@ -65,7 +75,7 @@ def around(data: CubeData, rgb: Array) -> Nodes:
     if data.complete_cells is not None:
         require(data.complete_cells[data.lattice.index(low)], rgb)
     points, weights = data.lattice.cell_corners(low, fraction)
-    return Nodes(points, weights, hits.rows, hits.entry, hits.lattice_weight)
+    return Nodes(points, weights, *hits)
 
 
 def covers(data: CubeData, rgb: Array) -> Mask:

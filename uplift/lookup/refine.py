@@ -26,18 +26,18 @@ BLOCK_COLUMNS = 1024
 """Spectra processed at a time: their temporary arrays fit into the cache."""
 
 
-def refine_to_rgb(data: CubeData, start: Array, rgb: Array) -> Array:
-    """Move multipliers ``start`` (n, C) to linear RGB (n, 3).
+def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Array:
+    """Move multipliers ``start`` (n, C) of a model to linear RGB (n, 3), to the sensor and threshold of a cube.
 
     Colours that do not converge, such as those of the sigmoid near white in coarse cells, start again from grey.
     """
-    forward = forward_map(data.model, data.sensor.wavelengths, data.sensor.matrix)
+    forward = forward_map(model, data.sensor.wavelengths, data.sensor.matrix)
     multipliers, target = np.array(start.T, order="C"), np.array(rgb.T, order="C")
-    distance = _descend(data.model, forward, multipliers, target)
+    distance = _descend(model, forward, multipliers, target)
     failed = np.flatnonzero(distance > data.threshold)
     if failed.size:
         from_grey = np.zeros((len(multipliers), failed.size))
-        better = _descend(data.model, forward, from_grey, target[:, failed]) < distance[failed]
+        better = _descend(model, forward, from_grey, target[:, failed]) < distance[failed]
         multipliers[:, failed[better]] = from_grey[:, better]
     return multipliers.T
 

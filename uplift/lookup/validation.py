@@ -12,6 +12,7 @@ from uplift.colorimetry.gamut import as_rgb, raise_out_of_gamut
 from uplift.colorimetry.sensor import SLACK, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError, UpliftError
+from uplift.cube import CubeData
 
 FLOAT_TYPES = (np.dtype(np.float64), np.dtype(np.float32))
 
@@ -52,6 +53,17 @@ def as_thread_count(threads: int) -> int:
     if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
         raise OptionError(f"threads must be a whole number from 1, got {threads!r}", code="invalid-threads")
     return int(threads)
+
+
+def as_coefficient_count(count: int | None, data: CubeData) -> int:
+    """Return the number of coefficients of nodes, the default, or of entries; `OptionError` for other numbers."""
+    counts = (data.model.count, data.entry_spectra.model.count)
+    if count is None:
+        return counts[0]
+    if isinstance(count, bool) or count not in counts:
+        numbers = " or ".join(str(each) for each in sorted(set(counts)))
+        raise OptionError(f"count must be {numbers} for this cube, got {count!r}", code="unsupported-count")
+    return int(count)
 
 
 def as_floats(values: Any, problem: str, code: str, kind: type[UpliftError] = ColourError) -> Array:

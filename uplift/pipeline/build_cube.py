@@ -6,6 +6,7 @@ import os
 import warnings
 from collections.abc import Sequence
 from dataclasses import asdict, replace
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
@@ -21,11 +22,12 @@ from uplift.common.arrays import Array, Indices, StrPath
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.threads import single_threaded_blas
-from uplift.cube import AtlasTable, CubeData
+from uplift.cube import AtlasTable, CubeData, EntrySpectra
 from uplift.lattice import EntryBoxes, Lattice, SceneLike
 from uplift.lattice.box_widths import half_widths
 from uplift.lookup import Cube
 from uplift.models.minimum_norm import ForwardMap, forward_map
+from uplift.models.moments import MAX_COUNT
 from uplift.pipeline.options import AUTO, AXES, ModelName, Options, check_memory
 
 MAX_NAMES = 6
@@ -43,6 +45,7 @@ def build(
     dim: int | Literal["auto"] = 32,
     model: ModelName = "moments",
     coefficients: int = 9,
+    entry_coefficients: int = MAX_COUNT,
     warp: Literal["none", "vision"] = "none",
     axis: Literal["srgb", "linear"] = "srgb",
     space: str = "sRGB",
@@ -68,6 +71,9 @@ def build(
         Spectrum model: bounded trigonometric moments, or the sigmoid of a quadratic.
     coefficients : int, default 9
         Coefficients per spectrum of the moment model, 3 to 17: the number of moments plus one. The sigmoid has 3.
+    entry_coefficients : int, default 17
+        Coefficients of the spectra of atlas entries in the moment model, from ``coefficients`` to 17. Entries are few,
+        so more of them cost little, and the answers at and near the colours of entries come closer to the measurements.
     warp : {"none", "vision"}, default "none"
         Map from wavelengths to the phase of the moments. ``"vision"`` resolves wavelengths by the sensitivity
         of the eye.
@@ -123,6 +129,7 @@ def build(
         dim=dim,
         model=model,
         coefficients=coefficients,
+        entry_coefficients=entry_coefficients,
         warp=warp,
         axis=axis,
         space=space,
@@ -144,7 +151,15 @@ def build(
     atlas = _as_atlas(atlas)
     names, rgb, measured = _entries_in_gamut(atlas, sensor)
     tolerance = fit.solver_tolerance(options.threshold)
-    entries = fit.fit_entries(spectrum_model, forward, measured, rgb, scene_lights, error_light, tolerance)
+    fit_entries = partial(
+        fit.fit_entries,
+        measured=measured,
+        rgb=rgb,
+        lights=scene_lights,
+        error_light=error_light,
+        tolerance=tolerance,
+    )
+    entries = fit_entries(spectrum_model, forward)
 
     options = _with_dim(options, forward, scene_lights, entries)
     lattice = Lattice(observers.axis_nodes(options.axis, int(options.dim)))
@@ -157,14 +172,26 @@ def build(
     prior = fit.fit_prior(problem, sensor, entries, error_light)
     fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, progress)
 
-    stored = spectrum_model.to_storage(entries.multipliers)
+    entry_model = options.entry_model()
+    error, spectra = entries.error, None
+    if names and entry_model != spectrum_model:
+        extended = fit_entries(entry_model, forward_map(entry_model, sensor.wavelengths, sensor.matrix))
+        error = extended.error
+        spectra = EntrySpectra(entry_model, entry_model.to_storage(extended.multipliers))
     return Cube(
         CubeData(
             model=spectrum_model,
             lattice=lattice,
             sensor=sensor,
             threshold=options.threshold,
-            atlas=AtlasTable(names, rgb, stored, boxes.half_width, entries.error),
+            atlas=AtlasTable(
+                names,
+                rgb,
+                spectrum_model.to_storage(entries.multipliers),
+                boxes.half_width,
+                error,
+                spectra,
+            ),
             points=fitted.points if options.debug else replace(fitted.points, round=None),
             error_illuminant=ERROR_ILLUMINANT,
             provenance=_provenance(options, atlas, names, colours, fitted),

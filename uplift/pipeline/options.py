@@ -16,6 +16,7 @@ from uplift.common.errors import OptionError, unknown_name
 from uplift.common.quoting import format_value
 from uplift.cube.metadata import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
 from uplift.models import Model, Moments, Phase, Sigmoid
+from uplift.models.moments import MAX_COUNT
 
 AUTO: Literal["auto"] = "auto"
 AXES = ("srgb", "linear")
@@ -47,6 +48,7 @@ class Options:
     dim: int | Literal["auto"] = 32
     model: str = "moments"
     coefficients: int = 9
+    entry_coefficients: int = MAX_COUNT
     warp: str = "none"
     axis: str = "srgb"
     space: str = "sRGB"
@@ -61,6 +63,7 @@ class Options:
         for name, convert in CONVERSIONS.items():
             object.__setattr__(self, name, convert(name, getattr(self, name)))
         self.spectrum_model()
+        self._check_entry_coefficients()
         if self.axis not in AXES:
             raise unknown_name(self.axis, AXES, "axis spacing")
         if not self.lights:
@@ -90,16 +93,40 @@ class Options:
         Model
             `Moments` or `Sigmoid` over the wavelengths of every sensor.
         """
+        return self._model(self.coefficients)
+
+    def entry_model(self) -> Model:
+        """Create the spectrum model of the atlas entries.
+
+        Returns
+        -------
+        Model
+            That of the lattice, with `entry_coefficients` coefficients for moments.
+        """
+        return self._model(self.entry_coefficients)
+
+    def _model(self, coefficients: int) -> Model:
         if self.model == Moments.name:
-            return Moments(self.coefficients, Phase(observer.START, observer.END, self.warp))
+            return Moments(coefficients, Phase(observer.START, observer.END, self.warp))
         if self.model == Sigmoid.name:
             return Sigmoid(observer.START, observer.END)
         raise unknown_name(self.model, MODELS, "model")
+
+    def _check_entry_coefficients(self) -> None:
+        if self.model == Moments.name and not self.coefficients <= self.entry_coefficients <= MAX_COUNT:
+            value = format_value(self.entry_coefficients)
+            raise OptionError(
+                f"entry_coefficients must be in [{self.coefficients}, {MAX_COUNT}], got {value}",
+                code="entry-coefficients-out-of-range",
+                hint="entries have as many coefficients as the nodes, or more",
+            )
 
 
 def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
     """Return options read from a cube under their present names."""
     current = {RENAMED.get(name, name): value for name, value in options.items()}
+    if "coefficients" in current:  # up to file version 3 entries had as many
+        current.setdefault("entry_coefficients", current["coefficients"])
     return {name: tuple(value) if isinstance(value, list) else value for name, value in current.items()}
 
 
@@ -160,6 +187,7 @@ CONVERSIONS: dict[str, Callable[[str, object], Any]] = {
     "dim": _dim,
     "model": _text,
     "coefficients": _whole,
+    "entry_coefficients": _whole,
     "warp": _text,
     "axis": _text,
     "space": _text,

@@ -16,7 +16,6 @@ from uplift.common.arrays import Array, Indices, Mask
 from uplift.cube import CubeData
 from uplift.lookup import Cube
 from uplift.lookup.interpolate import lattice_spectra
-from uplift.models import reflectance
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +209,7 @@ def from_stored_entries(data: CubeData) -> EntryQuery:
         All entries of the cube.
     """
     table = data.atlas
-    stored = reflectance(data.model, table.coefficients, data.sensor.wavelengths)
+    stored = data.entry_spectra.reflectance(np.arange(len(table.names)), data.sensor.wavelengths)
     return EntryQuery(table.names, table.rgb, stored, np.arange(len(table.names)))
 
 

@@ -39,7 +39,7 @@ class RebuildDifference:
     path : Path
         File of the stored cube.
     measures : dict of str to float
-        Largest differences by the names in `LIMITS`, over the points whose spectra are well determined.
+        Largest differences by the names in `LIMITS`, over the entries and the points whose spectra are well determined.
     stored_counts, rebuilt_counts : dict of str to int
         Number of these points by status, and of all unfitted points.
     """
@@ -74,7 +74,7 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
     Raises
     ------
     CubeFileError
-        If the lattices differ.
+        If the lattices or the names of the entries differ.
     """
     if not _same_lattice(stored, rebuilt):
         raise CubeFileError(
@@ -83,11 +83,15 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
             path=path,
             hint="build the cube again",
         )
+    if stored.atlas.names != rebuilt.atlas.names:
+        raise CubeFileError(
+            "its entries are not those that its atlas gives",
+            code="entries-mismatch",
+            path=path,
+            hint="build the cube again",
+        )
     compared = _well_determined(stored) & (stored.points.present | rebuilt.points.present)
-    first, second = (
-        reflectance(data.model, data.points.coefficients[compared], data.sensor.wavelengths)
-        for data in (stored, rebuilt)
-    )
+    first, second = (_spectra(data, compared) for data in (stored, rebuilt))
     difference = np.abs(first - second)
     measures = {
         "rgb": float(np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared].max()),
@@ -102,6 +106,14 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
 def _same_lattice(stored: CubeData, rebuilt: CubeData) -> bool:
     nodes, other = stored.lattice.nodes, rebuilt.lattice.nodes
     return nodes.shape == other.shape and bool((np.abs(nodes - other) <= NODE_TOLERANCE).all())
+
+
+def _spectra(data: CubeData, points: Mask) -> Array:
+    """Reflectance (k, N) of lattice points (n,) and of all entries."""
+    wavelengths = data.sensor.wavelengths
+    lattice = reflectance(data.model, data.points.coefficients[points], wavelengths)
+    entries = np.arange(len(data.atlas.names))
+    return np.concatenate([lattice, data.entry_spectra.reflectance(entries, wavelengths)])
 
 
 def _well_determined(data: CubeData) -> Mask:

@@ -28,6 +28,7 @@ def summarise(data: CubeData) -> dict[str, Any]:
     return {
         "model": data.model.describe(),
         "coefficients": data.model.count,
+        "entry_coefficients": data.entry_spectra.model.count,
         "dim": data.lattice.dim,
         "points": int(np.count_nonzero(present)),
         "lattice_points": data.lattice.size,

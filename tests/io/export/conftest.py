@@ -15,7 +15,7 @@ from uplift.models import Moments, Phase
 def warped_cube(small_cube) -> Cube:
     """Cube of five of nine moments, reinterpreted with another wavelength range and warp."""
     data = small_cube.data
-    atlas = replace(data.atlas, coefficients=data.atlas.coefficients[:, :5])
+    atlas = replace(data.atlas, coefficients=data.atlas.coefficients[:, :5], spectra=None)
     model = Moments(5, Phase(400, 700, "vision"))
     return Cube(
         with_points(replace(data, model=model, atlas=atlas), coefficients=data.points.coefficients[:, :5])

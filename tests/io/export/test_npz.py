@@ -27,7 +27,7 @@ def test_multipliers_evaluate_to_the_spectra(small_cube, tmp_path):
     write_npz(data, tmp_path / "cube.npz")
     with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
         lattice = evaluate(data.model, arrays["multipliers"], [450, 650])
-        atlas = evaluate(data.model, arrays["atlas.multipliers"], [450, 650])
+        atlas = evaluate(data.entry_spectra.model, arrays["atlas.multipliers"], [450, 650])
     np.testing.assert_allclose(
         lattice, reflectance(data.model, data.points.coefficients, [450, 650]), atol=1e-9
     )

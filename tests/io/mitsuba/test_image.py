@@ -58,11 +58,23 @@ def test_uv_are_transformed(mi, texture, spectrum, matrix):
 
 
 def test_filtering_blends_spectra_not_multipliers(texture, spectrum, small_cube):
-    """Halfway between a black and a white texel is grey."""
-    image = np.array([[[0.01] * 3, [0.9] * 3]], dtype=np.float32)
+    """Halfway between a dark and a light texel."""
+    image = np.array([[[0.01, 0.01, 0.2], [0.9, 0.9, 0.1]]], dtype=np.float32)
+    assert not small_cube.data.entry_boxes.find(image[0].astype(float)).rows.size
     ends = small_cube.reflectance(image[0], [500, 600], mode="refined")
     found = spectrum(texture(image, wrap_mode="clamp"), (0.5, 0.5), [500, 600])
     np.testing.assert_allclose(found, ends.mean(axis=0), atol=1e-5)
+
+
+def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(texture, spectrum, small_cube):
+    """The other texels of the image keep theirs, though they have more multipliers than without the entry."""
+    atlas = small_cube.data.atlas
+    image = np.array([[atlas.rgb[3], [0.01, 0.01, 0.2]]], dtype=np.float32)
+    found = texture(image, filter_type="nearest")
+    entry = small_cube.data.entry_spectra.reflectance(np.array([3]), np.array([450.0, 650.0]))[0]
+    np.testing.assert_allclose(spectrum(found, (0.25, 0.5), [450, 650]), entry, atol=1e-5)
+    other = small_cube.reflectance(image[0, 1], [450, 650], mode="refined")
+    np.testing.assert_allclose(spectrum(found, (0.75, 0.5), [450, 650]), other, atol=1e-5)
 
 
 def test_only_encoded_files_are_decoded(mi, texture, spectrum, small_cube, tmp_path, cube_path):
@@ -82,7 +94,7 @@ def test_interface_of_textures(texture, small_cube):
     assert tuple(found.resolution()) == (4, 3)
     expected = small_cube.reflectance(IMAGE, mode="refined")
     assert found.mean() == pytest.approx(expected.mean(), abs=0.02)
-    assert "4 × 3, moments, 9 multipliers, repeat" in str(found)
+    assert "4 × 3, moments, 17 multipliers, repeat" in str(found)
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import Lattice
 from uplift.lookup import Cube, bulk
+from uplift.models import reflectance
 
 AT = np.linspace(380, 780, 9)
 CUBES = ["macbeth_cube", "small_cube", "plain_cube", "small_sigmoid_cube"]
@@ -58,9 +59,18 @@ def test_coefficients_are_those_of_numpy(cube):
     )
 
 
+@pytest.mark.parametrize("count", [9, 17])
+def test_both_numbers_of_coefficients_are_those_of_numpy(small_cube, count):
+    rgb = colours(small_cube.data)
+    expected = small_cube.coefficients(rgb, count)
+    np.testing.assert_allclose(bulk.coefficients(small_cube, count)(rgb), expected, rtol=0, atol=1e-6)
+    with raises(OptionError, "unsupported-count"):
+        bulk.coefficients(small_cube, 12)
+
+
 def test_an_entry_has_its_stored_spectrum(small_cube):
     data = small_cube.data
-    own = data.model.squash(data.model.from_storage(data.atlas.coefficients) @ data.model.basis(AT).T)
+    own = reflectance(data.entry_spectra.model, data.entry_spectra.coefficients, AT)
     np.testing.assert_allclose(bulk.spectra(small_cube, AT)(data.atlas.rgb), own, rtol=0, atol=1e-6)
 
 

@@ -32,7 +32,8 @@ def write_c(data: CubeData, path: str | os.PathLike[str], *, force: bool = False
     """Write a cube as a C header.
 
     Names in the header begin with the name of the file, converted to an identifier. Coefficients of nodes and entries
-    are interpolated, as in the lookup mode ``moments``.
+    are interpolated, as by `Cube.coefficients`. Entries have as many coefficients as nodes here: the colours of entries
+    are exact, and their spectra those of `AtlasTable.coefficients`, not the closer ones of `CubeData.entry_spectra`.
 
     Parameters
     ----------

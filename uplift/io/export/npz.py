@@ -15,8 +15,8 @@ def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
     """Write a cube as an ``.npz`` file without pickled objects.
 
     The file has the arrays of docs/cube-file.md under their names. In addition, it has ``multipliers`` (n, C) of the
-    nodes and ``atlas.multipliers`` (E, C), from which spectra are evaluated directly, ``atlas.names`` (E,), and
-    ``metadata``, the JSON text.
+    nodes in ``model`` and ``atlas.multipliers`` (E, K) of the entries in ``entry_model``, from which spectra are
+    evaluated directly, ``atlas.names`` (E,), and ``metadata``, the JSON text with both models.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
     tensors, metadata = contents(data)
     arrays = tensors | {
         "multipliers": data.model.from_storage(data.points.coefficients[data.points.present]),
-        "atlas.multipliers": data.model.from_storage(data.atlas.coefficients),
+        "atlas.multipliers": data.entry_spectra.multipliers,
         "atlas.names": np.array(data.atlas.names, dtype=np.str_),
         "metadata": np.array(json.dumps(metadata, ensure_ascii=False, allow_nan=False)),
     }

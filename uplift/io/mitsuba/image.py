@@ -14,7 +14,7 @@ from uplift.common.errors import OptionError
 from uplift.io.mitsuba.spectra import blend
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
-from uplift.lookup.interpolate import refined_multipliers
+from uplift.lookup.interpolate import extended_multipliers, refined_multipliers
 from uplift.lookup.validation import as_colours
 from uplift.models import Model, evaluate
 
@@ -25,7 +25,11 @@ THREADS = 2
 
 @dataclass(frozen=True, eq=False)
 class Image:
-    """Multipliers (h, w, C), float32, of the texels' spectra, and their mean reflectance."""
+    """Multipliers (h, w, C), float32, of the texels' spectra, and their mean reflectance.
+
+    All texels have one number of multipliers: that of the cube's entries if a texel lies in the box of an entry, else
+    that of its nodes.
+    """
 
     model: Model
     multipliers: NDArray[np.float32]
@@ -34,9 +38,11 @@ class Image:
     @staticmethod
     def uplift(cube: Cube, rgb: Array) -> Image:
         """Uplift linear RGB (h, w, 3) to spectra of the exact colours. Raises `ColourError` outside [0, 1]."""
-        data, model = cube.data, cube.data.model
-        refined = partial(refined_multipliers, data)
+        data, model, function = cube.data, cube.data.model, refined_multipliers
         texels = as_colours(rgb, data.sensor)
+        if data.entry_boxes.find(texels.reshape(-1, 3)).rows.size:
+            model, function = data.entry_spectra.model, extended_multipliers
+        refined = partial(function, data)
         multipliers = blockwise(refined, texels, model.count, dtype=np.float32, threads=THREADS)
         means = blockwise(
             lambda rows: evaluate(model, rows, MEAN_WAVELENGTHS).mean(axis=1, keepdims=True), multipliers, 1

@@ -114,7 +114,7 @@ def _largest_slopes(data: CubeData) -> Array:
 def _box_constant(data: CubeData, entry: int) -> float:
     if not data.atlas.half_width[entry]:
         return 0.0
-    own = reflectance(data.model, data.atlas.coefficients[entry : entry + 1], data.sensor.wavelengths)[0]
+    own = data.entry_spectra.reflectance(np.array([entry]), data.sensor.wavelengths)[0]
     return max(float(spectral_norms(columns).max()) for columns in _face_jacobians(data, entry, own))
 
 

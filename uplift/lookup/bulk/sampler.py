@@ -15,9 +15,9 @@ from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.bulk.grid import Grid, make_grid
 from uplift.lookup.bulk.kernel import interpolate
-from uplift.lookup.node_table import NodeTable, tabulate
+from uplift.lookup.node_table import NodeTable, tabulate, tabulate_coefficients
 from uplift.lookup.nodes import require
-from uplift.lookup.validation import as_thread_count, clip_rounding
+from uplift.lookup.validation import as_coefficient_count, as_thread_count, clip_rounding
 
 CHUNKS = (1 << 16, 1 << 12)
 """Rows per chunk: two shapes, so that little is compiled; the smaller one is for short inputs."""
@@ -95,30 +95,30 @@ def spectra(cube: Cube, wavelengths: ArrayLike | None = None, *, threads: int = 
     return _sampler(tabulate(cube.data, cube.resolve_wavelengths(wavelengths), np.float32, count), count)
 
 
-def coefficients(cube: Cube, *, threads: int = 2) -> Sampler:
+def coefficients(cube: Cube, count: int | None = None, *, threads: int = 2) -> Sampler:
     """Prepare a cube for coefficients of its model, in float32.
 
     Parameters
     ----------
     cube : Cube
         The cube.
+    count : int, optional
+        Coefficients per spectrum, as in `Cube.coefficients`.
     threads : int, default 2
         Number of threads.
 
     Returns
     -------
     Sampler
-        From linear RGB (..., 3) to coefficients (..., C).
+        From linear RGB (..., 3) to coefficients (..., count).
 
     Raises
     ------
     OptionError
-        Fewer than one thread.
+        An unsupported count, or fewer than one thread.
     """
-    points = cube.data.points
-    present = points.coefficients[points.present].astype(np.float32)
-    entries = cube.data.atlas.coefficients.astype(np.float32)
-    return _sampler(NodeTable.of_present_points(cube.data, present, entries), as_thread_count(threads))
+    width, threads = as_coefficient_count(count, cube.data), as_thread_count(threads)
+    return _sampler(tabulate_coefficients(cube.data, width, np.float32, threads), threads)
 
 
 def max_rgb_error(cube: Cube, *, threads: int = 2) -> Sampler:

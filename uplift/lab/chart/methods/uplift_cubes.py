@@ -107,7 +107,7 @@ def _prepare(task: Task, options: CubeOptions, lookup: Lookup) -> PreparedMethod
         return spectra
 
     data = cube.data
-    arrays = (data.points.coefficients, data.lattice.nodes, data.atlas.rgb, data.atlas.coefficients)
+    arrays = (data.points.coefficients, data.lattice.nodes, data.atlas.rgb, data.entry_spectra.coefficients)
     return PreparedMethod(uplift, nbytes(arrays), seconds)
 
 

@@ -1,0 +1,146 @@
+"""Entries with more coefficients than the nodes, in every way of looking a colour up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.helpers import raises
+from uplift.common.errors import OptionError
+from uplift.lookup import MODES
+from uplift.lookup.interpolate import extended_multipliers
+from uplift.models import evaluate, reflectance
+
+CONTINUOUS = ("spectra", "moments", "refined")
+
+
+@pytest.fixture
+def data(small_cube):
+    assert small_cube.coefficient_count == 9
+    assert small_cube.entry_coefficient_count == 17
+    return small_cube.data
+
+
+def extended(data, rgb):
+    """Reflectances of `extended_multipliers`, of which Mitsuba's textures consist."""
+    multipliers = extended_multipliers(data, rgb)
+    return evaluate(data.entry_spectra.model, multipliers, data.sensor.wavelengths)
+
+
+def lookups(cube):
+    """Functions from linear RGB to reflectances, by name; all are continuous."""
+    data = cube.data
+    functions = {mode: lambda rgb, mode=mode: cube.reflectance(rgb, mode=mode) for mode in CONTINUOUS}
+    functions["multipliers"] = lambda rgb: extended(data, rgb)
+    for count in (9, 17):
+        functions[f"{count} coefficients"] = lambda rgb, count=count: cube.coefficients(rgb, count)
+    return functions
+
+
+def in_boxes(data, count=20):
+    """Random colours (E · count, 3) in the boxes of entries."""
+    low, high = data.entry_boxes.faces
+    shares = np.random.default_rng(4).random((count, *low.shape))
+    return (low + shares * (high - low)).reshape(-1, 3)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_an_entry_is_answered_with_all_its_coefficients(small_cube, data, mode):
+    own = reflectance(data.entry_spectra.model, data.entry_spectra.coefficients, data.sensor.wavelengths)
+    few = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
+    assert np.abs(own - few).max() > 0.1
+    found = small_cube.reflectance(data.atlas.rgb, mode=mode)
+    np.testing.assert_allclose(found, own, rtol=0, atol=1e-4 if mode == "refined" else 1e-12)
+    np.testing.assert_allclose(extended(data, data.atlas.rgb), own, rtol=0, atol=1e-4)
+
+
+def test_coefficients_of_an_entry_are_those_stored(small_cube, data):
+    for count, stored in ((9, data.atlas.coefficients), (17, data.entry_spectra.coefficients)):
+        np.testing.assert_allclose(small_cube.coefficients(data.atlas.rgb, count), stored, rtol=0, atol=1e-7)
+
+
+def test_spectra_in_boxes_mix_entry_and_lattice(small_cube, data):
+    """One colour at a time, by the definition of docs/mathematics.md, 8."""
+    at, own = data.sensor.wavelengths, data.entry_spectra
+    for colour in in_boxes(data, 1):
+        hit = data.entry_boxes.find(colour[None])
+        corners, weights = data.lattice.corners(hit.exit_rgb)
+        lattice = weights @ reflectance(data.model, data.points.coefficients[corners[0]], at)
+        entry = reflectance(own.model, own.coefficients[hit.entry], at)
+        share = hit.lattice_weight[:, None]
+        expected = share * lattice + (1 - share) * entry
+        np.testing.assert_allclose(small_cube.reflectance(colour), expected[0], rtol=0, atol=1e-9)
+
+
+def test_colours_in_boxes_are_exact(small_cube, data):
+    rgb = in_boxes(data)
+    for name, tolerance in (("spectra", 2e-6), ("refined", 2e-8), ("multipliers", 2e-8), ("moments", 0.03)):
+        spectra = lookups(small_cube)[name](rgb)
+        assert np.abs(data.sensor.rgb(spectra) - rgb).max() <= tolerance, name
+        assert spectra.min() >= 0, name
+        assert spectra.max() <= 1, name
+
+
+def test_answers_are_continuous_across_the_faces_of_boxes(small_cube, data):
+    low, high = data.entry_boxes.faces
+    inner = (low > 1e-3).all(axis=1) & (high < 1 - 1e-3).all(axis=1) & (data.atlas.half_width > 0)
+    assert inner.sum() > 10
+    centre = data.atlas.rgb[inner]
+    for face, axis in ((low[inner], 0), (high[inner], 2)):
+        on = 0.7 * centre + 0.3 * face
+        on[:, axis] = face[:, axis]
+        inside, outside = (on + by * (centre - on) for by in (1e-8, -1e-8))
+        assert len(data.entry_boxes.find(inside).rows) == len(on)
+        assert len(data.entry_boxes.find(outside).rows) < len(on)
+        for name, lookup in lookups(small_cube).items():
+            np.testing.assert_allclose(lookup(inside), lookup(outside), rtol=0, atol=1e-5, err_msg=name)
+
+
+def test_answers_are_continuous_at_entries(small_cube, data):
+    near = np.clip(data.atlas.rgb + 1e-9 * np.random.default_rng(1).normal(size=data.atlas.rgb.shape), 0, 1)
+    for name, lookup in lookups(small_cube).items():
+        np.testing.assert_allclose(lookup(near), lookup(data.atlas.rgb), rtol=0, atol=1e-5, err_msg=name)
+
+
+def test_more_coefficients_are_the_moments_of_the_exact_spectra(small_cube, data):
+    """By a fine trapezoid rule over the phase."""
+    rgb = np.concatenate([in_boxes(data, 1), np.random.default_rng(2).random((30, 3))])
+    phase = np.linspace(-np.pi, 0, 4001)
+    spectra = small_cube.reflectance(rgb, 380 + 400 * (phase + np.pi) / np.pi)
+    moments = [np.trapezoid(spectra * np.cos(order * phase), phase) / np.pi for order in range(17)]
+    np.testing.assert_allclose(small_cube.coefficients(rgb, 17), np.transpose(moments), rtol=0, atol=1e-6)
+
+
+def test_a_table_of_coefficients_changes_nothing(small_cube, data):
+    rgb = np.concatenate([in_boxes(data), np.random.default_rng(2).random((600, 3))])
+    assert len(rgb) >= data.lattice.size
+    few = np.concatenate(
+        [small_cube.coefficients(rgb[row : row + 100], 17) for row in range(0, len(rgb), 100)]
+    )
+    np.testing.assert_allclose(small_cube.coefficients(rgb, 17), few, rtol=0, atol=1e-12)
+
+
+def test_outside_boxes_multipliers_have_the_refined_spectra(small_cube, data):
+    rgb = np.random.default_rng(2).random((200, 3))
+    outside = np.setdiff1d(np.arange(200), data.entry_boxes.find(rgb).rows)
+    assert len(outside) > 20
+    found = extended(data, rgb)[outside]
+    np.testing.assert_allclose(found, small_cube.reflectance(rgb[outside], mode="refined"), atol=1e-12)
+    assert (extended_multipliers(data, rgb)[outside][:, 9:] == 0).all()
+
+
+def test_the_default_count_is_that_of_the_nodes(small_cube):
+    rgb = np.random.default_rng(2).random((5, 3))
+    np.testing.assert_array_equal(small_cube.coefficients(rgb), small_cube.coefficients(rgb, 9))
+
+
+@pytest.mark.parametrize("count", [0, 10, 17.5, "nine", True])
+def test_other_counts_are_refused(small_cube, count):
+    with raises(OptionError, "unsupported-count"):
+        small_cube.coefficients([0.5, 0.5, 0.5], count)
+
+
+def test_without_an_atlas_there_is_one_count(plain_cube):
+    assert plain_cube.entry_coefficient_count == plain_cube.coefficient_count == 9
+    with raises(OptionError, "unsupported-count"):
+        plain_cube.coefficients([0.5, 0.5, 0.5], 17)
