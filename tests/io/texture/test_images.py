@@ -252,7 +252,7 @@ def test_bands_are_bounded_and_do_not_change_the_result(spectral, colours, tmp_p
     source = write_exr(tmp_path / "in.exr", planes(np.tile(colours, (5, 1, 1))))
     texture.convert(spectral, source, tmp_path / "whole.exr")
     monkeypatch.setattr("uplift.io.texture.source.MAX_BAND_BYTES", 1)
-    monkeypatch.setattr("uplift.io.texture.conversion.MAX_BAND_BYTES", 1)
+    monkeypatch.setattr("uplift.io.texture.writer.MAX_BAND_BYTES", 1)
     shapes, rows = [], []
 
     def sample(rgb):

@@ -14,7 +14,7 @@ from tests.helpers import raises
 from tests.io.texture.conftest import planes, write_exr
 from uplift.common.errors import OutputError, TextureError
 from uplift.io import texture
-from uplift.io.texture import conversion, writer
+from uplift.io.texture import writer
 
 
 @pytest.fixture
@@ -75,7 +75,7 @@ def test_an_interruption_leaves_nothing(spectral, source, tmp_path):
 
 def test_a_disk_that_is_too_small_is_reported_at_the_first_rows(spectral, source, tmp_path, monkeypatch):
     rows = []
-    monkeypatch.setattr(conversion, "MAX_BAND_BYTES", 1)
+    monkeypatch.setattr(writer, "MAX_BAND_BYTES", 1)
     Usage = namedtuple("Usage", "free")
     monkeypatch.setattr("shutil.disk_usage", lambda folder: Usage(2500))
     with raises(OutputError, "not-enough-space") as caught:

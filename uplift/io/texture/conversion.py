@@ -17,10 +17,7 @@ from uplift.io.texture.colours import Counts
 from uplift.io.texture.converter import Converter
 from uplift.io.texture.part_layout import PartLayout, part_layouts
 from uplift.io.texture.source import Image, Values, open_image
-from uplift.io.texture.writer import ROWS_PER_CHUNK, Writer, open_writer
-
-MAX_BAND_BYTES = 1 << 27
-"""Size of a band to write."""
+from uplift.io.texture.writer import Writer, open_writer
 
 
 @dataclass(frozen=True)
@@ -117,9 +114,8 @@ def _write_parts(
 
 
 def _bands(image: Image, layout: PartLayout) -> Iterator[tuple[int, Values]]:
-    """Yield bands whose output takes at most `MAX_BAND_BYTES`, with the number of their first row."""
-    row = layout.part.window.width * len(layout.output.channels) * 4
-    step = max(MAX_BAND_BYTES // (row * ROWS_PER_CHUNK), 1) * ROWS_PER_CHUNK
+    """Yield bands to write, with the number of their first row."""
+    step = layout.output.rows_per_band
     for first, band in image.bands(layout.part):
         for start in range(0, len(band), step):
             yield first + start, band[start : start + step]
@@ -141,4 +137,7 @@ def _convert_band(converter: Converter, layout: PartLayout, band: Values) -> tup
         return others, Counts()
     rgb, decoded = layout.decoder(band[..., layout.rgb])
     values, converted = converter.convert(rgb)
-    return np.concatenate([*values, others], axis=-1), decoded + converted
+    # OpenImageIO would convert floats to half floats in another array.
+    is_half = set(layout.output.types) == {"half"}
+    dtype = np.float16 if is_half else np.result_type(np.float32, others)
+    return np.concatenate([*values, others], axis=-1, dtype=dtype), decoded + converted

@@ -19,6 +19,8 @@ from uplift.io.texture.source import Values, Window
 
 ROWS_PER_CHUNK = 16
 """Rows that OpenEXR compresses together as ZIP."""
+MAX_BAND_BYTES = 1 << 27
+"""Size of a band to write, as floats."""
 SPACE_MARGIN = 2
 """Factor by which the rest of an image may compress better than the rows written so far."""
 
@@ -33,6 +35,12 @@ class OutputPart:
     types: tuple[str, ...]
     header: Mapping[str, Any]
     date: str
+
+    @property
+    def rows_per_band(self) -> int:
+        """Rows to convert and write at a time: chunks of at most `MAX_BAND_BYTES`, at least one."""
+        chunk = self.window.width * len(self.channels) * 4 * ROWS_PER_CHUNK
+        return max(MAX_BAND_BYTES // chunk, 1) * ROWS_PER_CHUNK
 
     def spec(self) -> Any:
         """Return the `OpenImageIO.ImageSpec`."""
@@ -74,7 +82,8 @@ class Writer:
             raise OSError(OpenImageIO.geterror())
         self._handle = handle
         specs = tuple(self._specs) if len(self._specs) > 1 else self._specs[0]
-        self._check(self._handle.open(os.fspath(path), specs))
+        with _compression_threads(max(part.rows_per_band for part in parts) // ROWS_PER_CHUNK):
+            self._check(self._handle.open(os.fspath(path), specs))
 
     def start_part(self, number: int) -> None:
         """Start a part."""
@@ -119,6 +128,23 @@ class Writer:
     def _check(self, ok: bool) -> None:
         if not ok:
             raise OSError(" ".join(self._handle.geterror().split()))
+
+
+@contextlib.contextmanager
+def _compression_threads(chunks: int) -> Iterator[None]:
+    """Open files with no more buffers than ``chunks`` that are written at once need: OpenEXR has two per thread.
+
+    The buffers of an image of 16384 columns at 81 wavelengths take 88 MB each.
+    """
+    import OpenImageIO
+
+    name = "exr_threads"
+    before = OpenImageIO.get_int_attribute(name)
+    OpenImageIO.attribute(name, min(before if before > 0 else os.cpu_count() or 1, chunks))
+    try:
+        yield
+    finally:
+        OpenImageIO.attribute(name, before)
 
 
 @contextlib.contextmanager
