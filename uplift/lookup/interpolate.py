@@ -56,15 +56,15 @@ def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) as weighted spectra of the nodes."""
     nodes, points = _unique_points(around(data, rgb))
     values = reflectance(data.model, data.points.coefficients[points], wavelengths)
-    lattice = weighted_sum(values, nodes.points, nodes.weights)
-    return nodes.mix(lattice, _entry_spectra(data, nodes, wavelengths))
+    return _mix_entries(data, nodes, weighted_sum(values, nodes.points, nodes.weights), wavelengths)
 
 
 def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the nearest node, lattice point or atlas entry."""
     points, rows, entry = around(data, rgb).nearest()
     values = reflectance(data.model, data.points.coefficients[points], wavelengths)
-    values[rows] = data.entry_spectra.reflectance(entry, wavelengths)
+    if rows.size:
+        values[rows] = data.entry_spectra.reflectance(entry, wavelengths)
     return values
 
 
@@ -80,17 +80,16 @@ def moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the weighted coefficients of the lattice, mixed with entries."""
     nodes = around(data, rgb)
     lattice = reflectance(data.model, _lattice_coefficients(data, nodes), wavelengths)
-    return nodes.mix(lattice, _entry_spectra(data, nodes, wavelengths))
+    return _mix_entries(data, nodes, lattice, wavelengths)
 
 
 def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the weighted coefficients of the lattice and of entries, moved to exact colours."""
     nodes = around(data, rgb)
-    lattice, entry = _exact_multipliers(data, nodes, rgb)
-    return nodes.mix(
-        evaluate(data.model, lattice, wavelengths),
-        evaluate(data.entry_spectra.model, entry, wavelengths),
-    )
+    lattice = evaluate(data.model, _exact_lattice(data, nodes, rgb), wavelengths)
+    if not nodes.rows.size:
+        return lattice
+    return nodes.mix(lattice, evaluate(data.entry_spectra.model, _exact_entries(data, nodes), wavelengths))
 
 
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
@@ -104,21 +103,25 @@ def extended_multipliers(data: CubeData, rgb: Array) -> Array:
     Outside entry boxes they have the spectra of mode ``refined``, inside the same coefficients.
     """
     nodes, model = around(data, rgb), data.entry_spectra.model
-    lattice, entry = _exact_multipliers(data, nodes, rgb)
-    extended = _append_zeros(data, lattice)
+    extended = _append_zeros(data, _exact_lattice(data, nodes, rgb))
+    if not nodes.rows.size:
+        return extended
     inside = replace(nodes, rows=np.arange(len(nodes.rows)))
-    mixed = inside.mix(model.to_storage(extended[nodes.rows]), model.to_storage(entry))
+    mixed = inside.mix(model.to_storage(extended[nodes.rows]), model.to_storage(_exact_entries(data, nodes)))
     extended[nodes.rows] = refine_to_rgb(data, model, model.from_storage(mixed), rgb[nodes.rows])
     return extended
 
 
-def _exact_multipliers(data: CubeData, nodes: Nodes, rgb: Array) -> tuple[Array, Array]:
-    """Multipliers (n, C) of the lattice and (k, K) of entries, whose spectra mix to exactly the colours (n, 3)."""
+def _exact_lattice(data: CubeData, nodes: Nodes, rgb: Array) -> Array:
+    """Multipliers (n, C) of the lattice that have exactly its share of the colours (n, 3)."""
     start = data.model.from_storage(_lattice_coefficients(data, nodes))
-    lattice = refine_to_rgb(data, data.model, start, nodes.lattice_rgb(rgb))
+    return refine_to_rgb(data, data.model, start, nodes.lattice_rgb(rgb))
+
+
+def _exact_entries(data: CubeData, nodes: Nodes) -> Array:
+    """Multipliers (k, K) of the entry of each colour in a box, that have exactly the colour of the entry."""
     spectra, (entries, row) = data.entry_spectra, np.unique(nodes.entry, return_inverse=True)
-    own = refine_to_rgb(data, spectra.model, spectra.multipliers[entries], data.atlas.rgb[entries])
-    return lattice, own[row]
+    return refine_to_rgb(data, spectra.model, spectra.multipliers[entries], data.atlas.rgb[entries])[row]
 
 
 def _append_zeros(data: CubeData, multipliers: Array) -> Array:
@@ -136,10 +139,12 @@ def _unique_points(nodes: Nodes) -> tuple[Nodes, Indices]:
     return replace(nodes, points=row.reshape(nodes.points.shape)), points
 
 
-def _entry_spectra(data: CubeData, nodes: Nodes, wavelengths: Array) -> Array:
-    """Reflectance (k, N) of the entry of each colour in a box."""
+def _mix_entries(data: CubeData, nodes: Nodes, lattice: Array, wavelengths: Array) -> Array:
+    """Reflectance (n, N) of the lattice, mixed with the spectra of entries in their boxes."""
+    if not nodes.rows.size:
+        return lattice
     entries, row = np.unique(nodes.entry, return_inverse=True)
-    return data.entry_spectra.reflectance(entries, wavelengths)[row]
+    return nodes.mix(lattice, data.entry_spectra.reflectance(entries, wavelengths)[row])
 
 
 Mode = Callable[[CubeData, Array, Array], Array]

@@ -64,6 +64,8 @@ class Nodes:
 
     def lattice_rgb(self, rgb: Array) -> Array:
         """Return the colours (n, 3) at which the lattice is evaluated for linear RGB (n, 3)."""
+        if not self.rows.size:
+            return rgb
         evaluated = rgb.copy()
         evaluated[self.rows] = self.exit_rgb
         return evaluated
