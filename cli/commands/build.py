@@ -13,6 +13,7 @@ import click
 
 from ..output.build_summary import print_improvements, print_summary
 from ..params.image_paths import expand_patterns
+from ..params.number_types import NUMBER
 from ..params.options import (
     LatticeDim,
     atlas_option,
@@ -55,6 +56,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 )
 @click.option(
     "--auto-tolerance",
+    type=NUMBER,
     default=0.5,
     show_default=True,
     help="ΔE00 within which the lattice of --dim auto must reproduce the entries.",
@@ -67,7 +69,11 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 @sensor_options
 @light_option("Illuminant under which entries must keep their colour", "D65 A FL2 FL11 LED-B3")
 @click.option(
-    "--threshold", default=1e-4, show_default=True, help="Largest residual of a node, |linear RGB|."
+    "--threshold",
+    type=NUMBER,
+    default=1e-4,
+    show_default=True,
+    help="Largest residual of a node, |linear RGB|.",
 )
 @click.option(
     "--scene",

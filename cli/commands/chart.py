@@ -10,6 +10,7 @@ import click
 from ..output.console import make_table, say, show
 from ..output.progress import progress_bar
 from ..params.atlases import DEFAULT_ATLASES, read_atlases
+from ..params.number_types import NUMBER, Whole
 from ..params.options import atlas_option, force_option
 from ..startup import enable_jit_cache, use_one_blas_thread
 
@@ -33,6 +34,7 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
 @click.option(
     "--colours",
     metavar="N",
+    type=Whole(high=1_000_000),
     default=2000,
     show_default=True,
     help="Number of random colours for the round trip.",
@@ -44,8 +46,8 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
 @click.option(
     "--recommend", is_flag=True, help="Recommend a cube to build, from the packaged chart or --from."
 )
-@click.option("--time-ns", type=float, help="With --recommend: largest CPU time per RGB, in ns.")
-@click.option("--delta-e", type=float, help="With --recommend: largest mean ΔE00.")
+@click.option("--time-ns", type=NUMBER, help="With --recommend: largest CPU time per RGB, in ns.")
+@click.option("--delta-e", type=NUMBER, help="With --recommend: largest mean ΔE00.")
 @click.option(
     "--light", help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: mean of five]"
 )

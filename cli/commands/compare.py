@@ -11,6 +11,7 @@ import click
 from ..output.console import print_csv_text, print_json, say
 from ..output.progress import progress_bar
 from ..params.atlases import DEFAULT_ATLASES, read_atlases
+from ..params.number_types import NUMBER
 from ..params.options import atlas_option, force_option, format_option, light_option, output_folder_option
 from ..startup import use_one_blas_thread
 
@@ -29,7 +30,7 @@ FILTERS = "compare-filters.csv"
 @click.option(
     "--target",
     metavar="ΔE00",
-    type=float,
+    type=NUMBER,
     help="Print the cheapest representation with 97.5 % of errors below this value.",
 )
 @click.option(

@@ -10,6 +10,7 @@ import click
 
 from ..output.console import say
 from ..output.progress import spinner
+from ..params.number_types import Whole
 from ..params.options import fill_option, force_option
 from ..startup import enable_jit_cache
 
@@ -28,7 +29,7 @@ SUFFIXES = {"coeff": ".coeff", "c": ".h", "npz": ".npz", "csv": ".csv"}
     type=click.Choice(tuple(SUFFIXES)),
     help="Format to write. [default: by the suffix of OUT]",
 )
-@click.option("--res", type=int, help="Resolution of a coeff table along each axis. [default: 64]")
+@click.option("--res", type=Whole(), help="Resolution of a coeff table along each axis. [default: 64]")
 @fill_option()
 @force_option()
 def command(

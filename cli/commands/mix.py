@@ -9,6 +9,7 @@ import click
 from ..output.mixtures import as_json, as_table, make_mixture, plot
 from ..output.paint_over import make_brush, paint
 from ..params.ingredients import make_resolver
+from ..params.number_types import NUMBER, Whole
 from ..params.options import (
     atlas_option,
     cube_option,
@@ -41,12 +42,12 @@ WRITERS = {"table": as_table, "json": as_json}
 @click.option("--filter", "kind", flag_value="filter", help="Stack filters; PARTS is the thickness.")
 @click.option("--light", "kind", flag_value="light", help="Add lights; PARTS is the intensity.")
 @click.option(
-    "--thickness", type=float, metavar="X", help="Thickness of the coat. [default: opaque; dyes: 1]"
+    "--thickness", type=NUMBER, metavar="X", help="Thickness of the coat. [default: opaque; dyes: 1]"
 )
 @click.option("--ground", metavar="COLOUR", help="Substrate of the coat. [default: white]")
 @click.option(
     "--refractive-index",
-    type=float,
+    type=NUMBER,
     default=1.0,
     metavar="N",
     help="Refractive index of the binder, 1.5 for oil. [default: no surface]",
@@ -74,7 +75,7 @@ WRITERS = {"table": as_table, "json": as_json}
 @click.option("--swatches", metavar="PNG", help="Plot the ramp from the first ingredient to the last.")
 @click.option(
     "--steps",
-    type=click.IntRange(2, 1000),
+    type=Whole(2, 1000),
     default=9,
     show_default=True,
     help="Number of swatches on the ramp.",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..output.console import emit, json_text, say
+from ..params.number_types import Whole
 from ..params.options import atlas_folders_option, atlas_option, force_option, format_option, light_option
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 @format_option("html", "json")
 @click.option(
     "--worst",
-    type=click.IntRange(0),
+    type=Whole(0),
     default=24,
     show_default=True,
     help="Number of entries with plotted spectra, largest errors first.",

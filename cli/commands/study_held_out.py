@@ -10,6 +10,7 @@ import click
 from ..output.console import make_table, print_csv, print_json, say, show
 from ..output.progress import progress_bar
 from ..params.atlases import DEFAULT_ATLASES, read_atlases
+from ..params.number_types import Whole
 from ..params.options import atlas_option, coefficient_count, coefficients_options, format_option
 from ..startup import enable_jit_cache
 
@@ -21,8 +22,10 @@ Results = dict[str, "tuple[HoldoutSplit, ...]"]
 
 @click.command("held-out")
 @atlas_option("Atlas", DEFAULT_ATLASES)
-@click.option("--splits", default=3, show_default=True, help="Number of splits of each atlas.")
-@click.option("--dim", default=32, show_default=True, help="Lattice nodes along each axis.")
+@click.option(
+    "--splits", type=Whole(1, 1000), default=3, show_default=True, help="Number of splits of each atlas."
+)
+@click.option("--dim", type=Whole(), default=32, show_default=True, help="Lattice nodes along each axis.")
 @coefficients_options
 @format_option("table", "json", "csv")
 def held_out(

@@ -11,6 +11,7 @@ import click
 from ..output.console import make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar
 from ..params.atlases import DEFAULT_ATLASES, read_atlases
+from ..params.number_types import Whole
 from ..params.options import atlas_option, force_option, format_option, output_folder_option
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ FILES = ("moments.csv", "moments.png", "moments-patches.png", "moments-worst.png
 @click.option(
     "--max-moments",
     metavar="N",
-    type=int,
+    type=Whole(),
     default=15,
     show_default=True,
     help="Largest number of moments, up to 32.",

@@ -10,6 +10,7 @@ import click
 
 from ..output.console import json_text, make_table, print_json, say, show
 from ..output.progress import progress_bar
+from ..params.number_types import Whole
 from ..params.options import atlas_folders_option, force_option, format_option, output_folder_option
 from ..startup import enable_jit_cache
 
@@ -27,7 +28,11 @@ RESULTS, STEEPNESS, LOCALITY = FILES = (
 @click.argument("cube", metavar="[CUBE]", required=False)
 @atlas_folders_option()
 @click.option(
-    "--entries", default=24, show_default=True, help="Number of atlas entries to change, one at a time."
+    "--entries",
+    type=Whole(0),
+    default=24,
+    show_default=True,
+    help="Number of atlas entries to change, one at a time.",
 )
 @output_folder_option()
 @format_option("table", "json")

@@ -9,9 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.common.number_text import parse_float, parse_whole
+from uplift.common.quoting import format_value
+
 from ..output.console import json_text, make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar
 from ..params.atlases import read_atlases
+from ..params.number_types import Whole
 from ..params.options import atlas_option, force_option, format_option, output_folder_option
 from ..startup import enable_jit_cache
 
@@ -30,31 +34,36 @@ def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
         try:
             return None if text is None else tuple(kind(word.strip()) for word in text.split(","))
         except ValueError as error:
-            raise click.BadParameter(f"'{text}' is not a list of such values, as 4,8,16") from error
+            raise click.BadParameter(
+                f"{format_value(text)} is not a list of such values, as 4,8,16"
+            ) from error
 
     return parse
 
 
 @click.command("stability")
 @click.option("--quick", is_flag=True, help="Small lattices and few values: some seconds per model.")
-@click.option("--dims", callback=_list_of(int), metavar="N,…", help="Lattice nodes along each axis.")
+@click.option("--dims", callback=_list_of(parse_whole), metavar="N,…", help="Lattice nodes along each axis.")
 @click.option(
-    "--coefficients", callback=_list_of(int), metavar="N,…", help="Coefficients per spectrum, 3 to 17."
+    "--coefficients",
+    callback=_list_of(parse_whole),
+    metavar="N,…",
+    help="Coefficients per spectrum, 3 to 17.",
 )
 @click.option("--spaces", callback=_list_of(str), metavar="NAME,…", help="RGB spaces of colour-science.")
 @click.option("--models", callback=_list_of(str), metavar="NAME,…", help="moments, sigmoid.")
 @click.option(
-    "--thresholds", callback=_list_of(float), metavar="X,…", help="Largest residuals, |linear RGB|."
+    "--thresholds", callback=_list_of(parse_float), metavar="X,…", help="Largest residuals, |linear RGB|."
 )
 @atlas_option("Atlas in addition to the synthetic ones", MACBETH)
 @click.option(
     "--atlases", callback=_list_of(str), metavar="NAME,…", help="Atlases to use by name, or 'none'."
 )
-@click.option("--samples", type=int, help="Number of random settings in addition to the grids.")
+@click.option("--samples", type=Whole(0, 100_000), help="Number of random settings in addition to the grids.")
 @click.option(
     "--peer-dims",
     "solver_dims",
-    callback=_list_of(int),
+    callback=_list_of(parse_whole),
     metavar="N,…",
     help="Lattices for the solver of scipy.",
 )

@@ -16,6 +16,7 @@ from ..output.console import say
 from ..output.diagnostics import UsageFailure
 from ..output.progress import progress_bar
 from ..params.image_paths import texture_paths
+from ..params.number_types import Whole
 from ..params.options import (
     cube_option,
     encoding_option,
@@ -56,7 +57,7 @@ if TYPE_CHECKING:
 @fill_option()
 @click.option(
     "--processes",
-    type=click.IntRange(min=1),
+    type=Whole(1, 1024),
     help="Number of processes for several images. [default: one per core]",
 )
 @click.option(

@@ -9,6 +9,7 @@ import click
 from ..output.progress import spinner
 from ..output.wavelengths_output import PRINTERS, Result
 from ..params.atlases import DEFAULT_ATLASES, read_atlases
+from ..params.number_types import NUMBER, Whole
 from ..params.options import atlas_option, force_option, format_option, light_option, sensor_options
 from ..params.wavelengths import parse_wavelengths
 
@@ -17,9 +18,9 @@ if TYPE_CHECKING:
 
 
 @click.command("wavelengths")
-@click.option("--count", metavar="N", type=int, help="Number of wavelengths, 1 to 40.")
+@click.option("--count", metavar="N", type=Whole(), help="Number of wavelengths, 1 to 40.")
 @click.option(
-    "--target", metavar="ΔE", type=float, help="Choose the fewest wavelengths with an error below this ΔE00."
+    "--target", metavar="ΔE", type=NUMBER, help="Choose the fewest wavelengths with an error below this ΔE00."
 )
 @click.option(
     "--wavelengths",

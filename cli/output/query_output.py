@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from uplift.lookup import Cube, QueryResult
 
 BLOCKS = "▁▂▃▄▅▆▇█"
+LARGEST = 1e30
 Writer = Callable[["Cube", Iterable["QueryResult"], bool], None]
 
 
@@ -94,7 +95,8 @@ def _mapped(cube: Cube, result: QueryResult) -> dict[str, str]:
 
     if (result.requested_rgb == result.rgb).all():
         return {}
-    distance = float(delta_e_rgb(cube.data.sensor, result.requested_rgb, result.rgb))
+    requested = result.requested_rgb.clip(-LARGEST, LARGEST)  # ΔE00 of larger colours overflows
+    distance = float(delta_e_rgb(cube.data.sensor, requested, result.rgb))
     return {"requested": f"{format_rgb(result.requested_rgb)}  outside [0, 1], mapped by ΔE00 {distance:.2g}"}
 
 

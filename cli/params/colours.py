@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
 from uplift.common.errors import ColourError
+from uplift.common.number_text import parse_float
+from uplift.common.quoting import format_value
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -17,8 +19,6 @@ if TYPE_CHECKING:
 
 HEX = re.compile(r"#?([0-9a-fA-F]{6})\Z")
 SHORT_HEX = re.compile(r"#([0-9a-fA-F]{3})\Z")
-QUOTE_LENGTH = 80
-"""Characters of the input that a message quotes."""
 SYNTAX = "write three numbers (R G B) or a hex colour such as '#cc3319'"
 
 
@@ -109,7 +109,7 @@ def _parse(parts: Sequence[str]) -> Colour | None:
 
 
 def _unreadable(parts: Sequence[str], *, path: str | None = None, line: int | None = None) -> ColourError:
-    problem = f"'{' '.join(parts)[:QUOTE_LENGTH]}' is not a colour"
+    problem = f"{format_value(' '.join(parts[:4]))} is not a colour"
     return ColourError(problem, code="invalid-colour", path=path, line=line, hint=SYNTAX)
 
 
@@ -122,7 +122,7 @@ def _hex(word: str) -> str | None:
 
 def _number(word: str) -> float | None:
     try:
-        return float(word)
+        return parse_float(word)
     except ValueError:
         return None
 

@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from uplift.common.number_text import parse_float
+from uplift.common.quoting import format_value
+
 from .colours import from_arguments
 
 if TYPE_CHECKING:
@@ -118,12 +121,12 @@ def _positive(text: str, word: str) -> float:
     from uplift.common.errors import OptionError
 
     try:
-        parts = float(text)
+        parts = parse_float(text)
     except ValueError:
         parts = 0.0
     if not 0 < parts < float("inf"):
         raise OptionError(
-            f"parts must be a number above 0, got '{word}'",
+            f"parts must be a number above 0, got {format_value(word)}",
             code="invalid-parts",
             hint="write for example '2:#1f3a93'",
         )

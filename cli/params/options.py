@@ -7,6 +7,11 @@ from typing import Any
 
 import click
 
+from uplift.common.number_text import parse_whole
+from uplift.common.quoting import format_value
+
+from .number_types import Whole
+
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 DEFAULT_COEFFICIENTS, MAX_COEFFICIENTS = 9, 17
@@ -26,9 +31,9 @@ class LatticeDim(click.ParamType):  # type: ignore[type-arg]
         if value == "auto" or isinstance(value, int):
             return value
         try:
-            return int(value)
+            return parse_whole(value)
         except ValueError:
-            self.fail(f"'{value}' is neither a whole number nor 'auto'", param, ctx)
+            self.fail(f"{format_value(value)} is neither a whole number nor 'auto'", param, ctx)
 
 
 def cube_option() -> Decorator:
@@ -148,11 +153,11 @@ def coefficients_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """``--coefficients``, and the older ``--moments``, which counts one less; see `coefficient_count`."""
     coefficients = click.option(
         "--coefficients",
-        type=int,
+        type=Whole(),
         metavar="N",
         help=f"Coefficients per spectrum, 3 to 17. [default: {DEFAULT_COEFFICIENTS}]",
     )
-    moments = click.option("--moments", type=int, hidden=True)
+    moments = click.option("--moments", type=Whole(), hidden=True)
     return coefficients(moments(function))
 
 
@@ -169,12 +174,12 @@ def entry_coefficients_options(function: Callable[..., Any]) -> Callable[..., An
     """``--entry-coefficients``, and ``--entry-moments``, which counts one less; see `entry_coefficient_count`."""
     coefficients = click.option(
         "--entry-coefficients",
-        type=int,
+        type=Whole(),
         metavar="N",
         help=f"Coefficients per spectrum of an atlas entry, from --coefficients to {MAX_COEFFICIENTS}. "
         f"[default: {MAX_COEFFICIENTS}]",
     )
-    moments = click.option("--entry-moments", type=int, hidden=True)
+    moments = click.option("--entry-moments", type=Whole(), hidden=True)
     return coefficients(moments(function))
 
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from uplift.common.number_text import parse_float
+from uplift.common.quoting import format_value
+
 if TYPE_CHECKING:
     from uplift.colorimetry.gamut import Primaries
 
@@ -24,10 +27,10 @@ def parse_primaries(text: str) -> Primaries:
 
         return primaries(text)
     try:
-        numbers = [float(word) for word in re.split(r"[,;\s]+", text.strip())]
+        numbers = [parse_float(word) for word in re.split(r"[,;\s]+", text.strip())]
     except ValueError as error:
         raise OptionError(
-            f"primaries must be the name of a space or eight numbers, got '{text}'",
+            f"primaries must be the name of a space or eight numbers, got {format_value(text)}",
             code="invalid-primaries",
             hint="give x,y of red, green, blue and white",
         ) from error

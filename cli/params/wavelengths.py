@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from uplift.common.number_text import parse_float
+from uplift.common.quoting import format_value
+
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
 
@@ -18,8 +21,8 @@ def parse_wavelengths(text: str | None) -> Array | None:
         return None
     try:
         if ":" not in text:
-            return np.array([float(part) for part in text.split(",")])
-        start, end, step = (float(part) for part in text.split(":"))
+            return np.array([parse_float(part) for part in text.split(",")])
+        start, end, step = (parse_float(part) for part in text.split(":"))
         count = int((end - start) / step + 1e-9) + 1
     except (ValueError, ZeroDivisionError, OverflowError) as error:
         raise _unreadable(text) from error
@@ -32,7 +35,7 @@ def _unreadable(text: str) -> Exception:
     from uplift.common.errors import OptionError
 
     return OptionError(
-        f"wavelengths must be START:END:STEP or a list, got '{text}'",
+        f"wavelengths must be START:END:STEP or a list, got {format_value(text)}",
         code="invalid-wavelengths",
         hint="write for example 380:780:5 or 450,550,650, in nm",
     )

@@ -160,7 +160,7 @@ def test_files_are_replaced_only_with_force(run, refuse, home):
         (("--coefficients", "2"), "coefficients-out-of-range"),
         (("--coefficients", "18"), "coefficients-out-of-range"),
         (("--threshold", "0"), "threshold-out-of-range"),
-        (("--threshold", "nan"), "threshold-out-of-range"),
+        (("--threshold", "0.2"), "threshold-out-of-range"),
         (("--threshold", "1"), "threshold-out-of-range"),
         (("--atlas", "none.txt"), "file-not-found"),
         (("--atlas", "empty.txt"), "empty-file"),

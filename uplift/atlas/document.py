@@ -11,6 +11,7 @@ from functools import cached_property
 from uplift.common.arrays import StrPath
 from uplift.common.errors import AtlasError
 from uplift.common.input_file import read_bytes
+from uplift.common.number_text import parse_float
 
 MAX_QUOTED = 40
 """Characters of an invalid token or name that a message quotes."""
@@ -95,9 +96,7 @@ def _decode(data: bytes, location: SourceLocation) -> str:
 def parse_number(token: str, location: SourceLocation, label: str) -> float:
     """Parse a number as data files write it; an error names it by ``label``. Raise `AtlasError`."""
     try:
-        if "_" in token:  # valid in Python, but not in data files
-            raise ValueError
-        return float(token)
+        return parse_float(token)
     except ValueError:
         problem = f"{label} '{truncate(token)}' is not a number"
         raise location.error(problem, "write a plain number such as 0.125", code="not-a-number") from None

@@ -16,6 +16,7 @@ from uplift.atlas.checks import HIGHEST, SLACK, VISIBLE
 from uplift.atlas.document import Document, SourceLocation, parse_nanometres, parse_number, without_unit
 from uplift.common.csv import csv_text, plain_cell
 from uplift.common.errors import OutputError, UpliftWarning
+from uplift.common.number_text import parse_float
 
 DELIMITERS = ",;\t"
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
@@ -143,16 +144,16 @@ def _numeric(cells: Sequence[Cell]) -> bool:
 
 def _covers(cells: Sequence[Cell]) -> bool:
     """Whether numbers cover the visible range, as wavelengths do and numeric names usually do not."""
-    numbers = [float(without_unit(cell.text)) for cell in cells]
+    numbers = [parse_float(without_unit(cell.text)) for cell in cells]
     return numbers[0] <= VISIBLE[0] + SLACK and numbers[-1] >= VISIBLE[1] - SLACK
 
 
 def _is_number(text: str) -> bool:
     try:
-        float(text)
+        parse_float(text)
     except ValueError:
         return False
-    return "_" not in text
+    return True
 
 
 def _values(row: Row, path: str) -> list[float]:

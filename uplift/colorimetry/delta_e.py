@@ -40,7 +40,7 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
     [100.0, 0.0, 0.0]
     """
     t = np.asarray(xyz, dtype=float) / np.asarray(white, dtype=float)
-    compressed = np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29)
+    compressed = np.where(t > (6 / 29) ** 3, np.cbrt(t), np.minimum(t, 1) * (29 / 6) ** 2 / 3 + 4 / 29)
     return np.asarray(compressed @ OPPONENTS.T - [16, 0, 0])
 
 

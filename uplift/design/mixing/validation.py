@@ -8,6 +8,9 @@ from numpy.typing import ArrayLike
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
+MAX_LENGTH = 1e9
+"""Limit of thicknesses, concentrations and gradings, which are multiplied with each other."""
+
 
 def as_amounts(parts: ArrayLike) -> Array:
     """Return parts (…, n) as floats. Raises `OptionError` (``invalid-parts``) unless finite and not negative."""
@@ -24,19 +27,20 @@ def as_amounts(parts: ArrayLike) -> Array:
 def as_shares(parts: ArrayLike) -> Array:
     """Return parts (…, n) scaled to sum 1. Raises `OptionError` (``invalid-parts``), also if all are 0."""
     array = as_amounts(parts)
-    total = array.sum(axis=-1, keepdims=True)
-    if not (total > 0).all():
+    largest = array.max(axis=-1, keepdims=True)
+    if not (largest > 0).all():
         raise OptionError(
             "some part of a mixture must be greater than 0", code="invalid-parts", hint="raise one of them"
         )
-    return np.asarray(array / total)
+    relative = array / largest  # a sum of huge parts would overflow
+    return np.asarray(relative / relative.sum(axis=-1, keepdims=True))
 
 
 def as_length(value: float, name: str = "thickness", code: str = "invalid-thickness") -> float:
-    """Return a finite number of at least 0. Raises `OptionError` with ``code``."""
-    if not (np.isfinite(value) and value >= 0):
+    """Return a number from 0 to `MAX_LENGTH`. Raises `OptionError` with ``code``."""
+    if not 0 <= value <= MAX_LENGTH:
         raise OptionError(
-            f"{name} must be finite and at least 0, got {value}", code=code, hint="1 is the unit"
+            f"{name} must be in [0, {MAX_LENGTH:g}], got {value}", code=code, hint="1 is the unit"
         )
     return float(value)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import os
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from enum import StrEnum
@@ -13,6 +12,7 @@ from enum import StrEnum
 from uplift.common.csv import csv_text
 from uplift.common.errors import ChartFileError
 from uplift.common.input_file import read_bytes
+from uplift.common.number_text import parse_float
 from uplift.common.quoting import format_value, shorten
 
 FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
@@ -20,7 +20,6 @@ FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 MAX_BYTES = 16 << 20
 """Largest file that is read."""
 MAX_NUMBER = 1e30
-NUMBER = re.compile(r"[0-9]+(\.[0-9]*)?([eE][+-]?[0-9]+)?")
 REQUIRED = ("bytes", "time_ns", "single_ns", "round_trip_mean", "round_trip_colours", "unseen_spectra")
 """Numbers of every method that was measured."""
 KINDS = ("mean", "p99", "max")
@@ -192,7 +191,10 @@ def _result(line: dict[str, str]) -> MethodResult:
 
 def _number(line: dict[str, str], name: str) -> float:
     text = line[name].strip()
-    value = float(text) if NUMBER.fullmatch(text) else -1
+    try:
+        value = parse_float(text)
+    except ValueError:
+        value = -1
     if not 0 <= value <= MAX_NUMBER:
         raise ValueError(f"{shorten(name)} must be in [0, {MAX_NUMBER:g}], got {format_value(text)}")
     return value
