@@ -16,8 +16,6 @@ from uplift.common.errors import ColourError, OptionError
 
 METHODS = ("error", *MAPPINGS)
 """Names of the methods; ``"error"`` raises instead of moving a colour."""
-LARGEST = 1e300
-"""Components are scaled down to this magnitude, so that sums of three do not overflow."""
 BLOCK = 1 << 13
 """Colours mapped per block; the temporary arrays of a block fit into a processor's cache."""
 
@@ -180,7 +178,6 @@ def _map_rows(rgb: Array, gamut: Gamut, method: str) -> Array:
         raise ColourError(
             f"linear RGB {_format_rgb(first)} is not finite", code="rgb-not-finite", hint="fix its source"
         )
-    rgb = rgb * np.minimum(1, LARGEST / np.abs(rgb).max(axis=1, keepdims=True))
     blocks = (rgb[first : first + BLOCK] for first in range(0, len(rgb), BLOCK))
     return np.concatenate([MAPPINGS[method](block, gamut) for block in blocks])
 

@@ -25,6 +25,9 @@ Stopping at the first exit would map neighbouring colours far apart.
 HALVINGS = 24
 """Bisection steps along a line."""
 
+LARGEST = 1e300
+"""Colours are scaled down to components of this magnitude where sums of three could overflow."""
+
 Mapping = Callable[[Array, Gamut], Array]
 """Function from finite linear RGB (n, 3) outside [0, 1] to linear RGB (n, 3) inside, up to rounding."""
 
@@ -39,6 +42,7 @@ def scale(rgb: Array, gamut: Gamut) -> Array:
 
     The dominant wavelength is kept. So is the chromaticity of colours that are only too bright.
     """
+    rgb = _without_overflow(rgb)
     inside = _toward_grey(rgb, np.maximum(_luminance(rgb, gamut), 0), np.inf)
     return inside / np.maximum(inside.max(axis=1, keepdims=True), 1)
 
@@ -48,11 +52,13 @@ def desaturate(rgb: Array, gamut: Gamut) -> Array:
 
     A luminance of at least that of white gives white. A luminance of at most 0 gives black.
     """
+    rgb = _without_overflow(rgb)
     return _toward_grey(rgb, np.clip(_luminance(rgb, gamut), 0, 1), 1)
 
 
 def desaturate_oklab(rgb: Array, gamut: Gamut) -> Array:
     """Move toward grey at constant lightness and hue of Oklab, which keeps the hue of reds and yellows better."""
+    rgb = _without_overflow(rgb)
     lab = oklab(rgb, gamut)
     # One row per response, then one per component: contiguous rows are twice as fast here.
     grey = np.ascontiguousarray(cube_roots(np.clip(lab[:, :1], 0, 1) * [1, 0, 0]).T)
@@ -73,6 +79,10 @@ MAPPINGS: dict[str, Mapping] = {
     "desaturate-oklab": desaturate_oklab,
 }
 """Mappings by the name of their method."""
+
+
+def _without_overflow(rgb: Array) -> Array:
+    return rgb * np.minimum(1, LARGEST / np.maximum(np.abs(rgb).max(axis=1, keepdims=True), 1))
 
 
 def _luminance(rgb: Array, gamut: Gamut) -> Array:
