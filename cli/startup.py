@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import warnings
 from pathlib import Path
@@ -10,8 +11,9 @@ from uplift.common.errors import UpliftWarning
 
 
 def draw_without_window() -> None:
-    """Use the backend of matplotlib that needs no display; one that the user prefers may not exist."""
+    """Use the backend of matplotlib that needs no display, and hide its notes on folders and fonts."""
     os.environ["MPLBACKEND"] = "agg"
+    logging.getLogger("matplotlib").addHandler(logging.NullHandler())
 
 
 def enable_jit_cache() -> None:
@@ -25,7 +27,10 @@ def enable_jit_cache() -> None:
 
     from .jit_cache import SharedFolderError, prepare
 
-    folder = Path(user_cache_dir("uplift"))
+    try:
+        folder = Path(user_cache_dir("uplift"))
+    except RuntimeError:  # a user without a home compiles every time
+        return
     try:
         if not prepare(folder):
             return

@@ -13,7 +13,6 @@ import errno
 import io
 import os
 import sys
-import unicodedata
 
 MODES = {0: os.O_WRONLY, 1: os.O_RDONLY, 2: os.O_WRONLY}
 """Mode in which the null device takes the place of a closed descriptor."""
@@ -100,5 +99,7 @@ def _ascii(character: str) -> str:
     for first, last, shape in SHAPES:
         if first <= code <= last:
             return shape
+    import unicodedata
+
     plain = unicodedata.normalize("NFKD", character).encode("ascii", "ignore").decode()
     return plain or character.encode("ascii", "backslashreplace").decode()
