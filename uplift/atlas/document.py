@@ -12,6 +12,7 @@ from uplift.common.arrays import StrPath
 from uplift.common.errors import AtlasError
 from uplift.common.input_file import read_bytes
 from uplift.common.number_text import parse_float
+from uplift.common.text import printable
 
 MAX_QUOTED = 40
 """Characters of an invalid token or name that a message quotes."""
@@ -53,8 +54,8 @@ class Document:
 
     @property
     def name(self) -> str:
-        """Base name of the file."""
-        return os.path.basename(self.path)
+        """Base name of the file, with characters that are not text as escapes."""
+        return printable(os.path.basename(self.path))
 
     @cached_property
     def lines(self) -> list[str]:

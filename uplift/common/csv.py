@@ -111,5 +111,8 @@ def plain_cell(cell: str) -> str:
 
 
 def _safe_cell(cell: object) -> Any:
-    is_formula = isinstance(cell, str) and _FORMULA.match(cell) and not _NUMBER.fullmatch(cell)
-    return f"'{cell}" if is_formula else cell
+    if not isinstance(cell, str):
+        return cell
+    if not cell.isascii():  # names of files that are not UTF-8
+        cell = cell.encode(errors="backslashreplace").decode()
+    return f"'{cell}" if _FORMULA.match(cell) and not _NUMBER.fullmatch(cell) else cell

@@ -307,7 +307,10 @@ def _status(path: Path) -> os.stat_result | None:
         return None
     except (OSError, ValueError) as error:  # too long, with NUL, or a loop of links
         raise OutputError(
-            f"cannot be written: {error}", code="invalid-file-name", path=path, hint="choose another name"
+            f"cannot be written: {getattr(error, 'strerror', None) or error}",
+            code="invalid-file-name",
+            path=path,
+            hint="choose another name",
         ) from error
 
 

@@ -202,6 +202,13 @@ def _not_a_file(path: Path) -> CubeFileError:
             path=path,
             hint="name a cube file",
         )
+    try:
+        os.stat(path)
+    except PermissionError as error:
+        problem = f"cannot be read: {error.strerror}"
+        return CubeFileError(problem, code="file-unreadable", path=path, hint="check its permissions")
+    except (OSError, ValueError):
+        pass
     return CubeFileError("no such file", code="cube-not-found", path=path, hint="build the cube first")
 
 

@@ -21,6 +21,7 @@ from uplift.common.errors import ColourError, TextureError, UpliftWarning
 from uplift.common.memory import total_memory
 from uplift.io.texture import exr_file
 from uplift.io.texture.colour_profile import Profile, read_profile
+from uplift.io.texture.file_name import utf8_name
 
 FORMATS = ("openexr", "png", "jpeg", "tiff")
 MAX_BAND_BYTES = 1 << 25
@@ -189,7 +190,7 @@ def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
         if start.startswith(exr_file.MAGIC):
             exr_file.check_size(path)
         with _silence(is_png=start.startswith(PNG_SIGNATURE)):
-            handle = OpenImageIO.ImageInput.open(os.fspath(path), config)
+            handle = OpenImageIO.ImageInput.open(utf8_name(path, TextureError), config)
         if handle is None:
             problem = _one_line(OpenImageIO.geterror())
             raise TextureError(problem, code="unreadable-image", hint=FORMAT_HINT)

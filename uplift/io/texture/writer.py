@@ -15,6 +15,7 @@ import numpy as np
 from uplift.common.errors import OutputError, TextureError
 from uplift.common.files import atomic_write
 from uplift.io.texture import exr_file
+from uplift.io.texture.file_name import utf8_name
 from uplift.io.texture.source import Values, Window
 
 ROWS_PER_CHUNK = 16
@@ -83,7 +84,7 @@ class Writer:
         self._handle = handle
         specs = tuple(self._specs) if len(self._specs) > 1 else self._specs[0]
         with _compression_threads(max(part.rows_per_band for part in parts) // ROWS_PER_CHUNK):
-            self._check(self._handle.open(os.fspath(path), specs))
+            self._check(self._handle.open(utf8_name(path, OutputError), specs))
 
     def start_part(self, number: int) -> None:
         """Start a part."""

@@ -12,7 +12,7 @@ import numpy as np
 from uplift.common.arrays import Array, StrPath
 from uplift.lab.study.moments import MomentsStudy, fine_grid
 from uplift.lab.study.technique import TECHNIQUES, Technique
-from uplift.viz.figure import new_figure, style_axes, style_spectrum_axes, write_png
+from uplift.viz.figure import figure_text, new_figure, style_axes, style_spectrum_axes, write_png
 
 FLOATS = 9
 """Numbers stored of the spectra that are drawn, as in figures 4.1 and 4.2 of the thesis."""
@@ -48,7 +48,7 @@ def plot_errors(rows: Mapping[str, Mapping[Technique, Curve]], path: StrPath, *,
     for pair, (name, by_technique) in zip(panels, rows.items(), strict=True):
         for axes, key, title in zip(pair, ("mean", "max"), ("mean", "largest"), strict=True):
             _draw_curves(axes, by_technique, key)
-            axes.set_title(f"{name}: {title}", loc="left", fontsize=10)
+            axes.set_title(figure_text(f"{name}: {title}"), loc="left", fontsize=10)
     for axes in panels[:, 0]:
         axes.set_ylabel("ΔE76 under D65")
     for axes in panels[-1]:
@@ -116,7 +116,7 @@ def _draw_entry(axes: Any, study: MomentsStudy, entry: int) -> None:
     # Dark entries fill their panel, with room for the legend above.
     axes.set_ylim(0, min(1.02, 1.5 * measured.max() + 0.02))
     title = f"{study.names[entry]} ({study.atlases[entry]}), mirrored, {moments + 1} numbers"
-    axes.set_title(title, loc="left", fontsize=10)
+    axes.set_title(figure_text(title), loc="left", fontsize=10)
     axes.legend(frameon=False, fontsize=9)
 
 
