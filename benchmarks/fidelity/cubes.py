@@ -27,6 +27,7 @@ from uplift import fit
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.arrays import Array
+from uplift.cube import contents
 from uplift.lab.study.held_out import HoldoutSplit, holdout, spectrum_errors
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
@@ -71,15 +72,22 @@ def build(name: str | None, **options: object) -> Cube:
 
 
 def at_entries(name: str) -> Iterator[dict[str, Any]]:
-    """Yield the errors of cubes at the colours of their entries."""
+    """Yield the errors of cubes at the colours of their entries, and the size of the cubes' arrays."""
     some = materials(name)
-    for label, cube in {
-        "9 coefficients": build(name),
+    cubes = {f"9 coefficients, entries {count}": build(name, entry_coefficients=count) for count in COUNTS}
+    cubes |= {
         "17 coefficients": build(name, coefficients=17),
         "9, without the atlas": build(None),
         "sigmoid": build(name, model="sigmoid"),
-    }.items():
-        yield {"atlas": name, "cube": label, **errors(cube.reflectance(some.rgb), some)}
+    }
+    for label, cube in cubes.items():
+        size = sum(array.nbytes for array in contents(cube.data)[0].values())
+        yield {
+            "atlas": name,
+            "cube": label,
+            "megabytes": size / 1e6,
+            **errors(cube.reflectance(some.rgb), some),
+        }
 
 
 def halves(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> Iterator[dict[str, Any]]:
