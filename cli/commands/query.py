@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
+import sys
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import click
@@ -25,7 +28,6 @@ from ..params.primaries import parse_primaries
 from ..params.wavelengths import parse_wavelengths
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.gamut import GamutMapped
     from uplift.common.arrays import Array
     from uplift.lookup import Cube, QueryResult
 
@@ -91,69 +93,104 @@ def command(
       uplift query 1.4 0.3 -0.1 --out-of-gamut desaturate
       uplift query --primaries P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
       echo 0.5,0.5,0.5 | uplift query - --format json
+
+    Lines of files and of standard input are answered in blocks as they come. An error in a later block follows the
+    answers to earlier ones.
     """
-    from uplift.colorimetry.gamut import conversion, map_to_gamut
+    from uplift.colorimetry.gamut import conversion
     from uplift.common.files import check_output
-    from uplift.lookup import load, query
+    from uplift.lookup import load
 
     if plot_path is not None:
         check_output(plot_path, inputs=(cube_path, input_path), force=force)
     cube = load(cube_path)
     bounded = method == "error" and primaries is None
-    rgb = _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded)
-    if primaries is not None:
-        rgb = rgb @ conversion(parse_primaries(primaries), cube.data.sensor).T
-    mapped = map_to_gamut(rgb, cube.data.sensor, method)
-    _warn_if_mapped(mapped, method)
-    if fill_missing:
-        cube = _fill_missing(cube, mapped.rgb)
-    results: Iterable[QueryResult] = query(
-        cube, mapped.rgb, parse_wavelengths(wavelengths), mode, requested_rgb=mapped.requested
-    )
+    blocks = _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded)
+    to_cube = None if primaries is None else conversion(parse_primaries(primaries), cube.data.sensor).T
+    answers = _Answers(cube, to_cube, method, parse_wavelengths(wavelengths), mode, fill_missing=fill_missing)
+    results: Iterable[list[QueryResult]] = answers.results(blocks)
     if plot_path is not None:
         from uplift.viz.spectra import plot_spectra
 
         results = list(results)
-        plot_spectra(cube, results, plot_path, force=force)
+        plot_spectra(cube, list(chain.from_iterable(results)), plot_path, force=force)
     WRITERS[style](cube, results, bool(colour) and colour != ("-",))
+    answers.warn()
 
 
-def _warn_if_mapped(mapped: GamutMapped, method: str) -> None:
-    if mapped.count:
-        problem = (
-            f"{mapped.count} of {len(mapped.rgb)} colours lie outside [0, 1]: mapped into the gamut ({method}), "
-            f"a component by up to {mapped.max_change:.3g}"
-        )
-        warnings.warn(UpliftWarning(problem, code="colours-mapped"), stacklevel=1)
+@dataclass
+class _Answers:
+    """Answers to blocks of linear RGB (n, 3), and the numbers of colours that were mapped or filled."""
 
+    cube: Cube
+    to_cube: Array | None
+    method: str
+    wavelengths: Array | None
+    mode: str
+    fill_missing: bool
+    count: int = 0
+    mapped: int = 0
+    filled: int = 0
+    max_change: float = 0.0
 
-def _fill_missing(cube: Cube, rgb: Array) -> Cube:
-    """Fill the cells that the colours need, with a warning that counts the colours."""
-    count = int((~cube.covers(rgb)).sum())
-    if count:
-        problem = f"{count} of {len(rgb)} colours are not in the cube's scene: filled from the packaged cube"
-        warnings.warn(UpliftWarning(problem, code="colours-filled"), stacklevel=1)
-    return cube.fill_missing(rgb)
+    def results(self, blocks: Iterable[Array]) -> Iterator[list[QueryResult]]:
+        """Answer block by block, each before the next one is read."""
+        from uplift.colorimetry.gamut import map_to_gamut
+        from uplift.lookup import query
+
+        for block in blocks:
+            rgb = block if self.to_cube is None else block @ self.to_cube
+            mapped = map_to_gamut(rgb, self.cube.data.sensor, self.method)
+            self.count += len(rgb)
+            self.mapped += mapped.count
+            self.max_change = max(self.max_change, mapped.max_change)
+            if self.fill_missing:
+                self.filled += int((~self.cube.covers(mapped.rgb)).sum())
+                self.cube = self.cube.fill_missing(mapped.rgb)
+            results = query(
+                self.cube, mapped.rgb, self.wavelengths, self.mode, requested_rgb=mapped.requested
+            )
+            yield list(results)
+            sys.stdout.flush()
+
+    def warn(self) -> None:
+        """Warn of colours that were mapped or filled."""
+        if self.mapped:
+            problem = (
+                f"{self.mapped} of {self.count} colours lie outside [0, 1]: mapped into the gamut ({self.method}), "
+                f"a component by up to {self.max_change:.3g}"
+            )
+            warnings.warn(UpliftWarning(problem, code="colours-mapped"), stacklevel=1)
+        if self.filled:
+            count = f"{self.filled} of {self.count} colours"
+            problem = f"{count} are not in the cube's scene: filled from the packaged cube"
+            warnings.warn(UpliftWarning(problem, code="colours-filled"), stacklevel=1)
 
 
 def _read_colours(
     words: tuple[str, ...], path: str | None, cube: Cube, *, encoded: bool, bounded: bool
-) -> Array:
-    """Return linear RGB (n, 3) from arguments, a file or standard input."""
-    from uplift.common.errors import ColourError
-
-    from ..params.colours import from_arguments, from_table
+) -> Iterable[Array]:
+    """Return blocks of linear RGB (n, 3) from arguments, a file or standard input."""
+    from ..params.colours import from_arguments
 
     if words == ("-",):
         words, path = (), path or "-"
     if bool(words) == (path is not None):
         raise click.UsageError("Give one colour, or --input FILE, or '-'. See 'uplift query --help'.")
     if path is None:
-        return from_arguments(words, cube, encoded=encoded)
+        return [from_arguments(words, cube, encoded=encoded)]
+    return _read_file(path, cube, encoded=encoded, bounded=bounded)
+
+
+def _read_file(path: str, cube: Cube, *, encoded: bool, bounded: bool) -> Iterator[Array]:
+    from uplift.common.errors import ColourError
+
+    from ..params.colours import from_table
+
     name = "standard input" if path == "-" else path
     try:
-        with click.open_file(path, encoding="utf-8-sig") as file:
-            return from_table(file, name, cube, encoded=encoded, bounded=bounded)
+        with click.open_file(path, "rb") as file:
+            yield from from_table(file, name, cube, encoded=encoded, bounded=bounded)
     except OSError as error:
         raise ColourError(
             f"cannot be read: {error.strerror}",

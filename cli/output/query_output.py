@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -18,15 +19,16 @@ if TYPE_CHECKING:
 
 BLOCKS = "▁▂▃▄▅▆▇█"
 LARGEST = 1e30
-Writer = Callable[["Cube", Iterable["QueryResult"], bool], None]
+Writer = Callable[["Cube", Iterable[Sequence["QueryResult"]], bool], None]
+"""Prints blocks of results, each before the next one is computed."""
 
 
-def as_json(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
+def as_json(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) -> None:
     """Print one object for a colour given on the command line, else an array."""
     if single:
-        print_json(_object(cube, next(iter(results))), indent=None)
+        print_json(_object(cube, _only(blocks)), indent=None)
         return
-    for number, result in enumerate(results):
+    for number, result in enumerate(chain.from_iterable(blocks)):
         separator = "[\n" if number == 0 else ",\n"
         emit(separator + terminal_json(_object(cube, result)), nl=False)
     emit("\n]")
@@ -48,10 +50,10 @@ def _object(cube: Cube, result: QueryResult) -> dict[str, Any]:
     }
 
 
-def as_csv(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
+def as_csv(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) -> None:
     """Print a row per colour: r, g, b, round-trip ΔE00, standard error, entry, reflectance at each wavelength."""
     writer = csv_writer()
-    for number, result in enumerate(results):
+    for number, result in enumerate(chain.from_iterable(blocks)):
         if number == 0:
             wavelengths = [f"{wavelength:g}" for wavelength in result.wavelengths]
             writer.write(["r", "g", "b", "delta_e_2000", "standard_error", "entry", *wavelengths])
@@ -60,12 +62,17 @@ def as_csv(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
         writer.write([*numbers, result.entry or "", *result.reflectance.tolist()])
 
 
-def as_table(cube: Cube, results: Iterable[QueryResult], single: bool) -> None:
+def as_table(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) -> None:
     """Print a detailed view of a single colour, or a line per colour."""
     if single:
-        _print_details(cube, next(iter(results)))
+        _print_details(cube, _only(blocks))
     else:
-        _print_lines(cube, results)
+        for number, block in enumerate(blocks):
+            _print_lines(cube, block, heading=number == 0)
+
+
+def _only(blocks: Iterable[Sequence[QueryResult]]) -> QueryResult:
+    return next(iter(blocks))[0]
 
 
 def _print_details(cube: Cube, result: QueryResult) -> None:
@@ -129,11 +136,11 @@ def print_columns(wavelengths: Array, reflectance: Array) -> None:
         say("  ".join(cells[line::height]))
 
 
-def _print_lines(cube: Cube, results: Iterable[QueryResult]) -> None:
+def _print_lines(cube: Cube, results: Sequence[QueryResult], *, heading: bool) -> None:
     from rich.text import Text
 
     headings = ("", "hex", "linear RGB", "ΔE00", "atlas entry", "spectrum")
-    table = make_table(headings, box=None, pad_edge=False)
+    table = make_table(headings, box=None, pad_edge=False, show_header=heading)
     for result in results:
         red, green, blue = display_codes(cube, result.rgb)
         table.add_row(

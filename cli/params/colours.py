@@ -5,13 +5,15 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
 from uplift.common.errors import ColourError
 from uplift.common.number_text import parse_float
 from uplift.common.quoting import format_value
+
+from .text_lines import HINT, line_blocks
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -39,20 +41,24 @@ def from_arguments(words: Sequence[str], cube: Cube, *, encoded: bool) -> Array:
     return _linear([colour], cube, encoded=encoded)
 
 
-def from_table(file: IO[str], name: str, cube: Cube, *, encoded: bool, bounded: bool) -> Array:
-    """Parse lines of 'r,g,b' or hex colours into linear RGB (n, 3).
+def from_table(file: IO[bytes], name: str, cube: Cube, *, encoded: bool, bounded: bool) -> Iterator[Array]:
+    """Parse lines of 'r,g,b' or hex colours into blocks of linear RGB (n, 3), as the lines come.
 
     A first line without numbers is a header. Further columns are ignored. Linear RGB must lie in [0, 1] if ``bounded``.
     Raises `ColourError` with the line.
     """
-    colours = {line: _parse_row(row, name, line) for line, row in _rows(file, name)}
-    if not colours:
+    empty = True
+    for lines in line_blocks(file, name):
+        colours = {line: _parse_row(row, name, line) for line, row in _rows(lines, name)}
+        for line, colour in colours.items():
+            _check_range(colour, name, line, encoded=encoded or colour.encoded, bounded=bounded)
+        if colours:
+            empty = False
+            yield _linear(list(colours.values()), cube, encoded=encoded)
+    if empty:
         raise ColourError(
             "has no colours", code="no-colours", path=name, hint="give lines of r,g,b or of hex colours"
         )
-    for line, colour in colours.items():
-        _check_range(colour, name, line, encoded=encoded or colour.encoded, bounded=bounded)
-    return _linear(list(colours.values()), cube, encoded=encoded)
 
 
 def _check_range(colour: Colour, name: str, line: int, *, encoded: bool, bounded: bool) -> None:
@@ -72,19 +78,16 @@ def _check_range(colour: Colour, name: str, line: int, *, encoded: bool, bounded
         raise ColourError(f"{values} is not finite", code="rgb-not-finite", path=name, line=line, hint=SYNTAX)
 
 
-def _rows(file: IO[str], name: str) -> Iterable[tuple[int, list[str]]]:
+def _rows(lines: Iterable[tuple[int, str]], name: str) -> Iterator[tuple[int, list[str]]]:
     """Yield the line number and the cells that are not empty, of all rows but the header."""
-    hint = "give a CSV file of colours"
-    try:
-        for line, text in enumerate(file, 1):
+    for line, text in lines:
+        try:
             cells = re.split(r"[;\t ]+", text.strip()) if "," not in text else next(csv.reader([text]))
-            row = [cell.strip() for cell in cells if cell.strip()]
-            if row and not (line == 1 and _is_header(row)):
-                yield line, row
-    except UnicodeDecodeError as error:
-        raise ColourError("is not a text file", code="not-text", path=name, hint=hint) from error
-    except csv.Error as error:
-        raise ColourError(str(error), code="invalid-csv", path=name, line=line, hint=hint) from error
+        except csv.Error as error:
+            raise ColourError(str(error), code="invalid-csv", path=name, line=line, hint=HINT) from error
+        row = [cell.strip() for cell in cells if cell.strip()]
+        if row and not (line == 1 and _is_header(row)):
+            yield line, row
 
 
 def _is_header(row: list[str]) -> bool:

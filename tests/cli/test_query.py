@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import json
 import math
+import os
 import subprocess
 import sys
 
@@ -14,6 +16,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 from uplift_cli.output.hints import hint_for
+from uplift_cli.params.text_lines import line_blocks
 
 import uplift
 
@@ -234,7 +237,7 @@ def test_files_with_one_colour_give_an_array(ask, table):
         ("0,0,0\n# a remark\n", 2, "invalid-colour"),
         ("0,0,0\n0,1.5,0\n", 2, "rgb-out-of-gamut"),
         ("0,0,nan\n", 1, "rgb-out-of-gamut"),
-        ("0,0," + "x" * 200_000, 1, "invalid-csv"),
+        ("0,0," + "x" * 200_000, 1, "line-too-long"),
         ("0,0 0," + "x" * 2000, 1, "invalid-colour"),
         ("", None, "no-colours"),
         ("r,g,b\n", None, "no-colours"),
@@ -398,7 +401,7 @@ def test_queries_import_no_slow_packages(style):
     code = (
         "import sys, atexit\n"
         "from uplift_cli.main import main\n"
-        "slow = {'jax', 'colour', 'scipy', 'matplotlib'}\n"
+        "slow = {'jax', 'colour', 'scipy', 'matplotlib', 'pydantic'}\n"
         f"slow |= {{'rich'}} if {style!r} != 'table' else set()\n"
         "atexit.register(lambda: print(sorted(slow & set(sys.modules)), file=sys.stderr))\n"
         f"main(['query', '#cc3319', '--format', {style!r}])"
@@ -414,3 +417,43 @@ def test_queries_import_no_slow_packages(style):
 def test_json_has_only_finite_numbers(run, colour):
     answer = json.loads(run("query", colour, "--format", "json").stdout, parse_constant=pytest.fail)
     assert all(math.isfinite(value) for value in answer["reflectance"])
+
+
+@pytest.mark.parametrize("style", ["json", "csv", "table"])
+def test_lines_of_a_stream_are_answered_as_they_come(style):
+    command = [
+        sys.executable,
+        "-m",
+        "uplift_cli",
+        "query",
+        "-",
+        "--format",
+        style,
+        "--wavelengths",
+        "500,600",
+    ]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as query:
+        for line in (b"#cc3319\n", b"0.5,0.5,0.5\n"):
+            query.stdin.write(line)
+            query.stdin.flush()
+            answer = query.stdout.read1()  # hangs if the answer waits for the end of the stream
+            while answer.count(b"0.") < 2:
+                answer += query.stdout.read1()
+        query.stdin.close()
+        query.stdout.read()
+        assert query.wait() == 0
+
+
+@pytest.mark.parametrize("chunk", [1, 2, 3, 5, 1000])
+def test_lines_and_their_numbers_do_not_depend_on_the_blocks(monkeypatch, chunk):
+    monkeypatch.setattr("uplift_cli.params.text_lines.CHUNK", chunk)
+    text = "\ufeffr,g,b\r\n0.1,0.2,0.3\r\u00e9\n\n0.5,0.5,0.5"
+    blocks = list(line_blocks(io.BytesIO(text.encode()), "colours.csv"))
+    lines = ["r,g,b", "0.1,0.2,0.3", "\u00e9", "", "0.5,0.5,0.5"]
+    assert list(itertools.chain.from_iterable(blocks)) == list(enumerate(lines, 1))
+    assert len(blocks) > 2 or chunk == 1000
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="needs /dev/zero")
+def test_an_endless_line_is_an_error(refuse):
+    assert refuse("query", "--input", "/dev/zero").code == "line-too-long"
