@@ -18,7 +18,8 @@ from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
-from uplift.fit.grow import grow
+from uplift.common.progress import ignore_progress
+from uplift.fit.grow import grow_from_prior
 from uplift.fit.store import MAX_LOSS
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, Sigmoid, evaluate
@@ -82,7 +83,8 @@ def _fitted(problem: fit.Problem, sensor: Sensor) -> tuple[Array, Array]:
         problem.model, problem.forward, nothing, np.empty((0, 3)), [sensor.light], light, problem.tolerance
     )
     prior = fit.fit_prior(problem, sensor, entries, light)
-    grown = grow(problem, lambda points: prior(problem.goal(points)), lambda done: None)
+    nobody = np.zeros(0, dtype=np.int64)
+    grown = grow_from_prior(problem, lambda points: prior(problem.goal(points)), nobody, ignore_progress)
     return problem.model.to_storage(grown.multipliers), grown.distance
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import uplift
 
-HEAVY = "{'numpy', 'jax', 'colour', 'scipy', 'safetensors', 'matplotlib', 'click', 'rich'}"
+HEAVY = "{'numpy', 'jax', 'equinox', 'optimistix', 'colour', 'scipy', 'safetensors', 'matplotlib', 'click', 'rich'}"
 
 
 def run_python(code):
@@ -53,7 +53,15 @@ def test_build_without_scene_loads_only_the_pipeline_and_the_core():
 def test_query_loads_only_the_numpy_part_of_the_core():
     subpackages, modules = loaded_subpackages(QUERY)
     assert subpackages == CORE
-    assert not modules & {"uplift.colorimetry.observer", "uplift.lookup.bulk", "colour", "scipy", "jax"}
+    assert not modules & {
+        "uplift.colorimetry.observer",
+        "uplift.lookup.bulk",
+        "colour",
+        "scipy",
+        "jax",
+        "equinox",
+        "optimistix",
+    }
 
 
 @pytest.mark.parametrize("subpackage", ["io", "viz", "report", "scene", "design", "lab"])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from uplift import build, load
-from uplift.fit.batch import CPU_BATCH_ROWS, batches
+from uplift.fit.batch import CPU_BATCH_ROWS, batches, shard
 
 LARGE, SMALL = CPU_BATCH_ROWS
 
@@ -30,12 +30,14 @@ LARGE, SMALL = CPU_BATCH_ROWS
 )
 def test_every_row_is_in_one_batch(count, smaller, sizes):
     rows = np.arange(count) + 7
-    parts = list(batches(rows, smaller))
-    np.testing.assert_array_equal(np.concatenate([rows[:0], *(part for part, _ in parts)]), rows)
-    assert [len(padded) for _, padded in parts] == sizes
-    for part, padded in parts:
-        np.testing.assert_array_equal(padded[: len(part)], part)
-        assert set(padded[len(part) :]) <= {part[-1]}
+    parts = list(batches(count, smaller))
+    np.testing.assert_array_equal(np.concatenate([rows[:0], *(rows[part] for part, _ in parts)]), rows)
+    assert [width for _, width in parts] == sizes
+    for part, width in parts:
+        padded = np.asarray(shard(rows[part], width))
+        np.testing.assert_array_equal(padded[: len(rows[part])], rows[part])
+        assert len(padded) == width
+        assert set(padded[len(rows[part]) :]) <= {rows[part][-1]}
 
 
 SEVERAL = """

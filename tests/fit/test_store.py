@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -10,10 +9,12 @@ import pytest
 
 from uplift import fit
 from uplift.colorimetry import observer
+from uplift.common.progress import ignore_progress
+from uplift.fit.growth import Growth
 from uplift.fit.store import MAX_LOSS, store
 from uplift.lattice import Lattice
 from uplift.models import Moments
-from uplift.models.minimum_norm import forward_map
+from uplift.models.minimum_norm import forward_map, residual
 
 DIM = 9
 
@@ -36,10 +37,19 @@ def greys(problem, level):
     return np.tan(np.pi * (np.asarray(level) - 0.5))[:, None] * problem.model.constant()
 
 
+def grown(problem, multipliers, progress=ignore_progress):
+    """Growth that ended with multipliers (n, C)."""
+    growth = Growth(problem, progress)
+    growth.multipliers[:] = multipliers
+    off = residual(problem.model, problem.forward, multipliers, problem.lattice.points)
+    growth.distance[:], growth.rgb[:] = np.abs(off).max(axis=1), problem.lattice.points - off
+    return growth
+
+
 def test_single_precision_is_used_where_it_is_accurate(problem):
-    multipliers = greys(problem, np.linspace(0.01, 0.99, DIM**3))
+    multipliers = greys(problem, np.linspace(0.001, 0.999, DIM**3))
     here = distance(problem, problem.model.to_storage(multipliers))
-    stored = store(problem, multipliers.copy(), here, lambda done: None)
+    stored = store(grown(problem, multipliers))
     assert stored.coefficients.dtype == np.float32
     np.testing.assert_allclose(stored.distance, distance(problem, stored.coefficients), atol=1e-6)
     assert (stored.distance <= here + MAX_LOSS * problem.threshold).all()
@@ -47,19 +57,19 @@ def test_single_precision_is_used_where_it_is_accurate(problem):
 
 def test_double_precision_is_used_where_single_is_inaccurate(problem, monkeypatch):
     """The threshold is so small that rounding exceeds it in the last block: all points are evaluated again."""
-    monkeypatch.setattr(sys.modules[store.__module__], "BLOCK_POINTS", 256)
+    monkeypatch.setattr("uplift.fit.growth.BLOCK_POINTS", 256)
     strict = replace(problem, threshold=1e-7)
-    multipliers = greys(problem, np.concatenate([np.full(DIM**3 - 9, 0.5), np.linspace(0.9, 0.99, 9)]))
+    multipliers = greys(problem, np.concatenate([np.full(DIM**3 - 9, 0.5), np.linspace(0.99, 0.9999, 9)]))
     coefficients = problem.model.to_storage(multipliers)
     here = distance(problem, coefficients)
-    stored = store(strict, multipliers.copy(), here, lambda done: None)
+    stored = store(grown(strict, multipliers))
     assert stored.coefficients.dtype == np.float64
     np.testing.assert_allclose(stored.coefficients, coefficients, atol=1e-12)
     np.testing.assert_allclose(stored.distance, here, atol=1e-7)
 
 
 def test_progress_is_reported_for_every_block(problem, monkeypatch):
-    monkeypatch.setattr(sys.modules[store.__module__], "BLOCK_POINTS", 256)
+    monkeypatch.setattr("uplift.fit.growth.BLOCK_POINTS", 256)
     events = []
-    store(problem, greys(problem, np.full(DIM**3, 0.5)), np.full(DIM**3, np.inf), events.append)
+    store(grown(problem, greys(problem, np.full(DIM**3, 0.5)), events.append))
     assert [done.done for done in events] == [256, 512, 729]

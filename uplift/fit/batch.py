@@ -3,52 +3,50 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jax
 import numpy as np
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
-from uplift.common.arrays import Indices
-
-if TYPE_CHECKING:
-    from uplift.common.arrays import Array
+from uplift.common.arrays import Array
 
 CPU_BATCH_ROWS, ACCELERATOR_BATCH_ROWS = (2048, 64), (1 << 17, 4096)
 """Rows per device: a large batch that fills a core's cache or keeps a GPU busy, and a small one for short rounds."""
 
 
-def batches(rows: Indices, max_small: int = 4) -> Iterator[tuple[Indices, Indices]]:
+def batches(count: int, max_small: int = 4) -> Iterator[tuple[slice, int]]:
     """Split rows into large batches and a remainder.
 
     Parameters
     ----------
-    rows : ndarray of int, shape (n,)
-        Row numbers.
+    count : int
+        Number of rows.
     max_small : int, default 4
         The remainder is split into at most this many small batches; a longer one becomes a large batch.
 
     Yields
     ------
-    batch : ndarray of int
-        Row numbers of one batch.
-    padded : ndarray of int
-        The same, with the last row repeated up to the fixed size of the batch.
+    rows : slice
+        Rows of one batch.
+    width : int
+        Fixed number of rows that `shard` pads them to.
     """
     devices = len(jax.devices())
     sizes = CPU_BATCH_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_BATCH_ROWS
     large, small = (devices * size for size in sizes)
-    filled = len(rows) // large * large
-    remainder = large if len(rows) - filled > max_small * small else small
-    for first, last, width in ((0, filled, large), (filled, len(rows), remainder)):
+    filled = count // large * large
+    remainder = large if count - filled > max_small * small else small
+    for first, last, width in ((0, filled, large), (filled, count, remainder)):
         for begin in range(first, last, width):
-            batch = rows[begin : min(begin + width, last)]
-            yield batch, np.concatenate([batch, np.full(width - len(batch), batch[-1])])
+            yield slice(begin, min(begin + width, last)), width
 
 
-def shard(array: Array) -> Any:
-    """Distribute the rows of a batch over the devices."""
-    return _place(array, "rows") if len(jax.devices()) > 1 else array
+def shard(rows: Array, width: int) -> Any:
+    """Distribute the rows of a batch over the devices, with the last one repeated up to ``width``."""
+    missing = width - len(rows)
+    padded = np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) if missing else rows
+    return _place(padded, "rows") if len(jax.devices()) > 1 else padded
 
 
 def replicate(constants: Any) -> Any:

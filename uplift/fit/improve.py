@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array, Indices
+from uplift.fit.growth import Growth
 from uplift.fit.problem import Problem
+from uplift.lattice import NOT_FITTED
 
 MAX_PASSES = 192
 NUDGE = 0.5
@@ -85,22 +87,19 @@ STEPS: dict[str, Start] = {
 }
 
 
-def improve(problem: Problem, multipliers: Array, distance: Array) -> tuple[Improvement, ...]:
-    """Improve multipliers (n, C) and distances (n,) in place.
+def improve(growth: Growth) -> tuple[Improvement, ...]:
+    """Improve points in place.
 
     Each step tries the points that are still over the threshold; no distance increases.
     """
-    done = []
+    problem, done = growth.problem, []
     for name, start in STEPS.items():
-        points = problem.points[distance[problem.points] > problem.threshold]
+        points = problem.points[growth.distance[problem.points] > problem.threshold]
         if not points.size:
             break
-        begin = start(multipliers[points], _nearer_extreme(problem, points))
-        found = problem.solve(problem.goal(points), begin, MAX_PASSES)
-        better = found.distance < distance[points]
-        multipliers[points[better]] = found.multipliers[better]
-        distance[points[better]] = found.distance[better]
-        fixed = int((distance[points] <= problem.threshold).sum())
+        begin = start(growth.multipliers[points], _nearer_extreme(problem, points))
+        growth.attempt(points, begin, NOT_FITTED, max_passes=MAX_PASSES)
+        fixed = int((growth.distance[points] <= problem.threshold).sum())
         done.append(Improvement(name, len(points), fixed))
     return tuple(done)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from uplift.common.arrays import Array, Indices
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.fit.grow import grow
+from uplift.fit.grow import grow_from_prior
 from uplift.fit.improve import Improvement, improve
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
@@ -63,15 +63,15 @@ def fit_lattice(
     entry = np.full(problem.lattice.size, NO_ENTRY, dtype=np.int32)
     entry[seeds.points] = seeds.entry
 
-    def start(points: Indices) -> Array:
+    def expected(points: Indices) -> Array:
         multipliers = prior(problem.goal(points))
         seeded = entry[points] != NO_ENTRY
         multipliers[seeded] = entries[entry[points[seeded]]]
         return multipliers
 
-    grown = grow(problem, start, progress)
-    improvements = improve(problem, grown.multipliers, grown.distance)
-    stored = store(problem, grown.multipliers, grown.distance, progress)
+    grown = grow_from_prior(problem, expected, seeds.points, progress)
+    improvements = improve(grown)
+    stored = store(grown)
     status = np.full(problem.lattice.size, Status.REGULAR, dtype=np.uint8)
     status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
     status[grown.round == NOT_FITTED] = Status.IMPROVED

@@ -48,7 +48,9 @@ def lattice_error(
     """
     seeds = seed(lattice, entries.rgb)
     start, target = entries.multipliers[seeds.entry], lattice.points[seeds.points]
-    found = solve(model, forward, start, target, tolerance=tolerance, max_passes=MAX_PASSES).multipliers
+    found = solve(
+        model, forward, start, target, tolerance=tolerance, max_passes=MAX_PASSES, prior=start
+    ).multipliers
     spectra, own = (
         np.asarray(model.squash(matmul_rows(each, forward.basis.T))) for each in (found, entries.multipliers)
     )

@@ -94,7 +94,7 @@ class Problem:
         goal[found] = self.unrealisable.nearest[row[found]]
         return goal
 
-    def solve(self, target: Array, start: Array, max_passes: int) -> Solution:
+    def solve(self, target: Array, start: Array, max_passes: int, prior: Array | None = None) -> Solution:
         """Solve for multipliers that have given colours.
 
         Parameters
@@ -105,10 +105,20 @@ class Problem:
             Multipliers to start from.
         max_passes : int
             Limit of the number of passes.
+        prior : ndarray, shape (k, C), optional
+            Multipliers to change least. By default each step changes the current ones least.
 
         Returns
         -------
         Solution
             Multipliers and their distances.
         """
-        return solve(self.model, self.forward, start, target, tolerance=self.tolerance, max_passes=max_passes)
+        return solve(
+            self.model,
+            self.forward,
+            start,
+            target,
+            tolerance=self.tolerance,
+            max_passes=max_passes,
+            prior=prior,
+        )

@@ -14,7 +14,7 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.fit.base import Base
-from uplift.fit.quadrature_jit import quadrature_jit
+from uplift.fit.quadrature_jit import COMPILED
 from uplift.fit.solve import solve
 from uplift.fit.unrealisable import NONE, Unrealisable
 from uplift.lattice import Lattice, weighted_sum
@@ -84,7 +84,7 @@ def smooth(
     goal = TABLE.points.copy()
     goal[outside.points] = outside.nearest
     found = solve(model, forward, _grey(model, goal, grey), goal, tolerance=1e-5, max_passes=8)
-    return Smooth(model, TABLE, model.to_storage(found.multipliers, quadrature_jit), brightening, grey)
+    return Smooth(model, TABLE, model.to_storage(found.multipliers, COMPILED), brightening, grey)
 
 
 def _grey(model: Model, rgb: Array, power: float) -> Array:

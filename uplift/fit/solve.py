@@ -1,39 +1,35 @@
 """Solve many small least-squares problems: multipliers whose spectra have given colours (docs/mathematics.md, 5).
 
-Problems are solved in batches of fixed shapes, a few damped steps per pass. Converged problems leave the batch.
+Problems are solved in batches of fixed shapes, a few steps of `LeastChange` per pass. Converged problems leave the
+batch.
 """
 
 from __future__ import annotations
 
-from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
+from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
 from uplift.fit.batch import batches, replicate, shard
+from uplift.fit.least_change import FIRST_DAMPING, LeastChange
 from uplift.models import Model
-from uplift.models.minimum_norm import ForwardMap, minimum_norm_step, residual
-from uplift.models.roots import MAX_MULTIPLIER
+from uplift.models.minimum_norm import ForwardMap, residual
 
-STEPS, MORE_STEPS = 2, 8
-"""Damped steps per pass. Of many problems most converge within two; with few, the overhead of a pass dominates."""
+STEPS, MORE_STEPS = 1, 8
+"""Steps per pass. Of many problems most converge within one; with few, the overhead of a pass dominates."""
 FEW = 1024
 """Number of problems up to which a pass takes `MORE_STEPS`."""
 MAX_SMALL_BATCHES = 12
 """Small batches that are cheaper than a large one, which runs until its last problem converges."""
-FIRST_DAMPING = 1e-6
-"""Initial μ; divided by four after a successful step, multiplied by four after a rejected one."""
 MIN_GAIN, PATIENCE = 1e-3, 8
 """A problem is abandoned after `PATIENCE` consecutive passes that each reduce its distance by less than `MIN_GAIN`.
 
 Otherwise unrealisable points, frequent in wide gamuts, would remain until the last pass.
 """
-
-State = tuple[jax.Array, jax.Array, jax.Array, jax.Array]
-"""Step count, multipliers, damping, residual."""
 
 
 class Solution(NamedTuple):
@@ -41,12 +37,26 @@ class Solution(NamedTuple):
 
     multipliers: Array
     """(n, C) multipliers."""
-    distance: Array
-    """(n,) max |target − RGB|."""
+    residual: Array
+    """(n, 3) target minus RGB."""
+    steps: NDArray[np.int64]
+    """(n,) steps taken."""
+
+    @property
+    def distance(self) -> Array:
+        """(n,) max |target − RGB|."""
+        return np.asarray(np.abs(self.residual).max(axis=1))
 
 
 def solve(
-    model: Model, forward: ForwardMap, start: Array, target: Array, *, tolerance: float, max_passes: int
+    model: Model,
+    forward: ForwardMap,
+    start: Array,
+    target: Array,
+    *,
+    tolerance: float,
+    max_passes: int,
+    prior: Array | None = None,
 ) -> Solution:
     """Solve for multipliers that have given colours.
 
@@ -66,61 +76,97 @@ def solve(
         Distance at which a problem is solved.
     max_passes : int
         Limit of the number of passes.
+    prior : ndarray, shape (n, C), optional
+        Multipliers to change least. By default each step changes the current ones least, which is more robust far
+        from the answer.
 
     Returns
     -------
     Solution
-        Multipliers and their distances.
+        Multipliers, residuals and numbers of steps.
     """
-    multipliers, damping = start.copy(), np.full(len(start), FIRST_DAMPING)
-    distance = np.full(len(start), np.inf)
-    stale = np.zeros(len(start), dtype=np.int64)
-    pending = np.arange(len(start))
+    count = len(start)
+    found = Solution(start.copy(), np.full((count, 3), np.inf), np.zeros(count, dtype=np.int64))
+    rows, stale = np.arange(count), np.zeros(count, dtype=np.int64)
+    anchor, pull = (start, np.zeros(count)) if prior is None else (prior, np.ones(count))
+    given = _Given(start, anchor, np.full(count, FIRST_DAMPING), pull, target)
     with jax.enable_x64(True):
-        constants = replicate(forward)
+        solver = replicate(LeastChange(model, forward, tolerance))
         for _ in range(max_passes):
-            before = distance[pending]
-            steps = MORE_STEPS if len(pending) <= FEW else STEPS
-            for rows, padded in batches(pending, MAX_SMALL_BATCHES):
-                batch = (shard(array[padded]) for array in (multipliers, damping, target))
-                found = _advance(model, constants, *batch, tolerance, steps)
-                for array, part in zip((multipliers, damping, distance), found, strict=True):
-                    array[rows] = np.asarray(part)[: len(rows)]
-            stale[pending] = np.where(distance[pending] > (1 - MIN_GAIN) * before, stale[pending] + 1, 0)
-            pending = pending[(distance[pending] > tolerance) & (stale[pending] < PATIENCE)]
-            if not pending.size:
+            before = np.abs(found.residual[rows]).max(axis=1)
+            after = _pass(solver, given)
+            found.multipliers[rows], found.residual[rows] = after.multipliers, after.residual
+            found.steps[rows] += after.steps
+            distance = np.abs(after.residual).max(axis=1)
+            stale = np.where(distance > (1 - MIN_GAIN) * before, stale + 1, 0)
+            kept = (distance > tolerance) & (stale < PATIENCE)
+            if not kept.any():
                 break
-    return Solution(multipliers, distance)
+            rows, stale = rows[kept], stale[kept]
+            unsolved = (after.multipliers, given.prior, after.damping, after.pull, given.target)
+            given = _Given(*(array[kept] for array in unsolved))
+    return found
 
 
-@partial(jax.jit, static_argnums=0)
-def _advance(
-    model: Model,
-    forward: ForwardMap,
-    multipliers: jax.Array,
-    damping: jax.Array,
-    target: jax.Array,
-    tolerance: float,
-    steps: int,
-) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Take up to ``steps`` damped steps; a step is accepted where it reduces the squared distance."""
+class _Given(NamedTuple):
+    """State of k problems before a pass."""
 
-    def damped_step(state: State) -> State:
-        count, current, damping, off = state
-        trial = current + minimum_norm_step(model, forward, current, off, damping)
-        trial_off = residual(model, forward, trial, target)
-        better = ((trial_off**2).sum(axis=1) < (off**2).sum(axis=1)) & (
-            abs(trial).max(axis=1) <= MAX_MULTIPLIER
-        )
-        active = abs(off).max(axis=1) > tolerance
-        accept = (better & active)[:, None]
-        damping = jnp.where(better, damping / 4, damping * 4)
-        return count + 1, jnp.where(accept, trial, current), damping, jnp.where(accept, trial_off, off)
+    multipliers: Array
+    prior: Array
+    damping: Array
+    pull: Array
+    target: Array
 
-    def unfinished(state: State) -> jax.Array:
-        count, *_, off = state
-        return (count < steps) & (abs(off).max() > tolerance)
 
-    begin = (jnp.asarray(0), multipliers, damping, residual(model, forward, multipliers, target))
-    _, multipliers, damping, off = jax.lax.while_loop(unfinished, damped_step, begin)
-    return multipliers, damping, abs(off).max(axis=1)
+class _After(NamedTuple):
+    """State of k problems after a pass."""
+
+    multipliers: Any
+    residual: Any
+    damping: Any
+    pull: Any
+    steps: Any
+
+
+def _pass(solver: LeastChange, given: _Given) -> _After:
+    """Take some steps in every problem, batch by batch."""
+    count, columns = given.multipliers.shape
+    after = _After(
+        np.empty((count, columns)),
+        np.empty((count, 3)),
+        np.empty(count),
+        np.empty(count),
+        np.empty(count, dtype=np.int64),
+    )
+    steps = MORE_STEPS if count <= FEW else STEPS
+    for rows, width in batches(count, MAX_SMALL_BATCHES):
+        result = _advance(solver, _Given(*(shard(array[rows], width) for array in given)), steps)
+        for array, part in zip(after, result, strict=True):
+            array[rows] = np.asarray(part)[: rows.stop - rows.start]
+    return after
+
+
+@jax.jit
+def _advance(solver: LeastChange, given: _Given, steps: int) -> _After:
+    """Take up to ``steps`` steps in a batch."""
+    options = {"prior": given.prior, "damping": given.damping, "pull": given.pull}
+    tags: frozenset[object] = frozenset()
+
+    def off(y: jax.Array, args: jax.Array) -> tuple[jax.Array, None]:
+        return residual(solver.model, solver.forward, y, args), None
+
+    def step(carry: Any) -> Any:
+        count, taken, y, state = carry
+        taken = taken + ~solver.solved(state)
+        y, state, _ = solver.step(off, y, given.target, options, state, tags)
+        return count + 1, taken, y, state
+
+    def unfinished(carry: Any) -> jax.Array:
+        count, _, y, state = carry
+        return (count < steps) & ~solver.terminate(off, y, given.target, options, state, tags)[0]
+
+    state = solver.init(off, given.multipliers, given.target, options, None, None, tags)
+    taken = jnp.zeros(len(given.multipliers), dtype=jnp.int64)
+    begin = (jnp.asarray(0), taken, given.multipliers, state)
+    _, taken, y, state = jax.lax.while_loop(unfinished, step, begin)
+    return _After(y, state.residual, state.damping, state.pull, taken)

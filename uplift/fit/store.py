@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -11,15 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices
-from uplift.common.progress import Progress, ProgressCallback
+from uplift.common.progress import Progress
 from uplift.fit.batch import batches, replicate, shard
+from uplift.fit.growth import Growth, blocks
 from uplift.fit.problem import Problem
-from uplift.fit.quadrature_jit import quadrature_jit
+from uplift.fit.quadrature_jit import COMPILED
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_rgb
 
-BLOCK_POINTS = 1 << 15
-"""Points processed at a time."""
 SINGLE: np.dtype[Any] = np.dtype(np.float32)
 DOUBLE: np.dtype[Any] = np.dtype(np.float64)
 MAX_LOSS = 0.1
@@ -37,24 +35,30 @@ class StoredPoints(NamedTuple):
     """(n,) max |goal − RGB|."""
 
 
-def store(problem: Problem, multipliers: Array, distance: Array, progress: ProgressCallback) -> StoredPoints:
-    """Convert multipliers (n, C) with distances (n,) to coefficients.
+def store(growth: Growth) -> StoredPoints:
+    """Convert the multipliers of growth to coefficients.
 
-    The coefficients are float32 if that is accurate enough for every point, else float64 for all. The array of
-    multipliers is overwritten, as memory for both may not suffice.
+    The coefficients are float32 if that is accurate enough for every point, else float64 for all. Where rounding them
+    cannot change the colour (`Model.rounds_safely`), the colour is that of the solver; elsewhere it is evaluated anew.
+    The multipliers are overwritten, as memory for both may not suffice.
     """
-    model, size, kind, points = problem.model, len(multipliers), SINGLE, problem.points
-    stored = StoredPoints(
-        multipliers, np.zeros((size, 3), dtype=np.float32), np.zeros(size, dtype=np.float32)
-    )
-    for done, block in _blocks(points):
-        stored.coefficients[block] = model.to_storage(multipliers[block], quadrature_jit)
-        _evaluate(problem, stored, block, kind)
-        if kind == SINGLE and (stored.distance[block] > distance[block] + MAX_LOSS * problem.threshold).any():
+    problem, kind = growth.problem, SINGLE
+    model, points = problem.model, problem.points
+    stored = StoredPoints(growth.multipliers, growth.rgb, np.zeros(len(growth.rgb), dtype=np.float32))
+    sensitive = [points[:0]]
+    for block in blocks(points):
+        multipliers = growth.multipliers[block]
+        safe = model.rounds_safely(multipliers)
+        stored.coefficients[block] = model.to_storage(multipliers, COMPILED)
+        stored.distance[block] = growth.distance[block]
+        sensitive.append(block[~safe])
+        _evaluate(problem, stored, sensitive[-1], kind)
+        limit = growth.distance[sensitive[-1]] + MAX_LOSS * problem.threshold
+        if kind == SINGLE and (stored.distance[sensitive[-1]] > limit).any():
             kind = DOUBLE
-            for _, earlier in _blocks(points[:done]):
+            for earlier in sensitive:
                 _evaluate(problem, stored, earlier, kind)
-        progress(Progress("store", done, len(points)))
+        growth.progress(Progress("store", int(np.searchsorted(points, block[-1])) + 1, len(points)))
     return stored._replace(coefficients=stored.coefficients.astype(kind, copy=False))
 
 
@@ -64,21 +68,15 @@ def _evaluate(problem: Problem, stored: StoredPoints, block: Indices, kind: np.d
     stored.rgb[block], stored.distance[block] = rgb, np.abs(problem.goal(block) - rgb).max(axis=1)
 
 
-def _blocks(points: Indices) -> Iterator[tuple[int, Indices]]:
-    """Blocks of points, each with the number of points up to its end."""
-    for first in range(0, len(points), BLOCK_POINTS):
-        block = points[first : first + BLOCK_POINTS]
-        yield first + len(block), block
-
-
 def rgb_of(problem: Problem, multipliers: Array) -> Array:
     """Linear RGB (n, 3) of multipliers (n, C)."""
     rgb = np.empty((len(multipliers), 3))
     with jax.enable_x64(True):
         forward = replicate(problem.forward)
-        for rows, padded in batches(np.arange(len(multipliers))):
-            found = _forward_rgb(problem.model, forward, shard(multipliers[padded]))
-            rgb[rows] = np.asarray(found)[: len(rows)]
+        for rows, width in batches(len(multipliers)):
+            part = rgb[rows]
+            found = _forward_rgb(problem.model, forward, shard(multipliers[rows], width))
+            part[:] = np.asarray(found)[: len(part)]
     return rgb
 
 

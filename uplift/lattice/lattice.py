@@ -263,6 +263,25 @@ class Lattice:
             cells[: self.dim - r, : self.dim - g, : self.dim - b] &= points.reshape(self.shape)[r:, g:, b:]
         return cells.ravel()
 
+    def thinned(self, stride: int) -> tuple[Lattice, Indices]:
+        """Return the coarser lattice of every ``stride``-th node and the last.
+
+        Parameters
+        ----------
+        stride : int
+            Steps between its nodes, at least 1.
+
+        Returns
+        -------
+        coarse : Lattice
+            The coarser lattice.
+        points : ndarray of int, shape (coarse.size,)
+            Numbers that its points have in this lattice.
+        """
+        kept = np.append(np.arange(0, self.dim - 1, stride), self.dim - 1)
+        grid = np.meshgrid(kept, kept, kept, indexing="ij")
+        return Lattice(self.nodes[kept]), self.index(np.stack(grid, axis=-1).reshape(-1, 3))
+
     def neighbours(self, index: Indices) -> tuple[Indices, Mask]:
         """Return the neighbours of points, diagonal ones included.
 

@@ -11,6 +11,7 @@ ACM TOG 38(4). docs/mathematics.md, 4.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import numpy as np
@@ -24,10 +25,8 @@ from uplift.models.roots import moments_by_roots
 RealOrComplex = TypeVar("RealOrComplex", bound=Array | Complex)
 """Real for a mirrored signal, which is even in the phase; complex on the full circle."""
 
-_FIRST_NODES = 32
-_MAX_NODES = 1 << 12
-_CONVERGED = 1e-8
-"""Change by doubling the nodes at which the rule has converged."""
+_FIRST_NODES = 48
+_MAX_NODES = 96 << 6
 _SAMPLES = 1 << 18
 """Samples in memory at a time."""
 _ROWS = 1 << 12
@@ -50,7 +49,7 @@ def fourier_basis(phase: Array, count: int) -> Complex:
     return table
 
 
-def quadrature(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
+def integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     """Integrate spectra to moments (n, C): samples by ``synthesis`` (C, K), weighted by ``analysis`` (K, C)."""
     moments = np.empty((len(multipliers), analysis.shape[1]))
     rows = max(_SAMPLES // len(analysis), 1)
@@ -60,11 +59,26 @@ def quadrature(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     return moments
 
 
-Quadrature = Callable[[Array, Array, Array], Array]
-"""`quadrature`, or a faster equivalent."""
+@dataclass(frozen=True)
+class Quadrature:
+    """How spectra are integrated to moments.
+
+    Parameters
+    ----------
+    integrate : callable, default `integrate`
+        `integrate`, or a faster equivalent.
+    converged : float, default 1e-8
+        Change by doubling the nodes at which a spectrum has converged. The error is about the square of it.
+    """
+
+    integrate: Callable[[Array, Array, Array], Array] = integrate
+    converged: float = 1e-8
 
 
-def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = quadrature) -> Array:
+PRECISE = Quadrature()
+
+
+def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = PRECISE) -> Array:
     """Compute the moments of spectra by the trapezoid rule over the phase.
 
     The rule converges geometrically, so its error is about the square of the last change. The nodes are doubled for
@@ -74,8 +88,8 @@ def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = quadra
     ----------
     multipliers : ndarray, shape (n, C)
         Multipliers.
-    quadrature : callable
-        Integrates spectra over given nodes.
+    quadrature : Quadrature
+        How spectra are integrated.
 
     Returns
     -------
@@ -83,13 +97,18 @@ def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = quadra
         Moments.
     """
     count, nodes = multipliers.shape[1], _FIRST_NODES
-    moments = quadrature(multipliers, *_trapezoid(nodes, count))
+    found = quadrature.integrate(multipliers, *_trapezoid_and_midpoints(nodes, count))
+    moments, change = found[:, :count].copy(), (found[:, count:] - found[:, :count]) / 2
     pending = np.arange(len(multipliers))
-    while pending.size and nodes < _MAX_NODES:
-        change = (quadrature(multipliers[pending], *_midpoints(nodes, count)) - moments[pending]) / 2
+    while True:
         moments[pending] += change
-        pending = pending[np.abs(change).max(axis=1) > _CONVERGED]
+        pending = pending[np.abs(change).max(axis=1) > quadrature.converged]
         nodes *= 2
+        if not pending.size or nodes >= _MAX_NODES:
+            break
+        change = (
+            quadrature.integrate(multipliers[pending], *_midpoints(nodes, count)) - moments[pending]
+        ) / 2
     if pending.size:
         moments[pending] = moments_by_roots(multipliers[pending])
     return moments
@@ -157,6 +176,15 @@ def _midpoints(nodes: int, count: int) -> tuple[Array, Array]:
     """Return synthesis (C, K) and analysis (K, C) of the midpoints of the K intervals."""
     table = cosine_basis(-np.pi * (np.arange(nodes) + 0.5) / nodes, count)
     return table.T, _analysis(table, np.full(nodes, 1 / nodes))
+
+
+def _trapezoid_and_midpoints(nodes: int, count: int) -> tuple[Array, Array]:
+    """Return synthesis (C, 2K + 1) and analysis (2K + 1, 2C) of both rules, whose moments stand side by side."""
+    rules = (_trapezoid(nodes, count), _midpoints(nodes, count))
+    synthesis = np.concatenate([rule[0] for rule in rules], axis=1)
+    analysis = np.zeros((2 * nodes + 1, 2 * count))
+    analysis[: nodes + 1, :count], analysis[nodes + 1 :, count:] = rules[0][1], rules[1][1]
+    return synthesis, analysis
 
 
 def _analysis(table: Array, weights: Array) -> Array:

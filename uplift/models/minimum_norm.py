@@ -1,7 +1,9 @@
-"""The minimum-norm step: of all steps that reach a colour, the one that changes the spectrum least.
+"""Steps towards a colour: of all steps that reach it, the one that changes the spectrum least.
 
-Δp = M⁻¹Jᵀ (J M⁻¹Jᵀ + μ tr I)⁻¹ (t − r) (docs/mathematics.md, 5). The functions use the array API: the fit runs them on
-JAX, the refined lookup on numpy.
+Multipliers p are changed in the metric M = (R Rᵀ)⁻¹, as x = R⁻¹ p; A is the Jacobian of the RGB r with respect to x.
+The minimum-norm step Δx = A⁺ (t − r) changes the current spectrum least. The step of least change,
+Δx = A⁺ (t − r + A d) − d, changes the prior spectrum least, from which x differs by d. A⁺ = Aᵀ (A Aᵀ + μ tr I)⁻¹
+(docs/mathematics.md, 5). The functions use the array API: the fit runs them on JAX, the refined lookup on numpy.
 """
 
 from __future__ import annotations
@@ -26,6 +28,8 @@ class ForwardMap(NamedTuple):
     """Spectrum to RGB, shape (3, N)."""
     root: Any
     """R with R Rᵀ = M⁻¹, shape (C, C)."""
+    inverse_root: Any
+    """R⁻¹, shape (C, C)."""
     products: Any
     """Sensor times basis times R, shape (N, 3·C): the constant part of the Jacobian with respect to R⁻¹ p."""
 
@@ -37,7 +41,7 @@ def forward_map(
     basis = model.basis(wavelengths)
     root = np.linalg.cholesky(np.diag(1 / model.roughness()) if inverse_metric is None else inverse_metric)
     products = sensor.T[:, :, None] * (basis @ root)[:, None, :]
-    return ForwardMap(basis, sensor, root, products.reshape(len(basis), -1))
+    return ForwardMap(basis, sensor, root, np.linalg.inv(root), products.reshape(len(basis), -1))
 
 
 def forward_rgb(model: Model, forward_map: ForwardMap, multipliers: Any) -> Any:
@@ -54,13 +58,43 @@ def minimum_norm_step(
     model: Model, forward_map: ForwardMap, multipliers: Any, residual: Any, damping: Any
 ) -> Any:
     """Compute the change of multipliers (n, C) that cancels residual (n, 3) to first order; damping (n,) is μ."""
+    step = least_change_step(model, forward_map, multipliers, residual, damping, 0 * multipliers)
+    return matmul_rows(step, forward_map.root.T)
+
+
+def least_change_step(
+    model: Model, forward_map: ForwardMap, multipliers: Any, residual: Any, damping: Any, moved: Any
+) -> Any:
+    """Compute the change of x (n, C) that cancels residual (n, 3) to first order, nearest to the prior.
+
+    Parameters
+    ----------
+    model : Model
+        Spectrum model.
+    forward_map : ForwardMap
+        Map from multipliers to RGB.
+    multipliers : array, shape (n, C)
+        Current multipliers.
+    residual : array, shape (n, 3)
+        Target minus RGB.
+    damping : array, shape (n,)
+        μ, 0 or more.
+    moved : array, shape (n, C)
+        Difference d of x from the prior; 0 for the minimum-norm step.
+
+    Returns
+    -------
+    array, shape (n, C)
+        Change of x; multiplied by R it is that of the multipliers.
+    """
     slope = model.slope(matmul_rows(multipliers, forward_map.basis.T))
     jacobian = matmul_rows(slope, forward_map.products).reshape(-1, 3, forward_map.basis.shape[1])
     gram = jacobian @ jacobian.mT
     lower = [[gram[:, a, b] for b in range(a + 1)] for a in range(3)]
-    y = solve_3x3(lower, damping * (lower[0][0] + lower[1][1] + lower[2][2]), residual.T)
+    goal = residual + (jacobian @ moved[:, :, None])[:, :, 0]
+    y = solve_3x3(lower, damping * (lower[0][0] + lower[1][1] + lower[2][2]), goal.T)
     y = jacobian.__array_namespace__().stack(y, axis=-1)
-    return matmul_rows((y[:, None, :] @ jacobian)[:, 0, :], forward_map.root.T)
+    return (y[:, None, :] @ jacobian)[:, 0, :] - moved
 
 
 def solve_3x3(matrix: Sequence[Sequence[Any]], shift: Any, right: Any) -> tuple[Any, Any, Any]:

@@ -7,8 +7,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.common.arrays import Array
-from uplift.models.duality import Quadrature, quadrature
+from uplift.common.arrays import Array, Mask
+from uplift.models.duality import PRECISE, Quadrature
 from uplift.models.matmul import matmul_rows
 
 
@@ -129,15 +129,15 @@ class Model(Protocol):
         """
         ...
 
-    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = quadrature) -> Array:
+    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = PRECISE) -> Array:
         """Convert multipliers to the coefficients that cubes store.
 
         Parameters
         ----------
         multipliers : array_like, shape (..., C)
             Multipliers.
-        quadrature : callable
-            Integrates spectra, if the coefficients are integrals.
+        quadrature : Quadrature
+            How spectra are integrated, if the coefficients are integrals.
 
         Returns
         -------
@@ -156,6 +156,21 @@ class Model(Protocol):
         Returns
         -------
         ndarray, shape (..., C)
+        """
+        ...
+
+    def rounds_safely(self, multipliers: Array) -> Mask:
+        """Return which spectra keep their colour when their coefficients are rounded to single precision.
+
+        Parameters
+        ----------
+        multipliers : ndarray, shape (n, C)
+            Multipliers.
+
+        Returns
+        -------
+        ndarray of bool, shape (n,)
+            True if linear RGB changes by at most 2e-7, about the rounding of RGB itself. False decides nothing.
         """
         ...
 

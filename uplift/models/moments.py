@@ -18,17 +18,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.common.quoting import format_value
 from uplift.models import duality
 from uplift.models.arctan import arctan, arctan_difference
-from uplift.models.duality import Quadrature
+from uplift.models.duality import PRECISE, Quadrature
 from uplift.models.model import Model
 from uplift.models.phase import Phase
 
 MIN_COUNT, MAX_COUNT = 3, 17
 """Numbers of coefficients: the zeroth and 2 to 16 moments."""
+MAX_SAFE_LINEAR = 30.0
+"""Bound of the linear part up to which single precision keeps colours (tests/models/test_rounding.py): reflectances
+from .01 to .99."""
 
 
 @dataclass(frozen=True)
@@ -94,11 +97,15 @@ class Moments(Model):
         # A unit of p_j adds 1 to the squared value and j² to the squared slope over φ.
         return 1 + np.arange(self.count, dtype=float) ** 2
 
-    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = duality.quadrature) -> Array:
+    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = PRECISE) -> Array:
         return _by_rows(partial(duality.moments_from_multipliers, quadrature=quadrature), multipliers)
 
     def from_storage(self, coefficients: ArrayLike) -> Array:
         return _by_rows(duality.multipliers_from_moments, coefficients)
+
+    def rounds_safely(self, multipliers: Array) -> Mask:
+        largest = np.abs(multipliers[:, 0]) + 2 * np.abs(multipliers[:, 1:]).sum(axis=1)
+        return np.asarray(largest <= MAX_SAFE_LINEAR)
 
     def describe(self) -> dict[str, Any]:
         return {"name": self.name, "count": self.count, "phase": asdict(self.phase)}

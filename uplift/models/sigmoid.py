@@ -13,9 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.common.arrays import Array
-from uplift.models.duality import Quadrature, quadrature
+from uplift.common.arrays import Array, Mask
+from uplift.models.duality import PRECISE, Quadrature
 from uplift.models.model import Model
+
+MAX_SAFE_LINEAR = 1.0
+"""Bound of the linear part up to which single precision keeps colours (tests/models/test_rounding.py)."""
 
 
 @dataclass(frozen=True)
@@ -64,11 +67,14 @@ class Sigmoid(Model):
     def roughness(self) -> Array:
         return np.ones(self.count)
 
-    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = quadrature) -> Array:
+    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = PRECISE) -> Array:
         return np.array(multipliers, dtype=float)
 
     def from_storage(self, coefficients: ArrayLike) -> Array:
         return np.array(coefficients, dtype=float)
+
+    def rounds_safely(self, multipliers: Array) -> Mask:
+        return np.asarray(np.abs(multipliers).sum(axis=1) <= MAX_SAFE_LINEAR)
 
     def describe(self) -> dict[str, Any]:
         return {"name": self.name, **asdict(self)}
