@@ -8,9 +8,10 @@ from importlib.metadata import version
 import jax
 import jax.numpy as jnp
 import numpy as np
+import optimistix
 
 from benchmarks.peers import task
-from benchmarks.peers.row import Peer, judge_multipliers, missing
+from benchmarks.peers.row import Peer, judge_multipliers
 from uplift.common.arrays import Array
 from uplift.models import Moments
 
@@ -23,10 +24,6 @@ TOLERANCE = 1e-6
 
 def optimistix_dogleg(runs: int) -> list[Peer]:
     """Time the fit of multipliers, every node from grey; compilation is separate."""
-    try:
-        import optimistix
-    except ImportError:
-        return [missing("optimistix Dogleg, `vmap`", "optimistix", "moments", COUNT)]
     model, sensor, target = Moments(COUNT), task.sensor(), task.some(POINTS)
     basis, weights = model.basis(sensor.wavelengths), sensor.matrix
     solver = optimistix.Dogleg(rtol=TOLERANCE, atol=TOLERANCE)

@@ -39,8 +39,8 @@ def store(growth: Growth) -> StoredPoints:
     """Convert the multipliers of growth to coefficients.
 
     The coefficients are float32 if that is accurate enough for every point, else float64 for all. Where rounding them
-    cannot change the colour (`Model.rounds_safely`), the colour is that of the solver; elsewhere it is evaluated anew.
-    The multipliers are overwritten, as memory for both may not suffice.
+    cannot change the colour (`Model.rounds_safely`), the colour is that of the solver; elsewhere it is evaluated from
+    the rounded coefficients. The multipliers are overwritten, as memory for both may not suffice.
     """
     problem, kind = growth.problem, SINGLE
     model, points = problem.model, problem.points
