@@ -17,7 +17,8 @@ from ..startup import enable_jit_cache
 if TYPE_CHECKING:
     from uplift.cube import CubeData
 
-SUFFIXES = {"coeff": ".coeff", "c": ".h", "npz": ".npz", "csv": ".csv"}
+PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl", "osl": ".osl", "wgsl": ".wgsl"}
+SUFFIXES = {"coeff": ".coeff", **PROGRAMS, "npz": ".npz", "csv": ".csv"}
 
 
 @click.command("export")
@@ -30,28 +31,41 @@ SUFFIXES = {"coeff": ".coeff", "c": ".h", "npz": ".npz", "csv": ".csv"}
     help="Format to write. [default: by the suffix of OUT]",
 )
 @click.option("--res", type=Whole(), help="Resolution of a coeff table along each axis. [default: 64]")
+@click.option(
+    "--mode",
+    type=click.Choice(("spectra", "moments")),
+    help="What programs interpolate: spectra, with exact colours, or coefficients. [default: spectra]",
+)
 @fill_option()
 @force_option()
 def command(
-    cube: str, out: str | None, style: str | None, res: int | None, fill_missing: bool, force: bool
+    cube: str,
+    out: str | None,
+    style: str | None,
+    res: int | None,
+    mode: str | None,
+    fill_missing: bool,
+    force: bool,
 ) -> None:
     """Write a cube in a format that other tools read.
 
     \b
+      c, cuda, glsl, hlsl, osl, wgsl
+             program that looks up colours and evaluates spectra
       coeff  table of rgb2spec, which Mitsuba and colour-science read
-      c      C99 header, also valid C++, with the table and its lookup functions
       npz    all arrays of the cube, for numpy
       csv    one line per node
 
-    A coeff table stores sigmoid spectra of the cube's colours: three coefficients cannot represent the atlas. The
-    functions of the C header give the spectra of 'uplift query --mode moments', and their names start with the file's.
-    OUT defaults to the cube's name in the current folder.
+    Names in a program start with the file's. A C header, also valid C++, contains the table. Programs in other
+    languages come with a second file, which they explain. A coeff table stores sigmoid spectra of the cube's colours:
+    three coefficients cannot represent the atlas. OUT defaults to the cube's name in the current folder.
 
     \b
     Examples:
       uplift export macbeth-32.uplift macbeth-32.npz
       uplift export macbeth-32.uplift data/srgb.coeff
       uplift export macbeth-32.uplift cube.h
+      uplift export macbeth-32.uplift cube.wgsl --mode moments
       uplift export macbeth-32.uplift --format csv
     """
     style = style or _format_of(out)
@@ -59,12 +73,15 @@ def command(
         raise click.UsageError(
             "--res applies to --format coeff only: other formats keep the nodes of the cube."
         )
+    if mode is not None and style not in PROGRAMS:
+        raise click.UsageError("--mode applies to programs only: other formats do not interpolate.")
     out = out or Path(cube).stem + SUFFIXES[style]
     from uplift.common.files import check_output
     from uplift.lookup import load
 
     path = check_output(out, inputs=[cube], force=force)
-    options = {} if res is None else {"res": res}
+    options = {"res": res, "mode": mode, "style": style if style in PROGRAMS else None}
+    options = {key: value for key, value in options.items() if value is not None}
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
     say(f"{path}: {WRITERS[style](loaded.data, path, force=force, **options)}")
 
@@ -86,13 +103,13 @@ def _coeff(data: CubeData, path: Path, **options: Any) -> str:
     return f"rgb2spec table, largest RGB error {worst:.1e}"
 
 
-def _c(data: CubeData, path: Path, **options: Any) -> str:
-    from uplift.io.export import write_c
+def _program(data: CubeData, path: Path, **options: Any) -> str:
+    from uplift.io.export import write_program
 
-    size = write_c(data, path, **options)
-    return (
-        f"C99 header, {data.lattice.size} nodes, {len(data.atlas.names)} atlas entries, {size / 1e6:.1f} MB"
-    )
+    written = write_program(data, path, **options)
+    size = sum(each.stat().st_size for each in written) / 1e6
+    tables = "".join(f", table in {each}" for each in written[1:])
+    return f"{data.lattice.size} nodes, {len(data.atlas.names)} atlas entries, {size:.1f} MB{tables}"
 
 
 def _npz(data: CubeData, path: Path, **options: Any) -> str:
@@ -107,4 +124,9 @@ def _csv(data: CubeData, path: Path, **options: Any) -> str:
     return f"{write_csv(data, path, **options)} nodes"
 
 
-WRITERS: dict[str, Callable[..., str]] = {"coeff": _coeff, "c": _c, "npz": _npz, "csv": _csv}
+WRITERS: dict[str, Callable[..., str]] = {
+    **dict.fromkeys(PROGRAMS, _program),
+    "coeff": _coeff,
+    "npz": _npz,
+    "csv": _csv,
+}

@@ -33,6 +33,22 @@ def test_formats_and_default_names(run, home, cube, style, name, count, first):
     assert (home / name).read_bytes().startswith(first)
 
 
+@pytest.mark.parametrize(
+    ("name", "table"),
+    [
+        ("a.cuh", "a.bin"),
+        ("a.glsl", "a.bin"),
+        ("a.hlsl", "a.bin"),
+        ("a.wgsl", "a.bin"),
+        ("a.osl", "a.exr"),
+    ],
+)
+def test_programs_come_with_a_table(run, home, cube, name, table):
+    assert table in run("export", cube, name, "--mode", "moments").stdout
+    assert {path.name for path in home.iterdir()} == {cube, name, table}
+    assert "moments" in (home / name).read_text()
+
+
 def test_format_follows_the_suffix_of_out(run, home, cube):
     assert run("export", cube, "table.coeff", "--res", 3).stdout.startswith("table.coeff: ")
     assert (home / "table.coeff").read_bytes()[:8] == b"SPEC" + bytes([3, 0, 0, 0])
@@ -51,6 +67,7 @@ def test_format_option_overrides_the_suffix(run, home, cube):
         ((), "--format"),
         (("cube.exr",), "--format"),
         (("cube.h", "--res", "8"), "--res"),
+        (("cube.npz", "--mode", "moments"), "--mode"),
     ],
 )
 def test_wrong_usage(misuse, home, cube, cubes, arguments, option):

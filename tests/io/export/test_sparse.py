@@ -10,7 +10,7 @@ import pytest
 from tests.helpers import raises
 from tests.sparse_cubes import near_black, with_absent_points
 from uplift.common.errors import ColourError, OptionError
-from uplift.io.export import write_c, write_coeff, write_csv, write_npz
+from uplift.io.export import write_coeff, write_csv, write_npz, write_program
 from uplift.lab.study.sensitivity import study_sensitivity
 
 
@@ -38,7 +38,7 @@ def test_npz_has_the_present_nodes(data, tmp_path):
 
 def test_formats_of_all_colours_raise(data, tmp_path, small_cube):
     with raises(OptionError, "sparse-cube"):
-        write_c(data, tmp_path / "cube.h")
+        write_program(data, tmp_path / "cube.h")
     with raises(ColourError, "colour-not-in-scene"):
         write_coeff(data, tmp_path / "cube.coeff", res=2)
     assert not list(tmp_path.iterdir())

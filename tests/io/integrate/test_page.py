@@ -12,7 +12,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from uplift.io.export import write_c
+from uplift.io.export import write_program
 from uplift.lookup.interpolate import refined_multipliers
 
 PAGE = (Path(__file__).parents[3] / "docs" / "integrate.md").read_text(encoding="utf-8")
@@ -46,14 +46,14 @@ def test_python(folder, small_cube):
 def test_c_and_cpp(folder, small_cube, compiler, language):
     if shutil.which(compiler) is None:
         pytest.skip(f"needs a compiler, {compiler}")
-    write_c(small_cube.data, folder / "paints.h")
+    write_program(small_cube.data, folder / "paints.h")
     (folder / "main.c").write_text(code("C and C\\+\\+", "c"))
     subprocess.run([compiler, "-x", language, "-O1", "main.c", "-o", "main", "-lm"], check=True)
     done = subprocess.run(["./main"], capture_output=True, text=True, check=True)
     wavelengths, found = np.array([line.split() for line in done.stdout.splitlines()], dtype=float).T
     assert len(wavelengths) == 7
-    expected = small_cube.reflectance(COLOUR, wavelengths, mode="moments")
-    np.testing.assert_allclose(found, expected, atol=2e-6)
+    expected = small_cube.reflectance(COLOUR, wavelengths, mode="spectra")
+    np.testing.assert_allclose(found, expected, atol=2e-5)
 
 
 def test_mitsuba(folder, small_cube):

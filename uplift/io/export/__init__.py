@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from uplift.io.export.c_header import write_c
 from uplift.io.export.coeff import write_coeff
 from uplift.io.export.csv_points import write_csv
 from uplift.io.export.npz import write_npz
+from uplift.io.export.programs import FORMATS, write_program
 
-__all__ = ["write_c", "write_coeff", "write_csv", "write_npz"]
+__all__ = ["FORMATS", "write_coeff", "write_csv", "write_npz", "write_program"]

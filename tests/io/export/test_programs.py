@@ -1,0 +1,182 @@
+"""Exported programs agree with Python, in every language and mode."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.helpers import raises, warns
+from tests.io.export import run_program
+from uplift.common.errors import OptionError
+from uplift.io.export import programs, write_program
+from uplift.io.export.programs import FORMATS, identifier
+from uplift.lookup import load
+
+WAVELENGTHS = [300.0, 455.0, 551.5, 700.0]
+WITHIN = 2e-5
+"""Tolerance of reflectance in single precision."""
+RUN = {"c": run_program.c, "cuda": run_program.cuda, "glsl": run_program.glsl, "wgsl": run_program.wgsl}
+RUN["hlsl"] = run_program.hlsl
+SHIPPED = ("moments-8-macbeth", "moments-8", "sigmoid-8-macbeth")
+
+
+def colours(data):
+    """Return 10,000 linear RGB: random, on faces and corners of the cube, at entries, around them, on box faces."""
+    rng = np.random.default_rng(10)
+    rgb = rng.random((10_000, 3))
+    rgb[:1000] = np.round(rgb[:1000])
+    rgb[1000:2000, 1] = np.round(rgb[1000:2000, 1])
+    if len(data.atlas.rgb):
+        around = np.tile(data.atlas.rgb, (200, 1))[:4000]
+        spread = np.repeat([0, 1e-3, 0.02, 0.1], len(around) // 4 + 1)[: len(around), None]
+        rgb[2000 : 2000 + len(around)] = np.clip(around + spread * rng.normal(size=around.shape), 0, 1)
+        low, high = data.entry_boxes.faces
+        face = np.where(rng.random((1000, 3)) < 0.5, np.resize(low, (1000, 3)), np.resize(high, (1000, 3)))
+        along = np.resize(data.atlas.rgb, (1000, 3)) + (2 * rng.random((1000, 3)) - 1) * 0.01
+        rgb[6000:7000] = np.where(np.eye(3)[rng.integers(3, size=1000)] > 0, face, np.clip(along, 0, 1))
+    return rgb.astype(np.float32).astype(float)
+
+
+@pytest.fixture
+def worst(tmp_path):
+    """Function that returns the largest difference of reflectance from Python."""
+
+    def measure(cube, style, mode, rgb, expected=None):
+        path = tmp_path / f"cube{FORMATS[style].suffix}"
+        write_program(cube.data, path, style=style, mode=mode, force=True)
+        found = RUN[style](path, rgb, WAVELENGTHS)
+        if expected is None:
+            expected = cube.reflectance(rgb, WAVELENGTHS, mode=mode)
+        assert found.shape == expected.shape
+        return np.abs(found - expected).max()
+
+    return measure
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+@pytest.mark.parametrize("style", RUN)
+def test_ten_thousand_colours_equal_those_of_python(small_cube, worst, style, mode):
+    assert worst(small_cube, style, mode, colours(small_cube.data)) < WITHIN
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+@pytest.mark.parametrize("name", SHIPPED)
+def test_shipped_cubes(repository, worst, name, mode):
+    cube = load(repository / "cubes" / f"{name}.uplift")
+    assert worst(cube, "c", mode, colours(cube.data)) < WITHIN
+
+
+@pytest.mark.parametrize("style", ["glsl", "wgsl"])
+def test_sigmoids_and_other_phases_in_shaders(repository, warped_cube, worst, style):
+    sigmoid = load(repository / "cubes" / "sigmoid-8-macbeth.uplift")
+    for cube in (sigmoid, warped_cube):
+        assert worst(cube, style, "spectra", colours(cube.data)) < WITHIN
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+def test_other_phases_and_counts(warped_cube, worst, mode):
+    assert worst(warped_cube, "c", mode, colours(warped_cube.data)) < 5 * WITHIN
+
+
+def test_the_comparison_detects_another_mode_and_another_cube(small_cube, plain_cube, worst):
+    rgb = colours(small_cube.data)
+    other = small_cube.reflectance(rgb, WAVELENGTHS, mode="moments")
+    assert worst(small_cube, "c", "spectra", rgb, other) > 1e-3
+    assert worst(small_cube, "c", "spectra", rgb, plain_cube.reflectance(rgb, WAVELENGTHS)) > 1e-3
+
+
+@pytest.mark.parametrize("style", ["c", "cuda"])
+def test_colours_outside_are_clipped_and_nan_is_0(small_cube, worst, style):
+    odd = np.array([[2, -1, 0.5], [np.nan, 0.2, np.inf]])
+    expected = small_cube.reflectance([[1, 0, 0.5], [0, 0.2, 1]], WAVELENGTHS)
+    assert worst(small_cube, style, "spectra", odd, expected) < WITHIN
+
+
+def test_the_header_compiles_as_cpp(small_cube, tmp_path):
+    rgb = colours(small_cube.data)[:5000]
+    write_program(small_cube.data, tmp_path / "cube.h")
+    found = run_program.cpp(tmp_path / "cube.h", rgb, WAVELENGTHS)
+    np.testing.assert_allclose(found, small_cube.reflectance(rgb, WAVELENGTHS), rtol=0, atol=WITHIN)
+
+
+MANY = r"""
+#include <stdio.h>
+#include "cube.h"
+
+int main(void)
+{
+    float rgb[3] = {0.8f, 0.2f, 0.1f}, at[21], found[21], coefficients[CUBE_COUNT], multipliers[CUBE_COUNT];
+    for (int k = 0; k < 21; ++k) at[k] = 400 + 15.0f * k;
+    cube_reflectances(rgb, at, 21, found);
+    fwrite(found, sizeof found, 1, stdout);
+    cube_coefficients(rgb, coefficients);
+    if (!cube_multipliers(coefficients, multipliers)) return 1;
+    cube_evaluate(multipliers, at, 21, found);
+    fwrite(found, sizeof found, 1, stdout);
+    coefficients[0] = 2;
+    return cube_multipliers(coefficients, multipliers);
+}
+"""
+
+
+def test_any_number_of_wavelengths_and_stored_multipliers(small_cube, tmp_path):
+    if shutil.which("cc") is None:
+        pytest.skip("needs a compiler, cc")
+    write_program(small_cube.data, tmp_path / "cube.h", mode="moments")
+    (tmp_path / "main.c").write_text(MANY)
+    subprocess.run(["cc", *run_program.STRICT, "main.c", "-o", "main", "-lm"], cwd=tmp_path, check=True)
+    done = subprocess.run([tmp_path / "main"], capture_output=True, check=True)
+    found = np.frombuffer(done.stdout, np.float32).reshape(2, 21)
+    expected = small_cube.reflectance([0.8, 0.2, 0.1], 400 + 15.0 * np.arange(21), mode="moments")
+    np.testing.assert_allclose(found, [expected, expected], rtol=0, atol=WITHIN)
+
+
+def test_names_in_a_cube_cannot_end_a_comment(small_cube, tmp_path):
+    sensor = replace(small_cube.data.sensor, space="*/ #error äöü\n /*", illuminant="*//* ${table}")
+    write_program(replace(small_cube.data, sensor=sensor), tmp_path / "cube.h")
+    found = run_program.c(tmp_path / "cube.h", np.full((1, 3), 0.5), WAVELENGTHS)
+    np.testing.assert_allclose(found, small_cube.reflectance([[0.5] * 3], WAVELENGTHS), atol=WITHIN)
+
+
+@pytest.mark.parametrize(
+    ("stem", "name"),
+    [
+        ("macbeth-32", "macbeth_32"),
+        ("32", "cube_32"),
+        ("a.b c", "a_b_c"),
+        ("größe", "gr_e"),
+        ("", "cube"),
+        ("a__b", "a_b"),
+    ],
+)
+def test_identifiers_derive_from_the_file_name(stem, name):
+    assert identifier(stem) == name
+
+
+def test_a_large_header_triggers_a_warning(tmp_path, plain_cube, monkeypatch):
+    monkeypatch.setattr(programs, "LARGE", 1000)
+    with warns("large-header"):
+        write_program(plain_cube.data, tmp_path / "cube.h")
+
+
+def test_tables_are_files_that_are_replaced_only_with_force(tmp_path, plain_cube):
+    written = write_program(plain_cube.data, tmp_path / "cube.wgsl", style="wgsl")
+    assert [path.name for path in written] == ["cube.wgsl", "cube.bin"]
+    before = written[1].read_bytes()
+    assert len(before) % (2048 * 16) == 0
+    with raises(OSError, "file-exists"):
+        write_program(plain_cube.data, tmp_path / "cube.glsl", style="glsl")
+    assert not (tmp_path / "cube.glsl").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "code"), [({"style": "pascal"}, "unknown-language"), ({"mode": "refined"}, "unknown-mode")]
+)
+def test_invalid_options_are_errors(tmp_path, plain_cube, options, code):
+    with raises(OptionError, code):
+        write_program(plain_cube.data, tmp_path / "cube.h", **options)
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,89 @@
+"""Names that the kernel uses: types, sizes of a cube, and functions that each language provides.
+
+The kernel, in `lattice`, `moments` and `sigmoid`, is restricted Python that `translate` prints in other languages:
+scalars declared by an annotation, arrays of constant size, loops over ranges, conditions and arithmetic. Arrays are
+passed by reference. Tests run the same functions in Python.
+"""
+
+from __future__ import annotations
+
+Float = float
+Int = int
+Bool = bool
+Floats = list[float]
+
+Colour = Floats
+Place = Floats
+Sides = Floats
+Coefficients = Floats
+Row = Floats
+Block = Floats
+Basis = Floats
+
+SIZES = {
+    "Colour": "3",
+    "Place": "4",
+    "Sides": "6",
+    "Coefficients": "COUNT",
+    "Row": "STRIDE",
+    "Block": "WIDTH",
+    "Basis": "(COUNT * WIDTH)",
+}
+"""Elements of each array type, as expressions of the constants below."""
+
+WIDTH: Int
+"""Wavelengths of one call: as many as a vector register or a ray has."""
+COUNT: Int
+"""Coefficients of a spectrum."""
+STRIDE: Int
+"""Numbers of a row: the coefficients and the tag of the cell, padded to a multiple of four."""
+DIM: Int
+"""Lattice points along each axis."""
+LATTICE: Int
+"""Number of lattice points, and the row of the first entry."""
+BIN_COUNT: Int
+"""Even bins of [0, 1]."""
+NODES: Int
+"""Index of the first axis node in the table."""
+BINS: Int
+"""Index of the last nodes before each bin."""
+LISTS: Int
+"""Index of the lists of entries whose boxes touch a cell."""
+BOXES: Int
+"""Index of the boxes: centre, and reciprocals of the distances to the lower and upper faces."""
+START: Float
+END: Float
+"""Wavelength range in nm; spectra are constant outside."""
+LOW: Float
+SPAN: Float
+"""The warped wavelength at the start of the range, and the length of the warped range."""
+
+
+def number(index: Int) -> Float:
+    """Read a number of the table."""
+    raise NotImplementedError
+
+
+def load_row(index: Int, row: Row) -> None:
+    """Copy a row of the table, a lattice point or an entry, to ``row``."""
+    raise NotImplementedError
+
+
+def warp(wavelength: Float) -> Float:
+    """Apply the warp of the phase."""
+    raise NotImplementedError
+
+
+def zeros(count: Int) -> Floats:
+    """Create an array of zeros."""
+    return [0.0] * count
+
+
+def unroll(start: Int, stop: Int) -> range:
+    """Range of a loop that is written out in the translation."""
+    return range(start, stop)
+
+
+def sqrt(x: Float) -> Float:
+    """Square root."""
+    return x**0.5

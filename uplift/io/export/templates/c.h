@@ -1,0 +1,72 @@
+/* A spectral uplifting cube: linear RGB in, reflectances out, in single precision.
+
+   Written by uplift ${version} from the cube ${digest}.
+   RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries.
+   C99 and C++. The table is static: include this file in one source file. Mode ${mode}.
+
+       float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[4] = {450, 500, 550, 600}, reflectances[4];
+       ${name}_reflectances(rgb, wavelengths, 4, reflectances);
+
+   ${NAME}_WIDTH wavelengths are evaluated at a time. Loops over them vectorise: cc -O3 -march=x86-64-v3.
+*/
+#ifndef ${NAME}_UPLIFT_CUBE_H
+#define ${NAME}_UPLIFT_CUBE_H
+
+#include <math.h>
+#include <string.h>
+
+#ifndef ${NAME}_WIDTH
+#define ${NAME}_WIDTH 16
+#endif
+/* Loops over wavelengths are vectorised, not unrolled. */
+#if defined(__clang__)
+#define ${NAME}_LANES _Pragma("clang loop vectorize(enable) interleave_count(1)")
+#elif defined(__GNUC__)
+#define ${NAME}_LANES _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
+#else
+#define ${NAME}_LANES
+#endif
+${constants}
+
+static const float ${name}_table[] = {
+${table}};
+
+static inline float ${name}_number(int index)
+{
+    return ${name}_table[index];
+}
+
+static inline void ${name}_load_row(int index, float row[${NAME}_STRIDE])
+{
+    const float *stored = ${name}_table + index * ${NAME}_STRIDE;
+    int k;
+    for (k = 0; k < ${NAME}_COUNT; ++k) row[k] = stored[k];
+}
+
+${kernel}
+/* Reflectances of stored multipliers at ${NAME}_WIDTH wavelengths in nm. */
+static inline void ${name}_evaluate_wavelengths(
+    const float multipliers[${NAME}_COUNT], const float wavelengths[${NAME}_WIDTH], float reflectances[${NAME}_WIDTH])
+{
+    float basis[${NAME}_COUNT * ${NAME}_WIDTH];
+    ${name}_tabulate(wavelengths, basis);
+    ${name}_evaluate_block(multipliers, basis, reflectances);
+}
+
+/* Reflectances of stored multipliers at wavelengths in nm. */
+static inline void ${name}_evaluate(
+    const float multipliers[${NAME}_COUNT], const float *wavelengths, int count, float *reflectances)
+{
+    int start;
+    for (start = 0; start + ${NAME}_WIDTH <= count; start += ${NAME}_WIDTH)
+        ${name}_evaluate_wavelengths(multipliers, wavelengths + start, reflectances + start);
+    if (start < count) {
+        float block[${NAME}_WIDTH] = {0}, found[${NAME}_WIDTH];
+        memcpy(block, wavelengths + start, (count - start) * sizeof *block);
+        ${name}_evaluate_wavelengths(multipliers, block, found);
+        memcpy(reflectances + start, found, (count - start) * sizeof *found);
+    }
+}
+
+${wrappers}
+#endif

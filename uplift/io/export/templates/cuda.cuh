@@ -1,0 +1,46 @@
+/* A spectral uplifting cube: linear RGB in, reflectances out, in single precision.
+
+   Written by uplift ${version} from the cube ${digest}.
+   RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries. Mode ${mode}.
+   CUDA, and C++ on the host. ${file} has the ${size} numbers (float32, little-endian) of the table:
+
+       float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[${NAME}_WIDTH] = {450, 500, 550, 600}, found[${NAME}_WIDTH];
+       ${name}_reflectances(table, rgb, wavelengths, found);
+*/
+#ifndef ${NAME}_UPLIFT_CUBE_H
+#define ${NAME}_UPLIFT_CUBE_H
+
+#include <math.h>
+
+#ifdef __CUDACC__
+#define ${NAME}_FUNCTION static __host__ __device__ inline
+#else
+#define ${NAME}_FUNCTION static inline
+#endif
+#ifndef ${NAME}_WIDTH
+#define ${NAME}_WIDTH 4
+#endif
+${constants}
+
+${NAME}_FUNCTION float ${name}_number(const float *table, int index)
+{
+    return table[index];
+}
+
+${NAME}_FUNCTION void ${name}_load_row(const float *table, int index, float row[${NAME}_STRIDE])
+{
+    for (int k = 0; k < ${NAME}_COUNT; ++k) row[k] = table[index * ${NAME}_STRIDE + k];
+}
+
+${kernel}
+/* Reflectances of stored multipliers at wavelengths in nm. */
+${NAME}_FUNCTION void ${name}_evaluate(
+    const float multipliers[${NAME}_COUNT], const float wavelengths[${NAME}_WIDTH], float reflectances[${NAME}_WIDTH])
+{
+    float basis[${NAME}_COUNT * ${NAME}_WIDTH];
+    ${name}_tabulate(wavelengths, basis);
+    ${name}_evaluate_block(multipliers, basis, reflectances);
+}
+
+${wrappers}
+#endif

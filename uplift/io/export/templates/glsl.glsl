@@ -1,0 +1,51 @@
+/* A spectral uplifting cube: linear RGB in, reflectances out, in single precision.
+
+   Written by uplift ${version} from the cube ${digest}.
+   RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries. Mode ${mode}.
+   GLSL 3.30 and GLSL ES 3.00. ${file} has the table, ${rows} rows of ${columns} RGBA texels (float32, little-endian):
+   load it as a texture of the format RGBA32F, filter NEAREST, and bind it to the uniform ${name}_table.
+
+       vec4 reflectances = ${name}_reflectances(vec3(0.8, 0.2, 0.1), vec4(450.0, 500.0, 550.0, 600.0));
+*/
+#ifdef GL_ES
+precision highp float;
+precision highp int;
+#endif
+#define ${NAME}_WIDTH 4
+${constants}
+
+uniform highp sampler2D ${name}_table;
+
+vec4 ${name}_texel(int index)
+{
+    return texelFetch(${name}_table, ivec2(index % ${columns}, index / ${columns}), 0);
+}
+
+float ${name}_number(int index)
+{
+    return ${name}_texel(index / 4)[index % 4];
+}
+
+void ${name}_load_row(int index, inout float row[${NAME}_STRIDE])
+{
+    for (int t = 0; t < ${texels}; ++t) {
+        vec4 texel = ${name}_texel(index * ${texels} + t);
+        for (int c = 0; c < 4; ++c) row[4 * t + c] = texel[c];
+    }
+}
+
+${kernel}
+/* Reflectances of stored multipliers at four wavelengths in nm. */
+vec4 ${name}_evaluate(float multipliers[${NAME}_COUNT], vec4 wavelengths)
+{
+    float lanes[4];
+    float basis[${NAME}_COUNT * 4];
+    float total[4];
+    for (int w = 0; w < 4; ++w) { lanes[w] = wavelengths[w]; total[w] = 0.0; }
+    for (int k = 0; k < ${NAME}_COUNT * 4; ++k) basis[k] = 0.0;
+    ${name}_tabulate(lanes, basis);
+    ${name}_evaluate_block(multipliers, basis, total);
+    return vec4(total[0], total[1], total[2], total[3]);
+}
+
+${wrappers}

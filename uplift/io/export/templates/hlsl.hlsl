@@ -1,0 +1,47 @@
+/* A spectral uplifting cube: linear RGB in, reflectances out, in single precision.
+
+   Written by uplift ${version} from the cube ${digest}.
+   RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries. Mode ${mode}.
+   HLSL, shader model 5. ${file} has the table, ${rows} rows of ${columns} float4 (little-endian): load it as
+   a structured buffer.
+
+       float4 reflectances = ${name}_reflectances(float3(0.8, 0.2, 0.1), float4(450, 500, 550, 600));
+*/
+#define ${NAME}_WIDTH 4
+${constants}
+
+StructuredBuffer<float4> ${name}_table : register(t0);
+
+float4 ${name}_texel(int index)
+{
+    return ${name}_table[index];
+}
+
+float ${name}_number(int index)
+{
+    return ${name}_texel(index / 4)[index % 4];
+}
+
+void ${name}_load_row(int index, inout float row[${NAME}_STRIDE])
+{
+    for (int t = 0; t < ${texels}; ++t) {
+        float4 texel = ${name}_texel(index * ${texels} + t);
+        for (int c = 0; c < 4; ++c) row[4 * t + c] = texel[c];
+    }
+}
+
+${kernel}
+/* Reflectances of stored multipliers at four wavelengths in nm. */
+float4 ${name}_evaluate(float multipliers[${NAME}_COUNT], float4 wavelengths)
+{
+    float lanes[4];
+    float basis[${NAME}_COUNT * 4];
+    float total[4];
+    for (int w = 0; w < 4; ++w) { lanes[w] = wavelengths[w]; total[w] = 0.0; }
+    for (int k = 0; k < ${NAME}_COUNT * 4; ++k) basis[k] = 0.0;
+    ${name}_tabulate(lanes, basis);
+    ${name}_evaluate_block(multipliers, basis, total);
+    return float4(total[0], total[1], total[2], total[3]);
+}
+
+${wrappers}
