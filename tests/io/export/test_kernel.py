@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 
 from tests.io.export.test_programs import WAVELENGTHS, WITHIN, colours
-from uplift.io.export.kernel import intrinsics, lattice, moments, spectra
+from uplift.io.export.kernel import (
+    answer_moments,
+    answer_spectra,
+    entries,
+    intrinsics,
+    lattice,
+    moments,
+    spectra,
+)
 from uplift.io.export.kernel.language import GLSL, WGSL, C
 from uplift.io.export.kernel.table import make_table
 from uplift.io.export.kernel.translate import functions, translate
@@ -18,6 +26,7 @@ from uplift.io.export.kernel.translate import functions, translate
 def run_in_python(data, mode):
     """Return a namespace with the functions of the kernel."""
     table = make_table(data, mode)
+    answers = answer_spectra if mode == "spectra" else answer_moments
     numbers, stride = table.numbers.tolist(), table.constants["STRIDE"]
 
     def load_row(index, row):
@@ -25,7 +34,7 @@ def run_in_python(data, mode):
 
     names = {**vars(intrinsics), **table.constants, "WIDTH": 4, "number": numbers.__getitem__}
     names |= {"load_row": load_row, "warp": float}
-    for function in functions(moments, spectra, lattice):
+    for function in functions(moments, spectra, lattice, entries, answers):
         function.returns, function.args = None, _without_types(function.args)
         exec(compile(ast.Module([_without_aliases(function)], []), "kernel", "exec"), names)
     return names
@@ -48,18 +57,11 @@ def _without_aliases(function):
 def test_the_kernel_in_python_equals_the_lookup(small_cube, mode):
     names = run_in_python(small_cube.data, mode)
     rgb = colours(small_cube.data)[::97]
-    basis, found = [0.0] * 4 * 9, []
-    names["tabulate"](WAVELENGTHS, basis)
+    found = []
     for colour in rgb.tolist():
         place, total = [0.0] * 4, [0.0] * 4
         entry = names["locate"](colour, place)
-        if mode == "spectra":
-            names["add_nodes"](place, entry, basis, total)
-        else:
-            coefficients, multipliers = [0.0] * 9, [0.0] * 9
-            names["sum_coefficients"](place, entry, coefficients)
-            assert names["multipliers_of"](coefficients, multipliers)
-            names["evaluate_block"](multipliers, basis, total)
+        names["answer"](place, entry, WAVELENGTHS, total)
         found.append(total)
     expected = small_cube.reflectance(rgb, WAVELENGTHS, mode=mode)
     np.testing.assert_allclose(found, expected, rtol=0, atol=WITHIN)

@@ -41,6 +41,10 @@ DIM: Int
 """Lattice points along each axis."""
 LATTICE: Int
 """Number of lattice points, and the row of the first entry."""
+ENTRIES: Int
+"""Index of the multipliers of the entries."""
+ENTRY_COUNT: Int
+"""Multipliers of an entry: as many as a lattice point has, or more."""
 BIN_COUNT: Int
 """Even bins of [0, 1]."""
 NODES: Int

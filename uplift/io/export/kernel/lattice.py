@@ -92,13 +92,11 @@ def weigh(place: Place, sides: Sides) -> Int:
         sides[2 * axis] = 1.0 - share
         sides[2 * axis + 1] = share
         first = first * DIM + low
-    sides[0] *= place[3]
-    sides[1] *= place[3]
     return first
 
 
-def add_nodes(place: Place, entry: Int, basis: Basis, total: Block) -> None:
-    """Add the weighted spectra of the eight lattice points and the entry: mode ``spectra``."""
+def add_nodes(place: Place, basis: Basis, total: Block) -> None:
+    """Add the weighted spectra of the eight lattice points."""
     values: Row = zeros(STRIDE)
     sides: Sides = zeros(6)
     first: Int = weigh(place, sides)
@@ -110,13 +108,10 @@ def add_nodes(place: Place, entry: Int, basis: Basis, total: Block) -> None:
             basis,
             total,
         )
-    if entry >= 0:
-        load_row(LATTICE + entry, values)
-        add_spectrum(values, 1.0 - place[3], basis, total)
 
 
-def sum_coefficients(place: Place, entry: Int, coefficients: Coefficients) -> None:
-    """Sum the weighted coefficients of the eight lattice points and the entry: mode ``moments``."""
+def sum_nodes(place: Place, coefficients: Coefficients) -> None:
+    """Sum the weighted coefficients of the eight lattice points."""
     values: Row = zeros(STRIDE)
     sides: Sides = zeros(6)
     weight: Float = 0.0
@@ -128,7 +123,13 @@ def sum_coefficients(place: Place, entry: Int, coefficients: Coefficients) -> No
         weight = sides[corner // 4] * sides[2 + corner // 2 % 2] * sides[4 + corner % 2]
         for k in unroll(0, COUNT):
             coefficients[k] += weight * values[k]
+
+
+def sum_coefficients(place: Place, entry: Int, coefficients: Coefficients) -> None:
+    """Sum the weighted coefficients of the lattice and of an entry, in as many coefficients."""
+    values: Row = zeros(STRIDE)
+    sum_nodes(place, coefficients)
     if entry >= 0:
         load_row(LATTICE + entry, values)
         for k in range(COUNT):
-            coefficients[k] += (1.0 - place[3]) * values[k]
+            coefficients[k] = place[3] * coefficients[k] + (1.0 - place[3]) * values[k]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from uplift.io.export.kernel.intrinsics import (
         COUNT,
+        ENTRY_COUNT,
         LOW,
         SPAN,
         WIDTH,
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
         Bool,
         Coefficients,
         Float,
+        Int,
+        number,
         unroll,
         warp,
         zeros,
@@ -44,14 +47,33 @@ def squash(x: Float) -> Float:
     return 0.5 + sign * (0.25 + angle)
 
 
-def tabulate(wavelengths: Block, basis: Basis) -> None:
-    """Tabulate 1, 2 cos φ, ..., 2 cos mφ at wavelengths in nm, order by order.
+def phase(wavelength: Float) -> Float:
+    """Phase in turns, [-1/2, 1/2]; differences of magnitudes clip it to the range."""
+    turn: Float = (warp(wavelength) - LOW) / SPAN - 0.5
+    return 0.5 * (abs(turn + 0.5) - abs(turn - 0.5))
 
-    Differences of magnitudes clip wavelengths to the range.
-    """
+
+def argument(first: Int, wavelength: Float) -> Float:
+    """Evaluate p_0 + 2 p_1 cos φ + ... of the multipliers from an index in the table."""
+    turn: Float = phase(wavelength)
+    cosine: Float = sine_of_turn(turn)
+    sine: Float = -sine_of_turn(0.5 - abs(turn))
+    real: Float = 1.0
+    imaginary: Float = 0.0
+    held: Float = 0.0
+    x: Float = number(first)
+    for k in range(1, ENTRY_COUNT):
+        held = real * cosine - imaginary * sine
+        imaginary = real * sine + imaginary * cosine
+        real = held
+        x += 2.0 * real * number(first + k)
+    return x
+
+
+def tabulate(wavelengths: Block, basis: Basis) -> None:
+    """Tabulate 1, 2 cos φ, ..., 2 cos mφ at wavelengths in nm, order by order."""
     for w in range(WIDTH):
-        turn: Float = (warp(wavelengths[w]) - LOW) / SPAN - 0.5
-        turn = 0.5 * (abs(turn + 0.5) - abs(turn - 0.5))
+        turn: Float = phase(wavelengths[w])
         cosine: Coefficients = zeros(COUNT)
         sine: Coefficients = zeros(COUNT)
         cosine[1] = sine_of_turn(turn)

@@ -10,7 +10,15 @@ from string import Template
 from typing import Any
 
 from uplift.cube import CubeData, digest
-from uplift.io.export.kernel import lattice, moments, sigmoid, spectra
+from uplift.io.export.kernel import (
+    answer_moments,
+    answer_spectra,
+    entries,
+    lattice,
+    moments,
+    sigmoid,
+    spectra,
+)
 from uplift.io.export.kernel.language import Language
 from uplift.io.export.kernel.table import COLUMNS, Table
 from uplift.io.export.kernel.translate import functions, literal, translate
@@ -18,8 +26,9 @@ from uplift.models import Moments
 
 WARPS = {"none": "wavelength", "vision": "{tanh}(0.0072{suffix} * (wavelength - 538.0{suffix}))"}
 """`uplift.models.phase.WARPS` as expressions."""
+ANSWERS = {"spectra": answer_spectra, "moments": answer_moments}
 LEFT_OUT = {
-    "spectra": {"sum_coefficients", "dual", "multipliers_of"},
+    "spectra": {"sum_nodes", "sum_coefficients", "dual", "multipliers_of"},
     "moments": {"add_nodes", "add_spectrum"},
 }
 """Functions that a mode does not need."""
@@ -66,7 +75,9 @@ class Program:
 
     def _words(self) -> dict[str, Any]:
         sensor, width = self.data.sensor, self.table.constants["STRIDE"] // 4
-        wrappers = _read(f"{self.mode}.{self.template}")
+        wrappers = (
+            _read(f"moments.{self.template}") if self.mode == "moments" and self.template != "osl.osl" else ""
+        )
         words = {
             "version": version("uplift"),
             "digest": digest(self.data),
@@ -98,7 +109,7 @@ class Program:
 
     def _kernel(self) -> str:
         is_moments = isinstance(self.data.model, Moments)
-        parts = functions(moments if is_moments else sigmoid, spectra, lattice)
+        parts = functions(moments if is_moments else sigmoid, spectra, lattice, entries, ANSWERS[self.mode])
         integers = {key: value for key, value in self.table.constants.items() if isinstance(value, int)}
         kept = [part for part in parts if part.name not in LEFT_OUT[self.mode]]
         return (self._warp() if is_moments else "") + translate(kept, self.language, self.name, integers)

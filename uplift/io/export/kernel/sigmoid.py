@@ -15,6 +15,8 @@ if TYPE_CHECKING:
         Bool,
         Coefficients,
         Float,
+        Int,
+        number,
         sqrt,
     )
 
@@ -24,14 +26,22 @@ def squash(x: Float) -> Float:
     return 0.5 + 0.5 * x / sqrt(1.0 + x * x)
 
 
-def tabulate(wavelengths: Block, basis: Basis) -> None:
-    """Tabulate x², x, 1 at wavelengths in nm, x scaled from the range to [-1, 1].
+def scaled(wavelength: Float) -> Float:
+    """Wavelength scaled from the range to [-1, 1]; differences of magnitudes clip it."""
+    x: Float = (2.0 * wavelength - (START + END)) / (END - START)
+    return 0.5 * (abs(x + 1.0) - abs(x - 1.0))
 
-    Differences of magnitudes clip wavelengths to the range.
-    """
+
+def argument(first: Int, wavelength: Float) -> Float:
+    """Evaluate the quadratic polynomial of the multipliers from an index in the table."""
+    x: Float = scaled(wavelength)
+    return (number(first) * x + number(first + 1)) * x + number(first + 2)
+
+
+def tabulate(wavelengths: Block, basis: Basis) -> None:
+    """Tabulate x², x, 1 at wavelengths in nm."""
     for w in range(WIDTH):
-        x: Float = (2.0 * wavelengths[w] - (START + END)) / (END - START)
-        x = 0.5 * (abs(x + 1.0) - abs(x - 1.0))
+        x: Float = scaled(wavelengths[w])
         basis[w] = x * x
         basis[WIDTH + w] = x
         basis[2 * WIDTH + w] = 1.0

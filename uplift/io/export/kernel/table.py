@@ -31,7 +31,7 @@ class Table:
     Parameters
     ----------
     numbers : ndarray, shape (n,)
-        Rows of lattice points and entries, axis nodes, bins, lists of boxes, boxes, in this order.
+        Rows of lattice points and entries, multipliers of entries, axis nodes, bins, lists of boxes, boxes.
     constants : mapping
         Values of the constants of `intrinsics`, but for ``WIDTH``.
     """
@@ -68,7 +68,8 @@ def make_table(data: CubeData, mode: str) -> Table:
     rows = np.zeros((size + len(data.atlas.names), stride), dtype=np.float32)
     rows[:, : model.count] = np.concatenate(stored)
     rows[:size, model.count] = tags
-    sections = {
+    sections: dict[str, NDArray[Any]] = {
+        "ENTRIES": data.entry_spectra.multipliers,
         "NODES": data.lattice.nodes.astype(np.float32),
         "BINS": _bins(data.lattice.nodes.astype(np.float32)),
         "LISTS": lists,
@@ -82,6 +83,7 @@ def make_table(data: CubeData, mode: str) -> Table:
     parts.append(np.zeros(-end % TEXEL, dtype=np.float32))
     constants = {
         "COUNT": model.count,
+        "ENTRY_COUNT": data.entry_spectra.model.count,
         "STRIDE": stride,
         "DIM": data.lattice.dim,
         "LATTICE": size,

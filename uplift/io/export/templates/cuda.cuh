@@ -42,5 +42,14 @@ ${NAME}_FUNCTION void ${name}_evaluate(
     ${name}_evaluate_block(multipliers, basis, reflectances);
 }
 
+/* Reflectances of linear RGB at wavelengths in nm; their colour is exactly this RGB. Clips RGB to [0, 1]. */
+${NAME}_FUNCTION void ${name}_reflectances(
+    const float *table, const float rgb[3], const float wavelengths[${NAME}_WIDTH], float reflectances[${NAME}_WIDTH])
+{
+    float place[4];
+    int entry = ${name}_locate(table, rgb, place);
+    ${name}_answer(table, place, entry, wavelengths, reflectances);
+}
+
 ${wrappers}
 #endif

@@ -48,4 +48,18 @@ vec4 ${name}_evaluate(float multipliers[${NAME}_COUNT], vec4 wavelengths)
     return vec4(total[0], total[1], total[2], total[3]);
 }
 
+/* Reflectances of linear RGB at four wavelengths in nm; their colour is exactly this RGB. Clips RGB to [0, 1]. */
+vec4 ${name}_reflectances(vec3 rgb, vec4 wavelengths)
+{
+    float colour[3];
+    float place[4];
+    float lanes[4];
+    float total[4];
+    for (int axis = 0; axis < 3; ++axis) colour[axis] = rgb[axis];
+    for (int w = 0; w < 4; ++w) { lanes[w] = wavelengths[w]; total[w] = 0.0; place[w] = 0.0; }
+    int entry = ${name}_locate(colour, place);
+    ${name}_answer(place, entry, lanes, total);
+    return vec4(total[0], total[1], total[2], total[3]);
+}
+
 ${wrappers}

@@ -44,4 +44,18 @@ float4 ${name}_evaluate(float multipliers[${NAME}_COUNT], float4 wavelengths)
     return float4(total[0], total[1], total[2], total[3]);
 }
 
+/* Reflectances of linear RGB at four wavelengths in nm; their colour is exactly this RGB. Clips RGB to [0, 1]. */
+float4 ${name}_reflectances(float3 rgb, float4 wavelengths)
+{
+    float colour[3];
+    float place[4];
+    float lanes[4];
+    float total[4];
+    for (int axis = 0; axis < 3; ++axis) colour[axis] = rgb[axis];
+    for (int w = 0; w < 4; ++w) { lanes[w] = wavelengths[w]; total[w] = 0.0; place[w] = 0.0; }
+    int entry = ${name}_locate(colour, place);
+    ${name}_answer(place, entry, lanes, total);
+    return float4(total[0], total[1], total[2], total[3]);
+}
+
 ${wrappers}

@@ -12,13 +12,3 @@ static inline int ${name}_multipliers(
 {
     return ${name}_multipliers_of(coefficients, multipliers);
 }
-
-/* Reflectances of linear RGB at wavelengths in nm. */
-static inline void ${name}_reflectances(
-    const float rgb[3], const float *wavelengths, int count, float *reflectances)
-{
-    float coefficients[${NAME}_COUNT], multipliers[${NAME}_COUNT];
-    ${name}_coefficients(rgb, coefficients);
-    ${name}_multipliers_of(coefficients, multipliers);
-    ${name}_evaluate(multipliers, wavelengths, count, reflectances);
-}

@@ -8,14 +8,3 @@ void ${name}_coefficients(vec3 rgb, inout float coefficients[${NAME}_COUNT])
     int entry = ${name}_locate(colour, place);
     ${name}_sum_coefficients(place, entry, coefficients);
 }
-
-/* Reflectances of linear RGB at four wavelengths in nm. */
-vec4 ${name}_reflectances(vec3 rgb, vec4 wavelengths)
-{
-    float coefficients[${NAME}_COUNT];
-    float multipliers[${NAME}_COUNT];
-    for (int k = 0; k < ${NAME}_COUNT; ++k) { coefficients[k] = 0.0; multipliers[k] = 0.0; }
-    ${name}_coefficients(rgb, coefficients);
-    ${name}_multipliers_of(coefficients, multipliers);
-    return ${name}_evaluate(multipliers, wavelengths);
-}

@@ -5,12 +5,3 @@ fn ${name}_coefficients(rgb: vec3f, coefficients: ptr<function, array<f32, ${NAM
     let entry = ${name}_locate(&colour, &place);
     ${name}_sum_coefficients(&place, entry, coefficients);
 }
-
-/* Reflectances of linear RGB at four wavelengths in nm. */
-fn ${name}_reflectances(rgb: vec3f, wavelengths: vec4f) -> vec4f {
-    var coefficients: array<f32, ${NAME}_COUNT>;
-    var multipliers: array<f32, ${NAME}_COUNT>;
-    ${name}_coefficients(rgb, &coefficients);
-    ${name}_multipliers_of(&coefficients, &multipliers);
-    return ${name}_evaluate(&multipliers, wavelengths);
-}
