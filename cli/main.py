@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import importlib
-import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -19,6 +18,7 @@ from .output.diagnostics import InternalFailure, UsageFailure, show_usage_error,
 from .output.streams import finish_stdout, prepare_streams
 from .params.options import OUTPUT_FORMAT
 from .params.renamed import renamed_option
+from .signals import InterruptFailure, check, end, ending_signals, received
 from .startup import draw_without_window
 
 GROUPS = {
@@ -31,8 +31,8 @@ GROUPS = {
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 SUMMARY_LENGTH = 200
 """Characters of a command's summary in the help; enough for all of them."""
-LOST_PIPE, INTERRUPTED = 1, 130
-"""Exit codes of a command whose reader closed the pipe, and of one ended by Ctrl-C."""
+LOST_PIPE = 1
+"""Exit code of a command whose reader closed the pipe."""
 DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -64,13 +64,18 @@ class LazyGroup(click.Group):
                 formatter.write_dl(rows)
 
     def main(self, *args: Any, **options: Any) -> Any:
-        """Run the command line and exit: 0, 1 for a failed check, 2 for bad input, 70 for an internal error."""
+        """Run the command line and exit: 0, 1 for a failed check, 2 for bad input, 70 for an internal error.
+
+        A signal ends the process as it would end others: shells report 128 and its number.
+        """
         run: Callable[[], Any] = partial(super().main, *args, **options | {"standalone_mode": False})
         if not options.get("standalone_mode", True):
             return run()
         prepare_streams()
         draw_without_window()
-        sys.exit(_exit_code(run))
+        with ending_signals():
+            code = _exit_code(run)
+        return end(code)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; raise `UsageFailure` for errors of the library."""
@@ -78,6 +83,7 @@ class LazyGroup(click.Group):
             warnings.simplefilter("always", UpliftWarning)
             warnings.showwarning = show_warning
             result = super().invoke(ctx)
+            check()
             finish_stdout()  # a full disk must be noticed while errors can still be reported
             return result
 
@@ -93,8 +99,8 @@ def _exit_code(run: Callable[[], Any]) -> int:
     except click.ClickException as error:
         show_usage_error(error)
         return error.exit_code
-    except click.Abort:
-        return INTERRUPTED
+    except (click.Abort, KeyboardInterrupt) as interrupt:
+        return _report(InterruptFailure(interrupt))
     except BrokenPipeError:  # the reader closed the pipe
         return LOST_PIPE
     except OSError as error:
@@ -122,7 +128,11 @@ def _failures(ctx: click.Context) -> Iterator[None]:
     as_json = partial(_is_json, ctx)
     try:
         yield
+    except KeyboardInterrupt as interrupt:
+        raise InterruptFailure(interrupt, as_json=as_json()) from interrupt
     except UpliftError as error:
+        if received():  # workers may end before this process
+            raise InterruptFailure(error, as_json=as_json()) from error
         raise UsageFailure(error, as_json=as_json()) from error
     except BrokenPipeError:
         raise
@@ -138,6 +148,8 @@ def _failures(ctx: click.Context) -> Iterator[None]:
     except (click.ClickException, click.exceptions.Exit, click.Abort):
         raise
     except Exception as error:
+        if received():  # an exception of JAX that was a KeyboardInterrupt
+            raise InterruptFailure(error, as_json=as_json()) from error
         if "RESOURCE_EXHAUSTED" in str(error):  # of JAX
             raise UsageFailure(_memory_error(), as_json=as_json()) from error
         if ctx.params["traceback"]:

@@ -160,10 +160,14 @@ def _convert_here(job: Job) -> Conversion:
 def _collect(results: Iterable[Conversion | Failure], total: int) -> list[Conversion | Failure]:
     """Collect results as images finish, with a progress bar over the images."""
     collected = []
-    with progress_bar("images") as progress:
-        for result in results:
-            collected.append(result)
-            progress(Progress("images", len(collected), total))
+    try:
+        with progress_bar("images") as progress:
+            for result in results:
+                collected.append(result)
+                progress(Progress("images", len(collected), total))
+    except KeyboardInterrupt as interrupt:
+        interrupt.add_note(f"{len(collected)} of {total} images are finished, continue with --resume")
+        raise
     return collected
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 
+from ..signals import check
 from .console import say
 
 STAGES = {"images": "reading images", "fit": "fitting", "store": "storing"}
@@ -18,12 +19,23 @@ STAGES = {"images": "reading images", "fit": "fitting", "store": "storing"}
 def build_progress(*, quiet: bool, verbose: bool) -> Iterator[ProgressCallback]:
     """Yield a callback for `uplift.build`: lines if ``verbose``, a bar on a terminal, silent otherwise."""
     if verbose:
-        yield _print_line
+        yield _checked(_print_line)
     elif quiet or not sys.stderr.isatty():
-        yield ignore_progress
+        yield _checked(ignore_progress)
     else:
         with _build_bar() as progress:
-            yield progress
+            yield _checked(progress)
+    check()
+
+
+def _checked(callback: ProgressCallback) -> ProgressCallback:
+    """Raise `KeyboardInterrupt` at the next event if a signal has arrived; see `uplift_cli.signals`."""
+
+    def progress(event: Progress) -> None:
+        check()
+        callback(event)
+
+    return progress
 
 
 @contextlib.contextmanager
@@ -42,7 +54,7 @@ def spinner(text: str) -> Iterator[None]:
 def progress_bar(title: str) -> Iterator[ProgressCallback]:
     """Yield a callback that moves a bar titled ``title``."""
     if not sys.stderr.isatty():
-        yield ignore_progress
+        yield _checked(ignore_progress)
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
@@ -51,19 +63,19 @@ def progress_bar(title: str) -> Iterator[ProgressCallback]:
     columns = (TextColumn(title), BarColumn(bar_width=None), MofNCompleteColumn())
     with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title, total=None)
-        yield lambda event: bar.update(task, completed=event.done, total=event.total)
+        yield _checked(lambda event: bar.update(task, completed=event.done, total=event.total))
 
 
 @contextlib.contextmanager
 def stage_spinner() -> Iterator[ProgressCallback]:
     """Yield a callback that shows the current stage with a spinner."""
     if not sys.stderr.isatty():
-        yield ignore_progress
+        yield _checked(ignore_progress)
         return
     from rich.console import Console
 
     with Console(stderr=True).status("…") as status:
-        yield lambda event: status.update(f"{event.stage} ({event.done + 1} of {event.total}) …")
+        yield _checked(lambda event: status.update(f"{event.stage} ({event.done + 1} of {event.total}) …"))
 
 
 def _print_line(event: Progress) -> None:

@@ -3,22 +3,40 @@
 from __future__ import annotations
 
 import contextlib
-import multiprocessing
+import logging
 import os
-from collections.abc import Iterable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import (
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    as_completed,
+)
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Any, TypeVar
 
 from uplift.common.errors import OptionError, TextureError, UpliftError
-from uplift.common.files import check_outputs
+from uplift.common.files import check_outputs, remove_stale
+from uplift.common.processes import tied_processes
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.texture import exr_file
 from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.pixel_encoding import PixelEncoding
 from uplift.io.texture.source import open_image
 from uplift.io.texture.uplifter import Uplifter, prepare
 from uplift.lookup import load
+
+MAX_NAMES = 4
+"""Finished textures that an error names."""
+DASK_TIMEOUT = "10s"
+DASK_CLOSE_SECONDS = 2
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -115,12 +133,15 @@ def uplifter_for(settings: TextureSettings) -> Uplifter:
     )
 
 
-def run(job: Job) -> Conversion | Failure:
+def run(job: Job, progress: ProgressCallback = ignore_progress) -> Conversion | Failure:
     """Convert the image of a job. Errors are returned, so that one bad image does not stop the others."""
     try:
-        return convert(uplifter_for(job.settings), job.source, job.target, force=job.force)
+        return convert(uplifter_for(job.settings), job.source, job.target, force=job.force, progress=progress)
     except UpliftError as error:
         return Failure(job.source, error)
+    except MemoryError:
+        problem, hint = "not enough memory", "use fewer processes"
+        return Failure(job.source, TextureError(problem, code="out-of-memory", path=job.source, hint=hint))
 
 
 def convert_all(jobs: Iterable[Job], executor: Executor) -> Iterator[Conversion | Failure]:
@@ -137,14 +158,53 @@ def convert_all(jobs: Iterable[Job], executor: Executor) -> Iterator[Conversion 
     ------
     Conversion or Failure
         Outcomes in order of completion.
+
+    Raises
+    ------
+    TextureError
+        The workers ended before all images were converted (code ``workers-lost``). The error lists the textures that
+        are finished; no other file remains.
     """
-    futures = [executor.submit(run, job) for job in jobs]
+    jobs = list(jobs)
+    futures: dict[Future[Conversion | Failure], Job] = {}
+    finished: list[Path] = []
     try:
+        futures |= {executor.submit(run, job): job for job in jobs}
         for future in as_completed(futures):
-            yield future.result()
+            result = future.result()
+            if isinstance(result, Conversion):
+                finished.append(result.target)
+            yield result
+    except Exception as error:
+        if not _is_lost(error):
+            raise
+        if isinstance(error, BrokenExecutor):
+            executor.shutdown()  # wait until the workers have closed their files
+        raise _workers_lost(jobs, finished) from error
     finally:
         for future in futures:
             future.cancel()
+
+
+def _is_lost(error: BaseException) -> bool:
+    """Return whether an error of an executor means that its workers or its scheduler ended."""
+    is_of_dask = type(error).__module__.partition(".")[0] == "distributed"
+    return is_of_dask or isinstance(error, BrokenExecutor | CancelledError | TimeoutError)
+
+
+def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
+    for job in jobs:
+        if job.target not in finished:
+            with contextlib.suppress(OSError):
+                remove_stale(job.target)
+    names = ", ".join(target.name for target in finished[:MAX_NAMES])
+    more = f" and {len(finished) - MAX_NAMES} more" if len(finished) > MAX_NAMES else ""
+    return TextureError(
+        f"the workers ended unexpectedly; {len(finished)} of {len(jobs)} textures are finished"
+        + (f" ({names}{more})" if finished else ""),
+        code="workers-lost",
+        hint="resume with the others, with fewer processes if memory ran out",
+    )
 
 
 def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
@@ -206,6 +266,8 @@ def _is_up_to_date(job: Job) -> bool:
 def process_executor(count: int) -> Iterator[Executor]:
     """Start processes on this machine; a single one is a thread of the current process.
 
+    The processes end, and remove their unfinished files, when this process ends in any way or the block raises.
+
     Parameters
     ----------
     count : int
@@ -227,9 +289,30 @@ def process_executor(count: int) -> Iterator[Executor]:
             code="too-few-processes",
             hint="use 1 or more",
         )
-    spawn = multiprocessing.get_context("spawn")  # JAX cannot be forked
-    with ThreadPoolExecutor(1) if count == 1 else ProcessPoolExecutor(count, mp_context=spawn) as pool:
+    with _OneThread() if count == 1 else tied_processes(count) as pool:
         yield pool
+
+
+class _OneThread(ThreadPoolExecutor):
+    """A thread whose job ends at its next report of progress when the block raises."""
+
+    def __init__(self) -> None:
+        super().__init__(1)
+        self._is_stopped = threading.Event()
+
+    def submit(self, function: Callable[..., T], /, *args: Any, **options: Any) -> Future[T]:
+        """Submit a job that takes ``progress``."""
+        return super().submit(function, *args, progress=self._check, **options)
+
+    def __exit__(self, kind: type[BaseException] | None, *rest: Any) -> None:
+        """Wait for the running job."""
+        if kind is not None:
+            self._is_stopped.set()
+        super().__exit__(kind, *rest)
+
+    def _check(self, progress: Progress) -> None:
+        if self._is_stopped.is_set():
+            raise CancelledError
 
 
 @contextlib.contextmanager
@@ -259,13 +342,30 @@ def dask_executor(address: str) -> Iterator[Executor]:
             code="dask-not-installed",
             hint="install it: pip install 'uplift[cluster]'",
         ) from error
+    with _quiet_dask():
+        try:
+            client = distributed.Client(address, timeout=DASK_TIMEOUT)
+        except Exception as error:  # each protocol has its own, such as RuntimeError for missing certificates
+            reason = " ".join(str(error).split())
+            raise OptionError(
+                f"no Dask scheduler can be used at '{address}'" + (f": {reason}" if reason else ""),
+                code="dask-unreachable",
+                hint="start one: dask scheduler",
+            ) from error
+        try:
+            yield client.get_executor()
+        finally:
+            with contextlib.suppress(Exception):  # of a scheduler that has ended
+                client.close(timeout=DASK_CLOSE_SECONDS)
+
+
+@contextlib.contextmanager
+def _quiet_dask() -> Iterator[None]:
+    """Keep Dask from logging tracebacks of lost connections, which are raised as errors."""
+    logger = logging.getLogger("distributed")
+    before = logger.level
+    logger.setLevel(logging.CRITICAL + 1)
     try:
-        client = distributed.Client(address, timeout="10s")
-    except (OSError, ValueError) as error:
-        raise OptionError(
-            f"no Dask scheduler responds at '{address}'",
-            code="dask-unreachable",
-            hint="start one: dask scheduler",
-        ) from error
-    with client:
-        yield client.get_executor()
+        yield
+    finally:
+        logger.setLevel(before)
