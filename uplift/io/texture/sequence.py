@@ -362,10 +362,11 @@ def dask_executor(address: str) -> Iterator[Executor]:
 @contextlib.contextmanager
 def _quiet_dask() -> Iterator[None]:
     """Keep Dask from logging tracebacks of lost connections, which are raised as errors."""
-    logger = logging.getLogger("distributed")
-    before = logger.level
-    logger.setLevel(logging.CRITICAL + 1)
+    handlers = {handler: handler.level for handler in logging.getLogger("distributed").handlers}
+    for handler in handlers:
+        handler.setLevel(logging.CRITICAL + 1)
     try:
         yield
     finally:
-        logger.setLevel(before)
+        for handler, level in handlers.items():
+            handler.setLevel(level)
