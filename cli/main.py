@@ -14,11 +14,17 @@ import click
 
 from uplift.common.errors import OutputError, UpliftError, UpliftWarning
 
-from .output.diagnostics import InternalFailure, UsageFailure, show_usage_error, show_warning
+from .output.diagnostics import (
+    InternalFailure,
+    InterruptFailure,
+    UsageFailure,
+    show_usage_error,
+    show_warning,
+)
 from .output.streams import finish_stdout, prepare_streams
 from .params.options import OUTPUT_FORMAT
 from .params.renamed import renamed_option
-from .signals import InterruptFailure, check, end, ending_signals, received
+from .signals import check, end, ending_signals, received
 from .startup import draw_without_window
 
 GROUPS = {
@@ -100,7 +106,7 @@ def _exit_code(run: Callable[[], Any]) -> int:
         show_usage_error(error)
         return error.exit_code
     except (click.Abort, KeyboardInterrupt) as interrupt:
-        return _report(InterruptFailure(interrupt))
+        return _report(InterruptFailure(interrupt, received() or signal.SIGINT))
     except BrokenPipeError:  # the reader closed the pipe
         return LOST_PIPE
     except OSError as error:
@@ -129,10 +135,11 @@ def _failures(ctx: click.Context) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt as interrupt:
-        raise InterruptFailure(interrupt, as_json=as_json()) from interrupt
+        number = received() or signal.SIGINT
+        raise InterruptFailure(interrupt, number, as_json=as_json()) from interrupt
     except UpliftError as error:
-        if received():  # workers may end before this process
-            raise InterruptFailure(error, as_json=as_json()) from error
+        if number := received():  # workers may end before this process
+            raise InterruptFailure(error, number, as_json=as_json()) from error
         raise UsageFailure(error, as_json=as_json()) from error
     except BrokenPipeError:
         raise
@@ -148,8 +155,8 @@ def _failures(ctx: click.Context) -> Iterator[None]:
     except (click.ClickException, click.exceptions.Exit, click.Abort):
         raise
     except Exception as error:
-        if received():  # an exception of JAX that was a KeyboardInterrupt
-            raise InterruptFailure(error, as_json=as_json()) from error
+        if number := received():  # an exception of JAX that was a KeyboardInterrupt
+            raise InterruptFailure(error, number, as_json=as_json()) from error
         if "RESOURCE_EXHAUSTED" in str(error):  # of JAX
             raise UsageFailure(_memory_error(), as_json=as_json()) from error
         if ctx.params["traceback"]:

@@ -16,10 +16,6 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import NoReturn
 
-from uplift.common.errors import UpliftError
-
-from .output.diagnostics import UsageFailure
-
 ENDING = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK") if hasattr(signal, name)
 )
@@ -32,26 +28,6 @@ _received: list[int] = []
 
 class Interrupt(KeyboardInterrupt):
     """A signal that ends the command."""
-
-
-class InterruptFailure(UsageFailure):
-    """A command that a signal ended: one line on standard error, with the notes of the exception."""
-
-    def __init__(self, interrupt: BaseException, *, as_json: bool = False) -> None:
-        number = _received[0] if _received else signal.SIGINT
-        notes = "; ".join(getattr(interrupt, "__notes__", ()))
-        error = UpliftError(
-            f"ended by {signal.Signals(number).name}",
-            code="interrupted",
-            hint=notes or "unfinished files are removed",
-        )
-        super().__init__(error, as_json=as_json)
-        self.number = number
-
-    @property
-    def exit_code(self) -> int:  # type: ignore[override]
-        """128 and the number of the signal, as shells report it."""
-        return 128 + self.number
 
 
 @contextmanager
@@ -80,9 +56,9 @@ def ending_signals() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def received() -> bool:
-    """Return whether a signal that ends the command has arrived."""
-    return bool(_received)
+def received() -> int | None:
+    """Return the first signal that arrived, None if there is none."""
+    return _received[0] if _received else None
 
 
 def check() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import signal
 import traceback
 from pathlib import Path
 from typing import Any
@@ -60,6 +61,31 @@ class InternalFailure(UsageFailure):
         )
         report = UpliftError(problem, code="internal-error", hint="'uplift --traceback COMMAND …' shows more")
         super().__init__(report, as_json=as_json)
+
+
+class InterruptFailure(UsageFailure):
+    """A command that a signal ended: one line on standard error, with the notes of the exception.
+
+    Parameters
+    ----------
+    interrupt : BaseException
+        The exception that ended the command.
+    number : int
+        The signal.
+    as_json : bool
+        Report it as JSON.
+    """
+
+    def __init__(self, interrupt: BaseException, number: int, *, as_json: bool = False) -> None:
+        hint = "; ".join(getattr(interrupt, "__notes__", ())) or "unfinished files are removed"
+        problem = f"ended by {signal.Signals(number).name}"
+        super().__init__(UpliftError(problem, code="interrupted", hint=hint), as_json=as_json)
+        self.number = number
+
+    @property
+    def exit_code(self) -> int:  # type: ignore[override]
+        """128 and the number of the signal, as shells report it."""
+        return 128 + self.number
 
 
 def show_usage_error(error: click.ClickException) -> None:

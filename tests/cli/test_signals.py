@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from uplift_cli import signals
+from uplift_cli.output.diagnostics import InterruptFailure
 
 from uplift.common.progress import Progress
 
@@ -95,7 +96,8 @@ def test_signals_are_interrupts(number):
     with pytest.raises(KeyboardInterrupt):
         run(lambda: signal.raise_signal(number))
     assert signal.getsignal(number) is before
-    assert signals.InterruptFailure(KeyboardInterrupt()).exit_code == 128 + number
+    assert signals.received() == number
+    assert InterruptFailure(KeyboardInterrupt(), number).exit_code == 128 + number
 
 
 def test_ignored_signals_stay_ignored():
