@@ -139,8 +139,8 @@ def _failures(ctx: click.Context) -> Iterator[None]:
         number = received() or signal.SIGINT
         raise InterruptFailure(interrupt, number, as_json=as_json()) from interrupt
     except UpliftError as error:
-        if number := received():  # workers may end before this process
-            raise InterruptFailure(error, number, as_json=as_json()) from error
+        if ended := received():  # workers may end before this process
+            raise InterruptFailure(error, ended, as_json=as_json()) from error
         raise UsageFailure(error, as_json=as_json()) from error
     except BrokenPipeError:
         raise
@@ -156,8 +156,8 @@ def _failures(ctx: click.Context) -> Iterator[None]:
     except (click.ClickException, click.exceptions.Exit, click.Abort):
         raise
     except Exception as error:
-        if number := received():  # an exception of JAX that was a KeyboardInterrupt
-            raise InterruptFailure(error, number, as_json=as_json()) from error
+        if ended := received():  # an exception of JAX that was a KeyboardInterrupt
+            raise InterruptFailure(error, ended, as_json=as_json()) from error
         if "RESOURCE_EXHAUSTED" in str(error):  # of JAX
             raise UsageFailure(_memory_error(), as_json=as_json()) from error
         if ctx.params["traceback"]:
