@@ -18,6 +18,7 @@ import numpy as np
 
 from tests.fuzz.target import Target
 from uplift.common.errors import UpliftError, UpliftWarning
+from uplift.common.text import printable
 
 SECONDS = 5.0
 """Limit of processor time per input. Valid inputs take milliseconds."""
@@ -90,8 +91,8 @@ def _run(target: Target, path: Path, tally: Tally) -> str:
         tally.accepted += 1
     except UpliftError as error:
         tally.rejected += 1
-        if "\n" in str(error):
-            return "a message of several lines"
+        if printable(str(error)) != str(error):
+            return "a message of several lines, or with control characters"
     except KeyboardInterrupt:
         raise
     except BaseException as error:

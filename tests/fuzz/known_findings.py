@@ -87,4 +87,58 @@ KNOWN_FINDINGS = (
         "was": "OSError, ValueError, minutes of waiting",
         "now": "rejected",
     },
+    {
+        "target": "build options",
+        "input": "auto_tolerance of NaN, infinity or −1",
+        "was": "a cube that no command could read, in place of a good one",
+        "now": "rejected; a new cube is read back before it replaces an old one",
+    },
+    {
+        "target": "cube, metadata",
+        "input": "JSON nested 983 levels deep; lone surrogates; 100,000 recorded lights",
+        "was": "RecursionError, UnicodeEncodeError, a hang of 'uplift check'",
+        "now": "rejected by the schema of the metadata, before the digest",
+    },
+    {
+        "target": "cube, metadata",
+        "input": "a recorded atlas named /etc/shadow or /proc/kmsg",
+        "was": "the file was opened",
+        "now": "files are opened in the folder of the cube and in --atlas-dir only",
+    },
+    {
+        "target": "cube, valid digest",
+        "input": "negative standard errors; a threshold of 5e-324; sparse arrays of another type",
+        "was": "accepted; a gigabyte was allocated before the check",
+        "now": "rejected before arrays are expanded",
+    },
+    {
+        "target": "chart table",
+        "input": "blank, missing or infinite cells of a measured method",
+        "was": "KeyError in pictures and pages",
+        "now": "rejected: the numbers of an error come together",
+    },
+    {
+        "target": "kinds of input files",
+        "input": "pipes and devices in place of files",
+        "was": "reading never ended",
+        "now": "rejected: an input must be a file",
+    },
+    {
+        "target": "numbers of options",
+        "input": "digits of other scripts, numbers of 5,000 digits, 10²⁰ processes",
+        "was": "accepted, or messages of thousands of characters",
+        "now": "rejected on one line",
+    },
+    {
+        "target": "colour table",
+        "input": "1e308 in one channel, mapped with 'clip'",
+        "was": "the other channels became 0",
+        "now": "the other channels are kept",
+    },
+    {
+        "target": "builds in threads",
+        "input": "several builds in threads of one process",
+        "was": "other bytes once in 960 builds, and one thread for BLAS afterwards",
+        "now": "the limit holds until the last build is done, and is removed then",
+    },
 )

@@ -12,8 +12,14 @@ import numpy as np
 from tests.fuzz import (
     atlas_table,
     atlas_text,
+    build_options,
+    chart_table,
+    colour_table,
     cube_bytes,
+    cube_metadata,
     cube_valid_digest,
+    input_kinds,
+    option_numbers,
     palette_spec,
     scene_spec,
     writers,
@@ -21,10 +27,23 @@ from tests.fuzz import (
 from tests.fuzz.campaign import Tally, fuzz
 from tests.fuzz.target import ROOT
 
+MODULES = (
+    atlas_text,
+    atlas_table,
+    cube_bytes,
+    cube_valid_digest,
+    cube_metadata,
+    palette_spec,
+    chart_table,
+    colour_table,
+    build_options,
+    option_numbers,
+    input_kinds,
+)
 TARGETS = {
     target.name: target
     for target in (
-        *(module.TARGET for module in (atlas_text, atlas_table, cube_bytes, cube_valid_digest, palette_spec)),
+        *(module.TARGET for module in MODULES),
         scene_spec.SCENE_FILES,
         scene_spec.PLANS,
     )
@@ -35,6 +54,7 @@ WRITERS: tuple[tuple[WriterTest, int], ...] = (
     (writers.kill_saves, 2),
     (writers.kill_builds, 1),
     (writers.concurrent_builds, 4),
+    (writers.builds_in_threads, 1),
     (writers.full_disk, 6),
     (writers.no_permission, 6),
 )

@@ -75,9 +75,18 @@ def test_hangs_are_failures_even_if_exceptions_are_caught(tmp_path, monkeypatch)
     assert signal.getitimer(signal.ITIMER_PROF) == (0, 0)
 
 
-@pytest.mark.usefixtures("unlimited")
-def test_messages_of_several_lines_are_failures(tmp_path):
-    def use(path):
-        raise UpliftError("one\nother")
+class UnsafeError(UpliftError):
+    """An error whose text is not made safe."""
 
-    assert fuzz_with(use, tmp_path, 1).failures == {"a message of several lines": 1}
+    def __str__(self) -> str:
+        return self.problem
+
+
+@pytest.mark.usefixtures("unlimited")
+@pytest.mark.parametrize("text", ["one\nother", "\x1b]0;title\x07", "\u202e"])
+def test_messages_of_several_lines_or_with_control_characters_are_failures(tmp_path, text):
+    def use(path):
+        raise UnsafeError(text)
+
+    (failure,) = fuzz_with(use, tmp_path, 1).failures
+    assert "control characters" in failure

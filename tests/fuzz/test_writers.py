@@ -21,7 +21,13 @@ def test_old_or_complete_new_file_remains(target):
 
 
 def test_all_writer_tests_are_registered():
-    assert len({target for target, _ in WRITERS}) == 5
+    assert len({target for target, _ in WRITERS}) == 6
+
+
+def test_builds_in_threads_give_equal_cubes():
+    tally = stress_writer(writers.builds_in_threads, 1, seed=3)
+    assert tally.inputs == writers.BUILDS + 1
+    assert not tally.failures
 
 
 def test_broken_files_are_counted(tmp_path, monkeypatch):

@@ -9,14 +9,17 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+from threadpoolctl import threadpool_info
 
 import uplift
 from tests.fuzz.campaign import Tally
 from tests.fuzz.target import ROOT
+from uplift.cube import digest
 
 OLD, NEW = (ROOT / "cubes" / f"{name}.uplift" for name in ("moments-16-macbeth", "sigmoid-16-macbeth"))
 SAVE_IN_TURN = """
@@ -37,6 +40,8 @@ except uplift.UpliftError as error:
 """
 NOBODY = 65534
 """User without permissions."""
+BUILDS = 6
+"""Builds at once."""
 DISK_BYTES = 100_000
 """Size of a disk that is too small for a cube."""
 
@@ -96,6 +101,29 @@ def concurrent_builds(count: int, random: np.random.Generator, folder: Path) -> 
         intact = [build.wait() for build in builds] == [0, 0] and path.read_bytes() in complete
         tally.count(intact and os.listdir(folder) == [path.name], "a broken or a temporary file")
     return tally
+
+
+def builds_in_threads(count: int, random: np.random.Generator, folder: Path) -> Tally:
+    """Build in several threads of one process: equal options give equal cubes, and BLAS gets its threads back."""
+    tally, dims = Tally("builds in threads"), (3, 4, 5)
+    alone = {dim: digest(_quiet_build(dim).data) for dim in dims}
+    before = _blas_threads()
+    for _ in range(count):
+        chosen = random.choice(dims, size=BUILDS).tolist()
+        with ThreadPoolExecutor(BUILDS) as pool:
+            found = [digest(cube.data) for cube in pool.map(_quiet_build, chosen)]
+        for dim, each in zip(chosen, found, strict=True):
+            tally.count(each == alone[dim], "other bytes")
+        tally.count(_blas_threads() == before, "another number of BLAS threads")
+    return tally
+
+
+def _quiet_build(dim: int) -> uplift.Cube:
+    return uplift.build(dim=dim, coefficients=5)
+
+
+def _blas_threads() -> list[int]:
+    return sorted(each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas")
 
 
 def full_disk(count: int, random: np.random.Generator, folder: Path) -> Tally:

@@ -162,11 +162,13 @@ def parse_chart(text: str, path: str | os.PathLike[str]) -> Chart:
         If the text is not a valid chart.
     """
     reader = csv.DictReader(io.StringIO(text))
-    if not {*TEXTS, *FACTS} <= set(reader.fieldnames or ()):
-        raise _chart_error(path, "is not the table of a chart", "not-a-chart")
     try:
+        if not {*TEXTS, *FACTS} <= set(reader.fieldnames or ()):
+            raise _chart_error(path, "is not the table of a chart", "not-a-chart")
         lines = list(reader)
         results = tuple(_result(line) for line in lines)
+    except ChartFileError:
+        raise
     except (ValueError, TypeError, csv.Error) as error:
         raise _chart_error(path, f"is not a valid chart: {error}", "invalid-chart") from error
     if not results:

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict
-from pydantic.dataclasses import dataclass as pydantic_dataclass
+from pydantic import ConfigDict, Field
 
+from uplift.colorimetry import observer
 from uplift.common.arrays import StrPath
-from uplift.common.errors import PlanFileError
+from uplift.common.errors import PlanFileError, unknown_name
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.quoting import format_value
 from uplift.common.spec_file import SpecFile, SpecModel, read_json, resolves
 from uplift.io.scene_colours import Images, file_digest
+from uplift.io.texture.colours import check_encoding
 from uplift.lookup import Cube
 from uplift.pipeline import build
-from uplift.pipeline.options import Options
+from uplift.pipeline.options import Options, recorded_options
 from uplift.scene.plan.commands import build_command, expanded_command, texture_command
 from uplift.scene.plan.decision import Decision, Trial
 from uplift.scene.plan.evaluation import ErrorSummary
@@ -28,6 +29,7 @@ from uplift.scene.plan.planning import Plan
 
 FORMAT: Literal["uplift plan 1"] = "uplift plan 1"
 HINT = "plan the scene again"
+MAX_FILES = 10_000
 
 
 def to_json(plan: Plan, path: Path) -> dict[str, Any]:
@@ -174,14 +176,21 @@ class _Scene(SpecModel):
 
     model_config = ConfigDict(extra="ignore")
 
-    encoding: str
-    textures: list[_Source]
-    atlases: list[_Source]
+    encoding: Annotated[str, resolves(check_encoding)]
+    textures: Annotated[list[_Source], Field(min_length=1, max_length=MAX_FILES)]
+    atlases: Annotated[list[_Source], Field(max_length=MAX_FILES)]
 
 
-@pydantic_dataclass(config=ConfigDict(extra="forbid"), frozen=True)
-class _BuildOptions(Options):
-    """`Options` with checked types."""
+def _check_options(values: dict[str, Any]) -> None:
+    """Raise `UpliftError` unless a build accepts the options."""
+    known = [field.name for field in fields(Options)]
+    for name in values:
+        if name not in known:
+            raise unknown_name(name, known, "option")
+    options = Options(**recorded_options(values))
+    observer.sensor(options.space, options.illuminant, options.observer)
+    for name in options.lights:
+        observer.light(name, options.observer)
 
 
 class _PlanTable(SpecModel):
@@ -191,7 +200,7 @@ class _PlanTable(SpecModel):
 
     format: Literal["uplift plan 1"]
     scene: _Scene
-    build: Annotated[_BuildOptions, resolves(Options.spectrum_model)]
+    build: Annotated[dict[str, Any], resolves(_check_options)]
     cells: Literal["sparse", "whole"]
 
 
@@ -215,11 +224,17 @@ def read_plan(path: StrPath) -> PlanFile:
     """
     file = read_json(path, PlanFileError)
     table = file.validate(_PlanTable, hint=HINT)
-    options = {key: getattr(table.build, key) for key in file.values["build"]}
     textures, atlases = (
         _check_sources(file, key, getattr(table.scene, key)) for key in ("textures", "atlases")
     )
-    return PlanFile(file.path, textures, atlases, table.scene.encoding, table.cells == "sparse", options)
+    return PlanFile(
+        file.path,
+        textures,
+        atlases,
+        table.scene.encoding,
+        table.cells == "sparse",
+        recorded_options(table.build),
+    )
 
 
 def _check_sources(file: SpecFile, key: str, sources: list[_Source]) -> tuple[Path, ...]:
