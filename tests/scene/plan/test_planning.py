@@ -80,7 +80,9 @@ def test_an_independent_computation_on_every_pixel_agrees(planned, kitchen):
         )
         for error in (found.predicted, found.confirmed):
             (part,) = [each for each in error.parts if (each.group, each.light) == ("textures", light)]
-            assert np.quantile(delta_e, 0.975) == pytest.approx(part.quantile, rel=0.2)
+            low, high = np.quantile(delta_e, (0.95, 0.99))  # quantiles of a sample of pixels vary
+            assert 0.9 * low < part.quantile < 1.1 * high
+            assert delta_e.mean() == pytest.approx(part.mean, rel=0.2)
 
 
 def test_a_tolerance_below_the_error_of_the_reference_cube_is_refused(kitchen):
@@ -89,7 +91,7 @@ def test_a_tolerance_below_the_error_of_the_reference_cube_is_refused(kitchen):
         plan.plan(scene, replace(SMALL, coefficients=(5,)))
     assert "of materials under FL11, got 0.01" in caught.value.problem
     feasible = float(caught.value.hint.removeprefix("set tolerance = ").removesuffix(" or more"))
-    assert feasible > 0.1
+    assert feasible > 0.05
     assert caught.value.path == kitchen
 
 
