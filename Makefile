@@ -60,7 +60,8 @@ stability: $(INSTALLED)
 	$(BIN)/python -m benchmarks.stability
 	$(BIN)/python -m tools.render_docs stability
 
-# Malformed input, a hundred thousand of each kind, and writers killed at random: docs/stability.md.
+# Malformed input, a hundred thousand of each kind, commands in ten thousand odd settings of each class, and writers
+# killed at random: docs/stability.md.
 nightly: $(INSTALLED)
 	$(BIN)/python -m tests.fuzz
 	$(BIN)/python -m tools.render_docs stability

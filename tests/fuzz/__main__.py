@@ -11,7 +11,7 @@ import click
 
 from tests.fuzz.campaign import Tally
 from tests.fuzz.known_findings import KNOWN_FINDINGS
-from tests.fuzz.run import KEPT, TARGETS, WRITERS, fuzz_reader, stress_writer
+from tests.fuzz.run import COMMANDS, KEPT, TARGETS, WRITERS, fuzz_target, stress_writer
 from uplift.lab.timing import environment
 
 BLOCK = 5000
@@ -20,21 +20,23 @@ BLOCK = 5000
 
 @click.command()
 @click.option("--inputs", default=100_000, show_default=True, help="Inputs of each reader.")
+@click.option("--commands", default=10_000, show_default=True, help="Runs of the command line of each class.")
 @click.option("--writers", "runs", default=120, show_default=True, help="Runs of the tests of writers.")
 @click.option("--seed", default=0, show_default=True, help="Seed of the inputs.")
 @click.option("--processes", default=os.cpu_count(), show_default=True)
 @click.option("-o", "--output", default="docs/data/stability-hostile.json", show_default=True)
-def main(inputs: int, runs: int, seed: int, processes: int, output: str) -> None:
-    """Fuzz every reader and stress every writer; inputs that fail are kept in out/fuzz."""
+def main(inputs: int, commands: int, runs: int, seed: int, processes: int, output: str) -> None:
+    """Fuzz every reader and the command line, stress every writer; inputs that fail are kept in out/fuzz."""
     KEPT.mkdir(parents=True, exist_ok=True)
+    counts = dict.fromkeys(TARGETS, inputs) | dict.fromkeys(COMMANDS, commands)
     blocks = [
-        (name, range(first, min(first + BLOCK, inputs)))
-        for first in range(0, inputs, BLOCK)
-        for name in TARGETS
+        (name, range(first, min(first + BLOCK, count)))
+        for name, count in counts.items()
+        for first in range(0, count, BLOCK)
     ]
-    by_target = {name: Tally(name) for name in TARGETS}
+    by_target = {name: Tally(name) for name in counts}
     with ProcessPoolExecutor(processes, max_tasks_per_child=1) as pool:
-        for tally in pool.map(fuzz_reader, [seed] * len(blocks), *zip(*blocks, strict=True)):
+        for tally in pool.map(fuzz_target, [seed] * len(blocks), *zip(*blocks, strict=True)):
             by_target[tally.target].add(tally)
     tallies = [
         *by_target.values(),
@@ -55,7 +57,7 @@ def main(inputs: int, runs: int, seed: int, processes: int, output: str) -> None
 
 def _record(tally: Tally) -> dict[str, object]:
     """Make a row of docs/data/stability-hostile.json."""
-    is_reader = tally.target in TARGETS
+    is_reader = tally.target in TARGETS | COMMANDS
     return {
         "target": tally.target,
         "tried": tally.inputs,

@@ -70,6 +70,48 @@ KNOWN_FINDINGS = (
         "now": "an error of one line, exit code 2",
     },
     {
+        "target": "hostile text",
+        "input": "names with escape sequences, carriage returns, NUL or marks of writing direction",
+        "was": "obeyed by the terminal",
+        "now": "shown as escapes",
+    },
+    {
+        "target": "hostile text",
+        "input": "names such as [/] or $\\frac{A$",
+        "was": "tracebacks of rich and matplotlib",
+        "now": "shown as they are",
+    },
+    {
+        "target": "streams and places",
+        "input": "uplift --help > /dev/full; standard output, input or error closed",
+        "was": "tracebacks, lost output with exit code 0",
+        "now": "an error of one line, exit code 2; a file never takes the number of a closed stream",
+    },
+    {
+        "target": "streams and places",
+        "input": "terminals without Δ, ³ or block characters",
+        "was": "UnicodeEncodeError",
+        "now": "ASCII in their place",
+    },
+    {
+        "target": "streams and places",
+        "input": "MPLBACKEND without meaning; a user without home folder and name",
+        "was": "tracebacks",
+        "now": "works",
+    },
+    {
+        "target": "streams and places",
+        "input": "file names that are not UTF-8, as atlas, image, texture or in plots",
+        "was": "UnicodeEncodeError or TypeError",
+        "now": "recorded as escapes; rejected where OpenImageIO must open them",
+    },
+    {
+        "target": "unforeseen exceptions",
+        "input": "any exception that is not an error of uplift",
+        "was": "a traceback",
+        "now": "one line, exit code 70",
+    },
+    {
         "target": "odd paths",
         "input": "uplift build -o -",
         "was": "a file named '-'",

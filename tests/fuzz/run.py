@@ -18,9 +18,13 @@ from tests.fuzz import (
     cube_bytes,
     cube_metadata,
     cube_valid_digest,
+    hostile_text,
     input_kinds,
+    last_net,
     option_numbers,
     palette_spec,
+    places,
+    same_file,
     scene_spec,
     writers,
 )
@@ -49,6 +53,8 @@ TARGETS = {
     )
 }
 """Readers by name."""
+COMMANDS = {module.TARGET.name: module.TARGET for module in (hostile_text, places, same_file, last_net)}
+"""Targets that run the command line, by name."""
 WriterTest = Callable[[int, np.random.Generator, Path], Tally]
 WRITERS: tuple[tuple[WriterTest, int], ...] = (
     (writers.kill_saves, 2),
@@ -63,10 +69,10 @@ KEPT = ROOT / "out" / "fuzz"
 """Folder of inputs that failed."""
 
 
-def fuzz_reader(seed: int, name: str, inputs: range) -> Tally:
-    """Fuzz a reader."""
+def fuzz_target(seed: int, name: str, inputs: range) -> Tally:
+    """Fuzz a reader or the command line."""
     with tempfile.TemporaryDirectory(dir=_memory_folder()) as folder:
-        return fuzz(TARGETS[name], seed, inputs, Path(folder), KEPT)
+        return fuzz((TARGETS | COMMANDS)[name], seed, inputs, Path(folder), KEPT)
 
 
 def stress_writer(test: WriterTest, count: int, seed: int) -> Tally:
