@@ -21,6 +21,8 @@ ENDING = tuple(
 )
 """Signals that end a command."""
 RETRY_SECONDS = 0.02
+IMPORT_SYSTEM = "<frozen importlib._bootstrap>"
+"""File name of the code of the interpreter that imports modules."""
 
 _received: list[int] = []
 """Signals that arrived since the command started."""
@@ -86,6 +88,18 @@ def _send_again(number: int) -> None:
         _thread.interrupt_main(signal.Signals(number))
 
 
-def _raise(number: int, frame: FrameType | None) -> NoReturn:
+def _raise(number: int, frame: FrameType | None) -> None:
+    """Raise `Interrupt`, but only after an import: an exception while JAX loads its libraries crashes them."""
     _received.append(number)
+    if _is_importing(frame):
+        threading.Timer(RETRY_SECONDS, _send_again, (number,)).start()
+        return
     raise Interrupt
+
+
+def _is_importing(frame: FrameType | None) -> bool:
+    while frame is not None:
+        if frame.f_code.co_filename == IMPORT_SYSTEM:
+            return True
+        frame = frame.f_back
+    return False

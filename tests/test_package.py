@@ -94,7 +94,7 @@ def test_nothing_else_is_in_it(wheel, repository):
 def test_the_command_is_installed_as_uplift(wheel):
     points = configparser.ConfigParser()
     points.read_string(info(wheel, "entry_points.txt"))
-    assert dict(points["console_scripts"]) == {"uplift": "uplift_cli.main:main"}
+    assert dict(points["console_scripts"]) == {"uplift": "uplift_cli.__main__:run"}
 
 
 def test_name_version_and_python_are_stated(wheel):

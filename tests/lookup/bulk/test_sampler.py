@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -166,3 +168,11 @@ def test_rgb_errors_are_interpolated_fitting_distances(small_cube):
     expected = data.points.distance[clear]
     np.testing.assert_allclose(found(data.lattice.points[clear])[:, 0], expected, rtol=0, atol=1e-7)
     np.testing.assert_allclose(found(data.atlas.rgb), 0, atol=1e-7)
+
+
+def test_pickled_samplers_keep_their_types(sample):
+    """Without the 64-bit mode of JAX, arrays of float64 would come back as float32."""
+    copy = pickle.loads(pickle.dumps(sample))
+    assert [array.dtype for array in copy.grid] == [array.dtype for array in sample.grid]
+    rgb = np.random.default_rng(0).random((100, 3))
+    np.testing.assert_array_equal(copy(rgb), sample(rgb))

@@ -51,6 +51,10 @@ class Sampler:
         width = self.grid.lattice.shape[1]
         return blockwise(self._chunk, as_rgb(rgb), width, np.float32, self.threads, CHUNKS[0])
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle arrays of numpy: JAX would restore those of float64 as float32."""
+        return _on_device, (self.sensor, Grid(*map(np.asarray, self.grid)), self.threads)
+
     @property
     def nbytes(self) -> int:
         """Memory of the arrays in bytes."""
@@ -148,5 +152,9 @@ def max_rgb_error(cube: Cube, *, threads: int = 2) -> Sampler:
 
 
 def _sampler(table: NodeTable, threads: int) -> Sampler:
+    return _on_device(table.data.sensor, make_grid(table), threads)
+
+
+def _on_device(sensor: Sensor, grid: Grid, threads: int) -> Sampler:
     with jax.enable_x64(True):
-        return Sampler(table.data.sensor, jax.device_put(make_grid(table)), threads)
+        return Sampler(sensor, jax.device_put(grid), threads)
