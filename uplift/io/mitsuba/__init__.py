@@ -11,9 +11,10 @@
 =======================================  ======================================================================
 
 One colour becomes a regular spectrum of Mitsuba, without extra cost. Images are uplifted when they are loaded, to the
-multipliers of each texel, 4 bytes per coefficient. Spectra are evaluated at the wavelengths of each ray. In the JIT
-variants this is as fast as Mitsuba's own textures. Scalar variants call Python for every ray, some thousand times per
-second.
+multipliers of each texel, 4 bytes per coefficient. An image with colours near atlas entries has as many multipliers per
+texel as the entries, any other as many as the nodes of the cube. Spectra are evaluated at the wavelengths of each ray.
+In the JIT variants this is as fast as Mitsuba's own textures. Scalar variants call Python for every ray, some thousand
+times per second.
 
 Examples
 --------
