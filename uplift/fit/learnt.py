@@ -1,0 +1,210 @@
+"""The learnt base: smooth spectra plus the deviation that families of measured materials have from them.
+
+Deviations are kriged relative to the brightening of smooth spectra, so that dark colours stay dark, on the nodes of
+their table. An atlas says how relevant each family is: by how well its contribution predicts the entries (docs/prior.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from uplift.colorimetry.delta_e import lab_jacobian, rgb_to_lab
+from uplift.colorimetry.sensor import Light, Sensor
+from uplift.common.arrays import Array
+from uplift.fit.base import Base
+from uplift.fit.entries import FittedEntries
+from uplift.fit.family_kriging import FamilyKriging, FamilySamples, average_close, krige_families
+from uplift.fit.library import Family
+from uplift.fit.match_spectra import match_spectra
+from uplift.fit.objective import BALANCED
+from uplift.fit.prior import MARGIN, smooth_base
+from uplift.fit.problem import Problem
+from uplift.fit.quadrature_jit import quadrature_jit
+from uplift.fit.smooth import MIN_LEVEL, Smooth
+from uplift.fit.unrealisable import unrealisable
+from uplift.models import Moments, evaluate
+from uplift.models.real_moments import dual
+
+SAME_COLOUR, SAME_SPECTRUM = 3.0, 0.03
+"""ΔE*ab and rms within which a spectrum of a library is that of an atlas entry, which replaces it."""
+ASSUMED_ENTRIES = 20.0
+"""Entries that the assumption that all families are equally relevant counts as."""
+MAX_RELEVANCE = 4.0
+MAX_ENTRIES = 1000
+"""Entries from which relevances are learnt."""
+BOUND = 0.1
+"""Part of the distance of a smooth spectrum from 0 and 1 that always remains."""
+DIMMEST = 0.1
+"""Brightened colours below this, linear RGB under 0.01, tend towards smooth spectra: hardly anything is so dark."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LearntBase:
+    """A learnt base, and how relevant each family was.
+
+    Parameters
+    ----------
+    base : Base
+        Predictor of spectra.
+    relevance : dict of str to float
+        Factor of the contribution of each family, 0 to 4, 1 where no atlas says otherwise.
+    """
+
+    base: Base
+    relevance: dict[str, float]
+
+
+def learn_base(
+    problem: Problem,
+    sensor: Sensor,
+    lights: Sequence[Light],
+    families: Sequence[Family],
+    entries: FittedEntries,
+) -> LearntBase:
+    """Learn the base from libraries, and their relevance from atlas entries.
+
+    Parameters
+    ----------
+    problem : Problem
+        Spectrum model and solver.
+    sensor : Sensor
+        RGB space of the colours.
+    lights : sequence of Light
+        Lights under which colours should be kept.
+    families : sequence of Family
+        Libraries. Spectra out of gamut, and those of atlas entries, are not used.
+    entries : FittedEntries
+        Atlas entries.
+
+    Returns
+    -------
+    LearntBase
+        The base; that of smooth spectra for models whose spectrum the colour alone determines.
+    """
+    smooth = smooth_base(problem, sensor)
+    if smooth.nodes is None or not isinstance(problem.model, Moments):
+        return LearntBase(smooth, {})
+    kriging = krige_families([_samples(smooth, sensor, family, entries) for family in families])
+    relevance = _learn_relevance(smooth, sensor, lights, kriging, entries)
+    nodes = _learn_nodes(smooth, problem.model, sensor, lights, kriging, relevance)
+    names = [family.name for family in families]
+    return LearntBase(replace(smooth, nodes=nodes), dict(zip(names, relevance.tolist(), strict=True)))
+
+
+def _samples(smooth: Smooth, sensor: Sensor, family: Family, entries: FittedEntries) -> FamilySamples:
+    rgb = sensor.rgb(family.measured)
+    rows = np.flatnonzero(sensor.contains(rgb))
+    rgb, measured = np.clip(rgb[rows], 0, 1), family.measured[rows]
+    locations = rgb_to_lab(sensor, rgb)
+    new = ~_duplicates(locations, measured, rgb_to_lab(sensor, entries.rgb), entries.measured)
+    rgb, measured, locations = rgb[new], measured[new], locations[new]
+    deviations = (measured - _spectra(smooth, sensor, rgb)) / _brightening(smooth, rgb)
+    return FamilySamples(*average_close(locations, deviations), family.spread, family.related)
+
+
+def _duplicates(locations: Array, measured: Array, of_locations: Array, of_measured: Array) -> Array:
+    """Whether each spectrum is that of an entry (n,)."""
+    from scipy.spatial import cKDTree
+
+    found = np.zeros(len(locations), dtype=bool)
+    if not len(of_locations) or not len(locations):
+        return found
+    for row, near in enumerate(cKDTree(of_locations).query_ball_point(locations, SAME_COLOUR)):
+        squared = ((of_measured[near] - measured[row]) ** 2).mean(axis=1)
+        found[row] = bool((squared <= SAME_SPECTRUM**2).any())
+    return found
+
+
+def _spectra(smooth: Smooth, sensor: Sensor, rgb: Array) -> Array:
+    return evaluate(smooth.model, smooth(rgb), sensor.wavelengths)
+
+
+def _brightening(smooth: Smooth, rgb: Array) -> Array:
+    """Factor (n, 1) between a colour and the brightened one."""
+    return np.asarray(np.maximum(rgb.max(axis=1), MIN_LEVEL)[:, None] ** smooth.brightening)
+
+
+def _learn_relevance(
+    smooth: Smooth, sensor: Sensor, lights: Sequence[Light], kriging: FamilyKriging, entries: FittedEntries
+) -> Array:
+    """Relevance of each family (F,), by bounded least squares over differences of spectra and of their colours."""
+    from scipy.optimize import lsq_linear
+
+    assumed = np.ones(kriging.count)
+    if not len(entries):
+        return assumed
+    order = np.lexsort(entries.rgb.T)
+    order = order[:: -(-len(order) // MAX_ENTRIES)]
+    rgb = entries.rgb[order]
+    plain = _spectra(smooth, sensor, rgb)
+    parts = kriging.contributions(rgb_to_lab(sensor, rgb)) * _brightening(smooth, rgb)
+    features = _features(lights, np.clip(plain + parts.sum(axis=0), 0, 1))
+    columns = np.stack([features(part).ravel() for part in parts], axis=1)
+    scale = np.sqrt(ASSUMED_ENTRIES * (columns**2).sum() / len(rgb) / kriging.count)
+    if not scale:
+        return assumed
+    rows = np.concatenate([columns, scale * np.eye(kriging.count)])
+    goal = np.concatenate([features(entries.measured[order] - plain).ravel(), scale * assumed])
+    return np.asarray(lsq_linear(rows, goal, bounds=(0, MAX_RELEVANCE), method="bvls").x)
+
+
+def _features(lights: Sequence[Light], spectra: Array):  # type: ignore[no-untyped-def]
+    """From changes (n, N) of spectra to their weighted differences (n, N + 3 L) in the objective of entries."""
+    matrices = np.stack([light.xyz for light in lights])
+    whites = np.stack([light.white for light in lights])
+    to_lab = BALANCED.lights * lab_jacobian((spectra @ matrices.mT).swapaxes(0, 1), whites)
+
+    def features(change: Array) -> Array:
+        xyz = (change @ matrices.mT).swapaxes(0, 1)
+        colours = (to_lab @ xyz[..., None])[..., 0].reshape(len(change), -1)
+        return np.concatenate([change / np.sqrt(change.shape[1]), colours], axis=1)
+
+    return features
+
+
+def _learn_nodes(
+    smooth: Smooth,
+    model: Moments,
+    sensor: Sensor,
+    lights: Sequence[Light],
+    kriging: FamilyKriging,
+    relevance: Array,
+) -> Array:
+    """Coefficients (17³, C) of brightened spectra at the points of the table.
+
+    They are matched at the actual brightness. Where the result cannot be brightened, as no reflectance has such
+    moments, the brightened spectrum is matched instead.
+    """
+    bright = smooth.table.points.copy()
+    outside = unrealisable(smooth.table, sensor, MARGIN)
+    bright[outside.points] = outside.nearest
+    deviations = _deviations(smooth, sensor, kriging, relevance, bright)
+    plain = evaluate(model, model.from_storage(smooth.nodes), sensor.wavelengths)
+    goal = np.clip(plain + deviations, BOUND * plain, 1 - BOUND * (1 - plain))
+    factor = _brightening(smooth, _darkened(smooth, bright))
+
+    def match(spectra: Array) -> Array:
+        multipliers = match_spectra(model, sensor.wavelengths, spectra, lights)
+        return model.to_storage(multipliers, quadrature_jit)
+
+    nodes = match(goal * factor) / factor
+    _, valid = dual(nodes)
+    nodes[~valid] = match(goal[~valid])
+    return nodes
+
+
+def _deviations(
+    smooth: Smooth, sensor: Sensor, kriging: FamilyKriging, relevance: Array, bright: Array
+) -> Array:
+    """Deviations (n, N) of brightened spectra at brightened colours (n, 3)."""
+    deviations = kriging(rgb_to_lab(sensor, _darkened(smooth, bright)), relevance)
+    return np.asarray(deviations * np.minimum(bright.max(axis=1, keepdims=True) / DIMMEST, 1))
+
+
+def _darkened(smooth: Smooth, bright: Array) -> Array:
+    """Colours (n, 3) of brightened ones."""
+    power = smooth.brightening / (1 - smooth.brightening)
+    return np.asarray(bright * bright.max(axis=1, keepdims=True) ** power)

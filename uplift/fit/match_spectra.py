@@ -1,0 +1,106 @@
+"""Spectra of the model near many given reflectances, in the sense of the objective for atlas entries.
+
+The moments of a detailed reflectance lose its colour under other lights if they are few. One Gauss–Newton step of the
+objective of docs/mathematics.md, 6, restores it, and costs microseconds per spectrum.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from uplift.colorimetry.delta_e import lab, lab_jacobian
+from uplift.colorimetry.sensor import Light
+from uplift.common.arrays import Array
+from uplift.fit.objective import BALANCED
+from uplift.models import Moments
+from uplift.models.duality import cosine_basis
+from uplift.models.matmul import matmul_rows
+
+NODES = 1024
+"""Nodes of the integrals from reflectances to moments."""
+DAMPING = 1e-4
+"""Damping of the step, relative to the mean diagonal of its matrix."""
+BLOCK_ROWS = 1 << 9
+
+
+def match_spectra(
+    model: Moments, wavelengths: Array, reflectances: Array, lights: Sequence[Light]
+) -> Array:
+    """Find spectra of the model near reflectances, with nearly their colours under several lights.
+
+    Parameters
+    ----------
+    model : Moments
+        Spectrum model.
+    wavelengths : ndarray, shape (N,)
+        Wavelengths, evenly spaced over the range of the model.
+    reflectances : ndarray, shape (n, N)
+        Reflectances in (0, 1).
+    lights : sequence of Light
+        Lights on these wavelengths.
+
+    Returns
+    -------
+    ndarray, shape (n, C)
+        Multipliers.
+    """
+    start = model.from_storage(matmul_rows(reflectances, moment_matrix(model, wavelengths)))
+    step = _Step(model, model.basis(wavelengths), lights)
+    blocks = (slice(first, first + BLOCK_ROWS) for first in range(0, len(start), BLOCK_ROWS))
+    found = [step(start[block], reflectances[block]) for block in blocks]
+    return np.concatenate(found) if found else start
+
+
+def moment_matrix(model: Moments, wavelengths: Array) -> Array:
+    """Weights (N, C) that turn reflectances (n, N), linear between the wavelengths, into moments."""
+    phase = -np.pi * (np.arange(NODES) + 0.5) / NODES
+    at = np.interp(phase, model.phase(wavelengths), np.arange(len(wavelengths)))
+    samples = np.stack([np.interp(at, np.arange(len(wavelengths)), row) for row in np.eye(len(wavelengths))])
+    weights = cosine_basis(phase, model.count) / NODES
+    weights[:, 1:] /= 2
+    return np.asarray(samples @ weights)
+
+
+class _Step:
+    """A Gauss–Newton step of the objective; spectra that it would not bring nearer stay."""
+
+    def __init__(self, model: Moments, basis: Array, lights: Sequence[Light]) -> None:
+        self.model, self.basis = model, basis
+        self.lights = np.concatenate([light.xyz for light in lights])
+        self.whites = np.stack([light.white for light in lights])
+        self.colours = (self.lights.T[:, :, None] * basis[:, None, :]).reshape(len(basis), -1)
+        self.squares = (basis[:, :, None] * basis[:, None, :]).reshape(len(basis), -1) / len(basis)
+
+    def __call__(self, multipliers: Array, goal: Array) -> Array:
+        count = multipliers.shape[1]
+        x = multipliers @ self.basis.T
+        difference, colour_difference = self._differences(x, goal)
+        slope = self.model.slope(x)
+        to_lab = BALANCED.lights * lab_jacobian(self._xyz(self.model.squash(x)), self.whites)
+        change = (slope @ self.colours).reshape(len(x), -1, 3, count)
+        change = (to_lab @ change).reshape(len(x), -1, count)
+        matrix = ((slope * slope) @ self.squares).reshape(-1, count, count) + change.mT @ change
+        damping = DAMPING * np.trace(matrix, axis1=1, axis2=2) / count
+        matrix[:, np.arange(count), np.arange(count)] += damping[:, None]
+        gradient = (difference * slope) @ self.basis / len(self.basis)
+        gradient += (colour_difference[:, None, :] @ change)[:, 0]
+        trial = multipliers - np.linalg.solve(matrix, gradient[..., None])[..., 0]
+        before, after = (
+            (spectra**2).mean(axis=1) + (colours**2).sum(axis=1)
+            for spectra, colours in (
+                (difference, colour_difference),
+                self._differences(trial @ self.basis.T, goal),
+            )
+        )
+        return np.where((after < before)[:, None], trial, multipliers)
+
+    def _differences(self, x: Array, goal: Array) -> tuple[Array, Array]:
+        """Differences of the spectra (n, N), and weighted ones of their colours (n, 3 L)."""
+        spectra = self.model.squash(x)
+        colours = lab(self._xyz(spectra), self.whites) - lab(self._xyz(goal), self.whites)
+        return spectra - goal, BALANCED.lights * colours.reshape(len(x), -1)
+
+    def _xyz(self, spectra: Array) -> Array:
+        return (spectra @ self.lights.T).reshape(len(spectra), -1, 3)
