@@ -33,7 +33,7 @@ FAMILIES = {
 }
 """Shipped atlases by family: the two ColorCheckers are one chart."""
 SPREAD, OTSU_SPREAD = 5.0, 3.0
-"""Variance of what is peculiar to a family, by leaving one out (docs/prior.md); the Munsell book is larger than others."""
+"""Variance of what is peculiar to a family, chosen in docs/prior.md; the Munsell book is larger than the others."""
 SPACE = "ITU-R BT.2020"
 CANDIDATES, SPECTRA = 30_000, 320
 """Random colours, and those of them that are taken: in turn the one farthest from all before."""

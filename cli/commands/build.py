@@ -69,6 +69,24 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 @sensor_options
 @light_option("Illuminant under which entries must keep their colour", "D65 A FL2 FL11 LED-B3")
 @click.option(
+    "--prior",
+    default="learnt",
+    show_default=True,
+    help="Spectra of colours without measurements: learnt (from real materials) or smooth.",
+)
+@click.option(
+    "--library",
+    multiple=True,
+    metavar="FILE",
+    help="Measured spectra that shape the learnt prior without being constraints; repeatable.",
+)
+@click.option(
+    "--leave-out",
+    multiple=True,
+    metavar="FAMILY",
+    help="Family of the shipped library that the learnt prior must not know, for tests on it; repeatable.",
+)
+@click.option(
     "--threshold",
     type=NUMBER,
     default=1e-4,
@@ -113,10 +131,12 @@ def command(
       uplift build --atlas paints.csv --atlas macbeth.txt --coefficients 17 -o book.uplift
       uplift build --atlas paints.csv --dim auto --auto-tolerance 1
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
+      uplift build --atlas macbeth --library fabrics.csv --library paints.csv
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
       uplift build --plan kitchen.plan.json
 
-    Warnings name the entries that were left out, clipped or crowded. Without --atlas the spectra are smooth.
+    Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the
+    spectra that real materials of such colours are expected to have.
 
     With --scene the cube is sparse: it is smaller and faster to build, and gives the same spectra for colours of the
     images. Other colours are errors, unless 'query' and 'texture' are given --fill-missing.
@@ -132,7 +152,7 @@ def command(
         from uplift.pipeline import build as build_cube
 
         scene = _scene(images, encoding, method)
-        inputs = (*files, *(scene.paths if scene else ()))
+        inputs = (*files, *options["library"], *(scene.paths if scene else ()))
         given = {name: value for name, value in options.items() if value not in (None, ())}
         given["coefficients"] = coefficient_count(coefficients, moments)
         given["entry_coefficients"] = entry_coefficient_count(entry_coefficients, entry_moments)

@@ -129,6 +129,8 @@ PROVENANCE = _table(
         "uplift": _text,
         "options": _options,
         "atlases": _list(_table(FILE), MAX_FILES),
+        "libraries": _list(_table(FILE), MAX_FILES),
+        "families": _list(_table({"name": _text, "relevance": _number()}), MAX_FILES),
         "left_out": _list(_text, MAX_ENTRIES),
         "skipped": _list(_text, MAX_ENTRIES),
         "improvements": _list(_table({"step": _text, "tried": _count, "mended": _count}), MAX_FILES),

@@ -6,6 +6,8 @@ from uplift.fit.entries import FittedEntries, fit_entries
 from uplift.fit.improve import Improvement
 from uplift.fit.lattice import LatticeFit, fit_lattice
 from uplift.fit.lattice_size import DIMS, LatticeChoice, choose_lattice
+from uplift.fit.learnt import LearntBase, has_freedom, learn_base
+from uplift.fit.library import Family, shipped_library
 from uplift.fit.objective import Weights
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem, solver_tolerance
@@ -15,10 +17,12 @@ from uplift.fit.unrealisable import Unrealisable, unrealisable
 __all__ = [
     "DIMS",
     "Collision",
+    "Family",
     "FittedEntries",
     "Improvement",
     "LatticeChoice",
     "LatticeFit",
+    "LearntBase",
     "Prior",
     "Problem",
     "Seeds",
@@ -28,7 +32,10 @@ __all__ = [
     "fit_entries",
     "fit_lattice",
     "fit_prior",
+    "has_freedom",
+    "learn_base",
     "seed",
+    "shipped_library",
     "solver_tolerance",
     "unrealisable",
 ]

@@ -155,8 +155,10 @@ def average_close(locations: Array, deviations: Array) -> tuple[Array, Array, Ar
             break
     order = np.argsort(cell.ravel(), kind="stable")
     starts = np.cumsum(counts) - counts
-    means = (np.add.reduceat(each[order], starts) / counts[:, None] for each in (locations, deviations))
-    return *means, counts.astype(float)
+    mean_location, mean_deviation = (
+        np.add.reduceat(each[order], starts) / counts[:, None] for each in (locations, deviations)
+    )
+    return mean_location, mean_deviation, counts.astype(float)
 
 
 def _kernel(first: Array, second: Array) -> Array:

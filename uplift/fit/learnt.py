@@ -1,19 +1,20 @@
 """The learnt base: smooth spectra plus the deviation that families of measured materials have from them.
 
 Deviations are kriged relative to the brightening of smooth spectra, so that dark colours stay dark, on the nodes of
-their table. An atlas says how relevant each family is: by how well its contribution predicts the entries (docs/prior.md).
+their table. With an atlas, the relevance of each family is learnt: how well its contribution predicts the entries
+(docs/prior.md).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from uplift.colorimetry.delta_e import lab_jacobian, rgb_to_lab
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask
 from uplift.fit.base import Base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.family_kriging import FamilyKriging, FamilySamples, average_close, krige_families
@@ -23,12 +24,12 @@ from uplift.fit.objective import BALANCED
 from uplift.fit.prior import MARGIN, smooth_base
 from uplift.fit.problem import Problem
 from uplift.fit.quadrature_jit import quadrature_jit
-from uplift.fit.smooth import MIN_LEVEL, Smooth
+from uplift.fit.smooth import MIN_LEVEL, NO_FREEDOM, Smooth
 from uplift.fit.unrealisable import unrealisable
-from uplift.models import Moments, evaluate
+from uplift.models import Model, Moments, evaluate
 from uplift.models.real_moments import dual
 
-SAME_COLOUR, SAME_SPECTRUM = 3.0, 0.03
+SAME_COLOUR, SAME_SPECTRUM = 6.0, 0.03
 """ΔE*ab and rms within which a spectrum of a library is that of an atlas entry, which replaces it."""
 ASSUMED_ENTRIES = 20.0
 """Entries that the assumption that all families are equally relevant counts as."""
@@ -49,12 +50,12 @@ class LearntBase:
     ----------
     base : Base
         Predictor of spectra.
-    relevance : dict of str to float
-        Factor of the contribution of each family, 0 to 4, 1 where no atlas says otherwise.
+    relevance : tuple of float
+        Factor of the contribution of each family, 0 to 4, 1 without an atlas.
     """
 
     base: Base
-    relevance: dict[str, float]
+    relevance: tuple[float, ...]
 
 
 def learn_base(
@@ -82,16 +83,33 @@ def learn_base(
     Returns
     -------
     LearntBase
-        The base; that of smooth spectra for models whose spectrum the colour alone determines.
+        The base; that of smooth spectra without families, and for models without freedom.
     """
     smooth = smooth_base(problem, sensor)
-    if smooth.nodes is None or not isinstance(problem.model, Moments):
-        return LearntBase(smooth, {})
+    model = problem.model
+    if not families or smooth.nodes is None or not isinstance(model, Moments):
+        return LearntBase(smooth, (1.0,) * len(families))
     kriging = krige_families([_samples(smooth, sensor, family, entries) for family in families])
     relevance = _learn_relevance(smooth, sensor, lights, kriging, entries)
-    nodes = _learn_nodes(smooth, problem.model, sensor, lights, kriging, relevance)
-    names = [family.name for family in families]
-    return LearntBase(replace(smooth, nodes=nodes), dict(zip(names, relevance.tolist(), strict=True)))
+    plain = evaluate(model, model.from_storage(smooth.nodes), sensor.wavelengths)
+    nodes = _learn_nodes(smooth, model, plain, sensor, lights, kriging, relevance)
+    return LearntBase(replace(smooth, nodes=nodes), tuple(relevance.tolist()))
+
+
+def has_freedom(model: Model) -> bool:
+    """Determine whether a model has several spectra of one colour, so that the prior matters.
+
+    Parameters
+    ----------
+    model : Model
+        Spectrum model.
+
+    Returns
+    -------
+    bool
+        False for models of three coefficients.
+    """
+    return isinstance(model, Moments) and model.count > NO_FREEDOM
 
 
 def _samples(smooth: Smooth, sensor: Sensor, family: Family, entries: FittedEntries) -> FamilySamples:
@@ -105,7 +123,7 @@ def _samples(smooth: Smooth, sensor: Sensor, family: Family, entries: FittedEntr
     return FamilySamples(*average_close(locations, deviations), family.spread, family.related)
 
 
-def _duplicates(locations: Array, measured: Array, of_locations: Array, of_measured: Array) -> Array:
+def _duplicates(locations: Array, measured: Array, of_locations: Array, of_measured: Array) -> Mask:
     """Whether each spectrum is that of an entry (n,)."""
     from scipy.spatial import cKDTree
 
@@ -151,7 +169,7 @@ def _learn_relevance(
     return np.asarray(lsq_linear(rows, goal, bounds=(0, MAX_RELEVANCE), method="bvls").x)
 
 
-def _features(lights: Sequence[Light], spectra: Array):  # type: ignore[no-untyped-def]
+def _features(lights: Sequence[Light], spectra: Array) -> Callable[[Array], Array]:
     """From changes (n, N) of spectra to their weighted differences (n, N + 3 L) in the objective of entries."""
     matrices = np.stack([light.xyz for light in lights])
     whites = np.stack([light.white for light in lights])
@@ -168,12 +186,13 @@ def _features(lights: Sequence[Light], spectra: Array):  # type: ignore[no-untyp
 def _learn_nodes(
     smooth: Smooth,
     model: Moments,
+    plain: Array,
     sensor: Sensor,
     lights: Sequence[Light],
     kriging: FamilyKriging,
     relevance: Array,
 ) -> Array:
-    """Coefficients (17³, C) of brightened spectra at the points of the table.
+    """Coefficients (17³, C) of brightened spectra, ``plain`` (17³, N) before learning, at the points of the table.
 
     They are matched at the actual brightness. Where the result cannot be brightened, as no reflectance has such
     moments, the brightened spectrum is matched instead.
@@ -182,7 +201,6 @@ def _learn_nodes(
     outside = unrealisable(smooth.table, sensor, MARGIN)
     bright[outside.points] = outside.nearest
     deviations = _deviations(smooth, sensor, kriging, relevance, bright)
-    plain = evaluate(model, model.from_storage(smooth.nodes), sensor.wavelengths)
     goal = np.clip(plain + deviations, BOUND * plain, 1 - BOUND * (1 - plain))
     factor = _brightening(smooth, _darkened(smooth, bright))
 

@@ -25,9 +25,7 @@ DAMPING = 1e-4
 BLOCK_ROWS = 1 << 9
 
 
-def match_spectra(
-    model: Moments, wavelengths: Array, reflectances: Array, lights: Sequence[Light]
-) -> Array:
+def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, lights: Sequence[Light]) -> Array:
     """Find spectra of the model near reflectances, with nearly their colours under several lights.
 
     Parameters

@@ -28,14 +28,15 @@ from uplift.lattice.box_widths import half_widths
 from uplift.lookup import Cube
 from uplift.models.minimum_norm import ForwardMap, forward_map
 from uplift.models.moments import MAX_COUNT
-from uplift.pipeline.options import AUTO, AXES, ModelName, Options, check_memory
+from uplift.pipeline.libraries import AtlasLike, read_libraries
+from uplift.pipeline.libraries import describe as describe_libraries
+from uplift.pipeline.libraries import families as library_families
+from uplift.pipeline.options import AUTO, AXES, ModelName, Options, PriorName, check_memory
 
 MAX_NAMES = 6
 """Entries that a warning names."""
 STACK_LEVEL = 5
 """Frames between a warning and the caller of `build`, whose decorator adds two."""
-
-AtlasLike = Atlas | StrPath | Sequence[StrPath] | None
 
 
 @single_threaded_blas()
@@ -52,6 +53,9 @@ def build(
     illuminant: str = DEFAULT_ILLUMINANT,
     observer: str = observers.DEFAULT_OBSERVER,
     lights: Sequence[str] = SCENE_LIGHTS,
+    prior: PriorName = "learnt",
+    library: AtlasLike = None,
+    leave_out: Sequence[str] = (),
     threshold: float = 1e-4,
     auto_tolerance: float = 0.5,
     debug: bool = False,
@@ -63,7 +67,7 @@ def build(
     Parameters
     ----------
     atlas : Atlas, path-like or sequence of path-like, optional
-        Measured spectra, or the files that contain them. Without an atlas all spectra are smooth.
+        Measured spectra, or the files that contain them.
     dim : int or {"auto"}, default 32
         Lattice points along each axis, at least 2. ``"auto"`` chooses the smallest lattice, and its axis, that
         keeps every atlas entry within ``auto_tolerance``.
@@ -87,6 +91,14 @@ def build(
         Colour-matching functions, by their name in colour-science.
     lights : sequence of str, default ("D65", "A", "FL2", "FL11", "LED-B3")
         Illuminants under which fitted atlas entries must keep their measured colours.
+    prior : {"learnt", "smooth"}, default "learnt"
+        Spectra of colours that no entry constrains: those expected of real materials, or smooth ones.
+    library : Atlas, path-like or sequence of path-like, optional
+        Measured spectra that shape the learnt prior but are not constraints. Each file is a family of materials like
+        those to be expected; with an atlas, its weight is learnt.
+    leave_out : sequence of str, optional
+        Families of the shipped library that the learnt prior must not know, for tests on them; see
+        `uplift.fit.shipped_library`.
     threshold : float, default 1e-4
         Largest |target − stored| of a fitted lattice point in linear RGB, in (0, 0.1].
     auto_tolerance : float, default 0.5
@@ -108,15 +120,16 @@ def build(
     AtlasError
         An atlas file that cannot be read.
     OptionError
-        An option outside its range.
+        An option outside its range, or a library without a learnt prior.
     UnknownNameError
-        An unknown space, illuminant, observer, model or axis.
+        An unknown space, illuminant, observer, model, axis, prior or family.
 
     Warns
     -----
     UpliftWarning
         Entries out of gamut (``entry-out-of-gamut``), with the colour of another entry (``entry-duplicate``) or
-        close to another entry (``entry-crowded``).
+        close to another entry (``entry-crowded``). Spectra of a library out of gamut (``library-out-of-gamut``) or
+        outside [0, 1] (``library-clipped``).
 
     Examples
     --------
@@ -136,6 +149,8 @@ def build(
         illuminant=illuminant,
         observer=observer,
         lights=(lights,) if isinstance(lights, str) else tuple(lights),
+        prior=prior,
+        leave_out=(leave_out,) if isinstance(leave_out, str) else tuple(leave_out),
         threshold=threshold,
         auto_tolerance=auto_tolerance,
         debug=debug,
@@ -148,6 +163,8 @@ def build(
     scene_lights = [observers.light(name, observer) for name in options.lights]
     error_light = observers.light(ERROR_ILLUMINANT, observer)
 
+    libraries = read_libraries(library)
+    families = library_families(options, libraries, sensor)
     atlas = _as_atlas(atlas)
     names, rgb, measured = _entries_in_gamut(atlas, sensor)
     tolerance = fit.solver_tolerance(options.threshold)
@@ -169,8 +186,9 @@ def build(
 
     active = None if colours is None else np.flatnonzero(colours.required_points(boxes, sensor, progress))
     problem = _problem(options, forward, lattice, sensor, active)
-    prior = fit.fit_prior(problem, sensor, entries, error_light)
-    fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, progress)
+    learnt = fit.learn_base(problem, sensor, scene_lights, families, entries)
+    fitted_prior = fit.fit_prior(problem, sensor, entries, error_light, learnt.base)
+    fitted = fit.fit_lattice(problem, seeds, entries.multipliers, fitted_prior, progress)
 
     entry_model = options.entry_model()
     error, spectra = entries.error, None
@@ -194,7 +212,8 @@ def build(
             ),
             points=fitted.points if options.debug else replace(fitted.points, round=None),
             error_illuminant=ERROR_ILLUMINANT,
-            provenance=_provenance(options, atlas, names, colours, fitted),
+            provenance=_provenance(options, atlas, names, colours, fitted)
+            | describe_libraries(libraries, families, learnt.relevance),
         )
     )
 
@@ -308,7 +327,7 @@ def _provenance(
     """How the cube was built, in JSON values."""
     return {
         "uplift": version("uplift"),
-        "options": asdict(options) | {"lights": list(options.lights)},
+        "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
         "atlases": [{"name": source.name, "digest": source.digest} for source in atlas.sources],
         "left_out": [name for name in atlas.names if name not in names],
         "skipped": [entry.name for entry in atlas.skipped],

@@ -22,6 +22,8 @@ AUTO: Literal["auto"] = "auto"
 AXES = ("srgb", "linear")
 ModelName = Literal["moments", "sigmoid"]
 MODELS: tuple[ModelName, ...] = ("moments", "sigmoid")
+PriorName = Literal["learnt", "smooth"]
+PRIORS: tuple[PriorName, ...] = ("learnt", "smooth")
 MAX_AUTO_TOLERANCE = 100.0
 """ΔE00 between black and white."""
 PROCESS_BYTES = 500_000_000
@@ -55,6 +57,8 @@ class Options:
     illuminant: str = DEFAULT_ILLUMINANT
     observer: str = observer.DEFAULT_OBSERVER
     lights: tuple[str, ...] = SCENE_LIGHTS
+    prior: str = "learnt"
+    leave_out: tuple[str, ...] = ()
     threshold: float = 1e-4
     auto_tolerance: float = 0.5
     debug: bool = False
@@ -66,6 +70,8 @@ class Options:
         self._check_entry_coefficients()
         if self.axis not in AXES:
             raise unknown_name(self.axis, AXES, "axis spacing")
+        if self.prior not in PRIORS:
+            raise unknown_name(self.prior, PRIORS, "prior")
         if not self.lights:
             raise OptionError("lights must name at least one illuminant, got none", code="no-lights")
         if len(self.lights) > MAX_LIGHTS:
@@ -127,6 +133,7 @@ def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
     current = {RENAMED.get(name, name): value for name, value in options.items()}
     if "coefficients" in current:  # up to file version 3 entries had as many
         current.setdefault("entry_coefficients", current["coefficients"])
+    current.setdefault("prior", "smooth")  # the only one up to file version 3
     return {name: tuple(value) if isinstance(value, list) else value for name, value in current.items()}
 
 
@@ -194,6 +201,8 @@ CONVERSIONS: dict[str, Callable[[str, object], Any]] = {
     "illuminant": _text,
     "observer": _text,
     "lights": _texts,
+    "prior": _text,
+    "leave_out": _texts,
     "threshold": _number,
     "auto_tolerance": _number,
     "debug": _flag,

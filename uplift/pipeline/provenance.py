@@ -53,6 +53,33 @@ def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = (
         return read_atlas(*(_find(path, name, digest, candidates) for name, digest in sources))
 
 
+def recorded_libraries(data: CubeData, path: StrPath, folders: Iterable[StrPath] = ()) -> tuple[Path, ...]:
+    """Find the libraries that shaped the prior of a cube, as `recorded_atlas` does its atlas.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    path : path-like
+        File that ``data`` was read from.
+    folders : iterable of path-like, optional
+        Folders to search first.
+
+    Returns
+    -------
+    tuple of Path
+        The files.
+
+    Raises
+    ------
+    CubeFileError
+        A file is missing or has changed.
+    """
+    candidates = _search_path(path, folders)
+    sources = data.provenance.get("libraries", ())
+    return tuple(_find(path, source["name"], source["digest"], candidates) for source in sources)
+
+
 def missing_provenance(path: StrPath) -> CubeFileError:
     """Make the error for a cube that does not record its options.
 

@@ -16,7 +16,7 @@ from uplift.lattice import EntryBoxes
 from uplift.lookup import Cube
 from uplift.pipeline.build_cube import build
 from uplift.pipeline.options import Options, recorded_options
-from uplift.pipeline.provenance import REBUILD, missing_provenance, recorded_atlas
+from uplift.pipeline.provenance import REBUILD, missing_provenance, recorded_atlas, recorded_libraries
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,12 +84,14 @@ def rebuild(
             path=path,
             hint="rebuild the cube that was filled",
         )
+    folders = tuple(folders)
     atlas = recorded_atlas(stored.data, path, folders)
+    library = recorded_libraries(stored.data, path, folders)
     scene = StoredScene(stored.data) if "scene" in stored.data.provenance else None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         try:
-            return build(atlas, scene=scene, progress=progress, **asdict(options))
+            return build(atlas, library=library, scene=scene, progress=progress, **asdict(options))
         except (OptionError, UnknownNameError) as error:
             raise _unknown_options(error, path) from error
 
