@@ -21,10 +21,11 @@ from uplift.fit.family_kriging import FamilyKriging, FamilySamples, average_clos
 from uplift.fit.library import Family
 from uplift.fit.match_spectra import match_spectra
 from uplift.fit.objective import BALANCED
-from uplift.fit.prior import MARGIN, smooth_base
+from uplift.fit.prior import MARGIN
 from uplift.fit.problem import Problem
 from uplift.fit.quadrature_jit import quadrature_jit
-from uplift.fit.smooth import MIN_LEVEL, NO_FREEDOM, Smooth
+from uplift.fit.smooth import MIN_LEVEL, NO_FREEDOM, TABLE, Smooth
+from uplift.fit.smooth import smooth as make_smooth
 from uplift.fit.unrealisable import unrealisable
 from uplift.models import Model, Moments, evaluate
 from uplift.models.real_moments import dual
@@ -85,14 +86,20 @@ def learn_base(
     LearntBase
         The base; that of smooth spectra without families, and for models without freedom.
     """
-    smooth = smooth_base(problem, sensor)
+    outside = unrealisable(TABLE, sensor, MARGIN)
+    smooth = make_smooth(problem.model, problem.forward, outside=outside)
     model = problem.model
     if not families or smooth.nodes is None or not isinstance(model, Moments):
         return LearntBase(smooth, (1.0,) * len(families))
     kriging = krige_families([_samples(smooth, sensor, family, entries) for family in families])
     relevance = _learn_relevance(smooth, sensor, lights, kriging, entries)
     plain = evaluate(model, model.from_storage(smooth.nodes), sensor.wavelengths)
-    nodes = _learn_nodes(smooth, model, plain, sensor, lights, kriging, relevance)
+    bright = smooth.table.points.copy()
+    bright[outside.points] = outside.nearest
+    deviations = _deviations(smooth, sensor, kriging, relevance, bright)
+    goal = np.clip(plain + deviations, BOUND * plain, 1 - BOUND * (1 - plain))
+    factor = _brightening(smooth, _darkened(smooth, bright))
+    nodes = _match_nodes(model, sensor, lights, goal, factor)
     return LearntBase(replace(smooth, nodes=nodes), tuple(relevance.tolist()))
 
 
@@ -183,26 +190,14 @@ def _features(lights: Sequence[Light], spectra: Array) -> Callable[[Array], Arra
     return features
 
 
-def _learn_nodes(
-    smooth: Smooth,
-    model: Moments,
-    plain: Array,
-    sensor: Sensor,
-    lights: Sequence[Light],
-    kriging: FamilyKriging,
-    relevance: Array,
+def _match_nodes(
+    model: Moments, sensor: Sensor, lights: Sequence[Light], goal: Array, factor: Array
 ) -> Array:
-    """Coefficients (17³, C) of brightened spectra, ``plain`` (17³, N) before learning, at the points of the table.
+    """Coefficients (n, C) of brightened spectra, close to ``goal`` (n, N).
 
-    They are matched at the actual brightness. Where the result cannot be brightened, as no reflectance has such
-    moments, the brightened spectrum is matched instead.
+    They are matched at the actual brightness, ``factor`` (n, 1) of the brightened one. Where the result cannot be
+    brightened, as no reflectance has such moments, the brightened spectrum is matched instead.
     """
-    bright = smooth.table.points.copy()
-    outside = unrealisable(smooth.table, sensor, MARGIN)
-    bright[outside.points] = outside.nearest
-    deviations = _deviations(smooth, sensor, kriging, relevance, bright)
-    goal = np.clip(plain + deviations, BOUND * plain, 1 - BOUND * (1 - plain))
-    factor = _brightening(smooth, _darkened(smooth, bright))
 
     def match(spectra: Array) -> Array:
         multipliers = match_spectra(model, sensor.wavelengths, spectra, lights)

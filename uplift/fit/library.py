@@ -77,5 +77,5 @@ def shipped_library(leave_out: Collection[str] = ()) -> tuple[Family, ...]:
     names = [family.name for family in families]
     for name in leave_out:
         if name not in names:
-            raise unknown_name(name, names, "family of the shipped library")
+            raise unknown_name(name, names, "library family")
     return tuple(family for family in families if family.name not in leave_out)

@@ -15,8 +15,8 @@ from uplift.common.arrays import StrPath
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.pipeline.options import Options
 
-SPREAD = 5.0
-"""Variance of what is peculiar to a library, that of most families of the shipped one."""
+SPREAD, RELATED = 1.0, 0.5
+"""See `uplift.fit.Family`; by held-out halves of large sets (docs/prior.md)."""
 STACK_LEVEL = 5
 """Frames between a warning and the caller of `build`, whose decorator adds two."""
 
@@ -74,10 +74,10 @@ def families(options: Options, libraries: Sequence[Library], sensor: Sensor) -> 
     shipped = fit.shipped_library(options.leave_out)
     if not learnt:
         return ()
-    return (*shipped, *(_family(each, sensor, 1 / len(libraries)) for each in libraries))
+    return (*shipped, *(_family(each, sensor) for each in libraries))
 
 
-def _family(library: Library, sensor: Sensor, related: float) -> fit.Family:
+def _family(library: Library, sensor: Sensor) -> fit.Family:
     resampled = resample(library.atlas, sensor.wavelengths)
     outside = int((~sensor.contains(sensor.rgb(resampled.values))).sum())
     if resampled.clips:
@@ -88,7 +88,7 @@ def _family(library: Library, sensor: Sensor, related: float) -> fit.Family:
             f"{outside} of {len(resampled.values)} spectra not used: their colours lie outside {sensor.space}"
         )
         _warn(library, problem, "library-out-of-gamut")
-    return fit.Family(library.name, resampled.values, SPREAD, related)
+    return fit.Family(library.name, resampled.values, SPREAD, RELATED)
 
 
 def _warn(library: Library, problem: str, code: str) -> None:

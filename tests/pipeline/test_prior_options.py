@@ -1,0 +1,96 @@
+"""Builds with a prior, libraries and families left out: recorded, repeatable, and errors that say what to do."""
+
+from __future__ import annotations
+
+import shutil
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.conftest import ATLASES
+from tests.helpers import raises, warns
+from uplift.atlas import Atlas, Entry, read_atlas
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.observer import light
+from uplift.common.errors import CubeFileError, OptionError, UnknownNameError
+from uplift.lookup import load
+from uplift.pipeline import rebuild
+
+SMALL = {"dim": 8, "coefficients": 9}
+TCS = ATLASES / "tcs.txt"
+
+
+@pytest.fixture(scope="module")
+def cubes():
+    options = {**SMALL, "leave_out": ["tcs"]}
+    with warns("library-out-of-gamut"):
+        library = uplift.build(**options, library=TCS)
+    return {
+        "smooth": uplift.build(**SMALL, prior="smooth"),
+        "learnt": uplift.build(**options),
+        "library": library,
+    }
+
+
+def test_a_library_moves_answers_towards_its_spectra(cubes):
+    measured = np.array([entry.values for entry in read_atlas(TCS)])
+    wavelengths = next(iter(read_atlas(TCS))).wavelengths
+    grid = cubes["smooth"].data.sensor.wavelengths
+    measured = np.stack([np.interp(grid, wavelengths, row) for row in measured])
+    rgb = np.clip(cubes["smooth"].data.sensor.rgb(measured), 0, 1)
+    errors = {
+        name: delta_e_spectra(light("A"), cube.reflectance(rgb), measured).mean()
+        for name, cube in cubes.items()
+    }
+    assert errors["library"] < 0.95 * errors["learnt"] < 0.95 * errors["smooth"]
+    assert not cubes["library"].data.atlas.names
+
+
+def test_prior_and_libraries_are_recorded(cubes):
+    recorded = {name: cube.data.provenance for name, cube in cubes.items()}
+    assert recorded["smooth"]["families"] == []
+    assert recorded["smooth"]["options"]["prior"] == "smooth"
+    assert recorded["learnt"]["libraries"] == []
+    (library,) = recorded["library"]["libraries"]
+    assert library["name"] == "tcs.txt"
+    names = [family["name"] for family in recorded["library"]["families"]]
+    assert "tcs" not in names
+    assert names[-1] == "tcs.txt"
+
+
+def test_a_build_with_a_library_is_repeated(cubes, tmp_path):
+    path = tmp_path / "cube.uplift"
+    shutil.copy(TCS, tmp_path / "tcs.txt")
+    cubes["library"].save(path)
+    stored = load(path)
+    again = rebuild(stored, path)
+    np.testing.assert_array_equal(again.data.points.coefficients, stored.data.points.coefficients)
+    assert again.data.provenance == stored.data.provenance
+
+
+def test_a_library_without_a_file_cannot_be_repeated(tmp_path):
+    path = tmp_path / "cube.uplift"
+    unnamed = Atlas(tuple(read_atlas(TCS))[:3])
+    cube = uplift.build(**SMALL, library=unnamed)
+    cube.save(path)
+    with raises(CubeFileError, "atlas-not-found"):
+        rebuild(load(path), path)
+
+
+def test_options_that_contradict_or_do_not_exist_are_errors():
+    for options in ({"prior": "smooth"}, {"model": "sigmoid"}, {"coefficients": 3}):
+        with raises(OptionError, "library-not-used"):
+            uplift.build(dim=2, library=TCS, **options)
+    with raises(UnknownNameError, "unknown-prior"):
+        uplift.build(dim=2, prior="flat")
+    with raises(UnknownNameError, "unknown-library-family"):
+        uplift.build(dim=2, leave_out=["nobody"])
+
+
+def test_spectra_that_are_not_used_as_measured_are_reported():
+    wavelengths = np.linspace(380, 780, 81)
+    green = Entry("green", wavelengths, np.exp(-(((wavelengths - 520) / 15) ** 2)))
+    noisy = Entry("noisy", wavelengths, np.linspace(0.2, 1.05, 81))
+    with warns("library-clipped", "library-out-of-gamut"):
+        uplift.build(dim=2, library=Atlas((green, noisy)))
