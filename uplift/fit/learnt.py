@@ -23,7 +23,7 @@ from uplift.fit.match_spectra import match_spectra
 from uplift.fit.objective import BALANCED
 from uplift.fit.prior import MARGIN
 from uplift.fit.problem import Problem
-from uplift.fit.quadrature_jit import quadrature_jit
+from uplift.fit.quadrature_jit import COMPILED
 from uplift.fit.smooth import MIN_LEVEL, NO_FREEDOM, TABLE, Smooth
 from uplift.fit.smooth import smooth as make_smooth
 from uplift.fit.unrealisable import unrealisable
@@ -201,7 +201,7 @@ def _match_nodes(
 
     def match(spectra: Array) -> Array:
         multipliers = match_spectra(model, sensor.wavelengths, spectra, lights)
-        return model.to_storage(multipliers, quadrature_jit)
+        return model.to_storage(multipliers, COMPILED)
 
     nodes = match(goal * factor) / factor
     _, valid = dual(nodes)
