@@ -32,6 +32,7 @@ HINTS = {
     "invalid-thickness": "use --thickness 0 or more",
     "invalid-wavelengths": "write START:END:STEP or a list in nm, such as 380:780:5",
     "lattice-mismatch": "build the cube again, or replace it with --update",
+    "library-not-used": "use --prior learnt with --model moments and 4 to 17 coefficients, or leave out --library",
     "limit-not-positive": "give --time-ns and --delta-e above 0",
     "no-moments": "use --store multipliers, or a cube of moments",
     "no-requirements": "give --time-ns, --delta-e or both",
