@@ -54,4 +54,4 @@ def test_families_can_be_left_out():
         name for name in names if name not in ("vs", "tcs")
     ]
     with raises(UnknownNameError, "unknown-library-family"):
-        shipped_library(["nobody"])
+        shipped_library(["absent"])

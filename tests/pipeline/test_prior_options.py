@@ -1,4 +1,4 @@
-"""Builds with a prior, libraries and families left out: recorded, repeatable, and errors that say what to do."""
+"""Builds with a prior, libraries and families left out: recorded, repeatable; contradictions are errors."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_options_that_contradict_or_do_not_exist_are_errors():
     with raises(UnknownNameError, "unknown-prior"):
         uplift.build(dim=2, prior="flat")
     with raises(UnknownNameError, "unknown-library-family"):
-        uplift.build(dim=2, leave_out=["nobody"])
+        uplift.build(dim=2, leave_out=["absent"])
 
 
 def test_spectra_that_are_not_used_as_measured_are_reported():

@@ -133,7 +133,7 @@ def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
     current = {RENAMED.get(name, name): value for name, value in options.items()}
     if "coefficients" in current:  # up to file version 3 entries had as many
         current.setdefault("entry_coefficients", current["coefficients"])
-    current = {"prior": "smooth", "leave_out": (), **current}  # up to file version 3 there was no other
+    current = {"prior": "smooth", "leave_out": (), **current}  # the defaults up to file version 3
     return {name: tuple(value) if isinstance(value, list) else value for name, value in current.items()}
 
 
