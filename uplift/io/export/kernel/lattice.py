@@ -112,17 +112,21 @@ def add_nodes(place: Place, basis: Basis, total: Block) -> None:
 
 def sum_nodes(place: Place, coefficients: Coefficients) -> None:
     """Sum the weighted coefficients of the eight lattice points."""
-    values: Row = zeros(STRIDE)
+    mixed: Row = zeros(STRIDE)
     sides: Sides = zeros(6)
-    weight: Float = 0.0
-    first: Int = weigh(place, sides)
+    first: Int = weigh(place, sides) * STRIDE
+    for k in range(STRIDE):
+        x: Float = 0.0
+        for corner in unroll(0, 8):
+            x += (
+                sides[corner // 4]
+                * sides[2 + corner // 2 % 2]
+                * sides[4 + corner % 2]
+                * number(first + (corner // 4 * DIM * DIM + corner // 2 % 2 * DIM + corner % 2) * STRIDE + k)
+            )
+        mixed[k] = x
     for k in range(COUNT):
-        coefficients[k] = 0.0
-    for corner in range(8):
-        load_row(first + corner // 4 * DIM * DIM + corner // 2 % 2 * DIM + corner % 2, values)
-        weight = sides[corner // 4] * sides[2 + corner // 2 % 2] * sides[4 + corner % 2]
-        for k in unroll(0, COUNT):
-            coefficients[k] += weight * values[k]
+        coefficients[k] = mixed[k]
 
 
 def sum_coefficients(place: Place, entry: Int, coefficients: Coefficients) -> None:

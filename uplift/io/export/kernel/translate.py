@@ -14,6 +14,8 @@ from uplift.io.export.kernel.language import WGSL, Language
 
 INTRINSICS = frozenset({"number", "load_row"})
 """Functions that read the table."""
+LANES = frozenset({"WIDTH", "STRIDE"})
+"""Bounds of loops that are vectorised."""
 BUILT_IN = frozenset({"abs", "sqrt", "float", "int"})
 OPERATORS: dict[type[ast.AST], tuple[str, int]] = {
     ast.Mult: ("*", 6),
@@ -224,7 +226,7 @@ class _Printer:
                 first, last = self._expression(start), self._expression(stop)
                 declared = f"var {name}: i32" if self.wgsl else f"int {name}"
                 step = f"{name}++" if self.wgsl else f"++{name}"
-                if self.language.lanes and isinstance(stop, ast.Name) and stop.id == "WIDTH":
+                if self.language.lanes and isinstance(stop, ast.Name) and stop.id in LANES:
                     yield self.language.lanes.format(NAME=self.name.upper())
                 yield f"for ({declared} = {first}; {name} < {last}; {step}) {{"
                 yield from self._block(body, depth + 1)

@@ -40,7 +40,7 @@ static inline void ${name}_load_row(int index, float row[${NAME}_STRIDE])
 {
     const float *stored = ${name}_table + index * ${NAME}_STRIDE;
     int k;
-    for (k = 0; k < ${NAME}_COUNT; ++k) row[k] = stored[k];
+    for (k = 0; k < ${NAME}_STRIDE; ++k) row[k] = stored[k];
 }
 
 ${kernel}
