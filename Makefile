@@ -33,6 +33,7 @@ docs: $(INSTALLED)
 
 bench: $(INSTALLED)
 	$(BIN)/python -m benchmarks.bench
+	$(BIN)/python -m benchmarks.programs
 	$(BIN)/python -m tools.render_docs performance
 
 # Speed and accuracy of all methods: docs/chart.md, its pictures, and the table of `uplift chart --recommend`.

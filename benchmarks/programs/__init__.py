@@ -1,0 +1,1 @@
+"""Rates and accuracy of exported programs."""
