@@ -12,6 +12,7 @@ from tests.cube.cube_files import forge
 from tests.helpers import raises
 from uplift.common.errors import CubeFileError
 from uplift.cube import read
+from uplift.cube.checks import POINT_TYPES
 from uplift.cube.file import KEY
 from uplift.cube.metadata import MAX_LIGHTS
 
@@ -111,15 +112,28 @@ def test_negative_numbers_are_refused(small_cube, tmp_path, name, low):
         read(forge(small_cube.data, tmp_path / "cube", change))
 
 
-def test_arrays_of_a_sparse_cube_are_checked_before_they_are_expanded(small_cube, tmp_path, monkeypatch):
-    def change(tensors, metadata):
+@pytest.mark.parametrize(
+    ("name", "change", "code"),
+    [
+        ("rgb", lambda array: array[:-1], "invalid-array"),
+        ("status", lambda array: array + 9, "unknown-status"),
+        ("entry", lambda array: array + 99, "unknown-entry"),
+        ("distance", lambda array: -1 - array, "array-not-finite"),
+        ("points", lambda array: array[::-1], "invalid-points"),
+    ],
+)
+def test_sparse_cubes_are_checked_before_they_are_expanded(
+    small_cube, tmp_path, monkeypatch, name, change, code
+):
+    def forged(tensors, metadata):
         metadata["features"].append("sparse")
         tensors["points"] = np.arange(511, dtype=np.uint32)
-        tensors["rgb"] = tensors["rgb"][:511]
+        tensors |= {each: tensors[each][:511] for each in POINT_TYPES if each in tensors}
+        tensors[name] = change(tensors[name])
 
-    monkeypatch.setattr("uplift.cube.sparse.scatter", lambda *_: pytest.fail("expanded"))
-    with raises(CubeFileError, "invalid-array"):
-        read(forge(small_cube.data, tmp_path / "cube", change))
+    monkeypatch.setattr("uplift.cube.sparse._expand", lambda *_: pytest.fail("expanded"))
+    with raises(CubeFileError, code):
+        read(forge(small_cube.data, tmp_path / "cube", forged))
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")

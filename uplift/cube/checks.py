@@ -82,15 +82,13 @@ def check_tensors(
         require(_in_range(array, low, MAX_VALUE), "array-not-finite", problem)
 
 
-def check(data: CubeData, stored: int) -> None:
+def check(data: CubeData) -> None:
     """Check everything else that a lookup relies on.
 
     Parameters
     ----------
     data : CubeData
-        The cube, of arrays that `check_tensors` accepts.
-    stored : int
-        Number of points in its file.
+        The cube, of arrays that `check_tensors` accepts. The points of a sparse cube are those in its file.
 
     Raises
     ------
@@ -102,12 +100,7 @@ def check(data: CubeData, stored: int) -> None:
     atlas, points = data.atlas, data.points
     require(tuple(data.lattice.nodes[[0, -1]]) == (0, 1), "invalid-nodes", "the nodes must run from 0 to 1")
     require(bool((points.status < len(Status)).all()), "unknown-status", "every status must be known")
-    present = np.count_nonzero(points.present)
-    require(present == stored, "absent-points-stored", "absent points must not be stored")
-    complete = data.complete_cells
-    require(
-        complete is None or bool(complete.any()), "no-complete-cell", "one cell must have all its corners"
-    )
+    require(bool(points.present.all()), "absent-points-stored", "absent points must not be stored")
     require(_in_range(atlas.half_width, 0, 1), "invalid-entry-boxes", "half widths must be in [0, 1]")
     require(_in_range(atlas.rgb, 0, 1), "entry-out-of-gamut", "the RGB of every entry must be in [0, 1]")
     known = _in_range(points.entry, -1, len(atlas.names) - 1)

@@ -9,6 +9,7 @@ import hashlib
 import json
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -118,7 +119,11 @@ def read(path: str | os.PathLike[str]) -> CubeData:
             metadata["entry_model"] = metadata.get("model")
         check_metadata(metadata)
         data = _data(tensors, metadata)
-        check(data, stored=len(tensors["status"]))
+        check(data)
+        if sparse.FEATURE in metadata["features"]:
+            data = replace(data, points=sparse.expand(data.points, tensors[sparse.POINTS], data.lattice))
+        size, count = data.lattice.size, len(data.points)
+        require(count == size, "invalid-array", f"there must be {size} points, got {count}")
     except CubeFileError as error:
         raise _error(path, f"is not a valid cube: {error.problem}", error.code) from error
     except INVALID as error:
@@ -280,6 +285,7 @@ def _features(data: CubeData) -> list[str]:
 
 
 def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
+    """Content of a file; the points of a sparse cube are not expanded."""
     model, entry_model = (from_description(metadata[key]) for key in ("model", "entry_model"))
     features = metadata["features"]
     check_tensors(tensors, len(tensors["status"]), model.count, len(metadata["entries"]), entry_model.count)
@@ -287,10 +293,6 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
     require(
         metadata["dim"] == lattice.dim, "invalid-metadata", f"dim must be {lattice.dim}, the number of nodes"
     )
-    if sparse.FEATURE in features:
-        tensors = sparse.scatter(tensors, POINT_TYPES, lattice.size)
-    points = len(tensors["status"])
-    require(points == lattice.size, "invalid-array", f"there must be {lattice.size} points, got {points}")
     absent = {array for feature, array in FEATURES.items() if feature not in features}
     arrays: dict[str, Any] = {name: None if name in absent else tensors[name] for name in POINT_TYPES}
     return CubeData(

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Mask
+from uplift.common.arrays import Indices, Mask
 from uplift.cube.checks import require
-from uplift.lattice import NO_ENTRY, NOT_FITTED, Status
+from uplift.lattice import CORNERS, NO_ENTRY, NOT_FITTED, Lattice, PointTable, Status
 
 FEATURE = "sparse"
 POINTS = "points"
@@ -29,18 +30,38 @@ def gather(tensors: Tensors, names: Iterable[str], present: Mask) -> Tensors:
     return {**tensors, **rows, POINTS: np.flatnonzero(present).astype(np.uint32)}
 
 
-def scatter(tensors: Tensors, names: Iterable[str], size: int) -> Tensors:
-    """Expand the arrays ``names`` (m, …) to (size, …); `CubeFileError` if the point numbers are invalid."""
-    points = tensors[POINTS]
-    valid = points.dtype == np.uint32 and points.ndim == 1 and 0 < len(points) < size <= MAX_POINTS
-    ascending = valid and bool((points[1:] > points[:-1]).all() and points[-1] < size)
+def expand(points: PointTable, numbers: NDArray[Any], lattice: Lattice) -> PointTable:
+    """Expand the arrays (m, …) of stored points to those of the lattice, (n, …).
+
+    Raises `CubeFileError` if the point ``numbers`` (m,) are invalid, before anything is allocated.
+    """
+    _check_numbers(numbers, len(points), lattice)
+    rows = {field.name: getattr(points, field.name) for field in fields(points)}
+    arrays: dict[str, Any] = {
+        name: None if array is None else _expand(name, array, numbers, lattice.size)
+        for name, array in rows.items()
+    }
+    return PointTable(**arrays)
+
+
+def _check_numbers(numbers: NDArray[Any], stored: int, lattice: Lattice) -> None:
+    size = lattice.size
+    valid = numbers.dtype == np.uint32 and numbers.ndim == 1 and 0 < len(numbers) < size <= MAX_POINTS
+    ascending = valid and bool((numbers[1:] > numbers[:-1]).all() and numbers[-1] < size)
     require(ascending, "invalid-points", "point numbers must ascend within the lattice, with some missing")
-    expanded = {name: _expand(name, tensors[name], points, size) for name in names if name in tensors}
-    return {**tensors, **expanded}
+    require(len(numbers) == stored, "invalid-array", "every array must have a row for every point")
+    complete = _has_complete_cell(numbers.astype(np.int64), lattice)
+    require(complete, "no-complete-cell", "one cell must have all its corners")
+
+
+def _has_complete_cell(numbers: Indices, lattice: Lattice) -> bool:
+    low = numbers[(lattice.position(numbers) < lattice.dim - 1).all(axis=-1)]
+    for corner in CORNERS:
+        low = low[np.isin(low + lattice.index(corner), numbers, assume_unique=True)]
+    return bool(low.size)
 
 
 def _expand(name: str, rows: NDArray[Any], points: NDArray[np.uint32], size: int) -> NDArray[Any]:
-    require(rows.shape[:1] == points.shape, "invalid-array", f"{name} must have a row for every point")
     shape = (size, *rows.shape[1:])
     # Pages of zeros take no memory before they are written.
     array = np.full(shape, ABSENT[name], rows.dtype) if name in ABSENT else np.zeros(shape, rows.dtype)
