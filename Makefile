@@ -80,6 +80,7 @@ demo-render: $(INSTALLED)
 # Accuracy, speed and memory of textures: docs/textures.md.
 textures: pictures
 	$(BIN)/python -m benchmarks.textures
+	$(BIN)/python -m benchmarks.textures.memory
 	$(BIN)/python -m tools.render_docs textures
 
 # Gamut mappings: docs/display.md and its picture.

@@ -183,4 +183,28 @@ KNOWN_FINDINGS = (
         "was": "other bytes once in 960 builds, and one thread for BLAS afterwards",
         "now": "the limit holds until the last build is done, and is removed then",
     },
+    {
+        "target": "image",
+        "input": "a million channels, 200,000 attributes, names and errors that are not UTF-8, attributes of other types",
+        "was": "a hang, UnicodeDecodeError, ValueError",
+        "now": "rejected, or read where the attribute does not matter",
+    },
+    {
+        "target": "image",
+        "input": "a damaged PNG file",
+        "was": "a second line on standard error, of libpng",
+        "now": "rejected on one line",
+    },
+    {
+        "target": "signals to 'texture' on two processes",
+        "input": "SIGTERM, SIGHUP or SIGKILL",
+        "was": "the processes continued, or left unfinished files",
+        "now": "they end with the command and remove their files",
+    },
+    {
+        "target": "signals to 'build'",
+        "input": "Ctrl-C during a callback of JAX, or while it is imported",
+        "was": "ignored, or a crash",
+        "now": "raised again after the callback or the import",
+    },
 )

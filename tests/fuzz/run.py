@@ -19,6 +19,7 @@ from tests.fuzz import (
     cube_metadata,
     cube_valid_digest,
     hostile_text,
+    image,
     input_kinds,
     last_net,
     option_numbers,
@@ -26,6 +27,7 @@ from tests.fuzz import (
     places,
     same_file,
     scene_spec,
+    signalled,
     writers,
 )
 from tests.fuzz.campaign import Tally, fuzz
@@ -43,6 +45,7 @@ MODULES = (
     build_options,
     option_numbers,
     input_kinds,
+    image,
 )
 TARGETS = {
     target.name: target
@@ -63,6 +66,8 @@ WRITERS: tuple[tuple[WriterTest, int], ...] = (
     (writers.builds_in_threads, 1),
     (writers.full_disk, 6),
     (writers.no_permission, 6),
+    (signalled.end_textures, 1),
+    (signalled.end_builds, 1),
 )
 """Tests of writers, each with a divisor of the number of runs."""
 KEPT = ROOT / "out" / "fuzz"

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+import signal
 
 import numpy as np
 import pytest
 
-from tests.fuzz import writers
+from tests.fuzz import signalled, writers
 from tests.fuzz.run import WRITERS, stress_writer
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="needs SIGKILL")
@@ -21,13 +22,24 @@ def test_old_or_complete_new_file_remains(target):
 
 
 def test_all_writer_tests_are_registered():
-    assert len({target for target, _ in WRITERS}) == 6
+    assert len({target for target, _ in WRITERS}) == 8
 
 
 def test_builds_in_threads_give_equal_cubes():
     tally = stress_writer(writers.builds_in_threads, 1, seed=3)
     assert tally.inputs == writers.BUILDS + 1
     assert not tally.failures
+
+
+def test_signals_that_are_ignored_are_counted(tmp_path, monkeypatch):
+    def ignore():
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, signal.SIG_IGN)
+
+    monkeypatch.setattr(signalled, "_restore", ignore)
+    monkeypatch.setattr(signalled, "SECONDS", 0.0)
+    tally = signalled.end_builds(1, np.random.default_rng(3), tmp_path)
+    assert tally.failures == {"it does not end": 1}
 
 
 def test_broken_files_are_counted(tmp_path, monkeypatch):

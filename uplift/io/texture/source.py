@@ -30,6 +30,7 @@ UINT32_SCALE = 2**32 - 1
 """OpenImageIO divides 32-bit integers by this number."""
 MAX_EXACT_INTEGER = 1 << 24
 """Integers up to this number pass through 32-bit floats."""
+UNKNOWN_PROBLEM = "the image cannot be read"
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 PNG_INTERLACE = 28
 """Offset of the byte that marks an interlaced PNG file, which can only be decoded in one piece."""
@@ -156,10 +157,10 @@ class Image:
                 rows = self.handle.read_tiles(*columns, first, end, 0, 1, *channels, kind)
             else:
                 rows = self.handle.read_scanlines(first, end, 0, *channels, kind)
-        problem = self.handle.geterror()  # the only sign of a truncated JPEG
+        problem = read_error(self.handle)  # the only sign of a truncated JPEG
         if rows is None or problem:
             raise TextureError(
-                f"rows {first} to {end - 1} cannot be read: {_one_line(problem)}",
+                f"rows {first} to {end - 1} cannot be read: {problem or UNKNOWN_PROBLEM}",
                 code="damaged-image",
                 hint="the file is damaged: write it again",
             )
@@ -192,7 +193,7 @@ def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
         with _silence(is_png=start.startswith(PNG_SIGNATURE)):
             handle = OpenImageIO.ImageInput.open(utf8_name(path, TextureError), config)
         if handle is None:
-            problem = _one_line(OpenImageIO.geterror())
+            problem = read_error(OpenImageIO) or UNKNOWN_PROBLEM
             raise TextureError(problem, code="unreadable-image", hint=FORMAT_HINT)
         try:
             parts = tuple(_parts(handle))
@@ -330,5 +331,9 @@ def _check_memory(part: Part, *, is_interlaced: bool) -> None:
         )
 
 
-def _one_line(message: str) -> str:
-    return " ".join(message.split()) or "the image cannot be read"
+def read_error(source: Any) -> str:
+    """Return the pending error of OpenImageIO or one of its objects on one line, empty if there is none."""
+    try:
+        return " ".join(source.geterror().split())
+    except UnicodeDecodeError:  # it quotes bytes of the file
+        return UNKNOWN_PROBLEM

@@ -16,7 +16,7 @@ from uplift.common.errors import OutputError, TextureError
 from uplift.common.files import atomic_write
 from uplift.io.texture import exr_file
 from uplift.io.texture.file_name import utf8_name
-from uplift.io.texture.source import Values, Window
+from uplift.io.texture.source import Values, Window, read_error
 
 ROWS_PER_CHUNK = 16
 """Rows that OpenEXR compresses together as ZIP."""
@@ -80,7 +80,7 @@ class Writer:
         self._written = 0
         handle = OpenImageIO.ImageOutput.create("openexr")
         if handle is None:
-            raise OSError(OpenImageIO.geterror())
+            raise OSError(read_error(OpenImageIO))
         self._handle = handle
         specs = tuple(self._specs) if len(self._specs) > 1 else self._specs[0]
         with _compression_threads(max(part.rows_per_band for part in parts) // ROWS_PER_CHUNK):
@@ -112,7 +112,7 @@ class Writer:
     def abort(self) -> None:
         """Close an incomplete file and ignore errors."""
         self._handle.close()
-        self._handle.geterror()  # otherwise it is printed when the process ends
+        read_error(self._handle)  # otherwise it is printed when the process ends
 
     def _check_space(self) -> None:
         """Raise `OutputError` at the first rows if the rest of the image will not fit on the disk."""
@@ -128,7 +128,7 @@ class Writer:
 
     def _check(self, ok: bool) -> None:
         if not ok:
-            raise OSError(" ".join(self._handle.geterror().split()))
+            raise OSError(read_error(self._handle))
 
 
 @contextlib.contextmanager
