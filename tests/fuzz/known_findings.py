@@ -185,7 +185,7 @@ KNOWN_FINDINGS = (
     },
     {
         "target": "image",
-        "input": "a million channels, 200,000 attributes, names and errors that are not UTF-8, attributes of other types",
+        "input": "a million channels, 200,000 attributes, text that is not UTF-8, attributes of other types",
         "was": "a hang, UnicodeDecodeError, ValueError",
         "now": "rejected, or read where the attribute does not matter",
     },
