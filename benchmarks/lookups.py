@@ -12,6 +12,7 @@ import numpy as np
 
 import uplift
 from benchmarks.record import ROOT
+from uplift.common.arrays import Array
 from uplift.lab.timing import Spread, time_calls
 from uplift.lookup import Cube, bulk
 
@@ -35,17 +36,30 @@ def macbeth() -> Cube:
 
 
 def time_lookups(cube: Cube, runs: int) -> list[Timing]:
-    """Time every mode with numpy in both types, on one thread and on two."""
-    return [
-        _lookup(cube, what, dtype, threads, runs)
-        for what in COLOURS
+    """Time every mode with numpy in both types, on one thread and on two, and for colours near those of the atlas."""
+    rng = np.random.default_rng(1)
+    random = [
+        _lookup(cube, what, rng.random((count, 3)), dtype, threads, runs)
+        for what, count in COLOURS.items()
         for dtype in ("float64", "float32")
         for threads in (1, 2)
     ]
+    near = [
+        _lookup(cube, what, near_entries(cube, count, rng), "float64", 1, runs)
+        | {"what": f"{what}, colours near entries"}
+        for what, count in COLOURS.items()
+    ]
+    return random + near
 
 
-def _lookup(cube: Cube, what: str, dtype: str, threads: int, runs: int) -> Timing:
-    rgb = np.random.default_rng(1).random((COLOURS[what], 3))
+def near_entries(cube: Cube, count: int, rng: np.random.Generator) -> Array:
+    """Draw linear RGB (n, 3) around the colours of the atlas entries, most of them in entry boxes."""
+    rgb = cube.data.atlas.rgb
+    near = rgb[rng.integers(len(rgb), size=count)] + rng.normal(0, 1e-3, (count, 3))
+    return np.asarray(np.clip(near, 0, 1))
+
+
+def _lookup(cube: Cube, what: str, rgb: Array, dtype: str, threads: int, runs: int) -> Timing:
     options: dict[str, Any] = {"dtype": dtype, "threads": threads}
     if what == "coefficients":
         query = partial(cube.coefficients, rgb, **options)
@@ -65,9 +79,8 @@ def _lookup(cube: Cube, what: str, dtype: str, threads: int, runs: int) -> Timin
 def time_bulk(cube: Cube, runs: int) -> list[Timing]:
     """Time JAX: spectra and coefficients of random colours, and spectra of colours near those of the atlas."""
     rng = np.random.default_rng(1)
-    random, data = rng.random((BULK, 3)), cube.data
-    near = data.atlas.rgb[rng.integers(len(data.atlas.rgb), size=BULK)] + rng.normal(0, 1e-3, (BULK, 3))
-    painted = np.clip(near, 0, 1)
+    random = rng.random((BULK, 3))
+    painted = near_entries(cube, BULK, rng)
     return [
         _bulk(cube, "spectra", "spectra", random, 1, runs),
         _bulk(cube, "spectra", "spectra", random, 2, runs),
