@@ -105,7 +105,7 @@ def _fit_once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float]
     )
     seeds = fit.seed(lattice, rgb)
     mark("entries")
-    prior = fit.fit_prior(problem, sensor, entries, observer.light("A"))
+    prior = fit.fit_prior(problem, sensor, entries, lights, observer.light("A"))
     mark("prior")
     fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, progress)
     mark("errors")

@@ -82,7 +82,7 @@ def _fitted(problem: fit.Problem, sensor: Sensor) -> tuple[Array, Array]:
     entries = fit.fit_entries(
         problem.model, problem.forward, nothing, np.empty((0, 3)), [sensor.light], light, problem.tolerance
     )
-    prior = fit.fit_prior(problem, sensor, entries, light)
+    prior = fit.fit_prior(problem, sensor, entries, [light], light)
     nobody = np.zeros(0, dtype=np.int64)
     grown = grow_from_prior(problem, lambda points: prior(problem.goal(points)), nobody, ignore_progress)
     return problem.model.to_storage(grown.multipliers), grown.distance

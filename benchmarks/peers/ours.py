@@ -29,7 +29,7 @@ def _lattice(name: str, count: int, dim: int, runs: int) -> Peer:
     seeds = fit.seed(lattice, rgb)
 
     def fit_all() -> Array:
-        prior = fit.fit_prior(problem, sensor, none, reference)
+        prior = fit.fit_prior(problem, sensor, none, [reference], reference)
         return fit.fit_lattice(problem, seeds, none.multipliers, prior).points.coefficients
 
     fit_all()  # compiles

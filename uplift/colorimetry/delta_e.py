@@ -147,6 +147,34 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     return np.sqrt(np.maximum(delta_l**2 + delta_c**2 + delta_h**2 + rotation * delta_c * delta_h, 0))
 
 
+def delta_e_2000_weights(lab: ArrayLike) -> Array:
+    """Compute the linear map from small changes of L*a*b* to weighted differences of lightness, chroma and hue.
+
+    The norm of the differences is CIEDE2000, but for its corrections of neutral and of blue colours.
+
+    Parameters
+    ----------
+    lab : array_like, shape (..., 3)
+        CIE L*a*b*.
+
+    Returns
+    -------
+    ndarray, shape (..., 3, 3)
+
+    References
+    ----------
+    Sharma, Wu & Dalal 2005, eq. 15–17, 19 and 20, with G and T of a neutral colour.
+    """
+    light, a, b = np.moveaxis(np.asarray(lab, dtype=float), -1, 0)
+    chroma, hue = np.hypot(a, b), np.arctan2(b, a)
+    chroma_weight, hue_weight = 1 / (1 + 0.045 * chroma), 1 / (1 + 0.015 * chroma)
+    weights = np.zeros((*light.shape, 3, 3))
+    weights[..., 0, 0] = 1 / (1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2))
+    weights[..., 1, 1], weights[..., 1, 2] = chroma_weight * np.cos(hue), chroma_weight * np.sin(hue)
+    weights[..., 2, 1], weights[..., 2, 2] = -hue_weight * np.sin(hue), hue_weight * np.cos(hue)
+    return weights
+
+
 def delta_e_spectra(light: Light, first: ArrayLike, second: ArrayLike) -> Array:
     """Compute ΔE00 between reflectances under a light.
 

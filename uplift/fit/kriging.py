@@ -1,7 +1,4 @@
-"""Simple kriging of the deviation of atlas entries from smooth spectra (docs/mathematics.md, 7).
-
-The deviation of an entry's multipliers from those of the smooth spectrum of its colour correlates between colours as
-exp(−ΔE*ab / LENGTH). Far from all entries the deviation vanishes.
+"""Simple kriging of the deviation of atlas entries from a base predictor (docs/mathematics.md, 7).
 
 References
 ----------
@@ -11,6 +8,7 @@ Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25, 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -18,21 +16,57 @@ import numpy as np
 
 from uplift.common.arrays import Array
 
-LENGTH = 6.0
-"""Correlation length in CIE L*a*b*, by cross-validation: docs/fidelity.md."""
-NUGGET = 1e-3
+REACH = 12.0
+"""ΔE*ab within which a deviation that belongs to one entry alone fades away."""
+JITTER = 1e-3
 """Relative variance of noise: entries of the same colour and different spectra are averaged."""
 BLOCK_NUMBERS = 1 << 20
 """Numbers of the kernel matrix held at a time."""
-PRIOR_COUNT = 2.0
-"""Weight of the mean error of all entries, in entries."""
-MIN_VARIANCE = 0.02
-"""Lower limit of the variance assigned to a left-out entry."""
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """Covariance of the deviations of two colours: exp(−d / length) + nugget · (1 − d / 12)⁴ (1 + 4 d / 12), d = ΔE*ab.
+
+    The first term is common to the materials of an atlas. The second, the nugget, belongs to one entry: kriging keeps
+    it at the colour of the entry and near it, and averages it elsewhere.
+
+    Parameters
+    ----------
+    length : float
+        Correlation length in CIE L*a*b*.
+    nugget : float
+        Variance of the second term.
+
+    References
+    ----------
+    Wendland 1995, "Piecewise polynomial, positive definite and compactly supported radial functions of minimal degree".
+    """
+
+    length: Any
+    nugget: Any
+
+    def __call__(self, distance: Any) -> Any:
+        """Evaluate the covariance.
+
+        Parameters
+        ----------
+        distance : array
+            ΔE*ab, of numpy or JAX.
+
+        Returns
+        -------
+        array
+        """
+        xp = distance.__array_namespace__()
+        share = xp.minimum(distance / REACH, 1.0)
+        fade = (1 - share) ** 2
+        return xp.exp(distance / -self.length) + self.nugget * fade * fade * (1 + 4 * share)
 
 
 @dataclass(frozen=True, eq=False)
 class Kriging:
-    """Interpolated deviation of the multipliers.
+    """Interpolated deviation.
 
     Parameters
     ----------
@@ -40,71 +74,39 @@ class Kriging:
         CIE L*a*b* of the entries.
     weights : ndarray, shape (E, C)
         Weights of the kernel around each entry.
-    length : float, default 6
-        Correlation length in CIE L*a*b*.
+    kernel : Kernel
+        Covariance of the deviations.
     """
 
     locations: Array
     weights: Array
-    length: float = LENGTH
+    kernel: Kernel
 
     def __call__(self, lab: Array) -> Array:
-        """Deviation of the multipliers (n, C) at L*a*b* (n, 3)."""
-        return _kernel_sums(lab, self.locations, self.weights, self.length)[0]
+        """Deviation (n, C) at L*a*b* (n, 3)."""
+        return kernel_sums(lab, self.locations, self.weights, self.kernel)[0]
 
 
-def krige(locations: Array, deviations: Array, length: float = LENGTH) -> tuple[Kriging, Array]:
-    """Fit the kriging of deviations (E, C) at L*a*b* (E, 3); with it, return its leave-one-out predictions (E, C)."""
+def krige(locations: Array, deviations: Array, kernel: Kernel) -> tuple[Kriging, Array]:
+    """Fit the kriging of deviations (E, C) at L*a*b* (E, 3); with it, return its leave-one-out errors (E, C)."""
+    from scipy.spatial.distance import cdist
+
+    weights, errors = leave_one_out(kernel(cdist(locations, locations)), deviations)
+    return Kriging(locations, weights, kernel), errors
+
+
+def leave_one_out(covariance: Array, deviations: Array) -> tuple[Array, Array]:
+    """Solve for the kriging weights (E, C) of deviations (E, C), and for the errors (E, C) of each when left out."""
     from scipy.linalg import cho_factor, cho_solve
     from scipy.linalg.lapack import dpotri
 
-    factor = cho_factor(_kernel(locations, locations, length) + NUGGET * np.eye(len(locations)))
+    factor = cho_factor(covariance + JITTER * np.eye(len(covariance)))
     weights = cho_solve(factor, deviations)
     inverse, _ = dpotri(factor[0], overwrite_c=True)
-    return Kriging(locations, weights, length), deviations - weights / np.diag(inverse)[:, None]
+    return weights, weights / np.diag(inverse)[:, None]
 
 
-@dataclass(frozen=True, eq=False)
-class Uncertainty:
-    """Expected error of answers, estimated from left-out entries.
-
-    Parameters
-    ----------
-    locations : ndarray, shape (E, 3)
-        CIE L*a*b* of the entries.
-    squares : ndarray, shape (E,)
-        ΔE00² of each entry when left out, per unit of variance.
-    floor : float
-        ΔE00² that remains at the entries themselves.
-    """
-
-    locations: Array
-    squares: Array
-    floor: float
-
-    def __call__(self, lab: Array) -> Array:
-        """Standard error (n,), ΔE00, at L*a*b* (n, 3)."""
-        columns = np.stack([self.squares, np.ones(len(self.squares))], axis=1)
-        sums, nearest = _kernel_sums(lab, self.locations, columns)
-        spread = (sums[:, 0] + PRIOR_COUNT * self.squares.mean()) / (sums[:, 1] + PRIOR_COUNT)
-        return np.asarray(np.sqrt((1 - nearest**2) * spread + self.floor))
-
-
-def uncertainty(locations: Array, left_out: Array, kept: Array) -> Uncertainty:
-    """Estimate the uncertainty from the ΔE00 (E,) of entries at L*a*b* (E, 3), when left out and when kept."""
-    kernel = _kernel(locations, locations)
-    np.fill_diagonal(kernel, 0)
-    variance = np.maximum(1 - kernel.max(axis=1) ** 2, MIN_VARIANCE)
-    return Uncertainty(locations, left_out**2 / variance, float((kept**2).mean()))
-
-
-def _kernel(first: Array, second: Array, length: float = LENGTH) -> Array:
-    from scipy.spatial.distance import cdist
-
-    return np.exp(cdist(first, second) / -length)
-
-
-def _kernel_sums(lab: Array, locations: Array, columns: Array, length: float = LENGTH) -> tuple[Array, Array]:
+def kernel_sums(lab: Array, locations: Array, columns: Array, kernel: Kernel) -> tuple[Array, Array]:
     """Sums (n, K) of the entries' columns (E, K) weighted by the kernel at L*a*b* (n, 3), and its maximum (n,)."""
     rows = max(min(BLOCK_NUMBERS // max(len(locations), 1), len(lab)), 1)
     sums, nearest = np.empty((len(lab), columns.shape[1])), np.empty(len(lab))
@@ -113,15 +115,15 @@ def _kernel_sums(lab: Array, locations: Array, columns: Array, length: float = L
             part = slice(first, first + rows)
             count = len(lab[part])
             block = np.resize(lab[part], (rows, 3))  # the last block is padded: one shape is compiled
-            found = _kernel_block(block, locations, columns, length)
+            found = _kernel_block(kernel.length, kernel.nugget, block, locations, columns)
             sums[part], nearest[part] = (np.asarray(array)[:count] for array in found)
     return sums, nearest
 
 
 @jax.jit
 def _kernel_block(
-    lab: jax.Array, locations: jax.Array, columns: jax.Array, length: float
+    length: float, nugget: float, lab: jax.Array, locations: jax.Array, columns: jax.Array
 ) -> tuple[jax.Array, jax.Array]:
     squared = ((lab[:, None] - locations[None]) ** 2).sum(axis=-1)
-    kernel = jnp.exp(jnp.sqrt(squared) / -length)
-    return kernel @ columns, kernel.max(axis=1)
+    weights = Kernel(length, nugget)(jnp.sqrt(squared))
+    return weights @ columns, weights.max(axis=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -12,19 +13,25 @@ from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.fit.base import Base
 from uplift.fit.entries import FittedEntries
-from uplift.fit.kriging import Kriging, Uncertainty, krige, uncertainty
+from uplift.fit.kriging import Kernel, Kriging, krige
+from uplift.fit.learn import MIN_ENTRIES, learn_kernel, visible_change
 from uplift.fit.problem import Problem
-from uplift.fit.smooth import TABLE, Smooth, smooth
+from uplift.fit.quadrature_jit import quadrature_jit
+from uplift.fit.smooth import NO_FREEDOM, TABLE, Smooth, smooth
+from uplift.fit.uncertainty import Uncertainty, uncertainty
 from uplift.fit.unrealisable import unrealisable
 from uplift.models import Model, evaluate
 
-MIN_ENTRIES = 8
-"""Entries needed to estimate errors."""
 MAX_PASSES = 32
 MARGIN = 1e-3
 """Linear RGB between the starts of unrealisable colours and the boundary, where spectra become boxes."""
 BLOCK_POINTS = 1 << 15
 """Points processed at a time."""
+DETERMINED = Kernel(length=6.0, nugget=0.0)
+"""Kernel where the colour alone determines the spectrum: it only chooses among solutions."""
+SHRINK = 0.7
+"""Factor of a deviation that leaves the space of valid coefficients, repeated until it does not."""
+MAX_SHRINKS = 16
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,7 +47,7 @@ class Prior:
     base : Base
         Spectra expected far from all entries.
     kriging : Kriging, optional
-        Deviation of the atlas entries; None without an atlas.
+        Deviation of the coefficients of the atlas entries; None without an atlas.
     uncertainty : Uncertainty, optional
         Expected errors; None for an atlas of fewer than 8 entries.
     """
@@ -52,9 +59,11 @@ class Prior:
     uncertainty: Uncertainty | None = None
 
     def __call__(self, rgb: Array) -> Array:
-        """Multipliers (n, C) to start from at linear RGB (n, 3); at the colour of an entry, those of the entry."""
-        start = self.model.from_storage(self.base.coefficients(rgb))
-        return start if self.kriging is None else start + self.kriging(rgb_to_lab(self.sensor, rgb))
+        """Multipliers (n, C) to start from at linear RGB (n, 3); at an entry, nearly those of the entry."""
+        coefficients = self.base.coefficients(rgb)
+        if self.kriging is None:
+            return self.model.from_storage(coefficients)
+        return _bounded(self.model, coefficients, self.kriging(rgb_to_lab(self.sensor, rgb)))
 
     def standard_error(self, rgb: Array) -> Array | None:
         """Return the root-mean-square error expected between answers and measurements.
@@ -116,6 +125,7 @@ def fit_prior(
     problem: Problem,
     sensor: Sensor,
     entries: FittedEntries,
+    lights: Sequence[Light],
     error_light: Light,
     base: Base | None = None,
 ) -> Prior:
@@ -129,6 +139,8 @@ def fit_prior(
         RGB space of the colours.
     entries : FittedEntries
         Atlas entries.
+    lights : sequence of Light
+        Lights under which the prior should predict the colours of materials.
     error_light : Light
         Light of the standard errors.
     base : Base, optional
@@ -144,12 +156,40 @@ def fit_prior(
         return Prior(model, sensor, base)
     order = np.lexsort(entries.rgb.T)
     entries = FittedEntries(*(getattr(entries, key.name)[order] for key in fields(FittedEntries)))
-    locations = rgb_to_lab(sensor, entries.rgb)
-    start = model.from_storage(base.coefficients(entries.rgb))
-    kriging, deviations = krige(locations, entries.multipliers - start)
+    locations, expected = rgb_to_lab(sensor, entries.rgb), base.coefficients(entries.rgb)
+    deviations = model.to_storage(entries.multipliers, quadrature_jit) - expected
+    kernel = _kernel(problem, lights, entries.measured, locations, deviations)
+    kriging, errors = krige(locations, deviations, kernel)
     if len(entries) < MIN_ENTRIES:
         return Prior(model, sensor, base, kriging)
-    left_out = problem.solve(entries.rgb, start + deviations, MAX_PASSES).multipliers
+    start = _bounded(model, expected, deviations - errors)
+    left_out = problem.solve(entries.rgb, start, MAX_PASSES).multipliers
     spectra = evaluate(model, left_out, sensor.wavelengths)
-    errors = delta_e_spectra(error_light, spectra, entries.measured)
-    return Prior(model, sensor, base, kriging, uncertainty(locations, errors, entries.error))
+    missed = delta_e_spectra(error_light, spectra, entries.measured)
+    return Prior(model, sensor, base, kriging, uncertainty(locations, missed, entries.error))
+
+
+def _kernel(
+    problem: Problem, lights: Sequence[Light], measured: Array, locations: Array, deviations: Array
+) -> Kernel:
+    """Learn the kernel, unless the colour alone determines the spectrum."""
+    if problem.model.count == NO_FREEDOM:
+        return DETERMINED
+    visible = visible_change(problem.model, problem.forward, lights, measured)
+    return learn_kernel(locations, deviations, visible)
+
+
+def _bounded(model: Model, expected: Array, deviation: Array) -> Array:
+    """Multipliers (n, C) of expected coefficients plus their deviation (n, C), shrunk as little as is necessary."""
+    multipliers, valid = model.try_from_storage(expected + deviation)
+    share = 1.0
+    for _ in range(MAX_SHRINKS):
+        outside = np.flatnonzero(~valid)
+        if not outside.size:
+            return multipliers
+        share *= SHRINK
+        multipliers[outside], valid[outside] = model.try_from_storage(
+            expected[outside] + share * deviation[outside]
+        )
+    multipliers[~valid] = model.from_storage(expected[~valid])
+    return multipliers

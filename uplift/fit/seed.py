@@ -1,4 +1,4 @@
-"""Seeding: every atlas entry takes the eight corners of its cell, nearest first (Tódová 2020, section 3.1.2)."""
+"""Seeding: atlas entries take lattice points around their colours (Tódová 2020, section 3.1.2)."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ class Seeds:
     collisions: tuple[Collision, ...]
 
 
-def seed(lattice: Lattice, rgb: Array) -> Seeds:
+def seed(lattice: Lattice, rgb: Array, *, corners: bool = False) -> Seeds:
     """Assign lattice points to atlas entries, independently of the order of the entries.
 
-    Every entry gets its nearest point, unless a closer entry owns it. Then, in rounds, every entry gets the nearest
-    free corner of its cell: the "better approach" of the thesis.
+    Every entry gets its nearest point, unless a closer entry owns it. With ``corners``, in rounds, every entry also
+    gets the nearest free corner of its cell: the "better approach" of the thesis.
 
     Parameters
     ----------
@@ -54,21 +54,24 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
         The lattice.
     rgb : ndarray, shape (E, 3)
         Linear RGB of the entries, in [0, 1].
+    corners : bool, default False
+        Assign all eight corners of the cells of entries. This takes the prior's place at the other seven, at the
+        expense of materials that the atlas does not contain; see docs/fidelity.md.
 
     Returns
     -------
     Seeds
         The assignment.
     """
-    corners, _ = lattice.corners(rgb)
-    distance = np.linalg.norm(lattice.points[corners] - rgb[:, None, :], axis=-1)
+    cells, _ = lattice.corners(rgb)
+    distance = np.linalg.norm(lattice.points[cells] - rgb[:, None, :], axis=-1)
     by_distance = np.argsort(distance, axis=1, kind="stable")
-    queue = np.take_along_axis(corners, by_distance, axis=1)
+    queue = np.take_along_axis(cells, by_distance, axis=1)
     nearest = np.take_along_axis(distance, by_distance, axis=1)[:, 0]
     order = np.lexsort([*rgb.T, nearest])
     owner, collisions = _assign_primaries(queue, order)
     primaries = len(owner)
-    for _ in CORNERS:
+    for _ in CORNERS if corners else ():
         for entry in order:
             free = next((int(point) for point in queue[entry] if point not in owner), None)
             if free is not None:

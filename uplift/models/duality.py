@@ -138,16 +138,15 @@ def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
     UpliftError
         No reflectance has these moments.
     """
-    dual = real_moments.dual if np.isrealobj(moments) else complex_moments.dual
     grey = np.zeros_like(moments[:1])
     grey[:, 0] = 0.5
-    multipliers, valid = _by_blocks(dual, moments)
+    multipliers, valid = try_dual(moments)
     for share in _GREY_SHARES:
         pending = np.flatnonzero(~valid)
         if not pending.size:
             return multipliers
         blend = (1 - share) * moments[pending] + share * grey
-        multipliers[pending], valid[pending] = _by_blocks(dual, blend)
+        multipliers[pending], valid[pending] = try_dual(blend)
     if valid.all():
         return multipliers
     raise UpliftError(
@@ -156,7 +155,9 @@ def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
     )
 
 
-def _by_blocks(dual: Any, moments: RealOrComplex) -> tuple[RealOrComplex, Mask]:
+def try_dual(moments: RealOrComplex) -> tuple[RealOrComplex, Mask]:
+    """Compute the multipliers (n, C) of moments (n, C), and where (n,) they are valid: moments of a reflectance."""
+    dual: Any = real_moments.dual if np.isrealobj(moments) else complex_moments.dual
     multipliers, valid = np.empty_like(moments), np.empty(len(moments), dtype=bool)
     for first in range(0, len(moments), _ROWS):
         block = slice(first, first + _ROWS)

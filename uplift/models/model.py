@@ -174,6 +174,23 @@ class Model(Protocol):
         """
         ...
 
+    def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
+        """Convert coefficients that may belong to no reflectance.
+
+        Parameters
+        ----------
+        coefficients : ndarray, shape (n, C)
+            Coefficients.
+
+        Returns
+        -------
+        multipliers : ndarray, shape (n, C)
+            Multipliers; arbitrary where invalid.
+        valid : ndarray of bool, shape (n,)
+            Whether the coefficients belong to a reflectance.
+        """
+        ...
+
     def describe(self) -> dict[str, Any]:
         """Describe the model for `uplift.models.from_description`.
 

@@ -107,6 +107,9 @@ class Moments(Model):
         largest = np.abs(multipliers[:, 0]) + 2 * np.abs(multipliers[:, 1:]).sum(axis=1)
         return np.asarray(largest <= MAX_SAFE_LINEAR)
 
+    def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
+        return duality.try_dual(coefficients)
+
     def describe(self) -> dict[str, Any]:
         return {"name": self.name, "count": self.count, "phase": asdict(self.phase)}
 

@@ -76,6 +76,9 @@ class Sigmoid(Model):
     def rounds_safely(self, multipliers: Array) -> Mask:
         return np.asarray(np.abs(multipliers).sum(axis=1) <= MAX_SAFE_LINEAR)
 
+    def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
+        return np.array(coefficients, dtype=float), np.ones(len(coefficients), dtype=bool)
+
     def describe(self) -> dict[str, Any]:
         return {"name": self.name, **asdict(self)}
 

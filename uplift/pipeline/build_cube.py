@@ -58,6 +58,7 @@ def build(
     leave_out: Sequence[str] = (),
     threshold: float = 1e-4,
     auto_tolerance: float = 0.5,
+    seed_corners: bool = False,
     debug: bool = False,
     scene: SceneLike | StrPath | Sequence[StrPath] | None = None,
     progress: ProgressCallback = ignore_progress,
@@ -103,6 +104,9 @@ def build(
         Largest |target − stored| of a fitted lattice point in linear RGB, in (0, 0.1].
     auto_tolerance : float, default 0.5
         With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the lattice.
+    seed_corners : bool, default False
+        Start all eight corners of the cell of each atlas entry from the entry, as Tódová 2020 does. By default only
+        the nearest does, as the others serve other materials better.
     debug : bool, default False
         Store the round of growth in which each point was fitted.
     scene : SceneLike, path-like or sequence of path-like, optional
@@ -153,6 +157,7 @@ def build(
         leave_out=(leave_out,) if isinstance(leave_out, str) else tuple(leave_out),
         threshold=threshold,
         auto_tolerance=auto_tolerance,
+        seed_corners=seed_corners,
         debug=debug,
     )
     check_memory(options)
@@ -181,13 +186,13 @@ def build(
     options = _with_dim(options, forward, scene_lights, entries)
     lattice = Lattice(observers.axis_nodes(options.axis, int(options.dim)))
     boxes = EntryBoxes(lattice, rgb, half_widths(lattice, rgb))
-    seeds = fit.seed(lattice, rgb)
+    seeds = fit.seed(lattice, rgb, corners=seed_corners)
     _warn_of_crowding(names, boxes, seeds)
 
     active = None if colours is None else np.flatnonzero(colours.required_points(boxes, sensor, progress))
     problem = _problem(options, forward, lattice, sensor, active)
     learnt = fit.learn_base(problem, sensor, scene_lights, families, entries)
-    fitted_prior = fit.fit_prior(problem, sensor, entries, error_light, learnt.base)
+    fitted_prior = fit.fit_prior(problem, sensor, entries, scene_lights, error_light, learnt.base)
     fitted = fit.fit_lattice(problem, seeds, entries.multipliers, fitted_prior, progress)
 
     entry_model = options.entry_model()

@@ -61,6 +61,7 @@ class Options:
     leave_out: tuple[str, ...] = ()
     threshold: float = 1e-4
     auto_tolerance: float = 0.5
+    seed_corners: bool = False
     debug: bool = False
 
     def __post_init__(self) -> None:
