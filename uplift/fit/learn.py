@@ -28,7 +28,7 @@ MIN_ENTRIES = 8
 """Entries needed to learn a kernel."""
 INVISIBLE = 1e-3
 """ΔE00 below which errors do not matter."""
-MAX_ENTRIES = 320
+MAX_ENTRIES = 200
 """Entries that are used: the kernel changes little with more, and its cost grows with their cube."""
 
 

@@ -16,7 +16,6 @@ from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import Kernel, Kriging, krige
 from uplift.fit.learn import MIN_ENTRIES, learn_kernel, visible_change
 from uplift.fit.problem import Problem
-from uplift.fit.quadrature_jit import quadrature_jit
 from uplift.fit.smooth import NO_FREEDOM, TABLE, Smooth, smooth
 from uplift.fit.uncertainty import Uncertainty, uncertainty
 from uplift.fit.unrealisable import unrealisable
@@ -157,7 +156,7 @@ def fit_prior(
     order = np.lexsort(entries.rgb.T)
     entries = FittedEntries(*(getattr(entries, key.name)[order] for key in fields(FittedEntries)))
     locations, expected = rgb_to_lab(sensor, entries.rgb), base.coefficients(entries.rgb)
-    deviations = model.to_storage(entries.multipliers, quadrature_jit) - expected
+    deviations = model.to_storage(entries.multipliers) - expected
     kernel = _kernel(problem, lights, entries.measured, locations, deviations)
     kriging, errors = krige(locations, deviations, kernel)
     if len(entries) < MIN_ENTRIES:
