@@ -103,6 +103,11 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 @encoding_option("--scene images")
 @click.option("--plan", "plan_path", metavar="PLAN", help="Build the cube of a plan by 'uplift plan'.")
 @out_of_gamut_option("clip", "linear RGB of --scene images")
+@click.option(
+    "--seed-corners",
+    is_flag=True,
+    help="Start all eight nodes around an entry from it: closer near entries, less so for other materials.",
+)
 @click.option("--debug", is_flag=True, help="Store the round of every node, for 'uplift slices'.")
 @force_option()
 @quiet_option()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -28,10 +30,12 @@ def stage(sensor):
     return (model, forward, 1e-6), lights, entries
 
 
-def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, macbeth_cube):
-    """The cube has dim 32; its lattice is evaluated at the entries without their boxes."""
+def test_lattice_error_predicts_the_error_of_a_cube_of_seeded_corners(stage, sensor):
+    """The lattice of the cube is evaluated at the entries without their boxes."""
     solver, lights, entries = stage
-    data = macbeth_cube.data
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        data = uplift.build(MACBETH, dim=32, seed_corners=True).data
     trial = lattice_error(*solver, data.lattice, lights, entries)
     corners, weights = data.lattice.corners(entries.rgb)
     spectra = reflectance(data.model, data.points.coefficients[corners.ravel()], sensor.wavelengths)

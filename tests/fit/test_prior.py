@@ -10,12 +10,14 @@ from uplift import fit
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.fit.prior import MIN_ENTRIES
+from uplift.fit.learn import MIN_ENTRIES
+from uplift.fit.prior import _bounded
 from uplift.lattice import Lattice
 from uplift.models import Moments
 from uplift.models.minimum_norm import forward_map
 
 LIGHT = observer.light("A")
+LIGHTS = [observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3")]
 SPLITS = 6
 
 
@@ -29,8 +31,7 @@ def problem(sensor):
 
 def entries_of(problem, sensor, measured):
     rgb = sensor.rgb(measured)
-    lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3")]
-    return fit.fit_entries(problem.model, problem.forward, measured, rgb, lights, LIGHT, 1e-6)
+    return fit.fit_entries(problem.model, problem.forward, measured, rgb, LIGHTS, LIGHT, 1e-6)
 
 
 def some(entries, rows):
@@ -48,7 +49,7 @@ def materials(problem, sensor):
 
 def test_start_at_an_entry_is_nearly_its_spectrum(problem, sensor, materials):
     few = some(materials, np.arange(0, 160, 20))
-    prior = fit.fit_prior(problem, sensor, few, LIGHT)
+    prior = fit.fit_prior(problem, sensor, few, LIGHTS, LIGHT)
     apart = np.abs(
         problem.model.squash(prior(few.rgb) @ problem.forward.basis.T)
         - problem.model.squash(few.multipliers @ problem.forward.basis.T)
@@ -58,16 +59,29 @@ def test_start_at_an_entry_is_nearly_its_spectrum(problem, sensor, materials):
 
 def test_start_far_from_all_entries_is_smooth(problem, sensor, materials):
     dark = materials.rgb.max(axis=1) < 0.2
-    prior = fit.fit_prior(problem, sensor, some(materials, dark), LIGHT)
-    white = np.ones((1, 3))
+    prior = fit.fit_prior(problem, sensor, some(materials, dark), LIGHTS, LIGHT)
+    light = np.linspace(0.6, 0.9, 4)[:, None].repeat(3, axis=1)
+    basis = problem.forward.basis.T
+    smooth = problem.model.from_storage(prior.base.coefficients(light))
     np.testing.assert_allclose(
-        prior(white), problem.model.from_storage(prior.base.coefficients(white)), atol=0.05
+        problem.model.squash(prior(light) @ basis), problem.model.squash(smooth @ basis), atol=0.02
     )
+
+
+def test_a_deviation_that_leaves_the_moment_space_is_shrunk(problem):
+    grey = problem.model.to_storage(np.zeros((2, 9)))
+    away = np.zeros((2, 9))
+    away[0, 3], away[1, 3] = 0.05, 5
+    found = _bounded(problem.model, grey, away)
+    np.testing.assert_allclose(problem.model.to_storage(found)[0], (grey + away)[0], atol=1e-7)
+    shrunk = problem.model.to_storage(found)[1] - grey[1]
+    assert 0.1 < shrunk[3] < 5
+    np.testing.assert_allclose(np.delete(shrunk, 3), 0, atol=1e-6)
 
 
 def test_too_few_entries_give_no_standard_error(problem, sensor, materials):
     for count, tells in ((0, False), (1, False), (MIN_ENTRIES - 1, False), (MIN_ENTRIES, True)):
-        prior = fit.fit_prior(problem, sensor, some(materials, np.arange(count)), LIGHT)
+        prior = fit.fit_prior(problem, sensor, some(materials, np.arange(count)), LIGHTS, LIGHT)
         errors = prior.standard_error(np.full((1, 3), 0.3))
         assert (errors is not None) == tells
 
@@ -82,7 +96,7 @@ def test_errors_of_left_out_entries_agree_with_the_standard_error(problem, senso
     for _ in range(SPLITS):
         order = rng.permutation(len(materials.rgb))
         half = len(order) // 2
-        prior = fit.fit_prior(problem, sensor, some(materials, order[:half]), LIGHT)
+        prior = fit.fit_prior(problem, sensor, some(materials, order[:half]), LIGHTS, LIGHT)
         queried = some(materials, order[half:])
         found = problem.solve(queried.rgb, prior(queried.rgb), 16).multipliers
         spectra = problem.model.squash(found @ problem.forward.basis.T)

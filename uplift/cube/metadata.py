@@ -133,6 +133,7 @@ PROVENANCE = _table(
         "families": _list(_table({"name": _text, "relevance": _number()}), MAX_FILES),
         "left_out": _list(_text, MAX_ENTRIES),
         "skipped": _list(_text, MAX_ENTRIES),
+        "prior": _table({}, {"length": _number(0), "nugget": _number(0)}, others=True),
         "improvements": _list(_table({"step": _text, "tried": _count, "mended": _count}), MAX_FILES),
         "scene": _list(_table({}, others=True), MAX_FILES),
         "filled": _table({"points": _count, "cube": _text}),

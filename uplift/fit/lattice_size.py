@@ -44,9 +44,9 @@ def lattice_error(
 ) -> Array:
     """Largest ΔE00 (E,) under ``lights`` between each entry's spectrum and the lattice at its colour.
 
-    Only the corners of the entries' cells are fitted.
+    Only the corners of the entries' cells are fitted, each from an entry: the error is that of crowding alone.
     """
-    seeds = seed(lattice, entries.rgb)
+    seeds = seed(lattice, entries.rgb, corners=True)
     start, target = entries.multipliers[seeds.entry], lattice.points[seeds.points]
     found = solve(
         model, forward, start, target, tolerance=tolerance, max_passes=MAX_PASSES, prior=start

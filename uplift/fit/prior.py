@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,16 @@ class Prior:
         if self.kriging is None:
             return self.model.from_storage(coefficients)
         return _bounded(self.model, coefficients, self.kriging(rgb_to_lab(self.sensor, rgb)))
+
+    def describe(self) -> dict[str, float]:
+        """Return the learnt parameters of the kriging, for the provenance of cubes.
+
+        Returns
+        -------
+        dict
+            ``length`` in CIE L*a*b* and ``nugget``, see `Kernel`; empty without an atlas.
+        """
+        return {} if self.kriging is None else asdict(self.kriging.kernel)
 
     def standard_error(self, rgb: Array) -> Array | None:
         """Return the root-mean-square error expected between answers and measurements.

@@ -217,7 +217,7 @@ def build(
             ),
             points=fitted.points if options.debug else replace(fitted.points, round=None),
             error_illuminant=ERROR_ILLUMINANT,
-            provenance=_provenance(options, atlas, names, colours, fitted)
+            provenance=_provenance(options, atlas, names, colours, fitted_prior, fitted)
             | describe_libraries(libraries, families, learnt.relevance),
         )
     )
@@ -327,7 +327,12 @@ def _warn(problem: str, code: str, entry: str | None = None, hint: str = "") -> 
 
 
 def _provenance(
-    options: Options, atlas: Atlas, names: tuple[str, ...], scene: SceneLike | None, fitted: fit.LatticeFit
+    options: Options,
+    atlas: Atlas,
+    names: tuple[str, ...],
+    scene: SceneLike | None,
+    prior: fit.Prior,
+    fitted: fit.LatticeFit,
 ) -> dict[str, Any]:
     """How the cube was built, in JSON values."""
     return {
@@ -336,6 +341,7 @@ def _provenance(
         "atlases": [{"name": source.name, "digest": source.digest} for source in atlas.sources],
         "left_out": [name for name in atlas.names if name not in names],
         "skipped": [entry.name for entry in atlas.skipped],
+        "prior": prior.describe(),
         "improvements": [step.to_json() for step in fitted.improvements],
         **({} if scene is None else {"scene": scene.describe()}),
     }
