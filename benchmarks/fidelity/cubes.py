@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks.fidelity.between import LIMITS
+from benchmarks.fidelity.between import limit, split
 from benchmarks.fidelity.materials import (
     SENSOR,
     TESTED_ON,
@@ -17,19 +17,18 @@ from benchmarks.fidelity.materials import (
     as_record,
     entries,
     errors,
-    forward,
     large,
     materials,
     spectra,
     spectra_of,
 )
-from uplift import fit
+from benchmarks.fidelity.start import solved
+from uplift.atlas import Atlas, Entry
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.delta_e import delta_e_spectra, lab_jacobian
 from uplift.common.arrays import Array
 from uplift.cube import contents
-from uplift.lab.study.held_out import HoldoutSplit, holdout, spectrum_errors
-from uplift.lattice import Lattice
+from uplift.lab.study.held_out import HoldoutSplit, holdout
 from uplift.lookup import Cube
 from uplift.models import Moments
 from uplift.report.calibration import check_calibration
@@ -99,15 +98,8 @@ def halves(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> Iterator[
         rms = {"mean": mean["rms"], "std": std["rms"]}
         yield {"atlas": name, "coefficients": count, "cube": method, "rms": rms, "errors": both}
     if count == COUNTS[-1]:
-        for label, predict in LIMITS.items():
-            limit = np.mean([_limit(name, predict, seed) for seed in range(SPLITS)], axis=0)
-            yield {"atlas": name, "coefficients": None, "cube": f"*limit:* {label}", **as_record(limit)}
-
-
-def _limit(name: str, predict: Callable[[Materials, Materials], Array], seed: int) -> Array:
-    some = materials(name)
-    kept, queried = np.array_split(np.random.default_rng(seed).permutation(len(some.rgb)), 2)
-    return spectrum_errors(predict(some.take(kept), some.take(queried)), some.measured[queried]).means()
+        label, errors = limit(name)
+        yield {"atlas": name, "coefficients": None, "cube": f"*limit:* {label}", **as_record(errors)}
 
 
 def shares(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> dict[str, Any]:
@@ -171,23 +163,52 @@ def _root_mean_square(values: Array) -> float:
 
 
 def seed_starts(name: str) -> Iterator[dict[str, Any]]:
-    """Yield the errors of lattices whose seeds start from their entries, or from the prior as other nodes do."""
-    some, model = materials(name), Moments(9)
-    kept, queried = np.array_split(np.random.default_rng(0).permutation(len(some.rgb)), 2)
-    fitted_entries = entries(model, some.take(kept))
-    lattice = Lattice(observer.axis_nodes("srgb", DIM))
-    problem = fit.Problem(model, forward(model), lattice)
-    prior = fit.fit_prior(problem, SENSOR, fitted_entries, observer.light("A"))
-    seeds = fit.seed(lattice, fitted_entries.rgb)
-    none = fit.Seeds(seeds.points[:0], seeds.entry[:0], seeds.primary[:0], ())
-    for label, chosen in {"their entries, the default": seeds, "the prior": none}.items():
-        fitted = fit.fit_lattice(problem, chosen, fitted_entries.multipliers, prior)
-        nodes = model.from_storage(fitted.points.coefficients)
-        for half, rows in {"the other half": queried, "the known half": kept}.items():
-            corners, weights = lattice.corners(some.rgb[rows])
-            around = spectra_of(model, nodes[corners.ravel()]).reshape(*corners.shape, -1)
-            answers = (weights[..., None] * around).sum(axis=1)
-            yield {"atlas": name, "start": label, "queried": half, **errors(answers, some.take(rows))}
+    """Yield the errors of cubes by their seeds, for the half of an atlas that they do not know and near known entries."""
+    some = materials(name)
+    kept, queried = (some.take(rows) for rows in split(some, 0))
+    tests = {"the other half": queried, "shades of entries": shades(kept), "colours near entries": near(kept)}
+    for label, corners in {"the nearest point, the default": False, "eight corners": True}.items():
+        cube = build_from(kept, seed_corners=corners)
+        for test, asked in tests.items():
+            yield {
+                "atlas": name,
+                "start": label,
+                "queried": test,
+                **errors(cube.reflectance(asked.rgb), asked),
+            }
+
+
+def build_from(some: Materials, **options: object) -> Cube:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        grid = tuple(SENSOR.wavelengths)
+        atlas = Atlas(tuple(Entry(str(row), grid, tuple(values)) for row, values in enumerate(some.measured)))
+        return uplift.build(atlas, **{"dim": DIM, **options})
+
+
+def shades(some: Materials) -> Materials:
+    """Scale materials by 0.5 to 1, then move their colours like `near`."""
+    scale = np.random.default_rng(1).uniform(0.5, 1, (len(some.rgb), 1))
+    return near(Materials(some.name, some.measured * scale, some.rgb * scale))
+
+
+def near(some: Materials) -> Materials:
+    """Change the colours of materials by a random 2 ΔE*ab, and their spectra as little as is necessary."""
+    model = Moments(17)
+    own = entries(model, some)
+    sensitivity = lab_jacobian(SENSOR.xyz(some.rgb), SENSOR.light.white) @ SENSOR.xyz(np.eye(3)).T
+    step = 2 * unit_vectors(len(some.rgb))
+    rgb = some.rgb + np.linalg.solve(sensitivity, step[..., None])[..., 0]
+    inside = SENSOR.contains(rgb)
+    rgb = np.clip(rgb[inside], 0, 1)
+    spectra = solved(model, own.multipliers[inside], rgb)
+    change = spectra - spectra_of(model, own.multipliers[inside])
+    return Materials(some.name, some.measured[inside] + change, rgb)
+
+
+def unit_vectors(count: int) -> Array:
+    vectors = np.random.default_rng(2).normal(size=(count, 3))
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 def neighbour_steps(name: str | None, count: int) -> dict[str, Any]:
