@@ -18,7 +18,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array, Indices
 from uplift.fit.kriging import Kernel, Kriging, krige
-from uplift.fit.learn import DEFAULT
+from uplift.fit.learn_kernel import DEFAULT
 from uplift.fit.smooth import smooth
 from uplift.lab.study.held_out import spectrum_errors
 from uplift.lattice import Lattice

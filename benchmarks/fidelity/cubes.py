@@ -163,7 +163,7 @@ def _root_mean_square(values: Array) -> float:
 
 
 def seed_starts(name: str) -> Iterator[dict[str, Any]]:
-    """Yield the errors of cubes by their seeds, for the half of an atlas that they do not know and near known entries."""
+    """Yield the errors of cubes by their seeds, for the half of an atlas that they do not know and near entries."""
     some = materials(name)
     kept, queried = (some.take(rows) for rows in split(some, 0))
     tests = {"the other half": queried, "shades of entries": shades(kept), "colours near entries": near(kept)}

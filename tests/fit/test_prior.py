@@ -10,7 +10,7 @@ from uplift import fit
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.fit.learn import MIN_ENTRIES
+from uplift.fit.learn_kernel import MIN_ENTRIES
 from uplift.fit.prior import _bounded
 from uplift.lattice import Lattice
 from uplift.models import Moments

@@ -14,7 +14,7 @@ from uplift.common.arrays import Array
 from uplift.fit.base import Base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import Kernel, Kriging, krige
-from uplift.fit.learn import MIN_ENTRIES, learn_kernel, visible_change
+from uplift.fit.learn_kernel import MIN_ENTRIES, learn_kernel, visible_change
 from uplift.fit.problem import Problem
 from uplift.fit.smooth import NO_FREEDOM, TABLE, Smooth, smooth
 from uplift.fit.uncertainty import Uncertainty, uncertainty

@@ -12,7 +12,7 @@ from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.fit.kriging import Kernel
-from uplift.fit.learn import DEFAULT, MIN_ENTRIES, learn_kernel, visible_change
+from uplift.fit.learn_kernel import DEFAULT, MIN_ENTRIES, learn_kernel, visible_change
 from uplift.fit.smooth import smooth
 from uplift.fit.solve import solve
 from uplift.models import Moments
