@@ -169,12 +169,12 @@ def seed_starts(name: str) -> Iterator[dict[str, Any]]:
     tests = {"the other half": queried, "shades of entries": shades(kept), "colours near entries": near(kept)}
     for label, corners in {"the nearest point, the default": False, "eight corners": True}.items():
         cube = build_from(kept, seed_corners=corners)
-        for test, asked in tests.items():
+        for test, requested in tests.items():
             yield {
                 "atlas": name,
                 "start": label,
                 "queried": test,
-                **errors(cube.reflectance(asked.rgb), asked),
+                **errors(cube.reflectance(requested.rgb), requested),
             }
 
 

@@ -1,6 +1,6 @@
 """Learn the kernel of the kriging from the atlas, by leave-one-out (docs/mathematics.md, 7).
 
-Errors are judged by what an observer sees: the change of colour under the lights of the build, once the solver has made
+Errors are judged by their visible part: the change of colour under the lights of the build, once the solver has made
 the colour exact.
 """
 
