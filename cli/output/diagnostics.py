@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import signal
-import traceback
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +52,8 @@ class InternalFailure(UsageFailure):
     exit_code = INTERNAL_ERROR
 
     def __init__(self, error: Exception, *, as_json: bool = False) -> None:
+        import traceback  # slow to import, and rarely needed
+
         place = traceback.extract_tb(error.__traceback__)[-1:]
         where = "".join(f" in {Path(frame.filename).name}:{frame.lineno}" for frame in place)
         detail = " ".join(str(error).split())[:MAX_DETAIL]

@@ -11,12 +11,11 @@ import re
 
 __all__ = ["json_escapes", "printable"]
 
-_UNPRINTABLE = re.compile(
+_UNPRINTABLE = (
     "[\x00-\x1f\x7f-\x9f"  # controls, among them the newline
     "\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"  # direction, line breaks, invisible
     "\ud800-\udfff\U000e0000-\U000e007f]"  # no encoding; invisible
 )
-
 _SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
@@ -38,7 +37,7 @@ def printable(text: str) -> str:
     >>> printable("red\\x1b[2J\\nΔE00")
     'red\\\\x1b[2J\\\\nΔE00'
     """
-    return _UNPRINTABLE.sub(_python_escape, text)
+    return text if text.isprintable() else re.sub(_UNPRINTABLE, _python_escape, text)
 
 
 def json_escapes(text: str) -> str:
@@ -59,7 +58,7 @@ def json_escapes(text: str) -> str:
     >>> json_escapes('"\\u202e"') == '"' + "\\\\u202e" + '"'
     True
     """
-    return _UNPRINTABLE.sub(_json_escape, text)
+    return text if text.isprintable() else re.sub(_UNPRINTABLE, _json_escape, text)
 
 
 def _python_escape(match: re.Match[str]) -> str:
