@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from uplift.cube import CubeData
 
 PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl", "osl": ".osl", "wgsl": ".wgsl"}
-SUFFIXES = {"coeff": ".coeff", **PROGRAMS, "npz": ".npz", "csv": ".csv"}
+SUFFIXES = {"coeff": ".coeff", **PROGRAMS, "npz": ".npz", "csv": ".csv", "html": ".html"}
 
 
 @click.command("export")
@@ -53,6 +53,7 @@ def command(
       c, cuda, glsl, hlsl, osl, wgsl
              program that looks up colours and evaluates spectra
       coeff  table of rgb2spec, which Mitsuba and colour-science read
+      html   page that relights images in a browser, by spectra and by products of RGB
       npz    all arrays of the cube, for numpy
       csv    one line per node
 
@@ -124,9 +125,16 @@ def _csv(data: CubeData, path: Path, **options: Any) -> str:
     return f"{write_csv(data, path, **options)} nodes"
 
 
+def _html(data: CubeData, path: Path, **options: Any) -> str:
+    from uplift.report.live_page import write_page
+
+    return f"page, {write_page(data, path, **options) / 1e6:.1f} MB"
+
+
 WRITERS: dict[str, Callable[..., str]] = {
     **dict.fromkeys(PROGRAMS, _program),
     "coeff": _coeff,
     "npz": _npz,
     "csv": _csv,
+    "html": _html,
 }

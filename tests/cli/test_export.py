@@ -24,6 +24,7 @@ def cube(home, cubes):
         ("c", f"{STEM}.h", "512", b"/* A spectral"),
         ("npz", f"{STEM}.npz", "22", b"PK"),
         ("csv", f"{STEM}.csv", "512", b"r,g,b,lattice_r"),
+        ("html", f"{STEM}.html", "0", b"<!DOCTYPE html>"),
     ],
 )
 def test_formats_and_default_names(run, home, cube, style, name, count, first):

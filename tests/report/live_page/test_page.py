@@ -1,0 +1,75 @@
+"""Live page: the picture in the browser agrees with Python."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.browser import browser, chromium
+from tests.helpers import raises
+from tests.pages import external_links
+from uplift.colorimetry.observer import light
+from uplift.common.errors import OptionError
+from uplift.report.live_page import write_page
+
+SET = """(() => {
+  for (const [id, value] of Object.entries(VALUES)) {
+    const element = document.getElementById(id);
+    if (element.type === "checkbox") element.checked = value;
+    else element.value = value;
+    element.dispatchEvent(new Event("change"));
+    element.dispatchEvent(new Event("input"));
+  }
+})()"""
+
+
+@pytest.fixture(scope="module")
+def page(small_cube, tmp_path_factory):
+    """Path of a page."""
+    path = tmp_path_factory.mktemp("page") / "page.html"
+    assert write_page(small_cube.data, path) == path.stat().st_size
+    return path
+
+
+def test_the_page_loads_nothing(page):
+    assert external_links(page.read_text(encoding="utf-8")) == []
+
+
+def encoded(rgb):
+    rgb = np.clip(rgb, 0, 1)
+    return 255 * np.where(rgb <= 0.0031308, 12.92 * rgb, 1.055 * rgb ** (1 / 2.4) - 0.055)
+
+
+def test_pixels_equal_those_of_python_under_a_mix_of_lights(page, small_cube):
+    if chromium() is None:
+        pytest.skip("needs Chromium")
+    with browser() as opened:
+        opened.open(page)
+        states = [
+            {"mix": 0, "split": 0, "balance": False},
+            {"light-b": "FL11", "mix": 40, "split": 768},
+        ]
+        pictures = []
+        for state in states:
+            opened.evaluate(SET.replace("VALUES", str(state).replace("False", "false")))
+            pictures.append(opened.canvas("view")[::37, 1::41, :3].reshape(-1, 3).astype(float))
+        curve = opened.evaluate("document.getElementById('curve').getAttribute('d')")
+        assert opened.errors == []
+    source, found = pictures
+    sensor = small_cube.data.sensor
+    rgb = small_cube.decode(source)
+    weights = [sensor.xyz_to_rgb @ light(name, sensor.observer).xyz for name in ("D65", "FL11")]
+    expected = encoded(small_cube.reflectance(rgb) @ (0.6 * weights[0] + 0.4 * weights[1]).T)
+    np.testing.assert_allclose(found, expected, atol=2)
+    assert np.abs(found - source).max() > 10
+    assert curve.startswith("M8.0")
+    assert curve.count("L") == 83
+
+
+def test_other_cubes_are_rejected(small_cube, tmp_path):
+    sensor = replace(small_cube.data.sensor, space="Display P3")
+    with raises(OptionError, "page-needs-srgb"):
+        write_page(replace(small_cube.data, sensor=sensor), tmp_path / "page.html")
+    assert not list(tmp_path.iterdir())

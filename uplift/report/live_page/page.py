@@ -1,0 +1,109 @@
+"""Live page: one HTML file with a cube, the exported GLSL program and a few lights."""
+
+from __future__ import annotations
+
+import base64
+import os
+
+import numpy as np
+
+from uplift.colorimetry.observer import grid, light
+from uplift.colorimetry.srgb import hex_codes
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
+from uplift.common.files import write_text
+from uplift.cube import CubeData
+from uplift.io.export.kernel.language import GLSL
+from uplift.io.export.kernel.program import Program
+from uplift.io.export.kernel.table import COLUMNS, make_table
+from uplift.viz.html import Markup, render, resource
+
+LIGHTS = ("D65", "A", "D50", "FL2", "FL11", "HP1", "LED-B3")
+"""Illuminants to choose from."""
+GROUP = 4
+"""Wavelengths of one call of the program."""
+SPACE = "sRGB"
+FOLDER = "report/live_page"
+
+
+def write_page(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
+    """Write the live page of a cube: it relights images by spectra, next to a product of RGB.
+
+    Parameters
+    ----------
+    data : CubeData
+        A cube of sRGB with all nodes.
+    path : path-like
+        File to write.
+    force : bool
+        Whether to replace an existing file.
+
+    Returns
+    -------
+    int
+        Size of the page in bytes.
+
+    Raises
+    ------
+    OptionError
+        The cube was built for a scene (code ``sparse-cube``) or for another RGB space than sRGB (code
+        ``page-needs-srgb``).
+    OutputError
+        The file cannot be written, or exists and ``force`` is off.
+    """
+    if data.complete_cells is not None:
+        raise OptionError(
+            "a page needs all nodes, but the cube was built for the colours of a scene",
+            code="sparse-cube",
+            hint="pass cube.fill_missing().data",
+        )
+    if data.sensor.space != SPACE:
+        raise OptionError(
+            f"a page shows images in sRGB, got a cube of {data.sensor.space}",
+            code="page-needs-srgb",
+            hint="build the cube without another RGB space",
+        )
+    text = page(data)
+    write_text(text, path, force=force)
+    return len(text.encode())
+
+
+def page(data: CubeData) -> str:
+    """Render the page."""
+    table = make_table(data, "spectra")
+    program = Program(data, table, "spectra", "cube", GLSL, "glsl.glsl", "this page")
+    image = table.image()
+    at, weights = _weights(data)
+    names = list(weights)
+    numbers = {
+        "columns": COLUMNS,
+        "rows": len(image),
+        "points": data.lattice.size + len(data.atlas.names),
+        "wavelengths": at.tolist(),
+        "lights": {name: np.round(weights[name], 9).tolist() for name in names},
+        "entries": hex_codes(data.atlas.rgb),
+    }
+    return render(
+        f"{FOLDER}/templates/page.html.j2",
+        title="Images under other lights",
+        lead=(
+            f"Spectra of a cube of {data.lattice.dim}³ nodes and {len(data.atlas.names)} atlas entries, evaluated in "
+            f"the browser for every pixel. Drop an image on the page."
+        ),
+        lights=names,
+        second=next(name for name in ("A", "FL11") if name != names[0]),
+        numbers=numbers,
+        kernel=Markup("".join(program.parts()).replace("</", "< /")),
+        table=base64.b64encode(image.astype("<f4").tobytes()).decode(),
+        script=resource(f"{FOLDER}/page.js"),
+    )
+
+
+def _weights(data: CubeData) -> tuple[Array, dict[str, Array]]:
+    """Return wavelengths (N,) and, for each light, the weights (3, N) from reflectance to linear sRGB."""
+    sensor, at = data.sensor, grid()
+    missing = -len(at) % GROUP
+    return np.pad(at, (0, missing), mode="edge"), {
+        name: np.pad(sensor.xyz_to_rgb @ light(name, sensor.observer).xyz, ((0, 0), (0, missing)))
+        for name in dict.fromkeys((sensor.illuminant, *LIGHTS))
+    }
