@@ -71,7 +71,7 @@ def _end(
     problem: Callable[[], str],
 ) -> Tally:
     begin = time.monotonic()
-    _start(words, folder).wait()
+    _start(words, folder).communicate()
     whole = time.monotonic() - begin
     problem()
     for turn in range(count):
@@ -117,6 +117,7 @@ def _wait(process: subprocess.Popen[str], children: list[Path]) -> str:
         process.wait(SECONDS)
     except subprocess.TimeoutExpired:
         process.kill()
+        process.wait()
         return "it does not end"
     while any(map(_is_running, children)):
         if time.monotonic() > end:
