@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from uplift.common.number_text import parse_float
@@ -26,7 +27,7 @@ def parse_wavelengths(text: str | None) -> Array | None:
         count = int((end - start) / step + 1e-9) + 1
     except (ValueError, ZeroDivisionError, OverflowError) as error:
         raise _unreadable(text) from error
-    if not (step > 0 and end >= start and count <= MAX_COUNT):
+    if not (0 < step < math.inf and end >= start and count <= MAX_COUNT):
         raise _unreadable(text)
     return start + step * np.arange(count, dtype=float)
 

@@ -78,7 +78,7 @@ def test_invalid_files_are_errors(refuse, home, repository):
     error = refuse("info", "none.uplift")
     assert (error.code, error.where) == ("cube-not-found", "none.uplift")
     assert "uplift build" in hint_for(error)
-    assert refuse("info", home).code == "cube-not-found"
+    assert refuse("info", home).code == "not-a-regular-file"
     assert refuse("info", repository / "README.md").code == "not-a-cube"
     (home / "cut.uplift").write_bytes((repository / "cubes" / "sigmoid-8.uplift").read_bytes()[:-1])
     assert refuse("info", "cut.uplift").code == "not-a-cube"
