@@ -25,6 +25,8 @@ class Language:
         Declarations of array parameters that a function changes, and of others.
     constant : str
         Declaration of an integer constant.
+    width : int, optional
+        Wavelengths of one call, where it is fixed. Sizes of arrays are then numbers, as OSL requires.
     zeros : str
         Initial value of an array; empty for a loop.
     lanes : str
@@ -41,6 +43,7 @@ class Language:
     mutable: str = "inout {type} {name}[{size}]"
     readonly: str = "{type} {name}[{size}]"
     constant: str = "#define {name} {value}"
+    width: int | None = None
     zeros: str = ""
     lanes: str = ""
     warp: str = "{function}float {name}_warp(float wavelength)\n{{{{\n    return {expression};\n}}}}\n\n"
@@ -70,16 +73,18 @@ CUDA = Language(
     readonly="const {type} {name}[{size}]",
     zeros="{{0}}",
 )
-GLSL = Language(types=SHADER_TYPES)
-HLSL = Language(types=SHADER_TYPES)
+GLSL = Language(types=SHADER_TYPES, width=4)
+HLSL = Language(types=SHADER_TYPES, width=4)
 OSL = Language(
     types={"Float": "float", "Int": "int", "Bool": "int"},
     functions={"float": "(float)", "int": "(int)"},
     context=("string table", "table"),
+    width=3,
     mutable="output {type} {name}[{size}]",
 )
 WGSL = Language(
     types={"Float": "f32", "Int": "i32", "Bool": "bool"},
+    width=4,
     functions={"float": "f32", "int": "i32"},
     constant="const {name}: {type} = {value};",
     warp="fn {name}_warp(wavelength: f32) -> f32 {{{{\n    return {expression};\n}}}}\n\n",

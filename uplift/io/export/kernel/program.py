@@ -87,6 +87,7 @@ class Program:
             "entries": len(self.data.atlas.names),
             "mode": self.mode,
             "texels": width,
+            "stride": self.table.constants["STRIDE"],
             "size": len(self.table.numbers),
             "columns": COLUMNS,
             "rows": self.table.image().shape[0],

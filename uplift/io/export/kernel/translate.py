@@ -71,7 +71,10 @@ def translate(
     for function in kernel:
         facts[function.name] = _facts(function, facts)
     unrolled = [_Unroll(constants).visit(function) for function in kernel]
-    return "\n\n".join(_Printer(function, language, name, facts).text() for function in unrolled) + "\n"
+    return (
+        "\n\n".join(_Printer(function, language, name, facts, constants).text() for function in unrolled)
+        + "\n"
+    )
 
 
 @dataclass(frozen=True)
@@ -106,6 +109,12 @@ def _facts(function: ast.FunctionDef, earlier: Mapping[str, _Facts]) -> _Facts:
 def _type(annotation: ast.expr | None) -> str:
     assert isinstance(annotation, ast.Name | ast.Constant)
     return "" if isinstance(annotation, ast.Constant) else annotation.id
+
+
+def integer(node: ast.expr, values: Mapping[str, int]) -> int:
+    """Evaluate an expression of integers; `NameError` if it has other names."""
+    expression = ast.fix_missing_locations(ast.Expression(node))
+    return int(eval(compile(expression, "kernel", "eval"), {"__builtins__": {}}, dict(values)))
 
 
 class _Unroll(ast.NodeTransformer):
@@ -154,17 +163,22 @@ class _Unroll(ast.NodeTransformer):
         return found if isinstance(found, list) else [found]
 
     def _integer(self, node: ast.expr) -> int:
-        expression = ast.fix_missing_locations(ast.Expression(node))
-        return int(eval(compile(expression, "kernel", "eval"), {"__builtins__": {}}, dict(self.values)))
+        return integer(node, self.values)
 
 
 class _Printer:
     """Prints one function."""
 
     def __init__(
-        self, function: ast.FunctionDef, language: Language, name: str, facts: Mapping[str, _Facts]
+        self,
+        function: ast.FunctionDef,
+        language: Language,
+        name: str,
+        facts: Mapping[str, _Facts],
+        constants: Mapping[str, int],
     ) -> None:
         self.function, self.language, self.name, self.facts = function, language, name, facts
+        self.constants = constants
         self.wgsl = language is WGSL
         self.parameters = {each.arg: _type(each.annotation) for each in function.args.args}
         self.arrays = {key for key, kind in self.parameters.items() if kind in SIZES}
@@ -202,7 +216,10 @@ class _Printer:
         return f"ptr<function, array<f32, {self._size(kind)}>>"
 
     def _size(self, kind: str) -> str:
-        return self._expression(ast.parse(SIZES[kind], mode="eval").body)
+        size = ast.parse(SIZES[kind], mode="eval").body
+        if self.language.width is None:
+            return self._expression(size)
+        return str(integer(size, {**self.constants, "WIDTH": self.language.width}))
 
     def _block(self, statements: list[ast.stmt], depth: int) -> Iterator[str]:
         for statement in statements:
