@@ -16,7 +16,18 @@ def test_the_standard_error_grows_with_the_distance_to_the_entries():
     errors = learnt(away)
     assert errors[0] == pytest.approx(0.1)
     assert (np.diff(errors) > 0).all()
-    assert errors[-1] > 2
+    assert errors[-1] > 1.5
+
+
+@pytest.mark.parametrize("tail", [3, 8, 50])
+def test_errors_of_any_tail_are_covered(tail):
+    """Without the correction, the standard error of heavy tails is too large for most entries."""
+    rng = np.random.default_rng(tail)
+    places, queried = rng.uniform(0, 300, (2, 1500, 3))
+    known, unknown = np.abs(rng.standard_t(tail, (2, 1500)))
+    expected = uncertainty(places, known, np.zeros(1500))(queried)
+    assert 0.62 < (unknown <= expected).mean() < 0.78
+    assert 0.91 < (unknown <= 2 * expected).mean() < 0.98
 
 
 def test_errors_are_local():

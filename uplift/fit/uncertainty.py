@@ -13,6 +13,10 @@ KERNEL = Kernel(length=6.0, nugget=0.0)
 """Weights of the errors of entries around a colour."""
 PRIOR_COUNT = 2.0
 """Weight of the mean error of all entries, in entries."""
+COVERAGE = ((0.68, 1.0), (0.95, 2.0))
+"""Shares of entries, when left out, whose error should be within one and within two standard errors."""
+TRUST = 10.0
+"""Entries at which half of a correction by coverage is applied, on a logarithmic scale."""
 MIN_VARIANCE = 0.02
 """Lower limit of the variance assigned to a left-out entry."""
 
@@ -50,4 +54,22 @@ def uncertainty(locations: Array, left_out: Array, kept: Array) -> Uncertainty:
     covariance = KERNEL(cdist(locations, locations))
     np.fill_diagonal(covariance, 0)
     variance = np.maximum(1 - covariance.max(axis=1) ** 2, MIN_VARIANCE)
-    return Uncertainty(locations, left_out**2 / variance, float((kept**2).mean()))
+    squares, floor = left_out**2 / variance, float((kept**2).mean())
+    spread = (covariance @ squares + PRIOR_COUNT * squares.mean()) / (covariance.sum(axis=1) + PRIOR_COUNT)
+    correction = _coverage_correction(left_out, np.sqrt(variance * spread + floor))
+    return Uncertainty(locations, squares * correction**2, floor)
+
+
+def _coverage_correction(errors: Array, expected: Array) -> float:
+    """Factor that gives expected errors (E,) the `COVERAGE` of errors (E,), which have heavier tails than a normal.
+
+    The quantiles are those of conformal prediction: they hold on average for one more entry.
+    """
+    count = len(errors)
+    ratio = errors / np.maximum(expected, np.finfo(float).tiny)
+    found = [
+        np.quantile(ratio, min(share * (count + 1) / count, 1), method="higher") / multiple
+        for share, multiple in COVERAGE
+    ]
+    square = np.square(found).mean()
+    return float(square ** (0.5 * count / (count + TRUST))) if square > 0 else 1.0
