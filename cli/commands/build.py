@@ -100,6 +100,18 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
     metavar="IMAGE",
     help="Build only the cells that the colours of this image, or quoted pattern, need; repeatable.",
 )
+@click.option(
+    "--start",
+    default="prior",
+    show_default=True,
+    help="What nodes start from: prior, or neighbours, outward from the seeds.",
+)
+@click.option(
+    "--solver",
+    default="least-change",
+    show_default=True,
+    help="Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. All give the same cube.",
+)
 @encoding_option("--scene images")
 @click.option("--plan", "plan_path", metavar="PLAN", help="Build the cube of a plan by 'uplift plan'.")
 @out_of_gamut_option("clip", "linear RGB of --scene images")

@@ -72,7 +72,8 @@ def test_default_name_has_atlas_or_space_and_dim(run, home, args, name):
 def test_all_options_are_passed_to_the_build(run, home):
     run("build", "--dim", "3", "--moments", "4", "--warp", "vision", "--axis", "linear", "--space", "Display P3",
         "--illuminant", "D50", "--observer", "CIE 1964 10 Degree Standard Observer", "--light", "A",
-        "--light", "FL2", "--threshold", "1e-3", "--debug", "-o", "cube")  # fmt: skip
+        "--light", "FL2", "--start", "neighbours",
+        "--solver", "gauss-newton", "--threshold", "1e-3", "--debug", "-o", "cube")  # fmt: skip
     data = uplift.load(home / "cube").data
     assert data.model == uplift.models.Moments(5, uplift.models.Phase(warp="vision"))
     np.testing.assert_array_equal(data.lattice.nodes, [0, 0.5, 1])
@@ -81,6 +82,8 @@ def test_all_options_are_passed_to_the_build(run, home):
     assert data.threshold == 1e-3
     assert data.points.round is not None
     assert data.provenance["options"]["lights"] == ["A", "FL2"]
+    assert data.provenance["options"]["start"] == "neighbours"
+    assert data.provenance["options"]["solver"] == "gauss-newton"
 
 
 def test_sigmoid_model(run, home):
@@ -154,6 +157,8 @@ def test_files_are_replaced_only_with_force(run, refuse, home):
         (("--model", "moment"), "unknown-model"),
         (("--warp", "bent"), "unknown-warp"),
         (("--axis", "log"), "unknown-axis-spacing"),
+        (("--start", "seeds"), "unknown-start"),
+        (("--solver", "newton"), "unknown-solver"),
         (("--moments", "1"), "coefficients-out-of-range"),
         (("--moments", "17"), "coefficients-out-of-range"),
         (("--entry-moments", "17"), "entry-coefficients-out-of-range"),

@@ -13,7 +13,7 @@ from uplift.common.progress import ignore_progress
 from uplift.fit import Prior, Problem, fit_lattice, seed
 from uplift.fit.grow import grow_from_prior, strides
 from uplift.fit.growth import Growth
-from uplift.fit.improve import improve
+from uplift.fit.improve import STEPS, improve
 from uplift.fit.smooth import smooth
 from uplift.lattice import NOT_FITTED, Lattice, Status
 from uplift.models import Moments, Sigmoid, reflectance
@@ -144,7 +144,7 @@ def test_improvement_fixes_points_with_a_vanishing_gradient(sensor):
     growth = Growth(Problem(MODEL, forward, LATTICE), ignore_progress)
     growth.multipliers[:, 0] = -1e9
     growth.distance[:] = np.abs(residual(MODEL, forward, growth.multipliers, LATTICE.points)).max(axis=1)
-    steps = improve(growth)
+    steps = improve(growth, STEPS)
     off = residual(MODEL, forward, growth.multipliers, LATTICE.points)
     assert (growth.distance <= 1e-4).all()
     np.testing.assert_allclose(np.abs(off).max(axis=1), growth.distance, atol=1e-12)
@@ -160,6 +160,6 @@ def test_improvement_does_not_change_fitted_points(sensor):
     multipliers = MODEL.from_storage(fit.points.coefficients)
     growth = Growth(Problem(MODEL, forward, LATTICE), ignore_progress)
     growth.multipliers[:], growth.distance[:] = multipliers, np.minimum(fit.points.distance, 1e-6)
-    steps = improve(growth)
+    steps = improve(growth, STEPS)
     np.testing.assert_array_equal(growth.multipliers, multipliers)
     assert steps == ()

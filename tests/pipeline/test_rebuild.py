@@ -150,6 +150,8 @@ def test_a_changed_atlas_does_not_hide_the_recorded_one(tiny_cube, repository, h
         {"lights": ["D65"] * 100_000},
         {"threshold": 5e-324},
         {"coefficients": 99},
+        {"start": "corners"},
+        {"solver": "newton"},
     ],
 )
 def test_unknown_recorded_options_are_reported(tiny_cube, repository, options):
@@ -175,6 +177,10 @@ def test_options_of_file_version_3_give_entries_with_as_many_coefficients_as_nod
 def test_a_cube_without_provenance_cannot_be_rebuilt(small_cube, provenance):
     cube = Cube(dataclasses.replace(small_cube.data, provenance=provenance))
     rebuild_error("missing-provenance", cube, "cube.uplift")
+
+
+def test_a_cube_of_a_custom_solver_cannot_be_rebuilt(tiny_cube):
+    rebuild_error("custom-solver", with_option(tiny_cube, solver="custom"), "cube.uplift")
 
 
 def test_another_recorded_dim_is_reported_before_the_build(tiny_cube, monkeypatch):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from uplift.fit.entries import FittedEntries, fit_entries
 from uplift.fit.improve import Improvement
-from uplift.fit.lattice import LatticeFit, fit_lattice
+from uplift.fit.lattice import STRATEGIES, LatticeFit, fit_lattice
 from uplift.fit.lattice_size import DIMS, LatticeChoice, choose_lattice
 from uplift.fit.learnt import LearntBase, has_freedom, learn_base
 from uplift.fit.library import Family, shipped_library
@@ -12,10 +12,15 @@ from uplift.fit.objective import Weights
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem, solver_tolerance
 from uplift.fit.seed import Collision, Seeds, seed
+from uplift.fit.solve import solve
+from uplift.fit.stock_solver import SOLVER_TYPES, STOCK, Solver, StockSolver
 from uplift.fit.unrealisable import Unrealisable, unrealisable
 
 __all__ = [
     "DIMS",
+    "SOLVER_TYPES",
+    "STOCK",
+    "STRATEGIES",
     "Collision",
     "Family",
     "FittedEntries",
@@ -26,6 +31,8 @@ __all__ = [
     "Prior",
     "Problem",
     "Seeds",
+    "Solver",
+    "StockSolver",
     "Unrealisable",
     "Weights",
     "choose_lattice",
@@ -36,6 +43,7 @@ __all__ = [
     "learn_base",
     "seed",
     "shipped_library",
+    "solve",
     "solver_tolerance",
     "unrealisable",
 ]

@@ -7,7 +7,7 @@ vanishes. The steps of the thesis remain for the rest.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -87,13 +87,32 @@ STEPS: dict[str, Start] = {
 }
 
 
-def improve(growth: Growth) -> tuple[Improvement, ...]:
-    """Improve points in place.
+def _white_or_black_constant_nudged(best: Array, extreme: Array) -> Array:
+    return (EXTREME - NUDGE) * extreme
+
+
+def _white_or_black_all_nudged(best: Array, extreme: Array) -> Array:
+    return _all_nudged(EXTREME * extreme, extreme)
+
+
+THESIS_STEPS: dict[str, Start] = {
+    "constant multiplier nudged": _constant_nudged,
+    "all multipliers nudged": _all_nudged,
+    "more iterations": _more_iterations,
+    "from white or black": _white_or_black,
+    "from white or black, constant multiplier nudged": _white_or_black_constant_nudged,
+    "from white or black, all multipliers nudged": _white_or_black_all_nudged,
+}
+"""The order of Tódová 2020, section 3.1.4."""
+
+
+def improve(growth: Growth, steps: Mapping[str, Start]) -> tuple[Improvement, ...]:
+    """Improve points in place, by `STEPS` or `THESIS_STEPS`.
 
     Each step tries the points that are still over the threshold; no distance increases.
     """
     problem, done = growth.problem, []
-    for name, start in STEPS.items():
+    for name, start in steps.items():
         points = problem.points[growth.distance[problem.points] > problem.threshold]
         if not points.size:
             break

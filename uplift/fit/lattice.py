@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,9 @@ import numpy as np
 from uplift.common.arrays import Array, Indices
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.fit.grow import grow_from_prior
-from uplift.fit.improve import Improvement, improve
+from uplift.fit.grow_from_neighbours import grow_from_neighbours
+from uplift.fit.growth import Growth, PointPrior
+from uplift.fit.improve import STEPS, THESIS_STEPS, Improvement, Start, improve
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
 from uplift.fit.seed import Seeds
@@ -33,8 +36,37 @@ class LatticeFit:
     improvements: tuple[Improvement, ...]
 
 
+Grow = Callable[[Problem, PointPrior, Indices, ProgressCallback], Growth]
+
+
+@dataclass(frozen=True)
+class Strategy:
+    """How the points of a lattice are fitted.
+
+    Parameters
+    ----------
+    grow : callable
+        From problem, prior, seeds and progress to the growth.
+    improvements : mapping
+        Steps of the improvement pass.
+    """
+
+    grow: Grow
+    improvements: Mapping[str, Start]
+
+
+FROM_PRIOR = Strategy(grow_from_prior, STEPS)
+STRATEGIES = {"prior": FROM_PRIOR, "neighbours": Strategy(grow_from_neighbours, THESIS_STEPS)}
+"""Strategies by the name of what points start from. ``"neighbours"`` is the algorithm of Tódová 2020, section 3.1."""
+
+
 def fit_lattice(
-    problem: Problem, seeds: Seeds, entries: Array, prior: Prior, progress: ProgressCallback = ignore_progress
+    problem: Problem,
+    seeds: Seeds,
+    entries: Array,
+    prior: Prior,
+    progress: ProgressCallback = ignore_progress,
+    strategy: Strategy = FROM_PRIOR,
 ) -> LatticeFit:
     """Fit the active points of a problem.
 
@@ -54,6 +86,8 @@ def fit_lattice(
         Start of the other points, and the standard errors.
     progress : callable, optional
         Called with `Progress` events of the stages ``"fit"`` and ``"store"``.
+    strategy : Strategy, default `FROM_PRIOR`
+        Growth and improvement.
 
     Returns
     -------
@@ -69,8 +103,8 @@ def fit_lattice(
         multipliers[seeded] = entries[entry[points[seeded]]]
         return multipliers
 
-    grown = grow_from_prior(problem, expected, seeds.points, progress)
-    improvements = improve(grown)
+    grown = strategy.grow(problem, expected, seeds.points, progress)
+    improvements = improve(grown, strategy.improvements)
     stored = store(grown)
     status = np.full(problem.lattice.size, Status.REGULAR, dtype=np.uint8)
     status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import lab, lab_jacobian
+from uplift.colorimetry.delta_e import lab_jacobian, lab_of
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.models import Model
@@ -67,11 +68,11 @@ class Objective:
     whites: Array
     weight: float
 
-    def residuals(self, multipliers: Array, measured: Array) -> Array:
-        """Residuals (R + 3 L + C,) of multipliers (C,)."""
+    def residuals(self, multipliers: Any, measured: Any) -> Any:
+        """Residuals (R + 3 L + C,) of multipliers (C,); both of numpy or of JAX."""
         spectrum = self.model.squash(self.basis @ multipliers)
-        difference = self._lab(spectrum) - self._lab(measured)
-        return np.concatenate(
+        difference = lab_of(self.lights @ spectrum, self.whites) - lab_of(self.lights @ measured, self.whites)
+        return multipliers.__array_namespace__().concat(
             [self.rows @ (spectrum - measured), self.weight * difference.ravel(), FLATNESS * multipliers]
         )
 
@@ -84,9 +85,6 @@ class Objective:
         return np.concatenate(
             [self.rows @ change, self.weight * colours, FLATNESS * np.eye(len(multipliers))]
         )
-
-    def _lab(self, spectrum: Array) -> Array:
-        return lab(self.lights @ spectrum, self.whites)
 
 
 def objective(model: Model, basis: Array, lights: Sequence[Light], weights: Weights) -> Objective:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -13,6 +14,24 @@ from uplift.fit.unrealisable import NONE, Unrealisable
 from uplift.lattice import Lattice
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap
+
+
+class Method(Protocol):
+    """Solves many problems: the interface of `uplift.fit.solve.solve`."""
+
+    def __call__(
+        self,
+        model: Model,
+        forward: ForwardMap,
+        start: Array,
+        target: Array,
+        *,
+        tolerance: float,
+        max_passes: int,
+        prior: Array | None = None,
+    ) -> Solution:
+        """Solve for multipliers that have given colours; see `uplift.fit.solve.solve`."""
+        ...
 
 
 def solver_tolerance(threshold: float) -> float:
@@ -49,6 +68,8 @@ class Problem:
         Points that are fitted to another colour than their target.
     active_points : ndarray of int, shape (k,), optional
         Numbers of the points to be fitted, ascending. All points by default.
+    method : callable, default `uplift.fit.solve.solve`
+        `uplift.fit.solve.solve`, or a `StockSolver`.
     """
 
     model: Model
@@ -57,6 +78,7 @@ class Problem:
     threshold: float = 1e-4
     unrealisable: Unrealisable = NONE
     active_points: Indices | None = None
+    method: Method = solve
 
     @cached_property
     def points(self) -> Indices:
@@ -113,7 +135,7 @@ class Problem:
         Solution
             Multipliers and their distances.
         """
-        return solve(
+        return self.method(
             self.model,
             self.forward,
             start,

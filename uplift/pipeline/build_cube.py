@@ -19,19 +19,31 @@ from uplift.colorimetry import observer as observers
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Indices, StrPath
-from uplift.common.errors import UpliftWarning
+from uplift.common.errors import OptionError, UpliftWarning, unknown_name
 from uplift.common.progress import ProgressCallback, ignore_progress
+from uplift.common.quoting import format_value
 from uplift.common.threads import single_threaded_blas
 from uplift.cube import AtlasTable, CubeData, EntrySpectra
 from uplift.lattice import EntryBoxes, Lattice, SceneLike
 from uplift.lattice.box_widths import half_widths
 from uplift.lookup import Cube
+from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_map
 from uplift.models.moments import MAX_COUNT
 from uplift.pipeline.libraries import AtlasLike, read_libraries
 from uplift.pipeline.libraries import describe as describe_libraries
 from uplift.pipeline.libraries import families as library_families
-from uplift.pipeline.options import AUTO, AXES, ModelName, Options, PriorName, check_memory
+from uplift.pipeline.options import (
+    AUTO,
+    AXES,
+    CUSTOM,
+    SOLVERS,
+    ModelName,
+    Options,
+    PriorName,
+    SolverName,
+    check_memory,
+)
 
 MAX_NAMES = 6
 """Entries that a warning names."""
@@ -59,6 +71,8 @@ def build(
     threshold: float = 1e-4,
     auto_tolerance: float = 0.5,
     seed_corners: bool = False,
+    start: Literal["prior", "neighbours"] = "prior",
+    solver: SolverName | fit.Solver = "least-change",
     debug: bool = False,
     scene: SceneLike | StrPath | Sequence[StrPath] | None = None,
     progress: ProgressCallback = ignore_progress,
@@ -106,7 +120,13 @@ def build(
         With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the lattice.
     seed_corners : bool, default False
         Start all eight corners of the cell of each atlas entry from the entry, as Tódová 2020 does. By default only
-        the nearest does, as the others serve other materials better.
+        the nearest does, as the others serve other materials better. ``start="neighbours"`` always does.
+    start : {"prior", "neighbours"}, default "prior"
+        What lattice points start from: the spectrum that the atlas lets expect at their colour, or the spectra of
+        their fitted neighbours, outward from the seeds (Tódová 2020, section 3.1).
+    solver : str or optimistix.AbstractLeastSquaresSolver, default "least-change"
+        Solver of lattice points and entries: ``"least-change"``, ``"dogleg"``, ``"levenberg-marquardt"``,
+        ``"gauss-newton"``, or any least-squares solver of optimistix. All give the same cube; the default is fastest.
     debug : bool, default False
         Store the round of growth in which each point was fitted.
     scene : SceneLike, path-like or sequence of path-like, optional
@@ -126,7 +146,7 @@ def build(
     OptionError
         An option outside its range, or a library without a learnt prior.
     UnknownNameError
-        An unknown space, illuminant, observer, model, axis, prior or family.
+        An unknown space, illuminant, observer, model, axis, prior, family, start or solver.
 
     Warns
     -----
@@ -158,6 +178,8 @@ def build(
         threshold=threshold,
         auto_tolerance=auto_tolerance,
         seed_corners=seed_corners,
+        start=start,
+        solver=solver if isinstance(solver, str) else CUSTOM,
         debug=debug,
     )
     check_memory(options)
@@ -173,6 +195,8 @@ def build(
     atlas = _as_atlas(atlas)
     names, rgb, measured = _entries_in_gamut(atlas, sensor)
     tolerance = fit.solver_tolerance(options.threshold)
+    chosen = _chosen_solver(solver, tolerance)
+    method = fit.solve if chosen is None else fit.StockSolver(chosen)
     fit_entries = partial(
         fit.fit_entries,
         measured=measured,
@@ -180,27 +204,31 @@ def build(
         lights=scene_lights,
         error_light=error_light,
         tolerance=tolerance,
+        solver=chosen,
     )
     entries = fit_entries(spectrum_model, forward)
 
     options = _with_dim(options, forward, scene_lights, entries)
     lattice = Lattice(observers.axis_nodes(options.axis, int(options.dim)))
     boxes = EntryBoxes(lattice, rgb, half_widths(lattice, rgb))
-    seeds = fit.seed(lattice, rgb, corners=seed_corners)
+    seeds = fit.seed(lattice, rgb, corners=seed_corners or options.start == "neighbours")
     _warn_of_crowding(names, boxes, seeds)
 
     active = None if colours is None else np.flatnonzero(colours.required_points(boxes, sensor, progress))
-    problem = _problem(options, forward, lattice, sensor, active)
+    problem = replace(_problem(options, forward, lattice, sensor, active), method=method)
     learnt = fit.learn_base(problem, sensor, scene_lights, families, entries)
     fitted_prior = fit.fit_prior(problem, sensor, entries, scene_lights, error_light, learnt.base)
-    fitted = fit.fit_lattice(problem, seeds, entries.multipliers, fitted_prior, progress)
 
     entry_model = options.entry_model()
-    error, spectra = entries.error, None
+    error, spectra, seed_multipliers = entries.error, None, entries.multipliers
     if names and entry_model != spectrum_model:
         extended = fit_entries(entry_model, forward_map(entry_model, sensor.wavelengths, sensor.matrix))
         error = extended.error
         spectra = EntrySpectra(entry_model, entry_model.to_storage(extended.multipliers))
+        if options.start == "neighbours":
+            seed_multipliers = _recalculated(spectra, spectrum_model)
+    strategy = fit.STRATEGIES[options.start]
+    fitted = fit.fit_lattice(problem, seeds, seed_multipliers, fitted_prior, progress, strategy)
     return Cube(
         CubeData(
             model=spectrum_model,
@@ -221,6 +249,28 @@ def build(
             | describe_libraries(libraries, families, learnt.relevance),
         )
     )
+
+
+def _chosen_solver(solver: str | fit.Solver, tolerance: float) -> fit.Solver | None:
+    """The solver of optimistix, or None for the step of least change."""
+    if isinstance(solver, fit.SOLVER_TYPES):
+        return solver
+    if not isinstance(solver, str):
+        raise OptionError(
+            f"solver must be a name or a least-squares solver of optimistix, got {format_value(solver)}",
+            code="option-type",
+        )
+    if solver == CUSTOM:
+        raise unknown_name(solver, SOLVERS, "solver")
+    return None if solver == SOLVERS[0] else fit.STOCK[solver](tolerance)
+
+
+def _recalculated(spectra: EntrySpectra, model: Model) -> Array:
+    """Multipliers (E, C) of the entries with the coefficients of the nodes (Tódová 2020, section 3.1.3).
+
+    Fewer moments of the same spectrum are the first of them.
+    """
+    return model.from_storage(spectra.coefficients[:, : model.count])
 
 
 def _as_atlas(atlas: AtlasLike) -> Atlas:

@@ -24,6 +24,11 @@ ModelName = Literal["moments", "sigmoid"]
 MODELS: tuple[ModelName, ...] = ("moments", "sigmoid")
 PriorName = Literal["learnt", "smooth"]
 PRIORS: tuple[PriorName, ...] = ("learnt", "smooth")
+STARTS = ("prior", "neighbours")
+SolverName = Literal["least-change", "dogleg", "levenberg-marquardt", "gauss-newton"]
+SOLVERS: tuple[SolverName, ...] = ("least-change", "dogleg", "levenberg-marquardt", "gauss-newton")
+CUSTOM = "custom"
+"""Recorded in place of a solver that was given as an object, and cannot be repeated."""
 MAX_AUTO_TOLERANCE = 100.0
 """ΔE00 between black and white."""
 PROCESS_BYTES = 500_000_000
@@ -44,7 +49,7 @@ class Options:
     OptionError
         A value of another type (``option-type``) or outside its range.
     UnknownNameError
-        An unknown model or axis.
+        An unknown model, axis, start or solver.
     """
 
     dim: int | Literal["auto"] = 32
@@ -62,6 +67,8 @@ class Options:
     threshold: float = 1e-4
     auto_tolerance: float = 0.5
     seed_corners: bool = False
+    start: str = "prior"
+    solver: str = "least-change"
     debug: bool = False
 
     def __post_init__(self) -> None:
@@ -73,6 +80,10 @@ class Options:
             raise unknown_name(self.axis, AXES, "axis spacing")
         if self.prior not in PRIORS:
             raise unknown_name(self.prior, PRIORS, "prior")
+        if self.start not in STARTS:
+            raise unknown_name(self.start, STARTS, "start")
+        if self.solver not in (*SOLVERS, CUSTOM):
+            raise unknown_name(self.solver, SOLVERS, "solver")
         if not self.lights:
             raise OptionError("lights must name at least one illuminant, got none", code="no-lights")
         if len(self.lights) > MAX_LIGHTS:
@@ -206,6 +217,8 @@ CONVERSIONS: dict[str, Callable[[str, object], Any]] = {
     "leave_out": _texts,
     "threshold": _number,
     "auto_tolerance": _number,
+    "start": _text,
+    "solver": _text,
     "debug": _flag,
 }
 """Function by option that returns a plain value for JSON. Raises `OptionError` for other types."""

@@ -15,7 +15,7 @@ from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
 from uplift.lookup import Cube
 from uplift.pipeline.build_cube import build
-from uplift.pipeline.options import Options, recorded_options
+from uplift.pipeline.options import CUSTOM, Options, recorded_options
 from uplift.pipeline.provenance import REBUILD, missing_provenance, recorded_atlas, recorded_libraries
 
 
@@ -103,6 +103,13 @@ def _recorded_options(data: CubeData, path: StrPath) -> Options:
         options = Options(**recorded_options(data.provenance["options"]))
     except (TypeError, OptionError, UnknownNameError) as error:
         raise _unknown_options(error, path) from error
+    if options.solver == CUSTOM:
+        raise CubeFileError(
+            "was built with a solver that was given as an object, which a cube cannot record",
+            code="custom-solver",
+            path=path,
+            hint="build it again with that solver, or with a named one",
+        )
     if options.dim != data.lattice.dim:
         raise CubeFileError(
             f"records dim {options.dim}, but has {data.lattice.dim} nodes along each axis",
