@@ -29,7 +29,7 @@ CLOSENESS = 1e-5
 """Weight of the difference from the prior, in linear RGB per unit of the metric; a hundredth of it in each further
 round."""
 SMALL_STEP = 1e-2
-"""Change at which a stock solver stops, relative to the residual that is asked for."""
+"""Change at which a stock solver stops, relative to the residual requested."""
 MAX_STEPS = 256
 MAX_ROUNDS = 4
 """Times that an unsolved problem is solved again, with its last answer as prior."""
