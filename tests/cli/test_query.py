@@ -349,6 +349,7 @@ def test_wavelengths(ask, text, expected):
         "400:inf:5",
         "380:780:inf",
         "400:700:nan",
+        "400:700:inf",
         "400:700:1e-9",
         "1:1e300:1",
         "400;500",

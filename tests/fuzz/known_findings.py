@@ -106,6 +106,12 @@ KNOWN_FINDINGS = (
         "now": "recorded as escapes; rejected where OpenImageIO must open them",
     },
     {
+        "target": "numbers of options",
+        "input": "--wavelengths 380:780:inf",
+        "was": "a wavelength that is not a number",
+        "now": "rejected",
+    },
+    {
         "target": "unforeseen exceptions",
         "input": "any exception that is not an error of uplift",
         "was": "a traceback",
