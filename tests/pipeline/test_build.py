@@ -23,7 +23,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
 from uplift.common.errors import OptionError, UnknownNameError, UpliftWarning
 from uplift.cube import digest
 from uplift.lattice import Status
-from uplift.pipeline.options import Options
+from uplift.pipeline.options import CONVERSIONS, Options
 
 GRID = observer.grid()
 
@@ -283,6 +283,10 @@ def test_bad_options_are_refused_before_anything_is_fitted(options, error, code,
     monkeypatch.setattr("uplift.fit.fit_entries", lambda *_, **__: pytest.fail("fitted"))
     with raises(error, code):
         uplift.build(MACBETH, **options)
+
+
+def test_every_option_is_converted_to_a_value_of_json():
+    assert {field.name for field in dataclasses.fields(Options)} == set(CONVERSIONS)
 
 
 def test_defaults_of_build_are_those_of_the_recorded_options():

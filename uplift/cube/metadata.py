@@ -109,7 +109,8 @@ def _options(value: Any, path: str) -> None:
         raise _error(path, f"must be a table of at most {MAX_OPTIONS} options", value)
     for key, each in value.items():
         _text(key, path)
-        item = _list(_text, MAX_LIGHTS) if isinstance(each, list) else _scalar
+        limit = MAX_LIGHTS if key == "lights" else MAX_FILES
+        item = _list(_text, limit) if isinstance(each, list) else _scalar
         item(each, _join(path, key))
 
 

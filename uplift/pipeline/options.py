@@ -219,6 +219,7 @@ CONVERSIONS: dict[str, Callable[[str, object], Any]] = {
     "auto_tolerance": _number,
     "start": _text,
     "solver": _text,
+    "seed_corners": _flag,
     "debug": _flag,
 }
 """Function by option that returns a plain value for JSON. Raises `OptionError` for other types."""
