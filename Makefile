@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test bench peers accuracy study stability nightly determinism munsell docs atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies
+.PHONY: build lint test bench peers accuracy study prior library stability nightly determinism munsell docs atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -54,6 +54,15 @@ study: $(INSTALLED)
 	$(BIN)/python -m benchmarks.moments
 	$(BIN)/python -m benchmarks.fidelity
 	$(BIN)/python -m tools.render_docs moments fidelity
+
+# The library of the learnt prior, uplift/fit/library.npz, from atlases/ and colour-science.
+library: $(INSTALLED)
+	$(BIN)/python -m tools.ship_library
+
+# The learnt prior on materials that it does not know: docs/prior.md.
+prior: $(INSTALLED)
+	$(BIN)/python -m benchmarks.prior
+	$(BIN)/python -m tools.render_docs prior
 
 # Failures and sensitivity: docs/stability.md.
 stability: $(INSTALLED)

@@ -85,6 +85,7 @@ def test_nothing_else_is_in_it(wheel, repository):
         ".h",
         ".j2",
         ".js",
+        ".npz",
         ".typed",
         ".uplift",
     }
