@@ -183,6 +183,8 @@ def build(
         debug=debug,
     )
     check_memory(options)
+    tolerance = fit.solver_tolerance(options.threshold)
+    chosen = _chosen_solver(solver, tolerance)
     colours = None if scene is None else _as_scene(scene)
     sensor = observers.sensor(options.space, options.illuminant, options.observer)
     spectrum_model = options.spectrum_model()
@@ -194,8 +196,6 @@ def build(
     families = library_families(options, libraries, sensor)
     atlas = _as_atlas(atlas)
     names, rgb, measured = _entries_in_gamut(atlas, sensor)
-    tolerance = fit.solver_tolerance(options.threshold)
-    chosen = _chosen_solver(solver, tolerance)
     method = fit.solve if chosen is None else fit.StockSolver(chosen)
     fit_entries = partial(
         fit.fit_entries,
