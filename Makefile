@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test bench peers accuracy study prior library stability nightly determinism munsell docs atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies
+.PHONY: build lint test bench peers accuracy study prior library stability nightly determinism munsell docs atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -44,6 +44,11 @@ chart: $(INSTALLED)
 # Tools for comparison in `make bench` and `make chart`. Ceres comes from the system: libceres-dev, cmake, g++.
 peers: $(INSTALLED)
 	$(BIN)/pip install --quiet -c constraints.txt --no-build-isolation -e '.[peers]'
+
+# Orders of growth, starts and solvers: docs/growth.md.
+growth: $(INSTALLED)
+	$(BIN)/python -m benchmarks.growth
+	$(BIN)/python -m tools.render_docs growth
 
 accuracy: $(INSTALLED)
 	$(BIN)/python -m benchmarks.accuracy

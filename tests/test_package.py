@@ -82,12 +82,17 @@ def test_nothing_else_is_in_it(wheel, repository):
     assert {Path(name).suffix for name in library} == {
         ".css",
         ".csv",
+        ".cuh",
+        ".glsl",
         ".h",
+        ".hlsl",
         ".j2",
         ".js",
         ".npz",
+        ".osl",
         ".typed",
         ".uplift",
+        ".wgsl",
     }
     assert {Path(name).suffix for name in atlases} == {".md", ".txt"}
 

@@ -30,10 +30,13 @@ class LatticeFit:
         The fitted points.
     improvements : tuple of Improvement
         Steps of the improvement pass that were needed.
+    solver_steps : int
+        Steps of the solver over all points.
     """
 
     points: PointTable
     improvements: tuple[Improvement, ...]
+    solver_steps: int
 
 
 Grow = Callable[[Problem, PointPrior, Indices, ProgressCallback], Growth]
@@ -118,4 +121,4 @@ def fit_lattice(
     status[absent], entry[absent] = Status.ABSENT, NO_ENTRY
     errors = prior.standard_errors(problem)
     points = PointTable(stored.coefficients, stored.rgb, stored.distance, status, entry, grown.round, errors)
-    return LatticeFit(points, improvements)
+    return LatticeFit(points, improvements, grown.steps)

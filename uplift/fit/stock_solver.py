@@ -30,7 +30,7 @@ CLOSENESS = 1e-5
 round."""
 SMALL_STEP = 1e-2
 """Change at which a stock solver stops, relative to the residual requested."""
-MAX_STEPS = 256
+MAX_STEPS, MAX_ENTRY_STEPS = 256, 2048
 MAX_ROUNDS = 4
 """Times that an unsolved problem is solved again, with its last answer as prior."""
 
@@ -133,7 +133,7 @@ def _minimise(solver: Solver, goal: Objective, measured: jax.Array) -> tuple[jax
 
     def one(spectrum: jax.Array) -> tuple[jax.Array, jax.Array]:
         solution = optimistix.least_squares(
-            goal.residuals, solver, start, args=spectrum, max_steps=MAX_STEPS, throw=False
+            goal.residuals, solver, start, args=spectrum, max_steps=MAX_ENTRY_STEPS, throw=False
         )
         return solution.value, solution.result == optimistix.RESULTS.successful
 
