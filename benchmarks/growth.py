@@ -29,8 +29,8 @@ MACBETH = ROOT / "atlases" / "macbeth.txt"
 DIMS = (32, 64)
 START_DIM, SOLVER_DIM = 32, 8
 RUNS = 3
-ASKED = ("rawtoaces", "cie2017")
-"""Materials that are asked of a cube of the ColorChecker."""
+OTHERS = ("rawtoaces", "cie2017")
+"""Materials that a cube of the ColorChecker answers for."""
 ORDERS: dict[str, Callable[[int], list[int]]] = {
     "all at once, from the prior alone": lambda dim: [1],
     "every second node first": lambda dim: [2, 1],
@@ -50,7 +50,7 @@ def main() -> None:
         solvers=[solver(name) for name in ("least-change", "gauss-newton", "dogleg", "levenberg-marquardt")],
         start_dim=START_DIM,
         solver_dim=SOLVER_DIM,
-        asked=[{"name": name, "count": len(materials(name).rgb)} for name in ASKED],
+        materials=[{"name": name, "count": len(materials(name).rgb)} for name in OTHERS],
     )
 
 
@@ -73,11 +73,11 @@ def order(name: str, dim: int) -> dict[str, Any]:
 
 
 def start(name: str, space: str) -> dict[str, Any]:
-    """Build with a start, and ask the cube for other materials."""
-    cube, growth = _build(START_DIM, start=name, space=space)
+    """Build with a start, and compare answers for materials that neither atlas nor library contains."""
+    cube, growth = _build(START_DIM, start=name, space=space, leave_out=OTHERS)
     status = cube.data.points.status
-    seconds = _seconds(lambda: _build(START_DIM, start=name, space=space), RUNS)
-    asked = {each: _errors(cube, each) for each in ASKED} if space == "sRGB" else {}
+    seconds = _seconds(lambda: _build(START_DIM, start=name, space=space, leave_out=OTHERS), RUNS)
+    answers = {each: _errors(cube, each) for each in OTHERS} if space == "sRGB" else {}
     return {
         "start": name,
         "space": space,
@@ -86,7 +86,7 @@ def start(name: str, space: str) -> dict[str, Any]:
         "steps": growth.steps / START_DIM**3,
         "unfitted": int((status == Status.UNFITTED).sum()),
         "unrealisable": int((status == Status.UNREALISABLE).sum()),
-        "asked": asked,
+        "answers": answers,
     }
 
 
@@ -112,22 +112,22 @@ def solver(name: str) -> dict[str, Any]:
 @contextmanager
 def _watched() -> Iterator[list[Growth]]:
     """Collect the states of growth of the builds within."""
-    seen: list[Growth] = []
+    states: list[Growth] = []
     original = Growth.__post_init__
 
     def note(growth: Growth) -> None:
         original(growth)
-        seen.append(growth)
+        states.append(growth)
 
     with patch.object(Growth, "__post_init__", note):
-        yield seen
+        yield states
 
 
 def _build(dim: int, **options: Any) -> tuple[Cube, Growth]:
-    with warnings.catch_warnings(), _watched() as seen:
+    with warnings.catch_warnings(), _watched() as states:
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         cube = uplift.build(MACBETH, dim=dim, **options)
-    return cube, seen[-1]
+    return cube, states[-1]
 
 
 def _seconds(action: Callable[[], object], runs: int) -> dict[str, float]:
