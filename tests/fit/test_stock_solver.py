@@ -11,6 +11,7 @@ from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.common.errors import UpliftError
 from uplift.fit.entries import fit_entries
+from uplift.fit.objective import BALANCED, objective
 from uplift.fit.stock_solver import STOCK, StockSolver, solve_objective
 from uplift.models import Moments, evaluate
 from uplift.models.minimum_norm import forward_map
@@ -62,15 +63,12 @@ def test_no_distance_increases(sensor):
     assert found.distance.max() <= 1e-8
 
 
-def test_a_solver_that_fails_is_an_error(sensor):
-    class Broken:
-        model = MODEL
-
-        def residuals(self, multipliers, measured):
-            return multipliers / 0 + measured[:5]
-
+def test_a_solver_that_stops_early_is_an_error(sensor):
+    measured = 0.5 + 0.4 * np.sin(sensor.wavelengths / 60)[None]
+    goal = objective(MODEL, MODEL.basis(sensor.wavelengths), [light("A")], BALANCED)
+    lazy = optimistix.GaussNewton(rtol=10.0, atol=10.0)
     with raises(UpliftError, "solver-failed"):
-        solve_objective(STOCK["gauss-newton"](1e-8), Broken(), np.ones((2, 81)))
+        solve_objective(lazy, goal, measured)
 
 
 def test_every_name_has_a_solver():

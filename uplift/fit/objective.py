@@ -86,6 +86,11 @@ class Objective:
             [self.rows @ change, self.weight * colours, FLATNESS * np.eye(len(multipliers))]
         )
 
+    def steepness(self, multipliers: Array, measured: Array) -> float:
+        """Largest cosine of the angle between the residuals and their derivatives: 0 at a minimum, NaN without one."""
+        slopes, off = self.jacobian(multipliers), self.residuals(multipliers, measured)
+        return float(np.abs(slopes.T @ off / (np.linalg.norm(slopes, axis=0) * np.linalg.norm(off))).max())
+
 
 def objective(model: Model, basis: Array, lights: Sequence[Light], weights: Weights) -> Objective:
     """Make the objective at the wavelengths of ``basis`` (N, C) and of the lights."""
