@@ -48,7 +48,7 @@ def test_picture_from_an_image_of_labels(run, spec, home):
             ("--html", "a.html", "--image", "labels.png", "--label", "leaf=#1", "--label", "leaf=#2"),
             "repeated-label",
         ),
-        (("--html", "two.toml"), "file-exists"),
+        (("--html", "two.toml"), "output-is-input"),
     ],
 )
 def test_invalid_input_is_reported_before_any_work(refuse, spec, home, monkeypatch, arguments, code):

@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -18,6 +19,9 @@ from uplift.io.texture import exr_file
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
 SECONDS = 10.0
 """Limit of the time from a signal to the end of all processes."""
+HANDLERS: dict[int, Any] = {signal.SIGINT: signal.default_int_handler}
+"""Handlers that commands inherit: as in a terminal, since a shell in the background ignores Ctrl-C. They are set
+before the start, since JAX warns of a fork in which Python runs (`preexec_fn`)."""
 IMAGES, PIXELS = 3, 1024
 
 
@@ -95,12 +99,12 @@ def _end(
 
 def _start(words: list[str], folder: Path) -> subprocess.Popen[str]:
     command = [sys.executable, "-m", "uplift_cli", *words]
-    return subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True, preexec_fn=_restore)
-
-
-def _restore() -> None:
-    """Take signals as in a terminal: a shell in the background ignores Ctrl-C."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+    previous = {number: signal.signal(number, handler) for number, handler in HANDLERS.items()}
+    try:
+        return subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True)
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
 
 
 def _children(process: int) -> list[Path]:

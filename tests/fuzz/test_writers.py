@@ -32,11 +32,8 @@ def test_builds_in_threads_give_equal_cubes():
 
 
 def test_signals_that_are_ignored_are_counted(tmp_path, monkeypatch):
-    def ignore():
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, signal.SIG_IGN)
-
-    monkeypatch.setattr(signalled, "_restore", ignore)
+    ignored = dict.fromkeys((signal.SIGINT, signal.SIGTERM, signal.SIGHUP), signal.SIG_IGN)
+    monkeypatch.setattr(signalled, "HANDLERS", ignored)
     monkeypatch.setattr(signalled, "SECONDS", 0.0)
     tally = signalled.end_builds(1, np.random.default_rng(3), tmp_path)
     assert tally.failures == {"it does not end": 1}

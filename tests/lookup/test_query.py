@@ -44,7 +44,7 @@ def test_statuses_are_those_of_the_corners_of_the_cell(small_cube):
         expected = sorted(set(grid[r : r + 2, g : g + 2, b : b + 2].ravel().tolist()))
         assert [int(status) for status in answer.statuses] == expected
         found_statuses |= set(answer.statuses)
-    assert {Status.ATLAS_PRIMARY, Status.ATLAS_CORNER, Status.REGULAR} <= found_statuses
+    assert {Status.ATLAS_PRIMARY, Status.REGULAR} <= found_statuses
 
 
 @pytest.mark.parametrize("mode", MODES)

@@ -54,7 +54,7 @@ class Cube:
     >>> cube
     Cube(moments with 9 coefficients, dim 16, sRGB under D65, 0 entries)
     >>> cube.reflectance([0.8, 0.2, 0.1], wavelengths=[450, 550, 650]).round(2).tolist()
-    [0.12, 0.2, 0.71]
+    [0.12, 0.19, 0.69]
     """
 
     data: CubeData

@@ -111,7 +111,7 @@ def test_invalid_input_raises(small_cube, glaze, overpainter, image, tmp_path):
     with raises(TextureError, "file-not-found"):
         convert(overpainter, tmp_path / "none.exr", tmp_path / "out.exr")
     write_exr(tmp_path / "in.exr", planes(image))
-    with raises(OutputError, "file-exists"):
+    with raises(OutputError, "output-is-input"):
         convert(overpainter, tmp_path / "in.exr", tmp_path / "in.exr")
     write_exr(tmp_path / "z.exr", {"Z": image[..., 0]})
     with raises(TextureError, "no-colour-channels"):

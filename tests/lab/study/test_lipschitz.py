@@ -24,7 +24,8 @@ def quotient(first, second, before, after):
 
 
 def test_no_pair_of_colours_exceeds_the_constant(small_cube, steep):
-    first = RNG.random((3000, 3))
+    # As many colours in each cell of the axis, so that some are in the steepest.
+    first = small_cube.decode(255 * RNG.random((3000, 3)))
     for size in (1.0, 1e-2, 1e-5):
         second = np.clip(first + size * RNG.normal(size=first.shape), 0, 1)
         quotients = quotient(first, second, small_cube.reflectance(first), small_cube.reflectance(second))

@@ -140,15 +140,15 @@ def test_changed_and_missing_sources_are_refused(plan_file):
 
 
 @pytest.mark.parametrize(
-    ("spoil", "code", "key"),
+    ("spoil", "code", "start"),
     [
         (lambda values: values.pop("build"), "missing-key", "build"),
         (lambda values: values.update(format="uplift plan 2"), "invalid-value", "format"),
         (lambda values: values.update(cells="some"), "invalid-value", "cells"),
-        (lambda values: values["build"].update(dims=3), "unknown-key", "build.dims"),
-        (lambda values: values["build"].update(dim="x"), "wrong-type", "build.dim"),
-        (lambda values: values["build"].update(lights=[3]), "wrong-type", "build.lights[0]"),
-        (lambda values: values["build"].update(lights="D65"), "wrong-type", "build.lights"),
+        (lambda values: values["build"].update(dims=3), "unknown-option", "build: unknown option 'dims'"),
+        (lambda values: values["build"].update(dim="x"), "dim-not-a-number", "build: dim "),
+        (lambda values: values["build"].update(lights=[3]), "option-type", "build: lights "),
+        (lambda values: values["build"].update(lights="D65"), "option-type", "build: lights "),
         (lambda values: values["scene"].update(textures=[3]), "wrong-type", "scene.textures[0]"),
         (
             lambda values: values["scene"]["textures"][0].pop("digest"),
@@ -157,13 +157,13 @@ def test_changed_and_missing_sources_are_refused(plan_file):
         ),
     ],
 )
-def test_an_invalid_plan_is_refused_with_its_key(plan_file, spoil, code, key):
+def test_an_invalid_plan_is_refused_with_its_key(plan_file, spoil, code, start):
     path, values = plan_file
     spoil(values)
     write(path, values)
     with raises(PlanFileError, code) as caught:
         plan.read_plan(path)
-    assert caught.value.problem.startswith(key)
+    assert caught.value.problem.startswith(start)
     assert caught.value.hint
 
 
@@ -193,6 +193,6 @@ def test_other_files_are_refused(tmp_path):
 def test_a_plan_with_numbers_that_are_not_finite_is_refused(plan_file):
     path, values = plan_file
     path.write_text(json.dumps({**values, "build": {**values["build"], "dim": float("nan")}}))
-    with raises(PlanFileError, "out-of-range") as caught:
+    with raises(PlanFileError, "invalid-json") as caught:
         plan.read_plan(path)
-    assert caught.value.problem == "build.dim must be a finite number, got nan"
+    assert "NaN" in caught.value.problem

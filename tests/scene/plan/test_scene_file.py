@@ -133,7 +133,7 @@ def test_the_received_value_is_reported(read):
 def test_a_missing_or_binary_file_is_refused(tmp_path):
     with raises(PlanFileError, "file-not-found"):
         read_scene_file(tmp_path / "none.toml")
-    with raises(PlanFileError, "file-unreadable"):
+    with raises(PlanFileError, "not-a-regular-file"):
         read_scene_file(tmp_path)
     with raises(PlanFileError, "file-unreadable"):
         read_scene_file(tmp_path / "a\0b.toml")
