@@ -7,7 +7,7 @@ import numpy as np
 from tests.helpers import with_points
 from uplift.cube import CubeData
 from uplift.cube.checks import POINT_TYPES
-from uplift.cube.sparse import ABSENT
+from uplift.lattice import ABSENT_VALUES
 
 
 def with_absent_points(data: CubeData, present: np.ndarray) -> CubeData:
@@ -15,7 +15,7 @@ def with_absent_points(data: CubeData, present: np.ndarray) -> CubeData:
     arrays = {name: getattr(data.points, name) for name in POINT_TYPES}
     arrays = {name: array.copy() for name, array in arrays.items() if array is not None}
     for name, array in arrays.items():
-        array[~present] = ABSENT.get(name, 0)
+        array[~present] = ABSENT_VALUES.get(name, 0)
     return with_points(data, **arrays)
 
 

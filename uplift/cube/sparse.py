@@ -11,15 +11,13 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Indices, Mask
 from uplift.cube.checks import require
-from uplift.lattice import CORNERS, NO_ENTRY, NOT_FITTED, Lattice, PointTable, Status
+from uplift.lattice import ABSENT_VALUES, CORNERS, Lattice, PointTable
 
 FEATURE = "sparse"
 POINTS = "points"
 """The array of point numbers, ascending."""
 MAX_POINTS = 1 << 27
 """Points of the largest lattice of a sparse file, as a small file must not claim all memory."""
-ABSENT = {"status": int(Status.ABSENT), "entry": NO_ENTRY, "round": NOT_FITTED}
-"""Values of arrays at absent points; 0 in all others."""
 
 Tensors = dict[str, NDArray[Any]]
 
@@ -64,6 +62,10 @@ def _has_complete_cell(numbers: Indices, lattice: Lattice) -> bool:
 def _expand(name: str, rows: NDArray[Any], points: NDArray[np.uint32], size: int) -> NDArray[Any]:
     shape = (size, *rows.shape[1:])
     # Pages of zeros take no memory before they are written.
-    array = np.full(shape, ABSENT[name], rows.dtype) if name in ABSENT else np.zeros(shape, rows.dtype)
+    array = (
+        np.full(shape, ABSENT_VALUES[name], rows.dtype)
+        if name in ABSENT_VALUES
+        else np.zeros(shape, rows.dtype)
+    )
     array[points] = rows
     return array

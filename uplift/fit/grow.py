@@ -70,6 +70,32 @@ def strides(dim: int) -> list[int]:
     return [1 << power for power in reversed(range(max((dim // MIN_CELLS).bit_length(), 1)))]
 
 
+def supporting_points(lattice: Lattice, points: Indices) -> Indices:
+    """Return points, and those of earlier rounds that their corrections are interpolated from.
+
+    Parameters
+    ----------
+    lattice : Lattice
+        The lattice.
+    points : ndarray of int, shape (k,)
+        Point numbers.
+
+    Returns
+    -------
+    ndarray of int, shape (m,)
+        Point numbers, ascending. Fitted alone, they have the answers of the whole lattice.
+    """
+    wanted, finer = _mask(lattice, points), np.ones(lattice.size, dtype=bool)
+    for stride in reversed(strides(lattice.dim)[:-1]):
+        level, numbers = lattice.thinned(stride)
+        coarser = _mask(lattice, numbers)
+        for block in blocks(np.flatnonzero(wanted & finer & ~coarser)):
+            corners, weights = level.corners(lattice.target(block))
+            wanted[numbers[corners[weights > 0]]] = True
+        finer = coarser
+    return np.flatnonzero(wanted)
+
+
 Correction = Callable[[Indices], Array | float]
 """From points (k,) to the corrections (k, C) expected there."""
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from uplift.common.arrays import Array, Indices
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.fit.grow import grow_from_prior
+from uplift.fit.grow import grow_from_prior, supporting_points
 from uplift.fit.grow_from_neighbours import grow_from_neighbours
 from uplift.fit.growth import Growth, PointPrior
 from uplift.fit.improve import STEPS, THESIS_STEPS, Improvement, Start, improve
@@ -17,7 +17,7 @@ from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
 from uplift.fit.seed import Seeds
 from uplift.fit.store import store
-from uplift.lattice import NO_ENTRY, NOT_FITTED, PointTable, Status
+from uplift.lattice import NO_ENTRY, NOT_FITTED, Lattice, PointTable, Status
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,14 +52,24 @@ class Strategy:
         From problem, prior, seeds and progress to the growth.
     improvements : mapping
         Steps of the improvement pass.
+    supporting_points : callable
+        From lattice and points to these points and the others that must be fitted for the same answers.
     """
 
     grow: Grow
     improvements: Mapping[str, Start]
+    supporting_points: Callable[[Lattice, Indices], Indices]
 
 
-FROM_PRIOR = Strategy(grow_from_prior, STEPS)
-STRATEGIES = {"prior": FROM_PRIOR, "neighbours": Strategy(grow_from_neighbours, THESIS_STEPS)}
+def _whole_lattice(lattice: Lattice, points: Indices) -> Indices:
+    return np.arange(lattice.size)
+
+
+FROM_PRIOR = Strategy(grow_from_prior, STEPS, supporting_points)
+STRATEGIES = {
+    "prior": FROM_PRIOR,
+    "neighbours": Strategy(grow_from_neighbours, THESIS_STEPS, _whole_lattice),
+}
 """Strategies by the name of what points start from. ``"neighbours"`` is the algorithm of Tódová 2020, section 3.1."""
 
 

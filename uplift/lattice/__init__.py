@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from uplift.lattice.entry_boxes import BoxHits, EntryBoxes
 from uplift.lattice.lattice import CORNERS, Lattice, weighted_sum
-from uplift.lattice.point_table import NO_ENTRY, NOT_FITTED, PointTable, Status
+from uplift.lattice.point_table import ABSENT_VALUES, NO_ENTRY, NOT_FITTED, PointTable, Status
 from uplift.lattice.scene import SceneLike
 
 __all__ = [
+    "ABSENT_VALUES",
     "CORNERS",
     "NOT_FITTED",
     "NO_ENTRY",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import IntEnum
 from functools import cached_property
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Mask
+from uplift.common.arrays import Indices, Mask
 
 NO_ENTRY = -1
 """Value of `PointTable.entry` at points that are not based on an atlas entry."""
@@ -39,6 +39,10 @@ class Status(IntEnum):
             Such as ``"atlas primary"``.
         """
         return self.name.lower().replace("_", " ")
+
+
+ABSENT_VALUES = {"status": int(Status.ABSENT), "entry": NO_ENTRY, "round": NOT_FITTED}
+"""Values of the arrays at absent points; 0 in all others."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,6 +88,27 @@ class PointTable:
     def present(self) -> Mask:
         """(n,) True where a point has a spectrum: everywhere, unless the cube was built for a scene."""
         return self.status != Status.ABSENT
+
+    def restricted_to(self, points: Indices) -> PointTable:
+        """Return the table with all other points absent.
+
+        Parameters
+        ----------
+        points : ndarray of int, shape (k,)
+            Numbers of the points to keep.
+
+        Returns
+        -------
+        PointTable
+        """
+        absent = np.ones(len(self), dtype=bool)
+        absent[points] = False
+        columns = {key.name: getattr(self, key.name) for key in fields(self)}
+        for name, column in columns.items():
+            if column is not None:
+                columns[name] = column.copy()
+                columns[name][absent] = ABSENT_VALUES.get(name, 0)
+        return PointTable(**columns)
 
     def counts(self) -> dict[str, int]:
         """Count the points of each status.

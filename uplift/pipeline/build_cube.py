@@ -214,7 +214,9 @@ def build(
     seeds = fit.seed(lattice, rgb, corners=seed_corners or options.start == "neighbours")
     _warn_of_crowding(names, boxes, seeds)
 
-    active = None if colours is None else np.flatnonzero(colours.required_points(boxes, sensor, progress))
+    kept = None if colours is None else np.flatnonzero(colours.required_points(boxes, sensor, progress))
+    strategy = fit.STRATEGIES[options.start]
+    active = None if kept is None else strategy.supporting_points(lattice, kept)
     problem = replace(_problem(options, forward, lattice, sensor, active), method=method)
     learnt = fit.learn_base(problem, sensor, scene_lights, families, entries)
     fitted_prior = fit.fit_prior(problem, sensor, entries, scene_lights, error_light, learnt.base)
@@ -227,8 +229,8 @@ def build(
         spectra = EntrySpectra(entry_model, entry_model.to_storage(extended.multipliers))
         if options.start == "neighbours":
             seed_multipliers = _recalculated(spectra, spectrum_model)
-    strategy = fit.STRATEGIES[options.start]
     fitted = fit.fit_lattice(problem, seeds, seed_multipliers, fitted_prior, progress, strategy)
+    points = fitted.points if kept is None else fitted.points.restricted_to(kept)
     return Cube(
         CubeData(
             model=spectrum_model,
@@ -243,7 +245,7 @@ def build(
                 error,
                 spectra,
             ),
-            points=fitted.points if options.debug else replace(fitted.points, round=None),
+            points=points if options.debug else replace(points, round=None),
             error_illuminant=ERROR_ILLUMINANT,
             provenance=_provenance(options, atlas, names, colours, fitted_prior, fitted)
             | describe_libraries(libraries, families, learnt.relevance),
