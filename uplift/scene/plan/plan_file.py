@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, fields
 from importlib.metadata import version
 from pathlib import Path
@@ -60,7 +60,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
             "textures": _sources(scene.textures, path),
             "atlases": _sources(scene.atlases, path),
         },
-        "build": {**plan.options, "lights": list(plan.options["lights"])},
+        "build": _all_options(plan.options),
         "cells": "sparse" if final.is_sparse else "whole",
         "texture": asdict(plan.storage),
         "rendering": {
@@ -235,6 +235,12 @@ def read_plan(path: StrPath) -> PlanFile:
         table.cells == "sparse",
         recorded_options(table.build),
     )
+
+
+def _all_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """All options of a build in JSON values, so that later defaults do not change it."""
+    values = asdict(Options(**options))
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
 
 
 def _check_sources(file: SpecFile, key: str, sources: list[_Source]) -> tuple[Path, ...]:
