@@ -161,7 +161,8 @@ class PlanFile:
             The cube, with the warnings and errors of `uplift.build`.
         """
         scene = Images(self.textures, self.encoding) if self.sparse else None
-        return build(self.atlases or None, scene=scene, progress=progress, debug=debug, **self.options)
+        options = {**self.options, "debug": debug}
+        return build(self.atlases or None, scene=scene, progress=progress, **options)
 
 
 class _Source(SpecModel):
