@@ -122,9 +122,10 @@ def _fit_round(
         rest.append((block[unsolved], found.multipliers[unsolved], expected[unsolved]))
         growth.report(number, len(block))
     points, start, expected = (np.concatenate(parts) for parts in zip(*rest, strict=True))
-    found = growth.attempt(points, start, number, expected)
-    corrections.record(points, found.multipliers - expected)
-    growth.report(number, 0)
+    if points.size:
+        found = growth.attempt(points, start, number, expected)
+        corrections.record(points, found.multipliers - expected)
+        growth.report(number, len(points))
 
 
 class Corrections:

@@ -126,7 +126,8 @@ def build(
         their fitted neighbours, outward from the seeds (Tódová 2020, section 3.1).
     solver : str or optimistix.AbstractLeastSquaresSolver, default "least-change"
         Solver of lattice points and entries: ``"least-change"``, ``"dogleg"``, ``"levenberg-marquardt"``,
-        ``"gauss-newton"``, or any least-squares solver of optimistix. All give the same cube; the default is fastest.
+        ``"gauss-newton"``, or any least-squares solver of optimistix. The default is fastest; answers agree
+        except for nearly box-shaped spectra (docs/growth.md).
     debug : bool, default False
         Store the round of growth in which each point was fitted.
     scene : SceneLike, path-like or sequence of path-like, optional
