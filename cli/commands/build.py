@@ -110,7 +110,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
     "--solver",
     default="least-change",
     show_default=True,
-    help="Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. The others are slower; only nearly box-shaped spectra differ.",
+    help="Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. Only nearly box-shaped spectra differ.",
 )
 @encoding_option("--scene images")
 @click.option("--plan", "plan_path", metavar="PLAN", help="Build the cube of a plan by 'uplift plan'.")
