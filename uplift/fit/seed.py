@@ -55,8 +55,8 @@ def seed(lattice: Lattice, rgb: Array, *, corners: bool = False) -> Seeds:
     rgb : ndarray, shape (E, 3)
         Linear RGB of the entries, in [0, 1].
     corners : bool, default False
-        Assign all eight corners of the cells of entries. This takes the prior's place at the other seven, at the
-        expense of materials that the atlas does not contain; see docs/fidelity.md.
+        Assign all eight corners of the cells of entries. This takes the prior's place at the other seven. Colours
+        within a few ΔE of entries gain, other materials of the same family lose a little; see docs/fidelity.md.
 
     Returns
     -------

@@ -120,7 +120,7 @@ def build(
         With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the lattice.
     seed_corners : bool, default False
         Start all eight corners of the cell of each atlas entry from the entry, as Tódová 2020 does. By default only
-        the nearest does, as the others serve other materials better. ``start="neighbours"`` always does.
+        the nearest does, and the prior holds at the others. ``start="neighbours"`` always does.
     start : {"prior", "neighbours"}, default "prior"
         What lattice points start from: the spectrum that the atlas lets expect at their colour, or the spectra of
         their fitted neighbours, outward from the seeds (Tódová 2020, section 3.1).
