@@ -14,6 +14,7 @@ from typing import Any
 import click
 
 from uplift.common.errors import OutputError, UpliftError, UpliftWarning
+from uplift.common.version import VERSION
 
 from .output.diagnostics import (
     InternalFailure,
@@ -187,7 +188,7 @@ def _memory_error() -> UpliftError:
 
 
 @click.command(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="uplift", message="uplift %(version)s")
+@click.version_option(version=VERSION, message="uplift %(version)s")
 @click.option(
     "--traceback", is_flag=True, envvar="UPLIFT_TRACEBACK", help="Show the traceback of an internal error."
 )

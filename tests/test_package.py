@@ -13,8 +13,10 @@ from pathlib import Path
 import pytest
 
 import uplift
+from uplift.common.version import DISTRIBUTION
 
 FOLDERS = {"uplift": "uplift", "cli": "uplift_cli", "atlases": "uplift_atlases"}
+INFO = f"{DISTRIBUTION.replace('-', '_')}-{uplift.__version__}.dist-info"
 
 
 def source_files(repository):
@@ -42,7 +44,7 @@ def wheel(repository, tmp_path_factory):
 
 
 def info(wheel, name):
-    return wheel.read(f"uplift-{uplift.__version__}.dist-info/{name}").decode()
+    return wheel.read(f"{INFO}/{name}").decode()
 
 
 def test_every_module_is_in_it(wheel, repository):
@@ -72,7 +74,7 @@ def test_nothing_else_is_in_it(wheel, repository):
         "uplift",
         "uplift_atlases",
         "uplift_cli",
-        f"uplift-{uplift.__version__}.dist-info",
+        INFO,
     }
     data = {name for name in wheel.namelist() if ".dist-info/" not in name and not name.endswith(".py")}
     tracked = {name for name in source_files(repository) if not name.endswith(".py")}
@@ -105,9 +107,15 @@ def test_the_command_is_installed_as_uplift(wheel):
 
 def test_name_version_and_python_are_stated(wheel):
     stated = email.message_from_string(info(wheel, "METADATA"))
-    assert (stated["Name"], stated["Version"]) == ("uplift", uplift.__version__)
+    assert (stated["Name"], stated["Version"]) == (DISTRIBUTION, uplift.__version__)
     assert stated["Requires-Python"] == ">=3.11"
     assert stated["License-Expression"] == "BSD-3-Clause"
+
+
+def test_dependencies_and_extras_are_stated(wheel):
+    stated = email.message_from_string(info(wheel, "METADATA"))
+    assert {"optimistix>=0.1", "lineax>=0.1", "equinox>=0.13"} <= set(stated.get_all("Requires-Dist"))
+    assert {"cluster", "mitsuba"} <= set(stated.get_all("Provides-Extra"))
 
 
 def test_it_works_from_where_it_is_installed(wheel, tmp_path):

@@ -61,7 +61,9 @@ if TYPE_CHECKING:
     help="Number of processes for several images. [default: one per core]",
 )
 @click.option(
-    "--scheduler", metavar="ADDRESS", help="Dask cluster that converts the images; requires uplift[cluster]."
+    "--scheduler",
+    metavar="ADDRESS",
+    help="Dask cluster that converts the images; requires spectral-uplift[cluster].",
 )
 @click.option("--resume", is_flag=True, help="Skip images whose textures are complete and newer.")
 @force_option()

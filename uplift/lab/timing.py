@@ -13,7 +13,9 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
-PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors", "uplift")
+from uplift.common.version import VERSION
+
+PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors")
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 """Environment variables, read when numpy is imported. Matrices here are small: with more threads colour-science took
 twice as long."""
@@ -115,7 +117,7 @@ def environment() -> dict[str, str]:
         (line.split(":")[1].strip() for line in _lines("/proc/cpuinfo") if line.startswith("model name")),
         platform.processor() or platform.machine(),
     )
-    packages = ", ".join(f"{name} {version(name)}" for name in PACKAGES)
+    packages = ", ".join([*(f"{name} {version(name)}" for name in PACKAGES), f"uplift {VERSION}"])
     return {
         "machine": f"{cpu}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}",
         "versions": f"Python {sys.version.split()[0]}, {packages}",

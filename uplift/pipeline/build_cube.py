@@ -7,7 +7,6 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
 
@@ -23,6 +22,7 @@ from uplift.common.errors import OptionError, UpliftWarning, unknown_name
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.quoting import format_value
 from uplift.common.threads import single_threaded_blas
+from uplift.common.version import VERSION
 from uplift.cube import AtlasTable, CubeData, EntrySpectra
 from uplift.lattice import EntryBoxes, Lattice, SceneLike
 from uplift.lattice.box_widths import half_widths
@@ -389,7 +389,7 @@ def _provenance(
 ) -> dict[str, Any]:
     """How the cube was built, in JSON values."""
     return {
-        "uplift": version("uplift"),
+        "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
         "atlases": [{"name": source.name, "digest": source.digest} for source in atlas.sources],
         "left_out": [name for name in atlas.names if name not in names],

@@ -117,7 +117,10 @@ def test_mitsuba_is_measured_or_reported_as_missing(small_task, monkeypatch):
         assert row.numbers["bytes"] > 9e6
     monkeypatch.setitem(sys.modules, "mitsuba", None)
     row = measure_method(*found, small_task)
-    assert (row.state, row.why) == (State.MISSING, "Mitsuba is not installed: pip install 'uplift[peers]'")
+    assert (row.state, row.why) == (
+        State.MISSING,
+        "Mitsuba is not installed: pip install 'spectral-uplift[peers]'",
+    )
 
 
 def test_families_have_a_source():

@@ -1,4 +1,4 @@
-"""The texture plugin ``uplift`` for the spectral variants of Mitsuba 3. Requires the extra ``uplift[mitsuba]``.
+"""The texture plugin ``uplift`` for the spectral variants of Mitsuba 3. Extra: ``spectral-uplift[mitsuba]``.
 
 =======================================  ======================================================================
 ``cube``                                 file of the cube, found by Mitsuba's file resolver; the default cube of

@@ -33,7 +33,7 @@ def register() -> None:
         raise OptionError(
             "Mitsuba 3 is not installed",
             code="mitsuba-not-installed",
-            hint="install it: pip install 'uplift[mitsuba]'",
+            hint="install it: pip install 'spectral-uplift[mitsuba]'",
         ) from error
     variant = mitsuba.variant()
     if variant is None or "spectral" not in variant or "polarized" in variant:

@@ -340,7 +340,7 @@ def dask_executor(address: str) -> Iterator[Executor]:
         raise OptionError(
             "clusters need Dask, which is not installed",
             code="dask-not-installed",
-            hint="install it: pip install 'uplift[cluster]'",
+            hint="install it: pip install 'spectral-uplift[cluster]'",
         ) from error
     with _quiet_dask():
         try:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, fields
-from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -17,6 +16,7 @@ from uplift.common.errors import PlanFileError, unknown_name
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.quoting import format_value
 from uplift.common.spec_file import SpecFile, SpecModel, read_json, resolves
+from uplift.common.version import VERSION
 from uplift.io.scene_colours import Images, file_digest
 from uplift.io.texture.colours import check_encoding
 from uplift.lookup import Cube
@@ -50,7 +50,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
     scene, final = plan.scene, plan.final_build
     return {
         "format": FORMAT,
-        "uplift": version("uplift"),
+        "uplift": VERSION,
         "scene": {
             "file": scene.path.name,
             "lights": list(scene.lights),

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.metadata import version
 from importlib.resources import files
 from string import Template
 from typing import Any
 
+from uplift.common.version import VERSION
 from uplift.cube import CubeData, digest
 from uplift.io.export.kernel import (
     answer_moments,
@@ -79,7 +79,7 @@ class Program:
             _read(f"moments.{self.template}") if self.mode == "moments" and self.template != "osl.osl" else ""
         )
         words = {
-            "version": version("uplift"),
+            "version": VERSION,
             "digest": digest(self.data),
             "space": comment(sensor.space),
             "illuminant": comment(sensor.illuminant),

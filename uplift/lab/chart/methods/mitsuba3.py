@@ -42,7 +42,7 @@ def _mitsuba() -> Any:
     try:
         mitsuba = import_module("mitsuba")
     except ImportError as error:
-        raise NotInstalledError("Mitsuba is not installed: pip install 'uplift[peers]'") from error
+        raise NotInstalledError("Mitsuba is not installed: pip install 'spectral-uplift[peers]'") from error
     mitsuba.set_variant(VARIANT)
     return mitsuba
 
