@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from tests.browsing import check_page
 from tests.helpers import with_points
 from tests.pages import Page
 from tests.report.conftest import HOSTILE
@@ -24,6 +25,10 @@ from uplift.viz.histogram import log_edges, make_histogram
 @pytest.fixture(scope="module")
 def html(judged):
     return render_report(judged, worst=3)
+
+
+def test_page_fits_and_is_accessible(html, tmp_path):
+    check_page(html, tmp_path)
 
 
 def test_page_is_well_formed_and_complete(html, judged):

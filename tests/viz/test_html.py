@@ -71,7 +71,8 @@ def test_shared_parts(source, expected):
 def test_simple_table_aligns_numbers():
     text = rendered("{{ parts.simple_table(['name', 'n'], [['<i>', 1]], numbers=[1]) }}").replace("\n", "")
     assert text == (
-        '<div class="scroll"><table class="slim"><thead><tr><th scope="col">name</th>'
+        '<div class="scroll" role="group" aria-label="Table" tabindex="0"><table class="slim">'
+        '<thead><tr><th scope="col">name</th>'
         '<th class="number" scope="col">n</th></tr></thead><tbody>'
         '<tr><td>&lt;i&gt;</td><td class="number">1</td></tr></tbody></table></div>'
     )

@@ -7,7 +7,7 @@ from typing import Any
 from markupsafe import Markup
 
 from uplift.common.arrays import Array
-from uplift.viz.figure import ACCENT, BAND, INK, STYLE, new_figure, style_axes, to_svg
+from uplift.viz.figure import ACCENT, BAND, INK, STYLE, new_figure, style_axes, to_page_svg
 from uplift.viz.format import format_power_of_ten
 from uplift.viz.histogram import Histogram
 
@@ -39,7 +39,7 @@ def histogram_chart(
             axes.set_xlim(values.edges[0], values.edges[-1])
         axes.locator_params(axis="y", nbins=4, integer=True)
         axes.yaxis.set_major_formatter("{x:,.0f}")
-        return to_svg(figure, f"Histogram of {label}")
+        return to_page_svg(figure, f"Histogram of {label}")
 
 
 def spectra_chart(wavelengths: Array, measured: Array, answered: Array, lattice: Array | None) -> Markup:
@@ -63,7 +63,7 @@ def spectra_chart(wavelengths: Array, measured: Array, answered: Array, lattice:
         )
         axes.yaxis.set_major_formatter("{x:g}")
         style_axes(axes)
-        return to_svg(figure, "Reflectance over wavelength")
+        return to_page_svg(figure, "Reflectance over wavelength")
 
 
 def _new_axes(position: tuple[float, float, float, float]) -> tuple[Any, Any]:

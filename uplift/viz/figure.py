@@ -25,6 +25,7 @@ __all__ = [
     "new_figure",
     "style_axes",
     "style_spectrum_axes",
+    "to_page_svg",
     "to_svg",
     "write_png",
 ]
@@ -52,6 +53,17 @@ STYLE: dict[str, Any] = {
 """For `matplotlib.rc_context`."""
 
 HAIR_SPACE = "\u200a"
+PAGE_COLOURS = {
+    INK: "var(--ink)",
+    GREY: "var(--grey)",
+    PALE: "var(--line)",
+    BAND: "var(--band)",
+    ACCENT: "var(--accent)",
+    "#000000": "var(--ink)",
+    "#ffffff": "var(--card)",
+}
+"""Properties of the style sheet of pages in place of colours; it lightens all other colours in the dark scheme."""
+_COLOUR = re.compile(r"(?<=: )#[0-9a-f]{6}\b")
 _NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 _UNUSED = re.compile(r' id="[\w.]+_\d+"|<!--.*?-->|<defs>\s*<style.*?</style>\s*</defs>', re.DOTALL)
 """Names of groups, comments, and a style sheet that would apply to the whole page."""
@@ -183,3 +195,25 @@ def to_svg(figure: Any, label: str = "") -> Markup:
     body = re.sub(r">\s+<", "><", body).strip()
     role = f' role="img" aria-label="{escape(printable(label))}"' if label else ""
     return Markup(f"{head}{role}>{body}")
+
+
+def to_page_svg(figure: Any, label: str = "") -> Markup:
+    """Render a figure as an ``svg`` element whose colours follow the light or dark scheme of ``viz/page.css``.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    label : str, optional
+        Text that screen readers read in place of the texts in the figure.
+
+    Returns
+    -------
+    Markup
+        The element, as `to_svg` returns it but for its colours.
+    """
+    return Markup(_COLOUR.sub(lambda found: _page_colour(found[0]), to_svg(figure, label)))
+
+
+def _page_colour(colour: str) -> str:
+    return PAGE_COLOURS.get(colour) or f"color-mix(in oklab, {colour}, var(--lift))"

@@ -10,12 +10,13 @@ import click
 import pytest
 from uplift_cli.main import main
 
+from tests.browsing import check_page
 from uplift.scene.plan.commands import build_command, cube_name, expanded_command, texture_command
 from uplift.scene.plan.page import _budget, _previews_by_light, page
 from uplift.scene.plan.summary import summary_rows, verdict
 from uplift.viz.format import format_size
 
-EMPTY = {"meta", "br", "col"}
+EMPTY = {"meta", "br", "col", "input"}
 
 
 class Reader(HTMLParser):
@@ -51,6 +52,10 @@ def test_the_page_is_self_contained_and_lists_every_candidate(planned, tmp_path)
     charts = sum(len(decision.trials) > 1 for decision in plan.decisions)
     assert text.count("<svg") == charts
     assert text == page(plan, tmp_path / "kitchen.plan.json")
+
+
+def test_the_page_fits_and_is_accessible(planned, tmp_path):
+    check_page(page(planned[0], tmp_path / "kitchen.plan.json"), tmp_path)
 
 
 def test_names_cannot_break_the_page(planned, tmp_path):

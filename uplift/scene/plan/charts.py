@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from uplift.scene.plan.decision import Decision
-from uplift.viz.figure import ACCENT, GREY, INK, PALE, STYLE, figure_text, new_figure, to_svg
+from uplift.viz.figure import ACCENT, GREY, INK, PALE, STYLE, figure_text, new_figure, to_page_svg
 from uplift.viz.html import Markup
 
 SIZE = 4.6, 2.6
@@ -33,7 +33,7 @@ def trials_chart(decision: Decision) -> Markup:
         for index, (trial, *point) in enumerate(zip(decision.trials, costs, errors, strict=True)):
             _annotate(axes, trial.name, point, above=bool(index % 2), selected=index == selected)
         _style_log_axes(axes)
-        return to_svg(figure)
+        return to_page_svg(figure, f"ΔE00 over {decision.unit} of the candidates")
 
 
 def _annotate(axes: Any, name: str, point: list[float], *, above: bool, selected: bool) -> None:

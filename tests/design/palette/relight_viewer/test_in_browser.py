@@ -9,6 +9,7 @@ import re
 import numpy as np
 import pytest
 
+from tests.browsing import check_page
 from tests.design.palette.relight_viewer.conftest import arbitrary
 from tests.design.palette.relight_viewer.expected import (
     box,
@@ -46,6 +47,10 @@ def test_the_picture_initially_shows_the_first_light(opened, lights, materials, 
     first = np.eye(lights)[0]
     assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, first)).max() <= 1
     assert tab.errors == []
+
+
+def test_the_page_fits_and_is_accessible(view, tmp_path):
+    check_page(page(view), tmp_path)
 
 
 def test_dragging_moves_the_dial_and_relights_the_picture(opened, view):

@@ -1,0 +1,66 @@
+"""Pages in Chromium as readers see them: on a phone and on a desk, in the light and in the dark scheme."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+
+import pytest
+
+from benchmarks.browser import browser, chromium
+
+WIDTHS, HEIGHT = (390, 1440), 900
+SCHEMES = ("light", "dark")
+AXE = Path(__file__).parents[1] / "node_modules" / "axe-core" / "axe.min.js"
+"""Rules of accessibility, which `npm install --no-save axe-core` puts there."""
+PLAIN_BOXES = ".scroll { background: none !important; }"
+"""Contrast over gradients cannot be computed: without the cue of tables that scroll."""
+RUN = """(() => {
+  document.head.append(Object.assign(document.createElement("style"), { textContent: STYLE }));
+  return axe.run(document, { resultTypes: ["violations"] }).then(({ violations }) =>
+    violations.map(({ id, nodes }) => `${id}: ${nodes.map(node => node.html.slice(0, 200)).join(" | ")}`));
+})()"""
+
+
+def open_page(tab, html, folder, width=WIDTHS[1], scheme=SCHEMES[0]):
+    """Show a page in a window of a size and wait until it is ready."""
+    path = folder / "page.html"
+    path.write_text(html, encoding="utf-8")
+    tab.errors.clear()
+    tab.window(width, HEIGHT, scheme)
+    tab.call("Page.navigate", url=path.as_uri())
+    end = time.monotonic() + 30
+    while not tab.evaluate(
+        "location.protocol === 'file:' && document.readyState === 'complete'"
+        " && document.querySelector('main')?.getAttribute('aria-busy') !== 'true'"
+    ):
+        assert time.monotonic() < end, tab.errors
+        time.sleep(0.02)
+
+
+def overflow(tab):
+    """Pixels by which the page is wider than its window."""
+    return tab.evaluate("document.documentElement.scrollWidth - window.innerWidth")
+
+
+def findings(tab):
+    """Violations of the rules of accessibility."""
+    tab.evaluate(AXE.read_text(encoding="utf-8") + ";0")
+    return tab.evaluate(RUN.replace("STYLE", json.dumps(PLAIN_BOXES)))
+
+
+def check_page(html, folder):
+    """Fail if a page is too wide, has errors or violates rules; skip what the machine lacks."""
+    if chromium() is None:
+        pytest.skip("no Chromium is installed")
+    with browser() as tab:
+        for width in WIDTHS:
+            for scheme in SCHEMES:
+                open_page(tab, html, folder, width, scheme)
+                assert overflow(tab) <= 0
+                assert tab.errors == []
+                if AXE.exists():
+                    assert findings(tab) == []
+    if not AXE.exists():
+        pytest.skip(f"no axe-core at {AXE}: npm install --no-save axe-core")
