@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test bench peers accuracy study prior library stability nightly determinism munsell docs atlases cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth
+.PHONY: build lint test bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -154,6 +154,10 @@ munsell: $(INSTALLED)
 # Shipped data; commit the result.
 atlases: $(INSTALLED)
 	$(BIN)/python tools/ship_atlases.py
+
+# Sample pictures and measurements of `uplift samples`; commit the result.
+samples: $(INSTALLED)
+	$(BIN)/python -W ignore -m tools.ship_samples
 
 cubes: $(INSTALLED)
 	$(BIN)/python tools/store_cubes.py

@@ -34,6 +34,7 @@ from uplift.design.palette import (
     read_palette,
     standard_model,
 )
+from uplift.samples import sample_path
 
 FOLDER = ROOT / "docs" / "palette"
 EXAMPLES = ("metamers", "vanish", "light", "constant")
@@ -66,7 +67,7 @@ def main() -> None:
 
 def draw(name: str, model: FactorModel) -> None:
     """Design an example and plot its matrix and spectra."""
-    palette = design(read_palette(FOLDER / f"{name}.toml"), model)
+    palette = design(read_palette(sample_path(f"{name}.toml")), model)
     plot_matrix(palette, matrix(palette), FOLDER / f"{name}-matrix.png", force=True)
     plot_spectra(palette, FOLDER / f"{name}-spectra.png", force=True)
 

@@ -30,6 +30,7 @@ from .signals import check, end, ending_signals, received
 from .startup import draw_without_window
 
 GROUPS = {
+    "First steps": ("relight", "samples"),
     "Cubes": ("build", "query", "texture", "mix", "export"),
     "Inspection": ("info", "slices", "report", "check", "atlas"),
     "Scenes": ("plan", "wavelengths", "compare", "palette"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
-VOID_ELEMENTS = ("br", "input", "meta")
+VOID_ELEMENTS = ("br", "img", "input", "meta")
 """Elements without content or end tag."""
 
 

@@ -13,7 +13,8 @@ from tests.conftest import ROOT
 from tests.helpers import warns
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-README = PAGES[0].read_text(encoding="utf-8")
+REFERENCE = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+PYTHON = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
 
 
 def command_lines():
@@ -27,8 +28,8 @@ def command_lines():
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_readme_has_every_command_and_help_has_examples(name):
-    assert f"**`uplift {name}`**" in README
+def test_the_page_of_commands_has_every_command_and_help_has_examples(name):
+    assert f"**`uplift {name}`**" in REFERENCE
     with click.Context(main, **main.context_settings) as context:
         command = main.get_command(context, name)
     assert re.search(rf"Examples:\n +uplift {name} ", command.help)
@@ -51,11 +52,11 @@ def test_unknown_options_do_not_parse():
         main.get_command(context, "build").make_context("build", ["--dimension", "3"], parent=context)
 
 
-def test_python_of_the_readme_runs(tmp_path, monkeypatch):
+def test_the_python_page_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    (code,) = re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL)
     with warns("entry-out-of-gamut"):
-        exec(compile(code, "README.md", "exec"), {})
+        exec(compile(code, "python.md", "exec"), {})
 
 
 def test_links_resolve():

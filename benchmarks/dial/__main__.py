@@ -22,6 +22,7 @@ from uplift.design.palette.relight_viewer.cutaway import cutaway
 from uplift.design.palette.relight_viewer.page import page
 from uplift.design.palette.relight_viewer.relighting import Relighting, relighting
 from uplift.lab.timing import Spread, environment, spread
+from uplift.samples import sample_path
 
 FOLDER = ROOT / "docs" / "palette-dial"
 TASKS = ((5, 512), (7, 512), (9, 512), (7, 1024))
@@ -130,7 +131,7 @@ def _move_dial(tab: Browser) -> tuple[float, float, float]:
 
 @functools.cache
 def _design(coefficients: int) -> Design:
-    palette = dataclasses.replace(read_palette(FOLDER / "engine.toml"), count=coefficients)
+    palette = dataclasses.replace(read_palette(sample_path("engine.toml")), count=coefficients)
     return design(palette, standard_model(palette.sensor, coefficients))
 
 

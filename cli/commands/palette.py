@@ -61,11 +61,11 @@ def command(
 
     \b
     Examples:
-      uplift palette docs/palette/metamers.toml
-      uplift palette docs/palette/metamers.toml --matrix matrix.png --spectra spectra.png
-      uplift palette docs/palette/metamers.toml --atlas paints.txt
-      uplift palette docs/palette-dial/engine.toml --html engine.html
-      uplift palette docs/palette/vanish.toml --format json > vanish.json
+      uplift palette metamers.toml
+      uplift palette metamers.toml --matrix matrix.png --spectra spectra.png
+      uplift palette metamers.toml --atlas designed.txt
+      uplift palette engine.toml --html engine.html
+      uplift palette vanish.toml --format json > vanish.json
     """
     from uplift.common.files import check_outputs
     from uplift.design.palette import design, matrix, read_palette, standard_model, unmet_goals

@@ -17,7 +17,7 @@ INPUTS = {
     "c.uplift": ROOT / "cubes" / "moments-8.uplift",
     "a.txt": ROOT / "atlases" / "macbeth.txt",
     "b.txt": ROOT / "atlases" / "rawtoaces.txt",
-    "p.toml": ROOT / "docs" / "palette" / "metamers.toml",
+    "p.toml": ROOT / "uplift" / "samples" / "files" / "metamers.toml",
     "chart.csv": ROOT / "uplift" / "lab" / "chart" / "measured.csv",
 }
 COLOURS, IMAGE, SCENE = "colours.csv", "i.png", "s.toml"

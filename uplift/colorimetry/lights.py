@@ -18,6 +18,22 @@ SCENE_LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3")
 REPORT_LIGHTS = ("D65", "A", "FL2", "FL7", "FL11", "LED-B3")
 """Lights of reports and of the study of moments."""
 
+RELIGHT_LIGHTS = ("A", "FL11", "HP1")
+"""Lights under which products of RGB go visibly wrong: warm, three narrow bands, and nearly one wavelength."""
+
+DESCRIPTIONS = {
+    "A": "tungsten",
+    "D50": "warm daylight",
+    "D65": "daylight",
+    "FL2": "fluorescent",
+    "FL7": "broadband fluorescent",
+    "FL11": "three-band fluorescent",
+    "HP1": "sodium lamp",
+    "LED-B3": "white LED",
+    "LED-RGB1": "red, green and blue LED",
+}
+"""Words for readers who do not know the names."""
+
 CHART_LIGHTS = REPORT_LIGHTS[1:]
 """Lights of the chart of methods: all of a report but the illuminant that colours are matched under."""
 

@@ -13,9 +13,9 @@ from uplift.cube import CubeData
 from uplift.lab.study.lipschitz import LipschitzConstants
 from uplift.lab.study.locality import MOVED_DELTA_E, Change
 from uplift.viz.figure import new_figure, style_axes, write_png
+from uplift.viz.ramp import colour_map
 
 CHANNELS = ("red", "green", "blue")
-RAMP = ("#eef5f8", "#a9cfe3", "#5a9fcb", "#20609a", "#0b1d51")
 LINE, HIGHLIGHT, INK = "#1f6fb4", "#ff5a00", "#111111"
 MIN_DELTA_E = 1e-4
 """Smallest ΔE00 that is drawn."""
@@ -27,16 +27,15 @@ def plot_steepness(
     data: CubeData, constants: LipschitzConstants, path: StrPath, *, force: bool = False
 ) -> None:
     """Write the largest constants along each channel, and at each wavelength, as PNG. Raises `OutputError`."""
-    from matplotlib.colors import LinearSegmentedColormap, LogNorm
+    from matplotlib.colors import LogNorm
 
     figure = new_figure(12.0, 3.6)
     *maps, spectrum = figure.subplots(1, 4, width_ratios=(1, 1, 1, 1.25))
-    ramp = LinearSegmentedColormap.from_list("steep", RAMP)
     norm = LogNorm(constants.cells.min(), constants.cells.max())
     edges = np.interp(data.lattice.nodes, data.sensor.decoding, np.arange(256))
     for axis, axes in enumerate(maps):
         across, up = (other for other in range(3) if other != axis)
-        mesh = axes.pcolormesh(edges, edges, constants.cells.max(axis=axis).T, cmap=ramp, norm=norm)
+        mesh = axes.pcolormesh(edges, edges, constants.cells.max(axis=axis).T, cmap=colour_map(), norm=norm)
         axes.set(xlabel=CHANNELS[across], ylabel=CHANNELS[up], aspect="equal")
         axes.set_title(f"maximum over {CHANNELS[axis]}", loc="left", fontsize=10)
         axes.set_xticks((0, 128, 255))

@@ -12,10 +12,9 @@ from uplift.common.arrays import Array, Mask, StrPath
 from uplift.lab.study.stability import RunConfig, RunResult
 from uplift.lab.study.stability_design import Grid
 from uplift.viz.figure import figure_text, new_figure, write_png
+from uplift.viz.ramp import colour_map
 
 HIGHLIGHT, FAINT, INK = "#ff5a00", "#ffcfae", "#1b2733"
-RAMP = ("#eef5f8", "#a9cfe3", "#5a9fcb", "#20609a", "#0b1d51")
-"""Colours of increasing values. Orange is reserved for failures."""
 CELL_WIDTH, CELL_HEIGHT = 0.56, 0.34
 """Inches."""
 
@@ -104,9 +103,9 @@ def _draw_panel(axes: Any, grid: Grid, table: list[list[RunResult]], quantity: Q
 
 
 def _colours(values: Array, failed: Mask, stand_ins: Mask) -> Array:
-    from matplotlib.colors import LinearSegmentedColormap, to_rgb
+    from matplotlib.colors import to_rgb
 
-    ramp = LinearSegmentedColormap.from_list("ramp", RAMP)(values)[..., :3]
+    ramp = colour_map()(values)[..., :3]
     ramp = np.where(stand_ins[..., None], to_rgb(FAINT), ramp)
     return np.where(failed[..., None], to_rgb(HIGHLIGHT), ramp)
 

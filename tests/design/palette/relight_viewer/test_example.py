@@ -1,4 +1,4 @@
-"""docs/palette-dial/engine.toml has the properties that docs/palette-dial.md states, in the picture too."""
+"""The sample engine.toml has the properties that docs/palette-dial.md states, in the picture too."""
 
 from __future__ import annotations
 
@@ -7,15 +7,16 @@ import pytest
 
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.design.palette import design, matrix, read_palette
+from uplift.samples import sample_path
 
 HAZE, BLOCK, VALVE, PISTON = range(4)
 DAY, LAMP, NIGHT = range(3)
 
 
 @pytest.fixture(scope="module")
-def colours(model, repository):
+def colours(model):
     """By full spectra, and as drawn in the picture: linear RGB (4, 3, 3) each."""
-    palette = read_palette(repository / "docs" / "palette-dial" / "engine.toml")
+    palette = read_palette(sample_path("engine.toml"))
     found = matrix(design(palette, model))
     return {"full": found.obtained, "drawn": found.factor}
 

@@ -1,0 +1,66 @@
+"""``uplift relight`` and ``uplift samples``."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from uplift.samples import sample_names
+
+
+@pytest.fixture
+def wood(home):
+    Image.fromarray(np.full((12, 20, 3), (180, 90, 40), np.uint8)).save(home / "wood.png")
+    return "wood.png"
+
+
+def test_a_page_of_own_images_with_a_cube(run, home, cubes, wood):
+    result = run(
+        "relight", wood, wood, "--cube", cubes / "moments-8-macbeth.uplift", "--light", "A", "-o", "relit.html",
+        "--format", "json",
+    )  # fmt: skip
+    found = json.loads(result.stdout)
+    assert found["output"] == "relit.html"
+    assert [row["spectra"] for row in found["differences"][:2]] == [
+        "without atlas",
+        "moments-8-macbeth.uplift",
+    ]
+    assert all(0 < row["mean"] <= row["max"] + 1e-9 for row in found["differences"])
+    assert (home / "relit.html").read_text(encoding="utf-8").count("<section") == 2
+
+
+def test_own_images_have_no_atlas_unless_given(run, home, wood):
+    result = run("relight", wood, "--light", "FL11")
+    assert "without atlas" in result.stdout
+    assert "macbeth" not in result.stdout
+    assert (home / "relit.png").is_file()
+
+
+def test_the_sample_is_relit_with_its_atlas(run, home):
+    result = run("relight", "--light", "HP1")
+    assert "with macbeth" in result.stdout
+    assert result.stdout.rstrip().endswith("relit.png: still-life.png under HP1")
+    with Image.open(home / "relit.png") as image:
+        assert image.width > 1000
+
+
+def test_bad_input_is_refused(refuse, misuse, home, wood):
+    assert refuse("relight", "-o", "relit.gif").code == "unknown-suffix"
+    assert refuse("relight", "none.png").code == "file-not-found"
+    assert refuse("relight", wood, "-o", wood).code == "output-is-input"
+    assert refuse("relight", wood, "--light", "moon").code == "unknown-illuminant"
+    assert "--atlas" in misuse("relight", "--cube", "a.uplift", "--atlas", "macbeth")
+    (home / "relit.png").write_text("mine")
+    assert refuse("relight", wood).code == "file-exists"
+
+
+def test_samples_are_copied_and_may_be_copied_again(run, refuse, home):
+    for _ in range(2):
+        assert run("samples").stdout.startswith(f".: {len(sample_names())} files: ")
+    assert {path.name for path in home.iterdir()} == set(sample_names())
+    (home / "wood.png").write_text("mine")
+    assert refuse("samples").code == "file-exists"
+    run("samples", "--force")

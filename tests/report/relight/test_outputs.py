@@ -1,0 +1,141 @@
+"""Relit images as PNG and as a page, in Chromium too."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from benchmarks.browser import browser, chromium
+from tests.helpers import raises
+from tests.pages import Page
+from uplift.common.errors import OutputError
+from uplift.report.relight import RGB_PRODUCT, relight, write_relit_page, write_relit_sheet
+
+
+@pytest.fixture(scope="module")
+def relit(small_cube, plain_cube):
+    rgb = np.random.default_rng(5).uniform(0, 1, (24, 40, 3)).astype(np.float32)
+    cubes = {"without <atlas>": plain_cube, "atlas": small_cube}
+    return relight("a & b.png", rgb, cubes, ("D65", "A", "HP1"), reduction=3)
+
+
+@pytest.fixture(scope="module")
+def page(relit, tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "relit.html"
+    assert write_relit_page([relit, relit], path) == path.stat().st_size
+    return path
+
+
+def size(path):
+    with Image.open(path) as image:
+        return image.size
+
+
+def test_the_picture_has_a_row_per_light_and_a_column_per_method(relit, tmp_path):
+    write_relit_sheet([relit], tmp_path / "one.png")
+    write_relit_sheet([relit, relit], tmp_path / "two.png")
+    one, two = size(tmp_path / "one.png"), size(tmp_path / "two.png")
+    assert two[0] == one[0]
+    assert 1.8 < two[1] / one[1] < 2.1
+
+
+@pytest.mark.parametrize("write", [write_relit_sheet, write_relit_page])
+def test_existing_files_stay_without_force(relit, tmp_path, write):
+    path = tmp_path / "relit"
+    path.write_text("mine")
+    with raises(OutputError, "file-exists"):
+        write([relit], path)
+    assert path.read_text() == "mine"
+    write([relit], path, force=True)
+    assert path.stat().st_size > 1000
+
+
+def test_the_page_is_well_formed_and_holds_its_images(page):
+    found = Page(page.read_text(encoding="utf-8"))
+    sources = [value for name, value in found.attributes if name == "src"]
+    assert len(sources) == 2 * 3 * (3 + 3)  # images, lights, methods and pairs of them
+    assert all(source.startswith("data:image/") for source in sources)
+    assert all(text for name, text in found.attributes if name == "alt")
+    assert "a & b.png" in found.text
+    assert "without <atlas>" in found.text
+
+
+def test_the_table_has_every_light_and_pair(page, relit):
+    found = Page(page.read_text(encoding="utf-8"))
+    rows = found.tables[0][1:]
+    assert len(rows) == 3 * 3
+    hp1 = relit.renderings[2].difference(RGB_PRODUCT, "atlas")
+    row = next(row for row in rows if [cell.text for cell in row[:3]] == ["HP1", RGB_PRODUCT, "atlas"])
+    assert row[3].text == f"{hp1.mean:.2f}"
+
+
+@pytest.fixture(scope="module")
+def tab(page):
+    if chromium() is None:
+        pytest.skip("needs Chromium")
+    with browser() as opened:
+        opened.open(page)
+        yield opened
+
+
+VISIBLE = """[...document.querySelector(".view").querySelectorAll("img")]
+  .filter(image => getComputedStyle(image).display !== "none")
+  .map(image => [image.dataset.light, image.dataset.shows])"""
+SPLIT = 'getComputedStyle(document.querySelector(".view")).getPropertyValue("--split")'
+CHOOSE = """(() => {
+  const form = document.querySelector(".choices");
+  form.elements.light.value = "LIGHT";
+  first.value = "FIRST"; second.value = "SECOND"; map.checked = MAP;
+  form.dispatchEvent(new Event("change"));
+})()"""
+
+
+def choose(tab, light, first, second, as_map):
+    values = {"LIGHT": light, "FIRST": first, "SECOND": second, "MAP": str(as_map).lower()}
+    code = CHOOSE
+    for name, value in values.items():
+        code = code.replace(name, str(value))
+    tab.evaluate(code)
+
+
+def test_the_page_opens_where_the_difference_is_largest(tab):
+    assert tab.evaluate(VISIBLE) == [["2", "0"], ["2", "2"]]
+    assert tab.errors == []
+
+
+def test_choices_change_the_layers(tab):
+    choose(tab, 1, 2, 1, False)
+    assert sorted(tab.evaluate(VISIBLE)) == [["1", "1"], ["1", "2"]]
+    choose(tab, 1, 2, 0, True)
+    assert tab.evaluate(VISIBLE) == [["1", "0-2"]]
+    assert tab.evaluate('document.querySelector(".scale").hidden') is False
+    choose(tab, 1, 1, 1, True)
+    assert tab.evaluate(VISIBLE) == [["1", "1"]]
+    choose(tab, 2, 0, 2, False)
+
+
+def test_the_line_moves_by_key_and_by_mouse(tab):
+    tab.window(1200, 900)
+    tab.evaluate('document.querySelector(".split").value = 50; document.querySelector(".split").focus()')
+    tab.call(
+        "Input.dispatchKeyEvent",
+        type="keyDown",
+        key="ArrowRight",
+        code="ArrowRight",
+        windowsVirtualKeyCode=39,
+    )
+    assert tab.evaluate(SPLIT) == "51%"
+    x, y, width, height = tab.evaluate(
+        '(b => [b.x, b.y, b.width, b.height])(document.querySelector(".view").getBoundingClientRect())'
+    )
+    tab.mouse("mousePressed", x + width / 2, y + height / 2)
+    tab.mouse("mouseMoved", x + width / 4, y + height / 2)
+    tab.mouse("mouseReleased", x + width / 4, y + height / 2)
+    assert tab.evaluate(SPLIT) == "25%"
+
+
+@pytest.mark.parametrize("width", [390, 1440])
+def test_nothing_is_wider_than_the_window(tab, width):
+    tab.window(width, 900)
+    assert tab.evaluate("document.documentElement.scrollWidth") <= width

@@ -1,0 +1,108 @@
+"""Relit colours: laws, a plain counterpart that integrates spectra, and measured atlas entries."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.helpers import raises
+from uplift.atlas import on_grid, read_atlas
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.observer import light, sensor
+from uplift.common.errors import OptionError, UnknownNameError
+from uplift.report.relight import RGB_PRODUCT, relight
+
+LIGHTS = ("D65", "A", "FL11", "HP1")
+
+
+@pytest.fixture(scope="module")
+def picture(small_cube):
+    """Colours of 70 × 3 pixels: more rows than are computed at once; the last row is white."""
+    rgb = np.random.default_rng(7).uniform(0, 1, (70, 3, 3)).astype(np.float32)
+    rgb[-1] = 1
+    return rgb
+
+
+@pytest.fixture(scope="module")
+def relit(picture, small_cube, plain_cube):
+    return relight("noise", picture, {"without atlas": plain_cube, "atlas": small_cube}, LIGHTS)
+
+
+def test_methods_and_lights_are_in_order(relit):
+    assert relit.methods == (RGB_PRODUCT, "without atlas", "atlas")
+    assert [rendering.light for rendering in relit.renderings] == list(LIGHTS)
+
+
+@pytest.mark.parametrize("method", [RGB_PRODUCT, "without atlas", "atlas"])
+def test_colours_stay_under_the_light_that_they_refer_to(relit, picture, method):
+    np.testing.assert_allclose(relit.renderings[0].colours[method], picture, atol=2e-4)
+
+
+def test_white_is_the_white_of_the_screen_under_every_light(relit):
+    for rendering in relit.renderings:
+        for colours in rendering.colours.values():
+            np.testing.assert_allclose(colours[-1], 1, atol=1e-4)
+
+
+def test_spectra_agree_with_plain_integration(relit, picture, small_cube):
+    for rendering in relit.renderings:
+        screen = sensor("sRGB", rendering.light)
+        expected = screen.rgb(small_cube.reflectance(picture))
+        np.testing.assert_allclose(rendering.colours["atlas"], expected, atol=1e-5)
+
+
+def test_products_multiply_by_the_rgb_of_the_light(relit, picture, sensor):
+    lamp = light("A").white
+    product = picture * (sensor.xyz_to_rgb @ lamp)
+    xyz = sensor.xyz(product)
+    expected = xyz @ relit.renderings[1].sensor.xyz_to_rgb.T
+    np.testing.assert_allclose(relit.renderings[1].colours[RGB_PRODUCT], expected, atol=1e-5)
+
+
+def test_atlas_entries_are_relit_as_measured_where_products_fail(macbeth_cube):
+    atlas = read_atlas("macbeth")
+    build = macbeth_cube.data.sensor
+    measured = on_grid(atlas, build.wavelengths)
+    rgb = build.rgb(measured)
+    inside = build.contains(rgb)
+    relit = relight("chart", rgb[inside][None].astype(np.float32), {"atlas": macbeth_cube}, ("A", "HP1"))
+    for rendering, bounds in zip(relit.renderings, ((0.3, 3), (0.6, 12)), strict=True):
+        truth = rendering.sensor.rgb(measured[inside])[None]
+        spectra = delta_e_rgb(rendering.sensor, truth, rendering.colours["atlas"])
+        products = delta_e_rgb(rendering.sensor, truth, rendering.colours[RGB_PRODUCT])
+        assert spectra.max() < bounds[0]
+        assert products.mean() > bounds[1]
+
+
+def test_differences_are_delta_e(relit):
+    rendering = relit.renderings[1]
+    found = rendering.difference(RGB_PRODUCT, "atlas")
+    expected = delta_e_rgb(rendering.sensor, rendering.colours[RGB_PRODUCT], rendering.colours["atlas"])
+    np.testing.assert_array_equal(found.delta_e, expected)
+    assert (found.mean, found.max) == (expected.mean(), expected.max())
+    assert (expected <= found.p95).mean() == pytest.approx(0.95, abs=0.01)
+    assert rendering.difference("atlas", "atlas").max == 0
+
+
+def test_maps_start_at_the_limit_of_perception_and_hold_most_differences(relit):
+    assert relit.renderings[0].map_limit == 2
+    rendering = relit.renderings[3]
+    shares = [
+        (rendering.difference(RGB_PRODUCT, name).delta_e <= rendering.map_limit).mean()
+        for name in relit.methods
+    ]
+    assert min(shares) >= 0.95
+
+
+def test_cubes_of_other_spaces_are_refused(picture, small_cube, plain_cube):
+    import dataclasses
+
+    data = dataclasses.replace(plain_cube.data, sensor=sensor("Display P3"))
+    other = dataclasses.replace(plain_cube, data=data)
+    with raises(OptionError, "cubes-of-different-spaces"):
+        relight("x", picture, {"a": small_cube, "b": other}, ("A",))
+
+
+def test_unknown_lights_are_refused(picture, small_cube):
+    with raises(UnknownNameError, "unknown-illuminant"):
+        relight("x", picture, {"a": small_cube}, ("moon",))

@@ -1,0 +1,47 @@
+// The layers of each picture lie on top of one another: two methods divided by a line, or the map of their difference.
+const limits = JSON.parse(document.getElementById("limits").textContent);
+const form = document.querySelector(".choices");
+const [first, second, map] = ["first", "second", "map"].map(id => document.getElementById(id));
+
+function choose() {
+  const light = form.elements.light.value;
+  const pair = [first.value, second.value].sort().join("-");
+  const asMap = map.checked && first.value !== second.value;
+  for (const view of document.querySelectorAll(".view")) {
+    view.classList.toggle("map", asMap);
+    for (const layer of view.querySelectorAll("img")) {
+      const here = layer.dataset.light === light, shows = layer.dataset.shows;
+      layer.classList.toggle("first", here && !asMap && shows === first.value);
+      layer.classList.toggle("second", here && !asMap && shows === second.value && shows !== first.value);
+      layer.classList.toggle("shown", here && (asMap ? shows === pair : shows === first.value && shows === second.value));
+    }
+    view.querySelector(".tag.first").textContent = first.selectedOptions[0].textContent;
+    view.querySelector(".tag.second").textContent = second.selectedOptions[0].textContent;
+    const figure = view.closest("figure");
+    figure.querySelector(".split").hidden = asMap;
+    figure.querySelector(".scale").hidden = !asMap;
+    figure.querySelector(".limit").textContent = `${limits[light]} and more`;
+  }
+}
+
+for (const view of document.querySelectorAll(".view")) {
+  const split = view.closest("figure").querySelector(".split");
+  const move = () => view.style.setProperty("--split", `${split.value}%`);
+  const drag = event => {
+    const { left, width } = view.getBoundingClientRect();
+    split.value = (100 * (event.clientX - left)) / width;
+    move();
+  };
+  split.addEventListener("input", move);
+  view.addEventListener("pointerdown", event => {
+    if (view.classList.contains("map")) return;
+    view.setPointerCapture(event.pointerId);
+    drag(event);
+  });
+  view.addEventListener("pointermove", event => event.buttons && view.hasPointerCapture(event.pointerId) && drag(event));
+  move();
+}
+form.addEventListener("change", choose);
+form.addEventListener("submit", event => event.preventDefault());
+choose();
+document.querySelector("main").setAttribute("aria-busy", "false");

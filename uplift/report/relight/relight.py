@@ -1,0 +1,223 @@
+"""Colours of an image under other lights, by products of RGB and by spectra of cubes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
+from uplift.colorimetry.observer import display_sensors
+from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.srgb import to_display_codes
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
+from uplift.io.texture.colours import Floats
+from uplift.lookup import Cube, bulk
+
+RGB_PRODUCT = "RGB × light"
+"""Name of the method that multiplies the RGB of the image by those of the light."""
+MIN_MAP_LIMIT = 2.0
+"""Smallest ΔE00 at the dark end of a map: invisible differences stay pale."""
+ROWS = 64
+"""Rows whose spectra are in memory at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Difference:
+    """ΔE00 between the colours of two methods.
+
+    Parameters
+    ----------
+    delta_e : ndarray, shape (height, width)
+        ΔE00 of each pixel.
+    """
+
+    delta_e: Array
+
+    @property
+    def mean(self) -> float:
+        """Mean over all pixels."""
+        return float(self.delta_e.mean())
+
+    @property
+    def p95(self) -> float:
+        """Value that 95 % of the pixels stay within."""
+        return float(np.quantile(self.delta_e, 0.95))
+
+    @property
+    def max(self) -> float:
+        """Largest value."""
+        return float(self.delta_e.max())
+
+
+@dataclass(frozen=True, eq=False)
+class Rendering:
+    """An image under one light.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        The light with an sRGB screen, whose white is that of the light.
+    colours : dict
+        Linear RGB (height, width, 3) of ``sensor`` by the name of the method; `RGB_PRODUCT` is the first.
+    """
+
+    sensor: Sensor
+    colours: Mapping[str, Floats]
+
+    @property
+    def light(self) -> str:
+        """Name of the light."""
+        return self.sensor.illuminant
+
+    @property
+    def light_label(self) -> str:
+        """Name of the light with a description, if it has one."""
+        description = DESCRIPTIONS.get(self.light)
+        return f"{self.light}, {description}" if description else self.light
+
+    def difference(self, first: str, second: str) -> Difference:
+        """Compare two methods, relative to the white of the light.
+
+        Parameters
+        ----------
+        first, second : str
+            Names of methods.
+
+        Returns
+        -------
+        Difference
+        """
+        return Difference(delta_e_rgb(self.sensor, self.colours[first], self.colours[second]))
+
+    def screen_codes(self, method: str) -> NDArray[np.uint8]:
+        """Return 8-bit sRGB codes of a method; colours outside the screen's gamut are desaturated.
+
+        Parameters
+        ----------
+        method : str
+            Name of a method.
+
+        Returns
+        -------
+        ndarray of uint8, shape (height, width, 3)
+        """
+        return to_display_codes(self.colours[method], SRGB).astype(np.uint8)
+
+    @property
+    def map_limit(self) -> float:
+        """ΔE00 at the dark end of maps: nearly all differences from `RGB_PRODUCT` are below."""
+        methods = (method for method in self.colours if method != RGB_PRODUCT)
+        return max(
+            MIN_MAP_LIMIT, math.ceil(max(self.difference(RGB_PRODUCT, method).p95 for method in methods))
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Relit:
+    """An image under several lights.
+
+    Parameters
+    ----------
+    name : str
+        Name of the image.
+    reduction : int
+        Pixels of the image per pixel of the colours, along each side.
+    renderings : tuple of Rendering
+        One for each light.
+    """
+
+    name: str
+    reduction: int
+    renderings: tuple[Rendering, ...]
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """Names of the methods."""
+        return tuple(self.renderings[0].colours)
+
+
+def relight(
+    name: str,
+    rgb: Floats,
+    cubes: Mapping[str, Cube],
+    lights: Sequence[str] = RELIGHT_LIGHTS,
+    *,
+    reduction: int = 1,
+    threads: int = 2,
+) -> Relit:
+    """Compute the colours of an image under lights.
+
+    Parameters
+    ----------
+    name : str
+        Name of the image.
+    rgb : ndarray, shape (height, width, 3)
+        Linear RGB in [0, 1], in the space of the cubes.
+    cubes : mapping of str to Cube
+        At least one cube, by the name of its method. All have the same space, illuminant and observer.
+    lights : sequence of str
+        Illuminants.
+    reduction : int
+        Pixels of the image per pixel of ``rgb``.
+    threads : int
+        Number of threads.
+
+    Returns
+    -------
+    Relit
+
+    Raises
+    ------
+    OptionError
+        The cubes have different spaces (code ``cubes-of-different-spaces``).
+    ColourError
+        A cube that was built for a scene lacks colours of the image.
+    UnknownNameError
+        A light is unknown.
+    """
+    sensor = _common_sensor(cubes)
+    screens = display_sensors(lights, sensor.observer)
+    by_spectra = {method: _by_spectra(cube, rgb, screens, threads) for method, cube in cubes.items()}
+    renderings = (
+        Rendering(
+            screen,
+            {RGB_PRODUCT: _by_product(sensor, rgb, screen)}
+            | {method: colours[number] for method, colours in by_spectra.items()},
+        )
+        for number, screen in enumerate(screens)
+    )
+    return Relit(name, reduction, tuple(renderings))
+
+
+def _common_sensor(cubes: Mapping[str, Cube]) -> Sensor:
+    spaces = {(cube.space, cube.illuminant, cube.observer) for cube in cubes.values()}
+    if len(spaces) > 1:
+        names = " and ".join(", ".join(space) for space in sorted(spaces))
+        raise OptionError(
+            f"cubes that are compared must have one RGB space, illuminant and observer, got {names}",
+            code="cubes-of-different-spaces",
+            hint="build the cube with the settings of the other",
+        )
+    return next(iter(cubes.values())).data.sensor
+
+
+def _by_product(sensor: Sensor, rgb: Floats, screen: Sensor) -> Floats:
+    """Multiply by the RGB of the light, as renderers do, and adapt the product to the white of the screen."""
+    light = sensor.xyz_to_rgb @ screen.light.white
+    to_screen = screen.xyz_to_rgb @ sensor.rgb_to_xyz
+    return np.asarray((rgb * light) @ to_screen.T, dtype=np.float32)
+
+
+def _by_spectra(cube: Cube, rgb: Floats, screens: Sequence[Sensor], threads: int) -> list[Floats]:
+    """Integrate the spectra of all pixels under each light."""
+    sample = bulk.spectra(cube, screens[0].wavelengths, threads=threads)
+    matrix = np.concatenate([screen.matrix for screen in screens]).astype(np.float32)
+    rows = [sample(rgb[first : first + ROWS]) @ matrix.T for first in range(0, len(rgb), ROWS)]
+    return np.split(np.concatenate(rows), len(screens), axis=-1)
