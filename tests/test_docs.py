@@ -32,7 +32,7 @@ def test_the_page_of_commands_has_every_command_and_help_has_examples(name):
     assert f"**`uplift {name}`**" in REFERENCE
     with click.Context(main, **main.context_settings) as context:
         command = main.get_command(context, name)
-    assert re.search(rf"Examples:\n +uplift {name} ", command.help)
+    assert re.search(rf"Examples:\n +uplift {name}\b", command.help)
 
 
 @pytest.mark.parametrize("line", list(command_lines()))
