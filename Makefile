@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth
+.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -30,6 +30,10 @@ test: lint
 docs: $(INSTALLED)
 	$(BIN)/python -m tools.error_codes
 	$(BIN)/python -m tools.render_docs
+
+# The documentation site, out/site/index.html; it runs the notebooks.
+site: $(INSTALLED)
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs $(OUT)/site
 
 bench: $(INSTALLED)
 	$(BIN)/python -m benchmarks.bench

@@ -115,7 +115,7 @@ def build(
         Families of the shipped library that the learnt prior must not know, for tests on them; see
         `uplift.fit.shipped_library`.
     threshold : float, default 1e-4
-        Largest |target − stored| of a fitted lattice point in linear RGB, in (0, 0.1].
+        Largest ``|target − stored|`` of a fitted lattice point in linear RGB, in (0, 0.1].
     auto_tolerance : float, default 0.5
         With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the lattice.
     seed_corners : bool, default False

@@ -138,7 +138,7 @@ def max_rgb_error(cube: Cube, *, threads: int = 2) -> Sampler:
     Returns
     -------
     Sampler
-        From linear RGB (..., 3) to the largest |linear RGB| error (..., 1).
+        From linear RGB (..., 3) to the largest ``|linear RGB|`` error (..., 1).
 
     Raises
     ------
