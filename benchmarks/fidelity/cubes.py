@@ -172,11 +172,12 @@ def seed_starts(name: str) -> Iterator[dict[str, Any]]:
     some = materials(name)
     kept, queried = (some.take(rows) for rows in split(some, 0))
     tests = {"the other half": queried, "shades of entries": shades(kept), "colours near entries": near(kept)}
-    for label, corners in {"the nearest point, the default": False, "eight corners": True}.items():
+    for label, corners in {"entry and prior, the default": False, "the entry": True}.items():
         cube = build_from(kept, seed_corners=corners, leave_out=shipped(name))
         for test, requested in tests.items():
             yield {
                 "atlas": name,
+                "share": cube.data.provenance["prior"]["corner_share"],
                 "start": label,
                 "queried": test,
                 **errors(cube.reflectance(requested.rgb), requested),

@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 from uplift.colorimetry import observer
 from uplift.common.progress import ignore_progress
-from uplift.fit import Prior, Problem, fit_lattice, seed
+from uplift.fit import Prior, Problem, Starts, fit_lattice, seed
 from uplift.fit.grow import grow_from_prior, strides
 from uplift.fit.growth import Growth
 from uplift.fit.improve import STEPS, improve
@@ -32,7 +32,7 @@ def fitted(model, sensor, lattice, rgb=NOBODY):
     """Fit a lattice with entries of grey spectra at linear RGB (E, 3)."""
     problem = Problem(model, forward_of(model, sensor), lattice)
     prior = Prior(model, sensor, smooth(model, problem.forward))
-    return fit_lattice(problem, seed(lattice, rgb), np.zeros((len(rgb), model.count)), prior)
+    return fit_lattice(problem, Starts(prior, seed(lattice, rgb), np.zeros((len(rgb), model.count))))
 
 
 def missed(model, sensor, lattice, coefficients):

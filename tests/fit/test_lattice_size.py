@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -20,23 +21,28 @@ from uplift.models.minimum_norm import forward_map
 
 @pytest.fixture(scope="module")
 def stage(sensor):
-    """Arguments of the solver, lights and the entries of the ColorChecker."""
+    """Problem, prior, lights and the entries of the ColorChecker."""
     model = Moments(9)
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     spectra = uplift.atlas.on_grid(uplift.read_atlas(MACBETH), sensor.wavelengths)
     spectra = spectra[sensor.contains(sensor.rgb(spectra))]
     lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3")]
     entries = fit.fit_entries(model, forward, spectra, sensor.rgb(spectra), lights, lights[1], 1e-6)
-    return (model, forward, 1e-6), lights, entries
+    problem = fit.Problem(model, forward, fit.NO_LATTICE)
+    base = fit.learn_base(problem, sensor, lights, fit.shipped_library(), entries).base
+    return problem, fit.fit_prior(problem, sensor, entries, lights, lights[1], base), lights, entries
 
 
-def test_lattice_error_predicts_the_error_of_a_cube_of_seeded_corners(stage, sensor):
+@pytest.mark.parametrize("seed_corners", [True, False])
+def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, monkeypatch, seed_corners):
     """The lattice of the cube is evaluated at the entries without their boxes."""
-    solver, lights, entries = stage
+    monkeypatch.setattr(fit.Prior, "corner_share", 0.6)
+    problem, prior, lights, entries = stage
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
-        data = uplift.build(MACBETH, dim=32, seed_corners=True).data
-    trial = lattice_error(*solver, data.lattice, lights, entries)
+        data = uplift.build(MACBETH, dim=16, seed_corners=seed_corners).data
+    share = 1.0 if seed_corners else 0.6
+    trial = lattice_error(replace(problem, lattice=data.lattice), prior, share, lights, entries)
     corners, weights = data.lattice.corners(entries.rgb)
     spectra = reflectance(data.model, data.points.coefficients[corners.ravel()], sensor.wavelengths)
     answered = (weights[..., None] * spectra.reshape(*corners.shape, -1)).sum(axis=1)
@@ -46,17 +52,17 @@ def test_lattice_error_predicts_the_error_of_a_cube_of_seeded_corners(stage, sen
 
 
 def test_the_smallest_lattice_that_keeps_all_entries_is_chosen(stage):
-    solver, lights, entries = stage
+    problem, prior, lights, entries = stage
     spacing, dim, lost = choose_lattice(
-        *solver, lights, entries, observer.axis_nodes, ("srgb", "linear"), 0.5
+        problem, prior, prior.corner_share, lights, entries, observer.axis_nodes, ("srgb", "linear"), 0.5
     )
     assert lost == 0
     assert dim in DIMS
     smaller = [size for size in DIMS if size < dim]
     for size in smaller[-1:]:
         for axis in ("srgb", "linear"):
-            lattice = Lattice(observer.axis_nodes(axis, size))
-            assert lattice_error(*solver, lattice, lights, entries).max() > 0.5
+            trial = replace(problem, lattice=Lattice(observer.axis_nodes(axis, size)))
+            assert lattice_error(trial, prior, prior.corner_share, lights, entries).max() > 0.5
     assert spacing in ("srgb", "linear")
 
 

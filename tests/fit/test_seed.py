@@ -30,7 +30,7 @@ def test_every_entry_has_a_primary_point_or_a_collision(rgb):
 
 @given(atlases)
 def test_points_are_unique_and_corners_of_the_cell_of_their_entry(rgb):
-    seeds = seed(LATTICE, rgb, corners=True)
+    seeds = seed(LATTICE, rgb)
     assert len(set(seeds.points)) == len(seeds.points)
     corners, _ = LATTICE.corners(rgb)
     assert all(point in corners[entry] for point, entry in zip(seeds.points, seeds.entry, strict=True))
@@ -39,31 +39,21 @@ def test_points_are_unique_and_corners_of_the_cell_of_their_entry(rgb):
 @given(atlases)
 def test_all_corners_of_the_cells_of_entries_are_seeds(rgb):
     corners, _ = LATTICE.corners(rgb)
-    assert set(seed(LATTICE, rgb, corners=True).points) == set(corners.ravel())
-
-
-@given(atlases)
-def test_without_corners_all_seeds_are_primary_and_the_same(rgb):
-    seeds, all_corners = seed(LATTICE, rgb), seed(LATTICE, rgb, corners=True)
-    assert seeds.primary.all()
-    primaries = {name: getattr(all_corners, name)[all_corners.primary] for name in ("points", "entry")}
-    np.testing.assert_array_equal(seeds.points, primaries["points"])
-    np.testing.assert_array_equal(seeds.entry, primaries["entry"])
-    assert seeds.collisions == all_corners.collisions
+    assert set(seed(LATTICE, rgb).points) == set(corners.ravel())
 
 
 @given(atlases, st.randoms(use_true_random=False))
 def test_seeds_do_not_depend_on_the_order_of_the_atlas(rgb, random):
     order = list(range(len(rgb)))
     random.shuffle(order)
-    here, there = seed(LATTICE, rgb, corners=True), seed(LATTICE, rgb[order], corners=True)
+    here, there = seed(LATTICE, rgb), seed(LATTICE, rgb[order])
     owners = dict(zip(here.points, here.entry, strict=True))
     assert owners == {point: order[entry] for point, entry in zip(there.points, there.entry, strict=True)}
 
 
 def test_a_single_entry_owns_the_eight_corners_nearest_first():
     rgb = np.array([[0.33, 0.5, 0.71]])
-    seeds = seed(LATTICE, rgb, corners=True)
+    seeds = seed(LATTICE, rgb)
     apart = np.linalg.norm(LATTICE.points[seeds.points] - rgb, axis=1)
     assert len(seeds.points) == 8
     assert (np.diff(apart) >= 0).all()
@@ -73,7 +63,7 @@ def test_a_single_entry_owns_the_eight_corners_nearest_first():
 
 def test_entries_in_one_cell_share_its_corners_evenly():
     rgb = np.array([[0.42, 0.42, 0.42], [0.58, 0.58, 0.58]])
-    seeds = seed(LATTICE, rgb, corners=True)
+    seeds = seed(LATTICE, rgb)
     assert np.bincount(seeds.entry).tolist() == [4, 4]
     assert seeds.collisions == ()
 

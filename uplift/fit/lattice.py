@@ -13,9 +13,8 @@ from uplift.fit.grow import grow_from_prior, supporting_points
 from uplift.fit.grow_from_neighbours import grow_from_neighbours
 from uplift.fit.growth import Growth, PointPrior
 from uplift.fit.improve import STEPS, THESIS_STEPS, Improvement, Start, improve
-from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
-from uplift.fit.seed import Seeds
+from uplift.fit.starts import Starts
 from uplift.fit.store import store
 from uplift.lattice import NO_ENTRY, NOT_FITTED, Lattice, PointTable, Status
 
@@ -75,28 +74,21 @@ STRATEGIES = {
 
 def fit_lattice(
     problem: Problem,
-    seeds: Seeds,
-    entries: Array,
-    prior: Prior,
+    starts: Starts,
     progress: ProgressCallback = ignore_progress,
     strategy: Strategy = FROM_PRIOR,
 ) -> LatticeFit:
     """Fit the active points of a problem.
 
-    Seeded points start from their entries, all others from the prior. RGB, distance and status are computed from
-    the stored coefficients. Unrealisable points are fitted to the nearest realisable colour; their distance is
-    measured from the unrealisable one.
+    RGB, distance and status are computed from the stored coefficients. Unrealisable points are fitted to the nearest
+    realisable colour; their distance is measured from the unrealisable one.
 
     Parameters
     ----------
     problem : Problem
         Model, lattice and threshold.
-    seeds : Seeds
-        Points that start from atlas entries.
-    entries : ndarray, shape (E, C)
-        Multipliers of the atlas entries.
-    prior : Prior
-        Start of the other points, and the standard errors.
+    starts : Starts
+        What points start from, and the standard errors.
     progress : callable, optional
         Called with `Progress` events of the stages ``"fit"`` and ``"store"``.
     strategy : Strategy, default `FROM_PRIOR`
@@ -107,14 +99,12 @@ def fit_lattice(
     LatticeFit
         The table of points, and the steps of the improvement pass.
     """
+    seeds = starts.seeds
     entry = np.full(problem.lattice.size, NO_ENTRY, dtype=np.int32)
     entry[seeds.points] = seeds.entry
 
     def expected(points: Indices) -> Array:
-        multipliers = prior(problem.goal(points))
-        seeded = entry[points] != NO_ENTRY
-        multipliers[seeded] = entries[entry[points[seeded]]]
-        return multipliers
+        return starts(points, problem.goal(points))
 
     grown = strategy.grow(problem, expected, seeds.points, progress)
     improvements = improve(grown, strategy.improvements)
@@ -129,6 +119,6 @@ def fit_lattice(
     status[outside[stored.distance[outside] <= problem.threshold]] = Status.REGULAR
     absent = problem.absent
     status[absent], entry[absent] = Status.ABSENT, NO_ENTRY
-    errors = prior.standard_errors(problem)
+    errors = starts.prior.standard_errors(problem)
     points = PointTable(stored.coefficients, stored.rgb, stored.distance, status, entry, grown.round, errors)
     return LatticeFit(points, improvements, grown.steps)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,12 +12,12 @@ from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.fit.entries import FittedEntries
+from uplift.fit.prior import Prior
+from uplift.fit.problem import Problem
 from uplift.fit.seed import seed
-from uplift.fit.solve import solve
+from uplift.fit.starts import Starts
 from uplift.lattice import Lattice, weighted_sum
-from uplift.models import Model
 from uplift.models.matmul import matmul_rows
-from uplift.models.minimum_norm import ForwardMap
 
 DIMS = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128)
 """Candidates."""
@@ -35,36 +36,31 @@ class LatticeChoice(NamedTuple):
 
 
 def lattice_error(
-    model: Model,
-    forward: ForwardMap,
-    tolerance: float,
-    lattice: Lattice,
-    lights: Sequence[Light],
-    entries: FittedEntries,
+    problem: Problem, prior: Prior, corner_share: float, lights: Sequence[Light], entries: FittedEntries
 ) -> Array:
     """Largest ΔE00 (E,) under ``lights`` between each entry's spectrum and the lattice at its colour.
 
-    Only the corners of the entries' cells are fitted, each from an entry: the error is that of crowding alone.
+    Only the corners of the entries' cells are fitted.
     """
-    seeds = seed(lattice, entries.rgb, corners=True)
-    start, target = entries.multipliers[seeds.entry], lattice.points[seeds.points]
-    found = solve(
-        model, forward, start, target, tolerance=tolerance, max_passes=MAX_PASSES, prior=start
-    ).multipliers
+    lattice, model = problem.lattice, problem.model
+    seeds = seed(lattice, entries.rgb)
+    points = np.sort(seeds.points)
+    target = lattice.points[points]
+    start = Starts(prior, seeds, entries.multipliers, corner_share)(points, target)
+    found = problem.solve(target, start, MAX_PASSES, prior=start).multipliers
     spectra, own = (
-        np.asarray(model.squash(matmul_rows(each, forward.basis.T))) for each in (found, entries.multipliers)
+        np.asarray(model.squash(matmul_rows(each, problem.forward.basis.T)))
+        for each in (found, entries.multipliers)
     )
     corners, weights = lattice.corners(entries.rgb)
-    order = np.argsort(seeds.points)
-    rows = order[np.searchsorted(seeds.points, corners, sorter=order)]
-    answers = weighted_sum(spectra, rows, weights)
+    answers = weighted_sum(spectra, np.searchsorted(points, corners), weights)
     return np.max([delta_e_spectra(light, answers, own) for light in lights], axis=0)
 
 
 def choose_lattice(
-    model: Model,
-    forward: ForwardMap,
-    tolerance: float,
+    problem: Problem,
+    prior: Prior,
+    corner_share: float,
     lights: Sequence[Light],
     entries: FittedEntries,
     axis_nodes: Callable[[str, int], Array],
@@ -75,12 +71,12 @@ def choose_lattice(
 
     Parameters
     ----------
-    model : Model
-        Spectrum model.
-    forward : ForwardMap
-        Map from multipliers to the RGB of the sensor.
-    tolerance : float
-        Largest residual of the solver in linear RGB.
+    problem : Problem
+        Model and solver, with any lattice.
+    prior : Prior
+        Prior of the lattice points.
+    corner_share : float
+        See `Starts`.
     lights : sequence of Light
         Lights under which errors are computed.
     entries : FittedEntries
@@ -100,8 +96,8 @@ def choose_lattice(
     axes, trials = tuple(axes), []
     for dim in DIMS:
         for axis in axes:
-            lattice = Lattice(axis_nodes(axis, dim))
-            errors = lattice_error(model, forward, tolerance, lattice, lights, entries)
+            trial = replace(problem, lattice=Lattice(axis_nodes(axis, dim)))
+            errors = lattice_error(trial, prior, corner_share, lights, entries)
             trials.append(LatticeChoice(axis, dim, int((errors > max_error).sum())))
         best = min(trials, key=lambda trial: (trial.lost, trial.dim))
         if not best.lost:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from uplift.common.arrays import Array, Mask
 from uplift.fit.base import Base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.family_kriging import FamilyKriging, FamilySamples, average_close, krige_families
+from uplift.fit.kriging import JITTER, Kernel
 from uplift.fit.library import Family
 from uplift.fit.match_spectra import match_spectra
 from uplift.fit.objective import BALANCED
@@ -32,8 +34,10 @@ from uplift.models.real_moments import dual
 
 SAME_COLOUR, SAME_SPECTRUM = 6.0, 0.03
 """ΔE*ab and rms within which a spectrum of a library is that of an atlas entry, which replaces it."""
-ASSUMED_ENTRIES = 20.0
+ASSUMED_ENTRIES = 40.0
 """Entries that the assumption that all families are equally relevant counts as."""
+CORRELATED = Kernel(length=24.0, nugget=1.0)
+"""Covariance of the deviations of entries that no family explains: that of close colours is left to the kriging."""
 MAX_RELEVANCE = 4.0
 MAX_ENTRIES = 1000
 """Entries from which relevances are learnt."""
@@ -155,7 +159,10 @@ def _brightening(smooth: Smooth, rgb: Array) -> Array:
 def _learn_relevance(
     smooth: Smooth, sensor: Sensor, lights: Sequence[Light], kriging: FamilyKriging, entries: FittedEntries
 ) -> Array:
-    """Relevance of each family (F,), by bounded least squares over differences of spectra and of their colours."""
+    """Relevance of each family (F,), by bounded generalised least squares.
+
+    The residuals are differences of spectra and of their colours. Those of entries of close colours are correlated.
+    """
     from scipy.optimize import lsq_linear
 
     assumed = np.ones(kriging.count)
@@ -164,16 +171,31 @@ def _learn_relevance(
     order = np.lexsort(entries.rgb.T)
     order = order[:: -(-len(order) // MAX_ENTRIES)]
     rgb = entries.rgb[order]
+    locations = rgb_to_lab(sensor, rgb)
     plain = _spectra(smooth, sensor, rgb)
-    parts = kriging.contributions(rgb_to_lab(sensor, rgb)) * _brightening(smooth, rgb)
-    features = _features(lights, np.clip(plain + parts.sum(axis=0), 0, 1))
-    columns = np.stack([features(part).ravel() for part in parts], axis=1)
+    parts = kriging.contributions(locations) * _brightening(smooth, rgb)
+    features, independent = (
+        _features(lights, np.clip(plain + parts.sum(axis=0), 0, 1)),
+        _decorrelate(locations),
+    )
+    columns = np.stack([independent(features(part)).ravel() for part in parts], axis=1)
     scale = np.sqrt(ASSUMED_ENTRIES * (columns**2).sum() / len(rgb) / kriging.count)
     if not scale:
         return assumed
     rows = np.concatenate([columns, scale * np.eye(kriging.count)])
-    goal = np.concatenate([features(entries.measured[order] - plain).ravel(), scale * assumed])
+    unexplained = independent(features(entries.measured[order] - plain))
+    goal = np.concatenate([unexplained.ravel(), scale * assumed])
     return np.asarray(lsq_linear(rows, goal, bounds=(0, MAX_RELEVANCE), method="bvls").x)
+
+
+def _decorrelate(locations: Array) -> Callable[[Array], Array]:
+    """From residuals (n, K) of entries at L*a*b* (n, 3) to independent ones of unit variance."""
+    from scipy.linalg import solve_triangular
+    from scipy.spatial.distance import cdist
+
+    covariance = CORRELATED(cdist(locations, locations)) / CORRELATED(np.zeros(()))
+    root = np.linalg.cholesky(covariance + JITTER * np.eye(len(covariance)))
+    return partial(solve_triangular, root, lower=True)
 
 
 def _features(lights: Sequence[Light], spectra: Array) -> Callable[[Array], Array]:

@@ -13,11 +13,12 @@ import numpy as np
 from uplift.colorimetry.delta_e import lab, lab_jacobian
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
-from uplift.fit.objective import BALANCED
 from uplift.models import Moments
 from uplift.models.duality import cosine_basis
 from uplift.models.matmul import matmul_rows
 
+LIGHTS_WEIGHT = 0.06
+"""Weight of a unit of CIE L*a*b* under a light: twice that of atlas entries, as the spectra are uncertain."""
 NODES = 1024
 """Nodes of the integrals from reflectances to moments."""
 DAMPING = 1e-4
@@ -76,7 +77,7 @@ class _Step:
         x = multipliers @ self.basis.T
         difference, colour_difference = self._differences(x, goal)
         slope = self.model.slope(x)
-        to_lab = BALANCED.lights * lab_jacobian(self._xyz(self.model.squash(x)), self.whites)
+        to_lab = LIGHTS_WEIGHT * lab_jacobian(self._xyz(self.model.squash(x)), self.whites)
         change = (slope @ self.colours).reshape(len(x), -1, 3, count)
         change = (to_lab @ change).reshape(len(x), -1, count)
         matrix = ((slope * slope) @ self.squares).reshape(-1, count, count) + change.mT @ change
@@ -98,7 +99,7 @@ class _Step:
         """Differences of the spectra (n, N), and weighted ones of their colours (n, 3 L)."""
         spectra = self.model.squash(x)
         colours = lab(self._xyz(spectra), self.whites) - lab(self._xyz(goal), self.whites)
-        return spectra - goal, BALANCED.lights * colours.reshape(len(x), -1)
+        return spectra - goal, LIGHTS_WEIGHT * colours.reshape(len(x), -1)
 
     def _xyz(self, spectra: Array) -> Array:
         return (spectra @ self.lights.T).reshape(len(spectra), -1, 3)

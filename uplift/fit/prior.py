@@ -14,7 +14,7 @@ from uplift.common.arrays import Array
 from uplift.fit.base import Base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import Kernel, Kriging, krige
-from uplift.fit.learn_kernel import MIN_ENTRIES, learn_kernel, visible_change
+from uplift.fit.learn_kernel import DEFAULT, MIN_ENTRIES, learn_kernel, visible_change
 from uplift.fit.problem import Problem
 from uplift.fit.smooth import NO_FREEDOM, TABLE, Smooth, smooth
 from uplift.fit.uncertainty import Uncertainty, uncertainty
@@ -63,6 +63,17 @@ class Prior:
         if self.kriging is None:
             return self.model.from_storage(coefficients)
         return _bounded(self.model, coefficients, self.kriging(rgb_to_lab(self.sensor, rgb)))
+
+    @property
+    def corner_share(self) -> float:
+        """Share of an entry in the start of the corners of its cell, the rest is the prior; see `Starts`.
+
+        Entries of an atlas with a small nugget are predicted by others. Materials of such an atlas between its entries
+        are nearer to the prior, and only half of an entry's own deviation is expected at the corners.
+        """
+        if self.kriging is None:
+            return 1.0
+        return (1 + min(self.kriging.kernel.nugget / DEFAULT.nugget, 1)) / 2
 
     def describe(self) -> dict[str, float]:
         """Return the learnt parameters of the kriging, for the provenance of cubes.

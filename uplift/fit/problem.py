@@ -34,6 +34,10 @@ class Method(Protocol):
         ...
 
 
+NO_LATTICE = Lattice(np.array([0.0, 1.0]))
+"""Lattice of problems that are solved for given colours only."""
+
+
 def solver_tolerance(threshold: float) -> float:
     """Return the residual at which the solver stops: the last steps converge quadratically and cost little.
 

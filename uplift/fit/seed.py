@@ -42,11 +42,11 @@ class Seeds:
     collisions: tuple[Collision, ...]
 
 
-def seed(lattice: Lattice, rgb: Array, *, corners: bool = False) -> Seeds:
+def seed(lattice: Lattice, rgb: Array) -> Seeds:
     """Assign lattice points to atlas entries, independently of the order of the entries.
 
-    Every entry gets its nearest point, unless a closer entry owns it. With ``corners``, in rounds, every entry also
-    gets the nearest free corner of its cell: the "better approach" of the thesis.
+    Every entry gets its nearest point, unless a closer entry owns it. Then, in rounds, every entry gets the
+    nearest free corner of its cell: the "better approach" of the thesis.
 
     Parameters
     ----------
@@ -54,9 +54,6 @@ def seed(lattice: Lattice, rgb: Array, *, corners: bool = False) -> Seeds:
         The lattice.
     rgb : ndarray, shape (E, 3)
         Linear RGB of the entries, in [0, 1].
-    corners : bool, default False
-        Assign all eight corners of the cells of entries. This takes the prior's place at the other seven. Colours
-        within a few ΔE of entries gain, other materials of the same family lose a little; see docs/fidelity.md.
 
     Returns
     -------
@@ -71,7 +68,7 @@ def seed(lattice: Lattice, rgb: Array, *, corners: bool = False) -> Seeds:
     order = np.lexsort([*rgb.T, nearest])
     owner, collisions = _assign_primaries(queue, order)
     primaries = len(owner)
-    for _ in CORNERS if corners else ():
+    for _ in CORNERS:
         for entry in order:
             free = next((int(point) for point in queue[entry] if point not in owner), None)
             if free is not None:

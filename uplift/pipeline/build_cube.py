@@ -17,7 +17,7 @@ from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.common.arrays import Array, Indices, StrPath
+from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning, unknown_name
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.quoting import format_value
@@ -28,7 +28,7 @@ from uplift.lattice import EntryBoxes, Lattice, SceneLike
 from uplift.lattice.box_widths import half_widths
 from uplift.lookup import Cube
 from uplift.models import Model
-from uplift.models.minimum_norm import ForwardMap, forward_map
+from uplift.models.minimum_norm import forward_map
 from uplift.models.moments import MAX_COUNT
 from uplift.pipeline.libraries import AtlasLike, read_libraries
 from uplift.pipeline.libraries import describe as describe_libraries
@@ -119,8 +119,9 @@ def build(
     auto_tolerance : float, default 0.5
         With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the lattice.
     seed_corners : bool, default False
-        Start all eight corners of the cell of each atlas entry from the entry, as Tódová 2020 does. By default only
-        the nearest does, and the prior holds at the others. ``start="neighbours"`` always does.
+        Start all eight corners of the cell of each atlas entry from the entry, as Tódová 2020 does. By default, seven
+        of them start between entry and prior, with a share of the entry from ½ to 1 that the nugget of the atlas
+        determines; see `uplift.fit.Prior.corner_share`. ``start="neighbours"`` always does.
     start : {"prior", "neighbours"}, default "prior"
         What lattice points start from: the spectrum that the atlas lets expect at their colour, or the spectra of
         their fitted neighbours, outward from the seeds (Tódová 2020, section 3.1).
@@ -186,7 +187,7 @@ def build(
     check_memory(options)
     tolerance = fit.solver_tolerance(options.threshold)
     chosen = _chosen_solver(solver, tolerance)
-    colours = None if scene is None else _as_scene(scene)
+    scene = None if scene is None else _as_scene(scene)
     sensor = observers.sensor(options.space, options.illuminant, options.observer)
     spectrum_model = options.spectrum_model()
     forward = forward_map(spectrum_model, sensor.wavelengths, sensor.matrix)
@@ -209,18 +210,22 @@ def build(
     )
     entries = fit_entries(spectrum_model, forward)
 
-    options = _with_dim(options, forward, scene_lights, entries)
+    colours = fit.Problem(spectrum_model, forward, fit.NO_LATTICE, options.threshold, method=method)
+    learnt = fit.learn_base(colours, sensor, scene_lights, families, entries)
+    fitted_prior = fit.fit_prior(colours, sensor, entries, scene_lights, error_light, learnt.base)
+    corner_share = 1.0 if seed_corners or options.start == "neighbours" else fitted_prior.corner_share
+
+    options = _with_dim(options, colours, fitted_prior, corner_share, scene_lights, entries)
     lattice = Lattice(observers.axis_nodes(options.axis, int(options.dim)))
     boxes = EntryBoxes(lattice, rgb, half_widths(lattice, rgb))
-    seeds = fit.seed(lattice, rgb, corners=seed_corners or options.start == "neighbours")
+    seeds = fit.seed(lattice, rgb)
     _warn_of_crowding(names, boxes, seeds)
 
-    kept = None if colours is None else np.flatnonzero(colours.required_points(boxes, sensor, progress))
+    kept = None if scene is None else np.flatnonzero(scene.required_points(boxes, sensor, progress))
     strategy = fit.STRATEGIES[options.start]
     active = None if kept is None else strategy.supporting_points(lattice, kept)
-    problem = replace(_problem(options, forward, lattice, sensor, active), method=method)
-    learnt = fit.learn_base(problem, sensor, scene_lights, families, entries)
-    fitted_prior = fit.fit_prior(problem, sensor, entries, scene_lights, error_light, learnt.base)
+    outside = fit.unrealisable(lattice, sensor, options.threshold / 2, active)
+    problem = replace(colours, lattice=lattice, unrealisable=outside, active_points=active)
 
     entry_model = options.entry_model()
     error, spectra, seed_multipliers = entries.error, None, entries.multipliers
@@ -230,7 +235,8 @@ def build(
         spectra = EntrySpectra(entry_model, entry_model.to_storage(extended.multipliers))
         if options.start == "neighbours":
             seed_multipliers = _recalculated(spectra, spectrum_model)
-    fitted = fit.fit_lattice(problem, seeds, seed_multipliers, fitted_prior, progress, strategy)
+    starts = fit.Starts(fitted_prior, seeds, seed_multipliers, corner_share)
+    fitted = fit.fit_lattice(problem, starts, progress, strategy)
     points = fitted.points if kept is None else fitted.points.restricted_to(kept)
     return Cube(
         CubeData(
@@ -248,7 +254,7 @@ def build(
             ),
             points=points if options.debug else replace(points, round=None),
             error_illuminant=ERROR_ILLUMINANT,
-            provenance=_provenance(options, atlas, names, colours, fitted_prior, fitted)
+            provenance=_provenance(options, atlas, names, scene, starts, fitted)
             | describe_libraries(libraries, families, learnt.relevance),
         )
     )
@@ -311,15 +317,20 @@ def _entries_in_gamut(atlas: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Ar
 
 
 def _with_dim(
-    options: Options, forward: ForwardMap, lights: Sequence[Light], entries: fit.FittedEntries
+    options: Options,
+    problem: fit.Problem,
+    prior: fit.Prior,
+    corner_share: float,
+    lights: Sequence[Light],
+    entries: fit.FittedEntries,
 ) -> Options:
     """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits into memory."""
     if options.dim != AUTO:
         return options
     choice = fit.choose_lattice(
-        options.spectrum_model(),
-        forward,
-        fit.solver_tolerance(options.threshold),
+        problem,
+        prior,
+        corner_share,
         lights,
         entries,
         observers.axis_nodes,
@@ -335,20 +346,6 @@ def _with_dim(
     options = replace(options, axis=choice.axis, dim=choice.dim)
     check_memory(options)
     return options
-
-
-def _problem(
-    options: Options, forward: ForwardMap, lattice: Lattice, sensor: Sensor, active: Indices | None
-) -> fit.Problem:
-    outside = fit.unrealisable(lattice, sensor, options.threshold / 2, active)
-    return fit.Problem(
-        options.spectrum_model(),
-        forward,
-        lattice,
-        options.threshold,
-        unrealisable=outside,
-        active_points=active,
-    )
 
 
 def _warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: fit.Seeds) -> None:
@@ -384,7 +381,7 @@ def _provenance(
     atlas: Atlas,
     names: tuple[str, ...],
     scene: SceneLike | None,
-    prior: fit.Prior,
+    starts: fit.Starts,
     fitted: fit.LatticeFit,
 ) -> dict[str, Any]:
     """How the cube was built, in JSON values."""
@@ -394,7 +391,7 @@ def _provenance(
         "atlases": [{"name": source.name, "digest": source.digest} for source in atlas.sources],
         "left_out": [name for name in atlas.names if name not in names],
         "skipped": [entry.name for entry in atlas.skipped],
-        "prior": prior.describe(),
+        "prior": starts.describe(),
         "improvements": [step.to_json() for step in fitted.improvements],
         **({} if scene is None else {"scene": scene.describe()}),
     }

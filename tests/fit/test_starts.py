@@ -1,0 +1,59 @@
+"""Starts of lattice points: entries at their primary points, a share of them at corners, the prior elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift.fit import NO_LATTICE, Problem, Starts, seed
+from uplift.fit.kriging import Kernel, Kriging
+from uplift.fit.prior import Prior, smooth_base
+from uplift.lattice import Lattice
+from uplift.models import Moments
+from uplift.models.minimum_norm import forward_map
+
+MODEL = Moments(5)
+LATTICE = Lattice(np.linspace(0, 1, 6))
+RGB = np.array([[0.33, 0.5, 0.71], [0.42, 0.42, 0.42]])
+ENTRIES = np.random.default_rng(0).normal(size=(2, 5)) / 3
+
+
+@pytest.fixture(scope="module")
+def prior(sensor):
+    problem = Problem(MODEL, forward_map(MODEL, sensor.wavelengths, sensor.matrix), NO_LATTICE)
+    return Prior(MODEL, sensor, smooth_base(problem, sensor))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_corners_start_between_the_entry_and_the_prior(prior, share):
+    seeds = seed(LATTICE, RGB)
+    start = Starts(prior, seeds, ENTRIES, share)(seeds.points, LATTICE.points[seeds.points])
+    own = ENTRIES[seeds.entry]
+    expected = prior(LATTICE.points[seeds.points])
+    mixed = share * MODEL.to_storage(own) + (1 - share) * MODEL.to_storage(expected)
+    np.testing.assert_array_equal(start[seeds.primary], own[seeds.primary])
+    corners = ~seeds.primary
+    np.testing.assert_allclose(MODEL.to_storage(start)[corners], mixed[corners], atol=1e-6)
+
+
+def test_all_other_points_start_from_the_prior(prior):
+    seeds = seed(LATTICE, RGB)
+    points = np.setdiff1d(np.arange(LATTICE.size), seeds.points)
+    start = Starts(prior, seeds, ENTRIES)(points, LATTICE.points[points])
+    np.testing.assert_array_equal(start, prior(LATTICE.points[points]))
+
+
+def test_without_entries_all_points_start_from_the_prior(prior):
+    nobody = Starts(prior, seed(LATTICE, np.zeros((0, 3))), np.zeros((0, 5)), 0.5)
+    points = np.arange(LATTICE.size)
+    np.testing.assert_array_equal(nobody(points, LATTICE.points), prior(LATTICE.points))
+    assert nobody.describe() == {}
+
+
+@pytest.mark.parametrize(("nugget", "share"), [(0.0, 0.5), (0.03, 0.55), (0.3, 1.0), (2.0, 1.0)])
+def test_the_share_of_entries_follows_the_nugget(prior, nugget, share):
+    kriging = Kriging(np.zeros((1, 3)), np.zeros((1, 5)), Kernel(12.0, nugget))
+    learnt = Prior(MODEL, prior.sensor, prior.base, kriging)
+    assert learnt.corner_share == pytest.approx(share)
+    described = Starts(learnt, seed(LATTICE, RGB), ENTRIES, learnt.corner_share).describe()
+    assert described["corner_share"] == pytest.approx(share)
