@@ -82,7 +82,7 @@ def _measure(cube: Cube, mode: str, flags: tuple[str, ...], rgb: Any, runs: int)
         command = ["./rates", "rgb", "at", str(runs), "found"]
         done = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
         found = np.fromfile(folder / "found", np.float32).reshape(CHECKED, -1).astype(float)
-    lookup, evaluation, shared, _ = map(float, done.stdout.split())
+    lookup, many, evaluation, shared, _ = map(float, done.stdout.split())
     checked = rgb[:CHECKED].astype(float)
     worst = float(np.abs(found - cube.reflectance(checked, at, mode=mode)).max())
     if not worst <= WORST[mode]:
@@ -94,6 +94,7 @@ def _measure(cube: Cube, mode: str, flags: tuple[str, ...], rgb: Any, runs: int)
         "mode": mode,
         "flags": " ".join(flags),
         "lookup": COLOURS / lookup / 1e6,
+        "many": COLOURS / many / 1e6,
         "evaluation": COLOURS / evaluation / 1e6,
         "shared": COLOURS / shared / 1e6,
         "worst": worst,

@@ -10,10 +10,13 @@ import pytest
 
 from tests.io.export.test_programs import WAVELENGTHS, WITHIN, colours
 from uplift.io.export.kernel import (
+    add_nodes,
+    add_nodes_in_passes,
     answer_moments,
     answer_spectra,
     entries,
     intrinsics,
+    lanes,
     lattice,
     moments,
     spectra,
@@ -23,18 +26,17 @@ from uplift.io.export.kernel.table import make_table
 from uplift.io.export.kernel.translate import functions, translate
 
 
-def run_in_python(data, mode):
+def run_in_python(data, mode, answers):
     """Return a namespace with the functions of the kernel."""
     table = make_table(data, mode)
-    answers = answer_spectra if mode == "spectra" else answer_moments
     numbers, stride = table.numbers.tolist(), table.constants["STRIDE"]
 
     def load_row(index, row):
         row[:] = numbers[index * stride : (index + 1) * stride]
 
-    names = {**vars(intrinsics), **table.constants, "WIDTH": 4, "number": numbers.__getitem__}
+    names = {**vars(intrinsics), **table.constants, "WIDTH": 4, "LANES": 2, "number": numbers.__getitem__}
     names |= {"load_row": load_row, "warp": float}
-    for function in functions(moments, spectra, lattice, entries, answers):
+    for function in functions(moments, spectra, lattice, entries, *answers):
         function.returns, function.args = None, _without_types(function.args)
         exec(compile(ast.Module([_without_aliases(function)], []), "kernel", "exec"), names)
     return names
@@ -53,9 +55,16 @@ def _without_aliases(function):
     return function
 
 
-@pytest.mark.parametrize("mode", ["spectra", "moments"])
-def test_the_kernel_in_python_equals_the_lookup(small_cube, mode):
-    names = run_in_python(small_cube.data, mode)
+@pytest.mark.parametrize(
+    ("mode", "answers"),
+    [
+        ("spectra", [add_nodes, answer_spectra]),
+        ("spectra", [add_nodes_in_passes, answer_spectra]),
+        ("moments", [answer_moments]),
+    ],
+)
+def test_the_kernel_in_python_equals_the_lookup(small_cube, mode, answers):
+    names = run_in_python(small_cube.data, mode, answers)
     rgb = colours(small_cube.data)[::97]
     found = []
     for colour in rgb.tolist():
@@ -67,11 +76,35 @@ def test_the_kernel_in_python_equals_the_lookup(small_cube, mode):
     np.testing.assert_allclose(found, expected, rtol=0, atol=WITHIN)
 
 
-def test_polynomials_of_sine_and_arc_tangent():
+def test_polynomials_of_sine_and_arc_tangent(small_cube):
+    names = run_in_python(small_cube.data, "spectra", [])
     for x in np.linspace(-0.5, 0.5, 1001).tolist():
         assert moments.sine_of_turn(x) == pytest.approx(math.sin(math.pi * x), rel=1e-7, abs=1e-12)
     for x in np.tan(np.linspace(-1.57, 1.57, 1001)).tolist():
-        assert moments.squash(x) == pytest.approx(0.5 + math.atan(x) / math.pi, abs=1e-7)
+        assert names["deviation"](1.0, x) == pytest.approx(math.atan(x) / math.pi, abs=6e-7)
+
+
+def test_colours_side_by_side_equal_those_one_by_one(small_cube):
+    data = small_cube.data
+    names, count = run_in_python(data, "moments", [lanes]), data.model.count
+    given = data.points.coefficients[[3, 200]].tolist()
+    expected = [[0.0] * count for _ in given]
+    assert all(map(names["dual"], given, expected))
+    side_by_side = [number for pair in zip(*given, strict=True) for number in pair]
+    found, valid = [0.0] * (2 * count), [0.0, 0.0]
+    names["duals"](side_by_side, found, valid)
+    assert valid == [1, 1]
+    assert [found[0::2], found[1::2]] == expected
+    reference = data.model.from_storage(np.array(given))
+    np.testing.assert_allclose(expected, reference, rtol=1e-6, atol=1e-6 * np.abs(reference).max())
+
+
+@pytest.mark.parametrize("first", [-0.1, 0.99, math.nan])
+def test_numbers_of_no_spectrum_are_invalid(small_cube, first):
+    names, count = run_in_python(small_cube.data, "moments", []), small_cube.data.model.count
+    multipliers = [1.0] * count
+    assert not names["multipliers_of"]([first] + [0.3] * (count - 1), multipliers)
+    assert multipliers == [0.0] * count
 
 
 SOURCE = '''

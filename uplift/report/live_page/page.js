@@ -30,7 +30,7 @@ void main() {
   for (int k = 0; k < CUBE_COUNT * 4; ++k) basis[k] = 0.0;
   if (number < CUBE_LATTICE) cube_load_row(number, values);
   for (int k = 0; k < ${GROUPS}; ++k) {
-    for (int w = 0; w < 4; ++w) { lanes[w] = at[k][w]; total[w] = 0.0; }
+    for (int w = 0; w < 4; ++w) { lanes[w] = at[k][w]; total[w] = 0.5; }
     if (number < CUBE_LATTICE) {
       cube_tabulate(lanes, basis);
       cube_add_spectrum(values, 1.0, basis, total);

@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from uplift.io.export.kernel.add_nodes import add_nodes
     from uplift.io.export.kernel.entries import add_entry
-    from uplift.io.export.kernel.intrinsics import COUNT, WIDTH, Basis, Block, Int, Place, zeros
-    from uplift.io.export.kernel.lattice import add_nodes
+    from uplift.io.export.kernel.intrinsics import COUNT, WIDTH, Basis, Block, Int, Place, empty
     from uplift.io.export.kernel.moments import tabulate
 
 
 def answer(place: Place, entry: Int, wavelengths: Block, total: Block) -> None:
     """Evaluate a colour that is located."""
-    basis: Basis = zeros(COUNT * WIDTH)
+    basis: Basis = empty(COUNT * WIDTH)
     for w in range(WIDTH):
-        total[w] = 0.0
+        total[w] = 0.5
     tabulate(wavelengths, basis)
     add_nodes(place, basis, total)
     if entry >= 0:

@@ -19,6 +19,10 @@ Coefficients = Floats
 Row = Floats
 Block = Floats
 Basis = Floats
+Corners = Floats
+Weights = Floats
+Lane = Floats
+Lanes = Floats
 
 SIZES = {
     "Colour": "3",
@@ -28,11 +32,17 @@ SIZES = {
     "Row": "STRIDE",
     "Block": "WIDTH",
     "Basis": "(COUNT * WIDTH)",
+    "Corners": "(8 * WIDTH)",
+    "Weights": "8",
+    "Lane": "LANES",
+    "Lanes": "(COUNT * LANES)",
 }
 """Elements of each array type, as expressions of the constants below."""
 
 WIDTH: Int
 """Wavelengths of one call: as many as a vector register or a ray has."""
+LANES: Int
+"""Colours whose moments are converted together."""
 COUNT: Int
 """Coefficients of a spectrum."""
 STRIDE: Int
@@ -59,8 +69,8 @@ START: Float
 END: Float
 """Wavelength range in nm; spectra are constant outside."""
 LOW: Float
-SPAN: Float
-"""The warped wavelength at the start of the range, and the length of the warped range."""
+SCALE: Float
+"""The warped wavelength at the start of the range, and the reciprocal of the length of the warped range."""
 
 
 def number(index: Int) -> Float:
@@ -83,9 +93,19 @@ def zeros(count: Int) -> Floats:
     return [0.0] * count
 
 
+def empty(count: Int) -> Floats:
+    """Create an array whose numbers are set before they are read."""
+    return [0.0] * count
+
+
 def unroll(start: Int, stop: Int) -> range:
     """Range of a loop that is written out in the translation."""
     return range(start, stop)
+
+
+def copysign(x: Float, sign: Float) -> Float:
+    """Give a number that is not negative the sign of another; of 0, either."""
+    return x if sign > 0.0 else -x
 
 
 def sqrt(x: Float) -> Float:

@@ -15,8 +15,8 @@ class Language:
         Names of the types of scalars.
     suffix : str
         Ends literals of single precision.
-    function : str
-        Precedes the declaration of a function.
+    function, expanded : str
+        Precedes the declaration of a function, and of one that is expanded where it is called.
     functions : mapping
         Names of functions that differ from Python's.
     context : tuple of str
@@ -28,9 +28,10 @@ class Language:
     width : int, optional
         Wavelengths of one call, where it is fixed. Sizes of arrays are then numbers, as OSL requires.
     zeros : str
-        Initial value of an array; empty for a loop.
+        Initial value of an array of zeros; without it a loop sets every array to 0.
     lanes : str
-        Precedes loops over wavelengths, which are to be vectorised.
+        Precedes loops over wavelengths or colours, which are to be vectorised; empty for a language of graphics
+        processors, which run many colours side by side.
     warp : str
         Definition of the warp of the phase.
     """
@@ -38,6 +39,7 @@ class Language:
     types: dict[str, str]
     suffix: str = ""
     function: str = ""
+    expanded: str = ""
     functions: dict[str, str] = field(default_factory=dict)
     context: tuple[str, str] = ("", "")
     mutable: str = "inout {type} {name}[{size}]"
@@ -51,22 +53,31 @@ class Language:
 
 C_TYPES = {"Float": "float", "Int": "int", "Bool": "int"}
 SHADER_TYPES = {"Float": "float", "Int": "int", "Bool": "bool"}
-C_CALLS = {"abs": "fabsf", "sqrt": "sqrtf", "tanh": "tanhf", "float": "(float)", "int": "(int)"}
+C_CALLS = {
+    "abs": "fabsf",
+    "copysign": "copysignf",
+    "sqrt": "sqrtf",
+    "tanh": "tanhf",
+    "float": "(float)",
+    "int": "(int)",
+}
 
 C = Language(
     types=C_TYPES,
     suffix="f",
     function="static inline ",
+    expanded="static {NAME}_EXPANDED ",
     functions=C_CALLS,
     mutable="{type} {name}[{size}]",
     readonly="const {type} {name}[{size}]",
     zeros="{{0}}",
-    lanes="{NAME}_LANES",
+    lanes="{NAME}_VECTORISE",
 )
 CUDA = Language(
     types=C_TYPES,
     suffix="f",
     function="{NAME}_FUNCTION ",
+    expanded="{NAME}_FUNCTION ",
     functions=C_CALLS,
     context=("const float *table", "table"),
     mutable="{type} {name}[{size}]",

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
         LISTS,
         NODES,
         STRIDE,
-        Basis,
-        Block,
         Coefficients,
         Colour,
         Float,
@@ -24,12 +22,11 @@ if TYPE_CHECKING:
         Place,
         Row,
         Sides,
+        empty,
         load_row,
         number,
         unroll,
-        zeros,
     )
-    from uplift.io.export.kernel.spectra import add_spectrum
 
 
 def cell(x: Float) -> Int:
@@ -54,7 +51,7 @@ def locate(rgb: Colour, place: Place) -> Int:
     for axis in range(3):
         place[axis] = (1.0 if rgb[axis] > 1.0 else rgb[axis]) if rgb[axis] > 0.0 else 0.0
     place[3] = 1.0
-    query: Colour = zeros(3)
+    query: Colour = empty(3)
     for axis in range(3):
         query[axis] = place[axis]
     entry: Int = -1
@@ -95,25 +92,10 @@ def weigh(place: Place, sides: Sides) -> Int:
     return first
 
 
-def add_nodes(place: Place, basis: Basis, total: Block) -> None:
-    """Add the weighted spectra of the eight lattice points."""
-    values: Row = zeros(STRIDE)
-    sides: Sides = zeros(6)
-    first: Int = weigh(place, sides)
-    for corner in range(8):
-        load_row(first + corner // 4 * DIM * DIM + corner // 2 % 2 * DIM + corner % 2, values)
-        add_spectrum(
-            values,
-            sides[corner // 4] * sides[2 + corner // 2 % 2] * sides[4 + corner % 2],
-            basis,
-            total,
-        )
-
-
 def sum_nodes(place: Place, coefficients: Coefficients) -> None:
     """Sum the weighted coefficients of the eight lattice points."""
-    mixed: Row = zeros(STRIDE)
-    sides: Sides = zeros(6)
+    mixed: Row = empty(STRIDE)
+    sides: Sides = empty(6)
     first: Int = weigh(place, sides) * STRIDE
     for k in range(STRIDE):
         x: Float = 0.0
@@ -131,7 +113,7 @@ def sum_nodes(place: Place, coefficients: Coefficients) -> None:
 
 def sum_coefficients(place: Place, entry: Int, coefficients: Coefficients) -> None:
     """Sum the weighted coefficients of the lattice and of an entry, in as many coefficients."""
-    values: Row = zeros(STRIDE)
+    values: Row = empty(STRIDE)
     sum_nodes(place, coefficients)
     if entry >= 0:
         load_row(LATTICE + entry, values)

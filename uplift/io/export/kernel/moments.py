@@ -14,7 +14,7 @@ if TYPE_CHECKING:
         COUNT,
         ENTRY_COUNT,
         LOW,
-        SPAN,
+        SCALE,
         WIDTH,
         Basis,
         Block,
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
         Coefficients,
         Float,
         Int,
+        copysign,
+        empty,
         number,
         unroll,
         warp,
@@ -36,64 +38,60 @@ def sine_of_turn(x: Float) -> Float:
     return x * (3.14159264 + u * (-5.16770968 + u * series))
 
 
-def squash(x: Float) -> Float:
-    """1/2 + arctan(x) / π, to 1e-7, by arctan |x| = π/4 + arctan t: conditions would keep loops from vectorising."""
+def deviation(weight: Float, x: Float) -> Float:
+    """Weighted arctan(x) / π, to 6e-7, by arctan |x| = π/4 + arctan t: conditions would keep loops from vectorising."""
     size: Float = abs(x)
-    sign: Float = 1.0 if x > 0.0 else -1.0
     t: Float = (size - 1.0) / (size + 1.0)
     u: Float = t * t
-    series: Float = 0.03155817 + u * (-0.0189351 + u * (0.00771978 + u * -0.00149392))
-    angle: Float = t * (0.31830985 + u * (-0.10609902 + u * (0.06356561 + u * (-0.04462539 + u * series))))
-    return 0.5 + sign * (0.25 + angle)
+    high: Float = 0.0616058142 + u * -0.0370596857 + u * u * (0.0167581496 + u * -0.0037303064)
+    return copysign(weight, x) * (0.25 + t * (0.318302635 + u * -0.105877136 + u * u * high))
 
 
 def phase(wavelength: Float) -> Float:
     """Phase in turns, [-1/2, 1/2]; differences of magnitudes clip it to the range."""
-    turn: Float = (warp(wavelength) - LOW) / SPAN - 0.5
+    turn: Float = (warp(wavelength) - LOW) * SCALE - 0.5
     return 0.5 * (abs(turn + 0.5) - abs(turn - 0.5))
 
 
 def argument(first: Int, wavelength: Float) -> Float:
     """Evaluate p_0 + 2 p_1 cos φ + ... of the multipliers from an index in the table."""
-    turn: Float = phase(wavelength)
-    cosine: Float = sine_of_turn(turn)
-    sine: Float = -sine_of_turn(0.5 - abs(turn))
-    real: Float = 1.0
-    imaginary: Float = 0.0
+    cosine: Float = 2.0 * sine_of_turn(phase(wavelength))
+    before: Float = 2.0
+    now: Float = cosine
     held: Float = 0.0
     x: Float = number(first)
     for k in range(1, ENTRY_COUNT):
-        held = real * cosine - imaginary * sine
-        imaginary = real * sine + imaginary * cosine
-        real = held
-        x += 2.0 * real * number(first + k)
+        x += now * number(first + k)
+        held = now
+        now = cosine * now - before
+        before = held
     return x
 
 
 def tabulate(wavelengths: Block, basis: Basis) -> None:
-    """Tabulate 1, 2 cos φ, ..., 2 cos mφ at wavelengths in nm, order by order."""
+    """Tabulate 1, 2 cos φ, ..., 2 cos mφ at wavelengths in nm, order by order.
+
+    The product of 2 cos jφ and 2 cos kφ is 2 cos (j + k)φ + 2 cos (j - k)φ.
+    """
     for w in range(WIDTH):
-        turn: Float = phase(wavelengths[w])
-        cosine: Coefficients = zeros(COUNT)
-        sine: Coefficients = zeros(COUNT)
-        cosine[1] = sine_of_turn(turn)
-        sine[1] = -sine_of_turn(0.5 - abs(turn))
+        cosine: Coefficients = empty(COUNT)
+        cosine[1] = 2.0 * sine_of_turn(phase(wavelengths[w]))
         for k in unroll(2, COUNT):
-            cosine[k] = cosine[k // 2] * cosine[k - k // 2] - sine[k // 2] * sine[k - k // 2]
-            sine[k] = cosine[k // 2] * sine[k - k // 2] + sine[k // 2] * cosine[k - k // 2]
+            cosine[k] = cosine[k // 2] * cosine[k - k // 2] - (2.0 if k % 2 == 0 else cosine[1])
         basis[w] = 1.0
         for k in unroll(1, COUNT):
-            basis[k * WIDTH + w] = 2.0 * cosine[k]
+            basis[k * WIDTH + w] = cosine[k]
 
 
 def dual(moments: Coefficients, multipliers: Coefficients) -> Bool:
-    """Compute multipliers of moments by Schur's algorithm; False where it breaks down."""
+    """Compute multipliers of moments by Schur's algorithm; False where it breaks down.
+
+    No branches: colours in the lanes of a register are computed together.
+    """
     middle: Float = moments[0] - 0.5
-    if not (middle > -0.5 and middle < 0.5):
-        return False
     sine: Float = sine_of_turn(0.5 - abs(middle))
     cosine: Float = -sine_of_turn(middle)
-    slope: Coefficients = zeros(COUNT)
+    slope: Coefficients = empty(COUNT)
     even: Coefficients = zeros(COUNT)
     odd: Coefficients = zeros(COUNT)
     for k in unroll(1, COUNT):
@@ -115,14 +113,16 @@ def dual(moments: Coefficients, multipliers: Coefficients) -> Bool:
     second: Coefficients = zeros(COUNT)
     first[0] = 1.0
     second[0] = 1.0
-    scale: Float = 1.0
+    room: Float = 0.25 - middle * middle
+    scale: Float = 2.0
     g: Float = 0.0
+    rest: Float = 0.0
     held: Float = 0.0
     for order in unroll(0, COUNT - 1):
         g = upper[0] / lower[0]
-        if not 1.0 - g * g > 0.0:
-            return False
-        scale *= 1.0 - g * g
+        rest = 1.0 - g * g
+        room = rest if rest < room else room
+        scale *= rest
         for k in unroll(0, COUNT - 2 - order):
             held = upper[k + 1] - g * lower[k + 1]
             lower[k] -= g * upper[k]
@@ -137,9 +137,10 @@ def dual(moments: Coefficients, multipliers: Coefficients) -> Bool:
         if order % 2 == 1:
             first[(order + 1) // 2] *= 1.0 + g
             second[(order + 1) // 2] *= 1.0 - g
-    tangent: Float = sine / (1.0 + cosine) if cosine > 0.0 else (1.0 - cosine) / sine
-    first_weight: Float = tangent / (2.0 * scale)
-    second_weight: Float = 1.0 / (2.0 * scale * tangent)
+    opposite: Float = sine if cosine > 0.0 else 1.0 - cosine
+    adjacent: Float = 1.0 + cosine if cosine > 0.0 else sine
+    first_weight: Float = opposite / (adjacent * scale)
+    second_weight: Float = adjacent / (opposite * scale)
     first_sum: Float = 0.0
     second_sum: Float = 0.0
     for lag in unroll(0, COUNT):
@@ -149,12 +150,12 @@ def dual(moments: Coefficients, multipliers: Coefficients) -> Bool:
             first_sum += first[k] * first[k + lag]
             second_sum += second[k] * second[k + lag]
         multipliers[lag] = first_weight * first_sum - second_weight * second_sum
-    return True
+    return room > 0.0 and scale > 1e-30
 
 
 def multipliers_of(coefficients: Coefficients, multipliers: Coefficients) -> Bool:
     """Compute multipliers, with as little grey as necessary; False, and those of a grey, if no spectrum fits."""
-    moments: Coefficients = zeros(COUNT)
+    moments: Coefficients = empty(COUNT)
     share: Float = 0.0
     for attempt in range(5):
         for k in range(COUNT):

@@ -6,14 +6,18 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.resources import files
 from string import Template
+from types import ModuleType
 from typing import Any
 
 from uplift.common.version import VERSION
 from uplift.cube import CubeData, digest
 from uplift.io.export.kernel import (
+    add_nodes,
+    add_nodes_in_passes,
     answer_moments,
     answer_spectra,
     entries,
+    lanes,
     lattice,
     moments,
     sigmoid,
@@ -26,10 +30,9 @@ from uplift.models import Moments
 
 WARPS = {"none": "wavelength", "vision": "{tanh}(0.0072{suffix} * (wavelength - 538.0{suffix}))"}
 """`uplift.models.phase.WARPS` as expressions."""
-ANSWERS = {"spectra": answer_spectra, "moments": answer_moments}
 LEFT_OUT = {
     "spectra": {"sum_nodes", "sum_coefficients", "dual", "multipliers_of"},
-    "moments": {"add_nodes", "add_spectrum"},
+    "moments": {"add_spectrum"},
 }
 """Functions that a mode does not need."""
 
@@ -75,9 +78,7 @@ class Program:
 
     def _words(self) -> dict[str, Any]:
         sensor, width = self.data.sensor, self.table.constants["STRIDE"] // 4
-        wrappers = (
-            _read(f"moments.{self.template}") if self.mode == "moments" and self.template != "osl.osl" else ""
-        )
+        wrappers = files("uplift.io.export") / "templates" / f"{self.mode}.{self.template}"
         words = {
             "version": VERSION,
             "digest": digest(self.data),
@@ -96,7 +97,8 @@ class Program:
             "NAME": self.name.upper(),
             "constants": self._constants(),
         }
-        return words | {"kernel": self._kernel(), "wrappers": Template(wrappers).safe_substitute(words)}
+        text = wrappers.read_text(encoding="ascii") if wrappers.is_file() else ""
+        return words | {"kernel": self._kernel(), "wrappers": Template(text).safe_substitute(words)}
 
     def _constants(self) -> str:
         lines = []
@@ -110,10 +112,18 @@ class Program:
 
     def _kernel(self) -> str:
         is_moments = isinstance(self.data.model, Moments)
-        parts = functions(moments if is_moments else sigmoid, spectra, lattice, entries, ANSWERS[self.mode])
+        model = moments if is_moments else sigmoid
+        parts = functions(model, spectra, lattice, entries, *self._answer())
         integers = {key: value for key, value in self.table.constants.items() if isinstance(value, int)}
         kept = [part for part in parts if part.name not in LEFT_OUT[self.mode]]
         return (self._warp() if is_moments else "") + translate(kept, self.language, self.name, integers)
+
+    def _answer(self) -> list[ModuleType]:
+        """Return the modules of the mode."""
+        if self.mode == "moments":
+            return [lanes, answer_moments] if self.language.lanes else [answer_moments]
+        in_passes = self.language.lanes and isinstance(self.data.model, Moments)
+        return [add_nodes_in_passes if in_passes else add_nodes, answer_spectra]
 
     def _warp(self) -> str:
         model = self.data.model

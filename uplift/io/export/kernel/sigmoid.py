@@ -18,12 +18,13 @@ if TYPE_CHECKING:
         Int,
         number,
         sqrt,
+        unroll,
     )
 
 
-def squash(x: Float) -> Float:
-    """1/2 + x / (2 √(1 + x²))."""
-    return 0.5 + 0.5 * x / sqrt(1.0 + x * x)
+def deviation(weight: Float, x: Float) -> Float:
+    """Weighted x / (2 √(1 + x²))."""
+    return weight * 0.5 * x / sqrt(1.0 + x * x)
 
 
 def scaled(wavelength: Float) -> Float:
@@ -47,8 +48,13 @@ def tabulate(wavelengths: Block, basis: Basis) -> None:
         basis[2 * WIDTH + w] = 1.0
 
 
-def multipliers_of(coefficients: Coefficients, multipliers: Coefficients) -> Bool:
+def dual(coefficients: Coefficients, multipliers: Coefficients) -> Bool:
     """Copy coefficients: they are the multipliers."""
-    for k in range(COUNT):
+    for k in unroll(0, COUNT):
         multipliers[k] = coefficients[k]
     return True
+
+
+def multipliers_of(coefficients: Coefficients, multipliers: Coefficients) -> Bool:
+    """Copy coefficients."""
+    return dual(coefficients, multipliers)

@@ -129,4 +129,4 @@ def _range(model: object) -> dict[str, float]:
     assert isinstance(model, Moments)
     phase = model.phase
     low, high = WARPS[phase.warp](np.array([phase.start, phase.end])).tolist()
-    return {"START": phase.start, "END": phase.end, "LOW": low, "SPAN": high - low}
+    return {"START": phase.start, "END": phase.end, "LOW": low, "SCALE": 1 / (high - low)}

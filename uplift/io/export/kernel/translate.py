@@ -14,9 +14,11 @@ from uplift.io.export.kernel.language import WGSL, Language
 
 INTRINSICS = frozenset({"number", "load_row"})
 """Functions that read the table."""
-LANES = frozenset({"WIDTH", "STRIDE"})
+LANES = frozenset({"WIDTH", "STRIDE", "LANES"})
 """Bounds of loops that are vectorised."""
-BUILT_IN = frozenset({"abs", "sqrt", "float", "int"})
+EXPANDED = frozenset({"dual"})
+"""Long functions within such loops, which must be expanded there."""
+BUILT_IN = frozenset({"abs", "copysign", "sqrt", "float", "int"})
 OPERATORS: dict[type[ast.AST], tuple[str, int]] = {
     ast.Mult: ("*", 6),
     ast.Div: ("/", 6),
@@ -148,6 +150,16 @@ class _Unroll(ast.NodeTransformer):
             return self.generic_visit(node)
         return [each for statement in node.body for each in self._flat(statement)] if holds else []
 
+    def visit_IfExp(self, node: ast.IfExp) -> ast.expr:
+        try:
+            chosen = node.body if self._integer(node.test) else node.orelse
+        except NameError:
+            self.generic_visit(node)
+            return node
+        found = self.visit(chosen)
+        assert isinstance(found, ast.expr)
+        return found
+
     def visit_Name(self, node: ast.Name) -> ast.expr:
         return node if node.id.isupper() or node.id not in self.values else ast.Constant(self.values[node.id])
 
@@ -198,7 +210,8 @@ class _Printer:
         if self.wgsl:
             return f"fn {name}({listed})" + (f" -> {self.language.types[result]}" if result else "")
         kind = self.language.types[result] if result else "void"
-        return f"{self.language.function.format(NAME=self.name.upper())}{kind} {name}({listed})"
+        before = self.language.expanded if self.function.name in EXPANDED else self.language.function
+        return f"{before.format(NAME=self.name.upper())}{kind} {name}({listed})"
 
     def _without_docstring(self) -> list[ast.stmt]:
         return self.function.body[1:] if ast.get_docstring(self.function) else self.function.body
@@ -270,6 +283,8 @@ class _Printer:
         size = self._size(kind)
         if self.wgsl:
             yield f"var {name}: array<f32, {size}>;"
+        elif self.language.zeros and _is_empty(value):
+            yield f"{element} {name}[{size}];"
         elif self.language.zeros:
             yield f"{element} {name}[{size}] = {self.language.zeros.format()};"
         else:
@@ -315,6 +330,10 @@ class _Printer:
                     return f"select({', '.join(parts)})", CALL
                 parts = (self._expression(each, CONDITIONAL + 1) for each in (test, body, other))
                 return "{} ? {} : {}".format(*parts), CONDITIONAL
+            case ast.Call(func=ast.Name(id="copysign"), args=[size, sign]) if (
+                "copysign" not in self.language.functions
+            ):
+                return self._operation(_with_sign(size, sign))
             case ast.Call(func=ast.Name(id=name), args=args):
                 return self._call(name, args), CALL
         raise NotImplementedError(ast.unparse(node))
@@ -322,7 +341,7 @@ class _Printer:
     def _call(self, name: str, args: list[ast.expr]) -> str:
         if name in BUILT_IN:
             spelled = self.language.functions.get(name, name)
-            return f"{spelled}({self._expression(args[0])})"
+            return f"{spelled}({', '.join(map(self._expression, args))})"
         given = [self._argument(each) for each in args]
         reads = name in INTRINSICS or (name in self.facts and self.facts[name].reads_table)
         if reads and self.language.context[1]:
@@ -332,6 +351,19 @@ class _Printer:
     def _argument(self, node: ast.expr) -> str:
         local = isinstance(node, ast.Name) and node.id in self.arrays and node.id not in self.parameters
         return f"&{self._expression(node)}" if self.wgsl and local else self._expression(node)
+
+
+def _is_empty(value: ast.expr) -> bool:
+    match value:
+        case ast.Call(func=ast.Name(id="empty")):
+            return True
+    return False
+
+
+def _with_sign(size: ast.expr, sign: ast.expr) -> ast.expr:
+    """Return the definition of ``copysign``."""
+    positive = ast.Compare(sign, [ast.Gt()], [ast.Constant(0.0)])
+    return ast.IfExp(positive, size, ast.UnaryOp(ast.USub(), size))
 
 
 def literal(value: float) -> str:

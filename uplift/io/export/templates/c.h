@@ -7,6 +7,7 @@
        float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[4] = {450, 500, 550, 600}, reflectances[4];
        ${name}_reflectances(rgb, wavelengths, 4, reflectances);
 
+   ${name}_reflectances_n takes many colours in one call.
    ${NAME}_WIDTH wavelengths are evaluated at a time. Loops over them vectorise: cc -O3 -march=x86-64-v3.
 */
 #ifndef ${NAME}_UPLIFT_CUBE_H
@@ -18,13 +19,19 @@
 #ifndef ${NAME}_WIDTH
 #define ${NAME}_WIDTH 16
 #endif
-/* Loops over wavelengths are vectorised, not unrolled. */
+#define ${NAME}_LANES 8
+/* Loops over wavelengths and lanes are vectorised, not unrolled. */
 #if defined(__clang__)
-#define ${NAME}_LANES _Pragma("clang loop vectorize(enable) interleave_count(1)")
+#define ${NAME}_VECTORISE _Pragma("clang loop vectorize(enable) interleave_count(1)")
 #elif defined(__GNUC__)
-#define ${NAME}_LANES _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
+#define ${NAME}_VECTORISE _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
 #else
-#define ${NAME}_LANES
+#define ${NAME}_VECTORISE
+#endif
+#if defined(__GNUC__)
+#define ${NAME}_EXPANDED inline __attribute__((always_inline))
+#else
+#define ${NAME}_EXPANDED inline
 #endif
 ${constants}
 
@@ -44,44 +51,27 @@ static inline void ${name}_load_row(int index, float row[${NAME}_STRIDE])
 }
 
 ${kernel}
-/* Reflectances of stored multipliers at ${NAME}_WIDTH wavelengths in nm. */
-static inline void ${name}_evaluate_wavelengths(
-    const float multipliers[${NAME}_COUNT], const float wavelengths[${NAME}_WIDTH], float reflectances[${NAME}_WIDTH])
+/* Reflectances of multipliers, mixed with those of an entry unless it is negative, at wavelengths in nm. */
+static inline void ${name}_mix_all(
+    const float multipliers[${NAME}_COUNT], float lattice_weight, int entry, const float *wavelengths, int count,
+    float *reflectances)
 {
-    float basis[${NAME}_COUNT * ${NAME}_WIDTH];
-    ${name}_tabulate(wavelengths, basis);
-    ${name}_evaluate_block(multipliers, basis, reflectances);
+    int start;
+    for (start = 0; start + ${NAME}_WIDTH <= count; start += ${NAME}_WIDTH)
+        ${name}_mix(multipliers, lattice_weight, entry, wavelengths + start, reflectances + start);
+    if (start < count) {
+        float block[${NAME}_WIDTH] = {0}, found[${NAME}_WIDTH];
+        memcpy(block, wavelengths + start, (count - start) * sizeof *block);
+        ${name}_mix(multipliers, lattice_weight, entry, block, found);
+        memcpy(reflectances + start, found, (count - start) * sizeof *found);
+    }
 }
 
 /* Reflectances of stored multipliers at wavelengths in nm. */
 static inline void ${name}_evaluate(
     const float multipliers[${NAME}_COUNT], const float *wavelengths, int count, float *reflectances)
 {
-    int start;
-    for (start = 0; start + ${NAME}_WIDTH <= count; start += ${NAME}_WIDTH)
-        ${name}_evaluate_wavelengths(multipliers, wavelengths + start, reflectances + start);
-    if (start < count) {
-        float block[${NAME}_WIDTH] = {0}, found[${NAME}_WIDTH];
-        memcpy(block, wavelengths + start, (count - start) * sizeof *block);
-        ${name}_evaluate_wavelengths(multipliers, block, found);
-        memcpy(reflectances + start, found, (count - start) * sizeof *found);
-    }
-}
-
-/* Reflectances of linear RGB at wavelengths in nm; their colour is exactly this RGB. Clips RGB to [0, 1]. */
-static inline void ${name}_reflectances(
-    const float rgb[3], const float *wavelengths, int count, float *reflectances)
-{
-    float place[4];
-    int start, entry = ${name}_locate(rgb, place);
-    for (start = 0; start + ${NAME}_WIDTH <= count; start += ${NAME}_WIDTH)
-        ${name}_answer(place, entry, wavelengths + start, reflectances + start);
-    if (start < count) {
-        float block[${NAME}_WIDTH] = {0}, found[${NAME}_WIDTH];
-        memcpy(block, wavelengths + start, (count - start) * sizeof *block);
-        ${name}_answer(place, entry, block, found);
-        memcpy(reflectances + start, found, (count - start) * sizeof *found);
-    }
+    ${name}_mix_all(multipliers, 1, -1, wavelengths, count, reflectances);
 }
 
 ${wrappers}
