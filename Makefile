@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth
+.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -140,6 +140,11 @@ wavelengths: $(INSTALLED)
 representations: $(INSTALLED)
 	$(BIN)/python -m benchmarks.representations
 	$(BIN)/python -m tools.render_docs representations
+
+# Formats of atlas files: docs/atlas-files.md.
+atlas-files: $(INSTALLED)
+	$(BIN)/python -m benchmarks.atlas_files
+	$(BIN)/python -m tools.render_docs atlas-files
 
 # Size and import time of the dependencies: docs/dependencies.md.
 dependencies: $(INSTALLED)

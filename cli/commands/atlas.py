@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..output.atlas_listing import Listing, Row, list_entries
 from ..output.console import has_colours, make_table, print_csv, print_json, say, show
 from ..output.shipped_listing import print_shipped
-from ..params.options import force_option, format_option, sensor_options
+from ..params.options import force_option, format_option, measured_option, sensor_options
 
 if TYPE_CHECKING:
+    from uplift.atlas import Source
+
     from ..output.tables import SafeTable
 
 
 @click.command("atlas")
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
+@measured_option()
 @sensor_options
 @format_option("table", "json", "csv")
 @click.option(
@@ -27,6 +30,7 @@ if TYPE_CHECKING:
 @force_option()
 def command(
     files: tuple[str, ...],
+    measured: Any,
     space: str,
     illuminant: str,
     observer: str | None,
@@ -34,20 +38,22 @@ def command(
     convert: str | None,
     force: bool,
 ) -> None:
-    """List the entries of atlas files: wavelength range, colour, gamut and warnings.
+    """List the entries of atlas files, and how the files were understood.
 
     Without FILE, lists the atlases that are installed with uplift, with source and licence. Their names are valid
     wherever an atlas file is: where no file of the name exists, the shipped atlas is read.
 
-    An atlas contains measured reflectances, as an ART measurement archive (text) or as a CSV table with a row or a
-    column per sample. Several files are read as one atlas. --convert writes CSV if OUT ends in .csv, and an ART
-    measurement archive otherwise.
+    An atlas contains measured reflectances: a table with a row or a column per sample (CSV, text, spreadsheets), an
+    ART measurement archive, CGATS and Argyll .ti3, CxF3, IES TM-27, JCAMP-DX, or an ENVI library. Several files are
+    read as one atlas. --convert writes CSV if OUT ends in .csv, and an ART measurement archive otherwise.
 
     \b
     Examples:
       uplift atlas macbeth
       uplift atlas --space "Display P3" --illuminant A macbeth
       uplift atlas --format json atlases/*.txt
+      uplift atlas chart.ti3 paints.cxf
+      uplift atlas dark.csv --measured percent
       uplift atlas paints.csv --convert paints.txt
     """
     if not files:
@@ -58,20 +64,20 @@ def command(
     from uplift.atlas import read_atlas
 
     if convert is not None:
-        _convert(files, convert, force)
+        _convert(files, measured, convert, force)
         return
-    atlas = read_atlas(*files)
+    atlas = read_atlas(*files, measured=measured)
     from uplift.colorimetry.observer import DEFAULT_OBSERVER, sensor
 
     PRINTERS[style](list_entries(atlas, sensor(space, illuminant, observer or DEFAULT_OBSERVER)))
 
 
-def _convert(files: tuple[str, ...], path: str, force: bool) -> None:
+def _convert(files: tuple[str, ...], measured: Any, path: str, force: bool) -> None:
     from uplift.atlas import read_atlas, write_atlas
     from uplift.common.files import check_output
 
     check_output(path, inputs=files, force=force)
-    atlas = read_atlas(*files)
+    atlas = read_atlas(*files, measured=measured)
     write_atlas(atlas, path, force=force)
     say(f"{path}: {len(atlas)} entries", err=True)
 
@@ -83,11 +89,17 @@ def _print_json(listing: Listing) -> None:
         "space": sensor.space,
         "illuminant": sensor.illuminant,
         "observer": sensor.observer,
-        "sources": [{"name": source.name, "digest": source.digest} for source in listing.atlas.sources],
+        "sources": [_source(source) for source in listing.atlas.sources],
+        "smallest_space": listing.smallest_space,
         "entries": rows,
         "skipped": [asdict(skipped) for skipped in listing.atlas.skipped],
     }
     print_json(fields)
+
+
+def _source(source: Source) -> dict[str, Any]:
+    names = ("name", "digest", "format", "measured", "notes")
+    return {name: getattr(source, name) for name in names}
 
 
 def _print_csv(listing: Listing) -> None:
@@ -101,6 +113,8 @@ def _print_csv(listing: Listing) -> None:
 
 def _print_table(listing: Listing) -> None:
     show(_table(listing))
+    for source in listing.atlas.sources:
+        say("; ".join((f"{source.name}: {source.format}", *source.notes)))
     say(_summary(listing))
 
 
@@ -137,7 +151,13 @@ def _summary(listing: Listing) -> str:
         _count(outside, f"out of the {listing.sensor.space} gamut"),
         _count(skipped, "skipped"),
     ]
-    return ", ".join(parts)
+    return ", ".join(parts) + (f"; {_way_out(listing)}" if outside else "")
+
+
+def _way_out(listing: Listing) -> str:
+    if listing.smallest_space is None:
+        return "no common RGB space holds all"
+    return f"{listing.smallest_space} holds all {len(listing.rows)}"
 
 
 def _count(names: Sequence[str], label: str) -> str:

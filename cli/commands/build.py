@@ -24,6 +24,7 @@ from ..params.options import (
     entry_coefficients_options,
     force_option,
     light_option,
+    measured_option,
     out_of_gamut_option,
     quiet_option,
     sensor_options,
@@ -41,6 +42,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 
 @click.command("build")
 @atlas_option("Measured spectra")
+@measured_option()
 @click.option(
     "-o",
     "--output",
@@ -127,6 +129,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 def command(
     plan_path: str | None,
     files: tuple[str, ...],
+    measured: str,
     output: str | None,
     images: tuple[str, ...],
     encoding: str,
@@ -166,14 +169,12 @@ def command(
     build: Callable[..., Cube]
     inputs: tuple[str | Path | None, ...]
     if plan_path is None:
-        from uplift.pipeline import build as build_cube
-
         scene = _scene(images, encoding, method)
         inputs = (*files, *options["library"], *(scene.paths if scene else ()))
         given = {name: value for name, value in options.items() if value not in (None, ())}
         given["coefficients"] = coefficient_count(coefficients, moments)
         given["entry_coefficients"] = entry_coefficient_count(entry_coefficients, entry_moments)
-        build = partial(build_cube, files or None, scene=scene, **given)
+        build = partial(_build, files, measured, scene=scene, **given)
         name = _default_name(files, images, options)
     else:
         build, name, inputs = _planned_build(plan_path, click.get_current_context())
@@ -186,6 +187,13 @@ def command(
         print_improvements(cube)
     if not quiet:
         print_summary(cube, path, time.perf_counter() - begin)
+
+
+def _build(files: tuple[str, ...], measured: Any, **options: Any) -> Cube:
+    from uplift.atlas import read_atlas
+    from uplift.pipeline import build
+
+    return build(read_atlas(*files, measured=measured) if files else None, **options)
 
 
 def _scene(images: tuple[str, ...], encoding: str, method: str) -> Images | None:

@@ -26,11 +26,12 @@ class Row:
 
 @dataclass(frozen=True)
 class Listing:
-    """An atlas and its colours under one sensor."""
+    """An atlas, its colours under one sensor, and the smallest common RGB space that holds all of them."""
 
     atlas: Atlas
     sensor: Sensor
     rows: tuple[Row, ...]
+    smallest_space: str | None
 
 
 def list_entries(atlas: Atlas, sensor: Sensor) -> Listing:
@@ -38,6 +39,7 @@ def list_entries(atlas: Atlas, sensor: Sensor) -> Listing:
     from uplift.atlas import resample
     from uplift.colorimetry.gamut import SRGB
     from uplift.colorimetry.observer import sensor as make_sensor
+    from uplift.colorimetry.spaces import smallest_space
     from uplift.colorimetry.srgb import to_display_codes
 
     resampled = resample(atlas, sensor.wavelengths)
@@ -58,4 +60,5 @@ def list_entries(atlas: Atlas, sensor: Sensor) -> Listing:
         )
         for entry, rgb, code in zip(atlas.entries, colours, codes, strict=True)
     ]
-    return Listing(atlas, sensor, tuple(rows))
+    smallest = smallest_space(resampled.values, sensor.illuminant, sensor.observer)
+    return Listing(atlas, sensor, tuple(rows), smallest)

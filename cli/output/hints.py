@@ -34,6 +34,7 @@ HINTS = {
     "lattice-mismatch": "build the cube again, or replace it with --update",
     "library-not-used": "use --prior learnt with --model moments and 4 to 17 coefficients, or leave out --library",
     "limit-not-positive": "give --time-ns and --delta-e above 0",
+    "mixed-scales": "correct the row, or use --measured percent or fraction if it is right",
     "no-moments": "use --store multipliers, or a cube of moments",
     "no-requirements": "give --time-ns, --delta-e or both",
     "not-a-chart": "name the CSV file that 'uplift chart' wrote",
@@ -49,6 +50,7 @@ HINTS = {
     "unknown-coat": "use --pigment or --dye",
     "unknown-gamut-mapping": "use --out-of-gamut with error, clip, scale, desaturate or desaturate-oklab",
     "unknown-method": "give --methods with other names; '*' matches any characters",
+    "unknown-scale": "use --measured auto, percent or fraction",
     "unknown-warp": "use --warp none or vision",
     "unsupported-depth": "use another --depth",
 }

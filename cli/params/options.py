@@ -48,6 +48,17 @@ def atlas_option(help: str, default: str = "") -> Decorator:
     return click.option("--atlas", "files", multiple=True, metavar="FILE", help=_repeatable(help, default))
 
 
+def measured_option() -> Decorator:
+    """``--measured``: names of `uplift.atlas.MEASURED`, which is not imported here."""
+    return click.option(
+        "--measured",
+        type=click.Choice(("auto", "percent", "fraction")),
+        default="auto",
+        show_default=True,
+        help="Scale of measured values. auto: as the atlas file states, or else by its values.",
+    )
+
+
 def light_option(help: str, default: str) -> Decorator:
     """``--light`` as ``lights``."""
     return click.option("--light", "lights", multiple=True, metavar="NAME", help=_repeatable(help, default))

@@ -76,7 +76,7 @@ def test_percent(save, text):
             1,
             "not-an-atlas",
         ),
-        ("400,0.1\n550,0.2\n700,0.9\n", 1, "header-row-missing"),
+        ("400,0.1,0.2\n550,0.2,0.3\n700,0.9,0.3\n", 1, "header-row-missing"),
         (WIDE.replace("0.2", "nan"), 2, "sample-not-finite"),
         (WIDE.replace("550", "350"), 2, "wavelengths-not-ascending"),
         (WIDE.replace("700", "690"), 2, "visible-range-not-covered"),
@@ -103,8 +103,9 @@ def test_faults_report_file_and_line(save, text, line, code):
 
 
 def test_percent_out_of_range(save):
-    with warns("values-in-percent"), raises(AtlasError, "reflectance-out-of-range") as caught:
-        read_atlas(save(WIDE.replace("0.9", "900"), "table.csv"))
+    path = save(WIDE.replace("0.9", "900"), "table.csv")
+    with raises(AtlasError, "reflectance-out-of-range") as caught:
+        read_atlas(path, measured="percent")
     assert caught.value.where.endswith("table.csv:2: entry 'red'")
     assert "9 at 700 nm" in caught.value.problem
 

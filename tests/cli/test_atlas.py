@@ -31,7 +31,9 @@ def test_table_lists_entries_and_counts_those_out_of_gamut(invoke):
     result = invoke(MACBETH)
     for name in read_atlas(MACBETH).names:
         assert name in result.stdout
-    assert result.stdout.endswith("24 entries, 1 out of the sRGB gamut (cyan), 0 skipped\n")
+    assert result.stdout.endswith(
+        "24 entries, 1 out of the sRGB gamut (cyan), 0 skipped; Display P3 holds all 24\n"
+    )
     (line,) = [line for line in result.stdout.split("\n") if line.startswith("  cyan")]
     assert line.split() == ["cyan", "380–780", "5", "-0.0334", "0.2488", "0.3855", "out"]
     assert "\x1b" not in result.stdout

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from tests.fuzz import (
+    atlas_instruments,
     atlas_table,
     atlas_text,
     build_options,
@@ -36,6 +37,7 @@ from tests.fuzz.target import ROOT
 MODULES = (
     atlas_text,
     atlas_table,
+    atlas_instruments,
     cube_bytes,
     cube_valid_digest,
     cube_metadata,

@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import warnings
 
-from uplift.atlas import art, art_write, table
+from uplift.atlas import art_write, table
 from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source, merge
 from uplift.atlas.distributions import from_distributions
 from uplift.atlas.document import read_document
+from uplift.atlas.formats import FORMATS, Format, read_any
+from uplift.atlas.measurements import MEASURED, Measured, check_measured
 from uplift.atlas.resample import Clip, Resampled, on_grid, resample
 from uplift.atlas.shipped import ShippedAtlas, find_atlas_file, shipped_atlases
 from uplift.common.arrays import StrPath
@@ -16,10 +18,14 @@ from uplift.common.errors import OutputError
 from uplift.common.files import write_text
 
 __all__ = [
+    "FORMATS",
+    "MEASURED",
     "Atlas",
     "Clip",
     "Entry",
+    "Format",
     "Header",
+    "Measured",
     "Resampled",
     "ShippedAtlas",
     "SkippedEntry",
@@ -34,14 +40,17 @@ __all__ = [
 ]
 
 
-def read_atlas(*paths: StrPath) -> Atlas:
-    """Read atlas files into one atlas. The content of a file determines its format: atlas text or CSV.
+def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
+    """Read atlas files into one atlas. The content of a file determines its format, one of `FORMATS`.
 
     Parameters
     ----------
     *paths : path-like
         Files, in the order of their entries. Where a file does not exist, a shipped atlas of that name is read, with or
         without the suffix ``.txt``; see `shipped_atlases`.
+    measured : {"auto", "percent", "fraction"}
+        Scale of the values. ``"auto"`` takes the scale that a file states, or else decides by its values. Measurement
+        archives always state their scale.
 
     Returns
     -------
@@ -51,6 +60,8 @@ def read_atlas(*paths: StrPath) -> Atlas:
     ------
     AtlasError
         A file cannot be read, or two entries share a name. The error has path, line, entry and hint.
+    OptionError
+        The scale is unknown.
 
     Warns
     -----
@@ -65,8 +76,9 @@ def read_atlas(*paths: StrPath) -> Atlas:
     >>> macbeth["orange"]
     Entry('orange', 81 samples, 380–780 nm)
     """
+    check_measured(measured)
     found = list(map(find_atlas_file, paths))
-    atlas = merge(map(_read, found))
+    atlas = merge(read_any(read_document(path), measured) for path in found)
     for skipped in atlas.skipped:
         warnings.warn(skipped.warning(), stacklevel=2)
     return atlas
@@ -102,11 +114,6 @@ def write_atlas(atlas: Atlas, path: StrPath, header: Header | None = None, *, fo
     is_table = os.fspath(path).lower().endswith(".csv")
     text = table.text(atlas) if is_table else art_write.text(atlas, header or _merge_headers(atlas))
     write_text(text, path, force=force)
-
-
-def _read(path: StrPath) -> Atlas:
-    document = read_document(path)
-    return art.read(document) if art.is_art_archive(document) else table.read(document)
 
 
 def _merge_headers(atlas: Atlas) -> Header:

@@ -59,7 +59,7 @@ def read(document: Document) -> Atlas:
     return Atlas(
         tuple(item for item in entries if isinstance(item, Entry)),
         tuple(item for item in entries if isinstance(item, SkippedEntry)),
-        (Source(document.name, document.digest, header),),
+        (Source(document.name, document.digest, header, "ART measurement archive"),),
     )
 
 

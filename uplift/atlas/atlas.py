@@ -149,11 +149,20 @@ class Source:
         SHA-256 of its bytes, in hexadecimal digits.
     header : Header
         Statements of the file about itself.
+    format : str
+        Name of the format that was recognised; empty if there is no file.
+    measured : {"auto", "percent", "fraction"}
+        Scale of the values that the caller gave.
+    notes : tuple of str
+        How the content was understood: layout, scale, and columns that are not spectra.
     """
 
     name: str
     digest: str
     header: Header = field(default_factory=Header)
+    format: str = ""
+    measured: str = "auto"
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, repr=False)

@@ -1,4 +1,4 @@
-"""Text files with source locations, and parsing of numbers with errors that name the location."""
+"""Files with source locations, and parsing of numbers with errors that name the location."""
 
 from __future__ import annotations
 
@@ -20,6 +20,9 @@ MAX_QUOTED = 40
 
 MAX_BYTES = 64 << 20
 """Largest file that is read, some 100,000 entries."""
+
+UTF_16_START = 16
+"""Bytes by which UTF-16 without a byte-order mark is recognised."""
 
 
 @dataclass(frozen=True)
@@ -46,16 +49,32 @@ class SourceLocation:
 
 @dataclass(frozen=True)
 class Document:
-    """A text file with LF line ends; ``digest`` is the SHA-256 (hex) of the bytes of the file."""
+    """A file; ``digest`` is the SHA-256 (hex) of its bytes."""
 
     path: str
-    text: str
+    data: bytes
     digest: str
 
     @property
     def name(self) -> str:
         """Base name of the file, with characters that are not text as escapes."""
         return printable(os.path.basename(self.path))
+
+    @property
+    def stem(self) -> str:
+        """Name of the file without its suffix, valid as the name of an entry."""
+        return os.path.splitext(self.name)[0].strip() or "spectrum"
+
+    @cached_property
+    def text(self) -> str:
+        """The content as text with LF line ends: UTF-16, UTF-8, or else Latin-1. Raises `AtlasError` for others."""
+        location = SourceLocation(self.path)
+        text = _decode(self.data, location)
+        if not text.strip():
+            raise location.error(
+                "the file is empty", "name a file that contains atlas entries", code="empty-file"
+            )
+        return text
 
     @cached_property
     def lines(self) -> list[str]:
@@ -64,34 +83,46 @@ class Document:
 
 
 def read_document(path: StrPath) -> Document:
-    """Read a text file in UTF-8 or else Latin-1.
-
-    Raises
-    ------
-    AtlasError
-        The file is missing, unreadable, empty or binary.
-    """
-    location = SourceLocation(os.fspath(path))
+    """Read a file. Raise `AtlasError` if it is missing, unreadable or too large."""
     data = read_bytes(path, AtlasError, limit=MAX_BYTES, hint="name an atlas file that can be read")
-    text = _decode(data, location)
-    if not text.strip():
-        raise location.error(
-            "the file is empty", "name a file that contains atlas entries", code="empty-file"
-        )
-    return Document(os.fspath(path), text, hashlib.sha256(data).hexdigest())
+    return Document(os.fspath(path), data, hashlib.sha256(data).hexdigest())
 
 
 def _decode(data: bytes, location: SourceLocation) -> str:
-    if b"\0" in data:
+    encoding = _utf_16(data)
+    if encoding is None and b"\0" in data:
         line = data[: data.index(b"\0")].count(b"\n") + 1
         raise location.at(line).error(
             "binary data (a NUL byte) instead of text", "save the atlas as UTF-8 text", code="binary-file"
         )
     try:
-        text = data.decode("utf-8-sig")
+        text = data.decode(encoding or "utf-8-sig")
     except UnicodeDecodeError:
+        if encoding is not None:
+            raise location.at(1).error(
+                "the UTF-16 text is damaged", "save the atlas as UTF-8 text", code="binary-file"
+            ) from None
         text = data.decode("latin-1")
+    if encoding is not None and "\0" in text:
+        raise location.at(1).error(
+            "binary data (a NUL character) instead of text",
+            "save the atlas as UTF-8 text",
+            code="binary-file",
+        )
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _utf_16(data: bytes) -> str | None:
+    """Return the name of the UTF-16 encoding of data with a byte-order mark, or whose first letters are ASCII."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    start = data[:UTF_16_START]
+    if len(start) < UTF_16_START or len(data) % 2:
+        return None
+    even, odd = start[::2], start[1::2]
+    if not any(odd) and all(even):
+        return "utf-16-le"
+    return "utf-16-be" if not any(even) and all(odd) else None
 
 
 def parse_number(token: str, location: SourceLocation, label: str) -> float:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import functools
-import warnings
 from collections.abc import Mapping, Sequence
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -15,6 +12,7 @@ from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.colorimetry.srgb import decode_portably
 from uplift.common.arrays import Array
+from uplift.common.colour_science import colour_science
 from uplift.common.errors import unknown_name
 
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
@@ -22,19 +20,6 @@ CRT = "Typical CRT Brainard 1997"
 """Phosphors of a cathode-ray tube, measured by D. H. Brainard."""
 START, END, STEP = 380.0, 780.0, 5.0
 """Range and step in nm that every table of the CIE covers."""
-
-
-@functools.cache
-def colour_science() -> ModuleType:
-    """Import colour-science on first use, which takes a second.
-
-    Warnings about its optional dependencies are suppressed, and the print options of numpy, which it changes, are
-    restored.
-    """
-    with warnings.catch_warnings(), np.printoptions():
-        warnings.simplefilter("ignore")
-        import colour
-    return colour
 
 
 def grid() -> Array:

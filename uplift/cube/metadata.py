@@ -129,7 +129,7 @@ PROVENANCE = _table(
     {
         "uplift": _text,
         "options": _options,
-        "atlases": _list(_table(FILE), MAX_FILES),
+        "atlases": _list(_table(FILE, {"measured": _text}), MAX_FILES),
         "libraries": _list(_table(FILE), MAX_FILES),
         "families": _list(_table({"name": _text, "relevance": _number()}), MAX_FILES),
         "left_out": _list(_text, MAX_ENTRIES),

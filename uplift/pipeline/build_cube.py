@@ -17,6 +17,7 @@ from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
+from uplift.colorimetry.spaces import holding_note
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning, unknown_name
 from uplift.common.progress import ProgressCallback, ignore_progress
@@ -44,6 +45,7 @@ from uplift.pipeline.options import (
     SolverName,
     check_memory,
 )
+from uplift.pipeline.provenance import describe_source
 
 MAX_NAMES = 6
 """Entries that a warning names."""
@@ -305,10 +307,11 @@ def _entries_in_gamut(atlas: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Ar
     measured = on_grid(atlas, sensor.wavelengths)
     rgb = sensor.rgb(measured)
     inside = sensor.contains(rgb)
+    way_out = "" if inside.all() else f"; {holding_note(measured, sensor.illuminant, sensor.observer)}"
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
         _warn(
-            f"left out: its colour must lie within {sensor.space}, got linear RGB ({values})",
+            f"left out: its colour must lie within {sensor.space}, got linear RGB ({values}){way_out}",
             "entry-out-of-gamut",
             atlas.names[row],
         )
@@ -388,7 +391,7 @@ def _provenance(
     return {
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
-        "atlases": [{"name": source.name, "digest": source.digest} for source in atlas.sources],
+        "atlases": [describe_source(source) for source in atlas.sources],
         "left_out": [name for name in atlas.names if name not in names],
         "skipped": [entry.name for entry in atlas.skipped],
         "prior": starts.describe(),

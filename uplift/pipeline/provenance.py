@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from uplift.atlas import Atlas, read_atlas, shipped_atlases
+from uplift.atlas import Atlas, Source, merge, read_atlas, shipped_atlases
 from uplift.atlas.document import read_document
 from uplift.common.arrays import StrPath
 from uplift.common.errors import CubeFileError, UpliftWarning
@@ -44,13 +44,32 @@ def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = (
     """
     if "atlases" not in data.provenance:
         raise missing_provenance(path)
-    sources = [(source["name"], source["digest"]) for source in data.provenance["atlases"]]
+    sources = data.provenance["atlases"]
     if not sources:
         return None
     candidates = _search_path(path, folders)
+    files = [_find(path, source["name"], source["digest"], candidates) for source in sources]
+    scales = [source.get("measured", "auto") for source in sources]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
-        return read_atlas(*(_find(path, name, digest, candidates) for name, digest in sources))
+        return merge(read_atlas(file, measured=scale) for file, scale in zip(files, scales, strict=True))
+
+
+def describe_source(source: Source) -> dict[str, str]:
+    """Return what a cube records of an atlas file, so that `recorded_atlas` finds and reads it again.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+
+    Returns
+    -------
+    dict
+        Name and digest, and the scale of the values if the caller gave it.
+    """
+    scale = {} if source.measured == "auto" else {"measured": source.measured}
+    return {"name": source.name, "digest": source.digest, **scale}
 
 
 def recorded_libraries(data: CubeData, path: StrPath, folders: Iterable[StrPath] = ()) -> tuple[Path, ...]:

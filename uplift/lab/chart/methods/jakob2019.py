@@ -11,8 +11,9 @@ Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral up
 
 from __future__ import annotations
 
-from uplift.colorimetry.observer import aligned, colour_science
+from uplift.colorimetry.observer import aligned
 from uplift.common.arrays import Array
+from uplift.common.colour_science import colour_science
 from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbytes, one_by_one, stopwatch
 from uplift.lab.chart.task import Task
 from uplift.models.sigmoid import evaluate_unscaled

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from uplift.colorimetry.observer import colour_science
 from uplift.common.arrays import Array
+from uplift.common.colour_science import colour_science
 from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod
 from uplift.lab.chart.task import Task
 

@@ -11,8 +11,9 @@ Otsu, Yamamoto & Hachisuka 2018, "Reproducing spectral reflectances from tristim
 
 from __future__ import annotations
 
-from uplift.colorimetry.observer import aligned, colour_science
+from uplift.colorimetry.observer import aligned
 from uplift.common.arrays import Array
+from uplift.common.colour_science import colour_science
 from uplift.lab.chart.method import Family, Method, PreparedMethod, nbytes, one_by_one
 from uplift.lab.chart.task import Task
 

@@ -1,0 +1,59 @@
+"""Formats of atlas files, and how closely files in the layouts of instruments are read: ``make atlas-files``."""
+
+from __future__ import annotations
+
+import tempfile
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.record import write
+from tests.atlas.vendor_files import VENDORS, Vendor, sample
+from uplift.atlas import FORMATS, Atlas, read_atlas
+from uplift.common.errors import UpliftWarning
+
+UPLIFT = "uplift"
+"""Library of the formats that uplift parses itself."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A format. ``difference`` is the largest of its layouts, in units of 1."""
+
+    name: str
+    suffixes: str
+    written: bool
+    library: str
+    extra: str
+    layouts: str
+    difference: float | None
+
+
+def largest_difference(vendor: Vendor, atlas: Atlas) -> float:
+    """Return the largest difference between the values that were written and those that are read."""
+    with tempfile.TemporaryDirectory() as folder:
+        found = read_atlas(vendor.save(atlas[: vendor.count], Path(folder)))
+    pairs = zip(found, atlas, strict=False)
+    return max(float(np.abs(entry.values - expected.values).max()) for entry, expected in pairs)
+
+
+def main() -> None:
+    """Measure all layouts."""
+    atlas = sample(read_atlas("macbeth"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        found = {vendor.name: largest_difference(vendor, atlas) for vendor in VENDORS}
+    rows = []
+    for each in FORMATS:
+        names = [vendor.name for vendor in VENDORS if vendor.format == each.name]
+        largest = max((found[name] for name in names), default=None)
+        library, suffixes = each.library or UPLIFT, ", ".join(each.suffixes)
+        layouts = ", ".join(names) or "the shipped atlases"
+        rows.append(Row(each.name, suffixes, each.written, library, each.extra, layouts, largest))
+    write("atlas-files", "make atlas-files", layouts=len(found), largest=max(found.values()), formats=rows)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,219 @@
+"""Files in the layouts of instruments and programs give the spectra that they were written from."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+
+import numpy as np
+import pytest
+
+from tests.atlas.vendor_files import VENDORS, sample
+from tests.helpers import raises, warns
+from uplift.atlas import FORMATS, read_atlas, spreadsheet
+from uplift.common.errors import AtlasError, OptionError
+
+MACBETH = sample(read_atlas("macbeth"))
+
+
+@pytest.mark.parametrize("vendor", VENDORS, ids=lambda vendor: vendor.name)
+def test_spectra_are_those_that_were_written(tmp_path, vendor):
+    path = vendor.save(MACBETH[: vendor.count], tmp_path)
+    with warns("values-in-percent") if vendor.percent else contextlib.nullcontext():
+        atlas = read_atlas(path)
+    assert atlas.sources[0].format == vendor.format
+    assert len(atlas) == vendor.count
+    if vendor.name != "argyll_sp":
+        assert atlas.names == MACBETH[: vendor.count].names
+    for entry, expected in zip(atlas, MACBETH, strict=False):
+        np.testing.assert_allclose(entry.wavelengths, expected.wavelengths, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(entry.values, expected.values, rtol=0, atol=1e-6)
+
+
+def test_every_format_but_the_archive_has_a_layout():
+    assert {vendor.format for vendor in VENDORS} == {each.name for each in FORMATS} - {
+        "ART measurement archive"
+    }
+
+
+@pytest.mark.parametrize(
+    "label", ["nm{}", "R{}", "{}nm", "{} nm", "SPECTRAL_NM{}", "R_{}", "Refl ({} nm)", "λ{}"]
+)
+def test_labels_of_wavelengths(save, label):
+    heads = ",".join(label.format(nm) for nm in (400, 550, 700))
+    (entry,) = read_atlas(save(f"id,L*,a*,b*,{heads}\ngrey,50,0,0,0.1,0.2,0.3\n"))
+    assert (entry.name, entry.wavelengths.tolist(), entry.values.tolist()) == (
+        "grey",
+        [400, 550, 700],
+        [0.1, 0.2, 0.3],
+    )
+
+
+def test_what_was_understood_is_noted(tmp_path):
+    vendor = next(each for each in VENDORS if each.name == "babelcolor")
+    (source,) = read_atlas(vendor.save(MACBETH, tmp_path)).sources
+    assert source.notes[1] == "not used: No., L*, a*, b*"
+    assert source.notes[2].startswith("6 of 6 spectra descended")
+
+
+ROW = "name,400,500,600,700\n"
+SETS = "\nBEGIN_DATA_FORMAT\nID SPEC_400 SPEC_700\nEND_DATA_FORMAT\nBEGIN_DATA\na 1 1\nEND_DATA\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "entry"),
+    [
+        (ROW + "a,0.2,0.3,0.4,0.5\nb,0.4,45,0.5,0.5\nc,0.1,0.2,0.3,0.4\n", 3, "b"),
+        (ROW + "a,0.2,0.3,0.4,0.5\nb,40,45,50,50\nc,0.1,0.2,0.3,0.4\n", 3, "b"),
+        (ROW + "a,20,30,40,50\nb,0.4,0.4,0.5,0.5\nc,10,20,30,40\n", 3, "b"),
+        (ROW + "a,20,30,40,50\nb,40,0.45,50,50\n", 3, "b"),
+        (ROW + "a,0.2,0.3,0.4,50\n", 2, "a"),
+    ],
+)
+def test_mixed_scales_name_the_row(save, text, line, entry):
+    with raises(AtlasError, "mixed-scales") as caught:
+        read_atlas(save(text))
+    assert (caught.value.line, caught.value.entry) == (line, entry)
+
+
+def test_scale_given_by_the_caller(save):
+    dark = save(ROW + "trap,0.4,0.5,0.5,0.4\ngrey,20,20,20,20\n")
+    assert read_atlas(dark, measured="percent")["trap"].values.tolist() == [0.004, 0.005, 0.005, 0.004]
+    (source,) = read_atlas(dark, measured="percent").sources
+    assert source.measured == "percent"
+    with raises(AtlasError, "reflectance-out-of-range"):
+        read_atlas(dark, measured="fraction")
+    with raises(OptionError, "unknown-scale"):
+        read_atlas(dark, measured="per mille")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# Transmittance of filters\n" + ROW + "a,0.2,0.3,0.4,0.5\n",
+        "Mode,Transmission\n" + ROW + "a,0.2,0.3,0.4,0.5\n",
+        "name,T400,T500,T600,T700\na,0.2,0.3,0.4,0.5\n",
+        'CTI3\nMEAS_TYPE "EMISSION"' + SETS,
+        'CTI3\nDEVICE_CLASS "DISPLAY"' + SETS,
+        "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS=ABSORBANCE\n##XYPOINTS=(XY..XY)\n400, 1\n700, 1\n##END=\n",
+        "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS=TRANSMITTANCE\n##XYPOINTS=(XY..XY)\n400, 1\n700, 1\n##END=\n",
+        '<IESTM2714 xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>flux</SpectralQuantity>'
+        '<SpectralData wavelength="400">1</SpectralData><SpectralData wavelength="700">1</SpectralData>'
+        "</SpectralDistribution></IESTM2714>",
+    ],
+)
+def test_other_quantities_are_refused(save, text):
+    with raises(AtlasError, "not-a-reflectance"):
+        read_atlas(save(text))
+
+
+def test_reflectance_next_to_transmittance_is_read(save):
+    assert (
+        len(read_atlas(save("# Reflectance and transmittance of leaves\n" + ROW + "a,0.2,0.3,0.4,0.5\n")))
+        == 1
+    )
+
+
+def test_transmittances_of_cxf_are_skipped(tmp_path):
+    vendor = next(each for each in VENDORS if each.name == "cxf3")
+    path = vendor.save(MACBETH, tmp_path)
+    text = path.read_text()
+    first = text.index("<cc:ReflectanceSpectrum")
+    last = text.index("</cc:ReflectanceSpectrum>") + len("</cc:ReflectanceSpectrum>")
+    path.write_text(text[:first] + text[first:last].replace("Reflectance", "Transmittance") + text[last:])
+    with warns("entry-skipped"):
+        atlas = read_atlas(path)
+    assert [skipped.name for skipped in atlas.skipped] == ["dark skin"]
+    assert len(atlas) == 5
+
+
+XLSX = next(each for each in VENDORS if each.name == "xlsx")
+
+
+@pytest.mark.parametrize("format", [each for each in FORMATS if each.extra], ids=lambda each: each.name)
+def test_missing_packages_are_named(tmp_path, monkeypatch, format):
+    modules = {"colour-cxf": "colour_cxf", "python-calamine": "python_calamine"}
+    module = modules.get(format.library, format.library)
+    for name in [name for name in sys.modules if name.partition(".")[0] == module]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, module, None)
+    vendor = next(each for each in VENDORS if each.format == format.name)
+    with raises(AtlasError, "extra-not-installed") as caught:
+        read_atlas(vendor.save(MACBETH[: vendor.count], tmp_path))
+    assert "spectral-uplift[io]" in caught.value.hint
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        (
+            '<?xml version="1.0"?>\n<!DOCTYPE x [<!ENTITY a "b">]>\n<IESTM2714 xmlns="i">&a;</IESTM2714>',
+            "xml-not-accepted",
+        ),
+        ('<IESTM2714 xmlns="i">' + "<a>" * 100 + "</a>" * 100 + "</IESTM2714>", "xml-not-accepted"),
+        ('<IESTM2714 xmlns="i"><a></IESTM2714>', "invalid-xml"),
+        ('<IESTM2714 xmlns="iestm2714"/>', "not-a-reflectance"),
+        ('<cc:CxF xmlns:cc="http://colorexchangeformat.com/CxF3-core"/>', "not-an-atlas"),
+        ("##TITLE=a\n##NPOINTS=1000000000\n", "too-many-points"),
+        (
+            "##TITLE=a\n##XUNITS=HZ\n##YUNITS=REFLECTANCE\n##XYPOINTS=(XY..XY)\n1, 1\n",
+            "unknown-wavelength-unit",
+        ),
+        ("##TITLE=a\n##XYDATA=(X++(Y..Y))\n400 q\n", "unreadable-measurements"),
+        ("CGATS.17\nBEGIN_DATA_FORMAT\nEND_DATA_FORMAT\n", "cgats-incomplete"),
+        (
+            "CGATS.17\nBEGIN_DATA_FORMAT\nID LAB_L\nEND_DATA_FORMAT\nBEGIN_DATA\n1 2\nEND_DATA\n",
+            "cgats-without-spectra",
+        ),
+        (
+            'X\nSPECTRAL_NORM "0"\nBEGIN_DATA_FORMAT\nnm400 nm700\nEND_DATA_FORMAT\nBEGIN_DATA\n1 2\nEND_DATA',
+            "invalid-scale",
+        ),
+        (b"PK\x03\x04junk", "unreadable-measurements"),
+        (b"\xd0\xcf\x11\xe0junk", "unreadable-measurements"),
+        ("ENVI\nsamples = 3\n", "file-not-found"),
+        ("name,nm410,nm550,nm690\na,1,1,1\n", "visible-range-not-covered"),
+    ],
+)
+def test_damaged_files_raise(save, text, code):
+    with raises(AtlasError, code):
+        read_atlas(save(text))
+
+
+def test_content_of_archives_is_limited(tmp_path, monkeypatch):
+    monkeypatch.setattr(spreadsheet, "MAX_CONTENT", 100)
+    with raises(AtlasError, "file-too-large"):
+        read_atlas(XLSX.save(MACBETH, tmp_path))
+    monkeypatch.undo()
+    monkeypatch.setattr(spreadsheet, "MAX_CELLS", 10)
+    with raises(AtlasError, "file-too-large"):
+        read_atlas(XLSX.save(MACBETH, tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        (lambda text: text.replace("lines = 6", "lines = 600000000"), "damaged-library"),
+        (lambda text: text.replace("ENVI Spectral Library", "ENVI Standard"), "not-an-atlas"),
+        (lambda text: text.replace("Micrometers", "Furlongs"), "unknown-wavelength-unit"),
+        (lambda text: text.replace("factor = 100000000", "factor = -1"), "invalid-scale"),
+        (lambda text: text.replace("data type = 3", "data type = 77"), "unreadable-measurements"),
+        (lambda text: text.replace("ENVI", "NVI"), "not-an-atlas"),
+    ],
+)
+def test_damaged_libraries_raise(tmp_path, change, code):
+    vendor = next(each for each in VENDORS if each.name == "envi")
+    path = vendor.save(MACBETH, tmp_path)
+    header = path.with_suffix(".hdr")
+    header.write_text(change(header.read_text()))
+    with raises(AtlasError, code):
+        read_atlas(path)
+
+
+def test_a_library_without_its_other_file_raises(tmp_path):
+    vendor = next(each for each in VENDORS if each.name == "envi")
+    path = vendor.save(MACBETH, tmp_path)
+    assert read_atlas(path.with_suffix(".hdr")).names == MACBETH.names
+    path.with_suffix(".hdr").unlink()
+    with raises(AtlasError, "file-not-found"):
+        read_atlas(path)

@@ -1,0 +1,106 @@
+"""Reader of CxF3 (ISO 17972-1), the colour exchange format of X-Rite programs, by the package colour-cxf."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from uplift.atlas.atlas import Header, SkippedEntry
+from uplift.atlas.document import Document
+from uplift.atlas.measurements import Measurements, Spectrum, not_used_note, parsed_by
+from uplift.atlas.xml_text import check_xml, root_name
+from uplift.common.errors import AtlasError
+from uplift.common.extras import import_extra
+
+NAMESPACE = "http://colorexchangeformat.com/CxF3-core"
+INCREMENT = 10
+"""Step in nm of spectra whose colour specification states none."""
+REFLECTANCE = "ReflectanceSpectrum"
+OTHER_SPECTRA = {
+    "TransmittanceSpectrum": "transmittance",
+    "EmissiveSpectrum": "emission",
+    "CustomSpectrum": "a custom quantity",
+}
+
+
+def is_cxf(document: Document) -> bool:
+    """Whether the first element is that of CxF3."""
+    return root_name(document) == f"{NAMESPACE} CxF"
+
+
+def read(document: Document) -> Measurements:
+    """Read the reflectance spectra of the objects of a CxF3 file; objects with other spectra only are skipped.
+
+    Raises
+    ------
+    AtlasError
+        The file is not valid, or colour-cxf is not installed.
+    """
+    check_xml(document)
+    cxf3 = import_extra("colour_cxf.cxf3", "io", "CxF files", AtlasError)
+    with parsed_by("colour-cxf", "CxF3", document.path):
+        found = _content(_parse(document, cxf3.CxF), document.path)
+    if not found.spectra and not found.skipped:
+        raise AtlasError(
+            "has no object with a spectrum",
+            code="not-an-atlas",
+            path=document.path,
+            hint="export the spectra with the colours",
+        )
+    return found
+
+
+def _parse(document: Document, kind: Any) -> Any:
+    """Parse a file; elements and attributes that the schema does not have are ignored."""
+    from xsdata.formats.dataclass.parsers import XmlParser
+    from xsdata.formats.dataclass.parsers.config import ParserConfig
+
+    lenient = ParserConfig(fail_on_unknown_properties=False, fail_on_unknown_attributes=False)
+    return XmlParser(config=lenient).from_bytes(document.data, kind)
+
+
+def _content(cxf: Any, path: str) -> Measurements:
+    resources, information = cxf.resources, cxf.file_information
+    objects = resources.object_collection.object_value if resources and resources.object_collection else []
+    ranges = _wavelength_ranges(resources)
+    spectra, skipped, colours = list[Spectrum](), list[SkippedEntry](), set[str]()
+    for each in objects:
+        name = (each.name or each.id or "").strip()
+        choices = each.color_values.choice if each.color_values else []
+        kinds = [type(choice).__name__ for choice in choices]
+        reflectances = [choice for choice, kind in zip(choices, kinds, strict=True) if kind == REFLECTANCE]
+        for number, choice in enumerate(reflectances, 1):
+            label = name if len(reflectances) == 1 else f"{name} {choice.name or number}"
+            spectra.append(_spectrum(label, choice, ranges))
+        others = [OTHER_SPECTRA[kind] for kind in kinds if kind in OTHER_SPECTRA]
+        if others and not reflectances:
+            skipped.append(SkippedEntry(name, f"it is {others[0]}, not reflectance", path))
+        colours.update(kind for kind in kinds if kind.startswith("Color"))
+    header = Header(" ".join((information.description or "").split()) if information else "")
+    scale = 1.0 if _is_fraction(spectra) else None
+    notes = ("layout: an object per spectrum", *not_used_note(sorted(colours)))
+    return Measurements(tuple(spectra), tuple(skipped), scale, header, notes)
+
+
+def _wavelength_ranges(resources: Any) -> dict[str, tuple[float | None, float]]:
+    """Return start and step in nm by the identifier of the colour specification."""
+    collection = resources.color_specification_collection if resources else None
+    ranges = {}
+    for each in collection.color_specification if collection else []:
+        span = each.measurement_spec.wavelength_range if each.measurement_spec else None
+        if span is not None:
+            ranges[each.id] = (span.start_wl, span.increment or INCREMENT)
+    return ranges
+
+
+def _spectrum(name: str, choice: Any, ranges: dict[str, tuple[float | None, float]]) -> Spectrum:
+    stated, step = ranges.get(choice.color_specification, (None, INCREMENT))
+    start = choice.start_wl if choice.start_wl is not None else stated
+    first = 380 if start is None else start
+    values = [float(value) for value in choice.value]
+    date = str(choice.measure_date) if choice.measure_date else ""
+    return Spectrum(name, [float(first + step * index) for index in range(len(values))], values, date=date)
+
+
+def _is_fraction(spectra: list[Spectrum]) -> bool:
+    """Whether all values are in the range of the schema, (−0.1, 3); some programs write percent."""
+    return all(-0.1 < value < 3 for spectrum in spectra for value in spectrum.values)

@@ -1,0 +1,103 @@
+"""Reader of JCAMP-DX (``.dx``, ``.jdx``), by the package jcamp."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+from typing import Any
+
+import numpy as np
+
+from uplift.atlas.document import Document, SourceLocation, truncate
+from uplift.atlas.measurements import PERCENT, Measurements, Spectrum, check_quantity, parsed_by
+from uplift.common.arrays import Array
+from uplift.common.errors import AtlasError
+from uplift.common.extras import import_extra
+
+POINTS = re.compile(r"^##\s*NPOINTS\s*=\s*(\S+)", re.IGNORECASE | re.MULTILINE)
+MAX_POINTS = 1_000_000
+TO_NANOMETRES = {
+    "nanometers": lambda x: x,
+    "nanometres": lambda x: x,
+    "nm": lambda x: x,
+    "micrometers": lambda x: 1e3 * x,
+    "micrometres": lambda x: 1e3 * x,
+    "um": lambda x: 1e3 * x,
+    "1/cm": lambda x: 1e7 / x,
+}
+"""Conversion of the abscissa by its unit, in lower case."""
+
+
+def is_jcamp(document: Document) -> bool:
+    """Whether the first line with a letter is the title of JCAMP-DX."""
+    first = next((line for line in document.lines if line.strip() and not line.startswith("$$")), "")
+    return re.match(r"\s*##\s*TITLE\s*=", first, re.IGNORECASE) is not None
+
+
+def read(document: Document) -> Measurements:
+    """Read the spectrum of a file, or those of the blocks of a compound file.
+
+    Raises
+    ------
+    AtlasError
+        The file is not valid or holds another quantity than reflectance, or jcamp is not installed.
+    """
+    location = SourceLocation(document.path)
+    for count in POINTS.findall(document.text):
+        if not re.fullmatch(r"\d{1,7}(\.0*)?", count) or float(count) > MAX_POINTS:
+            raise location.error(
+                f"NPOINTS must be at most {MAX_POINTS:,}, got {truncate(count)}",
+                "export the file again",
+                code="too-many-points",
+            )
+    jcamp = import_extra("jcamp", "io", "JCAMP-DX files", AtlasError)
+    with parsed_by("jcamp", "JCAMP-DX", document.path), contextlib.redirect_stdout(io.StringIO()) as printed:
+        content = jcamp.read(document.text.splitlines())
+        blocks = content.get("children") or [content]
+    if "failed" in printed.getvalue() or "Mismatch" in printed.getvalue():
+        problem = truncate(printed.getvalue())
+        raise location.error(
+            f"the data contradict their check values: {problem}",
+            "export the file again",
+            code="unreadable-measurements",
+        )
+    found = [_spectrum(block, document, len(blocks)) for block in blocks]
+    scales = {scale for _, scale in found}
+    return Measurements(
+        tuple(spectrum for spectrum, _ in found),
+        scale=scales.pop() if len(scales) == 1 else None,
+        notes=(f"layout: {len(blocks)} block{'s' * (len(blocks) != 1)}",),
+    )
+
+
+def _spectrum(block: dict[str, Any], document: Document, count: int) -> tuple[Spectrum, float | None]:
+    """Return the spectrum of a block, and the scale that it states."""
+    name = " ".join(str(block.get("title", "")).split()) or document.stem
+    location = SourceLocation(document.path, entry=name)
+    unit = str(block.get("yunits", "")).strip().lower()
+    if "reflect" not in unit:
+        check_quantity(unit + " " + str(block.get("data type", "")), location)
+    if "reflect" not in unit and unit not in ("", "%r", "r", "arbitrary units"):
+        raise location.error(
+            f"YUNITS must be reflectance, got '{truncate(unit)}'",
+            "measure the reflectance: a cube holds reflectances",
+            code="not-a-reflectance",
+        )
+    values = np.asarray(block.get("y", ()), dtype=float)
+    return (
+        Spectrum(name, _nanometres(block, location), values, date=str(block.get("date", ""))),
+        PERCENT if "%" in unit or "percent" in unit else None,
+    )
+
+
+def _nanometres(block: dict[str, Any], location: SourceLocation) -> Array:
+    unit = str(block.get("xunits", "")).strip().lower()
+    if unit not in TO_NANOMETRES:
+        raise location.error(
+            f"XUNITS must be nanometers, micrometers or 1/cm, got '{truncate(unit)}'",
+            "export the file with wavelengths in nm",
+            code="unknown-wavelength-unit",
+        )
+    with np.errstate(all="ignore"):
+        return np.asarray(TO_NANOMETRES[unit](np.asarray(block.get("x", ()), dtype=float)))

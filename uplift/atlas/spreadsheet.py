@@ -1,0 +1,111 @@
+"""Reader of spreadsheets (``.xlsx``, ``.xls``, ``.ods``), by the package python-calamine."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Iterator
+from typing import Any
+
+from uplift.atlas.document import Document, SourceLocation
+from uplift.atlas.grid import NO_TABLE, Cell, Row, read_grid, trimmed
+from uplift.atlas.measurements import Measurements, parsed_by
+from uplift.common.csv import plain_cell
+from uplift.common.errors import AtlasError
+from uplift.common.extras import import_extra
+
+ZIP, OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
+MAX_CONTENT = 256 << 20
+"""Bytes of all files of an archive after decompression."""
+MAX_CELLS = 20_000_000
+CHUNK = 1 << 20
+HINT = "save the sheet as a CSV table"
+
+
+def is_spreadsheet(document: Document) -> bool:
+    """Whether a file is an archive as spreadsheets are."""
+    return document.data.startswith((ZIP, OLE))
+
+
+def read(document: Document) -> Measurements:
+    """Read the first sheet that has a table of spectra.
+
+    Raises
+    ------
+    AtlasError
+        No sheet has such a table, the file is damaged or too large, or python-calamine is not installed.
+    """
+    _check_content(document)
+    calamine = import_extra("python_calamine", "io", "spreadsheets", AtlasError)
+    with parsed_by("python-calamine", "a spreadsheet", document.path):
+        book = calamine.CalamineWorkbook.from_filelike(io.BytesIO(document.data))
+        names = list(book.sheet_names)
+    problem: AtlasError | None = None
+    for name in names:
+        rows = _rows(book, name, document.path)
+        try:
+            found = read_grid(rows, document.path) if len(rows) > 1 else None
+        except AtlasError as error:
+            if error.code != "not-an-atlas":
+                raise
+            problem = error
+            continue
+        if found is not None:
+            notes = (f"sheet: {name}", *found.notes)
+            return Measurements(found.spectra, found.skipped, found.scale, found.header, notes)
+    location = SourceLocation(document.path)
+    raise problem or location.error(NO_TABLE, HINT, code="not-an-atlas")
+
+
+def _rows(book: Any, name: str, path: str) -> list[Row]:
+    with parsed_by("python-calamine", "a spreadsheet", path):
+        sheet = book.get_sheet_by_name(name)
+        if sheet.height * sheet.width > MAX_CELLS:
+            raise SourceLocation(path).error(
+                f"a sheet must have at most {MAX_CELLS:,} cells, got {sheet.height} × {sheet.width}",
+                HINT,
+                code="file-too-large",
+            )
+        start = sheet.start[0] if sheet.start else 0
+        lines = sheet.to_python(skip_empty_area=True)
+    return list(_filled(lines, start + 1))
+
+
+def _filled(lines: list[list[Any]], first: int) -> Iterator[Row]:
+    for line, values in enumerate(lines, first):
+        row = trimmed(Cell(_text(value), line) for value in values)
+        if row and not row[0].text.startswith("#"):
+            yield row
+
+
+def _text(value: Any) -> str:
+    """Return the text of a cell; numbers with all their digits."""
+    if isinstance(value, float):
+        return repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    return plain_cell(" ".join(str(value).split()))
+
+
+def _check_content(document: Document) -> None:
+    """Raise `AtlasError` for an archive that is damaged, or too large when it is decompressed."""
+    if not document.data.startswith(ZIP):
+        return
+    location = SourceLocation(document.path)
+    total = 0
+    with (
+        parsed_by("zipfile", "a spreadsheet", document.path),
+        zipfile.ZipFile(io.BytesIO(document.data)) as archive,
+    ):
+        for size in _sizes(archive):
+            total += size
+            if total > MAX_CONTENT:
+                raise location.error(
+                    f"its content must not exceed {MAX_CONTENT:,} bytes", HINT, code="file-too-large"
+                )
+
+
+def _sizes(archive: zipfile.ZipFile) -> Iterator[int]:
+    """Yield the sizes of parts of all files, decompressed one at a time."""
+    for member in archive.infolist():
+        with archive.open(member) as file:
+            while chunk := file.read(CHUNK):
+                yield len(chunk)

@@ -1,0 +1,29 @@
+"""Import of colour-science on first use."""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from types import ModuleType
+
+import numpy as np
+
+__all__ = ["colour_science"]
+
+
+@functools.cache
+def colour_science() -> ModuleType:
+    """Import colour-science, which takes a second.
+
+    Warnings about its optional dependencies are suppressed, and the print options of numpy, which it changes, are
+    restored.
+
+    Returns
+    -------
+    module
+        ``colour``.
+    """
+    with warnings.catch_warnings(), np.printoptions():
+        warnings.simplefilter("ignore")
+        import colour
+    return colour
