@@ -150,7 +150,7 @@ class Source:
     header : Header
         Statements of the file about itself.
     format : str
-        Name of the format that was recognised; empty if there is no file.
+        Name of the format that was recognised; empty for spectra that come from elsewhere.
     measured : {"auto", "percent", "fraction"}
         Scale of the values that the caller gave.
     notes : tuple of str

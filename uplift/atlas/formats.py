@@ -59,7 +59,7 @@ FORMATS = (
     Format("ART measurement archive", (".txt", ".ark"), art.is_art_archive, art.read, written=True),
     Format("table", (".csv", ".txt", ".spd"), lambda _: True, table.read, written=True),
 )
-"""Formats; the last one takes whatever the others do not."""
+"""Formats; the last one takes all other files."""
 
 
 def read_any(document: Document, measured: str = "auto") -> Atlas:

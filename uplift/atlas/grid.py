@@ -204,7 +204,7 @@ def _in_column(rows: Sequence[Row], path: str) -> Table | None:
 
 
 def _without_cover(rows: Sequence[Row], path: str) -> Table | None:
-    """Find wavelengths that do not cover the visible range, for the error that says so."""
+    """Find wavelengths that do not cover the visible range, for the error that reports it."""
     for index, row in enumerate(rows[:MAX_PREAMBLE]):
         labelled = [run for run in _runs(row) if run[1] - run[0] > 2 and _prefix(row[run[0]].text)]
         if labelled:
