@@ -49,7 +49,7 @@ def test_every_page_is_built(site):
 
 
 def test_notebooks_have_run(site):
-    assert len(NOTEBOOKS) == 2
+    assert len(NOTEBOOKS) == 4
     for notebook in NOTEBOOKS:
         page = (site / notebook.relative_to(DOCS)).with_suffix(".html").read_text(encoding="utf-8")
         assert "cell_output" in page
