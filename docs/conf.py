@@ -39,6 +39,8 @@ os.environ.setdefault("JUPYTER_PLATFORM_DIRS", "1")
 
 # Nothing is loaded from the network: system fonts, own style sheets and scripts.
 html_theme = "furo"
+html_static_path = ["static"]
+html_css_files = ["site.css"]
 html_title = f"uplift {version}"
 html_copy_source = False
 html_show_sphinx = False

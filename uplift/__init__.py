@@ -1,5 +1,7 @@
 """Spectral uplifting cubes: linear RGB in, measured or plausible reflectance spectra out.
 
+::
+
     import uplift
 
     cube = uplift.build("macbeth", dim=32)
