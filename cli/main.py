@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import errno
 import importlib
 import signal
@@ -38,6 +39,8 @@ GROUPS = {
 }
 """Commands by headings of the help."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
+HELP = "help"
+"""Command that prints topics of the help."""
 SUMMARY_LENGTH = 200
 """Characters of a command's summary in the help; enough for all of them."""
 LOST_PIPE = 1
@@ -50,14 +53,25 @@ class LazyGroup(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands, in the order of the help."""
-        return list(COMMANDS)
+        return [*COMMANDS, HELP]
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Import a command; None for an unknown name."""
-        if name not in COMMANDS:
+        if name not in (*COMMANDS, HELP):
             return None
         command: click.Command = importlib.import_module(f"uplift_cli.commands.{name}").command
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command of the arguments. Raises click's error, with similar names, for an unknown one."""
+        name = args[0]
+        if name.startswith("-") or ctx.resilient_parsing or self.get_command(ctx, name) is not None:
+            return super().resolve_command(ctx, args)
+        near = difflib.get_close_matches(name, self.list_commands(ctx), n=1)
+        suggestion = f" Did you mean '{near[0]}'?" if near else ""
+        raise click.UsageError(f"No such command '{name}'.{suggestion}", ctx)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write a section of the help for each group."""
@@ -73,9 +87,10 @@ class LazyGroup(click.Group):
                 formatter.write_dl(rows)
 
     def main(self, *args: Any, **options: Any) -> Any:
-        """Run the command line and exit: 0, 1 for a failed check, 2 for bad input, 70 for an internal error.
+        """Run the command line and exit.
 
-        A signal ends the process as it would end others: shells report 128 and its number.
+        The exit code is 0 for success, 1 for a failed check or a closed pipe, 2 for bad input, and 70 for an internal
+        error. A signal ends the process as it would end others: shells report 128 and its number.
         """
         run: Callable[[], Any] = partial(super().main, *args, **options | {"standalone_mode": False})
         if not options.get("standalone_mode", True):
@@ -203,5 +218,5 @@ def main(traceback: bool) -> None:
       uplift query 0.8 0.2 0.1 --format json
       uplift check cubes/*.uplift
 
-    'uplift COMMAND --help' describes a command and all of its options.
+    'uplift COMMAND --help' describes a command and all of its options, 'uplift help' lists further topics.
     """

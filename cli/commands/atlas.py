@@ -11,6 +11,7 @@ import click
 from ..output.atlas_listing import Listing, Row, list_entries
 from ..output.console import has_colours, make_table, print_csv, print_json, say, show
 from ..output.shipped_listing import print_shipped
+from ..params.completion import complete_atlas
 from ..params.options import force_option, format_option, measured_option, sensor_options
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @click.command("atlas")
-@click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
+@click.argument("files", metavar="[FILE]...", nargs=-1, shell_complete=complete_atlas)
 @measured_option()
 @sensor_options
 @format_option("table", "json", "csv")
@@ -113,6 +114,9 @@ def _print_csv(listing: Listing) -> None:
 
 def _print_table(listing: Listing) -> None:
     show(_table(listing))
+    for row in listing.rows:
+        for warning in row.warnings:
+            say(f"{row.name}: {warning}")
     for source in listing.atlas.sources:
         say("; ".join((f"{source.name}: {source.format}", *source.notes)))
     say(_summary(listing))
@@ -122,11 +126,9 @@ def _table(listing: Listing) -> SafeTable:
     from rich.text import Text
 
     sensor = listing.sensor
-    table = make_table(caption=f"linear {sensor.space} under {sensor.illuminant}")
     swatches = has_colours()
-    for title in [""] * swatches + ["name", "range (nm)", "step", "R", "G", "B", "gamut", "warnings"]:
-        right = title in ("step", "R", "G", "B")
-        table.add_column(title, justify="right" if right else "left", no_wrap=right, overflow="fold")
+    texts = [""] * swatches + ["name", "nm"]
+    table = make_table(texts, "RGB", title=f"linear {sensor.space} under {sensor.illuminant}")
     for row in listing.rows:
         red, green, blue = row.swatch
         swatch = [Text("   ", style=f"on rgb({red},{green},{blue})")] * swatches
@@ -136,11 +138,9 @@ def _table(listing: Listing) -> SafeTable:
 
 def _cells(row: Row) -> Iterator[str]:
     yield row.name
-    yield f"{row.start:g}–{row.end:g}"
-    yield "irregular" if row.step is None else f"{row.step:g}"
+    step = "" if row.step is None else f":{row.step:g}"
+    yield f"{row.start:g}:{row.end:g}{step}"
     yield from (f"{channel:.4f}" for channel in row.rgb)
-    yield "in" if row.in_gamut else "out"
-    yield "; ".join(row.warnings)
 
 
 def _summary(listing: Listing) -> str:

@@ -148,7 +148,7 @@ def command(
     \b
     Examples:
       uplift build --atlas macbeth --dim 32
-      uplift build --atlas paints.csv --atlas macbeth.txt --coefficients 17 -o book.uplift
+      uplift build --atlas paints.csv --atlas macbeth --coefficients 17
       uplift build --atlas paints.csv --dim auto --auto-tolerance 1
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
       uplift build --atlas macbeth --library fabrics.csv --library paints.csv

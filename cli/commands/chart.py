@@ -154,20 +154,14 @@ def _print_fronts(chart: Chart) -> None:
     from uplift.lab.chart.table import State
     from uplift.viz.format import format_size
 
-    caption = "Pareto fronts, from the fastest to the most accurate"
-    table = make_table(("", "method"), ("time", "error", "bytes"), caption=caption)
+    say("Pareto fronts, from the fastest to the most accurate")
+    tables = []
     for panel in PANELS:
-        front = panel.front(chart)
-        for row in front:
-            title = panel.title if row is front[0] else ""
-            table.add_row(
-                title,
-                row.method,
-                *panel.labels(row),
-                format_size(row.numbers["bytes"]),
-                end_section=row is front[-1],
-            )
-    show(table)
+        table = make_table(("method",), ("time", panel.unit, "bytes"), title=panel.title)
+        for row in panel.front(chart):
+            table.add_row(row.method, *panel.labels(row), format_size(row.numbers["bytes"]))
+        tables.append(table)
+    show(*tables)
     for row in chart.results:
         if row.state != State.MEASURED:
             say(f"{row.method}: {row.state}, not drawn: {row.why}")

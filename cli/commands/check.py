@@ -13,6 +13,7 @@ from uplift.common.errors import UpliftError
 
 from ..output.console import make_table, print_json, say, show
 from ..output.diagnostics import UsageFailure, error_object
+from ..params.completion import complete_cube
 from ..params.options import atlas_folders_option, format_option, quiet_option, verbose_option
 from ..startup import enable_jit_cache
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @click.command("check")
-@click.argument("files", nargs=-1, required=True)
+@click.argument("files", nargs=-1, required=True, shell_complete=complete_cube)
 @atlas_folders_option()
 @click.option("--update", is_flag=True, help="Replace the cubes that differ by the rebuilt ones.")
 @format_option("table", "json")
@@ -131,9 +132,12 @@ def _table(results: Sequence[_Result]) -> None:
 
     headings = {"rgb": "RGB", "spectra_max": "spectra max", "spectra_rms": "rms"}
     measures = (headings.get(name, name.replace("delta_e_", "ΔE00 ")) for name in LIMITS)
-    table = make_table(("cube",), measures, box=None, pad_edge=False)
-    table.add_column("status", no_wrap=True)
-    table.add_column("", no_wrap=True)
+    table = make_table()
+    table.add_column("cube", overflow="fold")
+    for measure in measures:
+        table.add_column(measure, justify="right", no_wrap=True)
+    table.add_column("nodes", no_wrap=True)
+    table.add_column("verdict", no_wrap=True)
     for result in results:
         table.add_row(*_row(result))
     table.add_row("limit", *(f"{limit:.0e}" for limit in LIMITS.values()), "same", "", style="dim")

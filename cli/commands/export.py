@@ -10,6 +10,7 @@ import click
 
 from ..output.console import say
 from ..output.progress import spinner
+from ..params.completion import complete_cube
 from ..params.number_types import Whole
 from ..params.options import fill_option, force_option
 from ..startup import enable_jit_cache
@@ -22,7 +23,7 @@ SUFFIXES = {"coeff": ".coeff", **PROGRAMS, "npz": ".npz", "csv": ".csv", "html":
 
 
 @click.command("export")
-@click.argument("cube", metavar="CUBE", type=click.Path())
+@click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
 @click.argument("out", metavar="[OUT]", required=False, type=click.Path())
 @click.option(
     "--format",

@@ -7,11 +7,12 @@ from typing import Any
 import click
 
 from ..output.console import make_table, print_json, say, show
+from ..params.completion import complete_cube
 from ..params.options import format_option
 
 
 @click.command("info")
-@click.argument("file", required=False)
+@click.argument("file", required=False, shell_complete=complete_cube)
 @format_option("table", "json")
 def command(file: str | None, style: str) -> None:
     """Show the contents and provenance of a cube file. FILE defaults to the packaged cube.
@@ -33,7 +34,7 @@ def command(file: str | None, style: str) -> None:
 
 def _table(name: str, fields: dict[str, Any]) -> None:
     say(name)
-    table = make_table(show_header=False, box=None, pad_edge=False)
+    table = make_table(show_header=False, box=None)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
     provenance = fields.pop("provenance")
@@ -46,8 +47,12 @@ def _table(name: str, fields: dict[str, Any]) -> None:
 
 def _text(value: Any) -> str:
     """Format a value, nested or not, on one line with three significant digits."""
+    if value is None or value in ([], {}):
+        return "none"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     if isinstance(value, dict):
         return ", ".join(f"{key} {_text(inner)}" for key, inner in value.items())
     if isinstance(value, list):
-        return "; ".join(_text(inner) for inner in value) or "none"
+        return "; ".join(_text(inner) for inner in value)
     return f"{value:.3g}" if isinstance(value, float) else str(value)

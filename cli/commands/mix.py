@@ -19,6 +19,7 @@ from ..params.options import (
     out_of_gamut_option,
     wavelengths_option,
 )
+from ..params.plots import plot_option
 from ..params.wavelengths import parse_wavelengths
 from .query import ColourCommand
 
@@ -72,7 +73,7 @@ WRITERS = {"table": as_table, "json": as_json}
 @wavelengths_option()
 @out_of_gamut_option("scale", "mixtures and pixels")
 @format_option(*WRITERS)
-@click.option("--swatches", metavar="PNG", help="Plot the ramp from the first ingredient to the last.")
+@plot_option("--swatches", "swatches", "Plot the ramp from the first ingredient to the last")
 @click.option(
     "--steps",
     type=Whole(2, 1000),

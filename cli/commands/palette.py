@@ -10,6 +10,7 @@ from ..output.console import say
 from ..output.palette_page import read_picture, write_page
 from ..output.palette_tables import PRINTERS
 from ..params.options import force_option, format_option
+from ..params.plots import plot_option
 
 if TYPE_CHECKING:
     from uplift.design.palette import Design
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 @click.option(
     "--atlas", metavar="OUT", help="Write the designed materials as an atlas; CSV if OUT ends in .csv."
 )
-@click.option("--matrix", "matrix_path", metavar="PNG", help="Plot the matrix of colours.")
-@click.option("--spectra", "spectra_path", metavar="PNG", help="Plot the spectra of lights and materials.")
+@plot_option("--matrix", "matrix_path", "Plot the matrix of colours")
+@plot_option("--spectra", "spectra_path", "Plot the spectra of lights and materials")
 @click.option(
     "--html", metavar="HTML", help="Write a page that shows the materials under any mixture of the lights."
 )

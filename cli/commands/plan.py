@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.console import json_text, make_table, print_json, say, show
+from ..output.console import json_text, make_table, paragraph, print_json, say, show
 from ..output.progress import stage_spinner
 from ..params.options import force_option, format_option
 from ..startup import enable_jit_cache
@@ -88,9 +88,11 @@ def _print_summary(plan: Plan, lines: list[str]) -> None:
     table.add_column("options")
     for row in summary_rows(plan):
         table.add_row(row.title, row.chosen, row.error, row.cost, row.cli_args)
-    say(f"{plan.scene.path.name}: {verdict(plan)} ({worst_case(plan.confirmed)})")
+    paragraph(f"{plan.scene.path.name}: {verdict(plan)} ({worst_case(plan.confirmed)})")
+    say()
     show(table)
+    say()
     for line in lines:
         say(f"  {line}")
     say()
-    say(f"{describe_error(plan)}. {describe_metamerism(plan)}")
+    paragraph(f"{describe_error(plan)}. {describe_metamerism(plan)}")

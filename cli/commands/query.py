@@ -24,6 +24,7 @@ from ..params.options import (
     primaries_option,
     wavelengths_option,
 )
+from ..params.plots import plot_option
 from ..params.primaries import parse_primaries
 from ..params.wavelengths import parse_wavelengths
 
@@ -63,7 +64,7 @@ class ColourCommand(click.Command):
 @out_of_gamut_option()
 @fill_option()
 @format_option("table", "json", "csv")
-@click.option("--plot", "plot_path", metavar="PNG", help="Plot the spectra.")
+@plot_option("--plot", "plot_path", "Plot the spectra")
 @force_option()
 def command(
     colour: tuple[str, ...],

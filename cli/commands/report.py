@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..output.console import emit, json_text, say
+from ..params.completion import complete_cube
 from ..params.number_types import Whole
 from ..params.options import atlas_folders_option, atlas_option, force_option, format_option, light_option
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @click.command("report")
-@click.argument("cube_path", metavar="CUBE", type=click.Path())
+@click.argument("cube_path", metavar="CUBE", shell_complete=complete_cube)
 @atlas_option("Measured spectra that replace the atlases of the cube")
 @atlas_folders_option()
 @light_option("Illuminant to evaluate", "D65 A FL2 FL7 FL11 LED-B3")

@@ -5,11 +5,12 @@ from __future__ import annotations
 import click
 
 from ..output.console import say
+from ..params.completion import complete_cube
 from ..params.options import force_option
 
 
 @click.command("slices")
-@click.argument("cube", metavar="CUBE", type=click.Path())
+@click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
 @click.argument("out", metavar="[OUT.exr]", required=False, type=click.Path())
 @click.option("--sheet", metavar="FILE", type=click.Path(), help="Contact sheet to write, as .exr or .png.")
 @force_option()

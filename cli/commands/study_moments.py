@@ -92,10 +92,10 @@ def _print_table(study: MomentsStudy) -> None:
     from uplift.lab.study.technique import TECHNIQUES
 
     caption = (
-        f"mean / largest ΔE76 under D65 of {len(study.names)} entries\n"
+        f"mean / largest ΔE76 under D65 of {len(study.names)} entries; "
         "n moments take n + 1 floats mirrored, 2n + 1 unmirrored"
     )
-    headings = ("moments", *(technique.label.replace(" ", "\n") for technique in TECHNIQUES))
+    headings = ("moments", *(technique.label for technique in TECHNIQUES))
     table = make_table((), headings, caption=caption)
     for count in range(study.max_moments + 1):
         results = [study.result(technique, count) for technique in TECHNIQUES]

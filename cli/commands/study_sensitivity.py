@@ -53,7 +53,7 @@ def sensitivity(
     Examples:
       uplift study sensitivity
       uplift study sensitivity cubes/moments-16-macbeth.uplift --output out --force
-      uplift study sensitivity cubes/moments-8-macbeth.uplift --entries 4 --format json
+      uplift study sensitivity --entries 4 --format json
     """
     enable_jit_cache()
     from uplift.common.files import check_folder

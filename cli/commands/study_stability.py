@@ -87,7 +87,7 @@ def stability(
     Examples:
       uplift study stability --quick
       uplift study stability --output out --force
-      uplift study stability --spaces 'sRGB,ProPhoto RGB' --thresholds 1e-4,1e-6 --dims 9 --format csv
+      uplift study stability --thresholds 1e-4,1e-6 --dims 9 --format csv
     """
     enable_jit_cache()
     from uplift.common.files import check_folder

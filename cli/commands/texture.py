@@ -116,11 +116,11 @@ def command(
     texture.uplifter_for(settings)  # report invalid options once, not once per image
     begin = time.perf_counter()
     if scheduler is None and len(jobs) == 1:
-        results: list[Conversion | Failure] = [_convert_here(job) for job in pending]
+        results: list[Conversion | Failure] = [_convert_here(job, quiet=quiet) for job in pending]
     else:
         pool = texture.process_executor(count) if scheduler is None else texture.dask_executor(scheduler)
         with pool as executor:
-            results = _collect(texture.convert_all(pending, executor), len(pending))
+            results = _collect(texture.convert_all(pending, executor), len(pending), quiet=quiet)
     converted = [one for one in results if isinstance(one, texture.Conversion)]
     for conversion in converted:
         for warning in conversion.warnings:
@@ -149,21 +149,23 @@ def _pixel_encoding(kind: str, wavelengths: Array | None) -> PixelEncoding:
     return texture.PIXEL_ENCODINGS[kind]()
 
 
-def _convert_here(job: Job) -> Conversion:
+def _convert_here(job: Job, *, quiet: bool) -> Conversion:
     """Convert one image in this process, with a progress bar over its rows."""
     from uplift.io import texture
 
-    with progress_bar("rows") as progress:
+    with progress_bar("rows", quiet=quiet) as progress:
         return texture.convert(
             texture.uplifter_for(job.settings), job.source, job.target, force=job.force, progress=progress
         )
 
 
-def _collect(results: Iterable[Conversion | Failure], total: int) -> list[Conversion | Failure]:
+def _collect(
+    results: Iterable[Conversion | Failure], total: int, *, quiet: bool
+) -> list[Conversion | Failure]:
     """Collect results as images finish, with a progress bar over the images."""
     collected = []
     try:
-        with progress_bar("images") as progress:
+        with progress_bar("images", quiet=quiet) as progress:
             for result in results:
                 collected.append(result)
                 progress(Progress("images", len(collected), total))

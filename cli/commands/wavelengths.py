@@ -11,6 +11,7 @@ from ..output.wavelengths_output import PRINTERS, Result
 from ..params.atlases import DEFAULT_ATLASES, read_atlases
 from ..params.number_types import NUMBER, Whole
 from ..params.options import atlas_option, force_option, format_option, light_option, sensor_options
+from ..params.plots import plot_option
 from ..params.wavelengths import parse_wavelengths
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
 @light_option("Illuminant of the scene", "D65")
 @sensor_options
 @format_option("table", "json", "csv")
-@click.option("--plot", "plot_path", metavar="PNG", help="Plot lights, wavelengths and weights.")
+@plot_option("--plot", "plot_path", "Plot lights, wavelengths and weights")
 @force_option()
 def command(
     count: int | None,
@@ -71,7 +72,7 @@ def command(
       uplift wavelengths --count 8
       uplift wavelengths --target 1 --light D65 --light FL11 --plot wavelengths.png
       uplift wavelengths --target 0.5 --measure p95 --atlas paints.csv --format json
-      uplift wavelengths --wavelengths 400:700:20 --light A --light LED-B3 --format csv
+      uplift wavelengths --wavelengths 400:700:20 --light A --format csv
       uplift wavelengths --count 4 --method meyer --light C --atlas macbeth
     """
     if sum(option is not None for option in (count, target, given)) != 1:

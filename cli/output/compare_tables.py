@@ -17,23 +17,26 @@ def print_comparison(comparison: Comparison) -> None:
     from uplift.lab.comparison.statistics import HEADINGS
     from uplift.viz.format import format_time
 
+    tables = []
     for name, title in comparison.sets.items():
         numbers = (*HEADINGS, "floats", "of a light", "product")
-        table = make_table(("representation",), numbers, caption=f"ΔE00 under {title}")
+        table = make_table(("representation",), numbers, title=f"ΔE00 under {title}")
         for row in comparison.of(name):
             cost = (f"{row.floats:.1f}", f"{row.light_floats:.1f}", format_time(row.ns.median))
             table.add_row(row.name, *_cells(row.statistics), *cost)
-        show(table)
+        tables.append(table)
+    show(*tables)
 
 
 def print_filters(tuned: tuple[TunedFilter, ...]) -> None:
     """Print the best filter of each kind."""
     from uplift.lab.comparison.statistics import HEADINGS
 
-    caption = "point sampling after the best low-pass filter of each kind"
-    table = make_table(("lights", "samples", "filter", "parameters"), HEADINGS, caption=caption)
+    title = "point sampling after the best low-pass filter of each kind"
+    table = make_table(("lights", "samples", "filter", "parameters"), HEADINGS, title=title)
     for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
         table.add_row(one.lights, str(one.count), one.kind, one.parameters, *_cells(one.statistics))
+    say()
     show(table)
 
 

@@ -22,9 +22,6 @@ if TYPE_CHECKING:
 
     from .tables import SafeTable
 
-PIPE_WIDTH = 160
-"""Width of tables that do not go to a terminal, in characters."""
-
 
 def say(text: str = "", *, err: bool = False) -> None:
     """Print one line with control characters escaped."""
@@ -76,13 +73,15 @@ class _Lines:
 
 
 def console() -> Console:
-    """Return a rich console on standard output."""
+    """Return a rich console on standard output, as wide as the window, COLUMNS or 80 characters."""
     from rich.console import Console
 
-    console = Console(file=sys.stdout, highlight=False, markup=False, emoji=False)
-    if not console.is_terminal:
-        console.width = max(console.width, PIPE_WIDTH)
-    return console
+    return Console(file=sys.stdout, highlight=False, markup=False, emoji=False)
+
+
+def columns() -> int:
+    """Return the characters of a line of the window."""
+    return console().width
 
 
 def has_colours() -> bool:
@@ -91,8 +90,19 @@ def has_colours() -> bool:
 
 
 def show(*tables: SafeTable) -> None:
-    """Print tables."""
-    console().print(*tables)
+    """Print tables, folded where the window is too narrow."""
+    out = console()
+    for number, table in enumerate(tables):
+        if number:
+            out.print()
+        out.print(table.fitted(out.width))
+
+
+def paragraph(text: str) -> None:
+    """Print prose with control characters escaped, wrapped to the window."""
+    import textwrap
+
+    emit(textwrap.fill(printable(text), columns(), break_long_words=False, break_on_hyphens=False))
 
 
 def make_table(texts: Iterable[str] = (), numbers: Iterable[str] = (), **options: Any) -> SafeTable:

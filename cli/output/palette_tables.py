@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from .console import has_colours, make_table, print_json, say, show
+from .console import has_colours, make_table, paragraph, print_json, say, show
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -23,16 +23,17 @@ LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of th
 
 def _print_table(design: Design, colours: Matrix, unmet: Sequence[UnmetGoal]) -> None:
     show(_table(design, colours, coloured=has_colours()))
-    say(LEGEND)
+    say()
+    paragraph(LEGEND)
     for goal in unmet:
-        say(f"not met: {goal}")
+        paragraph(f"not met: {goal}")
     if not unmet:
         say("all goals are met")
 
 
 def _table(design: Design, colours: Matrix, *, coloured: bool) -> SafeTable:
     table = make_table()
-    table.add_column("")
+    table.add_column("material", no_wrap=True)
     for light in design.palette.lights:
         table.add_column(_name(light), no_wrap=True)
     for row, material in enumerate(design.palette.materials):

@@ -1,9 +1,12 @@
-"""Progress on the terminal: a bar, a spinner, or a line per step; silent elsewhere."""
+"""Progress on standard error: a bar or a spinner on a terminal; elsewhere, in long commands, a line now and then."""
 
 from __future__ import annotations
 
 import contextlib
+import os
 import sys
+import threading
+import time
 from collections.abc import Iterator
 
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
@@ -13,15 +16,19 @@ from .console import say
 
 STAGES = {"images": "reading images", "fit": "fitting", "store": "storing"}
 """Descriptions of the stages of a build."""
+INTERVAL = 10.0
+"""Seconds between lines, and before the first one."""
 
 
 @contextlib.contextmanager
 def build_progress(*, quiet: bool, verbose: bool) -> Iterator[ProgressCallback]:
-    """Yield a callback for `uplift.build`: lines if ``verbose``, a bar on a terminal, silent otherwise."""
+    """Yield a callback for `uplift.build`: all lines if ``verbose``, none if ``quiet``, otherwise bar or lines."""
     if verbose:
         yield _checked(_print_line)
-    elif quiet or not sys.stderr.isatty():
+    elif quiet:
         yield _checked(ignore_progress)
+    elif not _is_animated():
+        yield _checked(_Lines())
     else:
         with _build_bar() as progress:
             yield _checked(progress)
@@ -40,9 +47,10 @@ def _checked(callback: ProgressCallback) -> ProgressCallback:
 
 @contextlib.contextmanager
 def spinner(text: str) -> Iterator[None]:
-    """Show a spinner with ``text`` while the block runs."""
-    if not sys.stderr.isatty():
-        yield
+    """Show a spinner with ``text``, or a line now and then, while the block runs."""
+    if not _is_animated():
+        with _clock(text):
+            yield
         return
     from rich.console import Console
 
@@ -51,10 +59,10 @@ def spinner(text: str) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def progress_bar(title: str) -> Iterator[ProgressCallback]:
-    """Yield a callback that moves a bar titled ``title``."""
-    if not sys.stderr.isatty():
-        yield _checked(ignore_progress)
+def progress_bar(title: str, *, quiet: bool = False) -> Iterator[ProgressCallback]:
+    """Yield a callback that moves a bar titled ``title``; silent if ``quiet``."""
+    if quiet or not _is_animated():
+        yield _checked(ignore_progress if quiet else _Lines(title))
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
@@ -69,8 +77,8 @@ def progress_bar(title: str) -> Iterator[ProgressCallback]:
 @contextlib.contextmanager
 def stage_spinner() -> Iterator[ProgressCallback]:
     """Yield a callback that shows the current stage with a spinner."""
-    if not sys.stderr.isatty():
-        yield _checked(ignore_progress)
+    if not _is_animated():
+        yield _checked(_Lines())
         return
     from rich.console import Console
 
@@ -78,9 +86,46 @@ def stage_spinner() -> Iterator[ProgressCallback]:
         yield _checked(lambda event: status.update(f"{event.stage} ({event.done + 1} of {event.total}) …"))
 
 
-def _print_line(event: Progress) -> None:
+def _is_animated() -> bool:
+    """Return whether standard error is a terminal that can replace a line."""
+    return sys.stderr.isatty() and os.environ.get("TERM", "dumb") not in ("dumb", "unknown")
+
+
+class _Lines:
+    """Prints an event when the last line is `INTERVAL` old."""
+
+    def __init__(self, title: str | None = None) -> None:
+        self._title, self._last = title, time.monotonic()
+
+    def __call__(self, event: Progress) -> None:
+        now = time.monotonic()
+        if now - self._last >= INTERVAL:
+            self._last = now
+            _print_line(event, self._title)
+
+
+@contextlib.contextmanager
+def _clock(text: str) -> Iterator[None]:
+    """Print ``text`` and the time passed, every `INTERVAL`, while the block runs."""
+    begin, finished = time.monotonic(), threading.Event()
+
+    def tell() -> None:
+        while not finished.wait(INTERVAL):
+            say(f"{text}: {time.monotonic() - begin:.0f} s", err=True)
+
+    thread = threading.Thread(target=tell, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        finished.set()
+        thread.join()
+
+
+def _print_line(event: Progress, title: str | None = None) -> None:
     detail = f", {event.detail}" if event.detail else ""
-    say(f"{STAGES[event.stage]}: {event.done} of {event.total}{detail}", err=True)
+    name = title or STAGES.get(event.stage, event.stage)
+    say(f"{name}: {event.done} of {event.total}{detail}", err=True)
 
 
 @contextlib.contextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,17 @@ import click
 
 from uplift.common.text import printable
 
-from .console import csv_writer, emit, make_table, print_json, say, show, terminal_json
+from .console import (
+    columns,
+    csv_writer,
+    emit,
+    has_colours,
+    make_table,
+    print_json,
+    say,
+    show,
+    terminal_json,
+)
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -19,6 +30,10 @@ if TYPE_CHECKING:
 
 BLOCKS = "▁▂▃▄▅▆▇█"
 LARGEST = 1e30
+NAME_WIDTH = 12
+"""Characters of the names of fields."""
+CELL_WIDTH = 20
+"""Characters of a wavelength and its reflectance, with the space between columns."""
 Writer = Callable[["Cube", Iterable[Sequence["QueryResult"]], bool], None]
 """Prints blocks of results, each before the next one is computed."""
 
@@ -115,9 +130,12 @@ def _standard_error(cube: Cube, result: QueryResult) -> str:
 
 def print_fields(fields: Mapping[str, str], patches: Mapping[str, str]) -> None:
     """Print names and values in two columns, and on a terminal the patches of colour that belong to a value."""
+    width = columns()
     for name, text in fields.items():
         patch = f"  {patches[name]}" if sys.stdout.isatty() and patches.get(name) else ""
-        emit(f"{name:<12}{printable(text)}{patch}")
+        lines = textwrap.wrap(printable(text), width - NAME_WIDTH, break_on_hyphens=False)
+        indent = "\n" + " " * NAME_WIDTH
+        emit(f"{name:<{NAME_WIDTH}}{indent.join(lines)}{patch}")
 
 
 def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
@@ -126,12 +144,12 @@ def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
 
 
 def print_columns(wavelengths: Array, reflectance: Array) -> None:
-    """Print wavelengths and reflectances in four columns, ordered downwards."""
+    """Print wavelengths and reflectances in columns, ordered downwards."""
     cells = [
         f"{wavelength:>6g} nm {value:8.5f}"
         for wavelength, value in zip(wavelengths, reflectance, strict=True)
     ]
-    height = -(-len(cells) // 4)
+    height = -(-len(cells) // max(1, (columns() + 2) // CELL_WIDTH))
     for line in range(height):
         say("  ".join(cells[line::height]))
 
@@ -139,17 +157,18 @@ def print_columns(wavelengths: Array, reflectance: Array) -> None:
 def _print_lines(cube: Cube, results: Sequence[QueryResult], *, heading: bool) -> None:
     from rich.text import Text
 
-    headings = ("", "hex", "linear RGB", "ΔE00", "atlas entry", "spectrum")
-    table = make_table(headings, box=None, pad_edge=False, show_header=heading)
+    swatches = has_colours()
+    headings = ("",) * swatches + ("hex", "linear RGB", "ΔE00", "atlas entry", "spectrum")
+    table = make_table(headings, box=None, show_header=heading)
     for result in results:
         red, green, blue = display_codes(cube, result.rgb)
         table.add_row(
-            Text("   ", style=f"on rgb({red},{green},{blue})"),
+            *(Text("   ", style=f"on rgb({red},{green},{blue})"),) * swatches,
             hex_code(cube, result.rgb),
             " ".join(f"{value:.3f}" for value in result.rgb),
             f"{result.delta_e_2000:.2g}",
             result.entry or "",
-            sparkline(result.reflectance, 20),
+            sparkline(result.reflectance, 16),
         )
     show(table)
 

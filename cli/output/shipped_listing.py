@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
-from .console import make_table, print_csv, print_json, show
+from .console import make_table, print_csv, print_json, say, show
 
 if TYPE_CHECKING:
     from uplift.atlas import ShippedAtlas
@@ -30,15 +30,16 @@ def _print_csv(atlases: Iterable[ShippedAtlas]) -> None:
 
 
 def _print_table(atlases: Iterable[ShippedAtlas]) -> None:
-    table = make_table(caption="use a name as --atlas NAME, or in place of FILE")
+    table = make_table()
     for title in COLUMNS:
-        fixed = title in ("name", "entries")
-        table.add_column(
-            title, justify="right" if title == "entries" else "left", no_wrap=fixed, overflow="fold"
-        )
+        number = title == "entries"
+        wrapped = title not in ("name", "entries")
+        table.add_column(title, justify="right" if number else "left", no_wrap=not wrapped, overflow="fold")
     for atlas in atlases:
         table.add_row(*(str(value) for value in _record(atlas).values()))
     show(table)
+    say()
+    say("Use a name as --atlas NAME, or in place of FILE.")
 
 
 def _record(atlas: ShippedAtlas) -> dict[str, Any]:

@@ -79,19 +79,22 @@ def _rows(result: Result) -> Iterator[list[float]]:
 
 def _print_table(result: Result) -> None:
     sampling = result.choice.sampling
-    weights = (f"to {axis}" for axis in "XYZRGB")
-    powers = (f"power of {light}" for light in sampling.lights)
-    title = f"{len(sampling)} wavelengths, {result.choice.method}"
-    table = make_table((), ("nm", *weights, *powers), title=title)
+    weights = make_table(
+        (), ("nm", *"XYZRGB"), title=f"{len(sampling)} wavelengths, {result.choice.method}: weights"
+    )
+    powers = make_table((), ("nm", *sampling.lights), title="power of the lights")
     for nm, *others in _rows(result):
-        table.add_row(f"{nm:.1f}", *(f"{other:.4f}" for other in others))
-    title = f"ΔE00 of {len(result.materials)} materials"
-    errors_table = make_table(("light",), ("mean", "95th percentile", "max"), title=title)
+        cells = [f"{other:.4f}" for other in others]
+        weights.add_row(f"{nm:.1f}", *cells[:6])
+        powers.add_row(f"{nm:.1f}", *cells[6:])
+    errors_table = make_table(
+        ("light",), ("mean", "95 %", "max"), title=f"ΔE00 of {len(result.materials)} materials"
+    )
     errors_table.add_column("worst material")
     for name, errors in result.errors():
         numbers = (errors.mean, errors.p95, errors.max)
         errors_table.add_row(name, *(f"{number:.3f}" for number in numbers), result.worst(errors))
-    show(table, errors_table)
+    show(weights, powers, errors_table)
 
 
 PRINTERS: dict[str, Callable[[Result], None]] = {

@@ -10,6 +10,13 @@ import click
 from uplift.common.number_text import parse_whole
 from uplift.common.quoting import format_value
 
+from .completion import (
+    complete_atlas,
+    complete_cube,
+    complete_illuminant,
+    complete_observer,
+    complete_space,
+)
 from .number_types import Whole
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
@@ -39,13 +46,24 @@ class LatticeDim(click.ParamType):  # type: ignore[type-arg]
 def cube_option() -> Decorator:
     """``--cube`` as ``cube_path``."""
     return click.option(
-        "--cube", "cube_path", metavar="FILE", help="Cube file. [default: the packaged sRGB cube]"
+        "--cube",
+        "cube_path",
+        metavar="FILE",
+        help="Cube file. [default: the packaged sRGB cube]",
+        shell_complete=complete_cube,
     )
 
 
 def atlas_option(help: str, default: str = "") -> Decorator:
     """``--atlas`` as ``files``."""
-    return click.option("--atlas", "files", multiple=True, metavar="FILE", help=_repeatable(help, default))
+    return click.option(
+        "--atlas",
+        "files",
+        multiple=True,
+        metavar="FILE",
+        help=_repeatable(help, default),
+        shell_complete=complete_atlas,
+    )
 
 
 def measured_option() -> Decorator:
@@ -61,7 +79,14 @@ def measured_option() -> Decorator:
 
 def light_option(help: str, default: str) -> Decorator:
     """``--light`` as ``lights``."""
-    return click.option("--light", "lights", multiple=True, metavar="NAME", help=_repeatable(help, default))
+    return click.option(
+        "--light",
+        "lights",
+        multiple=True,
+        metavar="NAME",
+        help=_repeatable(help, default),
+        shell_complete=complete_illuminant,
+    )
 
 
 def _repeatable(help: str, default: str) -> str:
@@ -97,7 +122,7 @@ def out_of_gamut_option(default: str = "error", subject: str = "linear RGB") -> 
 
 def primaries_option(help: str) -> Decorator:
     """``--primaries``, to be parsed by `.primaries.parse_primaries`."""
-    return click.option("--primaries", metavar="SPACE", help=help)
+    return click.option("--primaries", metavar="SPACE", help=help, shell_complete=complete_space)
 
 
 def encoding_option(subject: str = "colours") -> Decorator:
@@ -149,13 +174,23 @@ def wavelengths_option() -> Decorator:
 def sensor_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """``--space``, ``--illuminant`` and ``--observer``; the observer stays None for the default of the library."""
     space = click.option(
-        "--space", default="sRGB", show_default=True, help="RGB space by its name in colour-science."
+        "--space",
+        default="sRGB",
+        show_default=True,
+        help="RGB space by its name in colour-science.",
+        shell_complete=complete_space,
     )
     illuminant = click.option(
-        "--illuminant", default="D65", show_default=True, help="Illuminant under which RGB are defined."
+        "--illuminant",
+        default="D65",
+        show_default=True,
+        help="Illuminant under which RGB are defined.",
+        shell_complete=complete_illuminant,
     )
     observer = click.option(
-        "--observer", help="Standard observer. [default: CIE 1931 2 Degree Standard Observer]"
+        "--observer",
+        help="Standard observer. [default: CIE 1931 2 Degree Standard Observer]",
+        shell_complete=complete_observer,
     )
     return space(illuminant(observer(function)))
 

@@ -50,15 +50,19 @@ def test_empty_atlas():
     assert on_grid(Atlas(), GRID).shape == (0, 81)
 
 
-def test_one_warning_per_clipped_entry():
+def test_one_warning_for_all_clipped_entries():
     rows = ([0.5] * 6 + [1.25], [0.5] * 7, [1.5, 1.0, 0.5, -0.04, 0.5, 0.5, 0.5], [0.5, -0.04] + [0.5] * 5)
-    with warns(*["entry-clipped"] * 3) as caught:
+    with warns("entry-clipped") as caught:
         found = on_grid(spectra(*rows), GRID)
-    assert [str(warning) for warning in caught] == [
-        "entry 'e0': 1.25 at 700 nm clipped to 1",
-        "entry 'e2': 1.5 at 380 nm clipped to 1",
-        "entry 'e3': -0.04 at 450 nm clipped to 0",
-    ]
+    assert str(caught[0]) == (
+        "3 entries clipped to [0, 1]: 'e0', 'e2', 'e3'; 'e2' has 1.5 at 380 nm clipped to 1"
+    )
+    with warns("entry-clipped") as caught:
+        on_grid(spectra(*rows[:2]), GRID)
+    assert str(caught[0]) == "entry 'e0': 1.25 at 700 nm clipped to 1"
+    with warns("entry-clipped") as caught:
+        on_grid(spectra(*rows[:1] * 7), GRID)
+    assert "'e0', 'e1', 'e2', 'e3', 'e4' and 2 more" in str(caught[0])
     assert (found.min(), found.max()) == (0.0, 1.0)
     assert [clip.name for clip in resample(spectra(*rows), GRID).clips] == ["e0", "e2", "e3"]
 

@@ -69,15 +69,10 @@ def test_measured_values_are_unchanged():
 
 def test_patches_above_1_are_clipped_with_a_warning():
     spectra = read_atlas(ATLASES / "rawtoaces.txt")
-    with warns(*["entry-clipped"] * 5) as caught:
+    with warns("entry-clipped") as caught:
         on_grid(spectra, GRID)
-    assert [warning.entry for warning in caught] == [
-        "patch085",
-        "patch089",
-        "patch114",
-        "patch125",
-        "patch128",
-    ]
+    names = ("patch085", "patch089", "patch114", "patch125", "patch128")
+    assert ", ".join(f"'{name}'" for name in names) in str(caught[0])
 
 
 def test_tool_writes_the_same_bytes(tmp_path):

@@ -14,6 +14,8 @@ from uplift.common.errors import UpliftWarning
 
 NOISE = 1e-6
 """Distance from [0, 1] that is clipped without a warning, such as −2e−16 for black."""
+MAX_NAMES = 5
+"""Clipped entries that a warning names."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,7 @@ def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
     Warns
     -----
     UpliftWarning
-        An entry was clipped by more than noise (``entry-clipped``).
+        Entries were clipped by more than noise (``entry-clipped``).
 
     References
     ----------
@@ -87,9 +89,19 @@ def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
     [[0.25, 0.25, 0.5, 0.75]]
     """
     resampled = resample(atlas, wavelengths)
-    for clip in resampled.clips:
-        warnings.warn(UpliftWarning(str(clip), code="entry-clipped", entry=clip.name), stacklevel=2)
+    if resampled.clips:
+        warnings.warn(_warning(resampled.clips), stacklevel=2)
     return resampled.values
+
+
+def _warning(clips: tuple[Clip, ...]) -> UpliftWarning:
+    if len(clips) == 1:
+        return UpliftWarning(str(clips[0]), code="entry-clipped", entry=clips[0].name)
+    names = ", ".join(f"'{clip.name}'" for clip in clips[:MAX_NAMES])
+    more = f" and {len(clips) - MAX_NAMES} more" if len(clips) > MAX_NAMES else ""
+    most = max(clips, key=lambda clip: max(-clip.value, clip.value - 1))
+    problem = f"{len(clips)} entries clipped to [0, 1]: {names}{more}; '{most.name}' has {most}"
+    return UpliftWarning(problem, code="entry-clipped")
 
 
 def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:

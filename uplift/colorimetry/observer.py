@@ -270,6 +270,54 @@ def display_primaries(
     return _samples(colour_science().MSDS_DISPLAY_PRIMARIES, display, "display", start, end, step)
 
 
+def illuminant_names() -> tuple[str, ...]:
+    """Return the names of all illuminants.
+
+    Returns
+    -------
+    tuple of str
+        Names of colour-science, aliases included, in the order of its tables.
+
+    Examples
+    --------
+    >>> "FL11" in illuminant_names()
+    True
+    """
+    return tuple(colour_science().SDS_ILLUMINANTS)
+
+
+def observer_names() -> tuple[str, ...]:
+    """Return the names of all standard observers.
+
+    Returns
+    -------
+    tuple of str
+        Names of colour-science, aliases included, in the order of its tables.
+
+    Examples
+    --------
+    >>> DEFAULT_OBSERVER in observer_names()
+    True
+    """
+    return tuple(colour_science().MSDS_CMFS)
+
+
+def space_names() -> tuple[str, ...]:
+    """Return the names of all RGB spaces.
+
+    Returns
+    -------
+    tuple of str
+        Names of colour-science, aliases included, in the order of its tables.
+
+    Examples
+    --------
+    >>> "sRGB" in space_names()
+    True
+    """
+    return tuple(colour_science().RGB_COLOURSPACES)
+
+
 def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:
     try:
         return table[name]

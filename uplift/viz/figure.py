@@ -1,4 +1,4 @@
-"""Figures: colours and style in one place, empty figures and axes, PNG and SVG output."""
+"""Figures: colours and style in one place, empty figures and axes, PNG, SVG and PDF output."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 from markupsafe import Markup, escape
 
+from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write
 from uplift.common.text import printable
 
@@ -21,12 +22,14 @@ __all__ = [
     "OTHER",
     "PALE",
     "STYLE",
+    "check_suffix",
     "figure_text",
     "new_figure",
     "style_axes",
     "style_spectrum_axes",
     "to_page_svg",
     "to_svg",
+    "write_figure",
     "write_png",
 ]
 
@@ -52,6 +55,8 @@ STYLE: dict[str, Any] = {
 }
 """For `matplotlib.rc_context`."""
 
+SUFFIXES = (".png", ".svg", ".pdf")
+"""Formats of figures."""
 HAIR_SPACE = "\u200a"
 PAGE_COLOURS = {
     INK: "var(--ink)",
@@ -163,6 +168,64 @@ def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False)
     # Without this entry matplotlib writes its name and version, and files would differ between versions.
     with atomic_write(path, force=force) as temporary:
         FigureCanvasAgg(figure).print_png(temporary, metadata={"Software": "uplift"})
+
+
+def check_suffix(path: str | os.PathLike[str]) -> str:
+    """Return the format of a figure's file, by its suffix.
+
+    Parameters
+    ----------
+    path : path-like
+        The file to write.
+
+    Returns
+    -------
+    {".png", ".svg", ".pdf"}
+        The suffix.
+
+    Raises
+    ------
+    OutputError
+        If the suffix is another one.
+    """
+    suffix = os.path.splitext(path)[1].lower()
+    if suffix not in SUFFIXES:
+        problem = f"the suffix of a plot must be one of {', '.join(SUFFIXES)}, got '{suffix}'"
+        hint = "name the file accordingly, such as plot.svg"
+        raise OutputError(problem, code="unknown-plot-format", path=path, hint=hint)
+    return suffix
+
+
+def write_figure(figure: Any, path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Write a figure as PNG, SVG or PDF, by the suffix of its file. Equal figures give equal files.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    path : path-like
+        The file to write.
+    force : bool, default False
+        Replace an existing file.
+
+    Raises
+    ------
+    OutputError
+        If the suffix is another one, or the file exists and ``force`` is false, or cannot be written.
+    """
+    import matplotlib
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    suffix = check_suffix(path)
+    if suffix == ".png":
+        write_png(figure, path, force=force)
+        return
+    with atomic_write(path, force=force) as temporary, matplotlib.rc_context(STYLE):
+        if suffix == ".svg":
+            FigureCanvasSVG(figure).print_svg(temporary, metadata=_NO_METADATA)
+        else:
+            FigureCanvasPdf(figure).print_pdf(temporary, metadata={"CreationDate": None, "Producer": None})
 
 
 def to_svg(figure: Any, label: str = "") -> Markup:

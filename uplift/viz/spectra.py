@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.lookup import Cube, QueryResult
-from uplift.viz.figure import figure_text, new_figure, style_spectrum_axes, write_png
+from uplift.viz.figure import figure_text, new_figure, style_spectrum_axes, write_figure
 
 MAX_LEGEND = 12
 """Largest number of lines with a legend."""
@@ -16,7 +16,7 @@ MAX_LEGEND = 12
 def plot_spectra(
     cube: Cube, results: Sequence[QueryResult], path: str | os.PathLike[str], *, force: bool = False
 ) -> None:
-    """Plot reflectances over wavelength as PNG, each in its own colour.
+    """Plot reflectances over wavelength as PNG, SVG or PDF, each in its own colour.
 
     Parameters
     ----------
@@ -50,4 +50,4 @@ def plot_spectra(
     style_spectrum_axes(axes)
     if len(results) <= MAX_LEGEND:
         axes.legend(frameon=False)
-    write_png(figure, path, force=force)
+    write_figure(figure, path, force=force)

@@ -1,4 +1,4 @@
-"""Strips of colour as PNG, such as the colours between two paints."""
+"""Strips of colour, such as the colours between two paints."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from uplift.common.arrays import Array
-from uplift.viz.figure import INK, PALE, figure_text, new_figure, write_png
+from uplift.viz.figure import INK, PALE, figure_text, new_figure, write_figure
 
 WIDTH, HEIGHT, TITLE_HEIGHT = 7.2, 0.62, 0.24
 """Inches of a picture's width, and of the heights of a strip and its title."""
@@ -22,7 +22,7 @@ class Strip:
 
 
 def plot_strips(strips: Sequence[Strip], path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Plot strips of colour below one another as PNG.
+    """Plot strips of colour below one another as PNG, SVG or PDF.
 
     Parameters
     ----------
@@ -44,4 +44,4 @@ def plot_strips(strips: Sequence[Strip], path: str | os.PathLike[str], *, force:
         axes.set(xticks=(), yticks=())
         axes.spines[:].set(color=PALE, linewidth=0.6)
         axes.set_title(figure_text(strip.title), loc="left", fontsize=9, color=INK, pad=3)
-    write_png(figure, path, force=force)
+    write_figure(figure, path, force=force)

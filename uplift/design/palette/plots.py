@@ -11,7 +11,7 @@ from uplift.common.arrays import Array, StrPath
 from uplift.design.palette.design import Design
 from uplift.design.palette.matrix import Matrix
 from uplift.design.palette.palette import SpectrumSpec
-from uplift.viz.figure import BAND, GREY, INK, figure_text, new_figure, style_axes, write_png
+from uplift.viz.figure import BAND, GREY, INK, figure_text, new_figure, style_axes, write_figure
 
 CELL, NAMES, TOP = (1.5, 1.0), 1.35, 0.75
 """Sizes in inches of a cell, the column of names, and the row of lights."""
@@ -34,7 +34,7 @@ def plot_matrix(design: Design, colours: Matrix, path: StrPath, *, force: bool =
     colours : Matrix
         Its colours.
     path : path-like
-        PNG file to write.
+        File to write, as PNG, SVG or PDF.
     force : bool
         Replace an existing file.
 
@@ -59,7 +59,7 @@ def plot_matrix(design: Design, colours: Matrix, path: StrPath, *, force: bool =
         for column in range(columns):
             _cell(axes, (NAMES + CELL[0] * column, TOP + CELL[1] * row), colours, (row, column))
     axes.text(NAMES, height - 0.24, LEGEND, fontsize=SMALL, color=GREY, va="center")
-    write_png(figure, path, force=force)
+    write_figure(figure, path, force=force)
 
 
 def plot_spectra(design: Design, path: StrPath, *, force: bool = False) -> None:
@@ -70,7 +70,7 @@ def plot_spectra(design: Design, path: StrPath, *, force: bool = False) -> None:
     design : Design
         The design.
     path : path-like
-        PNG file to write.
+        File to write, as PNG, SVG or PDF.
     force : bool
         Replace an existing file.
 
@@ -91,7 +91,7 @@ def plot_spectra(design: Design, path: StrPath, *, force: bool = False) -> None:
         _lines(axes, design.palette.sensor.wavelengths, specs, samples)
         axes.set(xlabel="wavelength / nm", ylabel=label)
         axes.set_title(title, loc="left", fontsize=10, fontweight="bold", color=INK)
-    write_png(figure, path, force=force)
+    write_figure(figure, path, force=force)
 
 
 def _cell(axes: Any, corner: tuple[float, float], colours: Matrix, at: tuple[int, int]) -> None:

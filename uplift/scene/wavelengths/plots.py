@@ -11,7 +11,7 @@ from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array, StrPath
 from uplift.scene.wavelengths import Choice, RenderSetup
 from uplift.scene.wavelengths.setup import interp_curves
-from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_png
+from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_figure
 
 WIDTH, PANEL_HEIGHT, MARGIN_HEIGHT = 7.2, 1.55, 0.9
 """Inches: width of the figure, height of a panel, height above and below all panels."""
@@ -19,7 +19,7 @@ CHANNEL_COLOURS = {"X": "#c0392b", "Y": "#2e8b57", "Z": "#2f5fb3"}
 
 
 def plot_choice(setup: RenderSetup, choice: Choice, path: StrPath, *, force: bool = False) -> None:
-    """Write a PNG with a panel per light, showing its powers, and a panel of the weights. Raises `OutputError`."""
+    """Write a figure with a panel per light, showing its powers, and a panel of the weights. Raises `OutputError`."""
     import matplotlib
 
     sampling, errors = choice.sampling, choice.errors
@@ -38,7 +38,7 @@ def plot_choice(setup: RenderSetup, choice: Choice, path: StrPath, *, force: boo
             fontsize=10,
             color=INK,
         )
-        write_png(figure, path, force=force)
+        write_figure(figure, path, force=force)
 
 
 def _draw_light(axes: Any, setup: RenderSetup, choice: Choice, light: int) -> None:
