@@ -29,7 +29,7 @@ def test_help_has_a_sentence_and_examples(run, name):
     assert usage.startswith(f"Usage: main {name} ")
     assert sentence.strip().endswith(".")
     (examples,) = [part for part in rest if part.startswith("  Examples:\n")]
-    assert all(f"uplift {name} " in line for line in examples.splitlines()[1:])
+    assert all(f"uplift {name} " in f"{line} " for line in examples.splitlines()[1:])
 
 
 def test_h_is_help(run):

@@ -394,8 +394,23 @@ def test_plots_are_replaced_only_with_force(run, refuse, home, table):
 
 def test_plots_that_cannot_be_written_are_reported_before_the_query(refuse, home):
     assert refuse("query", "#cc3319", "--plot", "none/red.png").code == "folder-missing"
-    assert refuse("query", "#cc3319", "--plot", home).code == "not-a-regular-file"
-    assert refuse("query", "#cc3319", "--plot", "x" * 300).code == "invalid-file-name"
+    (home / "folder.png").mkdir()
+    assert refuse("query", "#cc3319", "--plot", "folder.png").code == "not-a-regular-file"
+    assert refuse("query", "#cc3319", "--plot", f"{'x' * 300}.png").code == "invalid-file-name"
+
+
+@pytest.mark.parametrize(("suffix", "start"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("PDF", b"%PDF")])
+def test_suffix_decides_the_format_of_a_plot(run, home, suffix, start):
+    run("query", "#cc3319", "--plot", f"red.{suffix}")
+    first = (home / f"red.{suffix}").read_bytes()
+    assert first.startswith(start)
+    run("query", "#cc3319", "--plot", f"red.{suffix}", "--force")
+    assert (home / f"red.{suffix}").read_bytes() == first
+
+
+@pytest.mark.parametrize("name", ["red.gif", "red", "red.png.txt"])
+def test_unknown_formats_of_plots_are_refused(refuse, name):
+    assert refuse("query", "#cc3319", "--plot", name).code == "unknown-plot-format"
 
 
 @pytest.mark.parametrize("style", ["json", "csv", "table"])
