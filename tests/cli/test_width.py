@@ -57,8 +57,10 @@ COMMANDS = {
     "atlas": ("atlas",),
     "entries": ("atlas", "macbeth"),
     "info": ("info",),
-    "wavelengths": ("wavelengths", "--count", "4", "--method", "uniform", "--atlas", "macbeth")
-    + ("--light", "D65", "--light", "A", "--light", "FL11", "--light", "LED-B3"),
+    "wavelengths": (
+        *("wavelengths", "--count", "4", "--method", "uniform", "--atlas", "macbeth"),
+        *("--light", "D65", "--light", "A", "--light", "FL11", "--light", "LED-B3"),
+    ),
     "compare": ("compare", "--quick", "--atlas", "macbeth", "--light", "A", "--light", "FL2"),
     "moments": ("study", "moments", "--max-moments", "2", "--atlas", "macbeth"),
     "palette": ("palette", "PALETTE"),
