@@ -37,6 +37,11 @@ SUFFIXES = {"coeff": ".coeff", **PROGRAMS, "npz": ".npz", "csv": ".csv", "html":
     type=click.Choice(("spectra", "moments")),
     help="What programs interpolate: spectra, with exact colours, or coefficients. [default: spectra]",
 )
+@click.option(
+    "--table",
+    type=click.Choice(("header", "file", "textures")),
+    help="Where the table of a program is. [default: header for c, else file]",
+)
 @fill_option()
 @force_option()
 def command(
@@ -45,6 +50,7 @@ def command(
     style: str | None,
     res: int | None,
     mode: str | None,
+    table: str | None,
     fill_missing: bool,
     force: bool,
 ) -> None:
@@ -58,8 +64,9 @@ def command(
       npz    all arrays of the cube, for numpy
       csv    one line per node
 
-    Names in a program start with the file's. A C header, also valid C++, contains the table. Programs in other
-    languages come with a second file, which they explain. A coeff table stores sigmoid spectra of the cube's colours:
+    Names in a program start with the file's. A C header, also valid C++, contains the table, or loads it from a file
+    of numbers. Programs in other languages come with a second file, which they explain. GLSL, HLSL and WGSL can have
+    3-D textures instead. A coeff table stores sigmoid spectra of the cube's colours:
     three coefficients cannot represent the atlas. OUT defaults to the cube's name in the current folder.
 
     \b
@@ -67,7 +74,8 @@ def command(
       uplift export macbeth-32.uplift macbeth-32.npz
       uplift export macbeth-32.uplift data/srgb.coeff
       uplift export macbeth-32.uplift cube.h
-      uplift export macbeth-32.uplift cube.wgsl --mode moments
+      uplift export macbeth-32.uplift cube.h --table file
+      uplift export macbeth-32.uplift cube.wgsl --mode moments --table textures
       uplift export macbeth-32.uplift --format csv
     """
     style = style or _format_of(out)
@@ -77,12 +85,14 @@ def command(
         )
     if mode is not None and style not in PROGRAMS:
         raise click.UsageError("--mode applies to programs only: other formats do not interpolate.")
+    if table is not None and style not in PROGRAMS:
+        raise click.UsageError("--table applies to programs only.")
     out = out or Path(cube).stem + SUFFIXES[style]
     from uplift.common.files import check_output
     from uplift.lookup import load
 
     path = check_output(out, inputs=[cube], force=force)
-    options = {"res": res, "mode": mode, "style": style if style in PROGRAMS else None}
+    options = {"res": res, "mode": mode, "form": table, "style": style if style in PROGRAMS else None}
     options = {key: value for key, value in options.items() if value is not None}
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
     say(f"{path}: {WRITERS[style](loaded.data, path, force=force, **options)}")

@@ -50,6 +50,16 @@ def test_programs_come_with_a_table(run, home, cube, name, table):
     assert "moments" in (home / name).read_text()
 
 
+def test_the_table_of_a_program_is_a_choice(run, refuse, home, cube):
+    run("export", cube, "a.h", "--table", "file")
+    run("export", cube, "b.glsl", "--table", "textures")
+    tables = {"a.bin", *(f"b-{name}.ktx2" for name in (0, 1, 2, "entries"))}
+    assert {path.name for path in home.iterdir()} == {cube, "a.h", "b.glsl", *tables}
+    assert refuse("export", cube, "c.cuh", "--table", "textures").code == "unknown-table"
+    assert refuse("export", cube, "b.wgsl", "--table", "textures").code == "file-exists"
+    assert not (home / "b.wgsl").exists()
+
+
 def test_format_follows_the_suffix_of_out(run, home, cube):
     assert run("export", cube, "table.coeff", "--res", 3).stdout.startswith("table.coeff: ")
     assert (home / "table.coeff").read_bytes()[:8] == b"SPEC" + bytes([3, 0, 0, 0])
@@ -69,6 +79,7 @@ def test_format_option_overrides_the_suffix(run, home, cube):
         (("cube.exr",), "--format"),
         (("cube.h", "--res", "8"), "--res"),
         (("cube.npz", "--mode", "moments"), "--mode"),
+        (("cube.npz", "--table", "file"), "--table"),
     ],
 )
 def test_wrong_usage(misuse, home, cube, cubes, arguments, option):

@@ -1,4 +1,4 @@
-"""Run exported programs: each function takes a program, linear RGB (n, 3) and four wavelengths.
+"""Run exported programs: each function takes a program, linear RGB (n, 3), four wavelengths and the form of the table.
 
 It returns reflectances (n, 4), and skips the test if the compiler, the browser or the driver is lacking.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import base64
 import json
 import shutil
+import struct
 import subprocess
 
 import numpy as np
@@ -32,6 +33,8 @@ int main(void)
     return 0;
 }}
 """
+LOAD_FILE = """const char *problem = cube_load("cube.bin");
+    if (problem) return fputs(problem, stderr), 1;"""
 LOAD = """static float table[{size}];
     FILE *file = fopen("cube.bin", "rb");
     if (!file || fread(table, 1, sizeof table, file) != sizeof table) return 1;"""
@@ -46,7 +49,7 @@ void main() {{
 """
 WEBGL = """(() => {
   const floats = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
-  const { code, table, rows, columns, colours, side } = DATA;
+  const { code, table, textures, rows, columns, colours, side } = DATA;
   const gl = Object.assign(document.createElement("canvas"), { width: side, height: side }).getContext("webgl2");
   if (!gl || !gl.getExtension("EXT_color_buffer_float")) return null;
   const program = gl.createProgram();
@@ -69,9 +72,19 @@ WEBGL = """(() => {
       gl.texParameteri(gl.TEXTURE_2D, side, gl.NEAREST);
     if (name) gl.uniform1i(gl.getUniformLocation(program, name), unit);
   };
-  upload(0, "cube_table", columns, rows, floats(table));
-  upload(1, "colours", side, side, floats(colours));
-  upload(2, "", side, side, null);
+  if (table) upload(2, "cube_table", columns, rows, floats(table));
+  Object.entries(textures).forEach(([name, text], k) => {
+    const { width, height, depth, texels } = ktx2(text);
+    gl.activeTexture(gl.TEXTURE2 + k);
+    gl.uniform1i(gl.getUniformLocation(program, name), 2 + k);
+    if (!depth) return upload(2 + k, name, width, height, texels);
+    gl.bindTexture(gl.TEXTURE_3D, gl.createTexture());
+    gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA32F, width, height, depth, 0, gl.RGBA, gl.FLOAT, texels);
+    for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
+      gl.texParameteri(gl.TEXTURE_3D, side, gl.NEAREST);
+  });
+  upload(0, "colours", side, side, floats(colours));
+  upload(1, "", side, side, null);
   const target = gl.getParameter(gl.TEXTURE_BINDING_2D);
   gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
   gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
@@ -84,8 +97,8 @@ WEBGL = """(() => {
   return btoa(text);
 })()"""
 COMPUTE = """{code}
-@group(0) @binding(1) var<storage, read> colours: array<vec4f>;
-@group(0) @binding(2) var<storage, read_write> found: array<vec4f>;
+@group(0) @binding({binding}) var<storage, read> colours: array<vec4f>;
+@group(0) @binding({binding} + 1) var<storage, read_write> found: array<vec4f>;
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {{
     if (id.x < arrayLength(&found)) {{
@@ -95,7 +108,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
 """
 WEBGPU = """(async () => {
   const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
-  const { code, table, colours } = DATA;
+  const { code, table, textures, colours } = DATA;
   const adapter = navigator.gpu ? await navigator.gpu.requestAdapter() : null;
   if (!adapter) return null;
   const device = await adapter.requestDevice();
@@ -112,8 +125,17 @@ WEBGPU = """(async () => {
   const result = buffer(new Uint8Array(rgb.byteLength), MAP_READ);
   const compute = { module, entryPoint: "main" };
   const pipeline = await device.createComputePipelineAsync({ layout: "auto", compute });
-  const entries = [buffer(bytes(table), STORAGE), buffer(rgb, STORAGE), found].map((each, binding) => (
-    { binding, resource: { buffer: each } }));
+  const upload = text => {
+    const { width, height, depth, texels } = ktx2(text), usage = GPUTextureUsage;
+    const size = [width, height, depth || 1], dimension = depth ? "3d" : "2d";
+    const made = device.createTexture(
+      { size, dimension, format: "rgba32float", usage: usage.TEXTURE_BINDING | usage.COPY_DST });
+    device.queue.writeTexture({ texture: made }, texels, { bytesPerRow: 16 * width, rowsPerImage: height }, size);
+    return made.createView();
+  };
+  const held = table ? [{ buffer: buffer(bytes(table), STORAGE) }] : Object.values(textures).map(upload);
+  const entries = [...held, { buffer: buffer(rgb, STORAGE) }, { buffer: found }].map((resource, binding) => (
+    { binding, resource }));
   const commands = device.createCommandEncoder(), pass = commands.beginComputePass();
   pass.setPipeline(pipeline);
   pass.setBindGroup(0, device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries }));
@@ -126,9 +148,16 @@ WEBGPU = """(async () => {
   for (const byte of new Uint8Array(result.getMappedRange())) text += String.fromCharCode(byte);
   return btoa(text);
 })()"""
+KTX2 = """const ktx2 = text => {
+  const { buffer } = Uint8Array.from(atob(text), c => c.charCodeAt(0));
+  const view = new DataView(buffer), number = at => view.getUint32(at, true);
+  const [width, height, depth] = [20, 24, 28].map(number), start = number(80), length = number(88) / 4;
+  return { width, height, depth, texels: new Float32Array(buffer, start, length) };
+};
+"""
 PIXEL = """{code}
-StructuredBuffer<float4> colours : register(t1);
-RWStructuredBuffer<float4> found : register(u2);
+StructuredBuffer<float4> colours : register(t{binding});
+RWStructuredBuffer<float4> found : register(u{after});
 [numthreads(64, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {{
     found[id.x] = cube_reflectances(colours[id.x].xyz, float4({wavelengths}));
@@ -136,15 +165,16 @@ void main(uint3 id : SV_DispatchThreadID) {{
 """
 
 
-def c(path, rgb, wavelengths, compiler=("cc", "-std=c99")):
-    return _compiled(path, rgb, wavelengths, compiler, "rgb, wavelengths, 4, found", "")
+def c(path, rgb, wavelengths, form="header", compiler=("cc", "-std=c99")):
+    load = LOAD_FILE if form == "file" else ""
+    return _compiled(path, rgb, wavelengths, compiler, "rgb, wavelengths, 4, found", load)
 
 
 def cpp(path, rgb, wavelengths):
-    return c(path, rgb, wavelengths, ("c++", "-std=c++11", "-x", "c++"))
+    return c(path, rgb, wavelengths, "header", ("c++", "-std=c++11", "-x", "c++"))
 
 
-def cuda(path, rgb, wavelengths):
+def cuda(path, rgb, wavelengths, form="file"):
     """On the host, where the same functions are C++."""
     load = LOAD.format(size=path.with_suffix(".bin").stat().st_size // 4)
     compiler = ("c++", "-std=c++11", "-x", "c++")
@@ -164,22 +194,37 @@ def _compiled(path, rgb, wavelengths, compiler, call, load):
     return np.frombuffer(done.stdout, np.float32).reshape(-1, 4)
 
 
-def glsl(path, rgb, wavelengths):
+def glsl(path, rgb, wavelengths, form="file"):
     """In Chromium, by WebGL 2."""
     code = FRAGMENT.format(code=path.read_text(), wavelengths=_listed(wavelengths))
     side = int(np.ceil(np.sqrt(len(rgb))))
-    table = path.with_suffix(".bin").read_bytes()
-    shape = {"columns": 2048, "rows": len(table) // (2048 * 16), "side": side}
-    return _in_browser(path, WEBGL, _padded(rgb, side * side), code=code, table=_text(table), **shape)[
-        : len(rgb)
-    ]
+    tables = _tables(path, form)
+    rows = len(tables["table"]) * 3 // 4 // (2048 * 16)
+    shape = {"columns": 2048, "rows": rows, "side": side}
+    return _in_browser(path, WEBGL, _padded(rgb, side * side), code=code, **tables, **shape)[: len(rgb)]
 
 
-def wgsl(path, rgb, wavelengths):
+def wgsl(path, rgb, wavelengths, form="file"):
     """In Chromium, by WebGPU."""
-    code = COMPUTE.format(code=path.read_text(), wavelengths=_listed(wavelengths))
-    table = _text(path.with_suffix(".bin").read_bytes())
-    return _in_browser(path, WEBGPU, _padded(rgb, len(rgb)), code=code, table=table)
+    tables = _tables(path, form)
+    places = {"wavelengths": _listed(wavelengths), "binding": max(1, len(tables["textures"]))}
+    code = COMPUTE.format(code=path.read_text(), **places)
+    return _in_browser(path, WEBGPU, _padded(rgb, len(rgb)), code=code, **tables)
+
+
+def _tables(path, form):
+    """Return the table as text, or textures as text by the names of their uniforms."""
+    if form == "file":
+        return {"table": _text(path.with_suffix(".bin").read_bytes()), "textures": {}}
+    names = [each.stem.split("-") for each in textures(path, ".ktx2")]
+    names = ["cube_entries" if name[-1] == "entries" else f"cube_points_{name[-1]}" for name in names]
+    files = (_text(each.read_bytes()) for each in textures(path, ".ktx2"))
+    return {"table": "", "textures": dict(zip(names, files, strict=True))}
+
+
+def textures(path, suffix):
+    """Return the files of textures, that of the entries last."""
+    return sorted(path.parent.glob(f"{path.stem}-*{suffix}"))
 
 
 def _in_browser(path, script, colours, **data):
@@ -190,40 +235,41 @@ def _in_browser(path, script, colours, **data):
     content = json.dumps({**data, "colours": _text(colours.tobytes())})
     with browser() as opened:
         opened.open(page)
-        found = opened.evaluate(script.replace("DATA", content))
+        found = opened.evaluate("{ " + KTX2 + script.replace("DATA", content) + " }")
     if found is None:
         pytest.skip("the browser has no such graphics interface")
     return np.frombuffer(base64.b64decode(found), np.float32).reshape(-1, 4)
 
 
-def hlsl(path, rgb, wavelengths):
+def hlsl(path, rgb, wavelengths, form="file"):
     """Compiled to SPIR-V, and by Vulkan: needs glslangValidator and wgpu."""
     if shutil.which("glslangValidator") is None:
         pytest.skip("needs glslangValidator")
     folder, count = path.parent, -(-len(rgb) // 64) * 64
-    (folder / "main.hlsl").write_text(PIXEL.format(code=path.read_text(), wavelengths=_listed(wavelengths)))
+    binding = 1 if form == "file" else len(textures(path, ".dds"))
+    places = {"wavelengths": _listed(wavelengths), "binding": binding, "after": binding + 1}
+    (folder / "main.hlsl").write_text(PIXEL.format(code=path.read_text(), **places))
     command = ["glslangValidator", "-D", "-V", "-S", "comp", "-e", "main", "main.hlsl", "-o", "main.spv"]
     subprocess.run(command, cwd=folder, check=True, capture_output=True)
-    wgpu = pytest.importorskip("wgpu")
+    wgpu = pytest.importorskip("wgpu", reason="needs wgpu: pip install uplift[gpu]")
     try:
         device = wgpu.gpu.request_adapter_sync().request_device_sync()
     except (RuntimeError, AttributeError, OSError) as error:
         pytest.skip(f"needs a Vulkan driver: {error}")
     storage, source = wgpu.BufferUsage.STORAGE, wgpu.BufferUsage.COPY_SRC
     colours = _padded(rgb, count)
-    buffers = [
-        device.create_buffer_with_data(data=path.with_suffix(".bin").read_bytes(), usage=storage),
-        device.create_buffer_with_data(data=colours.tobytes(), usage=storage),
-        device.create_buffer(size=colours.nbytes, usage=storage | source),
-    ]
+    if form == "file":
+        data = path.with_suffix(".bin").read_bytes()
+        held = [_whole(device.create_buffer_with_data(data=data, usage=storage))]
+    else:
+        held = [_dds(wgpu, device, each.read_bytes()) for each in textures(path, ".dds")]
+    given = device.create_buffer_with_data(data=colours.tobytes(), usage=storage)
+    found = device.create_buffer(size=colours.nbytes, usage=storage | source)
     module = device.create_shader_module(code=(folder / "main.spv").read_bytes())
-    pipeline = device.create_compute_pipeline(
-        layout="auto", compute={"module": module, "entry_point": "main"}
-    )
-    entries = [
-        {"binding": place, "resource": {"buffer": each, "offset": 0, "size": each.size}}
-        for place, each in enumerate(buffers)
-    ]
+    compute = {"module": module, "entry_point": "main"}
+    pipeline = device.create_compute_pipeline(layout="auto", compute=compute)
+    resources = [*held, _whole(given), _whole(found)]
+    entries = [{"binding": place, "resource": each} for place, each in enumerate(resources)]
     group = device.create_bind_group(layout=pipeline.get_bind_group_layout(0), entries=entries)
     commands = device.create_command_encoder()
     work = commands.begin_compute_pass()
@@ -232,7 +278,23 @@ def hlsl(path, rgb, wavelengths):
     work.dispatch_workgroups(count // 64)
     work.end()
     device.queue.submit([commands.finish()])
-    return np.frombuffer(device.queue.read_buffer(buffers[2]), np.float32).reshape(-1, 4)[: len(rgb)]
+    return np.frombuffer(device.queue.read_buffer(found), np.float32).reshape(-1, 4)[: len(rgb)]
+
+
+def _whole(buffer):
+    return {"buffer": buffer, "offset": 0, "size": buffer.size}
+
+
+def _dds(wgpu, device, data):
+    """Upload a texture."""
+    height, width = struct.unpack_from("<2I", data, 12)
+    depth = struct.unpack_from("<I", data, 24)[0]
+    size, dimension = (width, height, depth or 1), "3d" if depth else "2d"
+    usage = wgpu.TextureUsage.TEXTURE_BINDING | wgpu.TextureUsage.COPY_DST
+    texture = device.create_texture(size=size, dimension=dimension, format="rgba32float", usage=usage)
+    layout = {"bytes_per_row": 16 * width, "rows_per_image": height}
+    device.queue.write_texture({"texture": texture}, data[148:], layout, size)
+    return texture.create_view()
 
 
 def _listed(wavelengths):

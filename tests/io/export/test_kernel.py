@@ -10,8 +10,6 @@ import pytest
 
 from tests.io.export.test_programs import WAVELENGTHS, WITHIN, colours
 from uplift.io.export.kernel import (
-    add_nodes,
-    add_nodes_in_passes,
     answer_moments,
     answer_spectra,
     entries,
@@ -19,6 +17,8 @@ from uplift.io.export.kernel import (
     lanes,
     lattice,
     moments,
+    nodes_at_once,
+    nodes_in_turn,
     spectra,
 )
 from uplift.io.export.kernel.language import GLSL, WGSL, C
@@ -35,7 +35,11 @@ def run_in_python(data, mode, answers):
         row[:] = numbers[index * stride : (index + 1) * stride]
 
     names = {**vars(intrinsics), **table.constants, "WIDTH": 4, "LANES": 2, "number": numbers.__getitem__}
-    names |= {"load_row": load_row, "warp": float}
+    names |= {
+        "tag": lambda index: numbers[index * stride + data.model.count],
+        "load_row": load_row,
+        "warp": float,
+    }
     for function in functions(moments, spectra, lattice, entries, *answers):
         function.returns, function.args = None, _without_types(function.args)
         exec(compile(ast.Module([_without_aliases(function)], []), "kernel", "exec"), names)
@@ -58,9 +62,10 @@ def _without_aliases(function):
 @pytest.mark.parametrize(
     ("mode", "answers"),
     [
-        ("spectra", [add_nodes, answer_spectra]),
-        ("spectra", [add_nodes_in_passes, answer_spectra]),
-        ("moments", [answer_moments]),
+        ("spectra", [nodes_in_turn, answer_spectra]),
+        ("spectra", [nodes_at_once, answer_spectra]),
+        ("moments", [nodes_in_turn, answer_moments]),
+        ("moments", [nodes_at_once, answer_moments]),
     ],
 )
 def test_the_kernel_in_python_equals_the_lookup(small_cube, mode, answers):

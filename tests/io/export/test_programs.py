@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import struct
 import subprocess
 from dataclasses import replace
 
@@ -12,6 +13,7 @@ import pytest
 from tests.helpers import raises, warns
 from tests.io.export import run_program
 from uplift.common.errors import OptionError
+from uplift.cube import digest
 from uplift.io.export import programs, write_program
 from uplift.io.export.programs import FORMATS, identifier
 from uplift.lookup import load
@@ -45,10 +47,11 @@ def colours(data):
 def worst(tmp_path):
     """Function that returns the largest difference of reflectance from Python."""
 
-    def measure(cube, style, mode, rgb, expected=None):
+    def measure(cube, style, mode, rgb, expected=None, form=None):
         path = tmp_path / f"cube{FORMATS[style].suffix}"
-        write_program(cube.data, path, style=style, mode=mode, force=True)
-        found = RUN[style](path, rgb, WAVELENGTHS)
+        form = form or FORMATS[style].tables[0]
+        write_program(cube.data, path, style=style, mode=mode, form=form, force=True)
+        found = RUN[style](path, rgb, WAVELENGTHS, form)
         if expected is None:
             expected = cube.reflectance(rgb, WAVELENGTHS, mode=mode)
         assert found.shape == expected.shape
@@ -58,9 +61,11 @@ def worst(tmp_path):
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments"])
-@pytest.mark.parametrize("style", RUN)
-def test_ten_thousand_colours_equal_those_of_python(small_cube, worst, style, mode):
-    assert worst(small_cube, style, mode, colours(small_cube.data)) < WITHIN
+@pytest.mark.parametrize(
+    ("style", "form"), [(style, form) for style in RUN for form in FORMATS[style].tables]
+)
+def test_ten_thousand_colours_equal_those_of_python(small_cube, worst, style, form, mode):
+    assert worst(small_cube, style, mode, colours(small_cube.data), form=form) < WITHIN
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments"])
@@ -147,15 +152,13 @@ def run_c(code, folder):
         pytest.skip("needs a compiler, cc")
     (folder / "main.c").write_text(code)
     subprocess.run(["cc", *run_program.STRICT, "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
-    return np.frombuffer(
-        subprocess.run([folder / "main"], capture_output=True, check=True).stdout, np.float32
-    )
+    return subprocess.run([folder / "main"], cwd=folder, capture_output=True, check=True).stdout
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments"])
 def test_many_colours_at_any_number_of_wavelengths(small_cube, tmp_path, mode):
     write_program(small_cube.data, tmp_path / "cube.h", mode=mode)
-    found = run_c(MANY, tmp_path).reshape(2, 11, 21)
+    found = np.frombuffer(run_c(MANY, tmp_path), np.float32).reshape(2, 11, 21)
     expected = [
         small_cube.reflectance(rgb, 400 + k + 15.0 * np.arange(21), mode=mode) for k, rgb in enumerate(ELEVEN)
     ]
@@ -164,7 +167,7 @@ def test_many_colours_at_any_number_of_wavelengths(small_cube, tmp_path, mode):
 
 def test_stored_multipliers(small_cube, tmp_path):
     write_program(small_cube.data, tmp_path / "cube.h", mode="moments")
-    found = run_c(STORED, tmp_path).reshape(11, 21)
+    found = np.frombuffer(run_c(STORED, tmp_path), np.float32).reshape(11, 21)
     expected = small_cube.reflectance(ELEVEN, 400 + 15.0 * np.arange(21), mode="moments")
     np.testing.assert_allclose(found, expected, rtol=0, atol=WITHIN)
 
@@ -207,8 +210,65 @@ def test_tables_are_files_that_are_replaced_only_with_force(tmp_path, plain_cube
     assert not (tmp_path / "cube.glsl").exists()
 
 
+LOADING = r"""
+#include "cube.h"
+
+int main(void)
+{
+    const char *problem = cube_load("cube.bin");
+    if (problem) puts(problem);
+    return !problem != !!cube_table;
+}
+"""
+
+
+@pytest.mark.parametrize("damage", [None, "bit", "end", "start", "missing"])
+def test_a_header_loads_only_the_table_of_its_cube(small_cube, tmp_path, damage):
+    _, table = write_program(small_cube.data, tmp_path / "cube.h", form="file")
+    numbers = table.read_bytes()
+    changed = {
+        "bit": numbers[:100] + bytes([numbers[100] ^ 1]) + numbers[101:],
+        "end": numbers[:-4],
+        "start": bytes(4) + numbers,
+    }
+    table.write_bytes(changed.get(damage, numbers))
+    if damage == "missing":
+        table.unlink()
+    assert bool(run_c(LOADING, tmp_path)) == (damage is not None)
+
+
+def test_textures_describe_themselves(small_cube, tmp_path):
+    data = small_cube.data
+    for style, suffix in (("glsl", ".ktx2"), ("hlsl", ".dds")):
+        written = write_program(data, tmp_path / f"cube.{style}", style=style, form="textures")
+        names = ["cube-0", "cube-1", "cube-2", "cube-entries"]
+        assert [each.name for each in written] == [f"cube.{style}", *(name + suffix for name in names)]
+    rgb, third = data.lattice.nodes[[1, 2, 3]], (tmp_path / "cube-2.ktx2").read_bytes()
+    assert third[:12] == b"\xabKTX 20\xbb\r\n\x1a\n"
+    assert struct.unpack_from("<9I", third, 12) == (109, 4, 8, 8, 8, 0, 1, 1, 0)
+    start, size = struct.unpack_from("<2Q", third, 80)
+    assert start % 16 == 0
+    assert start + size == len(third)
+    assert struct.unpack_from("<2I", third, 48)[0] + struct.unpack_from("<2I", third, 48)[1] <= start
+    assert digest(data).encode() in third[:start]
+    texels = np.frombuffer(third, "<f4", offset=start).reshape(8, 8, 8, 4)
+    multipliers = data.model.from_storage(small_cube.coefficients(rgb))
+    assert texels[1, 2, 3, 0] == pytest.approx(multipliers[8], rel=1e-6)
+    volume = (tmp_path / "cube-2.dds").read_bytes()
+    assert (volume[:4], volume[84:88]) == (b"DDS ", b"DX10")
+    assert struct.unpack_from("<4I", volume, 12) == (8, 8, 128, 8)
+    assert struct.unpack_from("<2I", volume, 128) == (2, 4)
+    assert volume[148:] == third[start:]
+
+
 @pytest.mark.parametrize(
-    ("options", "code"), [({"style": "pascal"}, "unknown-language"), ({"mode": "refined"}, "unknown-mode")]
+    ("options", "code"),
+    [
+        ({"style": "pascal"}, "unknown-language"),
+        ({"mode": "refined"}, "unknown-mode"),
+        ({"form": "textures"}, "unknown-table"),
+        ({"style": "glsl", "form": "header"}, "unknown-table"),
+    ],
 )
 def test_invalid_options_are_errors(tmp_path, plain_cube, options, code):
     with raises(OptionError, code):

@@ -71,7 +71,7 @@ def write_page(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fa
 def page(data: CubeData) -> str:
     """Render the page."""
     table = make_table(data, "spectra")
-    program = Program(data, table, "spectra", "cube", GLSL, "glsl.glsl", "this page")
+    program = Program(data, table, "spectra", "cube", GLSL, "glsl.glsl", "file", "cube")
     image = table.image()
     at, weights = _weights(data)
     names = list(weights)

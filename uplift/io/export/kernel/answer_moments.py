@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from uplift.io.export.kernel.entries import mix
     from uplift.io.export.kernel.intrinsics import COUNT, Block, Coefficients, Int, Place, empty
-    from uplift.io.export.kernel.lattice import sum_nodes
     from uplift.io.export.kernel.moments import multipliers_of
+    from uplift.io.export.kernel.nodes_in_turn import sum_nodes
 
 
 def answer(place: Place, entry: Int, wavelengths: Block, total: Block) -> None:

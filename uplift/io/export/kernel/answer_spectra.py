@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from uplift.io.export.kernel.add_nodes import add_nodes
     from uplift.io.export.kernel.entries import add_entry
     from uplift.io.export.kernel.intrinsics import COUNT, WIDTH, Basis, Block, Int, Place, empty
     from uplift.io.export.kernel.moments import tabulate
+    from uplift.io.export.kernel.nodes_in_turn import add_nodes
 
 
 def answer(place: Place, entry: Int, wavelengths: Block, total: Block) -> None:

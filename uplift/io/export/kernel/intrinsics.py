@@ -74,12 +74,17 @@ SCALE: Float
 
 
 def number(index: Int) -> Float:
-    """Read a number of the table."""
+    """Read a number of the table, behind the rows of lattice points."""
     raise NotImplementedError
 
 
 def load_row(index: Int, row: Row) -> None:
-    """Copy a row of the table, a lattice point or an entry, to ``row``."""
+    """Copy the row of a lattice point to ``row``."""
+    raise NotImplementedError
+
+
+def tag(index: Int) -> Float:
+    """Read the position of the list of entries whose boxes touch the cell above a lattice point, 0 for none."""
     raise NotImplementedError
 
 

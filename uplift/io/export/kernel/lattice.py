@@ -9,23 +9,17 @@ if TYPE_CHECKING:
         BIN_COUNT,
         BINS,
         BOXES,
-        COUNT,
         DIM,
-        LATTICE,
         LISTS,
         NODES,
-        STRIDE,
-        Coefficients,
         Colour,
         Float,
         Int,
         Place,
-        Row,
         Sides,
         empty,
-        load_row,
         number,
-        unroll,
+        tag,
     )
 
 
@@ -55,7 +49,7 @@ def locate(rgb: Colour, place: Place) -> Int:
     for axis in range(3):
         query[axis] = place[axis]
     entry: Int = -1
-    listed: Int = int(number(first_corner(query) * STRIDE + COUNT))
+    listed: Int = int(tag(first_corner(query)))
     if listed > 0:
         last: Int = listed + int(number(LISTS + listed))
         while listed < last:
@@ -90,32 +84,3 @@ def weigh(place: Place, sides: Sides) -> Int:
         sides[2 * axis + 1] = share
         first = first * DIM + low
     return first
-
-
-def sum_nodes(place: Place, coefficients: Coefficients) -> None:
-    """Sum the weighted coefficients of the eight lattice points."""
-    mixed: Row = empty(STRIDE)
-    sides: Sides = empty(6)
-    first: Int = weigh(place, sides) * STRIDE
-    for k in range(STRIDE):
-        x: Float = 0.0
-        for corner in unroll(0, 8):
-            x += (
-                sides[corner // 4]
-                * sides[2 + corner // 2 % 2]
-                * sides[4 + corner % 2]
-                * number(first + (corner // 4 * DIM * DIM + corner // 2 % 2 * DIM + corner % 2) * STRIDE + k)
-            )
-        mixed[k] = x
-    for k in range(COUNT):
-        coefficients[k] = mixed[k]
-
-
-def sum_coefficients(place: Place, entry: Int, coefficients: Coefficients) -> None:
-    """Sum the weighted coefficients of the lattice and of an entry, in as many coefficients."""
-    values: Row = empty(STRIDE)
-    sum_nodes(place, coefficients)
-    if entry >= 0:
-        load_row(LATTICE + entry, values)
-        for k in range(COUNT):
-            coefficients[k] = place[3] * coefficients[k] + (1.0 - place[3]) * values[k]

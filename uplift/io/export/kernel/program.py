@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
+from importlib.metadata import version
 from importlib.resources import files
 from string import Template
 from types import ModuleType
 from typing import Any
 
-from uplift.common.version import VERSION
 from uplift.cube import CubeData, digest
 from uplift.io.export.kernel import (
-    add_nodes,
-    add_nodes_in_passes,
     answer_moments,
     answer_spectra,
+    coefficients,
     entries,
     lanes,
     lattice,
     moments,
+    nodes_at_once,
+    nodes_in_turn,
     sigmoid,
     spectra,
 )
 from uplift.io.export.kernel.language import Language
-from uplift.io.export.kernel.table import COLUMNS, Table
+from uplift.io.export.kernel.table import COLUMNS, TEXEL, Table
 from uplift.io.export.kernel.translate import functions, literal, translate
 from uplift.models import Moments
 
@@ -32,7 +34,7 @@ WARPS = {"none": "wavelength", "vision": "{tanh}(0.0072{suffix} * (wavelength - 
 """`uplift.models.phase.WARPS` as expressions."""
 LEFT_OUT = {
     "spectra": {"sum_nodes", "sum_coefficients", "dual", "multipliers_of"},
-    "moments": {"add_spectrum"},
+    "moments": {"add_nodes", "add_spectrum"},
 }
 """Functions that a mode does not need."""
 
@@ -55,8 +57,10 @@ class Program:
         The language.
     template : str
         Name of the template: the parts of a program that differ by language.
-    file : str
-        Name of the separate file of the table, if any.
+    form : {"header", "file", "textures"}
+        Where the table is.
+    stem : str
+        Name of the files of the table, without suffix.
     """
 
     data: CubeData
@@ -65,11 +69,12 @@ class Program:
     name: str
     language: Language
     template: str
-    file: str
+    form: str
+    stem: str
 
     def parts(self) -> Iterator[str]:
         """Yield the text piece by piece."""
-        text = Template(_read(self.template)).safe_substitute(self._words())
+        text = Template(self._read("")).safe_substitute(self._words())
         before, found, after = text.partition("${table}")
         yield before
         if found:
@@ -77,28 +82,38 @@ class Program:
             yield after
 
     def _words(self) -> dict[str, Any]:
-        sensor, width = self.data.sensor, self.table.constants["STRIDE"] // 4
-        wrappers = files("uplift.io.export") / "templates" / f"{self.mode}.{self.template}"
+        sensor, constants, image = self.data.sensor, self.table.constants, self.table.image()
         words = {
-            "version": VERSION,
+            "version": version("uplift"),
             "digest": digest(self.data),
             "space": comment(sensor.space),
             "illuminant": comment(sensor.illuminant),
             "observer": comment(sensor.observer),
             "entries": len(self.data.atlas.names),
             "mode": self.mode,
-            "texels": width,
-            "stride": self.table.constants["STRIDE"],
-            "size": len(self.table.numbers),
+            "texels": constants["STRIDE"] // TEXEL,
+            "tag_texture": constants["COUNT"] // TEXEL,
+            "tag_channel": constants["COUNT"] % TEXEL,
+            "stride": constants["STRIDE"],
+            "size": image.size,
+            "checksum": zlib.crc32(image.astype("<f4").tobytes()),
             "columns": COLUMNS,
-            "rows": self.table.image().shape[0],
-            "file": self.file,
+            "rows": len(image),
+            "stem": comment(self.stem),
             "name": self.name,
             "NAME": self.name.upper(),
             "constants": self._constants(),
         }
-        text = wrappers.read_text(encoding="ascii") if wrappers.is_file() else ""
-        return words | {"kernel": self._kernel(), "wrappers": Template(text).safe_substitute(words)}
+        parts = {"kernel": self._kernel()}
+        for key, part in {"access": self.form, "wrappers": self.mode}.items():
+            text = repeat(self._read(f"{part}."), words["texels"])
+            parts[key] = Template(text).safe_substitute(words)
+        return words | parts
+
+    def _read(self, part: str) -> str:
+        """Return the template, or the part of it with this prefix, which may be lacking."""
+        path = files("uplift.io.export") / "templates" / f"{part}{self.template}"
+        return path.read_text(encoding="ascii") if path.is_file() else ""
 
     def _constants(self) -> str:
         lines = []
@@ -120,10 +135,10 @@ class Program:
 
     def _answer(self) -> list[ModuleType]:
         """Return the modules of the mode."""
+        at_once = nodes_at_once if self.language.lanes else nodes_in_turn
         if self.mode == "moments":
-            return [lanes, answer_moments] if self.language.lanes else [answer_moments]
-        in_passes = self.language.lanes and isinstance(self.data.model, Moments)
-        return [add_nodes_in_passes if in_passes else add_nodes, answer_spectra]
+            return [at_once, coefficients, *([lanes] if self.language.lanes else []), answer_moments]
+        return [at_once if isinstance(self.data.model, Moments) else nodes_in_turn, answer_spectra]
 
     def _warp(self) -> str:
         model = self.data.model
@@ -147,5 +162,9 @@ def comment(text: str) -> str:
     return text.encode("ascii", "replace").decode().replace("*", "").replace("\n", " ").replace("$", "")
 
 
-def _read(name: str) -> str:
-    return (files("uplift.io.export") / "templates" / name).read_text(encoding="ascii")
+def repeat(text: str, count: int) -> str:
+    """Repeat each line that has ``${t}`` for t = 0, 1, ..."""
+    lines = text.splitlines(keepends=True)
+    return "".join(
+        line.replace("${t}", str(t)) for line in lines for t in range(count if "${t}" in line else 1)
+    )

@@ -41,8 +41,22 @@ class Table:
 
     def image(self) -> Floats:
         """Return the numbers as an image of (rows, COLUMNS, 4), filled up with zeros."""
-        row = COLUMNS * TEXEL
-        return np.pad(self.numbers, (0, -len(self.numbers) % row)).reshape(-1, COLUMNS, TEXEL)
+        return _image(self.numbers)
+
+    def points(self) -> Floats:
+        """Return the rows of lattice points as textures of (STRIDE / 4, red, green, blue, 4)."""
+        dim, stride = self.constants["DIM"], self.constants["STRIDE"]
+        rows = self.numbers[: dim**3 * stride].reshape(dim, dim, dim, -1, TEXEL)
+        return np.moveaxis(rows, 3, 0)
+
+    def others(self) -> Floats:
+        """Return the numbers behind the rows of lattice points as an image of (rows, COLUMNS, 4)."""
+        return _image(self.numbers[self.constants["LATTICE"] * self.constants["STRIDE"] :])
+
+
+def _image(numbers: Floats) -> Floats:
+    row = COLUMNS * TEXEL
+    return np.pad(numbers, (0, -len(numbers) % row)).reshape(-1, COLUMNS, TEXEL)
 
 
 def make_table(data: CubeData, mode: str) -> Table:

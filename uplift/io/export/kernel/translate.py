@@ -12,7 +12,7 @@ from types import ModuleType
 from uplift.io.export.kernel.intrinsics import SIZES
 from uplift.io.export.kernel.language import WGSL, Language
 
-INTRINSICS = frozenset({"number", "load_row"})
+INTRINSICS = frozenset({"number", "load_row", "tag"})
 """Functions that read the table."""
 LANES = frozenset({"WIDTH", "STRIDE", "LANES"})
 """Bounds of loops that are vectorised."""

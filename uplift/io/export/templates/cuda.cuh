@@ -2,7 +2,8 @@
 
    Written by uplift ${version} from the cube ${digest}.
    RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries. Mode ${mode}.
-   CUDA, and C++ on the host. ${file} has the ${size} numbers (float32, little-endian) of the table:
+   CUDA, and C++ on the host. ${stem}.bin has the ${size} numbers (float32, little-endian) of the table. Its CRC-32
+   is ${checksum}.
 
        float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[${NAME}_WIDTH] = {450, 500, 550, 600}, found[${NAME}_WIDTH];
        ${name}_reflectances(table, rgb, wavelengths, found);
@@ -22,16 +23,7 @@
 #endif
 ${constants}
 
-${NAME}_FUNCTION float ${name}_number(const float *table, int index)
-{
-    return table[index];
-}
-
-${NAME}_FUNCTION void ${name}_load_row(const float *table, int index, float row[${NAME}_STRIDE])
-{
-    for (int k = 0; k < ${NAME}_COUNT; ++k) row[k] = table[index * ${NAME}_STRIDE + k];
-}
-
+${access}
 ${kernel}
 /* Reflectances of stored multipliers at wavelengths in nm. */
 ${NAME}_FUNCTION void ${name}_evaluate(

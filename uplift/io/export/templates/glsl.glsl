@@ -2,8 +2,7 @@
 
    Written by uplift ${version} from the cube ${digest}.
    RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries. Mode ${mode}.
-   GLSL 3.30 and GLSL ES 3.00. ${file} has the table, ${rows} rows of ${columns} RGBA texels (float32, little-endian):
-   load it as a texture of the format RGBA32F, filter NEAREST, and bind it to the uniform ${name}_table.
+   GLSL 3.30 and GLSL ES 3.00. The comment on the table below states how to load it.
 
        vec4 reflectances = ${name}_reflectances(vec3(0.8, 0.2, 0.1), vec4(450.0, 500.0, 550.0, 600.0));
 */
@@ -14,26 +13,7 @@ precision highp int;
 #define ${NAME}_WIDTH 4
 ${constants}
 
-uniform highp sampler2D ${name}_table;
-
-vec4 ${name}_texel(int index)
-{
-    return texelFetch(${name}_table, ivec2(index % ${columns}, index / ${columns}), 0);
-}
-
-float ${name}_number(int index)
-{
-    return ${name}_texel(index / 4)[index % 4];
-}
-
-void ${name}_load_row(int index, inout float row[${NAME}_STRIDE])
-{
-    for (int t = 0; t < ${texels}; ++t) {
-        vec4 texel = ${name}_texel(index * ${texels} + t);
-        for (int c = 0; c < 4; ++c) row[4 * t + c] = texel[c];
-    }
-}
-
+${access}
 ${kernel}
 /* Reflectances of stored multipliers at four wavelengths in nm. */
 vec4 ${name}_evaluate(float multipliers[${NAME}_COUNT], vec4 wavelengths)

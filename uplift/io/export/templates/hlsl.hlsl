@@ -2,34 +2,14 @@
 
    Written by uplift ${version} from the cube ${digest}.
    RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries. Mode ${mode}.
-   HLSL, shader model 5. ${file} has the table, ${rows} rows of ${columns} float4 (little-endian): load it as
-   a structured buffer.
+   HLSL, shader model 5. The comment on the table below states how to load it.
 
        float4 reflectances = ${name}_reflectances(float3(0.8, 0.2, 0.1), float4(450, 500, 550, 600));
 */
 #define ${NAME}_WIDTH 4
 ${constants}
 
-StructuredBuffer<float4> ${name}_table : register(t0);
-
-float4 ${name}_texel(int index)
-{
-    return ${name}_table[index];
-}
-
-float ${name}_number(int index)
-{
-    return ${name}_texel(index / 4)[index % 4];
-}
-
-void ${name}_load_row(int index, inout float row[${NAME}_STRIDE])
-{
-    for (int t = 0; t < ${texels}; ++t) {
-        float4 texel = ${name}_texel(index * ${texels} + t);
-        for (int c = 0; c < 4; ++c) row[4 * t + c] = texel[c];
-    }
-}
-
+${access}
 ${kernel}
 /* Reflectances of stored multipliers at four wavelengths in nm. */
 float4 ${name}_evaluate(float multipliers[${NAME}_COUNT], float4 wavelengths)

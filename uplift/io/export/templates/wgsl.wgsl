@@ -2,27 +2,14 @@
 
    Written by uplift ${version} from the cube ${digest}.
    RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries. Mode ${mode}.
-   WGSL. ${file} has the table, ${rows} rows of ${columns} vec4f (little-endian): load it as a storage buffer. Set its
-   group and binding below.
+   WGSL. The comment on the table below states how to load it.
 
        let reflectances = ${name}_reflectances(vec3f(0.8, 0.2, 0.1), vec4f(450, 500, 550, 600));
 */
 const ${NAME}_WIDTH: i32 = 4;
 ${constants}
 
-@group(0) @binding(0) var<storage, read> ${name}_table: array<vec4f>;
-
-fn ${name}_number(index: i32) -> f32 {
-    return ${name}_table[index / 4][index % 4];
-}
-
-fn ${name}_load_row(index: i32, row: ptr<function, array<f32, ${NAME}_STRIDE>>) {
-    for (var t: i32 = 0; t < ${texels}; t++) {
-        let texel = ${name}_table[index * ${texels} + t];
-        for (var c: i32 = 0; c < 4; c++) { (*row)[4 * t + c] = texel[c]; }
-    }
-}
-
+${access}
 ${kernel}
 /* Reflectances of stored multipliers at four wavelengths in nm. */
 fn ${name}_evaluate(multipliers: ptr<function, array<f32, ${NAME}_COUNT>>, wavelengths: vec4f) -> vec4f {

@@ -1,4 +1,4 @@
-"""The weighted spectra of the eight lattice points around a colour, point by point: needs few registers."""
+"""The eight lattice points around a colour, one after the other: few registers, and texels of four numbers."""
 
 from __future__ import annotations
 
@@ -6,10 +6,13 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from uplift.io.export.kernel.intrinsics import (
+        COUNT,
         DIM,
         STRIDE,
         Basis,
         Block,
+        Coefficients,
+        Float,
         Int,
         Place,
         Row,
@@ -34,3 +37,17 @@ def add_nodes(place: Place, basis: Basis, total: Block) -> None:
             basis,
             total,
         )
+
+
+def sum_nodes(place: Place, coefficients: Coefficients) -> None:
+    """Sum the weighted coefficients of the eight lattice points."""
+    values: Row = empty(STRIDE)
+    sides: Sides = empty(6)
+    first: Int = weigh(place, sides)
+    for k in range(COUNT):
+        coefficients[k] = 0.0
+    for corner in range(8):
+        load_row(first + corner // 4 * DIM * DIM + corner // 2 % 2 * DIM + corner % 2, values)
+        weight: Float = sides[corner // 4] * sides[2 + corner // 2 % 2] * sides[4 + corner % 2]
+        for k in range(COUNT):
+            coefficients[k] += weight * values[k]

@@ -1,0 +1,56 @@
+#include <stdio.h>
+#include <stdlib.h>
+
+static float *${name}_table;
+
+/* Load the table, ${stem}.bin: float32 numbers, little-endian. Returns NULL, or the reason why it cannot be used. */
+static inline const char *${name}_load(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    size_t size = ${size} * sizeof(float), count = 0, k;
+    unsigned char *bytes = (unsigned char *)malloc(size + 1);
+    float *table = (float *)malloc(size);
+    unsigned long checksum = 0xFFFFFFFFUL; /* CRC-32, as in zlib */
+    const char *problem = NULL;
+    if (!file) problem = "the table cannot be opened";
+    else if (!bytes || !table) problem = "out of memory";
+    else count = fread(bytes, 1, size + 1, file);
+    if (file) fclose(file);
+    for (k = 0; k < count; ++k) {
+        int bit;
+        checksum ^= bytes[k];
+        for (bit = 0; bit < 8; ++bit) checksum = checksum >> 1 ^ (checksum & 1 ? 0xEDB88320UL : 0);
+    }
+    if (!problem && (count != size || (checksum ^ 0xFFFFFFFFUL) != ${checksum}UL))
+        problem = "the table is damaged or of another cube";
+    for (k = 0; !problem && k < size / 4; ++k) {
+        const unsigned char *four = bytes + 4 * k;
+        unsigned int number = four[0] | four[1] << 8 | four[2] << 16 | (unsigned int)four[3] << 24;
+        memcpy(table + k, &number, sizeof number);
+    }
+    free(bytes);
+    if (problem) {
+        free(table);
+        return problem;
+    }
+    free(${name}_table);
+    ${name}_table = table;
+    return NULL;
+}
+
+static inline float ${name}_number(int index)
+{
+    return ${name}_table[index];
+}
+
+static inline float ${name}_tag(int index)
+{
+    return ${name}_table[index * ${NAME}_STRIDE + ${NAME}_COUNT];
+}
+
+static inline void ${name}_load_row(int index, float row[${NAME}_STRIDE])
+{
+    const float *stored = ${name}_table + index * ${NAME}_STRIDE;
+    int k;
+    for (k = 0; k < ${NAME}_STRIDE; ++k) row[k] = stored[k];
+}
