@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files
+.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -34,6 +34,11 @@ docs: $(INSTALLED)
 # The documentation site, out/site/index.html; it runs the notebooks.
 site: $(INSTALLED)
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs $(OUT)/site
+
+# Blender as a Python module, with which the tests run exported OSL programs: 0.9 GB, Python 3.11.
+osl:
+	python3.11 -m venv .osl
+	.osl/bin/pip install --quiet bpy==4.5.15
 
 bench: $(INSTALLED)
 	$(BIN)/python -m benchmarks.bench

@@ -11,6 +11,10 @@ from uplift.lookup import Cube
 from uplift.models import Moments, Phase
 
 
+collect_ignore = ["render_osl.py"]
+"""It runs in Blender."""
+
+
 @pytest.fixture(scope="session")
 def warped_cube(small_cube) -> Cube:
     """Cube of five of nine moments, reinterpreted with another wavelength range and warp."""

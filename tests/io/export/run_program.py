@@ -10,12 +10,15 @@ import json
 import shutil
 import struct
 import subprocess
+from pathlib import Path
 
 import numpy as np
+import OpenEXR
 import pytest
 
 from benchmarks.browser import browser, chromium
 
+BLENDER = Path(__file__).parents[3] / ".osl" / "bin" / "python"
 HOST = r"""
 #include <stdio.h>
 #include <stdlib.h>
@@ -148,6 +151,26 @@ WEBGPU = """(async () => {
   for (const byte of new Uint8Array(result.getMappedRange())) text += String.fromCharCode(byte);
   return btoa(text);
 })()"""
+SHADER = """{code}
+shader lookup(output color found = 0)
+{{
+    float rgb[3], place[4], lanes[3] = {{{wavelengths}}}, total[3];
+    for (int k = 0; k < 3; ++k) {{
+        total[k] = 0;
+        rgb[k] = texture("{colours}", (P[0] + 1) / 2, (1 - P[1]) / 2, "firstchannel", k, "interp", "closest");
+    }}
+    int entry = cube_locate("{table}", rgb, place);
+    cube_answer("{table}", place, entry, lanes, total);
+    found = color(total[0], total[1], total[2]);
+}}
+"""
+KERNEL = """#include "{header}"
+extern "C" __global__ void lookup(const float *table, const float *rgb, const float *wavelengths, float *found)
+{{
+    int at = blockIdx.x * blockDim.x + threadIdx.x;
+    cube_reflectances(table, rgb + 3 * at, wavelengths, found + 4 * at);
+}}
+"""
 KTX2 = """const ktx2 = text => {
   const { buffer } = Uint8Array.from(atob(text), c => c.charCodeAt(0));
   const view = new DataView(buffer), number = at => view.getUint32(at, true);
@@ -179,6 +202,49 @@ def cuda(path, rgb, wavelengths, form="file"):
     load = LOAD.format(size=path.with_suffix(".bin").stat().st_size // 4)
     compiler = ("c++", "-std=c++11", "-x", "c++")
     return _compiled(path, rgb, wavelengths, compiler, "table, rgb, wavelengths, found", load)
+
+
+def ptx(path):
+    """Compile to PTX, the assembly language of graphics processors. Returns it."""
+    if shutil.which("nvcc") is None:
+        pytest.skip("needs nvcc, of the CUDA toolkit")
+    path.with_suffix(".cu").write_text(KERNEL.format(header=path.name))
+    command = [
+        "nvcc",
+        "-ptx",
+        "-Werror",
+        "all-warnings",
+        path.with_suffix(".cu"),
+        "-o",
+        path.with_suffix(".ptx"),
+    ]
+    subprocess.run(command, check=True)
+    return path.with_suffix(".ptx").read_text()
+
+
+def osl(path, rgb, wavelengths, form="file"):
+    """In Blender, three wavelengths at a time."""
+    if not BLENDER.exists():
+        pytest.skip("needs Blender: make osl")
+    side = int(np.ceil(np.sqrt(len(rgb))))
+    pixels = np.ascontiguousarray(_padded(rgb, side * side)[:, :3].reshape(side, side, 3))
+    colours, shader, out = (path.with_name(name) for name in ("colours.exr", "lookup.osl", "found.exr"))
+    _exr(colours, pixels)
+    code, table = path.read_text(), path.with_suffix(".exr")
+    code = code[: code.index("shader cube_reflectance")]
+    found = []
+    for three in (wavelengths[:3], wavelengths[1:]):
+        words = {"wavelengths": _listed(three), "colours": colours, "table": table}
+        shader.write_text(SHADER.format(code=code, **words))
+        command = [BLENDER, Path(__file__).with_name("render_osl.py"), shader, str(side), out]
+        subprocess.run(command, check=True, capture_output=True)
+        found.append(OpenEXR.File(str(out)).channels()["RGBA"].pixels.reshape(-1, 4)[: len(rgb), :3])
+    return np.concatenate([found[0], found[1][:, 2:]], axis=1)
+
+
+def _exr(path, pixels):
+    header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
+    OpenEXR.File(header, {"RGB": pixels}).write(str(path))
 
 
 def _compiled(path, rgb, wavelengths, compiler, call, load):

@@ -22,7 +22,7 @@ WAVELENGTHS = [300.0, 455.0, 551.5, 700.0]
 WITHIN = 1e-4
 """Tolerance of reflectance in single precision: multipliers of spectra near a box reach 4e6."""
 RUN = {"c": run_program.c, "cuda": run_program.cuda, "glsl": run_program.glsl, "wgsl": run_program.wgsl}
-RUN["hlsl"] = run_program.hlsl
+RUN |= {"hlsl": run_program.hlsl, "osl": run_program.osl}
 SHIPPED = ("moments-8-macbeth", "moments-8", "sigmoid-8-macbeth")
 
 
@@ -92,6 +92,12 @@ def test_the_comparison_detects_another_mode_and_another_cube(small_cube, plain_
     other = small_cube.reflectance(rgb, WAVELENGTHS, mode="moments")
     assert worst(small_cube, "c", "spectra", rgb, other) > 1e-3
     assert worst(small_cube, "c", "spectra", rgb, plain_cube.reflectance(rgb, WAVELENGTHS)) > 1e-3
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+def test_cuda_compiles_for_graphics_processors(small_cube, tmp_path, mode):
+    write_program(small_cube.data, tmp_path / "cube.cuh", style="cuda", mode=mode)
+    assert ".entry lookup" in run_program.ptx(tmp_path / "cube.cuh")
 
 
 @pytest.mark.parametrize("style", ["c", "cuda"])

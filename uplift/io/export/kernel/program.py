@@ -5,12 +5,12 @@ from __future__ import annotations
 import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.metadata import version
 from importlib.resources import files
 from string import Template
 from types import ModuleType
 from typing import Any
 
+from uplift.common.version import VERSION
 from uplift.cube import CubeData, digest
 from uplift.io.export.kernel import (
     answer_moments,
@@ -84,7 +84,7 @@ class Program:
     def _words(self) -> dict[str, Any]:
         sensor, constants, image = self.data.sensor, self.table.constants, self.table.image()
         words = {
-            "version": version("uplift"),
+            "version": VERSION,
             "digest": digest(self.data),
             "space": comment(sensor.space),
             "illuminant": comment(sensor.illuminant),
