@@ -10,7 +10,7 @@ from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.fit.entries import fit_entries
-from uplift.fit.objective import BALANCED, Weights, objective, shape_rows
+from uplift.fit.objective import BALANCED, Weights, objective, shape_weights
 from uplift.models import Moments, Sigmoid
 from uplift.models.minimum_norm import forward_map
 
@@ -81,13 +81,14 @@ def test_jacobian_equals_central_differences(sensor, measured, model):
         np.testing.assert_allclose(goal.jacobian(at), np.transpose(numeric), rtol=1e-5, atol=1e-8)
 
 
-def test_weighted_rows_sum_to_a_mean_square():
+def test_weighted_squares_sum_to_a_mean_square():
     difference = np.random.default_rng(0).normal(size=81)
-    assert np.sum((shape_rows(81, BALANCED) @ difference) ** 2) == pytest.approx((difference**2).mean())
-    bent = shape_rows(81, Weights(curvature=2.0)) @ difference
-    extra = 4 * (np.diff(difference, 2) ** 2).sum() / 81
-    assert np.sum(bent**2) == pytest.approx((difference**2).mean() + extra)
-    heavy = shape_rows(81, Weights(ends=3.0)) @ np.ones(81)
+    values, bends = shape_weights(81, BALANCED)
+    assert np.sum((values * difference) ** 2) == pytest.approx((difference**2).mean())
+    assert not len(bends)
+    _, bends = shape_weights(81, Weights(curvature=2.0))
+    assert np.sum((bends @ difference) ** 2) == pytest.approx(4 * (np.diff(difference, 2) ** 2).sum() / 81)
+    heavy, _ = shape_weights(81, Weights(ends=3.0))
     assert np.sum(heavy**2) == pytest.approx(1)
     assert heavy[0] ** 2 == pytest.approx(3 * heavy[40] ** 2)
 

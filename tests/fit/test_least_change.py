@@ -8,7 +8,7 @@ import optimistix
 import pytest
 from scipy.optimize import minimize
 
-from uplift.fit.least_change import LeastChange
+from uplift.fit.least_change_solver import LeastChange
 from uplift.fit.solve import solve
 from uplift.models import Moments
 from uplift.models.minimum_norm import forward_map, residual

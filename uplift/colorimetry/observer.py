@@ -221,7 +221,7 @@ def matching_functions(
     UnknownNameError
         The observer is unknown.
     """
-    return _samples(colour_science().MSDS_CMFS, observer, "observer", start, end, step)
+    return _samples("MSDS_CMFS", observer, "observer", start, end, step)
 
 
 def illuminant_spd(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
@@ -243,7 +243,7 @@ def illuminant_spd(illuminant: str, start: float = START, end: float = END, step
     UnknownNameError
         The illuminant is unknown.
     """
-    return _samples(colour_science().SDS_ILLUMINANTS, illuminant, "illuminant", start, end, step)
+    return _samples("SDS_ILLUMINANTS", illuminant, "illuminant", start, end, step)
 
 
 def display_primaries(
@@ -267,7 +267,7 @@ def display_primaries(
     UnknownNameError
         The display is unknown.
     """
-    return _samples(colour_science().MSDS_DISPLAY_PRIMARIES, display, "display", start, end, step)
+    return _samples("MSDS_DISPLAY_PRIMARIES", display, "display", start, end, step)
 
 
 def illuminant_names() -> tuple[str, ...]:
@@ -325,7 +325,11 @@ def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:
         raise unknown_name(name, table, kind) from None
 
 
-def _samples(table: Mapping[str, Any], name: str, kind: str, start: float, end: float, step: float) -> Array:
-    """Sample a table of colour-science, with constant extrapolation."""
-    shape = colour_science().SpectralShape(start, end, step)
-    return np.asarray(_look_up(table, name, kind).copy().align(shape).values, dtype=float)
+@functools.cache
+def _samples(table: str, name: str, kind: str, start: float, end: float, step: float) -> Array:
+    """Sample a table of colour-science, with constant extrapolation; the result is read-only."""
+    colour = colour_science()
+    found = _look_up(getattr(colour, table), name, kind).copy().align(colour.SpectralShape(start, end, step))
+    samples = np.array(found.values, dtype=float)
+    samples.setflags(write=False)
+    return samples

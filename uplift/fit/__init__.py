@@ -10,18 +10,15 @@ from uplift.fit.learnt import LearntBase, has_freedom, learn_base
 from uplift.fit.library import Family, shipped_library
 from uplift.fit.objective import Weights
 from uplift.fit.prior import Prior, fit_prior
-from uplift.fit.problem import NO_LATTICE, Problem, solver_tolerance
+from uplift.fit.problem import NO_LATTICE, Method, Problem, solver_tolerance
 from uplift.fit.seed import Collision, Seeds, seed
 from uplift.fit.solve import solve
 from uplift.fit.starts import Starts
-from uplift.fit.stock_solver import SOLVER_TYPES, STOCK, Solver, StockSolver
 from uplift.fit.unrealisable import Unrealisable, unrealisable
 
 __all__ = [
     "DIMS",
     "NO_LATTICE",
-    "SOLVER_TYPES",
-    "STOCK",
     "STRATEGIES",
     "Collision",
     "Family",
@@ -30,12 +27,11 @@ __all__ = [
     "LatticeChoice",
     "LatticeFit",
     "LearntBase",
+    "Method",
     "Prior",
     "Problem",
     "Seeds",
-    "Solver",
     "Starts",
-    "StockSolver",
     "Unrealisable",
     "Weights",
     "choose_lattice",

@@ -15,15 +15,16 @@ CPU_BATCH_ROWS, ACCELERATOR_BATCH_ROWS = (2048, 64), (1 << 17, 4096)
 """Rows per device: a large batch that fills a core's cache or keeps a GPU busy, and a small one for short rounds."""
 
 
-def batches(count: int, max_small: int = 4) -> Iterator[tuple[slice, int]]:
+def batches(count: int, max_small: int = 0) -> Iterator[tuple[slice, int]]:
     """Split rows into large batches and a remainder.
 
     Parameters
     ----------
     count : int
         Number of rows.
-    max_small : int, default 4
-        The remainder is split into at most this many small batches; a longer one becomes a large batch.
+    max_small : int, default 0
+        The remainder is split into at most this many small batches; a longer one becomes a large batch. A second width
+        is a second program to compile or to load, which small batches must be worth.
 
     Yields
     ------
@@ -51,7 +52,7 @@ def shard(rows: Array, width: int) -> Any:
 
 def replicate(constants: Any) -> Any:
     """Copy the constants of a computation to every device."""
-    return _place(constants)
+    return _place(constants) if len(jax.devices()) > 1 else jax.device_put(constants)
 
 
 def _place(arrays: Any, *axes: str) -> Any:

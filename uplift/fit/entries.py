@@ -7,19 +7,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
+from uplift.fit.least_change import nearest_of_colour
 from uplift.fit.objective import BALANCED, Objective, Weights, objective
-from uplift.fit.solve import solve
-from uplift.fit.stock_solver import Solver, solve_objective
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap
 
-MAX_PASSES = 32
+if TYPE_CHECKING:
+    from uplift.fit.stock_solver import Solver
+
+MAX_STEPS = 256
+PRECISION = 1e-8
+"""Relative reduction of the objective, change of the multipliers and steepness at which MINPACK stops."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -91,19 +96,34 @@ def fit_entries(
         Multipliers and errors.
     """
     goal = objective(model, forward.basis, lights, weights)
-    start = _by_minpack(goal, measured) if solver is None else solve_objective(solver, goal, measured)
-    multipliers = solve(model, forward, start, rgb, tolerance=tolerance, max_passes=MAX_PASSES).multipliers
+    start = _by_minpack(goal, measured) if solver is None else _by_solver(solver, goal, measured)
+    multipliers = nearest_of_colour(model, forward, start, rgb, tolerance, MAX_STEPS)
     spectra = np.asarray(model.squash(multipliers @ forward.basis.T))
     return FittedEntries(rgb, measured, multipliers, delta_e_spectra(error_light, spectra, measured))
 
 
+def _by_solver(solver: Solver, goal: Objective, measured: Array) -> Array:
+    """Do the same as `_by_minpack` by a solver of optimistix."""
+    from uplift.fit.stock_solver import solve_objective
+
+    return solve_objective(solver, goal, measured)
+
+
 def _by_minpack(goal: Objective, measured: Array) -> Array:
     """Multipliers (E, C) that minimise the objective of measured reflectances (E, N)."""
-    from scipy.optimize import least_squares
+    from scipy.optimize import leastsq
 
-    multipliers = np.zeros((len(measured), goal.model.count))
+    multipliers, scale = np.zeros((len(measured), goal.model.count)), np.ones(goal.model.count)
     for row, spectrum in enumerate(measured):
-        multipliers[row] = least_squares(
-            goal.residuals, multipliers[row], lambda p, _: goal.jacobian(p), method="lm", args=(spectrum,)
-        ).x
+        multipliers[row], *_ = leastsq(
+            goal.residuals_from,
+            multipliers[row],
+            args=(spectrum, goal.colours(spectrum)),
+            Dfun=lambda p, *_: goal.jacobian(p),
+            full_output=True,  # otherwise it warns where rounding ends the fit
+            ftol=PRECISION,
+            xtol=PRECISION,
+            gtol=PRECISION,
+            diag=scale,
+        )
     return multipliers

@@ -20,8 +20,8 @@ REACH = 12.0
 """ΔE*ab within which a deviation that belongs to one entry alone fades away."""
 JITTER = 1e-3
 """Relative variance of noise: entries of the same colour and different spectra are averaged."""
-BLOCK_NUMBERS = 1 << 20
-"""Numbers of the kernel matrix held at a time."""
+BLOCK_NUMBERS, BLOCK_ROWS = 1 << 20, 1 << 13
+"""Numbers and rows of the kernel matrix that are held at a time, at most."""
 
 
 @dataclass(frozen=True)
@@ -108,13 +108,13 @@ def leave_one_out(covariance: Array, deviations: Array) -> tuple[Array, Array]:
 
 def kernel_sums(lab: Array, locations: Array, columns: Array, kernel: Kernel) -> tuple[Array, Array]:
     """Sums (n, K) of the entries' columns (E, K) weighted by the kernel at L*a*b* (n, 3), and its maximum (n,)."""
-    rows = max(min(BLOCK_NUMBERS // max(len(locations), 1), len(lab)), 1)
+    rows = max(min(BLOCK_NUMBERS // max(len(locations), 1), BLOCK_ROWS), 1)
     sums, nearest = np.empty((len(lab), columns.shape[1])), np.empty(len(lab))
     with jax.enable_x64(True):
         for first in range(0, len(lab), rows):
             part = slice(first, first + rows)
             count = len(lab[part])
-            block = np.resize(lab[part], (rows, 3))  # the last block is padded: one shape is compiled
+            block = lab[part] if count == rows else np.resize(lab[part], (rows, 3))  # one shape is compiled
             found = _kernel_block(kernel.length, kernel.nugget, block, locations, columns)
             sums[part], nearest[part] = (np.asarray(array)[:count] for array in found)
     return sums, nearest

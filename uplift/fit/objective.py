@@ -51,8 +51,10 @@ class Objective:
         Spectrum model.
     basis : ndarray, shape (N, C)
         Basis of the model.
-    rows : ndarray, shape (R, N)
-        Weights of a difference of spectra.
+    values : ndarray, shape (N,)
+        Weights of the values of a difference of spectra.
+    bends : ndarray, shape (B, N)
+        Weights of its second differences.
     lights : ndarray, shape (L, 3, N)
         Maps from spectra to XYZ.
     whites : ndarray, shape (L, 3)
@@ -63,27 +65,46 @@ class Objective:
 
     model: Model
     basis: Array
-    rows: Array
+    values: Array
+    bends: Array
     lights: Array
     whites: Array
     weight: float
 
     def residuals(self, multipliers: Any, measured: Any) -> Any:
-        """Residuals (R + 3 L + C,) of multipliers (C,); both of numpy or of JAX."""
+        """Residuals (N + B + 3 L + C,) of multipliers (C,); both of numpy or of JAX."""
+        return self.residuals_from(multipliers, measured, self.colours(measured))
+
+    def colours(self, spectrum: Any) -> Any:
+        """CIE L*a*b* (L, 3) of a spectrum (N,) under the lights."""
+        return lab_of(self.lights @ spectrum, self.whites)
+
+    def residuals_from(self, multipliers: Any, measured: Any, colours: Any) -> Any:
+        """Compute `residuals` of a measurement (N,) whose colours (L, 3) are known."""
         spectrum = self.model.squash(self.basis @ multipliers)
-        difference = lab_of(self.lights @ spectrum, self.whites) - lab_of(self.lights @ measured, self.whites)
+        difference, colour_difference = spectrum - measured, self.colours(spectrum) - colours
         return multipliers.__array_namespace__().concat(
-            [self.rows @ (spectrum - measured), self.weight * difference.ravel(), FLATNESS * multipliers]
+            [
+                self.values * difference,
+                self.bends @ difference,
+                self.weight * colour_difference.ravel(),
+                FLATNESS * multipliers,
+            ]
         )
 
     def jacobian(self, multipliers: Array) -> Array:
-        """Derivative (R + 3 L + C, C) of the residuals; it does not depend on the measurement."""
+        """Derivative (N + B + 3 L + C, C) of the residuals; it does not depend on the measurement."""
         x = self.basis @ multipliers
         change = self.model.slope(x)[:, None] * self.basis
         to_lab = lab_jacobian(self.lights @ self.model.squash(x), self.whites)
         colours = (to_lab @ (self.lights @ change)).reshape(-1, len(multipliers))
         return np.concatenate(
-            [self.rows @ change, self.weight * colours, FLATNESS * np.eye(len(multipliers))]
+            [
+                self.values[:, None] * change,
+                self.bends @ change,
+                self.weight * colours,
+                FLATNESS * np.eye(len(multipliers)),
+            ]
         )
 
     def steepness(self, multipliers: Array, measured: Array) -> float:
@@ -96,15 +117,15 @@ def objective(model: Model, basis: Array, lights: Sequence[Light], weights: Weig
     """Make the objective at the wavelengths of ``basis`` (N, C) and of the lights."""
     matrices = np.stack([light.xyz for light in lights])
     whites = np.stack([light.white for light in lights])
-    return Objective(model, basis, shape_rows(len(basis), weights), matrices, whites, weights.lights)
+    return Objective(model, basis, *shape_weights(len(basis), weights), matrices, whites, weights.lights)
 
 
-def shape_rows(count: int, weights: Weights) -> Array:
-    """Weights (R, N) of a difference of spectra (N,): the squares of its R products sum to a weighted mean square."""
+def shape_weights(count: int, weights: Weights) -> tuple[Array, Array]:
+    """Weights (N,) of the values of a difference of spectra (N,), and (B, N) of its second differences.
+
+    The squares of all products sum to a weighted mean square.
+    """
     share = np.ones(count)
     share[: count // ENDS] = share[-(count // ENDS) :] = weights.ends
-    value = np.diag(np.sqrt(share / share.sum()))
-    if not weights.curvature:
-        return value
-    second = np.diff(np.eye(count), n=2, axis=0) * weights.curvature / np.sqrt(count)
-    return np.concatenate([value, second])
+    second = np.diff(np.eye(count), n=2, axis=0) if weights.curvature else np.zeros((0, count))
+    return np.sqrt(share / share.sum()), second * weights.curvature / np.sqrt(count)

@@ -13,19 +13,32 @@ from uplift.models.duality import Quadrature, integrate
 
 MAX_NODES = 256
 """Larger rules, which few spectra need, are not worth compiling."""
+PART_NODES = 97
+"""Nodes of the first rule. Other rules run in parts of as many: one program for all."""
 
 
 def _integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     """Compute `uplift.models.duality.integrate`, several times faster."""
-    if len(analysis) > MAX_NODES + 1:
+    nodes, columns = analysis.shape
+    if nodes > MAX_NODES + 1:
         return integrate(multipliers, synthesis, analysis)
-    moments = np.empty((len(multipliers), analysis.shape[1]))
+    moments = np.zeros((len(multipliers), columns))
     with jax.enable_x64(True):
-        rule = replicate((synthesis, analysis))
-        for rows, width in batches(len(multipliers)):
-            part = moments[rows]
-            part[:] = np.asarray(_weighted(shard(multipliers[rows], width), *rule))[: len(part)]
+        for first in range(0, nodes, PART_NODES):
+            part = slice(first, first + PART_NODES)
+            rule = replicate(_padded(synthesis[:, part], analysis[part]))
+            for rows, width in batches(len(multipliers)):
+                some = moments[rows]
+                some += np.asarray(_weighted(shard(multipliers[rows], width), *rule))[: len(some), :columns]
     return moments
+
+
+def _padded(synthesis: Array, analysis: Array) -> tuple[Array, Array]:
+    """Make a rule as large as the first one, which has two sets of moments, by nodes and moments of no weight."""
+    count, (nodes, columns) = len(synthesis), analysis.shape
+    weights = np.zeros((PART_NODES, 2 * count))
+    weights[:nodes, :columns] = analysis
+    return np.pad(synthesis, ((0, 0), (0, PART_NODES - nodes))), weights
 
 
 @jax.jit

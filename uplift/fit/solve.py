@@ -1,11 +1,12 @@
 """Solve many small least-squares problems: multipliers whose spectra have given colours (docs/mathematics.md, 5).
 
-Problems are solved in batches of fixed shapes, a few steps of `LeastChange` per pass. Converged problems leave the
+Problems are solved in batches of fixed shapes, a few steps of least change per pass. Converged problems leave the
 batch.
 """
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
 from uplift.fit.batch import batches, replicate, shard
-from uplift.fit.least_change import FIRST_DAMPING, LeastChange
+from uplift.fit.least_change import FIRST_DAMPING, begin, step
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, residual
 
@@ -39,13 +40,10 @@ class Solution(NamedTuple):
     """(n, C) multipliers."""
     residual: Array
     """(n, 3) target minus RGB."""
+    distance: Array
+    """(n,) max |target − RGB|."""
     steps: NDArray[np.int64]
     """(n,) steps taken."""
-
-    @property
-    def distance(self) -> Array:
-        """(n,) max |target − RGB|."""
-        return np.asarray(np.abs(self.residual).max(axis=1))
 
 
 def solve(
@@ -86,20 +84,22 @@ def solve(
         Multipliers, residuals and numbers of steps.
     """
     count = len(start)
-    found = Solution(start.copy(), np.full((count, 3), np.inf), np.zeros(count, dtype=np.int64))
+    found = Solution(
+        start.copy(), np.empty((count, 3)), np.full(count, np.inf), np.zeros(count, dtype=np.int64)
+    )
     rows, stale = np.arange(count), np.zeros(count, dtype=np.int64)
     anchor, pull = (start, np.zeros(count)) if prior is None else (prior, np.ones(count))
     given = _Given(start, anchor, np.full(count, FIRST_DAMPING), pull, target)
     with jax.enable_x64(True):
-        solver = replicate(LeastChange(model, forward, tolerance))
-        for _ in range(max_passes):
-            before = np.abs(found.residual[rows]).max(axis=1)
-            after = _pass(solver, given)
+        constants = replicate(forward)
+        for _ in range(max_passes if count else 0):
+            after = _pass(model, constants, tolerance, given)
+            before = found.distance[rows]
             found.multipliers[rows], found.residual[rows] = after.multipliers, after.residual
+            found.distance[rows] = after.distance
             found.steps[rows] += after.steps
-            distance = np.abs(after.residual).max(axis=1)
-            stale = np.where(distance > (1 - MIN_GAIN) * before, stale + 1, 0)
-            kept = (distance > tolerance) & (stale < PATIENCE)
+            stale = np.where(after.distance > (1 - MIN_GAIN) * before, stale + 1, 0)
+            kept = (after.distance > tolerance) & (stale < PATIENCE)
             if not kept.any():
                 break
             rows, stale = rows[kept], stale[kept]
@@ -123,50 +123,45 @@ class _After(NamedTuple):
 
     multipliers: Any
     residual: Any
+    distance: Any
     damping: Any
     pull: Any
     steps: Any
 
 
-def _pass(solver: LeastChange, given: _Given) -> _After:
+def _pass(model: Model, forward: ForwardMap, tolerance: float, given: _Given) -> _After:
     """Take some steps in every problem, batch by batch."""
     count, columns = given.multipliers.shape
-    after = _After(
-        np.empty((count, columns)),
-        np.empty((count, 3)),
-        np.empty(count),
-        np.empty(count),
-        np.empty(count, dtype=np.int64),
-    )
+    shapes = ((count, columns), (count, 3), count, count, count)
+    after = _After(*map(np.empty, shapes), np.empty(count, dtype=np.int64))
     steps = MORE_STEPS if count <= FEW else STEPS
     for rows, width in batches(count, MAX_SMALL_BATCHES):
-        result = _advance(solver, _Given(*(shard(array[rows], width) for array in given)), steps)
-        for array, part in zip(after, result, strict=True):
-            array[rows] = np.asarray(part)[: rows.stop - rows.start]
+        part = _Given(*(shard(array[rows], width) for array in given))
+        result = _advance(model, forward, tolerance, part, steps)
+        for array, found in zip(after, result, strict=True):
+            array[rows] = np.asarray(found)[: rows.stop - rows.start]
     return after
 
 
-@jax.jit
-def _advance(solver: LeastChange, given: _Given, steps: int) -> _After:
-    """Take up to ``steps`` steps in a batch."""
-    options = {"prior": given.prior, "damping": given.damping, "pull": given.pull}
-    tags: frozenset[object] = frozenset()
+@partial(jax.jit, static_argnums=0)
+def _advance(model: Model, forward: ForwardMap, tolerance: float, given: _Given, max_steps: int) -> _After:
+    """Take up to ``max_steps`` steps in a batch."""
 
-    def off(y: jax.Array, args: jax.Array) -> tuple[jax.Array, None]:
-        return residual(solver.model, solver.forward, y, args), None
+    def off(y: jax.Array) -> Any:
+        return residual(model, forward, y, given.target)
 
-    def step(carry: Any) -> Any:
+    def advance(carry: Any) -> Any:
         count, taken, y, state = carry
-        taken = taken + ~solver.solved(state)
-        y, state, _ = solver.step(off, y, given.target, options, state, tags)
-        return count + 1, taken, y, state
+        taken = taken + (state.distance > tolerance)
+        return count + 1, taken, *step(model, forward, off, y, state, tolerance)
 
     def unfinished(carry: Any) -> jax.Array:
-        count, _, y, state = carry
-        return (count < steps) & ~solver.terminate(off, y, given.target, options, state, tags)[0]
+        count, _, _, state = carry
+        return (count < max_steps) & (state.distance > tolerance).any()
 
-    state = solver.init(off, given.multipliers, given.target, options, None, None, tags)
+    state = begin(forward, off, given.multipliers, given.prior, given.damping, given.pull)
     taken = jnp.zeros(len(given.multipliers), dtype=jnp.int64)
-    begin = (jnp.asarray(0), taken, given.multipliers, state)
-    _, taken, y, state = jax.lax.while_loop(unfinished, step, begin)
-    return _After(y, state.residual, state.damping, state.pull, taken)
+    _, taken, y, state = jax.lax.while_loop(
+        unfinished, advance, (jnp.asarray(0), taken, given.multipliers, state)
+    )
+    return _After(y, state.residual, state.distance, state.damping, state.pull, taken)

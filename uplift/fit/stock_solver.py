@@ -80,7 +80,9 @@ class StockSolver:
     ) -> Solution:
         """Solve for multipliers that have given colours; see `uplift.fit.solve.solve`."""
         count = len(start)
-        found = Solution(start.copy(), np.full((count, 3), np.inf), np.zeros(count, dtype=np.int64))
+        found = Solution(
+            start.copy(), np.empty((count, 3)), np.full(count, np.inf), np.zeros(count, dtype=np.int64)
+        )
         rows, prior = np.arange(count), start if prior is None else prior
         with jax.enable_x64(True):
             map_ = replicate(forward)
@@ -93,11 +95,10 @@ class StockSolver:
                         self.solver, model, map_, closeness, *(shard(array, width) for array in given)
                     )
                     multipliers, off, steps = (np.asarray(array)[: len(own)] for array in result)
-                    closer = np.abs(off).max(axis=1) < found.distance[own]
-                    found.multipliers[own[closer]], found.residual[own[closer]] = (
-                        multipliers[closer],
-                        off[closer],
-                    )
+                    distance = np.abs(off).max(axis=1)
+                    closer = distance < found.distance[own]
+                    for array, new in zip(found, (multipliers, off, distance), strict=False):
+                        array[own[closer]] = new[closer]
                     found.steps[own] += steps
                 rows = rows[found.distance[rows] > tolerance]
                 prior = found.multipliers[rows]

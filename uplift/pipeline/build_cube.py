@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -47,6 +47,9 @@ from uplift.pipeline.options import (
 )
 from uplift.pipeline.provenance import describe_source
 
+if TYPE_CHECKING:
+    from uplift.fit.stock_solver import Solver
+
 MAX_NAMES = 6
 """Entries that a warning names."""
 STACK_LEVEL = 5
@@ -74,7 +77,7 @@ def build(
     auto_tolerance: float = 0.5,
     seed_corners: bool = False,
     start: Literal["prior", "neighbours"] = "prior",
-    solver: SolverName | fit.Solver = "least-change",
+    solver: SolverName | Solver = "least-change",
     debug: bool = False,
     scene: SceneLike | StrPath | Sequence[StrPath] | None = None,
     progress: ProgressCallback = ignore_progress,
@@ -188,7 +191,7 @@ def build(
     )
     check_memory(options)
     tolerance = fit.solver_tolerance(options.threshold)
-    chosen = _chosen_solver(solver, tolerance)
+    chosen, method = _chosen_solver(solver, tolerance)
     scene = None if scene is None else _as_scene(scene)
     sensor = observers.sensor(options.space, options.illuminant, options.observer)
     spectrum_model = options.spectrum_model()
@@ -200,7 +203,6 @@ def build(
     families = library_families(options, libraries, sensor)
     atlas = _as_atlas(atlas)
     names, rgb, measured = _entries_in_gamut(atlas, sensor)
-    method = fit.solve if chosen is None else fit.StockSolver(chosen)
     fit_entries = partial(
         fit.fit_entries,
         measured=measured,
@@ -262,10 +264,14 @@ def build(
     )
 
 
-def _chosen_solver(solver: str | fit.Solver, tolerance: float) -> fit.Solver | None:
-    """The solver of optimistix, or None for the step of least change."""
-    if isinstance(solver, fit.SOLVER_TYPES):
-        return solver
+def _chosen_solver(solver: str | Solver, tolerance: float) -> tuple[Solver | None, fit.Method]:
+    """The solver of optimistix, None for the step of least change, and the method for lattices."""
+    if solver == SOLVERS[0]:
+        return None, fit.solve
+    from uplift.fit import stock_solver  # imports optimistix, which the default does not need
+
+    if isinstance(solver, stock_solver.SOLVER_TYPES):
+        return solver, stock_solver.StockSolver(solver)
     if not isinstance(solver, str):
         raise OptionError(
             f"solver must be a name or a least-squares solver of optimistix, got {format_value(solver)}",
@@ -273,7 +279,8 @@ def _chosen_solver(solver: str | fit.Solver, tolerance: float) -> fit.Solver | N
         )
     if solver == CUSTOM:
         raise unknown_name(solver, SOLVERS, "solver")
-    return None if solver == SOLVERS[0] else fit.STOCK[solver](tolerance)
+    chosen = stock_solver.STOCK[solver](tolerance)
+    return chosen, stock_solver.StockSolver(chosen)
 
 
 def _recalculated(spectra: EntrySpectra, model: Model) -> Array:
