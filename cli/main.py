@@ -28,7 +28,7 @@ from .output.streams import finish_stdout, prepare_streams
 from .params.options import OUTPUT_FORMAT
 from .params.renamed import renamed_option
 from .signals import check, end, ending_signals, received
-from .startup import draw_without_window
+from .startup import draw_without_window, hide_drawing_notes
 
 GROUPS = {
     "First steps": ("relight", "samples"),
@@ -41,6 +41,8 @@ GROUPS = {
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 HELP = "help"
 """Command that prints topics of the help."""
+QUICK = "query"
+"""The command that should start fast."""
 SUMMARY_LENGTH = 200
 """Characters of a command's summary in the help; enough for all of them."""
 LOST_PIPE = 1
@@ -59,6 +61,8 @@ class LazyGroup(click.Group):
         """Import a command; None for an unknown name."""
         if name not in (*COMMANDS, HELP):
             return None
+        if name not in (QUICK, HELP):
+            hide_drawing_notes()
         command: click.Command = importlib.import_module(f"uplift_cli.commands.{name}").command
         return command
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 import warnings
 from pathlib import Path
@@ -11,8 +10,14 @@ from uplift.common.errors import UpliftWarning
 
 
 def draw_without_window() -> None:
-    """Use the backend of matplotlib that needs no display, and hide its notes on folders and fonts."""
+    """Use the backend of matplotlib that needs no display."""
     os.environ["MPLBACKEND"] = "agg"
+
+
+def hide_drawing_notes() -> None:
+    """Hide matplotlib's notes on folders and fonts."""
+    import logging
+
     logging.getLogger("matplotlib").addHandler(logging.NullHandler())
 
 

@@ -27,6 +27,7 @@ from ..params.options import (
 from ..params.plots import plot_option
 from ..params.primaries import parse_primaries
 from ..params.wavelengths import parse_wavelengths
+from ..startup import hide_drawing_notes
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -113,6 +114,7 @@ def command(
     if plot_path is not None:
         from uplift.viz.spectra import plot_spectra
 
+        hide_drawing_notes()
         results = list(results)
         plot_spectra(cube, list(chain.from_iterable(results)), plot_path, force=force)
     WRITERS[style](cube, results, bool(colour) and colour != ("-",))

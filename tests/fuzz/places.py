@@ -19,6 +19,7 @@ import signal
 import sys
 import tempfile
 import warnings
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -122,6 +123,7 @@ def _run(case: dict[str, Any], folder: Path) -> Outcome:
 @functools.cache
 def _load_modules() -> None:
     """Load what the commands import when they run: a child may lack the memory or the permission."""
+    import_module("OpenEXR")  # a case above may stop before its import
     for encoding in (*ENCODINGS, "latin-1", "utf-8-sig", "cp65001"):
         with contextlib.suppress(LookupError):
             codecs.lookup(encoding)

@@ -13,7 +13,6 @@ import itertools
 import os
 import re
 import stat
-import tempfile
 import threading
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -331,6 +330,8 @@ def _prefix(target: Path) -> str:
 
 def _reserve(target: Path) -> tuple[int, Path]:
     """Create a temporary file that is locked as long as its descriptor is open."""
+    import tempfile  # slow to import, and readers do not need it
+
     while True:
         handle, name = tempfile.mkstemp(prefix=_prefix(target), suffix=SUFFIX, dir=target.parent)
         temporary = Path(name)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -59,6 +58,8 @@ def blockwise(
     if min(threads, len(starts)) < 2:
         deque(map(work, starts), maxlen=0)
     else:
+        from concurrent.futures import ThreadPoolExecutor  # slow to import
+
         with ThreadPoolExecutor(threads) as pool:
             deque(pool.map(work, starts), maxlen=0)
     return result.reshape(*rows.shape[:-1], width)

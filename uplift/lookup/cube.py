@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
-from importlib.resources import as_file, files
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,6 +32,8 @@ from uplift.lookup.validation import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+DEFAULT = Path(__file__).with_name("default.uplift")
+"""The cube that comes with the package."""
 MAX_TABLE_BYTES = 1 << 28
 """Largest table of the spectra of all lattice points that a query computes."""
 NOTEBOOK = "uplift.viz.notebook"
@@ -429,8 +431,7 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
     """
     if path is not None:
         return Cube(read(path))
-    with as_file(files("uplift.lookup") / "default.uplift") as default:
-        return Cube(read(default))
+    return Cube(read(DEFAULT))
 
 
 def _reflectance(data: CubeData, mode: str, wavelengths: Array, rgb: Array) -> Array:

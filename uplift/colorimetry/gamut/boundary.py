@@ -63,10 +63,7 @@ class Primaries:
     white: Chromaticity
 
     def __post_init__(self) -> None:
-        columns = self._columns
-        with np.errstate(all="ignore"):
-            spans = abs(np.linalg.det(columns)) > 1e-6  # False for NaN
-        if not spans or not np.isfinite(columns).all() or not (self.lengths > 0).all():
+        if not self._span_a_gamut():
             raise OptionError(
                 f"primaries must span a triangle with the white inside, got ({self})",
                 code="invalid-primaries",
@@ -114,6 +111,12 @@ class Primaries:
         x, y = self.white
         white = np.array([x, y, 1 - x - y]) / y if y else np.full(3, np.nan)
         return np.asarray(np.linalg.solve(self._columns, white))
+
+    def _span_a_gamut(self) -> bool:
+        with np.errstate(all="ignore"):
+            if not abs(np.linalg.det(self._columns)) > 1e-6:  # False for NaN
+                return False
+            return bool(((self.lengths > 0) & np.isfinite(self.lengths)).all())
 
     @property
     def _columns(self) -> Array:
