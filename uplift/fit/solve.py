@@ -132,8 +132,14 @@ class _After(NamedTuple):
 def _pass(model: Model, forward: ForwardMap, tolerance: float, given: _Given) -> _After:
     """Take some steps in every problem, batch by batch."""
     count, columns = given.multipliers.shape
-    shapes = ((count, columns), (count, 3), count, count, count)
-    after = _After(*map(np.empty, shapes), np.empty(count, dtype=np.int64))
+    after = _After(
+        multipliers=np.empty((count, columns)),
+        residual=np.empty((count, 3)),
+        distance=np.empty(count),
+        damping=np.empty(count),
+        pull=np.empty(count),
+        steps=np.empty(count, dtype=np.int64),
+    )
     steps = MORE_STEPS if count <= FEW else STEPS
     for rows, width in batches(count, MAX_SMALL_BATCHES):
         part = _Given(*(shard(array[rows], width) for array in given))
