@@ -57,8 +57,8 @@ def publish(chart: Chart) -> None:
 
     folder = check_folder(ROOT / "docs" / "chart", (), force=True)
     write_text(chart_csv(chart), ROOT / "uplift" / "lab" / "chart" / MEASURED, force=True)
-    picture = write_pictures(chart, folder / "chart.png", folder / "chart.svg", force=True)
-    write_text(render_chart(chart, picture), folder / "chart.html", force=True)
+    write_pictures(chart, folder / "chart.png", folder / "chart.svg", force=True)
+    write_text(render_chart(chart), folder / "chart.html", force=True)
     store(chart)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..output.atlas_listing import Listing, Row, list_entries
-from ..output.console import has_colours, make_table, print_csv, print_json, say, show
+from ..output.console import has_colours, make_table, paragraph, print_csv, print_json, say, show
 from ..output.shipped_listing import print_shipped
 from ..params.completion import complete_atlas
 from ..params.options import force_option, format_option, measured_option, sensor_options
@@ -116,10 +116,10 @@ def _print_table(listing: Listing) -> None:
     show(_table(listing))
     for row in listing.rows:
         for warning in row.warnings:
-            say(f"{row.name}: {warning}")
+            paragraph(f"{row.name}: {warning}")
     for source in listing.atlas.sources:
-        say("; ".join((f"{source.name}: {source.format}", *source.notes)))
-    say(_summary(listing))
+        paragraph("; ".join((f"{source.name}: {source.format}", *source.notes)))
+    paragraph(_summary(listing))
 
 
 def _table(listing: Listing) -> SafeTable:

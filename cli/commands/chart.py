@@ -145,8 +145,8 @@ def _write(chart: Chart, folder: Path, *, force: bool) -> None:
 
     table, png, svg, html = (folder / name for name in FILES)
     write_text(chart_csv(chart), table, force=force)
-    picture = write_pictures(chart, png, svg, force=force)
-    write_text(render_chart(chart, picture), html, force=force)
+    write_pictures(chart, png, svg, force=force)
+    write_text(render_chart(chart), html, force=force)
 
 
 def _print_fronts(chart: Chart) -> None:

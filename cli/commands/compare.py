@@ -135,11 +135,9 @@ def _write(comparison: Comparison, tuned: tuple[TunedFilter, ...], folder: Path,
     write_csv(records(comparison), table, force=force)
     if tuned:
         write_csv(filter_records(tuned), folder / FILTERS, force=force)
-    pictures = {
-        kind: write_picture(comparison, kind, path, force=force)
-        for kind, path in (("boxes", boxes), ("cost", cost))
-    }
-    write_text(render_comparison(comparison, pictures, tuned), html, force=force)
+    for kind, path in (("boxes", boxes), ("cost", cost)):
+        write_picture(comparison, kind, path, force=force)
+    write_text(render_comparison(comparison, tuned), html, force=force)
     say(f"{folder}: {', '.join((*FILES, FILTERS) if tuned else FILES)}", err=True)
 
 

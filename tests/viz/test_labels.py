@@ -21,9 +21,18 @@ def test_labels_of_close_points_do_not_overlap():
     sizes = np.tile([48.0, 9.0], (9, 1))
     corners = place_labels(anchors, sizes, anchors, PANEL)
     assert overlapping(anchors, sizes) > 10
+    placed = ~np.isnan(corners).any(axis=1)
+    assert placed.sum() >= 5
+    corners, sizes = corners[placed], sizes[placed]
     assert overlapping(corners, sizes) == 0
     assert (corners >= PANEL[:2]).all()
     assert (corners + sizes <= PANEL[2:]).all()
+
+
+def test_labels_without_room_are_left_out():
+    anchors, sizes = np.full((2, 2), 100.0), np.array([[40.0, 8.0], [400.0, 8.0]])
+    corners = place_labels(anchors, sizes, anchors, PANEL)
+    assert np.isnan(corners).any(axis=1).tolist() == [False, True]
 
 
 def test_single_label_is_next_to_its_point():

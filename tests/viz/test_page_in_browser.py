@@ -49,9 +49,12 @@ def test_wide_tables_scroll_by_keys(tab, tmp_path):
 def test_grey_surround_replaces_the_dark_scheme(tab, tmp_path):
     background = "getComputedStyle(document.documentElement).backgroundColor"
     line = "getComputedStyle(document.querySelector('svg path[style*=accent]')).stroke"
+    height = "document.getElementById('grey-surround').getBoundingClientRect().height"
     open_page(tab, page(), tmp_path, scheme="light")
+    assert tab.evaluate(height) == 0
     light = tab.evaluate(background), tab.evaluate(line)
     open_page(tab, page(), tmp_path, scheme="dark")
+    assert tab.evaluate(height) > 0
     dark = tab.evaluate(background), tab.evaluate(line)
     assert all(one != other for one, other in zip(light, dark, strict=True))
     tab.evaluate("document.getElementById('grey-surround').click()")

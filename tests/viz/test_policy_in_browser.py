@@ -44,7 +44,7 @@ def interactive(**values):
     circle = "<svg viewBox='0 0 9 9'><g id='marker-0-0'><circle r='3' cx='4' cy='4'/></g></svg>"
     tooltips = [{"title": "a point", "family": "one", "lines": [("", "1 ns")]}]
     page = {"title": "A page", "lead": "x", "families": {"one": "#808080"}, "facts": {}, "sources": []}
-    return render(INTERACTIVE, picture=Markup(circle), tooltips=tooltips, **page | values)
+    return render(INTERACTIVE, pictures=[("A panel", Markup(circle))], tooltips=tooltips, **page | values)
 
 
 HOVER = """(() => {

@@ -1,7 +1,7 @@
 // Hovering over a marker shows its tooltip and highlights the same row in every panel.
 const rows = JSON.parse(document.getElementById("rows").textContent);
 const tip = document.getElementById("tip");
-const picture = document.querySelector(".picture svg");
+const picture = document.querySelector(".panels");
 const parts = new Map(rows.map((_, row) => [row, []]));
 for (const part of picture.querySelectorAll('[id^="marker-"], [id^="whisker-"], [id^="label-"]')) {
   const row = Number(part.id.split("-")[2]);

@@ -30,8 +30,17 @@ LEGEND: dict[str, Any] = {
 }
 """Arguments of a legend."""
 
+TICKS = (
+    (0.4, (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9)),
+    (1.2, (1, 1.5, 2, 3, 5, 7)),
+    (3, (1, 2, 5)),
+    (np.inf, (1,)),
+)
+"""Number of decades below which an axis has ticks at these multiples of powers of ten."""
+MAX_TICKS = 40
+FONT_MARGIN = 1.06
+"""Share by which the font of a reader may be wider."""
 _POINTS_PER_INCH = 72
-_LABEL_BACKGROUND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.6}
 _MAX_DISTANCE = 14
 """Points between a marker and its label without a line that joins them."""
 
@@ -63,12 +72,27 @@ def new_panels(
     return figure, figure.subplots(rows, columns, squeeze=False)
 
 
-def style_log_axes(axes: Any, title: str, label: str) -> None:
-    """Set logarithmic scales, the title and the label of the x axis."""
+def style_log_axes(axes: Any, label: str) -> None:
+    """Set logarithmic scales and the label of the x axis."""
     axes.set(xscale="log", yscale="log", xlabel=label)
-    style_title(axes, title)
     axes.minorticks_off()
     style_axes(axes)
+
+
+def set_log_ticks(axis: Any) -> None:
+    """Place ticks at round numbers, the more of them the fewer decades a logarithmic axis has.
+
+    Parameters
+    ----------
+    axis : matplotlib.axis.Axis
+        An axis whose limits are final.
+    """
+    from matplotlib.ticker import LogLocator
+
+    low, high = sorted(axis.get_view_interval())
+    decades = np.log10(high / low)
+    subs = next(subs for limit, subs in TICKS if decades < limit)
+    axis.set_major_locator(LogLocator(subs=subs, numticks=MAX_TICKS))
 
 
 def style_title(axes: Any, title: str) -> None:
@@ -110,9 +134,10 @@ def pareto_steps(front: Array, right: float) -> Array:
 
 
 def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array) -> None:
-    """Write labels where they cover least of the ``markers`` (M, 2) and of a ``line`` (k, 2)."""
+    """Write the labels that have room beside the ``markers`` (M, 2) and the ``line`` (k, 2), bold ones first."""
     if not labels:
         return
+    labels = sorted(labels, key=lambda label: not label.bold)
     scale = _POINTS_PER_INCH / axes.figure.dpi
     line = np.concatenate([np.geomspace(*pair, 40) for pair in pairwise(line)])
     anchors, markers, line = (
@@ -127,18 +152,21 @@ def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array)
             fontsize=7.5,
             fontweight="bold" if label.bold else "normal",
             color=label.colour,
-            gid=label.gid,
-            bbox=_LABEL_BACKGROUND,
+            gid=label.gid or None,
         )
         for label in labels
     ]
     renderer = axes.figure.canvas.get_renderer()
-    sizes = scale * np.array([text.get_window_extent(renderer).size for text in texts])
+    sizes = scale * np.array([text.get_window_extent(renderer).size for text in texts]) * (FONT_MARGIN, 1)
     panel = scale * axes.get_window_extent(renderer).extents
     corners = place_labels(anchors, sizes, np.concatenate([markers, line]), panel)
     for text, corner, size, anchor in zip(texts, corners, sizes, anchors, strict=True):
-        text.set_position(corner)
-        text.xy = tuple(corner)
+        if np.isnan(corner).any():
+            text.remove()
+            continue
+        is_left = corner[0] + size[0] < anchor[0]  # where fonts differ, the end at the marker stays
+        text.set(position=corner, horizontalalignment="right" if is_left else "left")
+        text.xy = (corner[0] + size[0] * is_left, corner[1])
         _join(axes, np.clip(anchor, corner, corner + size), anchor)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from markupsafe import Markup
 
 from tests.pages import Page
 from uplift.colorimetry.lights import CHART_LIGHTS
@@ -63,7 +62,7 @@ def test_broken_method_is_listed_and_not_drawn(small_task, greys, method_of):
     assert (good.state, bad.state) == (State.MEASURED, State.BROKEN)
     assert chart.measured == (good,)
     assert all(bad not in panel.front(chart) and panel.point(bad) is None for panel in PANELS)
-    (row,) = Page(render_chart(chart, Markup(""))).table("method", "state", "reason")
+    (row,) = Page(render_chart(chart)).table("method", "state", "reason")
     assert [cell.text for cell in row] == [bad.title, "broken", bad.why]
 
 

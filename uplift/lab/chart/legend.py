@@ -1,4 +1,4 @@
-"""Colours, shapes and sizes of the markers of the chart, and their legend."""
+"""Colours and shapes of the markers of the chart, and their legend."""
 
 from __future__ import annotations
 
@@ -8,15 +8,17 @@ from typing import Any
 from uplift.lab.chart.methods import FAMILIES
 from uplift.lab.chart.table import Chart
 from uplift.viz.figure import GREY, OTHER, figure_text
-from uplift.viz.format import format_size
 from uplift.viz.scatter import FRONT_LINE, LEGEND, MARKER
 
-SHAPES = {"spectra": "o", "moments": "^", "refined": "s", "nearest": "D", "bulk": "P", "": "o"}
-SIZES = (1e3, 1e6, 1e8)
-MIN_BYTES, WIDTH_OF_KILOBYTE, EXPONENT = 300.0, 4.2, 0.085
-"""Bytes of the smallest marker, width of a kilobyte in points, and the exponent of widths: areas grow by the sixth
-root of the bytes."""
-SINGLE: dict[str, Any] = {"markerfacecolor": "white", "markeredgewidth": 1.4}
+SHAPES = {"spectra": "o", "moments": "^", "refined": "s", "nearest": "D", "bulk": "P"}
+"""Markers of cubes of this package, by mode of lookup."""
+OTHER_SHAPE = "*"
+"""Marker of all other methods."""
+WIDTHS = {OTHER_SHAPE: 9.5, "o": 6.5, "^": 6.5, "s": 6.0, "D": 5.5, "P": 7.0}
+"""Widths of markers in points."""
+BAR: dict[str, Any] = {"linestyle": "-", "marker": "none", "linewidth": 5, "solid_capstyle": "butt"}
+"""Style of a colour in the legend, which no marker has."""
+SINGLE: dict[str, Any] = {"markerfacecolor": "white", "markeredgewidth": 1.2}
 """Style of methods that accept one colour per call."""
 WHISKER: dict[str, Any] = {"linestyle": "-", "marker": "none", "linewidth": 1.6}
 
@@ -27,27 +29,32 @@ def family_colours(families: Iterable[str]) -> dict[str, str]:
     return {name: known.get(name, OTHER) for name in families}
 
 
-def marker_width(size: float) -> float:
-    """Width of a marker, in points, for a number of bytes."""
-    return WIDTH_OF_KILOBYTE * (max(size, MIN_BYTES) / 1e3) ** EXPONENT
+def marker_style(mode: str) -> dict[str, Any]:
+    """Shape and size of the marker of a mode; the empty mode is that of other methods."""
+    shape = SHAPES.get(mode, OTHER_SHAPE)
+    return {"marker": shape, "markersize": WIDTHS[shape]}
 
 
 def draw_legend(axes: Any, chart: Chart) -> None:
-    """Fill a cell without axes."""
+    """Fill a cell without axes: colours, and the meanings of shapes and lines."""
     families = family_colours(result.family for result in chart.measured)
-    modes = [mode for mode in SHAPES if mode and any(result.mode == mode for result in chart.measured)]
-    _draw_key(axes, (0.0, 1.0), "method", [(name, {"color": colour}) for name, colour in families.items()])
-    _draw_key(
-        axes, (0.42, 1.0), "lookup mode of uplift", [(name, {"marker": SHAPES[name]}) for name in modes]
-    )
-    sizes = [(format_size(size), {"markersize": marker_width(size)}) for size in SIZES]
-    _draw_key(axes, (0.72, 1.0), "memory", sizes)
-    lines = [
-        ("one colour per call", {**SINGLE, "markeredgecolor": GREY}),
+    colours = [(name, BAR | {"color": colour}) for name, colour in families.items()]
+    _draw_key(axes, (0.0, 1.0), "method", colours)
+    draw_shapes(axes, chart, (0.46, 1.0))
+
+
+def draw_shapes(axes: Any, chart: Chart, corner: tuple[float, float]) -> None:
+    """Draw the meanings of shapes and lines with the upper left corner at a position of the cell."""
+    modes = [mode for mode in SHAPES if any(result.mode == mode for result in chart.measured)]
+    single = SINGLE | {"markeredgecolor": GREY}
+    entries = [(f"uplift, mode {mode}", marker_style(mode)) for mode in modes]
+    entries += [
+        ("another method", marker_style("")),
+        ("another method, one colour per call", marker_style("") | single),
         ("Pareto front", FRONT_LINE),
         ("mean to 99 % to largest", WHISKER),
     ]
-    _draw_key(axes, (0.42, 0.48), None, lines)
+    _draw_key(axes, corner, None, entries)
 
 
 def _draw_key(
@@ -58,4 +65,5 @@ def _draw_key(
     handles = [Line2D([], [], **(MARKER | style)) for _, style in entries]
     names = [figure_text(name) for name, _ in entries]
     key = axes.legend(handles, names, title=title, loc="upper left", bbox_to_anchor=corner, **LEGEND)
+    axes.legend_ = None
     axes.add_artist(key)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from markupsafe import Markup
-
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.legend import family_colours
 from uplift.lab.chart.panels import PANELS
+from uplift.lab.chart.picture import page_panels
 from uplift.lab.chart.table import Chart, MethodResult, State
 from uplift.viz.format import format_build_time, format_error, format_size, format_time
 from uplift.viz.tooltip import Tooltip
@@ -21,15 +20,13 @@ ERRORS = {
 """Columns of the table: headings by names of errors."""
 
 
-def render_chart(chart: Chart, picture: Markup) -> str:
+def render_chart(chart: Chart) -> str:
     """Render the page of a chart.
 
     Parameters
     ----------
     chart : Chart
         The chart.
-    picture : Markup
-        The result of `write_pictures`.
 
     Returns
     -------
@@ -42,7 +39,7 @@ def render_chart(chart: Chart, picture: Markup) -> str:
         "lab/chart/templates/page.html.j2",
         title=TITLE,
         chart=chart,
-        picture=picture,
+        pictures=page_panels(chart),
         families=family_colours(result.family for result in chart.measured),
         tooltips=[_tooltip(result) for result in chart.results],
         facts=chart.facts,

@@ -8,10 +8,12 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 
 from uplift.common.arrays import Array
 from uplift.lab.comparison.families import family_colour, family_colours
 from uplift.lab.comparison.measure import Comparison, RepresentationResult
+from uplift.viz.figure import STYLE, to_page_svg
 from uplift.viz.format import capitalise, format_time
 from uplift.viz.scatter import (
     FRONT_LINE,
@@ -22,11 +24,16 @@ from uplift.viz.scatter import (
     new_panels,
     pareto_front,
     pareto_steps,
+    set_log_ticks,
     style_log_axes,
+    style_title,
 )
 
 PANEL_SIZE, LEGEND_HEIGHT = (6.0, 4.0), 0.55
 """Inches."""
+PAGE_PANEL_SIZE = (4.1, 3.0)
+"""Inches of a panel of a page, where it is about as wide on a desk as on a phone."""
+PAGE_MARGINS = {"left": 0.1, "right": 0.97, "bottom": 0.14, "top": 0.99}
 FAMILY_LINE = {"linewidth": 0.8, "alpha": 0.45, "zorder": 1}
 """Style of the lines from each size of a family to the next."""
 MIN_ERROR = 1e-3
@@ -41,6 +48,8 @@ class Cost:
     ----------
     title : str
         Label of the axis.
+    short : str
+        One word for titles.
     of : callable
         The cost of a result.
     format : callable
@@ -50,15 +59,17 @@ class Cost:
     """
 
     title: str
+    short: str
     of: Callable[[RepresentationResult], float]
     format: Callable[[float], str]
     ticks: tuple[float, ...] = ()
 
 
 COSTS = (
-    Cost("CPU time of a product", lambda result: result.ns.median, format_time),
+    Cost("CPU time of a product", "time", lambda result: result.ns.median, format_time),
     Cost(
         "floats stored of a surface",
+        "memory",
         lambda result: result.floats,
         "{:g}".format,
         (4, 8, 16, 32, 64, 128, 256),
@@ -79,21 +90,69 @@ def draw(comparison: Comparison) -> Any:
         "hspace": 0.27,
     }
     figure, cells = new_panels(len(comparison.sets), len(COSTS), PANEL_SIZE, margins, LEGEND_HEIGHT)
-    panels = [
-        (axes, cost, comparison.of(name), title)
-        for row, (name, title) in zip(cells, comparison.sets.items(), strict=True)
-        for axes, cost in zip(row, COSTS, strict=True)
-    ]
-    identifiers = [
-        {name: f"{panel}-{number}" for name, number in numbered(comparison).items()}
-        for panel in range(len(panels))
-    ]
-    for (axes, cost, results, title), gids in zip(panels, identifiers, strict=True):
-        _draw_panel(axes, title, cost, results, gids)
+    panels = list(zip(cells.ravel(), _panels(comparison), strict=True))
+    for axes, panel in panels:
+        _draw_panel(axes, panel)
+        style_title(axes, panel.title)
     _draw_legend(figure, comparison)
-    for (axes, cost, results, _), gids in zip(panels, identifiers, strict=True):
-        _draw_labels(axes, cost, results, gids)
+    for axes, panel in panels:
+        _draw_labels(axes, panel)
     return figure
+
+
+def page_panels(comparison: Comparison) -> list[tuple[str, Markup]]:
+    """Draw the panels one by one for a page.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+
+    Returns
+    -------
+    list of tuple
+        Title and ``svg`` element of every panel.
+    """
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        return [
+            (f"{panel.title}, over {panel.cost.short}", _page_panel(panel)) for panel in _panels(comparison)
+        ]
+
+
+def _page_panel(panel: _Panel) -> Markup:
+    figure, cells = new_panels(1, 1, PAGE_PANEL_SIZE, PAGE_MARGINS)
+    axes = cells[0, 0]
+    for background in (figure.patch, axes.patch):
+        background.set_visible(False)
+    _draw_panel(axes, panel)
+    _draw_labels(axes, panel)
+    return to_page_svg(figure, f"{panel.title}, over {panel.cost.title}")
+
+
+@dataclass(frozen=True)
+class _Panel:
+    """Results under one set of lights over one cost; ``gids`` are the ends of identifiers by name."""
+
+    title: str
+    cost: Cost
+    results: Sequence[RepresentationResult]
+    gids: dict[str, str]
+
+
+def _panels(comparison: Comparison) -> list[_Panel]:
+    kinds = [(name, title, cost) for name, title in comparison.sets.items() for cost in COSTS]
+    numbers = numbered(comparison).items()
+    return [
+        _Panel(
+            f"{capitalise(title)}, ΔE00 of 97.5 %",
+            cost,
+            comparison.of(name),
+            {each: f"{panel}-{number}" for each, number in numbers},
+        )
+        for panel, (name, title, cost) in enumerate(kinds)
+    ]
 
 
 def numbered(comparison: Comparison) -> dict[str, int]:
@@ -122,14 +181,9 @@ def _point(result: RepresentationResult, cost: Cost) -> tuple[float, float]:
     return max(cost.of(result), 1.0), max(result.statistics.q97_5, MIN_ERROR)
 
 
-def _draw_panel(
-    axes: Any, title: str, cost: Cost, results: Sequence[RepresentationResult], gids: dict[str, str]
-) -> None:
-    style_log_axes(axes, f"{capitalise(title)}, ΔE00 of 97.5 %", cost.title)
-    if cost.ticks:
-        axes.set_xticks(cost.ticks)
-    axes.xaxis.set_major_formatter(lambda value, _: cost.format(value))
-    axes.yaxis.set_major_formatter("{x:g}")
+def _draw_panel(axes: Any, panel: _Panel) -> None:
+    cost, results, gids = panel.cost, panel.results, panel.gids
+    style_log_axes(axes, cost.title)
     for family, colour in family_colours(result.family for result in results).items():
         members = sorted((each for each in results if each.family == family), key=lambda each: each.floats)
         for pair in pairwise(members):
@@ -138,9 +192,16 @@ def _draw_panel(
     on_front = front(results, cost)
     for result in results:
         best = result in on_front
-        style = MARKER | {"color": family_colour(result.family), "markersize": 7.5 if best else 6.0}
+        style = MARKER | {"color": family_colour(result.family), "markersize": 7.0 if best else 5.5}
         axes.plot(*_point(result, cost), gid=f"marker-{gids[result.name]}", zorder=3 if best else 2, **style)
     axes.margins(0.07)
+    if cost.ticks:
+        axes.set_xticks(cost.ticks)
+    else:
+        set_log_ticks(axes.xaxis)
+    set_log_ticks(axes.yaxis)
+    axes.xaxis.set_major_formatter(lambda value, _: cost.format(value))
+    axes.yaxis.set_major_formatter("{x:g}")
     axes.plot(*_front_line(axes, cost, results).T, scalex=False, zorder=1, **FRONT_LINE)
 
 
@@ -149,9 +210,8 @@ def _front_line(axes: Any, cost: Cost, results: Sequence[RepresentationResult]) 
     return pareto_steps(points, axes.get_xlim()[1])
 
 
-def _draw_labels(
-    axes: Any, cost: Cost, results: Sequence[RepresentationResult], gids: dict[str, str]
-) -> None:
+def _draw_labels(axes: Any, panel: _Panel) -> None:
+    cost, results = panel.cost, panel.results
     on_front = front(results, cost)
     labels = [
         Label(
@@ -159,7 +219,7 @@ def _draw_labels(
             _point(result, cost),
             family_colour(result.family),
             result in on_front,
-            f"label-{gids[result.name]}",
+            f"label-{panel.gids[result.name]}",
         )
         for result in results
     ]

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from markupsafe import Markup
-
-from uplift.lab.comparison.cost import numbered
+from uplift.lab.comparison.box_plots import page_figures
+from uplift.lab.comparison.cost import numbered, page_panels
 from uplift.lab.comparison.families import family_colours
 from uplift.lab.comparison.filters import TunedFilter
 from uplift.lab.comparison.measure import Comparison
@@ -23,17 +22,13 @@ SOURCES = (
 )
 
 
-def render_comparison(
-    comparison: Comparison, pictures: Mapping[str, Markup], tuned: Sequence[TunedFilter] = ()
-) -> str:
+def render_comparison(comparison: Comparison, tuned: Sequence[TunedFilter] = ()) -> str:
     """Render the page of a comparison.
 
     Parameters
     ----------
     comparison : Comparison
         The comparison.
-    pictures : mapping of str to Markup
-        Results of `write_picture`, by kind.
     tuned : sequence of Tuned, optional
         Low-pass filters to list.
 
@@ -49,8 +44,8 @@ def render_comparison(
         "lab/comparison/templates/page.html.j2",
         title=TITLE,
         comparison=comparison,
-        picture=pictures["cost"],
-        boxes=pictures["boxes"],
+        pictures=page_panels(comparison),
+        boxes=page_figures(comparison),
         families=family_colours(result.family for result in comparison.results),
         tooltips=[_tooltip(name, comparison) for name in numbers],
         facts=comparison.facts,

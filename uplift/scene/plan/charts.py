@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from uplift.scene.plan.decision import Decision
-from uplift.viz.figure import ACCENT, GREY, INK, PALE, STYLE, figure_text, new_figure, to_page_svg
-from uplift.viz.html import Markup
+import numpy as np
 
-SIZE = 4.6, 2.6
-"""Inches."""
+from uplift.common.arrays import Array
+from uplift.scene.plan.decision import Decision
+from uplift.viz.figure import ACCENT, GREY, INK, STYLE, to_page_svg
+from uplift.viz.html import Markup
+from uplift.viz.scatter import Label, draw_labels, new_panels, set_log_ticks, style_log_axes
+
+SIZE, MARGINS = (4.1, 2.5), {"left": 0.115, "right": 0.97, "bottom": 0.165, "top": 0.98}
+"""Inches, and the position of the axes."""
 MIN_ERROR = 1e-3
 """Smaller errors are drawn at this ΔE00."""
 
@@ -19,44 +23,34 @@ def trials_chart(decision: Decision) -> Markup:
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        figure = new_figure(*SIZE)
-        axes = figure.subplots()
+        figure, cells = new_panels(1, 1, SIZE, MARGINS)
+        axes = cells[0, 0]
         for background in (figure.patch, axes.patch):
             background.set_visible(False)
-        costs = [trial.cost for trial in decision.trials]
-        errors = [max(trial.error.quantile, MIN_ERROR) for trial in decision.trials]
-        selected = decision.selected
-        axes.set(xscale="log", yscale="log", xlabel=decision.unit, ylabel="ΔE00")
+        points = np.array(
+            [(trial.cost, max(trial.error.quantile, MIN_ERROR)) for trial in decision.trials], dtype=float
+        )
+        selected = points[decision.selected]
+        style_log_axes(axes, decision.unit)
+        axes.set_ylabel("ΔE00")
         axes.axhline(decision.limit, color=INK, linewidth=0.8, linestyle=(0, (4, 3)))
-        axes.plot(costs, errors, "o", markersize=6, markerfacecolor="white", markeredgecolor=ACCENT)
-        axes.plot(costs[selected], errors[selected], "o", markersize=8, color=ACCENT)
-        for index, (trial, *point) in enumerate(zip(decision.trials, costs, errors, strict=True)):
-            _annotate(axes, trial.name, point, above=bool(index % 2), selected=index == selected)
-        _style_log_axes(axes)
+        axes.plot(*points.T, "o", markersize=6, markerfacecolor="white", markeredgecolor=ACCENT)
+        axes.plot(*selected, "o", markersize=8, color=ACCENT)
+        axes.margins(0.12, 0.14)
+        for axis in (axes.xaxis, axes.yaxis):
+            set_log_ticks(axis)
+            axis.set_major_formatter(lambda value, _: f"{value:,.12g}")
+        draw_labels(axes, _labels(decision, points), points, _limit_line(axes, decision.limit))
         return to_page_svg(figure, f"ΔE00 over {decision.unit} of the candidates")
 
 
-def _annotate(axes: Any, name: str, point: list[float], *, above: bool, selected: bool) -> None:
-    axes.annotate(
-        figure_text(name),
-        point,
-        xytext=(5, 5 if above or selected else -11),
-        textcoords="offset points",
-        fontsize=7.5,
-        fontweight="bold" if selected else "normal",
-        color=ACCENT if selected else GREY,
-    )
+def _labels(decision: Decision, points: Array) -> list[Label]:
+    names = [trial.name for trial in decision.trials]
+    return [
+        Label(name, (x, y), ACCENT if row == decision.selected else GREY, row == decision.selected, "")
+        for row, (name, (x, y)) in enumerate(zip(names, points.tolist(), strict=True))
+    ]
 
 
-def _style_log_axes(axes: Any) -> None:
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    axes.margins(0.16, 0.14)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.12g}"))
-        axis.set_minor_formatter(NullFormatter())
-    axes.minorticks_off()
-    axes.grid(color=PALE, linewidth=0.5)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
+def _limit_line(axes: Any, limit: float) -> Array:
+    return np.array([(x, limit) for x in axes.get_xlim()])
