@@ -40,6 +40,18 @@ if TYPE_CHECKING:
     help="optimised: fit everything; meyer: Meyer's quadrature; the others use even wavelengths, sampled (uniform), "
     "averaged over bins (bins) or with fitted weights (fitted). [default: optimised]",
 )
+@click.option(
+    "--orders",
+    nargs=3,
+    metavar="A C1 C2",
+    type=Whole(),
+    help="Meyer's quadrature with these numbers of wavelengths for the three channels, 1 to 10 each.",
+)
+@click.option(
+    "--channels",
+    type=click.Choice(("opponent", "cones", "xyz")),
+    help="Channels of --orders: A C1 C2, the cones S M L, or X Y Z. [default: opponent]",
+)
 @atlas_option("Materials", DEFAULT_ATLASES)
 @light_option("Illuminant of the scene", "D65")
 @sensor_options
@@ -52,6 +64,8 @@ def command(
     given: str | None,
     measure: str | None,
     method: str | None,
+    orders: tuple[int, int, int] | None,
+    channels: str | None,
     files: tuple[str, ...],
     lights: tuple[str, ...],
     space: str,
@@ -74,11 +88,14 @@ def command(
       uplift wavelengths --target 0.5 --measure p95 --atlas paints.csv --format json
       uplift wavelengths --wavelengths 400:700:20 --light A --format csv
       uplift wavelengths --count 4 --method meyer --light C --atlas macbeth
+      uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
     """
-    if sum(option is not None for option in (count, target, given)) != 1:
-        raise click.UsageError("Give one of --count, --target and --wavelengths.")
-    if (measure is not None and target is None) or (method is not None and given is not None):
+    if sum(option is not None for option in (count, target, given, orders)) != 1:
+        raise click.UsageError("Give one of --count, --target, --wavelengths and --orders.")
+    if (measure is not None and target is None) or (method is not None and count is None and target is None):
         raise click.UsageError("--measure requires --target, --method requires --count or --target.")
+    if channels is not None and orders is None:
+        raise click.UsageError("--channels requires --orders.")
     fixed = parse_wavelengths(given)
     from uplift.atlas import merge, on_grid
     from uplift.colorimetry.observer import DEFAULT_OBSERVER, sensor
@@ -94,7 +111,9 @@ def command(
         on_grid(atlas, wavelengths.grid()), lights or ("D65",), observer_name=observer
     )
     with spinner("fitting wavelengths"):
-        if fixed is None:
+        if orders is not None:
+            choice = wavelengths.choose_orders(setting, orders, channels or "opponent")
+        elif fixed is None:
             choice = wavelengths.choose(
                 setting, count=count, target=target, measure=measure or "max", method=method or "optimised"
             )

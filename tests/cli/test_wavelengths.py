@@ -126,3 +126,15 @@ def test_plots_are_replaced_only_with_force(refuse, home, macbeth):
 )
 def test_options_without_effect_are_errors(misuse, options):
     assert options[-2] in misuse("wavelengths", *options)
+
+
+def test_orders_of_the_channels(choose):
+    answer = json.loads(choose("--orders", 3, 2, 1, "--light", "C", "--format", "json"))
+    assert (answer["count"], answer["method"]) == (6, "meyer")
+    cones = json.loads(choose("--orders", 3, 2, 1, "--channels", "cones", "--light", "C", "--format", "json"))
+    assert cones["wavelengths"] != answer["wavelengths"]
+
+
+@pytest.mark.parametrize("words", [("--orders", 3, 2, 1, "--count", 4), ("--count", 4, "--channels", "xyz")])
+def test_orders_exclude_other_choices(run, words):
+    assert run("wavelengths", *words, code=2).stdout == ""

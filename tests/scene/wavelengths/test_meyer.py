@@ -10,9 +10,9 @@ from benchmarks.wavelengths.printed import CHANNELS, rows
 from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, UnknownNameError
 from uplift.scene.quadrature import UndefinedRule
-from uplift.scene.wavelengths import RenderSetup, evaluate, grid, make_setup
+from uplift.scene.wavelengths import RenderSetup, choose_orders, evaluate, grid, make_setup
 from uplift.scene.wavelengths.meyer import (
     allocations,
     channel_functions,
@@ -164,3 +164,28 @@ def test_meyer_takes_the_best_allocation(
 def test_count_without_a_rule_raises(smooth: RenderSetup, count: int) -> None:
     with raises(OptionError, "undefined-rule"):
         meyer(smooth, count)
+
+
+def test_given_orders_have_the_wavelengths_of_the_paper(setting_c: RenderSetup) -> None:
+    """Table 2, first row: orders 3, 2 and 1."""
+    choice = choose_orders(setting_c, (3, 2, 1))
+    assert choice.method == "meyer"
+    printed = [456.4, 483.0, 490.9, 557.7, 631.4, 632.3]
+    np.testing.assert_allclose(choice.sampling.wavelengths, printed, atol=0.08)
+
+
+def test_opponent_channels_are_better_than_cones_and_xyz(setting_c: RenderSetup) -> None:
+    """Figure 6, at two wavelengths per channel."""
+    means = {
+        name: choose_orders(setting_c, (2, 2, 2), name).errors.mean for name in ("opponent", "cones", "xyz")
+    }
+    assert min(means, key=means.__getitem__) == "opponent"
+
+
+def test_impossible_orders_are_refused(setting_c: RenderSetup) -> None:
+    with raises(OptionError, "undefined-rule"):
+        choose_orders(setting_c, (3, 3, 2))
+    with raises(OptionError, "order-out-of-range"):
+        choose_orders(setting_c, (3, 11, 1))
+    with raises(UnknownNameError, "unknown-channels"):
+        choose_orders(setting_c, (3, 2, 1), "rgb")

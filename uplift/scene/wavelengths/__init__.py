@@ -14,7 +14,7 @@ True
 
 from __future__ import annotations
 
-from uplift.scene.wavelengths.choose import MAX_COUNT, METHODS, Choice, choose, fit_weights
+from uplift.scene.wavelengths.choose import MAX_COUNT, METHODS, Choice, choose, choose_orders, fit_weights
 from uplift.scene.wavelengths.sampling import MEASURES, ColourErrors, Sampling, evaluate
 from uplift.scene.wavelengths.setup import RenderSetup, grid, make_setup
 
@@ -27,6 +27,7 @@ __all__ = [
     "RenderSetup",
     "Sampling",
     "choose",
+    "choose_orders",
     "evaluate",
     "fit_weights",
     "grid",

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from uplift.common.errors import OptionError, unknown_name
-from uplift.scene.wavelengths.meyer import meyer
+from uplift.scene.wavelengths.meyer import meyer, meyer_orders
+from uplift.scene.wavelengths.opponent import CHANNELS
 from uplift.scene.wavelengths.optimise import fit_at, fit_uniform, optimise
 from uplift.scene.wavelengths.sampling import MEASURES, ColourErrors, Sampling, evaluate
 from uplift.scene.wavelengths.setup import RenderSetup
@@ -120,6 +121,39 @@ def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:
     """
     sampling = fit_at(setup, wavelengths).ordered()
     return Choice(GIVEN, sampling, evaluate(setup, sampling))
+
+
+def choose_orders(setup: RenderSetup, orders: tuple[int, int, int], channels: str = "opponent") -> Choice:
+    """Apply Meyer's quadrature with a given order for each channel.
+
+    Meyer 1988, section 4.1: tables 1a and 1b have the rules of the opponent channels, figure 6 compares the spaces.
+
+    Parameters
+    ----------
+    setup : RenderSetup
+        Materials and lights.
+    orders : tuple of int
+        Number of wavelengths, 1 to 10, of each channel: A, C1, C2; S, M, L; or X, Y, Z.
+    channels : {"opponent", "cones", "xyz"}, optional
+        Channels whose sensitivities are the weight functions.
+
+    Returns
+    -------
+    Choice
+        The wavelengths of all channels, with weights, powers and errors.
+
+    Raises
+    ------
+    OptionError
+        An order is out of range, or its quadrature is undefined.
+    UnknownNameError
+        The channels do not exist.
+    """
+    if channels not in CHANNELS:
+        raise unknown_name(channels, CHANNELS, "channels")
+    space = CHANNELS[channels](setup.wavelengths, setup.cmfs)
+    sampling = meyer_orders(setup, orders, space).ordered()
+    return Choice("meyer", sampling, evaluate(setup, sampling))
 
 
 def _with_count(setup: RenderSetup, method: str, count: int) -> Choice:

@@ -77,6 +77,36 @@ def combine_rules(setup: RenderSetup, space: ChannelSpace, rules: Sequence[Quadr
     return Sampling(nm, to_xyz, setup.lights, setup.sampled_powers(nm))
 
 
+def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: ChannelSpace) -> Sampling:
+    """Quadrature of a given order, 1 to `MAX_ORDER`, for each channel of a space; whites balanced.
+
+    Figure 6 of the paper compares AC1C2, the cones and XYZ in this way.
+
+    Raises
+    ------
+    OptionError
+        An order is out of range, or its quadrature is undefined because a node lies outside the spectrum.
+    """
+    defined = quadrature_rules(space, setup.wavelengths, setup.cmfs)
+    rules = []
+    for channel, by_order, order in zip(space.channels, defined, orders, strict=True):
+        if order not in by_order:
+            raise OptionError(
+                f"orders must be in [1, {MAX_ORDER}], got {order}",
+                code="order-out-of-range",
+                hint="the paper tabulates orders 1 to 10",
+            )
+        rule = by_order[order]
+        if isinstance(rule, UndefinedRule):
+            raise OptionError(
+                f"channel {channel} has no rule of order {order}: {rule.reason}",
+                code="undefined-rule",
+                hint="choose another order",
+            )
+        rules.append(rule)
+    return combine_rules(setup, space, rules).balanced()
+
+
 def meyer(setup: RenderSetup, count: int) -> Sampling:
     """Allocate ``count`` wavelengths to A, C1 and C2 with the least mean ΔE00 in the setup; whites balanced.
 

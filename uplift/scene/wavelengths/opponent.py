@@ -6,6 +6,7 @@ Processing 41(1), sections 2.1 and 2.2 and appendix A.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,3 +77,11 @@ def opponent_space(wavelengths: Array, cmfs: Array) -> OpponentSpace:
     matrix /= np.abs(cmfs @ matrix.T).max(axis=0)[:, None]
     matrix *= np.sign(matrix[[0, 1, 2], [1, 1, 2]])[:, None]
     return OpponentSpace(ChannelSpace("AC1C2", ("A", "C1", "C2"), matrix), values[::-1])
+
+
+CHANNELS: dict[str, Callable[[Array, Array], ChannelSpace]] = {
+    "opponent": lambda wavelengths, cmfs: opponent_space(wavelengths, cmfs).space,
+    "cones": cone_space,
+    "xyz": lambda wavelengths, cmfs: xyz_space(),
+}
+"""Channel spaces of the paper by name: functions of wavelengths (N,) in nm and colour-matching functions (N, 3)."""
