@@ -82,6 +82,7 @@ def test_nothing_else_is_in_it(wheel, repository):
     atlases = {f"uplift_{name}" for name in tracked if name.startswith("atlases/")}
     assert data == library | atlases
     assert {Path(name).suffix for name in library} == {
+        ".cpp",
         ".css",
         ".csv",
         ".cuh",

@@ -1,12 +1,19 @@
-"""Images as textures: position, filtering and decoding of texels, in scalar and JIT variants."""
+"""Images as textures: position, filtering and decoding of texels, in Python, C++ and JIT variants."""
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+
+from tests.helpers import warns
+from tests.io.mitsuba.images import write_channels, write_image
+from uplift.io import texture as textures
+
+pytestmark = pytest.mark.filterwarnings("ignore:the texture calls Python:uplift.UpliftWarning")
 
 IMAGE = np.random.default_rng(8).random((3, 4, 3), dtype=np.float32)
 POSITIONS = [(0.1, 0.2), (0.83, 0.4), (0.999, 0.001), (0.5, 0.5), (1.3, -0.7), (-0.2, 1.9)]
@@ -15,7 +22,7 @@ WITHIN = 1e-5
 
 
 @pytest.fixture
-def texture(mi, cube_path):
+def texture(mi, cube_path, language):
     """Function that makes a texture, by default of `IMAGE`."""
 
     def texture(image=IMAGE, **options):
@@ -77,7 +84,7 @@ def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(texture, spectrum
     np.testing.assert_allclose(spectrum(found, (0.75, 0.5), [450, 650]), other, atol=1e-5)
 
 
-def test_only_encoded_files_are_decoded(mi, texture, spectrum, small_cube, tmp_path, cube_path):
+def test_only_encoded_files_are_decoded(mi, language, spectrum, small_cube, tmp_path, cube_path):
     codes = np.array([[[200, 30, 90]]], dtype=np.uint8)
     linear = small_cube.decode(codes).astype(np.float32)
     mi.Bitmap(codes).write(str(tmp_path / "image.png"))
@@ -102,8 +109,9 @@ def test_interface_of_textures(texture, small_cube):
     [
         ({"wrap_mode": "round"}, "unknown wrap_mode 'round'; use one of repeat, mirror, clamp"),
         ({"filter_type": "cubic"}, "unknown filter_type 'cubic'"),
-        ({"image": 2 * IMAGE}, r"lies outside \[0, 1\]"),
-        ({"image": IMAGE * np.nan}, r"lies outside \[0, 1\]"),
+        ({"image": 2 * IMAGE, "out_of_gamut": "error"}, "set the property out_of_gamut to clip"),
+        ({"image": IMAGE * np.nan, "out_of_gamut": "error"}, r"lies outside \[0, 1\]"),
+        ({"out_of_gamut": "ignore"}, "set the property out_of_gamut to error, clip"),
     ],
 )
 def test_invalid_properties_raise(texture, options, message):
@@ -111,27 +119,102 @@ def test_invalid_properties_raise(texture, options, message):
         texture(**options)
 
 
+def test_colours_outside_are_mapped_with_a_warning(texture, spectrum, language, sensor):
+    image = np.array([[[1.4, 0.2, -0.01], [0.1, 0.2, np.nan]]], dtype=np.float32)
+    slow = ["texture-in-python"] * (language == "python")
+    with warns("pixels-out-of-gamut", "pixels-not-finite", *slow):
+        found = texture(image, filter_type="nearest")
+    for u, expected in ((0.25, [1, 0.2, 0]), (0.75, [0.1, 0.2, 0])):
+        rgb = sensor.rgb(spectrum(found, (u, 0.5), sensor.wavelengths))
+        np.testing.assert_allclose(rgb, expected, rtol=0, atol=1e-4)
+    with warns("pixels-out-of-gamut", *slow):
+        scaled = texture(image[:, :1], out_of_gamut="scale")
+    rgb = sensor.rgb(spectrum(scaled, (0.5, 0.5), sensor.wavelengths))
+    assert rgb[0] == pytest.approx(1, abs=1e-4)
+    assert rgb[1] < 0.2
+
+
+def test_layers_and_other_channels_of_openexr_are_accepted(
+    mi, language, spectrum, small_cube, tmp_path, cube_path
+):
+    rgb = np.array([0.2, 0.4, 1.5])
+    channels = {f"paint.{name}": np.full((2, 3), value) for name, value in zip("RGB", rgb, strict=True)}
+    write_channels(tmp_path / "layers.exr", {**channels, "Z": np.ones((2, 3))})
+    with warns("pixels-out-of-gamut", *["texture-in-python"] * (language == "python")):
+        found = mi.load_dict({"type": "uplift", "cube": cube_path, "filename": str(tmp_path / "layers.exr")})
+    expected = small_cube.reflectance(rgb.clip(0, 1), [450, 650], mode="refined")
+    np.testing.assert_allclose(spectrum(found, (0.5, 0.5), [450, 650]), expected, atol=1e-5)
+
+
+def test_the_stochastic_filter_chooses_texels_by_their_weights(texture, spectrum):
+    image = np.array([[[0.1, 0.1, 0.1], [0.8, 0.8, 0.8]]], dtype=np.float32)
+    found = texture(image, filter_type="stochastic", wrap_mode="clamp")
+    values = np.array(spectrum(found, (0.35, 0.5), np.linspace(500, 600, 1000)))  # weights 0.8 and 0.2
+    assert set(values.round(1)) == {0.1, 0.8}
+    assert (values < 0.4).mean() == pytest.approx(0.8, abs=0.05)
+
+
+def test_scalar_variants_advise_to_compile(mi, in_python, cube_path):
+    with warns("texture-in-python"):
+        mi.load_dict({"type": "uplift", "cube": cube_path, "bitmap": mi.Bitmap(IMAGE)})
+
+
+OPTIONS = [
+    {"filter_type": filter_type, "wrap_mode": wrap_mode}
+    for filter_type in ("bilinear", "nearest", "stochastic")
+    for wrap_mode in ("repeat", "mirror", "clamp")
+]
+
 JIT = """
-import sys
+import json, sys
 import drjit, mitsuba as mi, numpy as np
 from uplift.io.mitsuba import register
 mi.set_variant("llvm_ad_spectral")
 register()
+sources, options, positions = map(json.loads, sys.argv[1:])
 image = np.random.default_rng(8).random((3, 4, 3), dtype=np.float32)
-texture = mi.load_dict({"type": "uplift", "cube": sys.argv[1], "bitmap": mi.Bitmap(image)})
-si = drjit.zeros(mi.SurfaceInteraction3f, 6)
-si.uv = mi.Point2f([0.1, 0.83, 0.999, 0.5, 1.3, -0.2], [0.2, 0.4, 0.001, 0.5, -0.7, 1.9])
-si.wavelengths = mi.Spectrum(400, 500, 600, 700)
-print(*np.array(texture.eval(si)).T.ravel())
+found = []
+for source in sources:
+    for each in options:
+        properties = source if "filename" in source else {**source, "bitmap": mi.Bitmap(image)}
+        texture = mi.load_dict({"type": "uplift", **properties, **each})
+        si = drjit.zeros(mi.SurfaceInteraction3f, len(positions))
+        si.uv = mi.Point2f(*np.array(positions, dtype=np.float32).T)
+        si.wavelengths = mi.Spectrum(400, 500, 600, 700)
+        found.append(np.array(texture.eval(si)).T.tolist())
+print(json.dumps(found))
 """
 
 
-def test_a_wavefront_agrees_with_single_rays(texture, spectrum, cube_path):
+def test_a_wavefront_agrees_with_single_rays(mi, language, small_cube, cube_path, tmp_path):
     """Runs in a subprocess, because an LLVM too old for Mitsuba ends the process."""
-    done = subprocess.run([sys.executable, "-c", JIT, cube_path], capture_output=True, text=True)
+    import drjit
+
+    sources = [{"cube": cube_path}, *_textures(small_cube, tmp_path)]
+    arguments = [json.dumps(each) for each in (sources, OPTIONS, POSITIONS)]
+    done = subprocess.run([sys.executable, "-c", JIT, *arguments], capture_output=True, text=True)
     if done.returncode and "LLVM" in done.stderr:
         pytest.skip("Mitsuba finds no usable LLVM")
     assert not done.returncode, done.stderr
-    found = np.array(done.stdout.split(), dtype=float).reshape(6, 4)
-    one_by_one = [spectrum(texture(), uv, [400, 500, 600, 700]) for uv in POSITIONS]
-    np.testing.assert_allclose(found, one_by_one, atol=1e-5)
+    expected = []
+    for source in sources:
+        for options in OPTIONS:
+            bitmap = {} if "filename" in source else {"bitmap": mi.Bitmap(IMAGE)}
+            texture = mi.load_dict({"type": "uplift", **source, **bitmap, **options})
+            values = []
+            for uv in POSITIONS:
+                si = drjit.zeros(mi.SurfaceInteraction3f)
+                si.uv, si.wavelengths = mi.Point2f(*uv), mi.Spectrum(400, 500, 600, 700)
+                values.append(np.array(texture.eval(si)))
+            expected.append(values)
+    np.testing.assert_allclose(json.loads(done.stdout), expected, rtol=0, atol=1e-5)
+
+
+def _textures(cube, folder):
+    """Write the image as textures of moments and of spectra."""
+    source = folder / "image.exr"
+    write_image(source, IMAGE)
+    for name, encoding in (("moments", textures.Moments()), ("spectrum", textures.Spectrum())):
+        target = folder / f"{name}.exr"
+        textures.convert(textures.prepare(cube, encoding), source, target)
+        yield {"filename": str(target)}

@@ -4,17 +4,22 @@
 ``cube``                                 file of the cube, found by Mitsuba's file resolver; the default cube of
                                          the package if omitted
 ``rgb``                                  one colour: linear RGB of the cube's space, as three numbers or text
-``filename``                             or an image: linear, or encoded in the cube's space if the file is
+``filename``                             or an image: linear, or encoded in the cube's space if the file is; or a
+                                         texture in OpenEXR that ``uplift texture`` wrote, which needs no cube
 ``bitmap``                               or an image as `mitsuba.Bitmap`
-``filter_type``, ``wrap_mode``,          options of images, as in Mitsuba's ``bitmap``
-``to_uv``
+``out_of_gamut``                         treatment of colours outside [0, 1], one of
+                                         `uplift.colorimetry.gamut.METHODS`; ``clip`` with a warning for images,
+                                         ``error`` for one colour
+``filter_type``                          ``bilinear``, ``nearest``, or ``stochastic``: one of the four texels around,
+                                         chosen by its weight, which is faster and has the same mean
+``wrap_mode``, ``to_uv``                 options of images, as in Mitsuba's ``bitmap``
 =======================================  ======================================================================
 
 One colour becomes a regular spectrum of Mitsuba, without extra cost. Images are uplifted when they are loaded, to the
 multipliers of each texel, 4 bytes per coefficient. An image with colours near atlas entries has as many multipliers per
 texel as the entries, any other as many as the nodes of the cube. Spectra are evaluated at the wavelengths of each ray.
-In the JIT variants this is as fast as Mitsuba's own textures. Scalar variants call Python for every ray, some thousand
-times per second.
+docs/render.md compares rates with Mitsuba's own textures. Scalar variants call Python for every ray, unless
+``python -m uplift.io.mitsuba`` compiled the texture in C++.
 
 Examples
 --------
@@ -30,6 +35,7 @@ Examples
 
 from __future__ import annotations
 
+from uplift.io.mitsuba.native import compile_plugin
 from uplift.io.mitsuba.plugin import register
 
-__all__ = ["register"]
+__all__ = ["compile_plugin", "register"]

@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
+import warnings
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from uplift.colorimetry.gamut import METHODS, check_method, map_to_gamut
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError
-from uplift.io.mitsuba.image import Image, decode_bitmap, texture_class
+from uplift.common.errors import OptionError, UpliftError, UpliftWarning
+from uplift.io.mitsuba.native import find_plugin, native_properties
+from uplift.io.mitsuba.texels import Placement, Texels, uplift_texels
+from uplift.io.mitsuba.texture import make_texture
+from uplift.io.mitsuba.texture_file import read_colours, read_texels
+from uplift.io.texture.colours import Decoder
+from uplift.io.texture.exr_file import is_exr
 from uplift.lookup import Cube, load
 
 START, END = 360, 830
 """Wavelength range of Mitsuba in nm."""
+NATIVE_VARIANT = "scalar_spectral"
 SOURCES = ("rgb", "filename", "bitmap")
+HINTS = {
+    "cube-not-found": "set the property cube to the file of a cube, or add its folder to Mitsuba's file resolver",
+    "rgb-out-of-gamut": f"set the property out_of_gamut to {', '.join(METHODS[1:])}",
+    "unknown-gamut-mapping": f"set the property out_of_gamut to {', '.join(METHODS)}",
+}
+"""Hints in terms of Mitsuba's properties, by code; the library's own name parameters of Python."""
 
 
 def register() -> None:
@@ -42,12 +56,20 @@ def register() -> None:
             code="unsupported-variant",
             hint="set scalar_spectral or llvm_ad_spectral",
         )
-    mitsuba.register_texture("uplift", _make_texture)
+    mitsuba.register_texture("uplift", _make_plugin)
 
 
-def _make_texture(props: Any) -> Any:
-    """Make the texture of a scene description. Mitsuba shows the message of exceptions, and rejects unknown keys."""
-    cube = _cube(props)
+def _make_plugin(props: Any) -> Any:
+    """Make the object of a scene description. Mitsuba shows the message of exceptions, and rejects unknown keys."""
+    try:
+        return _make(props)
+    except UpliftError as error:
+        if error.code not in HINTS:
+            raise
+        raise RuntimeError(error.describe(HINTS[error.code])) from error
+
+
+def _make(props: Any) -> Any:
     sources = [name for name in SOURCES if name in props]
     if len(sources) != 1:
         raise OptionError(
@@ -56,9 +78,50 @@ def _make_texture(props: Any) -> Any:
             hint="pass one of them",
         )
     if sources == ["rgb"]:
-        return _constant(cube, _parse_rgb(props["rgb"]))
-    rgb = decode_bitmap(cube, _bitmap(props))
-    return texture_class()(props, Image.uplift(cube, rgb))
+        cube, method = _cube(props), str(props.get("out_of_gamut", "error"))
+        return _constant(cube, map_to_gamut(_parse_rgb(props["rgb"]), cube.data.sensor, method).rgb)
+    texels = read_texels(_resolve(props["filename"])) if "filename" in props else None
+    return _texture(props, _uplifted(props) if texels is None else texels)
+
+
+def _texture(props: Any, texels: Texels) -> Any:
+    """Return the texture in C++ in scalar variants, if it was compiled, else the texture in Python."""
+    import mitsuba
+
+    placement = Placement.read(props)
+    if mitsuba.variant() != NATIVE_VARIANT:
+        return make_texture(props, texels, placement)
+    folder = find_plugin()
+    if folder is None:
+        warnings.warn(
+            UpliftWarning(
+                "the texture calls Python for every ray in scalar variants",
+                code="texture-in-python",
+                hint="run 'python -m uplift.io.mitsuba' once to compile it, or set llvm_ad_spectral",
+            ),
+            stacklevel=2,
+        )
+        return make_texture(props, texels, placement)
+    if str(folder) not in map(str, mitsuba.file_resolver()):
+        mitsuba.file_resolver().append(str(folder))
+    return mitsuba.load_dict(native_properties(texels, placement))
+
+
+def _uplifted(props: Any) -> Texels:
+    """Uplift an image of colours. Those outside [0, 1] are mapped, with a warning."""
+    cube, method = _cube(props), str(props.get("out_of_gamut", "clip"))
+    check_method(method)
+    path = _resolve(props["filename"]) if "filename" in props else None
+    if path is not None and path.is_file() and is_exr(path):
+        rgb, found = read_colours(path, cube.data.sensor, method)
+    else:
+        rgb, counts = Decoder(np.asarray, False, cube.data.sensor, method)(
+            _linear(cube, _bitmap(props, path))
+        )
+        found = counts.warnings(method, path)
+    for warning in found:
+        warnings.warn(warning, stacklevel=2)
+    return uplift_texels(cube, rgb.astype(float))
 
 
 def _cube(props: Any) -> Cube:
@@ -104,7 +167,18 @@ def _constant(cube: Cube, rgb: Array) -> Any:
     )
 
 
-def _bitmap(props: Any) -> Any:
+def _bitmap(props: Any, path: Path | None) -> Any:
     import mitsuba
 
-    return props["bitmap"] if "bitmap" in props else mitsuba.Bitmap(str(_resolve(props["filename"])))
+    return props["bitmap"] if path is None else mitsuba.Bitmap(str(path))
+
+
+def _linear(cube: Cube, bitmap: Any) -> Array:
+    """Return linear RGB (h, w, 3) of a `mitsuba.Bitmap`. Encoded images are decoded in the cube's space."""
+    import mitsuba
+
+    rgb = bitmap.convert(pixel_format=mitsuba.Bitmap.PixelFormat.RGB)
+    values = np.array(rgb)
+    if values.dtype.kind == "u":
+        values = values / np.iinfo(values.dtype).max
+    return cube.decode(255 * values) if bitmap.srgb_gamma() else values.astype(float)

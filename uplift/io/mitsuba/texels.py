@@ -1,0 +1,123 @@
+"""Texels of an image: the numbers of their spectra, uplifted from RGB, and how they lie on a surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
+from uplift.lookup import Cube
+from uplift.lookup.blocks import blockwise
+from uplift.lookup.interpolate import extended_multipliers, refined_multipliers
+from uplift.lookup.validation import as_colours
+from uplift.models import Model, evaluate
+
+MEAN_WAVELENGTHS = np.arange(380.0, 781.0, 25.0)
+"""Wavelengths in nm of the mean reflectance, by which Mitsuba chooses between lobes; it need not be exact."""
+THREADS = 2
+PADDING = 1
+"""Texels around the padded image, which repeat those of the other edge or of the same, as the mode beyond requires."""
+FILTERS = ("bilinear", "nearest", "stochastic")
+WRAPS = {"repeat": "wrap", "mirror": "symmetric", "clamp": "edge"}
+"""Modes beyond the edges, and the modes of `numpy.pad` for them."""
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Reflectances at ``count`` equidistant wavelengths from ``start`` to ``end`` nm, with straight lines between.
+
+    Outside, spectra are constant.
+    """
+
+    start: float
+    end: float
+    count: int
+    name = "samples"
+
+
+@dataclass(frozen=True, eq=False)
+class Texels:
+    """Numbers (h, w, C), float32, of the texels' spectra, and the mean reflectance.
+
+    The numbers are the multipliers of a model, or reflectances if ``model`` is `Samples`.
+    """
+
+    model: Model | Samples
+    numbers: NDArray[np.float32]
+    mean: float
+
+    def describe(self, wrap: str) -> str:
+        """Return a summary for Mitsuba, with the mode beyond the edges."""
+        height, width, count = self.numbers.shape
+        numbers = "reflectances" if isinstance(self.model, Samples) else "multipliers"
+        return f"UpliftTexture[{width} × {height}, {self.model.name}, {count} {numbers}, {wrap}]"
+
+
+def uplift_texels(cube: Cube, rgb: Array) -> Texels:
+    """Uplift linear RGB (h, w, 3) to multipliers of spectra that have exactly these colours.
+
+    All texels have one number of multipliers: that of the cube's entries if a texel lies in the box of an entry, else
+    that of its nodes. Raises `ColourError` outside [0, 1].
+    """
+    data, model, function = cube.data, cube.data.model, refined_multipliers
+    texels = as_colours(rgb, data.sensor)
+    if data.entry_boxes.find(texels.reshape(-1, 3)).rows.size:
+        model, function = data.entry_spectra.model, extended_multipliers
+    multipliers = blockwise(partial(function, data), texels, model.count, np.float32, THREADS)
+    return model_texels(model, multipliers)
+
+
+def model_texels(model: Model, multipliers: NDArray[Any]) -> Texels:
+    """Return texels of multipliers (h, w, C)."""
+    means = blockwise(
+        lambda rows: evaluate(model, rows, MEAN_WAVELENGTHS).mean(axis=1, keepdims=True), multipliers, 1
+    )
+    return Texels(model, multipliers, float(means.mean()))
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """How texels lie on a surface: filter, mode beyond the edges, and transform (3, 3) of the coordinates."""
+
+    filter: str
+    wrap: str
+    to_uv: Array
+
+    @staticmethod
+    def read(props: Any) -> Placement:
+        """Read the properties ``filter_type``, ``wrap_mode`` and ``to_uv``. Raises `OptionError`."""
+        return Placement(
+            _choice(props, "filter_type", FILTERS, code="unknown-filter-type"),
+            _choice(props, "wrap_mode", tuple(WRAPS), code="unknown-wrap-mode"),
+            _uv_transform(props),
+        )
+
+    def pad(self, numbers: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return numbers (h, w, C) with `PADDING` texels around them, so that no lookup needs to wrap."""
+        return np.pad(numbers, ((PADDING, PADDING), (PADDING, PADDING), (0, 0)), WRAPS[self.wrap])  # type: ignore[call-overload]
+
+
+def _choice(props: Any, name: str, choices: tuple[str, ...], code: str) -> str:
+    """Return a property; the first choice is the default. Raises `OptionError`."""
+    chosen = str(props.get(name, choices[0]))
+    if chosen not in choices:
+        raise OptionError(
+            f"unknown {name} '{chosen}'",
+            code=code,
+            hint=f"use one of {', '.join(choices)}",
+        )
+    return chosen
+
+
+def _uv_transform(props: Any) -> Array:
+    """Return the transform as (3, 3); Mitsuba also accepts (4, 4)."""
+    if "to_uv" not in props:
+        return np.eye(3)
+    matrix = np.array(props["to_uv"].matrix, dtype=float)
+    axes = [0, 1, len(matrix) - 1]
+    return matrix[np.ix_(axes, axes)]

@@ -1,0 +1,127 @@
+"""Texture classes of Mitsuba, evaluated by Dr.Jit at the wavelengths of a ray."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from uplift.io.mitsuba.spectra import blend
+from uplift.io.mitsuba.texels import PADDING, Placement, Samples, Texels
+
+HASH_ROUNDS = 3
+
+
+@cache
+def _texture_class(variant: str) -> type:
+    """Define the class for a variant, as each variant has its own base class."""
+    import drjit as dr
+    import mitsuba as mi
+
+    class UpliftTexture(mi.Texture):  # type: ignore[misc]
+        """Texture of spectra. Filters blend the spectra of texels, and thus their colours."""
+
+        def __init__(self, props: Any, texels: Texels, placement: Placement) -> None:
+            super().__init__(props)
+            self.texels, self.placement = texels, placement
+            self.to_uv = mi.Transform3f(placement.to_uv.astype(np.float32))
+            numbers = placement.pad(texels.numbers)
+            nearest, linear = dr.FilterMode.Nearest, dr.FilterMode.Linear
+            if isinstance(texels.model, Samples):
+                tensor = mi.TensorXf(numbers[..., None])
+                self.numbers = mi.Texture3f(tensor, filter_mode=linear, use_accel=False)
+            else:
+                filtered = linear if placement.filter == "bilinear" else nearest
+                self.numbers = mi.Texture2f(mi.TensorXf(numbers), filter_mode=filtered)
+
+        def eval(self, si: Any, active: Any = True) -> Any:
+            """Return reflectance at the wavelengths of the surface interaction."""
+            place = self._texel(self.to_uv @ si.uv)
+            if self.placement.filter == "stochastic":
+                place += self._offset(si)
+            if isinstance(self.texels.model, Samples):
+                return self._interpolated(place, si.wavelengths, active)
+            height, width, _ = self.numbers.shape
+            uv = place * mi.Vector2f(1 / width, 1 / height)
+            if self.placement.filter != "bilinear":
+                return blend(self.texels.model, [self.numbers.eval(uv)], [mi.Float(1)], si.wavelengths)
+            texels = self.numbers.eval_fetch(uv)
+            return blend(self.texels.model, texels, _bilinear_weights(place), si.wavelengths)
+
+        def _texel(self, uv: Any) -> Any:
+            """Return the place of coordinates in the padded image, in texels; centres of texels are at ½."""
+            if self.placement.wrap == "clamp":
+                folded = dr.clip(uv, 0, 1)
+            elif self.placement.wrap == "repeat":
+                folded = uv - dr.floor(uv)
+            else:
+                folded = dr.abs(uv - 2 * dr.round(uv / 2))
+            width, height = self.resolution()
+            return dr.fma(folded, mi.Vector2f(width, height), PADDING)
+
+        def _offset(self, si: Any) -> Any:
+            """Return up to half a texel, by which the nearest texel is one of four with the probability of its weight.
+
+            Textures have no sampler: pseudo-random numbers are hashed from coordinates and wavelengths.
+            """
+            u, v, wavelength = (_bits(each) for each in (si.uv.x, si.uv.y, si.wavelengths[0]))
+            first, second = mi.sample_tea_32(u ^ wavelength, v, HASH_ROUNDS)
+            return mi.Vector2f(mi.Float(first), mi.Float(second)) * 2.0**-32 - 0.5
+
+        def _interpolated(self, place: Any, wavelengths: Any, active: Any) -> Any:
+            """Return reflectances between samples, which lie along the first axis of the texture."""
+            model, (height, width, depth, _) = self.texels.model, self.numbers.shape
+            assert isinstance(model, Samples)
+            if self.placement.filter != "bilinear":
+                place = dr.floor(place) + 0.5
+            uv = place * mi.Vector2f(1 / width, 1 / height)
+            steps = (model.count - 1) / (model.end - model.start)
+            samples = (dr.clip(wavelengths, model.start, model.end) - model.start) * steps + 0.5
+            return type(wavelengths)(
+                *(self.numbers.eval(mi.Point3f(each / depth, uv.x, uv.y))[0] for each in samples)
+            )
+
+        def mean(self) -> Any:
+            """Return the mean reflectance."""
+            return mi.Float(self.texels.mean)
+
+        def is_spatially_varying(self) -> bool:
+            """Return True."""
+            return True
+
+        def resolution(self) -> Any:
+            """Return width and height in texels."""
+            height, width = self.texels.numbers.shape[:2]
+            return mi.ScalarVector2i(width, height)
+
+        def to_string(self) -> str:
+            """Return a summary."""
+            return self.texels.describe(self.placement.wrap)
+
+    return UpliftTexture
+
+
+def make_texture(props: Any, texels: Texels, placement: Placement) -> Any:
+    """Return a texture of the current variant."""
+    import mitsuba
+
+    return _texture_class(mitsuba.variant())(props, texels, placement)
+
+
+def _bilinear_weights(place: Any) -> tuple[Any, ...]:
+    import drjit as dr
+
+    x, y = place.x - 0.5, place.y - 0.5
+    x, y = x - dr.floor(x), y - dr.floor(y)
+    return (1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y
+
+
+def _bits(number: Any) -> Any:
+    """Return the bits of a float as an unsigned integer."""
+    import drjit as dr
+    import mitsuba as mi
+
+    if isinstance(number, float):  # scalar variants
+        return int(np.float32(number).view(np.uint32))
+    return dr.reinterpret_array(mi.UInt32, number)
