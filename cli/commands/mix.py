@@ -8,6 +8,7 @@ import click
 
 from ..output.mixtures import as_json, as_table, make_mixture, plot
 from ..output.paint_over import make_brush, paint
+from ..output.theories import print_theories
 from ..params.ingredients import make_resolver
 from ..params.number_types import NUMBER, Whole
 from ..params.options import (
@@ -68,6 +69,11 @@ WRITERS = {"table": as_table, "json": as_json}
     help="Kubelka–Munk constants of a paint given by one colour: two lets scattering decrease with reflectance, one "
     "keeps it constant.",
 )
+@click.option(
+    "--theories",
+    is_flag=True,
+    help="Mix the colours by every model: Kubelka and Munk, Amy, dyes, filters, and heuristics of RGB.",
+)
 @cube_option()
 @atlas_option("Measured spectra whose entries are ingredients")
 @wavelengths_option()
@@ -93,6 +99,7 @@ def command(
     refractive_index: float,
     incidence: str,
     km_constants: str,
+    theories: bool,
     cube_path: str | None,
     files: tuple[str, ...],
     wavelengths: str | None,
@@ -120,17 +127,25 @@ def command(
       uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
       uplift mix --light '#ff0000' 0.5:'#00ff00'
       uplift mix '#c8342a/#401008' --thickness 0.4 --over painting.exr -o painted.exr
+      uplift mix --theories '#005fa0' '#ffd200'
     """
     from uplift.common.files import check_outputs
     from uplift.design.mixing.surface import INCIDENCES
     from uplift.lookup import load
 
     _check_usage(kind, ground, over, output, swatches)
+    if theories and any(option is not None for option in (thickness, ground, over, swatches)):
+        raise click.UsageError(
+            "--theories mixes opaque colours, without --thickness, --ground, --over and --swatches."
+        )
     check_outputs((swatches, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
     medium = _medium(thickness, INCIDENCES[incidence](refractive_index), km_constants)
     resolver = make_resolver(cube, files, cube.resolve_wavelengths(parse_wavelengths(wavelengths)))
     ingredients = resolver.ingredients(words)
+    if theories:
+        print_theories(cube, ingredients, method, style)
+        return
     if over is not None and output is not None:
         paint(make_brush(cube, kind, ingredients, medium, encoding, method), over, output, force=force)
         return

@@ -8,7 +8,9 @@ import matplotlib.image
 import numpy as np
 import pytest
 
+import uplift
 from tests.io.texture.conftest import planes, read_channels, write_exr
+from uplift.design.mixing import mixers
 
 from .conftest import warning_lines
 
@@ -147,3 +149,17 @@ def test_invalid_input_is_an_error(refuse, words, code):
 )
 def test_wrong_usage(misuse, words):
     misuse("mix", *words)
+
+
+def test_theories_are_those_of_the_library(mixed, run):
+    found = mixed("--theories", f"2:{BLUE}", YELLOW)
+    titles = [mixer.title for mixer in mixers(uplift.load())]
+    assert [row["theory"] for row in found["theories"]] == titles
+    by_title = {row["theory"]: row["hex"] for row in found["theories"]}
+    assert by_title["Kubelka–Munk, S = √R"] == mixed(f"2:{BLUE}", YELLOW)["hex"]
+    table = run("mix", "--theories", f"2:{BLUE}", YELLOW).stdout
+    assert all(title in table and code in table for title, code in by_title.items())
+
+
+def test_theories_take_opaque_colours_only(run):
+    assert run("mix", "--theories", BLUE, YELLOW, "--thickness", 2, code=2).stdout == ""
