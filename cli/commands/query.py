@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import sys
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING
@@ -20,6 +20,7 @@ from ..params.options import (
     fill_option,
     force_option,
     format_option,
+    light_option,
     out_of_gamut_option,
     primaries_option,
     wavelengths_option,
@@ -30,6 +31,7 @@ from ..params.wavelengths import parse_wavelengths
 from ..startup import hide_drawing_notes
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.sensor import Light
     from uplift.common.arrays import Array
     from uplift.lookup import Cube, QueryResult
 
@@ -64,6 +66,7 @@ class ColourCommand(click.Command):
 )
 @out_of_gamut_option()
 @fill_option()
+@light_option("Illuminant of a standard error, in addition to that of the cube", "none")
 @format_option("table", "json", "csv")
 @plot_option("--plot", "plot_path", "Plot the spectra")
 @force_option()
@@ -77,6 +80,7 @@ def command(
     primaries: str | None,
     method: str,
     fill_missing: bool,
+    lights: tuple[str, ...],
     style: str,
     plot_path: str | None,
     force: bool,
@@ -95,6 +99,10 @@ def command(
       uplift query 1.4 0.3 -0.1 --out-of-gamut desaturate
       uplift query --primaries P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
       echo 0.5,0.5,0.5 | uplift query - --format json
+      uplift query '#cc3319' --cube macbeth-32.uplift --light FL11 --light HP1
+
+    Standard errors are those of materials like the entries of the cube's atlas. RGB does not identify a material:
+    others of the same colour may differ by more.
 
     Lines of files and of standard input are answered in blocks as they come. An error in a later block follows the
     answers to earlier ones.
@@ -109,7 +117,15 @@ def command(
     bounded = method == "error" and primaries is None
     blocks = _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded)
     to_cube = None if primaries is None else conversion(parse_primaries(primaries), cube.data.sensor).T
-    answers = _Answers(cube, to_cube, method, parse_wavelengths(wavelengths), mode, fill_missing=fill_missing)
+    answers = _Answers(
+        cube,
+        to_cube,
+        method,
+        parse_wavelengths(wavelengths),
+        mode,
+        _read_lights(lights, cube),
+        fill_missing=fill_missing,
+    )
     results: Iterable[list[QueryResult]] = answers.results(blocks)
     if plot_path is not None:
         from uplift.viz.spectra import plot_spectra
@@ -130,6 +146,7 @@ class _Answers:
     method: str
     wavelengths: Array | None
     mode: str
+    lights: Sequence[Light]
     fill_missing: bool
     count: int = 0
     mapped: int = 0
@@ -150,9 +167,7 @@ class _Answers:
             if self.fill_missing:
                 self.filled += int((~self.cube.covers(mapped.rgb)).sum())
                 self.cube = self.cube.fill_missing(mapped.rgb)
-            results = query(
-                self.cube, mapped.rgb, self.wavelengths, self.mode, requested_rgb=mapped.requested
-            )
+            results = query(self.cube, mapped.rgb, self.wavelengths, self.mode, mapped.requested, self.lights)
             yield list(results)
             sys.stdout.flush()
 
@@ -168,6 +183,14 @@ class _Answers:
             count = f"{self.filled} of {self.count} colours"
             problem = f"{count} are not in the cube's scene: filled from the packaged cube"
             warnings.warn(UpliftWarning(problem, code="colours-filled"), stacklevel=1)
+
+
+def _read_lights(names: Sequence[str], cube: Cube) -> list[Light]:
+    if not names:
+        return []
+    from uplift.colorimetry.observer import light
+
+    return [light(name, cube.observer) for name in names]
 
 
 def _read_colours(

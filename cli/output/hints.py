@@ -35,6 +35,7 @@ HINTS = {
     "library-not-used": "use --prior learnt with --model moments and 4 to 17 coefficients, or leave out --library",
     "limit-not-positive": "give --time-ns and --delta-e above 0",
     "mixed-scales": "correct the row, or use --measured percent or fraction if it is right",
+    "no-left-out-entries": "build it again with 'uplift build', or use 'uplift check --update'",
     "no-moments": "use --store multipliers, or a cube of moments",
     "no-requirements": "give --time-ns, --delta-e or both",
     "not-a-chart": "name the CSV file that 'uplift chart' wrote",

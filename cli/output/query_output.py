@@ -62,6 +62,8 @@ def _object(cube: Cube, result: QueryResult) -> dict[str, Any]:
         "entry": result.entry,
         "standard_error": result.standard_error,
         "reference": cube.data.error_illuminant,
+        "standard_errors": dict(result.standard_errors),
+        "unlike_atlas": result.unlike_atlas,
     }
 
 
@@ -71,9 +73,10 @@ def as_csv(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) ->
     for number, result in enumerate(chain.from_iterable(blocks)):
         if number == 0:
             wavelengths = [f"{wavelength:g}" for wavelength in result.wavelengths]
-            writer.write(["r", "g", "b", "delta_e_2000", "standard_error", "entry", *wavelengths])
+            by_light = [f"standard_error_{name}" for name in result.standard_errors]
+            writer.write(["r", "g", "b", "delta_e_2000", "standard_error", *by_light, "entry", *wavelengths])
         expected = "" if result.standard_error is None else result.standard_error
-        numbers = [*result.rgb.tolist(), result.delta_e_2000, expected]
+        numbers = [*result.rgb.tolist(), result.delta_e_2000, expected, *result.standard_errors.values()]
         writer.write([*numbers, result.entry or "", *result.reflectance.tolist()])
 
 
@@ -102,7 +105,7 @@ def _print_details(cube: Cube, result: QueryResult) -> None:
             if result.realisable
             else {"realisable": "no: the spectrum has less chroma, because no reflectance has this colour"}
         ),
-        "atlas entry": result.entry or "none",
+        "atlas entry": _entry(result),
         "std. error": _standard_error(cube, result),
         "spectrum": f"{sparkline(result.reflectance)}  {result.wavelengths[0]:g}–{result.wavelengths[-1]:g} nm",
     }
@@ -125,7 +128,15 @@ def _mapped(cube: Cube, result: QueryResult) -> dict[str, str]:
 def _standard_error(cube: Cube, result: QueryResult) -> str:
     if result.standard_error is None:
         return "unknown: too few atlas entries"
-    return f"ΔE00 {result.standard_error:.2g} ({cube.data.error_illuminant}) to a measured material"
+    errors = {cube.data.error_illuminant: result.standard_error, **result.standard_errors}
+    values = ", ".join(f"{error:.2g} ({light})" for light, error in errors.items())
+    return f"ΔE00 {values} to a measured material"
+
+
+def _entry(result: QueryResult) -> str:
+    if result.entry:
+        return result.entry
+    return "none, and none is near: unlike the atlas" if result.unlike_atlas else "none"
 
 
 def print_fields(fields: Mapping[str, str], patches: Mapping[str, str]) -> None:
@@ -158,19 +169,26 @@ def _print_lines(cube: Cube, results: Sequence[QueryResult], *, heading: bool) -
     from rich.text import Text
 
     swatches = has_colours()
-    headings = ("",) * swatches + ("hex", "linear RGB", "ΔE00", "atlas entry", "spectrum")
+    names = list(results[0].standard_errors) if results else []
+    errors = [f"± {light}" for light in (cube.data.error_illuminant, *names)] if names else []
+    headings = ("",) * swatches + ("hex", "linear RGB", "ΔE00", "atlas entry", *(errors or ["spectrum"]))
     table = make_table(headings, box=None, show_header=heading)
     for result in results:
         red, green, blue = display_codes(cube, result.rgb)
+        expected = [f"{value:.2f}" for value in _errors(result)]
         table.add_row(
             *(Text("   ", style=f"on rgb({red},{green},{blue})"),) * swatches,
             hex_code(cube, result.rgb),
             " ".join(f"{value:.3f}" for value in result.rgb),
             f"{result.delta_e_2000:.2g}",
-            result.entry or "",
-            sparkline(result.reflectance, 16),
+            result.entry or ("unlike the atlas" if errors and result.unlike_atlas else ""),
+            *(expected if errors else [sparkline(result.reflectance, 16)]),
         )
     show(table)
+
+
+def _errors(result: QueryResult) -> list[float]:
+    return [] if result.standard_error is None else [result.standard_error, *result.standard_errors.values()]
 
 
 def _codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:

@@ -22,7 +22,7 @@ def cube(home, cubes):
     ("style", "name", "count", "first"),
     [
         ("c", f"{STEM}.h", "512", b"/* A spectral"),
-        ("npz", f"{STEM}.npz", "22", b"PK"),
+        ("npz", f"{STEM}.npz", "24", b"PK"),
         ("csv", f"{STEM}.csv", "512", b"r,g,b,lattice_r"),
         ("html", f"{STEM}.html", "0", b"<!DOCTYPE html>"),
     ],

@@ -275,8 +275,9 @@ def test_json_has_all_fields(ask, cubes):
     answer = ask("--cube", path, *cube.data.atlas.rgb[row].tolist())
     assert answer.keys() == {
         *("rgb", "requested_rgb", "wavelengths", "reflectance", "round_trip", "cell", "status", "realisable"),
-        *("entry", "standard_error", "reference"),
+        *("entry", "standard_error", "reference", "standard_errors", "unlike_atlas"),
     }
+    assert (answer["standard_errors"], answer["unlike_atlas"]) == ({}, False)
     assert answer["standard_error"] == pytest.approx(cube.data.atlas.error[row])
     assert answer["rgb"] == cube.data.atlas.rgb[row].tolist()
     assert answer["wavelengths"] == list(range(380, 781, 5))
@@ -285,7 +286,7 @@ def test_json_has_all_fields(ask, cubes):
     np.testing.assert_allclose(answer["round_trip"]["rgb"], answer["rgb"], rtol=0, atol=1e-6)
     assert answer["round_trip"]["delta_e_2000"] < 0.01
     assert len(answer["cell"]) == 3
-    assert answer["status"] == ["atlas primary", "regular"]
+    assert answer["status"] == ["atlas primary", "atlas corner"]
     assert answer["entry"] == "red"
 
 
@@ -299,6 +300,30 @@ def test_standard_output_is_valid_csv(run, table, cubes):
     np.testing.assert_allclose([[float(cell) for cell in row[6:]] for row in rows[1:]], expected, atol=1e-12)
     assert [float(cell) for cell in rows[1][:3]] == [0.8, 0.2, 0.1]
     assert rows[1][4:6] == ["", ""]
+
+
+def test_standard_errors_under_other_lights(ask, run, table, cubes):
+    path = cubes / "moments-8-macbeth.uplift"
+    cube, rgb, lights = uplift.load(path), [0.8, 0.2, 0.1], ("FL11", "HP1")
+    words = [word for light in lights for word in ("--light", light)]
+    expected = {light: pytest.approx(float(cube.standard_error(rgb, light))) for light in lights}
+    assert ask("--cube", path, *rgb, *words)["standard_errors"] == expected
+    file = table("0.8,0.2,0.1\n0,1,0\n")
+    lines = run(
+        "query", "--cube", path, "--input", file, "--format", "csv", "--wavelengths", "500", *words
+    ).stdout
+    rows = list(csv.DictReader(io.StringIO(lines)))
+    assert {light: float(rows[0][f"standard_error_{light}"]) for light in lights} == expected
+    for options, style in ((["--input", file], ".2f"), (["0", "1", "0"], ".2g")):
+        text = run("query", "--cube", path, *options, *words).stdout
+        assert "unlike the atlas" in text
+        assert format(float(cube.standard_error([0, 1, 0], "HP1")), style) in text
+        assert max(map(len, text.splitlines())) <= 80
+
+
+def test_lights_of_standard_errors_must_be_known(refuse, ask):
+    assert refuse("query", "#fff", "--light", "FL99").code == "unknown-illuminant"
+    assert ask("#fff", "--light", "FL11")["standard_errors"] == {}
 
 
 def test_modes_differ_and_spectra_is_the_default(ask):

@@ -115,6 +115,27 @@ def test_negative_numbers_are_refused(small_cube, tmp_path, name, low):
 @pytest.mark.parametrize(
     ("name", "change", "code"),
     [
+        ("atlas.measured", lambda array: array[:-1], "invalid-array"),
+        ("atlas.measured", lambda array: array + 1, "invalid-reflectance"),
+        ("atlas.left_out", lambda array: array * np.float32(np.nan), "array-not-finite"),
+        ("atlas.left_out", lambda array: array.astype(float), "invalid-array"),
+        ("atlas.left_out", None, "cube-invalid"),
+    ],
+)
+def test_left_out_entries_are_checked(small_cube, tmp_path, name, change, code):
+    def forged(tensors, metadata):
+        if change is None:
+            del tensors[name]
+        else:
+            tensors[name] = change(tensors[name])
+
+    with raises(CubeFileError, code):
+        read(forge(small_cube.data, tmp_path / "cube", forged))
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "code"),
+    [
         ("rgb", lambda array: array[:-1], "invalid-array"),
         ("status", lambda array: array + 9, "unknown-status"),
         ("entry", lambda array: array + 99, "unknown-entry"),

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from uplift.colorimetry.observer import light
 from uplift.common.errors import UpliftError
 from uplift.lookup import MODES, load, query
 from uplift.report.summary import summarise
 
 RGB = np.array([[0.2, 0.3, 0.4], [0, 0, 0], [1, 1, 1], [0.5, 0.5, 0.5], [0.9, 0.0, 0.1]])
+LIGHT = light("FL11")
 WAVELENGTHS = np.array([300.0, 380.0, 555.5, 780.0, 1000.0])
 
 
@@ -25,6 +27,10 @@ def use_cube(path: Path) -> None:
     standard_error = cube.standard_error(RGB)
     if standard_error is not None and not np.isfinite(standard_error).all():
         raise ValueError("standard errors that are not finite")
+    if cube.data.atlas.left_out is not None:
+        errors = cube.standard_error(RGB, LIGHT)
+        if errors is not None and not np.isfinite(errors).all():
+            raise ValueError("standard errors under a light that are not finite")
     if not all(np.isfinite(result.round_trip).all() for result in query(cube, RGB)):
         raise ValueError("round trips that are not finite")
     json.dumps(summarise(cube.data), allow_nan=False)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
+from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
 from uplift.cube.file import contents, digest, read, write
 
 __all__ = [
     "AtlasTable",
     "CubeData",
     "EntrySpectra",
+    "LeftOut",
     "contents",
     "digest",
     "read",

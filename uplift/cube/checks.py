@@ -28,6 +28,8 @@ ATLAS_ARRAYS = {"rgb": "rgb", "coefficients": "coefficients", "reach": "half_wid
 """Attributes of `AtlasTable` by their names in the file."""
 ENTRY_COEFFICIENTS = "atlas.entry_coefficients"
 """Coefficients of `EntrySpectra`: name in the file."""
+LEFT_OUT_ARRAYS = {"measured": "atlas.measured", "answered": "atlas.left_out"}
+"""Names in the file by the attributes of `LeftOut`."""
 STORED_TYPES = {
     "F64": "float64",
     "F32": "float32",
@@ -103,6 +105,11 @@ def check(data: CubeData) -> None:
     require(bool(points.present.all()), "absent-points-stored", "absent points must not be stored")
     require(_in_range(atlas.half_width, 0, 1), "invalid-entry-boxes", "half widths must be in [0, 1]")
     require(_in_range(atlas.rgb, 0, 1), "entry-out-of-gamut", "the RGB of every entry must be in [0, 1]")
+    if atlas.left_out is not None:
+        require(len(atlas.names) > 0, "no-entries-left-out", "left-out spectra need entries")
+        spectra = (atlas.left_out.measured, atlas.left_out.answered)
+        valid = all(_in_range(each, 0, 1) for each in spectra)
+        require(valid, "invalid-reflectance", "left-out entries must have reflectances in [0, 1]")
     known = _in_range(points.entry, -1, len(atlas.names) - 1)
     require(known, "unknown-entry", "every entry must be in the atlas table")
 
@@ -130,6 +137,9 @@ def _arrays(
         yield f"atlas.{name}", tensors[f"atlas.{name}"], (entries, *columns.get(name, ())), double
     if ENTRY_COEFFICIENTS in tensors:
         yield ENTRY_COEFFICIENTS, tensors[ENTRY_COEFFICIENTS], (entries, entry_coefficients), double
+    for name in LEFT_OUT_ARRAYS.values():
+        if name in tensors:
+            yield name, tensors[name], (entries, samples), ("float32",)
 
 
 def _check_entry_model(model: Model, entry_model: Model) -> None:

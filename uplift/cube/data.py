@@ -7,6 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.colorimetry.delta_e import rgb_to_lab
+from uplift.colorimetry.expected_error import familiar_distance
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.lattice import Lattice, PointTable
@@ -59,6 +64,25 @@ class EntrySpectra:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class LeftOut:
+    """Atlas entries as measured, and as answered without them: evidence for the errors of answers.
+
+    Parameters
+    ----------
+    measured : ndarray of float32, shape (E, N)
+        Measured reflectances at the wavelengths of the sensor.
+    answered : ndarray of float32, shape (E, N)
+        Reflectances at the colours of the entries, each predicted from the others.
+    """
+
+    measured: NDArray[np.float32]
+    answered: NDArray[np.float32]
+
+    def __repr__(self) -> str:
+        return f"LeftOut({len(self.measured)} entries)"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class AtlasTable:
     """The atlas entries that constrain a cube.
 
@@ -78,6 +102,8 @@ class AtlasTable:
         ΔE00 between fitted and measured spectrum under `CubeData.error_illuminant`.
     spectra : EntrySpectra, optional
         The entries with more coefficients than the nodes; None if they have as many.
+    left_out : LeftOut, optional
+        Evidence for the errors of answers; None for a small atlas, and for files of earlier versions.
     """
 
     names: tuple[str, ...]
@@ -86,6 +112,7 @@ class AtlasTable:
     half_width: Array
     error: Array
     spectra: EntrySpectra | None = None
+    left_out: LeftOut | None = None
 
     def __repr__(self) -> str:
         return f"AtlasTable({len(self.names)} entries)"
@@ -138,6 +165,16 @@ class CubeData:
     def entry_spectra(self) -> EntrySpectra:
         """The spectra that answer the colours of the entries, in the model of the nodes or with more coefficients."""
         return self.atlas.spectra or EntrySpectra(self.model, self.atlas.coefficients)
+
+    @cached_property
+    def entry_lab(self) -> Array:
+        """(E, 3) CIE L*a*b* of the atlas entries under the build illuminant."""
+        return rgb_to_lab(self.sensor, self.atlas.rgb)
+
+    @cached_property
+    def familiar_distance(self) -> float:
+        """ΔE*ab from the nearest entry up to which a colour is like those of the atlas."""
+        return familiar_distance(self.entry_lab)
 
     @cached_property
     def entry_boxes(self) -> EntryBoxes:

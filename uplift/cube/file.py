@@ -25,6 +25,7 @@ from uplift.cube import sparse
 from uplift.cube.checks import (
     ATLAS_ARRAYS,
     ENTRY_COEFFICIENTS,
+    LEFT_OUT_ARRAYS,
     POINT_TYPES,
     SENSOR_ARRAYS,
     STORED_TYPES,
@@ -32,7 +33,7 @@ from uplift.cube.checks import (
     check_tensors,
     require,
 )
-from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
+from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
 from uplift.cube.metadata import check_metadata
 from uplift.lattice import Lattice, PointTable
 from uplift.models import from_description
@@ -45,6 +46,8 @@ KEY = "uplift"
 """The only metadata entry: safetensors does not keep the order of several."""
 
 Tensors = dict[str, NDArray[Any]]
+LEFT_OUT = "left-out"
+"""Feature of files with left-out entries."""
 FEATURES = {"debug": "round", "errors": "standard_error"}
 """Optional arrays by the features that announce them."""
 INVALID = (AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError, UpliftError)
@@ -251,6 +254,8 @@ def _tensors(data: CubeData) -> Tensors:
     tensors |= {f"atlas.{name}": getattr(data.atlas, attribute) for name, attribute in ATLAS_ARRAYS.items()}
     if data.atlas.spectra is not None:
         tensors[ENTRY_COEFFICIENTS] = data.atlas.spectra.coefficients
+    if data.atlas.left_out is not None:
+        tensors |= {name: getattr(data.atlas.left_out, key) for key, name in LEFT_OUT_ARRAYS.items()}
     for name, kinds in POINT_TYPES.items():
         array = getattr(data.points, name)
         if array is not None:
@@ -281,6 +286,7 @@ def _metadata(data: CubeData) -> dict[str, Any]:
 
 def _features(data: CubeData) -> list[str]:
     optional = [name for name, array in FEATURES.items() if getattr(data.points, array) is not None]
+    optional += [LEFT_OUT] if data.atlas.left_out is not None else []
     return optional if data.complete_cells is None else [*optional, sparse.FEATURE]
 
 
@@ -311,6 +317,11 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
             **{attribute: tensors[f"atlas.{name}"] for name, attribute in ATLAS_ARRAYS.items()},
             spectra=(
                 None if entry_model == model else EntrySpectra(entry_model, tensors[ENTRY_COEFFICIENTS])
+            ),
+            left_out=(
+                LeftOut(**{key: tensors[name] for key, name in LEFT_OUT_ARRAYS.items()})
+                if LEFT_OUT in features
+                else None
             ),
         ),
         provenance=metadata["provenance"],

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.expected_error import LENGTH, ExpectedError, expected_error
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.fit.base import Base
 from uplift.fit.entries import FittedEntries
-from uplift.fit.kriging import Kernel, Kriging, krige
+from uplift.fit.kriging import Kernel, Kriging, kernel_sums, krige
 from uplift.fit.learn_kernel import DEFAULT, MIN_ENTRIES, learn_kernel, visible_change
 from uplift.fit.problem import Problem
 from uplift.fit.smooth import NO_FREEDOM, TABLE, Smooth, smooth
-from uplift.fit.uncertainty import Uncertainty, uncertainty
 from uplift.fit.unrealisable import unrealisable
 from uplift.models import Model, evaluate
 
@@ -28,6 +28,8 @@ BLOCK_POINTS = 1 << 15
 """Points processed at a time."""
 DETERMINED = Kernel(length=6.0, nugget=0.0)
 """Kernel where the colour alone determines the spectrum: it only chooses among solutions."""
+NEIGHBOURHOOD = Kernel(length=LENGTH, nugget=0.0)
+"""Weights of `ExpectedError`."""
 SHRINK = 0.7
 """Factor of a deviation that leaves the space of valid coefficients, repeated until it does not."""
 MAX_SHRINKS = 16
@@ -47,15 +49,18 @@ class Prior:
         Spectra expected far from all entries.
     kriging : Kriging, optional
         Deviation of the coefficients of the atlas entries; None without an atlas.
-    uncertainty : Uncertainty, optional
-        Expected errors; None for an atlas of fewer than 8 entries.
+    errors : ExpectedError, optional
+        Expected squares of ΔE00; None for an atlas of fewer than 8 entries.
+    left_out : ndarray, shape (E, N), optional
+        Reflectance expected at the colour of each entry without it, in the order of the entries; None likewise.
     """
 
     model: Model
     sensor: Sensor
     base: Base
     kriging: Kriging | None = None
-    uncertainty: Uncertainty | None = None
+    errors: ExpectedError | None = None
+    left_out: Array | None = None
 
     def __call__(self, rgb: Array) -> Array:
         """Multipliers (n, C) to start from at linear RGB (n, 3); at an entry, nearly those of the entry."""
@@ -98,7 +103,11 @@ class Prior:
         ndarray, shape (n,), or None
             ΔE00; None if the atlas is too small to estimate it.
         """
-        return None if self.uncertainty is None else self.uncertainty(rgb_to_lab(self.sensor, rgb))
+        if self.errors is None:
+            return None
+        lab = rgb_to_lab(self.sensor, rgb)
+        sums = kernel_sums(lab, self.errors.locations, self.errors.columns, NEIGHBOURHOOD)
+        return np.asarray(np.sqrt(self.errors.combine(*sums)[:, 0]))
 
     def standard_errors(self, problem: Problem) -> NDArray[np.float32] | None:
         """Return the standard error of every lattice point.
@@ -113,7 +122,7 @@ class Prior:
         ndarray of float32, shape (dim³,), or None
             ΔE00, 0 at inactive points; None if the atlas is too small to estimate it.
         """
-        if self.uncertainty is None:
+        if self.errors is None:
             return None
         lattice, active = problem.lattice, problem.points
         errors = np.zeros(lattice.size, dtype=np.float32)
@@ -186,7 +195,8 @@ def fit_prior(
     left_out = problem.solve(entries.rgb, start, MAX_PASSES).multipliers
     spectra = evaluate(model, left_out, sensor.wavelengths)
     missed = delta_e_spectra(error_light, spectra, entries.measured)
-    return Prior(model, sensor, base, kriging, uncertainty(locations, missed, entries.error))
+    expected_errors = expected_error(locations, missed, entries.error)
+    return Prior(model, sensor, base, kriging, expected_errors, spectra[np.argsort(order)])
 
 
 def _kernel(

@@ -18,6 +18,7 @@ from uplift.cube import CubeData, read, write
 from uplift.lookup.blocks import Function, blockwise
 from uplift.lookup.fill import fill_missing, missing_points
 from uplift.lookup.interpolate import MODES, coefficients, extended_coefficients, standard_error
+from uplift.lookup.light_errors import light_errors, unlike_atlas
 from uplift.lookup.node_table import TABULATED, tabulate, tabulate_coefficients
 from uplift.lookup.nodes import covers
 from uplift.lookup.validation import (
@@ -32,10 +33,14 @@ from uplift.lookup.validation import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from uplift.colorimetry.sensor import Light
+
 DEFAULT = Path(__file__).with_name("default.uplift")
 """The cube that comes with the package."""
 MAX_TABLE_BYTES = 1 << 28
 """Largest table of the spectra of all lattice points that a query computes."""
+OBSERVER = "uplift.colorimetry.observer"
+"""Module that reads the tables of illuminants. It is imported by name, when a light is."""
 NOTEBOOK = "uplift.viz.notebook"
 """Module of the figures. It lies above this one, so it is imported by name, when a figure is requested."""
 
@@ -278,10 +283,46 @@ class Cube:
         source = load() if other is None else other
         return Cube(fill_missing(self.data, points, source.data, as_thread_count(threads)))
 
-    def standard_error(self, rgb: ArrayLike) -> Array | None:
+    def standard_error(self, rgb: ArrayLike, light: str | Light | None = None) -> Array | None:
         """Estimate the root-mean-square difference between answers and measurements.
 
-        The estimate is learned from atlas entries that are left out of the fit.
+        The estimate is learned from atlas entries that are left out of the fit. It holds for materials like those of
+        the atlas, which colours alone do not identify; see `unlike_atlas`.
+
+        Parameters
+        ----------
+        rgb : array_like, shape (..., 3)
+            Linear RGB in [0, 1].
+        light : str or Light, optional
+            Illuminant, by its name in colour-science. ``data.error_illuminant`` by default.
+
+        Returns
+        -------
+        ndarray, shape (...), or None
+            ΔE00; None if the atlas is too small to estimate it.
+
+        Raises
+        ------
+        ColourError
+            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
+        OptionError
+            Another light, and a cube of an earlier version, which has no left-out entries.
+        UnknownNameError
+            An unknown illuminant.
+        """
+        if self.data.points.standard_error is None:
+            return None
+        function: Function = partial(standard_error, self.data)
+        if light is not None:
+            lit: Light = (
+                import_module(OBSERVER).light(light, self.observer) if isinstance(light, str) else light
+            )
+            if lit.name != self.data.error_illuminant:
+                function = light_errors(self.data, lit)
+        return blockwise(function, as_colours(rgb, self.data.sensor), 1)[..., 0]
+
+    def unlike_atlas(self, rgb: ArrayLike) -> Mask:
+        """Find colours that are far from all atlas entries, where standard errors rest on no evidence.
 
         Parameters
         ----------
@@ -290,17 +331,17 @@ class Cube:
 
         Returns
         -------
-        ndarray, shape (...), or None
-            ΔE00 under ``data.error_illuminant``; None if the atlas is too small to estimate it.
+        ndarray of bool, shape (...)
+            True for colours farther from every entry, in CIE L*a*b*, than 95 % of the entries are from another one; and
+            for all colours if the atlas has fewer than two entries.
 
         Raises
         ------
         ColourError
-            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
+            A colour outside [0, 1] or not finite.
         """
-        if self.data.points.standard_error is None:
-            return None
-        return blockwise(partial(standard_error, self.data), as_colours(rgb, self.data.sensor), 1)[..., 0]
+        colours = as_colours(rgb, self.data.sensor)
+        return unlike_atlas(self.data, colours.reshape(-1, 3)).reshape(colours.shape[:-1])
 
     def resolve_wavelengths(self, wavelengths: ArrayLike | None = None) -> Array:
         """Return wavelengths as an array, by default those of the sensor.

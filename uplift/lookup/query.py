@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.sensor import Light
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.cube import CubeData
@@ -46,6 +47,10 @@ class QueryResult:
         Atlas entry of the same colour.
     standard_error : float, optional
         ΔE00 expected between the answer and a measurement; None if the cube has no estimate.
+    standard_errors : mapping of str to float
+        The same under other lights, by their names; empty if the cube has no estimate.
+    unlike_atlas : bool
+        Whether no atlas entry has a colour near this one; see `Cube.unlike_atlas`. False without standard errors.
     realisable : bool
         Whether a reflectance with the colour exists. If not, the answer has less chroma.
     """
@@ -60,6 +65,8 @@ class QueryResult:
     statuses: tuple[Status, ...]
     entry: str | None
     standard_error: float | None
+    standard_errors: Mapping[str, float]
+    unlike_atlas: bool
     realisable: bool
 
     def __repr__(self) -> str:
@@ -75,6 +82,7 @@ def query(
     wavelengths: ArrayLike | None = None,
     mode: str = "spectra",
     requested_rgb: Array | None = None,
+    lights: Sequence[Light] = (),
 ) -> Iterator[QueryResult]:
     """Answer colours in full detail, block by block.
 
@@ -90,6 +98,8 @@ def query(
         One of `MODES`, see `Cube.reflectance`.
     requested_rgb : ndarray, shape (n, 3), optional
         The colours before gamut mapping, ``rgb`` by default.
+    lights : sequence of Light, optional
+        Lights of `QueryResult.standard_errors`.
 
     Yields
     ------
@@ -101,22 +111,26 @@ def query(
     ColourError
         A colour that the cube cannot answer.
     OptionError
-        An unknown mode, or invalid wavelengths.
+        An unknown mode, invalid wavelengths, or lights for a cube without left-out entries.
     """
     at = cube.resolve_wavelengths(wavelengths)
     requested = rgb if requested_rgb is None else requested_rgb
     for start in range(0, len(rgb), BLOCK):
         block = slice(start, start + BLOCK)
-        yield from _block(cube, rgb[block], requested[block], at, mode)
+        yield from _block(cube, rgb[block], requested[block], at, mode, lights)
 
 
-def _block(cube: Cube, rgb: Array, requested: Array, at: Array, mode: str) -> Iterator[QueryResult]:
+def _block(
+    cube: Cube, rgb: Array, requested: Array, at: Array, mode: str, lights: Sequence[Light]
+) -> Iterator[QueryResult]:
     data, sensor = cube.data, cube.data.sensor
     count = len(sensor.wavelengths)
     spectra = cube.reflectance(rgb, np.concatenate([sensor.wavelengths, at]), mode)
     round_trip = sensor.rgb(spectra[:, :count])
     delta_e = delta_e_rgb(sensor, rgb, round_trip)
     errors = cube.standard_error(rgb)
+    by_light = {} if errors is None else {light.name: cube.standard_error(rgb, light) for light in lights}
+    unlike = None if errors is None else cube.unlike_atlas(rgb)
     low, fraction = data.lattice.cell(rgb)
     corners, _ = data.lattice.cell_corners(low, fraction)
     realisable = _realisable(data, rgb, corners)
@@ -132,6 +146,8 @@ def _block(cube: Cube, rgb: Array, requested: Array, at: Array, mode: str) -> It
             statuses=tuple(map(Status, sorted(set(data.points.status[corners[row]].tolist())))),
             entry=_entry(cube, rgb[row]),
             standard_error=None if errors is None else float(errors[row]),
+            standard_errors={name: float(each[row]) for name, each in by_light.items() if each is not None},
+            unlike_atlas=unlike is not None and bool(unlike[row]),
             realisable=bool(realisable[row]),
         )
 

@@ -24,7 +24,7 @@ from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.quoting import format_value
 from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
-from uplift.cube import AtlasTable, CubeData, EntrySpectra
+from uplift.cube import AtlasTable, CubeData, EntrySpectra, LeftOut
 from uplift.lattice import EntryBoxes, Lattice, SceneLike
 from uplift.lattice.box_widths import half_widths
 from uplift.lookup import Cube
@@ -255,6 +255,7 @@ def build(
                 boxes.half_width,
                 error,
                 spectra,
+                _left_out(entries, fitted_prior),
             ),
             points=points if options.debug else replace(points, round=None),
             error_illuminant=ERROR_ILLUMINANT,
@@ -281,6 +282,12 @@ def _chosen_solver(solver: str | Solver, tolerance: float) -> tuple[Solver | Non
         raise unknown_name(solver, SOLVERS, "solver")
     chosen = stock_solver.STOCK[solver](tolerance)
     return chosen, stock_solver.StockSolver(chosen)
+
+
+def _left_out(entries: fit.FittedEntries, prior: fit.Prior) -> LeftOut | None:
+    if prior.left_out is None:
+        return None
+    return LeftOut(entries.measured.astype(np.float32), prior.left_out.astype(np.float32))
 
 
 def _recalculated(spectra: EntrySpectra, model: Model) -> Array:

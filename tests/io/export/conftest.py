@@ -10,7 +10,6 @@ from tests.helpers import with_points
 from uplift.lookup import Cube
 from uplift.models import Moments, Phase
 
-
 collect_ignore = ["render_osl.py"]
 """It runs in Blender."""
 

@@ -1,0 +1,98 @@
+"""Expected errors, learnt from left-out entries."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.distance import cdist
+
+from uplift.colorimetry import expected_error as module
+from uplift.colorimetry.expected_error import (
+    LENGTH,
+    PRIOR_COUNT,
+    expected_error,
+    expected_products,
+    familiar_distance,
+    nearest_distances,
+)
+
+PLACES = np.random.default_rng(5).uniform(-20, 60, (12, 3))
+
+
+def standard_error(places, left_out, kept):
+    learnt = expected_error(places, left_out, kept)
+    return lambda lab: np.sqrt(learnt(lab)[:, 0])
+
+
+def test_the_standard_error_grows_with_the_distance_to_the_entries():
+    learnt = standard_error(PLACES, np.full(12, 2.0), np.full(12, 0.1))
+    away = PLACES[:1] + np.array([[0.0], [1.0], [5.0], [20.0], [1000.0]]) * [[0, 0, -1]]
+    errors = learnt(away)
+    assert errors[0] == pytest.approx(0.1, rel=0.5)
+    assert (np.diff(errors) > 0).all()
+    assert errors[-1] > 1.5
+
+
+@pytest.mark.parametrize("tail", [3, 8, 50])
+def test_errors_of_any_tail_are_covered(tail):
+    """Without the correction, the standard error of heavy tails is too large for most entries."""
+    rng = np.random.default_rng(tail)
+    places, queried = rng.uniform(0, 300, (2, 1500, 3))
+    known, unknown = np.abs(rng.standard_t(tail, (2, 1500)))
+    expected = standard_error(places, known, np.zeros(1500))(queried)
+    assert 0.62 < (unknown <= expected).mean() < 0.78
+    assert 0.91 < (unknown <= 2 * expected).mean() < 0.98
+
+
+def test_what_remains_at_the_entries_is_not_counted_twice():
+    """Left out, the entries are off by hardly more than as they are: everywhere else the error is the same."""
+    rng = np.random.default_rng(9)
+    places, kept = rng.uniform(0, 300, (400, 3)), np.abs(rng.normal(size=400))
+    learnt = standard_error(places, kept * 1.05, kept)
+    assert learnt(np.full((1, 3), 1e4))[0] < 1.3 * learnt(places).mean()
+
+
+def test_errors_are_local():
+    """The error is larger where left-out entries were predicted badly."""
+    places = np.array([[0.0, 0, 0], [3, 0, 0], [0, 3, 0], [80, 0, 0], [83, 0, 0], [80, 3, 0]])
+    learnt = standard_error(places, np.array([3.0, 3, 3, 0.3, 0.3, 0.3]), np.zeros(6))
+    hard, easy = learnt(np.array([[0.0, 0, 2], [80, 0, 2]]))
+    assert hard > 1.5 * easy
+
+
+def test_blocks_equal_a_plain_sum(monkeypatch):
+    queried = np.random.default_rng(6).uniform(-20, 60, (40, 3))
+    learnt = expected_error(PLACES, np.arange(1.0, 13), np.full(12, 0.5))
+    monkeypatch.setattr(module, "BLOCK_NUMBERS", 50)
+    weights = np.exp(-cdist(queried, PLACES) / LENGTH)
+    squares = learnt.squares[:, 0]
+    spread = (weights @ squares + PRIOR_COUNT * squares.mean()) / (weights.sum(axis=1) + PRIOR_COUNT)
+    plain = (1 - weights.max(axis=1) ** 2) * spread + learnt.floor
+    np.testing.assert_allclose(learnt(queried)[:, 0], plain, rtol=1e-12)
+    distances = nearest_distances(queried, PLACES)
+    np.testing.assert_allclose(distances, cdist(queried, PLACES).min(axis=1), rtol=1e-12)
+
+
+def test_products_of_components_are_averaged_like_squares():
+    rng = np.random.default_rng(7)
+    components = rng.normal(size=(12, 2))
+    left_out = np.linalg.norm(components, axis=1)
+    products = (components[:, :, None] * components[:, None, :]).reshape(12, 4)
+    learnt = expected_products(PLACES, left_out, np.zeros(12), products, np.zeros((12, 4)))(PLACES + 1.0)
+    assert (np.linalg.eigvalsh(learnt.reshape(-1, 2, 2)) > -1e-12).all()
+    squares = expected_error(PLACES, left_out, np.zeros(12))(PLACES + 1.0)
+    np.testing.assert_allclose(learnt[:, 0] + learnt[:, 3], squares[:, 0], rtol=1e-12)
+
+
+def test_nearly_all_entries_are_within_the_familiar_distance():
+    places = np.random.default_rng(8).uniform(0, 100, (3000, 3))
+    apart = cdist(places[:1000], places)
+    apart[np.arange(1000), np.arange(1000)] = np.inf
+    assert (apart.min(axis=1) <= familiar_distance(places)).mean() == pytest.approx(0.95, abs=0.02)
+    assert familiar_distance(np.array([[0.0, 0, 0], [3, 4, 0]])) == pytest.approx(5)
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_without_a_neighbour_no_distance_is_familiar(count):
+    assert familiar_distance(PLACES[:count]) == 0
+    assert (nearest_distances(PLACES[1:], PLACES[:count]) > 0).all()

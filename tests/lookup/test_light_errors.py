@@ -1,0 +1,139 @@
+"""Standard errors under any light: calibrated on materials that the cube does not know."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.conftest import ATLASES
+from tests.helpers import raises
+from uplift.atlas import Atlas, read_atlas, resample
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra, lab
+from uplift.common.errors import OptionError, UnknownNameError
+from uplift.cube import CubeData, read, write
+from uplift.lookup import Cube
+from uplift.lookup.light_errors import lab_covariance, light_errors
+from uplift.report.calibration import check_calibration
+
+LIGHTS = [observer.light(name) for name in ("FL2", "FL11", "LED-RGB1", "HP1")]
+"""Two of them are not among the lights that entries are fitted to."""
+SPLITS = 2
+
+
+@pytest.fixture(scope="module", params=["rawtoaces", "cie2017"])
+def halves(request, sensor):
+    """Cubes of halves of an atlas, and the measured reflectances of the other halves."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        atlas = read_atlas(ATLASES / f"{request.param}.txt")
+        measured = resample(atlas, sensor.wavelengths).values
+        rows = np.flatnonzero(sensor.contains(sensor.rgb(measured)))
+        parts = []
+        for seed in range(SPLITS):
+            kept, other = np.array_split(np.random.default_rng(seed).permutation(rows), 2)
+            half = Atlas(tuple(atlas.entries[row] for row in kept))
+            parts.append((uplift.build(half, dim=16, leave_out=[request.param]), measured[other]))
+    return parts
+
+
+def calibration(halves, sensor, light, factor=1.0):
+    pairs = []
+    for cube, measured in halves:
+        rgb = np.clip(sensor.rgb(measured), 0, 1)
+        actual = delta_e_spectra(light, cube.reflectance(rgb), measured)
+        pairs.append((actual, factor * cube.standard_error(rgb, light)))
+    actual, predicted = (np.concatenate(part) for part in zip(*pairs, strict=True))
+    return check_calibration(actual, predicted)
+
+
+def covered(halves, sensor, factor=1.0):
+    """Mean shares within one and within two standard errors, over the lights."""
+    found = [calibration(halves, sensor, light, factor) for light in LIGHTS]
+    return tuple(np.mean([[each.within_one, each.within_two] for each in found], axis=0))
+
+
+def test_other_halves_are_covered_under_every_light(halves, sensor):
+    one, two = covered(halves, sensor)
+    assert one == pytest.approx(0.68, abs=0.09)
+    assert two == pytest.approx(0.95, abs=0.05)
+    for light in LIGHTS:
+        each = calibration(halves, sensor, light)
+        assert each.within_one == pytest.approx(0.68, abs=0.16), light.name
+        assert each.within_two > 0.85, light.name
+
+
+@pytest.mark.parametrize("factor", [0.6, 1.8])
+def test_errors_of_another_size_would_not_be_covered(halves, sensor, factor):
+    one, two = covered(halves, sensor, factor)
+    assert abs(one - 0.68) > 0.09
+    assert abs(two - 0.95) > 0.03
+
+
+def test_the_covariance_has_the_size_of_the_differences(halves, sensor):
+    """Squared Mahalanobis distances of a* and b*: a sixth of a normal distribution's lies beyond 3.6."""
+    for light in LIGHTS[:2]:
+        outside = []
+        for cube, measured in halves:
+            rgb = np.clip(sensor.rgb(measured), 0, 1)
+            answered = lab(cube.reflectance(rgb) @ light.xyz.T, light.white)
+            difference = (lab(measured @ light.xyz.T, light.white) - answered)[:, 1:]
+            covariance = lab_covariance(cube.data, light, rgb)[:, 1:, 1:]
+            assert (np.linalg.eigvalsh(covariance) > 0).all()
+            weighted = np.linalg.solve(covariance, difference[..., None])[..., 0]
+            outside.append((difference * weighted).sum(axis=1) > 3.6)
+        assert 0.08 < np.concatenate(outside).mean() < 0.28
+
+
+def test_under_its_own_light_a_cube_answers_from_its_nodes(small_cube):
+    rgb = np.random.default_rng(0).random((50, 3))
+    stored = small_cube.standard_error(rgb)
+    np.testing.assert_array_equal(small_cube.standard_error(rgb, "A"), stored)
+    learnt = light_errors(small_cube.data, observer.light("A"))(rgb)[:, 0]
+    np.testing.assert_allclose(learnt, stored, rtol=0.25)
+
+
+def test_an_entry_has_its_own_error(small_cube, sensor):
+    data, light = small_cube.data, observer.light("FL11")
+    own = delta_e_spectra(light, small_cube.reflectance(data.atlas.rgb), data.atlas.left_out.measured)
+    np.testing.assert_allclose(small_cube.standard_error(data.atlas.rgb, light), own, atol=1e-6)
+
+
+def test_colours_far_from_all_entries_are_unlike_the_atlas(small_cube, plain_cube):
+    assert not small_cube.unlike_atlas(small_cube.data.atlas.rgb).any()
+    assert small_cube.unlike_atlas([[0, 1, 0], [0.2, 0.2, 0.2]]).tolist() == [True, False]
+    assert plain_cube.unlike_atlas([0.2, 0.2, 0.2])
+
+
+def test_standard_errors_survive_the_file(small_cube, tmp_path):
+    path = tmp_path / "cube.uplift"
+    small_cube.save(path)
+    rgb = np.random.default_rng(1).random((4, 5, 3))
+    again = uplift.load(path).standard_error(rgb, "HP1")
+    assert again.shape == (4, 5)
+    np.testing.assert_array_equal(again, small_cube.standard_error(rgb, "HP1"))
+
+
+def without_left_out(data: CubeData) -> CubeData:
+    return dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, left_out=None))
+
+
+def test_a_cube_of_an_earlier_version_has_errors_under_its_own_light_only(small_cube, tmp_path):
+    write(without_left_out(small_cube.data), tmp_path / "old.uplift")
+    old = Cube(read(tmp_path / "old.uplift"))
+    assert old.data.atlas.left_out is None
+    assert old.standard_error([0.2, 0.3, 0.4]) == small_cube.standard_error([0.2, 0.3, 0.4])
+    with raises(OptionError, "no-left-out-entries"):
+        old.standard_error([0.2, 0.3, 0.4], "FL11")
+    with raises(OptionError, "no-left-out-entries"):
+        lab_covariance(old.data, LIGHTS[0], np.full((1, 3), 0.5))
+
+
+def test_bad_input(small_cube, plain_cube):
+    with raises(UnknownNameError, "unknown-illuminant"):
+        small_cube.standard_error([0.2, 0.3, 0.4], "FL99")
+    assert plain_cube.standard_error([0.2, 0.3, 0.4], "FL11") is None

@@ -1,0 +1,149 @@
+"""Expected errors of predicted colours, learnt from measurements that were left out (docs/mathematics.md, 7)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from uplift.common.arrays import Array
+
+LENGTH = 6.0
+"""Length in CIE L*a*b* of the weights exp(−ΔE / length) of the errors of entries around a colour."""
+PRIOR_COUNT = 2.0
+"""Weight of the mean error of all entries, in entries."""
+COVERAGE = ((0.68, 1.0), (0.95, 2.0))
+"""Shares of entries, when left out, whose error should be within one and within two standard errors."""
+TRUST = 10.0
+"""Entries at which half of a correction by coverage is applied, on a logarithmic scale."""
+MIN_VARIANCE = 0.02
+"""Lower limit of the variance assigned to a left-out entry."""
+FAMILIAR = 0.95
+"""Share of the entries that are nearer to another one than colours that are like the atlas may be."""
+BLOCK_NUMBERS = 1 << 20
+"""Numbers of the matrix of weights held at a time."""
+MAX_ROWS = 1000
+"""Entries that the distances between neighbours are learnt from."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ExpectedError:
+    """Expected squares of errors around left-out entries.
+
+    Parameters
+    ----------
+    locations : ndarray, shape (E, 3)
+        CIE L*a*b* of the entries.
+    squares : ndarray, shape (E, K)
+        Squares or products of the errors of each entry when left out, per unit of variance.
+    floor : ndarray, shape (K,)
+        Squares or products that remain at the entries themselves.
+    """
+
+    locations: Array
+    squares: Array
+    floor: Array
+
+    @property
+    def columns(self) -> Array:
+        """(E, K + 1) numbers whose weighted sums around a colour `combine` needs."""
+        return np.concatenate([self.squares, np.ones((len(self.squares), 1))], axis=1)
+
+    def combine(self, sums: Array, nearest: Array) -> Array:
+        """Expected squares (n, K) from weighted sums (n, K + 1) of `columns`, and the largest weights (n,)."""
+        spread = (sums[:, :-1] + PRIOR_COUNT * self.squares.mean(axis=0)) / (sums[:, -1:] + PRIOR_COUNT)
+        return (1 - nearest[:, None] ** 2) * spread + self.floor
+
+    def __call__(self, lab: Array) -> Array:
+        """Expected squares (n, K) at L*a*b* (n, 3)."""
+        columns, found = self.columns, np.empty((len(lab), self.squares.shape[1]))
+        rows = max(BLOCK_NUMBERS // len(self.locations), 1)
+        for first in range(0, len(lab), rows):
+            part = slice(first, first + rows)
+            weights = np.exp(_distances(lab[part], self.locations) / -LENGTH)
+            found[part] = self.combine(weights @ columns, weights.max(axis=1))
+        return found
+
+
+def expected_error(locations: Array, left_out: Array, kept: Array) -> ExpectedError:
+    """Learn from the ΔE00 (E,) of entries at L*a*b* (E, 3), when left out and when kept; K is 1."""
+    return expected_products(locations, left_out, kept, left_out[:, None] ** 2, kept[:, None] ** 2)
+
+
+def expected_products(
+    locations: Array, left_out: Array, kept: Array, left_out_products: Array, kept_products: Array
+) -> ExpectedError:
+    """Learn products of errors.
+
+    Parameters
+    ----------
+    locations : ndarray, shape (E, 3)
+        CIE L*a*b* of the entries.
+    left_out, kept : ndarray, shape (E,)
+        ΔE00 of each entry when left out, and when kept. One factor gives the standard errors of left-out entries their
+        `COVERAGE`.
+    left_out_products, kept_products : ndarray, shape (E, K)
+        Squares or products of the components of these errors.
+
+    Returns
+    -------
+    ExpectedError
+        Expected products.
+    """
+    weights = np.exp(_distances(locations, locations) / -LENGTH)
+    np.fill_diagonal(weights, 0)
+    variance = np.maximum(1 - weights.max(axis=1) ** 2, MIN_VARIANCE)
+    floor = (kept**2).mean()
+    share = np.maximum(1 - floor / np.maximum(left_out**2, np.finfo(float).tiny), 0) / variance
+    squares = left_out**2 * share
+    spread = (weights @ squares + PRIOR_COUNT * squares.mean()) / (weights.sum(axis=1) + PRIOR_COUNT)
+    correction = _coverage_correction(left_out, np.sqrt(variance * spread + floor)) ** 2
+    return ExpectedError(
+        locations, left_out_products * share[:, None] * correction, kept_products.mean(axis=0) * correction
+    )
+
+
+def nearest_distances(lab: Array, locations: Array) -> Array:
+    """ΔE*ab (n,) from L*a*b* (n, 3) to the nearest of the entries (E, 3); infinite without entries."""
+    if not len(locations):
+        return np.full(len(lab), np.inf)
+    rows = max(BLOCK_NUMBERS // len(locations), 1)
+    parts = [
+        _distances(lab[first : first + rows], locations).min(axis=1) for first in range(0, len(lab), rows)
+    ]
+    return np.concatenate(parts) if parts else np.zeros(0)
+
+
+def familiar_distance(locations: Array) -> float:
+    """ΔE*ab within which `FAMILIAR` of the entries at L*a*b* (E, 3) have another one; 0 for fewer than two."""
+    if len(locations) < 2:
+        return 0.0
+    step = -(-len(locations) // MAX_ROWS)
+    rows = np.arange(0, len(locations), step)
+    distances = _distances(locations[rows], locations)
+    distances[np.arange(len(rows)), rows] = np.inf
+    return float(np.quantile(distances.min(axis=1), FAMILIAR))
+
+
+def _distances(first: Array, second: Array) -> Array:
+    """ΔE*ab (n, m) by components, as sums of squares would cancel."""
+    squares = np.zeros((len(first), len(second)))
+    for axis in range(3):
+        difference = first[:, axis, None] - second[None, :, axis]
+        squares += difference * difference
+    return np.sqrt(squares)
+
+
+def _coverage_correction(errors: Array, expected: Array) -> float:
+    """Factor that gives expected errors (E,) the `COVERAGE` of errors (E,), which have heavier tails than a normal.
+
+    The quantiles are those of conformal prediction: they hold on average for one more entry.
+    """
+    count = len(errors)
+    ratio = errors / np.maximum(expected, np.finfo(float).tiny)
+    found = [
+        np.quantile(ratio, min(share * (count + 1) / count, 1), method="higher") / multiple
+        for share, multiple in COVERAGE
+    ]
+    square = np.square(found).mean()
+    return float(square ** (0.5 * count / (count + TRUST))) if square > 0 else 1.0

@@ -1,0 +1,147 @@
+"""Standard errors of answers under any light, learnt from atlas entries that were left out (docs/mathematics.md, 7).
+
+RGB does not identify a material: the errors are those of materials like the entries of the atlas. `unlike_atlas` finds
+colours that no entry is near to; of a material of another family with the colour of an entry nothing can be known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.colorimetry.delta_e import delta_e_spectra, lab, rgb_to_lab
+from uplift.colorimetry.expected_error import (
+    ExpectedError,
+    expected_error,
+    expected_products,
+    nearest_distances,
+)
+from uplift.colorimetry.sensor import Light
+from uplift.common.arrays import Array, Mask
+from uplift.common.errors import OptionError
+from uplift.cube import CubeData
+from uplift.cube.data import LeftOut
+from uplift.lookup.nodes import around
+from uplift.models import reflectance
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LightErrors:
+    """Standard errors under a light.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    expected : ExpectedError
+        Squares of ΔE00, without entry boxes.
+    entries : ndarray, shape (E,)
+        ΔE00 between the measured and the stored spectrum of each entry.
+    """
+
+    data: CubeData
+    expected: ExpectedError
+    entries: Array
+
+    def __call__(self, rgb: Array) -> Array:
+        """Root-mean-square ΔE00 (n, 1) expected at linear RGB (n, 3) in [0, 1]."""
+        nodes = around(self.data, rgb)
+        lattice = np.sqrt(self.expected(rgb_to_lab(self.data.sensor, rgb)))
+        return nodes.mix(lattice, self.entries[nodes.entry, None])
+
+
+def light_errors(data: CubeData, light: Light) -> LightErrors:
+    """Learn the standard errors under a light.
+
+    Parameters
+    ----------
+    data : CubeData
+        A cube that has left-out entries.
+    light : Light
+        A light at the wavelengths of the sensor.
+
+    Returns
+    -------
+    LightErrors
+        Standard errors by colour.
+
+    Raises
+    ------
+    OptionError
+        The cube has no left-out entries.
+    """
+    left_out, at = _left_out(data), data.sensor.wavelengths
+    missed = delta_e_spectra(light, left_out.answered, left_out.measured)
+    plain = delta_e_spectra(light, reflectance(data.model, data.atlas.coefficients, at), left_out.measured)
+    rows = np.arange(len(left_out.measured))
+    stored = delta_e_spectra(light, data.entry_spectra.reflectance(rows, at), left_out.measured)
+    return LightErrors(data, expected_error(data.entry_lab, missed, plain), stored)
+
+
+def lab_covariance(data: CubeData, light: Light, rgb: Array) -> Array:
+    """Expected covariance of the difference, in CIE L*a*b*, between measurements and answers under a light.
+
+    Parameters
+    ----------
+    data : CubeData
+        A cube that has left-out entries.
+    light : Light
+        A light at the wavelengths of the sensor.
+    rgb : ndarray, shape (n, 3)
+        Linear RGB in [0, 1].
+
+    Returns
+    -------
+    ndarray, shape (n, 3, 3)
+        Positive semidefinite. [:, 1:, 1:] is that of a* and b*.
+
+    Raises
+    ------
+    OptionError
+        The cube has no left-out entries.
+    """
+    left_out = _left_out(data)
+    spectra = (left_out.answered, reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths))
+    errors = [delta_e_spectra(light, each, left_out.measured) for each in spectra]
+    products = [_products(light, each, left_out.measured) for each in spectra]
+    learnt = expected_products(data.entry_lab, *errors, *products)
+    return learnt(rgb_to_lab(data.sensor, rgb)).reshape(-1, 3, 3)
+
+
+def unlike_atlas(data: CubeData, rgb: Array) -> Mask:
+    """Find colours that are farther from all entries than nearly all entries are from their nearest neighbour.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    rgb : ndarray, shape (n, 3)
+        Linear RGB in [0, 1].
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        True for all colours if the atlas has fewer than two entries.
+    """
+    return nearest_distances(rgb_to_lab(data.sensor, rgb), data.entry_lab) > data.familiar_distance
+
+
+def _left_out(data: CubeData) -> LeftOut:
+    if data.atlas.left_out is None:
+        raise OptionError(
+            f"standard errors under other lights than {data.error_illuminant} need a cube with the left-out entries "
+            "of its atlas",
+            code="no-left-out-entries",
+            hint="build the cube again, with an atlas of at least 8 entries",
+        )
+    return data.atlas.left_out
+
+
+def _products(light: Light, answered: NDArray[Any], measured: NDArray[Any]) -> Array:
+    """Products (E, 9) of the components of the differences in L*a*b*."""
+    answered_lab, measured_lab = (lab(spectra @ light.xyz.T, light.white) for spectra in (answered, measured))
+    difference = measured_lab - answered_lab
+    return (difference[:, :, None] * difference[:, None, :]).reshape(-1, 9)
