@@ -104,6 +104,7 @@ demo-render: $(INSTALLED)
 textures: pictures
 	$(BIN)/python -m benchmarks.textures
 	$(BIN)/python -m benchmarks.textures.memory
+	$(BIN)/python -m benchmarks.textures.storage
 	$(BIN)/python -m tools.render_docs textures
 
 # Gamut mappings: docs/display.md and its picture.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -148,15 +149,17 @@ def _missing_model(path: Path) -> TextureError:
     )
 
 
-def multipliers_of_rounded(model: Moments, moments: Array) -> tuple[Array, Mask]:
+def multipliers_of_rounded(
+    model: Moments, moments: Array, shares: Sequence[float] = GREY_SHARES
+) -> tuple[Array, Mask]:
     """Return multipliers (n, C) of moments (n, C) that were rounded or filtered, and their validity (n,).
 
-    Rounding can move moments of saturated colours out of the moment space. They are mixed with as little grey as is
-    needed to return.
+    Rounding can move moments of saturated colours out of the moment space. They are mixed with the least of
+    ``shares`` of grey that returns them.
     """
     multipliers, valid = model.try_from_storage(moments)
     grey = np.eye(model.count)[0] / 2
-    for share in GREY_SHARES:
+    for share in shares:
         if valid.all():
             break
         mixed = (1 - share) * moments[~valid] + share * grey
