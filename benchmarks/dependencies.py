@@ -20,9 +20,15 @@ from uplift.lab.timing import Spread, spread
 RUNS = 5
 FOLDERS = {"uplift": "uplift", "cli": "uplift_cli"}
 """Folders of the source, and the packages that they are installed as."""
-MODULES = {"colour-science": "colour", "pillow": "PIL"}
+MODULES = {
+    "colour-cxf": "colour_cxf",
+    "colour-science": "colour",
+    "opencolorio": "PyOpenColorIO",
+    "pillow": "PIL",
+    "python-calamine": "python_calamine",
+}
 """Modules whose name differs from that of the distribution."""
-EXTRAS = ("cluster", "mitsuba")
+EXTRAS = ("cluster", "io", "mitsuba")
 """Extras of users; the others are for development."""
 
 

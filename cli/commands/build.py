@@ -23,6 +23,7 @@ from ..params.options import (
     entry_coefficient_count,
     entry_coefficients_options,
     force_option,
+    input_space_option,
     light_option,
     measured_option,
     out_of_gamut_option,
@@ -115,6 +116,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
     help="Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. Only nearly box-shaped spectra differ.",
 )
 @encoding_option("--scene images")
+@input_space_option("--scene images")
 @click.option("--plan", "plan_path", metavar="PLAN", help="Build the cube of a plan by 'uplift plan'.")
 @out_of_gamut_option("clip", "linear RGB of --scene images")
 @click.option(
@@ -133,6 +135,7 @@ def command(
     output: str | None,
     images: tuple[str, ...],
     encoding: str,
+    input_space: str | None,
     method: str,
     force: bool,
     quiet: bool,
@@ -169,7 +172,7 @@ def command(
     build: Callable[..., Cube]
     inputs: tuple[str | Path | None, ...]
     if plan_path is None:
-        scene = _scene(images, encoding, method)
+        scene = _scene(images, encoding, method, input_space)
         inputs = (*files, *options["library"], *(scene.paths if scene else ()))
         given = {name: value for name, value in options.items() if value not in (None, ())}
         given["coefficients"] = coefficient_count(coefficients, moments)
@@ -196,13 +199,18 @@ def _build(files: tuple[str, ...], measured: Any, **options: Any) -> Cube:
     return build(read_atlas(*files, measured=measured) if files else None, **options)
 
 
-def _scene(images: tuple[str, ...], encoding: str, method: str) -> Images | None:
+def _scene(images: tuple[str, ...], encoding: str, method: str, space: str | None) -> Images | None:
     """Return the images of the scene. Raises click's error for their options without images."""
     from uplift.io.scene_colours import Images
 
     if images:
-        return Images(tuple(map(Path, expand_patterns(images))), encoding, method)
-    for option, value, default in (("--encoding", encoding, "auto"), ("--out-of-gamut", method, "clip")):
+        return Images(tuple(map(Path, expand_patterns(images))), encoding, method, space)
+    options = (
+        ("--encoding", encoding, "auto"),
+        ("--out-of-gamut", method, "clip"),
+        ("--input-space", space, None),
+    )
+    for option, value, default in options:
         if value != default:
             raise click.UsageError(f"{option} applies to --scene images, and no image is given.")
     return None
@@ -230,5 +238,16 @@ def _planned_build(
 
 
 def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], options: dict[str, Any]) -> str:
-    stem = "+".join(Path(atlas).stem for atlas in atlases) or re.sub("[ /]", "-", options["space"]).lower()
-    return f"{stem}-{options['dim']}{'-scene' if images else ''}.uplift"
+    space = re.sub("[ /]", "-", _space_name(options["space"])).lower()
+    stem = "+".join(Path(atlas).stem for atlas in atlases) or space
+    suffix = f"-{space}" if atlases and space != "srgb" else ""
+    return f"{stem}-{options['dim']}{suffix}{'-scene' if images else ''}.uplift"
+
+
+def _space_name(name: str) -> str:
+    """Return the name of a space by one of its names."""
+    if name == "sRGB":
+        return name
+    from uplift.colorimetry.observer import look_up_space
+
+    return str(look_up_space(name).name)

@@ -17,10 +17,12 @@ from ..params.options import (
     encoding_option,
     force_option,
     format_option,
+    input_space_option,
     out_of_gamut_option,
     wavelengths_option,
 )
 from ..params.plots import plot_option
+from ..params.spaces import resolve_space
 from ..params.wavelengths import parse_wavelengths
 from .query import ColourCommand
 
@@ -90,6 +92,7 @@ WRITERS = {"table": as_table, "json": as_json}
 @click.option("--over", metavar="IMAGE", help="Image to paint over (EXR, PNG, JPEG, TIFF).")
 @click.option("-o", "--output", metavar="EXR", help="With --over: image to write.")
 @encoding_option("the image of --over")
+@input_space_option("the colours and of the image of --over", "--space", default="that of the cube")
 @force_option()
 def command(
     words: tuple[str, ...],
@@ -110,6 +113,7 @@ def command(
     over: str | None,
     output: str | None,
     encoding: str,
+    input_space: str | None,
     force: bool,
 ) -> None:
     """Mix colours as spectra. A cube converts each colour to a spectrum, and the mixture has its illuminant.
@@ -141,13 +145,14 @@ def command(
     check_outputs((swatches, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
     medium = _medium(thickness, INCIDENCES[incidence](refractive_index), km_constants)
-    resolver = make_resolver(cube, files, cube.resolve_wavelengths(parse_wavelengths(wavelengths)))
+    space = resolve_space(input_space)
+    resolver = make_resolver(cube, files, cube.resolve_wavelengths(parse_wavelengths(wavelengths)), space)
     ingredients = resolver.ingredients(words)
     if theories:
         print_theories(cube, ingredients, method, style)
         return
     if over is not None and output is not None:
-        paint(make_brush(cube, kind, ingredients, medium, encoding, method), over, output, force=force)
+        paint(make_brush(cube, kind, ingredients, medium, encoding, method, space), over, output, force=force)
         return
     mixture = make_mixture(resolver, kind, ingredients, medium, ground, steps, method)
     if swatches is not None:

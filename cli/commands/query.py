@@ -20,18 +20,19 @@ from ..params.options import (
     fill_option,
     force_option,
     format_option,
+    input_space_option,
     light_option,
     out_of_gamut_option,
-    primaries_option,
     wavelengths_option,
 )
 from ..params.plots import plot_option
-from ..params.primaries import parse_primaries
+from ..params.spaces import resolve_space
 from ..params.wavelengths import parse_wavelengths
 from ..startup import hide_drawing_notes
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Light
+    from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
     from uplift.lookup import Cube, QueryResult
 
@@ -61,9 +62,7 @@ class ColourCommand(click.Command):
     show_default=True,
     help="Interpolate spectra (exact), coefficients (fast), coefficients with refinement, or use the nearest node.",
 )
-@primaries_option(
-    "Display of the linear RGB: a space by name, or x,y of red, green, blue and white. [default: that of the cube]"
-)
+@input_space_option("the colours", "--space", default="that of the cube")
 @out_of_gamut_option()
 @fill_option()
 @light_option("Illuminant of a standard error, in addition to that of the cube", "none")
@@ -77,7 +76,7 @@ def command(
     encoded: bool,
     wavelengths: str | None,
     mode: str,
-    primaries: str | None,
+    input_space: str | None,
     method: str,
     fill_missing: bool,
     lights: tuple[str, ...],
@@ -87,8 +86,8 @@ def command(
 ) -> None:
     """Query the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
 
-    Numbers are linear RGB from 0 to 1 in the cube's space, or of the display of --primaries. Hex colours, and numbers
-    with --encoded, are encoded by the transfer function of the cube's space.
+    Numbers are linear RGB from 0 to 1 in the cube's space, or in that of --space. Hex colours, and numbers with
+    --encoded, are encoded by the transfer function of the space.
 
     \b
     Examples:
@@ -97,7 +96,7 @@ def command(
       uplift query --encoded 204 51 25 --wavelengths 400:700:10 --format json
       uplift query --input colours.csv --format csv > spectra.csv
       uplift query 1.4 0.3 -0.1 --out-of-gamut desaturate
-      uplift query --primaries P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
+      uplift query --space P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
       echo 0.5,0.5,0.5 | uplift query - --format json
       uplift query '#cc3319' --cube macbeth-32.uplift --light FL11 --light HP1
 
@@ -107,19 +106,17 @@ def command(
     Lines of files and of standard input are answered in blocks as they come. An error in a later block follows the
     answers to earlier ones.
     """
-    from uplift.colorimetry.gamut import conversion
     from uplift.common.files import check_output
     from uplift.lookup import load
 
     if plot_path is not None:
         check_output(plot_path, inputs=(cube_path, input_path), force=force)
     cube = load(cube_path)
-    bounded = method == "error" and primaries is None
-    blocks = _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded)
-    to_cube = None if primaries is None else conversion(parse_primaries(primaries), cube.data.sensor).T
+    bounded = method == "error" and input_space is None
+    space = resolve_space(input_space)
+    blocks = _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded, space=space)
     answers = _Answers(
         cube,
-        to_cube,
         method,
         parse_wavelengths(wavelengths),
         mode,
@@ -142,7 +139,6 @@ class _Answers:
     """Answers to blocks of linear RGB (n, 3), and the numbers of colours that were mapped or filled."""
 
     cube: Cube
-    to_cube: Array | None
     method: str
     wavelengths: Array | None
     mode: str
@@ -159,9 +155,8 @@ class _Answers:
         from uplift.lookup import query
 
         for block in blocks:
-            rgb = block if self.to_cube is None else block @ self.to_cube
-            mapped = map_to_gamut(rgb, self.cube.data.sensor, self.method)
-            self.count += len(rgb)
+            mapped = map_to_gamut(block, self.cube.data.sensor, self.method)
+            self.count += len(block)
             self.mapped += mapped.count
             self.max_change = max(self.max_change, mapped.max_change)
             if self.fill_missing:
@@ -194,7 +189,13 @@ def _read_lights(names: Sequence[str], cube: Cube) -> list[Light]:
 
 
 def _read_colours(
-    words: tuple[str, ...], path: str | None, cube: Cube, *, encoded: bool, bounded: bool
+    words: tuple[str, ...],
+    path: str | None,
+    cube: Cube,
+    *,
+    encoded: bool,
+    bounded: bool,
+    space: ImageSpace | None,
 ) -> Iterable[Array]:
     """Return blocks of linear RGB (n, 3) from arguments, a file or standard input."""
     from ..params.colours import from_arguments
@@ -204,11 +205,13 @@ def _read_colours(
     if bool(words) == (path is not None):
         raise click.UsageError("Give one colour, or --input FILE, or '-'. See 'uplift query --help'.")
     if path is None:
-        return [from_arguments(words, cube, encoded=encoded)]
-    return _read_file(path, cube, encoded=encoded, bounded=bounded)
+        return [from_arguments(words, cube, encoded=encoded, space=space)]
+    return _read_file(path, cube, encoded=encoded, bounded=bounded, space=space)
 
 
-def _read_file(path: str, cube: Cube, *, encoded: bool, bounded: bool) -> Iterator[Array]:
+def _read_file(
+    path: str, cube: Cube, *, encoded: bool, bounded: bool, space: ImageSpace | None
+) -> Iterator[Array]:
     from uplift.common.errors import ColourError
 
     from ..params.colours import from_table
@@ -216,7 +219,7 @@ def _read_file(path: str, cube: Cube, *, encoded: bool, bounded: bool) -> Iterat
     name = "standard input" if path == "-" else path
     try:
         with click.open_file(path, "rb") as file:
-            yield from from_table(file, name, cube, encoded=encoded, bounded=bounded)
+            yield from from_table(file, name, cube, encoded=encoded, bounded=bounded, space=space)
     except OSError as error:
         raise ColourError(
             f"cannot be read: {error.strerror}",

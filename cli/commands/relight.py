@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,12 +18,15 @@ from ..params.options import (
     encoding_option,
     force_option,
     format_option,
+    input_space_option,
     light_option,
     out_of_gamut_option,
 )
+from ..params.spaces import resolve_space
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.spaces import ImageSpace
     from uplift.lookup import Cube
     from uplift.report.relight import Relit
 
@@ -39,6 +43,7 @@ MAX_SIDE = 960
 @click.option("--cube", "cube_path", metavar="FILE", help="Cube whose spectra are shown as well.")
 @atlas_option("Measured spectra; a cube is built from them and shown as well")
 @encoding_option("the images")
+@input_space_option("the images", "--space")
 @out_of_gamut_option("clip", "pixels")
 @click.option(
     "-o",
@@ -56,6 +61,7 @@ def command(
     cube_path: str | None,
     files: tuple[str, ...],
     encoding: str,
+    input_space: str | None,
     method: str,
     output: str,
     style: str,
@@ -90,7 +96,9 @@ def command(
         files = files or (SAMPLE_ATLAS,)
     with spinner("computing spectra"):
         cubes = _cubes(cube_path, files)
-        relit = [_relight(path, cubes, lights or RELIGHT_LIGHTS, encoding, method) for path in paths]
+        space = resolve_space(input_space)
+        read = partial(_relight, cubes=cubes, encoding=encoding, method=method, space=space)
+        relit = [read(path, lights=lights or RELIGHT_LIGHTS) for path in paths]
         write(relit, output, force=force)
     WRITERS[style](relit, output)
 
@@ -124,12 +132,21 @@ def _cubes(path: str | None, atlases: tuple[str, ...]) -> dict[str, Cube]:
     return cubes
 
 
-def _relight(path: str, cubes: dict[str, Cube], lights: tuple[str, ...], encoding: str, method: str) -> Relit:
+def _relight(
+    path: str,
+    cubes: dict[str, Cube],
+    lights: tuple[str, ...],
+    encoding: str,
+    method: str,
+    space: ImageSpace | None,
+) -> Relit:
     from uplift.io.texture.picture import read_picture
     from uplift.report.relight import relight
 
     sensor = next(iter(cubes.values())).data.sensor
-    picture = read_picture(path, sensor, max_side=MAX_SIDE, encoding=encoding, out_of_gamut=method)
+    picture = read_picture(
+        path, sensor, max_side=MAX_SIDE, encoding=encoding, out_of_gamut=method, space=space
+    )
     for warning in picture.warnings:
         warnings.warn(warning, stacklevel=1)
     return relight(Path(path).name, picture.rgb, cubes, lights, reduction=picture.reduction)

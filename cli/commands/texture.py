@@ -22,6 +22,7 @@ from ..params.options import (
     encoding_option,
     fill_option,
     force_option,
+    input_space_option,
     out_of_gamut_option,
     quiet_option,
     wavelengths_option,
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
     help="16 or 32 bits per channel. [default: half for spectra, else float]",
 )
 @encoding_option()
+@input_space_option("the images", "--space")
 @out_of_gamut_option("clip")
 @fill_option()
 @click.option(
@@ -76,6 +78,7 @@ def command(
     wavelengths: str | None,
     depth: str | None,
     encoding: str,
+    input_space: str | None,
     method: str,
     fill_missing: bool,
     processes: int | None,
@@ -92,11 +95,15 @@ def command(
       uplift texture wood.png wood.exr --cube macbeth-32.uplift --store moments
       uplift texture 'shot.*.exr' uplifted --wavelengths 400:700:10 --resume
       uplift texture fire.exr bright.exr --out-of-gamut scale
+      uplift texture wood.tx.exr wood.exr --space ACEScg
       uplift texture shot.*.exr uplifted --scheduler tcp://10.0.0.5:8786
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
     and mip-mapped. 'multipliers' can be evaluated directly, by the formula in the header. Alpha and other channels are
     copied. Several images, or a quoted pattern, go into the folder OUT.
+
+    Colours of an image in another RGB space than the cube's are converted. Its space is that of --space, or the one
+    that the file states by colorInteropID, chromaticities, code points or an ICC profile.
 
     Colours outside [0, 1] are treated by --out-of-gamut, and NaN becomes 0. A warning counts both.
     """
@@ -109,7 +116,7 @@ def command(
     form = _pixel_encoding(kind, parse_wavelengths(wavelengths))
     cube = None if cube_path is None else os.path.abspath(cube_path)
     settings = texture.TextureSettings(
-        cube, form, depth, encoding, max(cores // count, 1), fill_missing, method
+        cube, form, depth, encoding, max(cores // count, 1), fill_missing, method, input_space
     )
     jobs = [texture.Job(settings, source.absolute(), path.absolute(), force) for source, path in pairs]
     pending = texture.pending(jobs, resume=resume)
@@ -180,4 +187,6 @@ def _print_summary(target: str, converted: list[Conversion], skipped: int, secon
     size = sum(conversion.target.stat().st_size for conversion in converted)
     suffix = f", {skipped} skipped" if skipped else ""
     count = f"{len(converted)} texture{'s' * (len(converted) != 1)}{suffix}"
-    say(f"{target}: {count}, {pixels:,} pixels, {size / 1e6:.1f} MB, {seconds:.1f} s")
+    spaces = ", ".join(dict.fromkeys(space for each in converted for space in each.spaces))
+    origin = f", converted from {spaces}" if spaces else ""
+    say(f"{target}: {count}, {pixels:,} pixels, {size / 1e6:.1f} MB, {seconds:.1f} s{origin}")

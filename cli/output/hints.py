@@ -28,7 +28,7 @@ HINTS = {
     "file-exists": "use --force to replace it, or choose another name",
     "invalid-chart": "name the CSV file that 'uplift chart' wrote",
     "invalid-codes": "leave out --encoded for linear floats",
-    "invalid-primaries": "give --primaries as x,y of red, green, blue and white, or the name of an RGB space",
+    "invalid-primaries": "give --space as x,y of red, green, blue and white, or the name of an RGB space",
     "invalid-thickness": "use --thickness 0 or more",
     "invalid-wavelengths": "write START:END:STEP or a list in nm, such as 380:780:5",
     "lattice-mismatch": "build the cube again, or replace it with --update",

@@ -12,6 +12,7 @@ from .console import say
 from .progress import progress_bar
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.spaces import ImageSpace
     from uplift.design.mixing.overpaint import Overpainter
     from uplift.design.mixing.recipes import Medium
     from uplift.lookup import Cube
@@ -20,7 +21,13 @@ if TYPE_CHECKING:
 
 
 def make_brush(
-    cube: Cube, kind: str, ingredients: list[Ingredient], medium: Medium, encoding: str, method: str
+    cube: Cube,
+    kind: str,
+    ingredients: list[Ingredient],
+    medium: Medium,
+    encoding: str,
+    method: str,
+    space: ImageSpace | None,
 ) -> Overpainter:
     """Mix a coat and prepare it at the wavelengths of the cube's sensor."""
     enable_jit_cache()
@@ -31,7 +38,7 @@ def make_brush(
     parts = [one.parts for one in ingredients]
     mixture = make_coat(kind, library_ingredients(ingredients, count), parts, medium)
     recipe = {"kind": kind, "of": [[one.parts, one.name] for one in ingredients], **asdict(medium)}
-    return prepare(cube, mixture, recipe, encoding=encoding, out_of_gamut=method)
+    return prepare(cube, mixture, recipe, encoding=encoding, out_of_gamut=method, space=space)
 
 
 def paint(brush: Overpainter, image: str, output: str, *, force: bool) -> None:

@@ -16,6 +16,7 @@ from uplift.common.quoting import format_value
 from .text_lines import HINT, line_blocks
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
     from uplift.lookup import Cube
 
@@ -32,16 +33,20 @@ class Colour:
     encoded: bool
 
 
-def from_arguments(words: Sequence[str], cube: Cube, *, encoded: bool) -> Array:
-    """Parse one colour, 'R G B', 'R,G,B' or '#rrggbb', into linear RGB (1, 3). Raises `ColourError`."""
+def from_arguments(
+    words: Sequence[str], cube: Cube, *, encoded: bool, space: ImageSpace | None = None
+) -> Array:
+    """Parse one colour, 'R G B', 'R,G,B' or '#rrggbb', into linear RGB (1, 3) of the cube. Raises `ColourError`."""
     parts = [part for word in words for part in re.split(r"[,\s]+", word) if part]
     colour = _parse(parts)
     if colour is None or len(parts) > 3:
         raise _unreadable(parts)
-    return _linear([colour], cube, encoded=encoded)
+    return _linear([colour], cube, encoded=encoded, space=space)
 
 
-def from_table(file: IO[bytes], name: str, cube: Cube, *, encoded: bool, bounded: bool) -> Iterator[Array]:
+def from_table(
+    file: IO[bytes], name: str, cube: Cube, *, encoded: bool, bounded: bool, space: ImageSpace | None = None
+) -> Iterator[Array]:
     """Parse lines of 'r,g,b' or hex colours into blocks of linear RGB (n, 3), as the lines come.
 
     A first line without numbers is a header. Further columns are ignored. Linear RGB must lie in [0, 1] if ``bounded``.
@@ -54,7 +59,7 @@ def from_table(file: IO[bytes], name: str, cube: Cube, *, encoded: bool, bounded
             _check_range(colour, name, line, encoded=encoded or colour.encoded, bounded=bounded)
         if colours:
             empty = False
-            yield _linear(list(colours.values()), cube, encoded=encoded)
+            yield _linear(list(colours.values()), cube, encoded=encoded, space=space)
     if empty:
         raise ColourError(
             "has no colours", code="no-colours", path=name, hint="give lines of r,g,b or of hex colours"
@@ -130,11 +135,17 @@ def _number(word: str) -> float | None:
         return None
 
 
-def _linear(colours: list[Colour], cube: Cube, *, encoded: bool) -> Array:
-    """Decode hex colours, and with ``encoded`` all others, by the transfer function of the cube's space."""
+def _linear(colours: list[Colour], cube: Cube, *, encoded: bool, space: ImageSpace | None) -> Array:
+    """Decode hex colours, and with ``encoded`` all others, and convert colours of another space to the cube's."""
     import numpy as np
 
     values = np.array([colour.numbers for colour in colours], dtype=float)
     mask = np.array([encoded or colour.encoded for colour in colours])
-    values[mask] = cube.decode(values[mask])
-    return values
+    if space is None or space.decode is None:
+        values[mask] = cube.decode(values[mask])
+    else:
+        values[mask] = space.decode(values[mask] / 255)
+        if space.floats_are_codes:
+            values[~mask] = space.decode(values[~mask])
+    matrix = None if space is None else space.matrix_to(cube.data.sensor)
+    return values if matrix is None else np.asarray(values @ matrix.T)

@@ -14,6 +14,7 @@ from .colours import from_arguments
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
+    from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
     from uplift.design.mixing.recipes import Ingredients
     from uplift.lookup import Cube
@@ -35,11 +36,15 @@ class Ingredient:
 
 @dataclass(frozen=True, eq=False)
 class SpectrumResolver:
-    """Spectra at ``wavelengths`` (N,) of colours, by a cube, and of named entries, by the cube and an atlas."""
+    """Spectra at ``wavelengths`` (N,) of colours, by a cube, and of named entries, by the cube and an atlas.
+
+    Colours are in ``space``, or in that of the cube.
+    """
 
     cube: Cube
     atlas: Atlas
     wavelengths: Array
+    space: ImageSpace | None = None
 
     def ingredients(self, words: Sequence[str]) -> list[Ingredient]:
         """Parse ingredients.
@@ -83,7 +88,7 @@ class SpectrumResolver:
         from uplift.common.errors import ColourError
 
         try:
-            return from_arguments([text], self.cube, encoded=False)[0]
+            return from_arguments([text], self.cube, encoded=False, space=self.space)[0]
         except ColourError as error:
             raise ColourError(
                 f"{error.problem} and not an atlas entry",
@@ -95,14 +100,16 @@ class SpectrumResolver:
         return self.cube.reflectance(rgb, self.wavelengths)
 
 
-def make_resolver(cube: Cube, atlases: tuple[str, ...], wavelengths: Array) -> SpectrumResolver:
+def make_resolver(
+    cube: Cube, atlases: tuple[str, ...], wavelengths: Array, space: ImageSpace | None = None
+) -> SpectrumResolver:
     """Resolve spectra at the wavelengths of the cube's sensor, for colours, followed by ``wavelengths``, for output."""
     import numpy as np
 
     from uplift.atlas import Atlas, read_atlas
 
     grid = np.concatenate([cube.data.sensor.wavelengths, wavelengths])
-    return SpectrumResolver(cube, read_atlas(*atlases) if atlases else Atlas(), grid)
+    return SpectrumResolver(cube, read_atlas(*atlases) if atlases else Atlas(), grid, space)
 
 
 def library_ingredients(ingredients: list[Ingredient], count: int | None = None) -> Ingredients:

@@ -120,9 +120,17 @@ def out_of_gamut_option(default: str = "error", subject: str = "linear RGB") -> 
     )
 
 
-def primaries_option(help: str) -> Decorator:
-    """``--primaries``, to be parsed by `.primaries.parse_primaries`."""
-    return click.option("--primaries", metavar="SPACE", help=help, shell_complete=complete_space)
+def input_space_option(subject: str, *names: str, default: str = "as the file states") -> Decorator:
+    """``--input-space`` and its other ``names`` as ``input_space``: text for `uplift.colorimetry.spaces.find_space`."""
+    return click.option(
+        *names,
+        "--input-space",
+        "input_space",
+        metavar="NAME",
+        shell_complete=complete_space,
+        help=f"RGB space of {subject}: a name of OpenColorIO or colour-science such as ACEScg or lin_rec2020, or x,y "
+        f"of red, green, blue and white. [default: {default}]",
+    )
 
 
 def encoding_option(subject: str = "colours") -> Decorator:

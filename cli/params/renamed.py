@@ -1,4 +1,4 @@
-"""Options that were renamed in 0.2.0: the old name is an error whose hint has the new one."""
+"""Options that were renamed: the old name is an error whose hint has the new one."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ RENAMED = {
     ("moments", "--most"): "--max-moments",
     ("query", "--8bit"): "--encoded",
     ("query", "--fill"): "--fill-missing",
+    ("query", "--primaries"): "--space",
     ("stability", "--drawn"): "--samples",
     ("texture", "--as"): "--store",
     ("texture", "--fill"): "--fill-missing",

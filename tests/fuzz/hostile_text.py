@@ -36,7 +36,7 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("query", "--cube", CUBE, "--input", COLOURS, "--format", "csv"),
     ("query", "--cube", CUBE, "--input", COLOURS, "--plot", "x.png"), ("query", "{}"),
     ("query", "--cube", "{}", "0", "0", "0"), ("query", "--input", "{}"), ("{}",), ("--{}",), ("query", "--{}"),
-    ("query", "0", "0", "0", "--wavelengths", "{}"), ("query", "0", "0", "0", "--primaries", "{}"),
+    ("query", "0", "0", "0", "--wavelengths", "{}"), ("query", "0", "0", "0", "--space", "{}"),
     ("query", "0", "0", "0", "--format", "{}"), ("query", "0", "0", "0", "--plot", "{}/x.png"), ("atlas", ATLAS),
     ("atlas", ATLAS, "--format", "json"), ("atlas", ATLAS, "--format", "csv"), ("atlas", TABLE),
     ("atlas", TABLE, "--format", "csv"), ("atlas", TABLE, "--convert", "b.csv"), ("atlas", TABLE, ATLAS),

@@ -6,12 +6,12 @@ import math
 from pathlib import Path
 
 import click
-from uplift_cli.params.primaries import parse_primaries
 from uplift_cli.params.wavelengths import parse_wavelengths
 
 from tests.cli.test_numbers import OPTIONS
 from tests.fuzz.mutate import NUMBERS, Random, mutate
 from tests.fuzz.target import Target
+from uplift.colorimetry.spaces import find_space
 from uplift.common.errors import OptionError, UpliftError
 
 SEEDS = (
@@ -49,7 +49,7 @@ def _use(path: Path) -> None:
     """Parse the text as every option does; it is rejected if none accepts it."""
     text = path.read_bytes().decode("utf-8", "replace")
     accepted, error = 0, OptionError("no options")
-    for parse in (parse_wavelengths, parse_primaries):
+    for parse in (parse_wavelengths, find_space):
         try:
             parse(text)
             accepted += 1

@@ -14,6 +14,7 @@ from tests.conftest import ATLASES, MACBETH
 from tests.helpers import raises, warns
 from tests.io.texture.conftest import PHOTO, WAVELENGTHS, planes, write_exr
 from tests.sparse_cubes import near_black, with_absent_points
+from uplift.colorimetry.gamut import Primaries, conversion
 from uplift.common.errors import ColourError, CubeFileError, OptionError, TextureError, UpliftWarning
 from uplift.cube import AtlasTable, digest
 from uplift.io.scene_colours import Images, cells_touched
@@ -46,10 +47,24 @@ def points_of(cube, *paths, encoding="auto", out_of_gamut="clip"):
     )
 
 
-def test_images_in_another_space_are_warned_about(small_cube, tmp_path):
+def test_images_in_another_space_are_converted(small_cube, tmp_path):
     display_p3 = (0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.329)
-    path = write_exr(tmp_path / "a.exr", planes(np.full((2, 2, 3), 0.5, "f4")), chromaticities=display_p3)
-    with warns("colour-space-mismatch") as caught:
+    rgb = np.broadcast_to(np.array([0.6, 0.3, 0.2], "f4"), (2, 2, 3))
+    path = write_exr(tmp_path / "a.exr", planes(rgb), chromaticities=display_p3)
+    plain = write_exr(tmp_path / "b.exr", planes(rgb))
+    sensor = small_cube.data.sensor
+    (found,) = Images((path,)).colours(path, sensor)
+    expected = conversion(Primaries.of(display_p3), sensor) @ rgb[0, 0]
+    np.testing.assert_allclose(found[0], expected, rtol=0, atol=1e-6)
+    (named,) = Images((plain,), space="lin_p3d65").colours(plain, sensor)
+    np.testing.assert_allclose(named, found, rtol=0, atol=1e-5)
+    assert Images((plain,), space="lin_p3d65").describe()[0]["space"] == "lin_p3d65"
+
+
+def test_unreadable_spaces_are_warned_about(small_cube, tmp_path):
+    rgb = np.full((2, 2, 3), 0.5, "f4")
+    path = write_exr(tmp_path / "a.exr", planes(rgb), colorInteropID="lin_vendor_scene")
+    with warns("colour-space-unreadable") as caught:
         points_of(small_cube, path)
     assert caught[0].path == path
 
@@ -242,7 +257,8 @@ def test_unknown_encodings_and_gamut_mappings_are_refused(plain_cube):
 def test_realisable_colours_of_a_wide_gamut_have_exact_round_trips(tmp_path):
     rgb = np.random.default_rng(2).random((8, 8, 3)).astype(np.float32)
     path = write_exr(tmp_path / "wide.exr", planes(rgb))
-    cube = uplift.build(scene=[path], dim=8, space="ITU-R BT.2020")
+    with warns("colour-space-assumed"):
+        cube = uplift.build(scene=[path], dim=8, space="ITU-R BT.2020")
     data, colours = cube.data, rgb.reshape(-1, 3).astype(float)
     assert data.points.counts()["unfitted"] == 0
     assert data.points.counts()["unrealisable"] > 0

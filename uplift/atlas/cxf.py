@@ -9,7 +9,7 @@ from uplift.atlas.document import Document
 from uplift.atlas.measurements import Measurements, Spectrum, not_used_note, parsed_by
 from uplift.atlas.xml_text import check_xml, root_name
 from uplift.common.errors import AtlasError
-from uplift.common.extras import import_extra
+from uplift.common.extras import needs_extra
 
 NAMESPACE = "http://colorexchangeformat.com/CxF3-core"
 INCREMENT = 10
@@ -36,7 +36,8 @@ def read(document: Document) -> Measurements:
         The file is not valid, or colour-cxf is not installed.
     """
     check_xml(document)
-    cxf3 = import_extra("colour_cxf.cxf3", "io", "CxF files", AtlasError)
+    with needs_extra("io", "CxF files", AtlasError):
+        from colour_cxf import cxf3
     with parsed_by("colour-cxf", "CxF3", document.path):
         found = _content(_parse(document, cxf3.CxF), document.path)
     if not found.spectra and not found.skipped:

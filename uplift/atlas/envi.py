@@ -11,7 +11,7 @@ import numpy as np
 from uplift.atlas.document import MAX_BYTES, Document, SourceLocation, truncate
 from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
 from uplift.common.errors import AtlasError
-from uplift.common.extras import import_extra
+from uplift.common.extras import needs_extra
 from uplift.common.input_file import read_bytes
 
 HEADER, LIBRARY = ".hdr", ".sli"
@@ -38,7 +38,8 @@ def read(document: Document) -> Measurements:
     """
     location = SourceLocation(document.path)
     header, data = _pair(document)
-    envi = import_extra("spectral.io.envi", "io", "ENVI libraries", AtlasError)
+    with needs_extra("io", "ENVI libraries", AtlasError):
+        from spectral.io import envi
     with parsed_by("spectral", "an ENVI spectral library", document.path):
         fields = envi.read_envi_header(os.fspath(header))
         _check_size(fields, data, location)

@@ -13,7 +13,7 @@ from uplift.atlas.document import Document, SourceLocation, truncate
 from uplift.atlas.measurements import PERCENT, Measurements, Spectrum, check_quantity, parsed_by
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
-from uplift.common.extras import import_extra
+from uplift.common.extras import needs_extra
 
 POINTS = re.compile(r"^##\s*NPOINTS\s*=\s*(\S+)", re.IGNORECASE | re.MULTILINE)
 MAX_POINTS = 1_000_000
@@ -51,7 +51,8 @@ def read(document: Document) -> Measurements:
                 "export the file again",
                 code="too-many-points",
             )
-    jcamp = import_extra("jcamp", "io", "JCAMP-DX files", AtlasError)
+    with needs_extra("io", "JCAMP-DX files", AtlasError):
+        import jcamp
     with parsed_by("jcamp", "JCAMP-DX", document.path), contextlib.redirect_stdout(io.StringIO()) as printed:
         content = jcamp.read(document.text.splitlines())
         blocks = content.get("children") or [content]

@@ -12,7 +12,7 @@ from uplift.atlas.grid import NO_TABLE, Cell, Row, read_grid, trimmed
 from uplift.atlas.measurements import Measurements, parsed_by
 from uplift.common.csv import plain_cell
 from uplift.common.errors import AtlasError
-from uplift.common.extras import import_extra
+from uplift.common.extras import needs_extra
 
 ZIP, OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
 MAX_CONTENT = 256 << 20
@@ -36,7 +36,8 @@ def read(document: Document) -> Measurements:
         No sheet has such a table, the file is damaged or too large, or python-calamine is not installed.
     """
     _check_content(document)
-    calamine = import_extra("python_calamine", "io", "spreadsheets", AtlasError)
+    with needs_extra("io", "spreadsheets", AtlasError):
+        import python_calamine as calamine
     with parsed_by("python-calamine", "a spreadsheet", document.path):
         book = calamine.CalamineWorkbook.from_filelike(io.BytesIO(document.data))
         names = list(book.sheet_names)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.gamut import Primaries
+from uplift.colorimetry.gamut import Primaries, conversion
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
+from uplift.colorimetry.ocio import AP0, OcioSpace, find_ocio_space
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.colorimetry.srgb import decode_portably
 from uplift.common.arrays import Array
@@ -19,6 +21,21 @@ from uplift.common.errors import unknown_name
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
 CRT = "Typical CRT Brainard 1997"
 """Phosphors of a cathode-ray tube, measured by D. H. Brainard."""
+SHORT_NAMES = {
+    "ap0": "ACES2065-1",
+    "ap1": "ACEScg",
+    "rec709": "ITU-R BT.709",
+    "bt709": "ITU-R BT.709",
+    "rec2020": "ITU-R BT.2020",
+    "bt2020": "ITU-R BT.2020",
+    "p3": "Display P3",
+    "prophoto": "ProPhoto RGB",
+}
+"""Names of colour-science by usual short ones, in lower case and without punctuation."""
+FIRST_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "Adobe RGB (1998)")
+"""Spaces of colour-science that stand for others with the same primaries."""
+MAX_MATRIX_DIFFERENCE = 1e-3
+"""Largest difference between matrices of the same primaries, of which some are rounded."""
 START, END, STEP = 380.0, 780.0, 5.0
 """Range and step in nm that every table of the CIE covers."""
 
@@ -39,7 +56,8 @@ def sensor(
     Parameters
     ----------
     space : str
-        RGB space.
+        RGB space: a name of colour-science, a short name such as ``AP1``, or a name of OpenColorIO, such as
+        ``lin_rec2020``, of a space that colour-science has as well.
     illuminant : str
         Illuminant that the RGB refer to.
     observer : str
@@ -61,7 +79,7 @@ def sensor(
     [0.5, 0.5, 0.5]
     """
     colour = colour_science()
-    rgb_space = _look_up(colour.RGB_COLOURSPACES, space, "RGB space")
+    rgb_space = look_up_space(space)
     build_light = light(illuminant, observer)
     white = colour.xy_to_XYZ(rgb_space.whitepoint)
     adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
@@ -122,7 +140,7 @@ def primaries(space: str) -> Primaries:
     UnknownNameError
         The space is unknown.
     """
-    rgb_space = _look_up(colour_science().RGB_COLOURSPACES, space, "RGB space")
+    rgb_space = look_up_space(space)
     return Primaries.of([*rgb_space.primaries.ravel(), *rgb_space.whitepoint])
 
 
@@ -317,6 +335,43 @@ def space_names() -> tuple[str, ...]:
     True
     """
     return tuple(colour_science().RGB_COLOURSPACES)
+
+
+def look_up_space(name: str, *, ocio: bool = True) -> Any:
+    """Find an RGB space of colour-science.
+
+    Parameters
+    ----------
+    name : str
+        Its name, a short name, or the name of a space of OpenColorIO with the same primaries and white.
+    ocio : bool
+        Whether to accept names of OpenColorIO.
+
+    Returns
+    -------
+    RGB_Colourspace
+        The object of colour-science.
+
+    Raises
+    ------
+    UnknownNameError
+        The name is unknown.
+    """
+    table = colour_science().RGB_COLOURSPACES
+    for each in (name, SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name)):
+        if each in table:
+            return table[each]
+    found = find_ocio_space(name) if ocio else None
+    if found is not None:
+        for each in (*FIRST_SPACES, *table):
+            if _same_primaries(table[each], found):
+                return table[each]
+    raise unknown_name(name, table, "RGB space")
+
+
+def _same_primaries(space: Any, found: OcioSpace) -> bool:
+    expected = conversion(Primaries.of([*space.primaries.ravel(), *space.whitepoint]), AP0)
+    return bool(np.abs(found.to_ap0(np.eye(3)).T - expected).max() <= MAX_MATRIX_DIFFERENCE)
 
 
 def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:

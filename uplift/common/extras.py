@@ -2,31 +2,26 @@
 
 from __future__ import annotations
 
-import importlib
-from types import ModuleType
+import contextlib
+from collections.abc import Iterator
 
 from uplift.common.errors import UpliftError
 
-__all__ = ["import_extra"]
+__all__ = ["needs_extra"]
 
 
-def import_extra(module: str, extra: str, purpose: str, error: type[UpliftError]) -> ModuleType:
-    """Import a module of an optional package.
+@contextlib.contextmanager
+def needs_extra(extra: str, purpose: str, error: type[UpliftError]) -> Iterator[None]:
+    """Import an optional package in the block, with an error that names the extra of uplift that installs it.
 
     Parameters
     ----------
-    module : str
-        The module.
     extra : str
-        The extra of uplift that installs its package.
+        The extra.
     purpose : str
-        What needs it, as the beginning of a sentence.
+        What needs the package, as the beginning of a sentence.
     error : type of UpliftError
         The type of the error raised.
-
-    Returns
-    -------
-    module
 
     Raises
     ------
@@ -35,15 +30,15 @@ def import_extra(module: str, extra: str, purpose: str, error: type[UpliftError]
 
     Examples
     --------
-    >>> import_extra("math", "io", "sums", UpliftError).__name__
-    'math'
+    >>> with needs_extra("io", "sums", UpliftError):
+    ...     import math
     """
     try:
-        return importlib.import_module(module)
+        yield
     except ImportError as cause:
-        name = module.partition(".")[0]
+        name = (cause.name or "").partition(".")[0]
         raise error(
-            f"{purpose} need the package of the module '{name}', which is not installed",
+            f"{purpose} need the module '{name}', which is not installed",
             code="extra-not-installed",
             hint=f"install it: pip install 'spectral-uplift[{extra}]'",
         ) from cause

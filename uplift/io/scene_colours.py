@@ -13,12 +13,14 @@ import numpy as np
 
 from uplift.colorimetry.gamut import check_method
 from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.io.texture.colours import check_encoding, make_decoder
 from uplift.io.texture.part_layout import colour_channels_by_part
 from uplift.io.texture.source import open_image
+from uplift.io.texture.source_space import space_warnings
 from uplift.lattice import CORNERS, EntryBoxes, Lattice
 from uplift.lattice.entry_boxes import MARGIN
 
@@ -38,6 +40,9 @@ class Images:
         Encoding of the pixels, as for `uplift.io.texture.convert_texture`.
     out_of_gamut : str, default "clip"
         Gamut mapping of linear RGB outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+    space : str, optional
+        RGB space of the images, as for `uplift.colorimetry.spaces.find_space`, by default the one that each file
+        states.
 
     Raises
     ------
@@ -48,6 +53,7 @@ class Images:
     paths: tuple[Path, ...]
     encoding: str = "auto"
     out_of_gamut: str = "clip"
+    space: str | None = None
 
     def __post_init__(self) -> None:
         check_encoding(self.encoding)
@@ -102,6 +108,7 @@ class Images:
             JSON values, one dictionary per image.
         """
         decoding = {"encoding": self.encoding, "out_of_gamut": self.out_of_gamut}
+        decoding |= {} if self.space is None else {"space": self.space}
         return [{"name": path.name, "digest": file_digest(path), **decoding} for path in self.paths]
 
     def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
@@ -119,13 +126,14 @@ class Images:
         ndarray, shape (n, 3)
             Linear RGB in [0, 1].
         """
+        space = None if self.space is None else find_space(self.space)
         with open_image(path) as image:
-            for warning in image.warnings(sensor):
+            for warning in space_warnings(image, sensor, space):
                 warnings.warn(warning, stacklevel=5)
             for part, channels in colour_channels_by_part(image):
                 if channels is None:
                     continue
-                decode = make_decoder(sensor, part, self.encoding, self.out_of_gamut)
+                decode = make_decoder(sensor, part, self.encoding, self.out_of_gamut, space)
                 for _, band in image.bands(part):
                     pixels = band.reshape(-1, band.shape[-1])
                     for first in range(0, len(pixels), BLOCK_PIXELS):

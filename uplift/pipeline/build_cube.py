@@ -194,6 +194,7 @@ def build(
     chosen, method = _chosen_solver(solver, tolerance)
     scene = None if scene is None else _as_scene(scene)
     sensor = observers.sensor(options.space, options.illuminant, options.observer)
+    options = replace(options, space=sensor.space)  # not an alias, which $OCIO may define
     spectrum_model = options.spectrum_model()
     forward = forward_map(spectrum_model, sensor.wavelengths, sensor.matrix)
     scene_lights = [observers.light(name, observer) for name in options.lights]

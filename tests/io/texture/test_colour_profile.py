@@ -1,4 +1,4 @@
-"""Colour spaces that image files state, and warnings about spaces that differ from the cube's."""
+"""Colour spaces that image files state or the caller names, and the conversion of colours to the cube's."""
 
 from __future__ import annotations
 
@@ -12,9 +12,14 @@ import OpenImageIO
 import pytest
 from PIL import Image, ImageCms
 
-from uplift.colorimetry import observer
+from tests.helpers import raises
+from tests.io.texture.conftest import WAVELENGTHS, planes, read_channels, write_exr
+from uplift.colorimetry import delta_e_2000, lab, observer
+from uplift.colorimetry.gamut import SRGB, conversion
+from uplift.common.errors import OptionError, UnknownNameError
 from uplift.io import texture
 from uplift.io.texture import colour_profile
+from uplift.pipeline import build
 
 GAMMA = struct.pack(">4sIIHxx", b"curv", 0, 1, round(2.2 * 256))
 LINEAR = struct.pack(">4sII", b"curv", 0, 0)
@@ -74,11 +79,11 @@ def save(path, data, codes=128):
     return path
 
 
-def problems(spectral, path):
-    """Convert an image and return the text of its colour-space warnings."""
-    warnings = texture.convert(spectral, path, path.with_suffix(".exr"), force=True).warnings
-    assert {warning.code for warning in warnings} <= {"colour-space-mismatch"}
-    return tuple(warning.problem for warning in warnings)
+def convert(spectral, path):
+    """Convert an image; return linear RGB of its first pixel, the spaces converted from, and the codes of warnings."""
+    done = texture.convert(spectral, path, path.with_name("out.exr"), force=True)
+    rgb = read_channels(done.target, "RGB")[0, 0]
+    return rgb, done.spaces, tuple(warning.code for warning in done.warnings)
 
 
 SRGB_PROFILES = {
@@ -90,55 +95,59 @@ SRGB_PROFILES = {
 
 @pytest.mark.parametrize("data", SRGB_PROFILES.values(), ids=SRGB_PROFILES)
 @pytest.mark.parametrize("suffix", ["png", "jpg", "tif"])
-def test_srgb_profiles_trigger_no_warning(data, suffix, spectral, tmp_path):
-    assert problems(spectral, save(tmp_path / f"a.{suffix}", data)) == ()
+def test_srgb_profiles_change_nothing(data, suffix, spectral, tmp_path):
+    plain, *_ = convert(spectral, save(tmp_path / f"b.{suffix}", None))
+    rgb, spaces, codes = convert(spectral, save(tmp_path / f"a.{suffix}", data))
+    assert (spaces, codes) == ((), ())
+    np.testing.assert_array_equal(rgb, plain)
 
 
-UNREADABLE = "unreadable primaries and an unreadable tone curve"
 OTHERS = [
-    (by_matrix("Display P3", SRGB_PARA), "other primaries (Display P3)"),
-    (by_table("sRGB"), "unreadable primaries (sRGB)"),
-    (by_matrix("Adobe RGB (1998)", GAMMA), "other primaries and another tone curve (Adobe RGB (1998))"),
-    (by_matrix("sRGB", GAMMA), "another tone curve (sRGB)"),
-    (by_matrix("sRGB", LINEAR), "another tone curve (sRGB)"),
-    (by_matrix("sRGB", b"mft2 and so on"), f"{UNREADABLE} (sRGB)"),
+    (by_matrix("Display P3", SRGB_PARA), "Display P3", colour.models.eotf_sRGB),
+    (
+        by_matrix("Adobe RGB (1998)", GAMMA),
+        "Adobe RGB (1998)",
+        lambda codes: codes ** (round(2.2 * 256) / 256),
+    ),
+    (by_matrix("sRGB", GAMMA), "sRGB", lambda codes: codes ** (round(2.2 * 256) / 256)),
+    (by_matrix("sRGB", LINEAR), "sRGB", lambda codes: codes),
+    (by_matrix("ITU-R BT.2020", SRGB_TABLE), "ITU-R BT.2020", colour.models.eotf_sRGB),
 ]
+CODES = np.array([120, 128, 110])
 
 
-@pytest.mark.parametrize("suffix", ["png", "jpg", "tif"])
-@pytest.mark.parametrize(("data", "mismatch"), OTHERS)
-def test_profiles_of_other_spaces_trigger_a_warning(suffix, data, mismatch, spectral, tmp_path):
-    path = save(tmp_path / f"a.{suffix}", data)
-    assert problems(spectral, path) == (f"the image states {mismatch}; its colours are read as sRGB",)
+@pytest.mark.parametrize("suffix", ["png", "tif"])
+@pytest.mark.parametrize(("data", "space", "curve"), OTHERS)
+def test_colours_of_other_profiles_are_converted(suffix, data, space, curve, spectral, tmp_path):
+    rgb, spaces, codes = convert(spectral, save(tmp_path / f"a.{suffix}", data, CODES))
+    expected = conversion(observer.primaries(space), SRGB) @ curve(CODES / 255)
+    assert (spaces, codes) == ((space,), ())
+    np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-4)
+
+
+@pytest.mark.parametrize("data", [by_table("sRGB"), by_matrix("sRGB", b"mft2 and so on")])
+def test_profiles_without_curves_trigger_a_warning(data, spectral, tmp_path):
+    plain, *_ = convert(spectral, save(tmp_path / "b.png", None))
+    rgb, spaces, codes = convert(spectral, save(tmp_path / "a.png", data))
+    assert (spaces, codes) == ((), ("colour-space-unreadable",))
+    np.testing.assert_array_equal(rgb, plain)
 
 
 @pytest.mark.parametrize("suffix", ["jpg", "tif"])  # PNG files lose them when they are read
-@pytest.mark.parametrize(
-    ("data", "name"),
-    [
-        (by_matrix("sRGB", GAMMA)[:300], "an ICC profile without a name"),
-        (by_matrix("sRGB", GAMMA).replace(b"RGB ", b"GRAY"), "sRGB"),
-        (b"no profile", "an ICC profile without a name"),
-    ],
-    ids=["cut short", "of greys", "none"],
-)
-def test_unreadable_profiles_trigger_a_warning(suffix, data, name, spectral, tmp_path):
-    (problem,) = problems(spectral, save(tmp_path / f"a.{suffix}", data))
-    assert problem == f"the image states {UNREADABLE} ({name}); its colours are read as sRGB"
+@pytest.mark.parametrize("data", [by_matrix("sRGB", GAMMA)[:300], b"no profile"], ids=["cut short", "none"])
+def test_damaged_profiles_trigger_a_warning(suffix, data, spectral, tmp_path):
+    assert convert(spectral, save(tmp_path / f"a.{suffix}", data))[2] == ("colour-space-unreadable",)
 
 
-def test_the_profile_of_a_wide_gamut_cube_matches_its_space(tmp_path):
+@pytest.mark.parametrize("illuminant", ["D65", "A"])
+def test_the_profile_of_a_wide_gamut_cube_matches_its_space(tmp_path, illuminant):
     """The profile adapts white to D50, the cube adapts it to its illuminant."""
     path = save(tmp_path / "a.png", by_matrix("Adobe RGB (1998)", GAMMA))
     handle = OpenImageIO.ImageInput.open(str(path))
     found = colour_profile.read_profile(handle.spec())
     handle.close()
-    assert found.mismatch(observer.sensor("Adobe RGB (1998)"), encoded=True) == ""
-    assert found.mismatch(observer.sensor("Adobe RGB (1998)", "A"), encoded=True) == ""
-    assert (
-        found.mismatch(observer.sensor("Display P3"), encoded=True)
-        == "other primaries and another tone curve"
-    )
+    assert found.space.agrees_with(observer.sensor("Adobe RGB (1998)", illuminant), encoded=True)
+    assert not found.space.agrees_with(observer.sensor("Display P3"), encoded=True)
 
 
 def chunk(name, data):
@@ -146,20 +155,124 @@ def chunk(name, data):
 
 
 @pytest.mark.parametrize(
-    ("points", "mismatch"),
+    ("points", "space", "curve"),
     [
-        ((1, 13), None),
-        ((12, 13), "other primaries (CICP 12, 13)"),
-        ((9, 16), "other primaries and an unreadable tone curve (CICP 9, 16)"),
-        ((2, 13), "unreadable primaries (CICP 2, 13)"),
+        ((1, 13), None, colour.models.eotf_sRGB),
+        ((12, 13), "Display P3", colour.models.eotf_sRGB),
+        ((9, 8), "ITU-R BT.2020", lambda codes: codes),
+        ((9, 14), "ITU-R BT.2020", colour.models.oetf_inverse_BT2020),
+        ((1, 4), "sRGB", lambda codes: codes**2.2),
     ],
 )
-def test_code_points_of_a_png_are_compared(points, mismatch, spectral, tmp_path):
-    path = save(tmp_path / "a.png", None)
-    data = path.read_bytes()
+def test_code_points_of_a_png_are_used(points, space, curve, spectral, tmp_path):
+    rgb, spaces, codes = convert(spectral, with_code_points(tmp_path / "a.png", points))
+    expected = conversion(observer.primaries(space or "sRGB"), SRGB) @ curve(CODES / 255)
+    assert (spaces, codes) == (() if space is None else (f"CICP {points[0]}, {points[1]}",), ())
+    np.testing.assert_allclose(rgb, expected, rtol=0, atol=1e-3 if points[1] == 14 else 2e-4)
+
+
+@pytest.mark.parametrize("points", [(9, 16), (2, 13)])
+def test_unknown_code_points_trigger_a_warning(points, spectral, tmp_path):
+    assert convert(spectral, with_code_points(tmp_path / "a.png", points))[2] == ("colour-space-unreadable",)
+
+
+def with_code_points(path, points):
+    data = save(path, None, CODES).read_bytes()
     path.write_bytes(data[:33] + chunk(b"cICP", bytes([*points, 0, 1])) + data[33:])
-    expected = () if mismatch is None else (f"the image states {mismatch}; its colours are read as sRGB",)
-    assert problems(spectral, path) == expected
+    return path
+
+
+def exr(path, rgb, **header):
+    values = np.broadcast_to(np.asarray(rgb, np.float32), (3, 4, 3))
+    return write_exr(path, planes(values), **header)
+
+
+ACES = colour.RGB_COLOURSPACES["ACEScg"]
+AP1 = tuple(float(number) for number in (*ACES.primaries.ravel(), *ACES.whitepoint))
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        {"colorInteropID": "lin_ap1_scene"},
+        {"chromaticities": AP1},
+        {"colorInteropID": "lin_ap1_scene", "chromaticities": tuple(AP1)},
+        {"colorInteropID": "unknown", "chromaticities": tuple(AP1)},
+    ],
+)
+def test_spaces_of_openexr_are_converted(header, spectral, tmp_path):
+    rgb, spaces, codes = convert(spectral, exr(tmp_path / "a.exr", [0.3, 0.4, 0.2], **header))
+    expected = conversion(observer.primaries("ACEScg"), SRGB) @ [0.3, 0.4, 0.2]
+    assert (len(spaces), codes) == (1, ())
+    np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)
+
+
+def test_unknown_interop_id_triggers_a_warning(spectral, tmp_path):
+    path = exr(tmp_path / "a.exr", [0.3, 0.4, 0.2], colorInteropID="lin_vendor_scene")
+    assert convert(spectral, path)[2] == ("colour-space-unreadable",)
+
+
+@pytest.mark.parametrize("name", ["AP1", "ACEScg", "lin_ap1_scene", ",".join(map(str, AP1))])
+def test_the_caller_overrides_the_file(name, small_cube, tmp_path):
+    named = texture.prepare(small_cube, depth="float", space=name, threads=1)
+    path = exr(tmp_path / "a.exr", [0.3, 0.4, 0.2], colorInteropID="lin_rec2020_scene")
+    rgb, spaces, codes = convert(named, path)
+    expected = conversion(observer.primaries("ACEScg"), SRGB) @ [0.3, 0.4, 0.2]
+    assert (len(spaces), codes) == (1, ())
+    np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)
+
+
+def test_encoded_spaces_of_opencolorio_decode_floats(small_cube, tmp_path):
+    named = texture.prepare(small_cube, depth="float", space="sRGB - Texture", threads=1)
+    rgb, spaces, _ = convert(named, exr(tmp_path / "a.exr", [0.5, 0.6, 0.4]))
+    assert spaces == ("sRGB Encoded Rec.709 (sRGB)",)
+    np.testing.assert_allclose(rgb, colour.models.eotf_sRGB(np.array([0.5, 0.6, 0.4])), rtol=0, atol=2e-5)
+    codes, *_ = convert(named, save(tmp_path / "b.png", None, CODES))
+    np.testing.assert_allclose(codes, colour.models.eotf_sRGB(CODES / 255), rtol=0, atol=2e-5)
+    linear = texture.prepare(small_cube, encoding="linear", space="sRGB - Texture", threads=1)
+    with raises(OptionError, "encoding-contradicts-space"):
+        convert(linear, tmp_path / "a.exr")
+
+
+def test_unknown_spaces_raise(small_cube):
+    with raises(UnknownNameError, "unknown-rgb-space"):
+        texture.prepare(small_cube, space="lin_ap3", threads=1)
+
+
+def test_images_without_a_statement_are_srgb_codes_or_floats_of_the_cube(wide, tmp_path):
+    rgb, spaces, codes = convert(wide, save(tmp_path / "a.png", None, CODES))
+    expected = conversion(SRGB, observer.primaries("ACEScg")) @ colour.models.eotf_sRGB(CODES / 255)
+    assert (spaces, codes) == (("sRGB",), ("colour-space-assumed",))
+    np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)
+    rgb, spaces, codes = convert(wide, exr(tmp_path / "b.exr", [0.3, 0.4, 0.2]))
+    assert (spaces, codes) == ((), ("colour-space-assumed",))
+    np.testing.assert_allclose(rgb, [0.3, 0.4, 0.2], rtol=0, atol=1e-7)
+
+
+@pytest.fixture(scope="module")
+def wide():
+    """Uplifter of an ACEScg cube."""
+    return texture.prepare(build(dim=5, space="AP1"), texture.Spectrum(WAVELENGTHS), depth="float", threads=1)
+
+
+def test_an_acescg_image_and_its_srgb_twin_give_the_same_spectra(wide, spectral, tmp_path):
+    codes = np.random.default_rng(0).integers(5, 251, (12, 10, 3), dtype=np.uint8)
+    linear = colour.models.eotf_sRGB(codes / 255)
+    Image.fromarray(codes).save(tmp_path / "srgb.png", icc_profile=SRGB_PROFILES["by lcms"])
+    to_ap1 = conversion(SRGB, observer.primaries("ACEScg"))
+    write_exr(tmp_path / "ap1.exr", planes((linear @ to_ap1.T).astype(np.float32)), chromaticities=AP1)
+    places = np.searchsorted(observer.grid(), WAVELENGTHS)
+    lights = [observer.light(name).xyz[:, places] for name in ("D65", "A", "FL11")]
+    for uplifter in (spectral, wide):
+        found = []
+        for name in ("srgb.png", "ap1.exr"):
+            done = texture.convert(uplifter, tmp_path / name, tmp_path / "out.exr", force=True)
+            assert {warning.code for warning in done.warnings} <= {"pixels-unrealisable"}
+            found.append(read_channels(done.target, uplifter.channels))
+        for light in lights:
+            white = light.sum(axis=1)
+            labs = (lab(each @ light.T, white) for each in found)
+            assert delta_e_2000(*labs).max() <= 0.05
 
 
 def test_corrupt_profiles_do_not_raise():
@@ -171,6 +284,8 @@ def test_corrupt_profiles_do_not_raise():
         for place in rng.integers(0, max(len(corrupt), 1), 8 if corrupt else 0):
             corrupt[place] = rng.integers(256)
         found = colour_profile._read_icc("corrupt", bytes(corrupt))
-        assert found.greys is None or found.greys.shape == (256, 3)
-        read += found.greys is not None
+        if found.space is not None:
+            values = found.space.decode(np.linspace([0.0] * 3, [1.0] * 3, 9))
+            assert np.isfinite(values).all()
+            read += 1
     assert 0 < read < 300

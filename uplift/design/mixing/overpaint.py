@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.gamut import check_method, map_to_gamut
+from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Array
 from uplift.design.mixing.coats import Coat
 from uplift.io.slices import exr
@@ -84,6 +85,7 @@ def prepare(
     encoding: str = "auto",
     out_of_gamut: str = "scale",
     threads: int = 2,
+    space: ImageSpace | None = None,
 ) -> Overpainter:
     """Prepare to paint over images.
 
@@ -101,6 +103,8 @@ def prepare(
         Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
     threads : int
         Threads that share a band.
+    space : ImageSpace, optional
+        RGB space of images, by default the one that each file states.
 
     Returns
     -------
@@ -133,4 +137,5 @@ def prepare(
         "uplift.mix": json.dumps(dict(recipe or {}), allow_nan=False),
     }
     sampler = bulk.spectra(cube, threads=1)
-    return Overpainter(sensor, "float", encoding, out_of_gamut, (), header, coat, sampler, threads)
+    settings = (sensor, "float", encoding, out_of_gamut, (), header)
+    return Overpainter(*settings, coat, sampler, threads, space=space)

@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.spaces import ImageSpace
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, TextureError, UpliftWarning
 from uplift.io.texture.source import Part, Values
+from uplift.io.texture.source_space import source_space
 
 Floats = NDArray[np.float32]
 RGBChannels = tuple[int, int, int]
@@ -28,6 +31,8 @@ PAST_TENSE = {
     "desaturate-oklab": "desaturated in Oklab",
 }
 """Words for messages, by the names in `uplift.colorimetry.gamut.METHODS`."""
+HALF_ROUNDING = 1e-3
+"""Linear RGB by which the conversion of half floats between spaces can leave [0, 1] by rounding."""
 COLOUR_TYPES = {"uint8", "uint16", "half", "float", "double"}
 
 
@@ -160,10 +165,28 @@ def _colour_names(part: Part) -> tuple[str, str, str] | None:
 
 @dataclass(frozen=True, eq=False)
 class Decoder:
-    """Conversion of the colours (…, 3) of a part to linear RGB, made by `make_decoder`."""
+    """Conversion of the colours (…, 3) of a part to linear RGB of a sensor, made by `make_decoder`.
 
-    function: Callable[[Values], Floats]
-    is_integer: bool
+    Parameters
+    ----------
+    function : callable
+        From the numbers of the part to linear RGB of its space.
+    is_bounded : bool
+        Whether these are always in [0, 1].
+    maps_codes : bool
+        Whether codes outside [0, 1] are mapped before decoding, as the encoding ends at 0 and 1.
+    matrix : ndarray of shape (3, 3), or None
+        From the space of the part to that of the sensor, None if they agree.
+    sensor : Sensor
+        The sensor.
+    method : str
+        Gamut mapping.
+    """
+
+    function: Callable[[Values], Values]
+    is_bounded: bool
+    maps_codes: bool
+    matrix: Array | None
     sensor: Sensor
     method: str
 
@@ -173,18 +196,43 @@ class Decoder:
         Colours outside are mapped to the gamut and NaN is replaced by 0. With the method ``error`` both raise a
         `ColourError`.
         """
-        pixels = colours.size // 3
-        if self.is_integer or _all_inside(colours):
-            return self.function(colours), Counts(pixels)
+        not_finite = outside = 0
+        max_change = 0.0
+        if not self.is_bounded:
+            colours, not_finite = self._finite(colours)
+        if self.maps_codes:
+            colours, outside, max_change = self._mapped(colours)
+        rgb = self.function(colours)
+        if self.matrix is not None:
+            rgb = _without_rounding(np.asarray(rgb, dtype=float) @ self.matrix.T)
+        if self.matrix is not None or not (self.is_bounded or self.maps_codes):
+            rgb, outside, max_change = self._mapped(rgb)
+        counts = Counts(colours.size // 3, outside, not_finite, max_change=max_change)
+        return rgb.astype(np.float32, copy=False), counts
+
+    def _finite(self, colours: Values) -> tuple[Values, int]:
+        """Return colours without NaN and infinity, and their number; with the method ``error`` they stay."""
+        if _all_inside(colours):
+            return colours, 0
         finite = np.asarray(np.isfinite(colours).all(axis=-1))
         if self.method != "error":
             clamped = np.clip(np.nan_to_num(colours, nan=0.0, posinf=1.0, neginf=0.0), 0, 1)
             colours = np.where(finite[..., None], colours, clamped)
+        return colours, int((~finite).sum())
+
+    def _mapped(self, colours: Values) -> tuple[Values, int, float]:
+        """Return colours in [0, 1], the number of those that were outside, and the largest change."""
+        if _all_inside(colours):
+            return colours, 0, 0.0
         mapped = map_to_gamut(colours, self.sensor, self.method)
-        not_finite = int((~finite).sum())
-        return self.function(mapped.rgb), Counts(
-            pixels, mapped.count, not_finite, max_change=mapped.max_change
-        )
+        return mapped.rgb, mapped.count, mapped.max_change
+
+
+def _without_rounding(rgb: Values) -> Values:
+    """Clip colours that lie outside [0, 1] by no more than the rounding of half floats."""
+    inside = np.clip(rgb, 0, 1)
+    is_rounding = np.abs(rgb - inside).max(axis=-1, keepdims=True) <= HALF_ROUNDING
+    return np.where(is_rounding, inside, rgb)
 
 
 def _all_inside(colours: Values) -> bool:
@@ -201,19 +249,23 @@ def check_encoding(encoding: str) -> None:
         )
 
 
-def make_decoder(sensor: Sensor, part: Part, encoding: str, method: str = "clip") -> Decoder:
+def make_decoder(
+    sensor: Sensor, part: Part, encoding: str, method: str = "clip", space: ImageSpace | None = None
+) -> Decoder:
     """Make the decoder of a part.
 
     Parameters
     ----------
     sensor : Sensor
-        The sensor whose RGB space encodes the colours.
+        The sensor whose linear RGB are wanted.
     part : Part
         The part of an image.
     encoding : {"auto", "linear", "encoded"}
         Interpretation of the numbers; ``auto`` takes 8-bit and 16-bit integers as encoded, all else as linear.
     method : str
         Gamut mapping for colours outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+    space : ImageSpace, optional
+        The space of the colours, by default the one that the file states; see `source_space`.
 
     Returns
     -------
@@ -224,13 +276,23 @@ def make_decoder(sensor: Sensor, part: Part, encoding: str, method: str = "clip"
     ------
     OptionError
         Encoded floats with a mapping other than ``clip`` or ``error``, as the encoding ends at 0 and 1
-        (code ``encoded-floats-not-mapped``).
+        (code ``encoded-floats-not-mapped``), or ``linear`` for a space whose floats are encoded
+        (``encoding-contradicts-space``).
     """
+    source = source_space(part, sensor, space)
+    matrix = None if source is None else source.matrix_to(sensor)
+    if source is not None and source.floats_are_codes and encoding == "linear":
+        raise OptionError(
+            f"the encoding must not be linear for the encoded space '{source.name}'",
+            code="encoding-contradicts-space",
+            hint="name its linear counterpart, or leave the encoding to the space",
+        )
     if part.max_code:
-        share = np.linspace(0, 1, part.max_code + 1)
-        values = share if encoding == "linear" else sensor.decode(255 * share)
-        table = values.astype(np.float32)
-        return Decoder(lambda codes: table[codes], True, sensor, method)
+        return Decoder(
+            _integer_reader(sensor, part.max_code, encoding, source), True, False, matrix, sensor, method
+        )
+    if source is not None and source.floats_are_codes and source.decode is not None:
+        return Decoder(source.decode, False, False, matrix, sensor, method)
     if encoding == "encoded":
         if method not in ("error", "clip"):
             raise OptionError(
@@ -238,5 +300,27 @@ def make_decoder(sensor: Sensor, part: Part, encoding: str, method: str = "clip"
                 code="encoded-floats-not-mapped",
                 hint="their encoding ends at 0 and 1; pass out_of_gamut='clip' or encoding='linear'",
             )
-        return Decoder(lambda floats: sensor.decode(255 * floats).astype(np.float32), False, sensor, method)
-    return Decoder(lambda floats: floats.astype(np.float32, copy=False), False, sensor, method)
+        return Decoder(_code_decoder(sensor, source), False, True, matrix, sensor, method)
+    return Decoder(lambda floats: floats, False, False, matrix, sensor, method)
+
+
+def _code_decoder(sensor: Sensor, source: ImageSpace | None) -> Callable[[Values], Values]:
+    """Return the function from codes in [0, 1] to linear values."""
+    if source is None or source.decode is None:
+        return lambda codes: sensor.decode(255 * codes)
+    return source.decode
+
+
+def _integer_reader(
+    sensor: Sensor, max_code: int, encoding: str, source: ImageSpace | None
+) -> Callable[[Values], Values]:
+    """Return the function from integers (…, 3) to linear values, by a table where channels are independent."""
+    decode = _code_decoder(sensor, source)
+    if source is not None and source.mixes_channels:
+        return lambda codes: decode(codes / max_code)
+    share = np.repeat(np.linspace(0, 1, max_code + 1)[:, None], 3, axis=1)
+    table = (share if encoding == "linear" else decode(share)).astype(np.float32)
+    if (table == table[:, :1]).all():
+        curve = table[:, 0].copy()
+        return lambda codes: curve[codes]
+    return lambda codes: np.stack([table[:, k][codes[..., k]] for k in range(3)], axis=-1)

@@ -17,6 +17,7 @@ from uplift.io.texture.colours import Counts
 from uplift.io.texture.converter import Converter
 from uplift.io.texture.part_layout import PartLayout, part_layouts
 from uplift.io.texture.source import Image, Values, open_image
+from uplift.io.texture.source_space import source_space, space_warnings
 from uplift.io.texture.writer import Writer, open_writer
 
 
@@ -34,6 +35,8 @@ class Conversion:
         Warnings about the image. They are data: `convert` does not emit them, as it may run in another process.
     seconds : float
         Wall-clock time.
+    spaces : tuple of str
+        RGB spaces that colours were converted from; empty if they were in the space of the cube.
     """
 
     source: Path
@@ -41,6 +44,7 @@ class Conversion:
     counts: Counts
     warnings: tuple[UpliftWarning, ...]
     seconds: float
+    spaces: tuple[str, ...] = ()
 
 
 def convert(
@@ -91,9 +95,10 @@ def convert(
         layouts = part_layouts(converter, image)
         with open_writer(target, [each.output for each in layouts], force=force) as writer:
             counts = _write_parts(converter, image, layouts, writer, progress)
-        mismatches = image.warnings(converter.sensor)
-    warnings = (*counts.warnings(converter.out_of_gamut, source), *mismatches)
-    return Conversion(Path(source), Path(target), counts, warnings, time.perf_counter() - begin)
+        notes = space_warnings(image, converter.sensor, converter.space)
+        spaces = _converted_from(converter, layouts)
+    warnings = (*counts.warnings(converter.out_of_gamut, source), *notes)
+    return Conversion(Path(source), Path(target), counts, warnings, time.perf_counter() - begin, spaces)
 
 
 def _write_parts(
@@ -111,6 +116,13 @@ def _write_parts(
             counts, done = counts + _write_band(converter, layout, writer, first, band), done + len(band)
             progress(Progress("rows", done, total))
     return counts
+
+
+def _converted_from(converter: Converter, layouts: list[PartLayout]) -> tuple[str, ...]:
+    """Return the names of the spaces that differ from that of the cube."""
+    parts = (layout.part for layout in layouts if layout.rgb is not None)
+    spaces = (source_space(part, converter.sensor, converter.space) for part in parts)
+    return tuple(dict.fromkeys(space.name for space in spaces if space is not None))
 
 
 def _bands(image: Image, layout: PartLayout) -> Iterator[tuple[int, Values]]:

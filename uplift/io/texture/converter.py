@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.spaces import ImageSpace
 from uplift.io.texture.colours import Counts, Floats
 
 
@@ -18,7 +19,7 @@ class Converter(ABC):
     Parameters
     ----------
     sensor : Sensor
-        The sensor whose RGB space images are in.
+        The sensor whose linear RGB are converted.
     depth : {"half", "float"}
         Type of the channels.
     encoding : {"auto", "linear", "encoded"}
@@ -29,6 +30,8 @@ class Converter(ABC):
         Names (N,) of the channels after R, G and B.
     header : mapping
         Attributes of every file.
+    space : ImageSpace, optional
+        RGB space of images, by default the one that each file states.
     """
 
     sensor: Sensor
@@ -37,6 +40,7 @@ class Converter(ABC):
     out_of_gamut: str
     channels: tuple[str, ...]
     header: Mapping[str, Any]
+    space: ImageSpace | None = field(default=None, kw_only=True)
 
     @abstractmethod
     def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:

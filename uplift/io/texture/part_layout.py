@@ -70,7 +70,9 @@ def _layout(converter: Converter, image: Image, part: Part, rgb: RGBChannels | N
         names, types = (*converted, *names), (*(converter.depth,) * len(converted), *types)
     date = part.date or _modification_date(image)
     output = OutputPart(part.name, part.window, names, types, converter.header, date)
-    decoder = make_decoder(converter.sensor, part, converter.encoding, converter.out_of_gamut)
+    decoder = make_decoder(
+        converter.sensor, part, converter.encoding, converter.out_of_gamut, converter.space
+    )
     return PartLayout(part, rgb, others, decoder, output)
 
 

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import StrPath
 from uplift.common.errors import UpliftWarning
 from uplift.io.texture.colours import Counts, Floats, check_encoding, make_decoder
 from uplift.io.texture.part_layout import colour_channels_by_part
 from uplift.io.texture.source import Part, Values, open_image
+from uplift.io.texture.source_space import space_warnings
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +36,13 @@ class Picture:
 
 
 def read_picture(
-    path: StrPath, sensor: Sensor, *, max_side: int, encoding: str = "auto", out_of_gamut: str = "clip"
+    path: StrPath,
+    sensor: Sensor,
+    *,
+    max_side: int,
+    encoding: str = "auto",
+    out_of_gamut: str = "clip",
+    space: ImageSpace | None = None,
 ) -> Picture:
     """Read the first part of an image that has colours. Pixels of a larger image are averaged in linear RGB.
 
@@ -50,6 +58,9 @@ def read_picture(
         Interpretation of the numbers; ``auto`` takes integers as encoded, floats as linear.
     out_of_gamut : str
         Gamut mapping for colours outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+
+    space : ImageSpace, optional
+        RGB space of the image, by default the one that the file states.
 
     Returns
     -------
@@ -69,14 +80,14 @@ def read_picture(
         part, channels = next(
             (part, channels) for part, channels in colour_channels_by_part(image) if channels is not None
         )
-        decode = make_decoder(sensor, part, encoding, out_of_gamut)
+        decode = make_decoder(sensor, part, encoding, out_of_gamut, space)
         mean = _Reducer(part, max_side)
         counts = Counts()
         for first, band in image.bands(part):
             rgb, decoded = decode(band[..., channels])
             mean.add(first - part.window.y, rgb)
             counts += decoded
-        warnings = (*counts.warnings(out_of_gamut, path), *image.warnings(sensor))
+        warnings = (*counts.warnings(out_of_gamut, path), *space_warnings(image, sensor, space))
     return Picture(mean.result(), mean.step, warnings)
 
 

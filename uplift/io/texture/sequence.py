@@ -59,6 +59,8 @@ class TextureSettings:
         Whether to add the nodes that a cube built for a scene lacks (`Cube.fill_missing`).
     out_of_gamut : str
         Gamut mapping for pixels outside [0, 1].
+    space : str or None
+        RGB space of the images, None for the one that each file states.
     """
 
     cube: str | None
@@ -68,6 +70,7 @@ class TextureSettings:
     threads: int
     fill_missing: bool = False
     out_of_gamut: str = "clip"
+    space: str | None = None
 
 
 @dataclass(frozen=True)
@@ -129,6 +132,7 @@ def uplifter_for(settings: TextureSettings) -> Uplifter:
         depth=settings.depth,
         encoding=settings.encoding,
         out_of_gamut=settings.out_of_gamut,
+        space=settings.space,
         threads=settings.threads,
     )
 

@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.sensor import Sensor
-from uplift.common.errors import ColourError, TextureError, UpliftWarning
+from uplift.common.errors import ColourError, TextureError
 from uplift.common.memory import total_memory
 from uplift.io.texture import exr_file
 from uplift.io.texture.colour_profile import Profile, read_profile
@@ -114,20 +113,6 @@ class Image:
     def header_text(self, name: str) -> str:
         """Return a text attribute of the first part, empty if it is missing."""
         return str(self.handle.spec(0).get_string_attribute(name))
-
-    def warnings(self, sensor: Sensor) -> tuple[UpliftWarning, ...]:
-        """Return a warning for every colour space in the file that differs from the sensor's."""
-        problems = []
-        for part in self.parts:
-            if part.profile is None:
-                continue
-            if mismatch := part.profile.mismatch(sensor, encoded=bool(part.max_code)):
-                name = f" ({part.profile.name})" if part.profile.name else ""
-                problems.append(f"the image states {mismatch}{name}; its colours are read as {sensor.space}")
-        return tuple(
-            UpliftWarning(problem, code="colour-space-mismatch", path=self.path)
-            for problem in dict.fromkeys(problems)
-        )
 
     def _band(self, part: Part, first: int, end: int) -> Values:
         if part.max_code:

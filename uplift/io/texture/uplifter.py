@@ -6,6 +6,7 @@ import json
 from dataclasses import dataclass
 
 from uplift.colorimetry.gamut import check_method
+from uplift.colorimetry.spaces import find_space
 from uplift.common.errors import OptionError
 from uplift.io.slices import exr
 from uplift.io.texture.colours import Counts, Floats, check_encoding
@@ -66,6 +67,7 @@ def prepare(
     depth: str | None = None,
     encoding: str = "auto",
     out_of_gamut: str = "clip",
+    space: str | None = None,
     threads: int = 2,
 ) -> Uplifter:
     """Prepare a cube for textures.
@@ -82,6 +84,8 @@ def prepare(
         Interpretation of the numbers in images; ``auto`` takes integers as encoded, floats as linear.
     out_of_gamut : str
         Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+    space : str, optional
+        RGB space of images, as for `uplift.colorimetry.spaces.find_space`, by default the one that each file states.
     threads : int
         Threads that share a band.
 
@@ -95,6 +99,8 @@ def prepare(
     OptionError
         The depth is not precise enough (code ``unsupported-depth``), the cube has no moments, the wavelengths do
         not ascend, or the encoding or gamut mapping is unknown.
+    UnknownNameError
+        The RGB space is unknown.
     """
     pixels = Spectrum() if pixel_encoding is None else pixel_encoding
     depth = pixels.depths[0] if depth is None else depth
@@ -108,6 +114,7 @@ def prepare(
     check_method(out_of_gamut)
     channels = pixels.channels(cube)
     settings = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
+    settings |= {} if space is None else {"space": space}
     description = json.dumps({**pixels.describe(cube), **settings}, allow_nan=False)
     header = {**exr.attributes(cube.data), "uplift.texture": description, **pixels.header()}
     return Uplifter(
@@ -120,6 +127,7 @@ def prepare(
         cube,
         sample=pixels.make_sampler(cube, threads),
         rgb_error=_rgb_error(cube, threads),
+        space=None if space is None else find_space(space),
     )
 
 
