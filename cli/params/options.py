@@ -185,7 +185,7 @@ def sensor_options(function: Callable[..., Any]) -> Callable[..., Any]:
         "--space",
         default="sRGB",
         show_default=True,
-        help="RGB space by its name in colour-science.",
+        help="RGB space by its name in colour-science or OpenColorIO, such as ACEScg.",
         shell_complete=complete_space,
     )
     illuminant = click.option(

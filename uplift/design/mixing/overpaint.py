@@ -26,7 +26,7 @@ class Overpainter(Converter):
 
     Parameters
     ----------
-    sensor, depth, encoding, out_of_gamut, channels, header
+    sensor, depth, encoding, out_of_gamut, channels, header, space
         As in `uplift.io.texture.Converter`. The gamut mapping applies before and after painting.
     coat : Coat
         The coat, at the wavelengths of the sensor.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
@@ -39,11 +41,8 @@ def space_warnings(
     """Return warnings about parts whose space is not known: unusable statements, and assumptions."""
     if chosen is not None:
         return ()
-    problems = {_problem(part, sensor) for part in image.parts}
-    return tuple(
-        UpliftWarning(problem, code=code, path=image.path)
-        for code, problem in sorted(each for each in problems if each is not None)
-    )
+    warnings = (_warning(part, sensor, image.path) for part in image.parts)
+    return tuple({str(each): each for each in warnings if each is not None}.values())
 
 
 def _default(part: Part) -> ImageSpace | None:
@@ -51,15 +50,13 @@ def _default(part: Part) -> ImageSpace | None:
     return SRGB_SPACE if part.max_code else None
 
 
-def _problem(part: Part, sensor: Sensor) -> tuple[str, str] | None:
-    """Return the code and the text of a warning."""
-    read_as = "sRGB" if part.max_code else f"linear {sensor.space}"
+def _warning(part: Part, sensor: Sensor, path: Path) -> UpliftWarning | None:
+    read_as = f"its colours are read as {'sRGB' if part.max_code else f'linear {sensor.space}'}"
     if part.profile is not None and part.profile.space is None:
         name = f" ({part.profile.name})" if part.profile.name else ""
-        problem = (
-            f"the image states a colour space that cannot be read{name}; its colours are read as {read_as}"
-        )
-        return "colour-space-unreadable", problem
+        problem = f"the image states a colour space that cannot be used{name}; {read_as}"
+        return UpliftWarning(problem, code="colour-space-unreadable", path=path)
     if part.profile is None and not SRGB_SPACE.agrees_with(sensor, encoded=False):
-        return "colour-space-assumed", f"the image states no colour space; its colours are read as {read_as}"
+        problem = f"the image states no colour space; {read_as}"
+        return UpliftWarning(problem, code="colour-space-assumed", path=path)
     return None

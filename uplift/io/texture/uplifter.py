@@ -22,7 +22,7 @@ class Uplifter(Converter):
 
     Parameters
     ----------
-    sensor, depth, encoding, out_of_gamut, channels, header
+    sensor, depth, encoding, out_of_gamut, channels, header, space
         As in `Converter`. The header suffices to evaluate the spectra of a texture.
     cube : Cube
         The cube that uplifts.
