@@ -54,7 +54,8 @@ class OcioSpace:
             Linear RGB of `AP0`; white stays (1, 1, 1).
         """
         converted = np.array(values, dtype=np.float32, order="C")
-        self.processor.applyRGB(converted.reshape(-1, 3))
+        if converted.size:
+            self.processor.applyRGB(converted.reshape(-1, 3))
         return converted.astype(float)
 
 

@@ -115,7 +115,7 @@ def _uplifted(props: Any) -> Texels:
     if path is not None and path.is_file() and is_exr(path):
         rgb, found = read_colours(path, cube.data.sensor, method)
     else:
-        rgb, counts = Decoder(np.asarray, False, cube.data.sensor, method)(
+        rgb, counts = Decoder(np.asarray, False, False, None, cube.data.sensor, method)(
             _linear(cube, _bitmap(props, path))
         )
         found = counts.warnings(method, path)

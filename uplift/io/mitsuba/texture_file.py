@@ -20,6 +20,7 @@ from uplift.io.texture import exr_file
 from uplift.io.texture.colours import Counts, Floats, make_decoder
 from uplift.io.texture.part_layout import colour_channels_by_part
 from uplift.io.texture.source import open_image
+from uplift.io.texture.source_space import space_warnings
 from uplift.lookup.blocks import blockwise
 from uplift.models import Model, Moments, from_description
 
@@ -82,7 +83,7 @@ def read_colours(path: Path, sensor: Sensor, method: str) -> tuple[Floats, tuple
             rgb, changed = decode(rows[..., channels])
             bands.append(rgb)
             counts += changed
-        return np.concatenate(bands), (*image.warnings(sensor), *counts.warnings(method, path))
+        return np.concatenate(bands), (*space_warnings(image, sensor), *counts.warnings(method, path))
 
 
 def _read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
