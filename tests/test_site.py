@@ -38,7 +38,8 @@ def site(tmp_path_factory):
     """The site, built once."""
     target = tmp_path_factory.mktemp("site")
     result = build(DOCS, target)
-    assert result.returncode == 0, result.stderr
+    findings = [line for line in result.stderr.splitlines() if re.search(r": (?:WARNING|ERROR): ", line)]
+    assert result.returncode == 0, "\n".join(findings) or result.stderr
     return target
 
 

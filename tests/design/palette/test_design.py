@@ -198,3 +198,32 @@ def test_obtained_colours_are_those_of_full_spectra(found):
             np.testing.assert_allclose(
                 matrix(found).obtained[row, column], screen @ (power * reflectance), atol=1e-12
             )
+
+
+def test_colours_of_the_factor_model_can_be_fitted(metamers, model):
+    """Equation 19: the goals hold in the factor model, and no longer in full spectra."""
+    weights = {"model_error": 0.0, "smoothness": 0.0}
+    found = design(dataclasses.replace(metamers, fit="factor-model", **weights), model)
+    target = np.array([found.free["coat"], found.free["coat"]])
+    np.testing.assert_allclose(matrix(found).factor[:, 0], target, atol=1e-6)
+    assert matrix(found).delta_e.max() < 0.01
+    assert np.abs(matrix(found).obtained[:, 0] - target).max() > 1e-4
+
+
+def test_a_light_can_be_fitted_in_the_factor_model(metamers, model):
+    materials = tuple(
+        dataclasses.replace(each, samples=np.linspace(0.2, 0.7, 81)) for each in metamers.materials[:1]
+    )
+    lights = (SpectrumSpec("veil", None, 0.0, np.inf),)
+    goals = (ColourGoal(materials[0].name, "veil", np.array([0.3, 0.2, 0.1])),)
+    palette = dataclasses.replace(
+        metamers,
+        materials=materials,
+        lights=lights,
+        goals=goals,
+        free={},
+        min_differences=(),
+        model_error=0.0,
+        fit="factor-model",
+    )
+    assert matrix(design(palette, model)).delta_e.max() < 0.1

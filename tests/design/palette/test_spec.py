@@ -143,6 +143,7 @@ HEAD = 'lights.day.illuminant = "D65"\nmaterials.new.design = true\n'
         ("lights = 3", "wrong-type", "lights"),
         (HEAD + "smothness = 1", "unknown-key", "smothness"),
         (HEAD + "smoothness = -1", "out-of-range", "smoothness"),
+        (HEAD + "fit = 'rgb'", "invalid-value", "fit"),
         (HEAD + "smoothness = true", "wrong-type", "smoothness"),
         (HEAD + "smoothness = 1" + "0" * 7, "out-of-range", "smoothness"),
         (HEAD + "smoothness = 1" + "0" * 400, "wrong-type", "smoothness"),

@@ -77,7 +77,7 @@ def unknowns(palette: Palette) -> Unknowns:
 def equations(palette: Palette, model: FactorModel) -> Equations:
     """Stack all criteria of non-zero weight (eq. 22)."""
     where = unknowns(palette)
-    rows = [*_colour_rows(palette, where), *_smoothness_rows(palette, where)]
+    rows = [*_colour_rows(palette, model, where), *_smoothness_rows(palette, where)]
     rows += _model_error_rows(palette, model, where)
     matrix = np.zeros((sum(len(part.values) for part in rows), where.count))
     values = np.concatenate([part.values for part in rows]) if rows else np.zeros(0)
@@ -89,19 +89,23 @@ def equations(palette: Palette, model: FactorModel) -> Equations:
     return Equations(matrix, values, *_bounds(palette, where))
 
 
-def _colour_rows(palette: Palette, where: Unknowns) -> Iterator[_Rows]:
-    """Target colours (eq. 18), and free ones, which are unknowns too (eq. 24)."""
+def _colour_rows(palette: Palette, model: FactorModel, where: Unknowns) -> Iterator[_Rows]:
+    """Target colours (eq. 18, or 19 in the factor model), and free ones, which are unknowns too (eq. 24)."""
     screen = screen_matrix(palette.sensor)
+    by_model = palette.fit == "factor-model"
     for goal in palette.goals:
         spectrum, power = palette.material(goal.material).samples, palette.light(goal.light).samples
         weight, blocks = goal.weight / np.sqrt(3), []
         target = np.zeros(3) if goal.rgb is None else goal.rgb
-        if spectrum is None and power is not None:
-            blocks.append((where.material(goal.material), weight * screen * power))
-        elif power is None and spectrum is not None:
-            blocks.append((where.light(goal.light), weight * screen * spectrum))
-        elif power is not None and spectrum is not None:
-            target = target - screen @ (power * spectrum)
+        if power is not None:
+            block = _modelled_material(model, power) if by_model else screen * power
+            if spectrum is None:
+                blocks.append((where.material(goal.material), weight * block))
+            else:
+                target = target - block @ spectrum
+        elif spectrum is not None:
+            block = _modelled_light(model, spectrum) if by_model else screen * spectrum
+            blocks.append((where.light(goal.light), weight * block))
         if goal.free is not None:
             blocks.append((where.free(goal.free), -weight * np.eye(3)))
         if goal.weight and blocks:
@@ -130,14 +134,24 @@ def _model_error_rows(palette: Palette, model: FactorModel, where: Unknowns) -> 
     for material in palette.materials:
         for light in palette.lights:
             if material.samples is None and light.samples is not None:
-                modelled = model.matrix * model.light(light.samples) @ model.projection
+                modelled = _modelled_material(model, light.samples)
                 block, position = screen * light.samples - modelled, where.material(material.name)
             elif light.samples is None and material.samples is not None:
-                modelled = model.matrix * model.reflectance(material.samples) @ model.light_projection
+                modelled = _modelled_light(model, material.samples)
                 block, position = screen * material.samples - modelled, where.light(light.name)
             else:
                 continue
             yield _Rows(((position, weight * block),), np.zeros(3))
+
+
+def _modelled_material(model: FactorModel, power: Array) -> Array:
+    """Matrix (3, N) from a reflectance to its colour under a light, in the factor model."""
+    return np.asarray(model.matrix * model.light(power) @ model.projection)
+
+
+def _modelled_light(model: FactorModel, spectrum: Array) -> Array:
+    """Matrix (3, N) from a light to the colour of a reflectance under it, in the factor model."""
+    return np.asarray(model.matrix * model.reflectance(spectrum) @ model.light_projection)
 
 
 def _designed(palette: Palette, where: Unknowns) -> Iterator[tuple[SpectrumSpec, slice]]:

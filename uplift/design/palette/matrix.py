@@ -24,7 +24,7 @@ class Matrix:
     obtained, factor : ndarray, shape (M, L, 3)
         Colours by full spectra, and by the factor model.
     delta_e : ndarray, shape (M, L)
-        ΔE00 from target to obtained colour; NaN without a goal.
+        ΔE00 from target to the colour that the palette fits, by spectra or by the factor model; NaN without a goal.
     model_error : ndarray, shape (M, L)
         ΔE00 from full spectra to the factor model.
     whites : ndarray, shape (L, 3)
@@ -64,7 +64,7 @@ def matrix(design: Design) -> Matrix:
         target,
         obtained,
         factor,
-        delta_e_rgb(palette.sensor, target, obtained),
+        delta_e_rgb(palette.sensor, target, factor if palette.fit == "factor-model" else obtained),
         delta_e_rgb(palette.sensor, obtained, factor),
         design.powers @ screen.T,
     )
@@ -87,7 +87,8 @@ def cell_index(design: Design, goal: ColourGoal) -> tuple[int, int]:
 
 def difference(design: Design, colours: Matrix, pair: MinDifference) -> float:
     """ΔE00 between two materials under a light."""
+    fitted = colours.factor if design.palette.fit == "factor-model" else colours.obtained
     first, second = (
-        colours.obtained[cell_index(design, ColourGoal(material, pair.light))] for material in pair.materials
+        fitted[cell_index(design, ColourGoal(material, pair.light))] for material in pair.materials
     )
     return float(delta_e_rgb(design.palette.sensor, first, second))

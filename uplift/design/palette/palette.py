@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
+
+Fit = Literal["spectra", "factor-model"]
+"""Colours that goals are about: of full spectra, or of the factor model."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +106,8 @@ class Palette:
         Weight ω_F of the difference between the colours of the factor model and of full spectra.
     count : int
         Number of coefficients of the factor model.
+    fit : {"spectra", "factor-model"}
+        Whether goals are met by full spectra (eq. 18) or by the factor model (eq. 19).
     sources : tuple of Path
         Files that the palette was read from.
     """
@@ -115,6 +121,7 @@ class Palette:
     smoothness: float = 0.001
     model_error: float = 0.1
     count: int = 7
+    fit: Fit = "spectra"
     sources: tuple[Path, ...] = ()
 
     def light(self, name: str) -> SpectrumSpec:

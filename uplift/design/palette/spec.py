@@ -14,7 +14,7 @@ from uplift.common.errors import PaletteError, unknown_name
 from uplift.common.spec_file import Key, SpecFile, SpecModel, read_toml
 from uplift.design.palette.factor import COUNTS
 from uplift.design.palette.fields import Name, NonNegative, SpecColour
-from uplift.design.palette.palette import ColourGoal, MinDifference, Palette
+from uplift.design.palette.palette import ColourGoal, Fit, MinDifference, Palette
 from uplift.design.palette.spec_entries import (
     AtlasMaterial,
     Difference,
@@ -40,6 +40,7 @@ class _PaletteTable(SpecModel):
     smoothness: NonNegative = Palette.smoothness
     model_error: NonNegative = Palette.model_error
     coefficients: Count = Palette.count
+    fit: Fit = Palette.fit
 
 
 def read_palette(path: StrPath) -> Palette:
@@ -87,6 +88,7 @@ def read_palette(path: StrPath) -> Palette:
         smoothness=table.smoothness,
         model_error=table.model_error,
         count=int(table.coefficients),
+        fit=table.fit,
         sources=(file.path, *(folder / name for name in _files(table))),
     )
 
