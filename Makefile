@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl
+.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl examples showcase first-steps
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -169,6 +169,20 @@ munsell: $(INSTALLED)
 # Shipped data; commit the result.
 atlases: $(INSTALLED)
 	$(BIN)/python tools/ship_atlases.py
+
+# Pictures and numbers of the README, and docs/showcase.md. Needs Mitsuba 3.
+showcase: $(INSTALLED)
+	$(BIN)/python -m benchmarks.showcase
+	$(BIN)/python -m tools.render_docs showcase README
+
+# Time from nothing to the first relit picture.
+first-steps: $(INSTALLED)
+	$(BIN)/python -m benchmarks.first_steps
+	$(BIN)/python -m tools.render_docs showcase README
+
+# Every example of the README, the documentation and the help, in full, from a wheel: takes about half an hour.
+examples: $(INSTALLED)
+	$(BIN)/python -m tests.examples
 
 # Sample pictures and measurements of `uplift samples`; commit the result.
 samples: $(INSTALLED)

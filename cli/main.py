@@ -217,10 +217,11 @@ def main(traceback: bool) -> None:
 
     \b
     Examples:
+      uplift relight
       uplift build --atlas macbeth --dim 32
       uplift query --cube macbeth-32.uplift '#cc3319'
       uplift query 0.8 0.2 0.1 --format json
-      uplift check cubes/*.uplift
+      uplift check macbeth-32.uplift
 
     'uplift COMMAND --help' describes a command and all of its options, 'uplift help' lists further topics.
     """

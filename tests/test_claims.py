@@ -51,7 +51,6 @@ def sources():
     written = [path for path in ROOT.glob("docs/**/*.md") if path.stem not in generated]
     exempt = {"bibliography.md", "coverage.md"}
     return [
-        ROOT / "README.md",
         *(path for path in sorted(written) if path.name not in exempt),
         *sorted(ROOT.glob("docs/templates/*.md.j2")),
     ]

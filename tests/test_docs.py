@@ -10,6 +10,7 @@ import pytest
 from uplift_cli.main import COMMANDS, main
 
 from tests.conftest import ROOT
+from tests.examples.collect import examples
 from tests.helpers import warns
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -17,14 +18,7 @@ REFERENCE = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
 PYTHON = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
 
 
-def command_lines():
-    """Yield every ``uplift …`` line in code blocks of the pages."""
-    for page in PAGES:
-        for block in re.findall(r"```\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
-            for line in block.splitlines():
-                words = re.sub(r"^\$ ", "", line).split(" > ")[0]
-                if words.startswith("uplift "):
-                    yield words
+LINES = [each.line.split(" > ")[0].split(" | ")[0] for each in examples() if each.line.startswith("uplift ")]
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -35,7 +29,7 @@ def test_the_page_of_commands_has_every_command_and_help_has_examples(name):
     assert re.search(rf"Examples:\n +uplift {name}\b", command.help)
 
 
-@pytest.mark.parametrize("line", list(command_lines()))
+@pytest.mark.parametrize("line", LINES)
 def test_command_lines_parse(line):
     name, *arguments = shlex.split(line)[1:]
     with click.Context(main, **main.context_settings) as context:
@@ -44,7 +38,7 @@ def test_command_lines_parse(line):
 
 
 def test_pages_have_command_lines():
-    assert len(list(command_lines())) >= 8
+    assert len(LINES) >= 8
 
 
 def test_unknown_options_do_not_parse():

@@ -13,17 +13,11 @@ from pathlib import Path
 import pytest
 
 import uplift
+from tests.examples.installed import build_wheel, source_files
 from uplift.common.version import DISTRIBUTION
 
 FOLDERS = {"uplift": "uplift", "cli": "uplift_cli", "atlases": "uplift_atlases"}
 INFO = f"{DISTRIBUTION.replace('-', '_')}-{uplift.__version__}.dist-info"
-
-
-def source_files(repository):
-    """What git tracks, and what it would track if added; paths from the root."""
-    args = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
-    listed = subprocess.run(args, cwd=repository, capture_output=True, check=True).stdout.decode()
-    return [name for name in listed.split("\0") if name and (repository / name).is_file()]
 
 
 @pytest.fixture(scope="module")
@@ -31,14 +25,7 @@ def wheel(repository, tmp_path_factory):
     """Built once a run, from a copy that holds no leftovers of earlier builds."""
     if shutil.which("git") is None or not (repository / ".git").exists():
         pytest.skip("needs the git checkout to know its files")
-    folder = tmp_path_factory.mktemp("package")
-    for name in source_files(repository):
-        (folder / "copy" / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(repository / name, folder / "copy" / name)
-    args = ["-m", "build", "--wheel", "--no-isolation", "--outdir", folder / "dist", folder / "copy"]
-    done = subprocess.run([sys.executable, *args], cwd=folder, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
-    (path,) = (folder / "dist").iterdir()
+    path = build_wheel(tmp_path_factory.mktemp("package"))
     with zipfile.ZipFile(path) as archive:
         yield archive
 
@@ -85,6 +72,7 @@ def test_nothing_else_is_in_it(wheel, repository):
         ".cpp",
         ".css",
         ".csv",
+        ".cxf",
         ".cuh",
         ".exr",
         ".glsl",
@@ -95,10 +83,12 @@ def test_nothing_else_is_in_it(wheel, repository):
         ".npz",
         ".osl",
         ".png",
+        ".ti3",
         ".toml",
         ".typed",
         ".uplift",
         ".wgsl",
+        ".xlsx",
     }
     assert {Path(name).suffix for name in atlases} == {".md", ".txt"}
 

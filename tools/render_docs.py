@@ -1,5 +1,7 @@
 """Render the pages of measurements: docs/templates/NAME.md.j2 filled from docs/data/NAME.json is docs/NAME.md.
 
+README.md.j2 is the README, above docs.
+
 Nothing is measured here. The programs in benchmarks/ write the data. A template without data uses that of
 other pages, by ``load`` (JSON) and ``rows`` (CSV).
 
@@ -27,6 +29,7 @@ from uplift.viz import format as viz_format
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
+README = "README"
 NAMED: dict[str, Callable[[float], str]] = {
     "time": viz_format.format_time,
     "size": viz_format.format_size,
@@ -122,6 +125,11 @@ def pages(docs: Path = DOCS) -> list[str]:
     return sorted(path.name.removesuffix(".md.j2") for path in (docs / "templates").glob("*.md.j2"))
 
 
+def page_file(name: str, docs: Path = DOCS) -> Path:
+    """Return the file of a page: docs/NAME.md, and the README above docs."""
+    return (docs.parent if name == README else docs) / f"{name}.md"
+
+
 def read_data(name: str, docs: Path = DOCS) -> dict[str, Any]:
     """Return the data of a page: docs/data/NAME.json, empty if the page has none."""
     path = docs / "data" / f"{name}.json"
@@ -176,7 +184,7 @@ def stale(docs: Path = DOCS) -> list[str]:
     return [
         name
         for name in pages(docs)
-        if (docs / f"{name}.md").read_text(encoding="utf-8") != render(name, docs)
+        if page_file(name, docs).read_text(encoding="utf-8") != render(name, docs)
     ]
 
 
@@ -190,7 +198,7 @@ def main() -> None:
         outdated = stale()
         raise SystemExit(f"out of date: {', '.join(outdated)}; run 'make docs'" if outdated else 0)
     for name in options.names or pages():
-        (DOCS / f"{name}.md").write_text(render(name), encoding="utf-8")
+        page_file(name).write_text(render(name), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -6,13 +6,15 @@ same on every run.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO
 from PIL import Image
 
-from uplift.atlas import on_grid, read_atlas, write_atlas
+from tests.atlas.vendor_files import argyll_ti3, cxf3, plain_csv, xlsx
+from uplift.atlas import Atlas, on_grid, read_atlas, write_atlas
 from uplift.colorimetry.observer import sensor
 from uplift.colorimetry.srgb import decode, encode
 from uplift.common.arrays import Array
@@ -54,6 +56,20 @@ def main(folder: Path = FOLDER) -> None:
     write_png(label(), folder / "labels.png")
     for name, atlas in MEASUREMENTS.items():
         write_atlas(read_atlas(atlas), folder / name, force=True)
+    for name, content in instrument_files().items():
+        (folder / name).write_bytes(content)
+
+
+def instrument_files() -> dict[str, bytes]:
+    """Return measurements of the reader as his instruments write them, and samples that reflect less than 2 %."""
+    paints, fabrics = (tuple(read_atlas(name)) for name in MEASUREMENTS.values())
+    chart = Atlas(tuple(replace(entry, name=f"chart {entry.name}") for entry in paints[:6]))
+    dark = Atlas(
+        tuple(replace(entry, values=entry.values * (1.5 / entry.values.max())) for entry in fabrics[:4])
+    )
+    ((_, ti3),) = argyll_ti3(chart).items()
+    ((_, csv),) = plain_csv(dark).items()
+    return {"chart.ti3": ti3, **cxf3(Atlas(paints[:12])), **xlsx(Atlas(paints[:12])), "dark.csv": csv}
 
 
 def palette() -> dict[str, Array]:
@@ -149,10 +165,11 @@ def write_png(picture: Array, path: Path) -> None:
 
 
 def write_exr(picture: Array, path: Path) -> None:
-    """Write a picture as half floats, without a date."""
+    """Write a picture as half floats, with a date that stays."""
     height, width, _ = picture.shape
     spec = OpenImageIO.ImageSpec(width, height, 3, OpenImageIO.HALF)
     spec["compression"] = "zip"
+    spec["DateTime"] = "2026:01:01 00:00:00"
     output = OpenImageIO.ImageOutput.create(str(path))
     output.open(str(path), spec)
     output.write_image(picture.astype(np.float32))

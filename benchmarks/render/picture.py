@@ -26,12 +26,13 @@ def draw(
     methods: Sequence[str],
     layout: Layout,
     path: Path,
+    size: tuple[float, float] = (WIDTH, HEIGHT),
 ) -> None:
     """Draw XYZ ``images`` by light and method; the first method is the reference, shown inside the patches of all.
 
     The white of each light is adapted to the white of the screen (Bradford).
     """
-    figure = new_figure(WIDTH, HEIGHT)
+    figure = new_figure(*size)
     grid = figure.subplots(len(lights), len(methods), squeeze=False)
     reference = methods[0]
     for row, light in enumerate(lights):

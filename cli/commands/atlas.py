@@ -52,7 +52,7 @@ def command(
     Examples:
       uplift atlas macbeth
       uplift atlas --space "Display P3" --illuminant A macbeth
-      uplift atlas --format json atlases/*.txt
+      uplift atlas --format json paints.csv fabrics.csv
       uplift atlas chart.ti3 paints.cxf
       uplift atlas dark.csv --measured percent
       uplift atlas paints.csv --convert paints.txt

@@ -151,10 +151,10 @@ def command(
     \b
     Examples:
       uplift build --atlas macbeth --dim 32
-      uplift build --atlas paints.csv --atlas macbeth --coefficients 17
+      uplift build --atlas paints.csv --atlas fabrics.csv --coefficients 17 -o book.uplift
       uplift build --atlas paints.csv --dim auto --auto-tolerance 1
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
-      uplift build --atlas macbeth --library fabrics.csv --library paints.csv
+      uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
       uplift build --plan kitchen.plan.json
 

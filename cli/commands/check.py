@@ -39,9 +39,9 @@ def command(
 
     \b
     Examples:
-      uplift check cubes/*.uplift
-      uplift check cubes/*.uplift --atlas-dir atlases --format json
-      uplift check cubes/*.uplift --update
+      uplift check macbeth-32.uplift
+      uplift check macbeth-32.uplift --atlas-dir . --format json
+      uplift check macbeth-32.uplift --update
 
     The comparison covers lattice RGB, spectra (largest and rms difference), ΔE00 under D65, A and FL11, and the number
     of nodes by status. The exit code is 0 if all differences are within their limits and 1 otherwise.

@@ -72,7 +72,7 @@ def command(
       uplift compare --quick
       uplift compare --target 1.0
       uplift compare --atlas paints.csv --light LED-B3 --light HP1 --target 0.5
-      uplift compare --filters --output out
+      uplift compare --filters --output filters --force
     """
     use_one_blas_thread()
     if target is not None:

@@ -72,10 +72,10 @@ def command(
     \b
     Examples:
       uplift export macbeth-32.uplift macbeth-32.npz
-      uplift export macbeth-32.uplift data/srgb.coeff
+      uplift export macbeth-32.uplift srgb.coeff
       uplift export macbeth-32.uplift cube.h
-      uplift export macbeth-32.uplift cube.h --table file
-      uplift export macbeth-32.uplift cube.wgsl --mode moments --table textures
+      uplift export macbeth-32.uplift filed.h --table file
+      uplift export macbeth-32.uplift moments.wgsl --mode moments --table textures
       uplift export macbeth-32.uplift --format csv
     """
     style = style or _format_of(out)

@@ -125,12 +125,12 @@ def command(
     \b
     Examples:
       uplift mix --pigment 2:'#005fa0' 1:'#ffd200'
-      uplift mix 1:blue 1:yellow --cube macbeth-32.uplift --swatches green.png
+      uplift mix blue yellow --cube macbeth-32.uplift --swatches ramp.png
       uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
       uplift mix --dye 1:'#d03060' 3:'#f0c000' --refractive-index 1.5 --thickness 2
       uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
       uplift mix --light '#ff0000' 0.5:'#00ff00'
-      uplift mix '#c8342a/#401008' --thickness 0.4 --over painting.exr -o painted.exr
+      uplift mix '#c8342a/#601810' --thickness 0.4 --over painting.exr -o glazed.exr
       uplift mix --theories '#005fa0' '#ffd200'
     """
     from uplift.common.files import check_outputs

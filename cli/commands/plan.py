@@ -42,8 +42,8 @@ def command(scene: str, output: str | None, style: str, force: bool) -> None:
     \b
     Examples:
       uplift plan kitchen.toml
-      uplift plan kitchen.toml --format json
-      uplift plan kitchen.toml -o plans/kitchen.plan.json --force
+      uplift plan kitchen.toml --format json --force
+      uplift plan kitchen.toml -o other.plan.json
 
     Candidates are measured on pixels of the textures and on the entries of the atlases, in order of cost, up to the
     first sufficient one. The result is then verified on other pixels. 'uplift build --plan' builds the planned cube. An

@@ -78,7 +78,7 @@ def command(
       uplift relight
       uplift relight wood.png -o wood.html
       uplift relight wood.png still-life.png --atlas paints.csv --light LED-B3 --light HP1 -o both.png
-      uplift relight --cube macbeth-32.uplift --format json -o relit.html
+      uplift relight --cube macbeth-32.uplift --format json -o cube.html
 
     The white of each light is shown as the white of the screen. The table lists ΔE00 from the products of RGB.
     """

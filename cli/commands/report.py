@@ -56,7 +56,7 @@ def command(
     Examples:
       uplift report macbeth-32.uplift
       uplift report macbeth-32.uplift --atlas cie2017 -o unseen.html
-      uplift report macbeth-32.uplift --light D50 --light FL4 --worst 6
+      uplift report macbeth-32.uplift --light D50 --light FL4 --worst 6 -o worst.html
       uplift report macbeth-32.uplift --format json | jq .failures
 
     The measured spectra are those of the cube's atlases. Atlases are identified by name and content, and searched for

@@ -26,4 +26,4 @@ def command(folder: str, force: bool) -> None:
     from uplift.samples import copy_samples
 
     copies = copy_samples(folder, force=force)
-    say(f"{folder}: {len(copies)} files: {', '.join(path.name for path in copies)}")
+    say(f"{folder}: {len(copies)} sample files")

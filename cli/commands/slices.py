@@ -26,8 +26,8 @@ def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
 
     \b
     Examples:
-      uplift slices macbeth-32.uplift macbeth-32.exr
-      uplift slices macbeth-32.uplift --sheet macbeth-32.png
+      uplift slices macbeth-32.uplift macbeth-32.exr --sheet macbeth-32.png
+      uplift slices macbeth-32.uplift --sheet sheet.png
       uplift slices macbeth-32.uplift macbeth-32.exr --sheet sheet.exr --force
     """
     if out is None and sheet is None:

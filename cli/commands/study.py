@@ -17,10 +17,10 @@ def command() -> None:
     \b
     Examples:
       uplift study moments
-      uplift study moments --atlas paints.txt --output paints --format json
-      uplift study held-out --atlas paints.txt
+      uplift study moments --atlas paints.csv --output moments-paints --format json
+      uplift study held-out --atlas paints.csv
       uplift study stability --quick
-      uplift study sensitivity cubes/moments-16-macbeth.uplift
+      uplift study sensitivity macbeth-32.uplift
     """
 
 

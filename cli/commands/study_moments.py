@@ -46,7 +46,7 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
     \b
     Examples:
       uplift study moments
-      uplift study moments --atlas macbeth --output out --force
+      uplift study moments --atlas macbeth --output moments --force
       uplift study moments --max-moments 8 --format json
     """
     from uplift.common.files import check_folder

@@ -52,7 +52,7 @@ def sensitivity(
     \b
     Examples:
       uplift study sensitivity
-      uplift study sensitivity cubes/moments-16-macbeth.uplift --output out --force
+      uplift study sensitivity macbeth-32.uplift --output out --force
       uplift study sensitivity --entries 4 --format json
     """
     enable_jit_cache()

@@ -92,8 +92,8 @@ def command(
     \b
     Examples:
       uplift texture wood.png wood.exr
-      uplift texture wood.png wood.exr --cube macbeth-32.uplift --store moments
-      uplift texture 'shot.*.exr' uplifted --wavelengths 400:700:10 --resume
+      uplift texture wood.png moments-32.exr --cube macbeth-32.uplift --store moments
+      uplift texture 'shot.*.exr' uplifted-31 --wavelengths 400:700:10 --resume
       uplift texture fire.exr bright.exr --out-of-gamut scale
       uplift texture wood.tx.exr wood.exr --space ACEScg
       uplift texture shot.*.exr uplifted --scheduler tcp://10.0.0.5:8786

@@ -9,7 +9,7 @@ import jinja2
 import pytest
 
 from tests.conftest import ROOT
-from tools.render_docs import number, pages, pick, read_data, render, stale, table
+from tools.render_docs import number, page_file, pages, pick, read_data, render, stale, table
 
 DOCS = ROOT / "docs"
 
@@ -34,7 +34,7 @@ def changed(value: Any) -> Any:
 
 @pytest.mark.parametrize("name", PAGES)
 def test_committed_page_is_the_rendering_of_the_committed_data(name):
-    assert (DOCS / f"{name}.md").read_text(encoding="utf-8") == render(name)
+    assert page_file(name).read_text(encoding="utf-8") == render(name)
 
 
 @pytest.mark.parametrize(("name", "key"), TABLES)
@@ -47,7 +47,7 @@ def test_changed_figures_of_any_table_are_noticed(name, key):
         text = render(name, data=data | {key: rows})
     except (LookupError, jinja2.UndefinedError):
         return  # The page picks rows by one of the changed values.
-    assert text != (DOCS / f"{name}.md").read_text(encoding="utf-8")
+    assert text != page_file(name).read_text(encoding="utf-8")
 
 
 def test_a_changed_number_in_the_page_is_noticed(tmp_path):

@@ -78,9 +78,9 @@ def test_thin_coats_show_the_ground(mixed):
 
 
 def test_paints_by_their_colours_on_white_and_black(mixed):
-    paint = "#c8342a/#401008"
+    paint = "#c8342a/#601810"
     assert mixed(paint, "--thickness", 1)["hex"] == "#c8342a"
-    assert mixed(paint, "--thickness", 1, "--ground", "black")["hex"] == "#401008"
+    assert mixed(paint, "--thickness", 1, "--ground", "black")["hex"] == "#601810"
 
 
 def test_lights_and_filters(run, mixed):

@@ -29,13 +29,14 @@ TABLE = Path("data", "srgb.coeff")
 
 def prepare(task: Task) -> PreparedMethod:
     """Load Mitsuba and locate its table."""
+    return PreparedMethod(spectra, (Path(_mitsuba().__file__).parent / TABLE).stat().st_size, None)
+
+
+def spectra(rgb: Array, wavelengths: Array) -> Array:
+    """Return the reflectances (n, N) that Mitsuba gives linear sRGB (n, 3) at wavelengths (N,) in nm."""
     mitsuba = _mitsuba()
-
-    def uplift(rgb: Array, wavelengths: Array) -> Array:
-        coefficients = [mitsuba.srgb_model_fetch(colour) for colour in rgb.tolist()]
-        return evaluate_unscaled(np.array(coefficients, dtype=float), wavelengths)
-
-    return PreparedMethod(uplift, (Path(mitsuba.__file__).parent / TABLE).stat().st_size, None)
+    coefficients = [mitsuba.srgb_model_fetch(colour) for colour in rgb.tolist()]
+    return evaluate_unscaled(np.array(coefficients, dtype=float), wavelengths)
 
 
 def _mitsuba() -> Any:
