@@ -95,7 +95,7 @@ def command(
       uplift texture wood.png moments-32.exr --cube macbeth-32.uplift --store moments
       uplift texture 'shot.*.exr' uplifted-31 --wavelengths 400:700:10 --resume
       uplift texture fire.exr bright.exr --out-of-gamut scale
-      uplift texture wood.tx.exr wood.exr --space ACEScg
+      uplift texture painting.exr ap1.exr --space ACEScg
       uplift texture shot.*.exr uplifted --scheduler tcp://10.0.0.5:8786
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
