@@ -88,7 +88,7 @@ def _range(values: Texture) -> tuple[Array, Array]:
 
 
 def warp(moments: Texture) -> Texture:
-    """Map moments to [0, 1] and [−1, 1]: roots of the zeroth, and of the others relative to sin(π c₀) / π, their bound."""
+    """Map moments to [0, 1] and [−1, 1]: roots of the zeroth, of the others relative to sin(π c₀) / π, their bound."""
     zeroth = np.clip(moments[..., :1], 1e-6, 1 - 1e-6)
     relative = moments[..., 1:] * np.pi / np.sin(np.pi * zeroth)
     return np.concatenate([np.sqrt(zeroth), np.sign(relative) * np.sqrt(np.abs(relative))], axis=-1)

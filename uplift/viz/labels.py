@@ -31,7 +31,7 @@ def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> 
     Returns
     -------
     ndarray, shape (L, 2)
-        Lower left corners of the labels; NaN where there is no place.
+        Lower left corners of the labels; NaN where a label has no room.
     """
     placed = np.empty((0, 4))
     corners = np.full_like(anchors, np.nan)

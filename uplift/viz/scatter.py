@@ -134,7 +134,7 @@ def pareto_steps(front: Array, right: float) -> Array:
 
 
 def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array) -> None:
-    """Write the labels that have room beside the ``markers`` (M, 2) and the ``line`` (k, 2), bold ones first."""
+    """Write the labels that have room next to the ``markers`` (M, 2) and the ``line`` (k, 2), bold ones first."""
     if not labels:
         return
     labels = sorted(labels, key=lambda label: not label.bold)
