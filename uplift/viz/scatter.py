@@ -164,9 +164,11 @@ def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array)
         if np.isnan(corner).any():
             text.remove()
             continue
-        is_left = corner[0] + size[0] < anchor[0]  # where fonts differ, the end at the marker stays
-        text.set(position=corner, horizontalalignment="right" if is_left else "left")
-        text.xy = (corner[0] + size[0] * is_left, corner[1])
+        # Where fonts differ, the end of the text at the marker stays.
+        is_left = corner[0] + size[0] < anchor[0]
+        end = (corner[0] + size[0] * is_left, corner[1])
+        text.set(position=end, horizontalalignment="right" if is_left else "left")
+        text.xy = end
         _join(axes, np.clip(anchor, corner, corner + size), anchor)
 
 
