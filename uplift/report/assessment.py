@@ -15,6 +15,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lookup import Cube
+from uplift.report.alternatives import Alternative, find_alternatives
 from uplift.report.calibration import Calibration, check_calibration
 from uplift.report.crowding import Crowding, find_crowding
 from uplift.report.failures import Failures, collect_failures
@@ -71,6 +72,8 @@ class Assessment:
         Whether the cube was built from these files.
     entries : EntryErrors or None
         Errors of the entries; None without a measured spectrum to compare with.
+    alternatives : tuple of Alternative
+        Answers of other methods at the colours of ``entries``; empty without entries.
     delta_e : dict of str to Histogram
         ΔE00 of the entries by name of the light.
     out_of_gamut : tuple of str
@@ -98,6 +101,7 @@ class Assessment:
     sources: tuple[str, ...]
     own: bool
     entries: EntryErrors | None
+    alternatives: tuple[Alternative, ...]
     delta_e: dict[str, Histogram]
     out_of_gamut: tuple[str, ...]
     not_covered: tuple[str, ...]
@@ -159,6 +163,7 @@ def assess(
         sources=() if atlas is None else tuple(source.name for source in atlas.sources),
         own=own,
         entries=errors,
+        alternatives=() if errors is None else find_alternatives(data, errors, sensors),
         delta_e={} if errors is None else _comparable(_by_light(errors, sensors), linear_edges),
         out_of_gamut=() if query is None else query.out_of_gamut,
         not_covered=() if query is None else query.not_covered,

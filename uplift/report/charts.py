@@ -33,6 +33,9 @@ def histogram_chart(
         if values.logarithmic:
             axes.set_xscale("log")
             axes.xaxis.set_major_formatter(lambda value, _: format_power_of_ten(value))
+        else:
+            axes.locator_params(axis="x", nbins=6)
+            axes.xaxis.set_major_formatter("{x:g}")
         if threshold is not None:
             axes.axvline(threshold, color=INK, linewidth=0.8, linestyle=(0, (3, 2)))
         else:

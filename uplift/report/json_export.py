@@ -10,6 +10,7 @@ import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import hex_codes
+from uplift.report.alternatives import Alternative
 from uplift.report.assessment import Assessment
 from uplift.report.fidelity import EntryErrors
 from uplift.report.round_trip import SEED
@@ -54,6 +55,7 @@ def to_json(assessment: Assessment) -> dict[str, Any]:
             },
             "delta_e_2000": {light: _histogram(each) for light, each in assessment.delta_e.items()},
             "entries": [] if assessment.entries is None else _entries(assessment.entries, assessment.lights),
+            "alternatives": [_alternative(each, assessment.lights) for each in assessment.alternatives],
             "crowding": _crowding(assessment),
         }
     )
@@ -148,6 +150,21 @@ def _entries(errors: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, 
         }
         for row, name in enumerate(errors.names)
     ]
+
+
+def _alternative(other: Alternative, lights: tuple[Sensor, ...]) -> dict[str, Any]:
+    """Errors of another method, by light and in the order of the entries."""
+    return {
+        "name": other.name,
+        "delta_e_2000": {
+            sensor.illuminant: {
+                "mean": other.mean[column],
+                "max": other.largest[column],
+                "entries": other.delta_e[:, column],
+            }
+            for column, sensor in enumerate(lights)
+        },
+    }
 
 
 def _plain(value: Any) -> Any:

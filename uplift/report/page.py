@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
+from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import hex_codes
+from uplift.common.arrays import Array
 from uplift.report.assessment import Assessment
 from uplift.report.charts import histogram_chart, spectra_chart
 from uplift.report.json_export import swatches
@@ -49,6 +53,7 @@ def render_report(assessment: Assessment, worst: int) -> str:
         spectra_chart=spectra_chart,
         errors_by_light=list(_errors_by_light(assessment)),
         codes_by_light=lambda errors: [swatches(errors, sensor) for sensor in assessment.lights],
+        compared=list(_compared(assessment, worst)),
         largest_count=max((int(each.counts.max()) for each in assessment.delta_e.values()), default=0),
         severity=_severity,
         visible=VISIBLE,
@@ -78,8 +83,36 @@ def _errors_by_light(assessment: Assessment) -> Iterator[dict[str, Any]]:
             "light": light,
             "distribution": values,
             "worst": entries.names[int(entries.delta_e[:, column].argmax())],
+            "alternatives": [
+                (other.mean[column], other.largest[column]) for other in assessment.alternatives
+            ],
             "lattice": None if entries.delta_e_lattice is None else entries.delta_e_lattice[:, column],
         }
+
+
+def _compared(assessment: Assessment, count: int) -> Iterator[list[dict[str, Any]]]:
+    """Swatches and ΔE00 of the first entries: rows of measured, answered and alternatives, by light."""
+    if (entries := assessment.entries) is None:
+        return
+    answers = {"measured": (entries.target, None), "this cube": (entries.answer, entries.delta_e)}
+    answers |= {other.name: (other.answer, other.delta_e) for other in assessment.alternatives}
+    for row in range(min(count, len(entries.names))):
+        yield [
+            {
+                "name": name,
+                "cells": _cells(assessment.lights, answer[row], None if errors is None else errors[row]),
+            }
+            for name, (answer, errors) in answers.items()
+        ]
+
+
+def _cells(lights: tuple[Sensor, ...], answer: Array, errors: Array | None) -> list[tuple[str, float | None]]:
+    """Colour and ΔE00 of a spectrum (N,) under each light; an empty colour for an unknown spectrum."""
+    if np.isnan(answer).any():
+        return [("", None)] * len(lights)
+    codes = [hex_codes(sensor.rgb(answer[None]))[0] for sensor in lights]
+    values = [None] * len(lights) if errors is None else errors.tolist()
+    return list(zip(codes, values, strict=True))
 
 
 def _describe(value: Any) -> str:
@@ -90,5 +123,5 @@ def _describe(value: Any) -> str:
             for key, inner in value.items()
         )
     if isinstance(value, list | tuple):
-        return " ".join(map(_describe, value))
+        return " ".join(map(_describe, value)) or "none"
     return f"{value:g}" if isinstance(value, float) else str(value)

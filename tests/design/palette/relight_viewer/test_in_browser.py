@@ -19,7 +19,7 @@ from tests.design.palette.relight_viewer.expected import (
     position,
     shares,
 )
-from uplift.design.palette.relight_viewer.page import page
+from uplift.design.palette.relight_viewer.page import page, start_light
 
 
 def centre(tab, selector):
@@ -41,12 +41,21 @@ def slide(tab, slider, value):
 
 
 @pytest.mark.parametrize(("lights", "materials", "m"), [(1, 1, 3), (2, 3, 5), (5, 9, 12)])
-def test_the_picture_initially_shows_the_first_light(opened, lights, materials, m):
+def test_the_picture_initially_shows_the_light_that_separates_materials(opened, lights, materials, m):
     view = arbitrary(lights, materials, m, size=(31, 17))
     tab = opened(view)
-    first = np.eye(lights)[0]
+    first = np.eye(lights)[start_light(view)]
     assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, first)).max() <= 1
     assert tab.errors == []
+
+
+def test_start_light_separates_materials():
+    view = arbitrary(2, 3, 5)
+    colours = np.full((3, 2, 3), 0.5)
+    colours[0, 1] = 0.1
+    view = dataclasses.replace(view, materials=dataclasses.replace(view.materials, colours=colours))
+    assert start_light(view) == 1
+    assert '"start": 1' in page(view)
 
 
 def test_the_page_fits_and_is_accessible(view, tmp_path):
@@ -105,8 +114,11 @@ def test_sliders_scale_their_light_exposure_scales_all_and_reset_restores(opened
     slide(tab, "gain-2", 0)
     slide(tab, "exposure", -1.5)
     assert largest_difference(tab, view, gains=[0.4, 1, 0], stops=-1.5) <= 1
+    texts = [tab.evaluate(f"document.getElementById('gain-{row}-text').value") for row in range(3)]
+    assert texts == ["40 %", "100 %", "0 %"]
     tab.evaluate("document.getElementById('reset').click()")
-    assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, [1, 0, 0])).max() <= 1
+    start = np.eye(3)[start_light(view)]
+    assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, start)).max() <= 1
     assert tab.errors == []
 
 
@@ -137,14 +149,15 @@ def test_patches_are_colours_by_full_spectra_and_by_the_factor_model(opened, vie
 
 def test_clipped_pixels_are_counted(opened, view):
     tab = opened(view)
+    start = start_light(view)
     slide(tab, "exposure", 2)
     tab.canvas("picture")
-    linear = view.rgb([4, 0, 0])
+    linear = view.rgb(4 * np.eye(3)[start])
     clipped = ((linear < -1 / 510) | (linear > 1 + 1 / 510)).any(axis=-1).mean()
     assert clipped > 0.01
     text = tab.evaluate("document.getElementById('clipped').textContent")
     assert float(text.split()[1]) == pytest.approx(100 * clipped, abs=0.1)
-    slide(tab, "gain-0", 0)
+    slide(tab, f"gain-{start}", 0)
     tab.canvas("picture")
     assert tab.evaluate("document.getElementById('clipped').textContent") == ""
 

@@ -16,7 +16,7 @@ function drawDial(names, white) {
   const across = 2 * DISC;
   const disc = createSvg("image", { href: discImage(positions, white), x: -DISC, y: -DISC, width: across, height: across });
   const knob = createSvg("g", { id: "handle" }, createSvg("circle", { r: 10 }), createSvg("circle", { r: 3 }));
-  const marks = names.map((name, j) => lightMark(name, positions[j], white[j]));
+  const marks = names.map((name, j) => lightMark(name, positions[j], white[j], `share-${j}`));
   byId("dial").append(disc, createSvg("circle", { r: DISC, class: "rim" }), ...marks, knob);
 }
 
@@ -38,12 +38,14 @@ function discImage(positions, white) {
 
 const toDisplay = rgb => rgb.map(linear => linear / Math.max(1e-9, ...rgb));
 
-function lightMark(name, [x, y], white) {
+// Name of a light and its share of the mix.
+function lightMark(name, [x, y], white, share) {
   const short = name.length > 12 ? name.slice(0, 11) + "…" : name;
   const anchor = Math.abs(x) < 0.3 ? "middle" : x > 0 ? "start" : "end";
-  const attributes = { x: x * (DISC + 13), y: y * (DISC + 18) + 3.5, "text-anchor": anchor };
+  const attributes = { x: x * (DISC + 13), y: y * (DISC + 22) - 1.5, "text-anchor": anchor };
   const spot = createSvg("circle", { cx: x * DISC, cy: y * DISC, r: 7, fill: hex(toDisplay(white)) });
-  return createSvg("g", { class: "light-mark" }, createSvg("title", {}, name), spot, createSvg("text", attributes, short));
+  const below = createSvg("tspan", { id: share, x: attributes.x, dy: 11, class: "share" });
+  return createSvg("g", { class: "light-mark" }, createSvg("title", {}, name), spot, createSvg("text", attributes, short, below));
 }
 
 function showDial([x, y], text, strongest) {

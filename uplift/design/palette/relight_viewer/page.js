@@ -2,7 +2,7 @@
 const numbers = JSON.parse(byId("numbers").textContent);
 const { lights, materials, wavelengths, power, white, colours, toRgb } = numbers;
 const positions = rimPositions(lights.length);
-const START = positions[0];
+const START = positions[numbers.start];
 const picture = byId("picture").getContext("2d");
 const image = picture.createImageData(picture.canvas.width, picture.canvas.height);
 const out = new Uint32Array(image.data.buffer).fill(opaque(0, 0, 0));
@@ -31,7 +31,8 @@ function show() {
 
 function showTexts(mix, clipped) {
   showDial(position, lights.map((name, j) => `${name} ${percent(mix[j])}`).join(", "), Math.max(...mix));
-  mix.forEach((weight, j) => (byId(`gain-${j}-text`).value = percent(weight)));
+  gains.forEach((gain, j) => (byId(`gain-${j}-text`).value = percent(gain.value / 100)));
+  mix.forEach((weight, j) => (byId(`share-${j}`).textContent = percent(weight)));
   byId("exposure-text").value = `${exposure.value > 0 ? "+" : ""}${Number(exposure.value).toFixed(2)} EV`;
   const share = (100 * clipped) / out.length;
   byId("clipped").textContent = clipped ? `Clipped: ${Math.max(share, 0.1).toFixed(1)} % of the picture` : "";

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from uplift.colorimetry.srgb import hex_codes
 from uplift.design.palette.relight_viewer.packing import pack, to_half
 from uplift.design.palette.relight_viewer.relighting import Relighting
@@ -13,6 +15,8 @@ from uplift.viz.html import render, resource
 FOLDER = "design/palette/relight_viewer"
 SCRIPTS = ("unpack.js", "screen.js", "mix.js", "dial.js", "page.js", "find.js")
 """One module of the page, in this order."""
+DISPLAY_EXPONENT = 1 / 2.2
+"""Approximate transfer function of displays."""
 MAX_STOPS = 3
 """Range of the exposure in both directions, in powers of two."""
 
@@ -55,6 +59,23 @@ def page(relighting: Relighting) -> str:
     )
 
 
+def start_light(relighting: Relighting) -> int:
+    """Return the light that the page starts with: the one under which the materials look most different.
+
+    Parameters
+    ----------
+    relighting : Relighting
+        Materials and lights.
+
+    Returns
+    -------
+    int
+        Row of the light.
+    """
+    colours = relighting.materials.colours.clip(0, 1) ** DISPLAY_EXPONENT
+    return int(np.linalg.norm(colours - colours.mean(axis=0), axis=-1).mean(axis=0).argmax())
+
+
 def _patches(relighting: Relighting) -> list[list[tuple[str, str]]]:
     """For every material under every light the colours by full spectra and by the factor model."""
     coefficients = relighting.materials.coefficients[:, None] * relighting.lights.coefficients
@@ -69,6 +90,7 @@ def _numbers(relighting: Relighting) -> dict[str, Any]:
     """Values that the scripts compute with."""
     lights, materials = relighting.lights, relighting.materials
     return {
+        "start": start_light(relighting),
         "lights": lights.names,
         "materials": materials.names,
         "wavelengths": relighting.wavelengths.tolist(),
