@@ -74,6 +74,7 @@ precision highp float;
 uniform sampler2D image, first, second;
 uniform vec3 white_a, white_b, balance;
 uniform float share, exposure, split;
+uniform vec2 cursor;
 uniform int height;
 out vec4 colour;
 vec3 linear(vec3 code) {
@@ -89,7 +90,9 @@ void main() {
   vec3 ours = mix(texelFetch(first, place, 0).rgb, texelFetch(second, place, 0).rgb, share);
   vec3 rgb = gl_FragCoord.x < split ? ours : plain;
   bool edge = abs(gl_FragCoord.x - split) < 1.0;
-  colour = vec4(edge ? vec3(1.0) : encode(exposure * rgb * balance), 1.0);
+  float ring = distance(vec2(place), cursor);
+  colour = vec4(edge || abs(ring - 6.0) < 1.0 ? vec3(1.0) : encode(exposure * rgb * balance), 1.0);
+  if (abs(ring - 8.0) < 1.0) colour.rgb = vec3(0.0);
 }`;
 const spectrum = `#version 300 es
 ${kernel}
@@ -138,7 +141,7 @@ attach(frames.nodes, [5, 6].map(unit => texture(unit, gl.RGBA32F, ACROSS, DOWN, 
 attach(frames.spectrum, [texture(4, gl.RGBA32F, GROUPS, 1, gl.FLOAT, null)]);
 
 const source = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
-const state = { width: 1, height: 1, pixels: null, made: [] };
+const state = { width: 1, height: 1, pixels: null, made: [], place: [0, 0] };
 const white = name => lights[name].map(row => row.reduce((sum, value) => sum + value, 0));
 const chosen = () => [byId("light-a").value, byId("light-b").value];
 
@@ -201,8 +204,10 @@ function draw() {
   gl.uniform1f(at("exposure"), 2 ** byId("exposure").value);
   gl.uniform1f(at("split"), byId("split").value);
   gl.uniform1i(at("height"), state.height);
+  gl.uniform2fv(at("cursor"), document.activeElement === canvas ? state.place : [-99, -99]);
   gl.drawArrays(gl.TRIANGLES, 0, 3);
   byId("mix-text").value = `${byId("mix").value} %`;
+  byId("exposure-text").value = `${byId("exposure").value} EV`;
 }
 
 const linear = code => (code <= 0.04045 ? code / 12.92 : ((code + 0.055) / 1.055) ** 2.4);
@@ -221,8 +226,11 @@ function reflectances(rgb) {
   return [...found];
 }
 
-// Spectrum of a pixel of the image.
+// Spectrum of a pixel of the image, the nearest to a place.
 function inspect(x, y) {
+  x = Math.max(0, Math.min(state.width - 1, x));
+  y = Math.max(0, Math.min(state.height - 1, y));
+  state.place = [x, y];
   const start = 4 * (y * state.width + x);
   const codes = [...state.pixels.slice(start, start + 3)];
   const g = reflectances(codes.map(code => linear(code / 255)));
@@ -273,7 +281,16 @@ document.addEventListener("drop", event => {
   if (event.dataTransfer.files[0]) open(event.dataTransfer.files[0]);
 });
 canvas.addEventListener("pointermove", ({ offsetX, offsetY }) => inspect(
-  Math.min(state.width - 1, Math.floor((offsetX * state.width) / canvas.clientWidth)),
-  Math.min(state.height - 1, Math.floor((offsetY * state.height) / canvas.clientHeight))));
+  Math.floor((offsetX * state.width) / canvas.clientWidth),
+  Math.floor((offsetY * state.height) / canvas.clientHeight)));
+const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+canvas.addEventListener("keydown", event => {
+  const step = steps[event.key], length = event.shiftKey ? 20 : 1;
+  if (!step) return;
+  event.preventDefault();
+  inspect(state.place[0] + length * step[0], state.place[1] + length * step[1]);
+  requestAnimationFrame(draw);
+});
+for (const kind of ["focus", "blur"]) canvas.addEventListener(kind, () => requestAnimationFrame(draw));
 show(sample());
 document.querySelector("main").setAttribute("aria-busy", "false");
