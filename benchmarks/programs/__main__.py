@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 import time
 import warnings
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,100 +15,100 @@ import click
 import numpy as np
 
 import uplift
+from benchmarks.browser import chromium
+from benchmarks.programs import header, live, shaders
+from benchmarks.programs.header import Floats, Rates
 from benchmarks.record import ROOT, write
-from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.io.export import write_program
+from uplift.io.export.programs import FORMATS
 from uplift.lookup import Cube, bulk
 from uplift.viz.figure import ACCENT, GREY, new_figure, style_axes, write_png
 
-COLOURS, CHECKED, RAY = 400_000, 5000, np.linspace(400, 700, 16)
+COLOURS, PIXELS, RAY = 400_000, 262_144, np.linspace(400, 700, 16)
+FOUR = [450.0, 500.0, 550.0, 600.0]
 FLAGS = ("-O3", "-march=x86-64-v3", "-fno-math-errno", "-fno-trapping-math")
 OTHER_FLAGS = (("-O2",), ("-O3",), ("-O3", "-march=x86-64-v3"), ("-O3", "-march=native", "-ffast-math"))
-WORST = {"spectra": 1e-3, "moments": 1e-3}
-"""Largest permitted difference of reflectance from Python."""
+MODES = ("spectra", "moments")
+BOXES = (("sRGB", 9), ("sRGB", 17), ("ACEScg", 9), ("ACEScg", 17))
+"""Spaces and numbers of coefficients of the cubes on which accuracy near a box is measured."""
 
-Row = dict[str, Any]
+
+@dataclass(frozen=True)
+class ShaderRate:
+    """Million colours per CPU second at four wavelengths; the largest difference of reflectance from Python."""
+
+    language: str
+    table: str
+    mode: str
+    lookup: float
+    worst: float
+
+
+@dataclass(frozen=True)
+class PythonRate:
+    """Million colours per CPU second at sixteen wavelengths."""
+
+    what: str
+    lookup: float
 
 
 @click.command()
 @click.option("--runs", default=9, show_default=True, help="Number of runs; the fastest counts.")
 def main(runs: int) -> None:
-    """Time and check the C header in both modes and models, and lookups in Python on the same colours."""
+    """Time and check the C header in both modes and models, shaders, and lookups in Python on the same colours."""
     compiler = shutil.which("cc")
-    if compiler is None:
-        raise click.ClickException("this benchmark needs a C compiler, cc")
-    cubes = {model: _build(model) for model in ("moments", "sigmoid")}
+    if compiler is None or chromium() is None:
+        raise click.ClickException("this benchmark needs a C compiler, cc, and Chromium")
+    cubes = {model: _build(dim=32, model=model) for model in ("moments", "sigmoid")}
+    cube = cubes["moments"]
     rgb = np.random.default_rng(1).random((COLOURS, 3)).astype(np.float32)
-    rows = [
-        _measure(cube, mode, FLAGS, rgb, runs) for mode in ("spectra", "moments") for cube in cubes.values()
+    rows = [header.measure(each, mode, FLAGS, rgb, runs) for mode in MODES for each in cubes.values()]
+    flags = [header.measure(cube, mode, each, rgb, runs) for each in OTHER_FLAGS for mode in MODES]
+    boxes = [
+        header.accuracy(_build(dim=16, space=space, coefficients=count), mode, FLAGS)
+        for space, count in BOXES
+        for mode in MODES
     ]
-    flags = [
-        _measure(cubes["moments"], mode, each, rgb, runs)
-        for each in OTHER_FLAGS
-        for mode in ("spectra", "moments")
+    python = [_python(cube, mode, rgb, runs) for mode in ("bulk", *MODES)]
+    shader = [
+        _shader(cube, language, table, mode, rgb, runs)
+        for language in ("glsl", "wgsl")
+        for table in FORMATS[language].tables
+        for mode in MODES
     ]
-    python = [_python(cubes["moments"], mode, rgb, runs) for mode in ("bulk", "spectra", "moments")]
+    frames, product = live.measure(cube, runs)
     version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True).stdout
     write(
         "programs",
         "make bench",
         runs=runs,
         colours=COLOURS,
+        pixels=PIXELS,
+        checked=header.CHECKED,
         compiler=version.splitlines()[0],
         flags=" ".join(FLAGS),
+        browser=product,
         rows=rows,
         by_flags=flags,
+        boxes=boxes,
         python=python,
+        shaders=shader,
+        frames=frames,
     )
-    _picture(rows, python, ROOT / "docs" / "performance" / "programs.png")
+    _picture(rows, python, shader, ROOT / "docs" / "performance" / "programs.png")
 
 
-def _build(model: str) -> Cube:
+def _build(**options: Any) -> Cube:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
-        return uplift.build(ROOT / "atlases" / "macbeth.txt", dim=32, model=model)
+        return uplift.build(ROOT / "atlases" / "macbeth.txt", **options)
 
 
-def _measure(cube: Cube, mode: str, flags: tuple[str, ...], rgb: Any, runs: int) -> Row:
-    """Compile the header, check its reflectances, and time it."""
-    data = cube.data
-    source = Path(__file__).with_name("rates.c")
-    at = cube.wavelengths.astype(np.float32)
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        write_program(data, folder / "cube.h", mode=mode)
-        rgb.tofile(folder / "rgb")
-        at.tofile(folder / "at")
-        subprocess.run(["cc", *flags, "-I.", str(source), "-o", "rates", "-lm"], cwd=folder, check=True)
-        command = ["./rates", "rgb", "at", str(runs), "found"]
-        done = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
-        found = np.fromfile(folder / "found", np.float32).reshape(CHECKED, -1).astype(float)
-    lookup, many, evaluation, shared, _ = map(float, done.stdout.split())
-    checked = rgb[:CHECKED].astype(float)
-    worst = float(np.abs(found - cube.reflectance(checked, at, mode=mode)).max())
-    if not worst <= WORST[mode]:
-        raise RuntimeError(f"{mode}: reflectances differ by {worst}: nothing to time")
-    difference = delta_e_rgb(data.sensor, data.sensor.rgb(found), checked)
-    return {
-        "model": data.model.name,
-        "coefficients": data.model.count,
-        "mode": mode,
-        "flags": " ".join(flags),
-        "lookup": COLOURS / lookup / 1e6,
-        "many": COLOURS / many / 1e6,
-        "evaluation": COLOURS / evaluation / 1e6,
-        "shared": COLOURS / shared / 1e6,
-        "worst": worst,
-        "mean_delta_e": float(difference.mean()),
-        "max_delta_e": float(difference.max()),
-    }
-
-
-def _python(cube: Cube, mode: str, rgb: Any, runs: int) -> Row:
+def _python(cube: Cube, mode: str, rgb: Floats, runs: int) -> PythonRate:
     """Time lookups in Python: CPU seconds of all threads."""
     colours = rgb[:100_000].astype(float)
     if mode == "bulk":
-        sample = bulk.spectra(cube, RAY, threads=1)
+        sample: Any = bulk.spectra(cube, RAY, threads=1)
     else:
 
         def sample(values: Any) -> Any:
@@ -119,18 +120,40 @@ def _python(cube: Cube, mode: str, rgb: Any, runs: int) -> Row:
         sample(colours)
         best = min(best, time.process_time() - begin)
     name = "`uplift.bulk`, spectra" if mode == "bulk" else f"numpy, {mode}"
-    return {"what": name, "lookup": len(colours) / best / 1e6}
+    return PythonRate(name, len(colours) / best / 1e6)
 
 
-def _picture(rows: list[Row], python: list[Row], path: Path) -> None:
-    """Draw bars of lookups per second."""
-    bars = [(f"C, {row['mode']}, {row['model']} ({row['coefficients']})", row["lookup"]) for row in rows]
-    bars += [(row["what"].replace("`", ""), row["lookup"]) for row in python]
-    figure = new_figure(6.4, 0.3 * len(bars) + 0.7)
+def _shader(cube: Cube, language: str, table: str, mode: str, rgb: Floats, runs: int) -> ShaderRate:
+    """Time a shader in the browser: CPU seconds of all processes."""
+    run = {"glsl": shaders.glsl, "wgsl": shaders.wgsl}[language]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"cube.{language}"
+        write_program(cube.data, path, style=language, mode=mode, form=table)
+        found = run(path, rgb[:PIXELS], FOUR, table, runs)
+    if found is None:
+        raise click.ClickException(f"the browser has no interface for {language}")
+    checked = found.reflectances[: header.CHECKED]
+    expected = cube.reflectance(rgb[: header.CHECKED].astype(float), FOUR, mode=mode)
+    worst = float(np.abs(checked - expected).max())
+    return ShaderRate(language.upper(), table, mode, PIXELS / found.seconds / 1e6, worst)
+
+
+def _picture(rows: list[Rates], python: list[PythonRate], shader: list[ShaderRate], path: Path) -> None:
+    """Draw bars of reflectances per second."""
+    models = {"moments": "9 coefficients", "sigmoid": "sigmoids"}
+    bars = [(f"C, {row.mode}, {models[row.model]}", row.many, RAY.size, ACCENT) for row in rows]
+    bars += [(row.what.replace("`", ""), row.lookup, RAY.size, GREY) for row in python]
+    bars += [
+        (f"{row.language}, {row.mode}, software rendering", row.lookup, len(FOUR), ACCENT)
+        for row in shader
+        if row.table == "file"
+    ]
+    names, rates, sizes, colours = zip(*bars[::-1], strict=True)
+    figure = new_figure(7.4, 0.3 * len(bars) + 1)
     axes = figure.subplots()
-    colours = [ACCENT] * len(rows) + [GREY] * len(python)
-    axes.barh([name for name, _ in bars][::-1], [rate for _, rate in bars][::-1], color=colours[::-1])
-    axes.set_xlabel("million colours per second, 16 wavelengths, one core")
+    axes.barh(names, np.multiply(rates, sizes), color=colours)
+    axes.set_xscale("log")
+    axes.set_xlabel("million reflectances per CPU second\n(16 wavelengths per colour, 4 in shaders)")
     style_axes(axes)
     path.parent.mkdir(exist_ok=True)
     write_png(figure, path, force=True)

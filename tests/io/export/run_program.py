@@ -5,8 +5,6 @@ It returns reflectances (n, 4), and skips the test if the compiler, the browser 
 
 from __future__ import annotations
 
-import base64
-import json
 import shutil
 import struct
 import subprocess
@@ -16,7 +14,9 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from benchmarks.browser import browser, chromium
+from benchmarks.browser import chromium
+from benchmarks.programs import shaders
+from benchmarks.programs.shaders import listed, padded, textures
 
 BLENDER = Path(__file__).parents[3] / ".osl" / "bin" / "python"
 HOST = r"""
@@ -42,115 +42,6 @@ LOAD = """static float table[{size}];
     FILE *file = fopen("cube.bin", "rb");
     if (!file || fread(table, 1, sizeof table, file) != sizeof table) return 1;"""
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-unused-function", "-O1")
-FRAGMENT = """#version 300 es
-{code}
-uniform sampler2D colours;
-out vec4 found;
-void main() {{
-    found = cube_reflectances(texelFetch(colours, ivec2(gl_FragCoord.xy), 0).rgb, vec4({wavelengths}));
-}}
-"""
-WEBGL = """(() => {
-  const floats = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
-  const { code, table, textures, rows, columns, colours, side } = DATA;
-  const gl = Object.assign(document.createElement("canvas"), { width: side, height: side }).getContext("webgl2");
-  if (!gl || !gl.getExtension("EXT_color_buffer_float")) return null;
-  const program = gl.createProgram();
-  const vertex = `#version 300 es
-    void main() { gl_Position = vec4(gl_VertexID == 1 ? 3. : -1., gl_VertexID == 2 ? 3. : -1., 0., 1.); }`;
-  for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, code]]) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  gl.useProgram(program);
-  const upload = (unit, name, width, height, values) => {
-    gl.activeTexture(gl.TEXTURE0 + unit);
-    gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, values);
-    for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
-      gl.texParameteri(gl.TEXTURE_2D, side, gl.NEAREST);
-    if (name) gl.uniform1i(gl.getUniformLocation(program, name), unit);
-  };
-  if (table) upload(2, "cube_table", columns, rows, floats(table));
-  Object.entries(textures).forEach(([name, text], k) => {
-    const { width, height, depth, texels } = ktx2(text);
-    gl.activeTexture(gl.TEXTURE2 + k);
-    gl.uniform1i(gl.getUniformLocation(program, name), 2 + k);
-    if (!depth) return upload(2 + k, name, width, height, texels);
-    gl.bindTexture(gl.TEXTURE_3D, gl.createTexture());
-    gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA32F, width, height, depth, 0, gl.RGBA, gl.FLOAT, texels);
-    for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
-      gl.texParameteri(gl.TEXTURE_3D, side, gl.NEAREST);
-  });
-  upload(0, "colours", side, side, floats(colours));
-  upload(1, "", side, side, null);
-  const target = gl.getParameter(gl.TEXTURE_BINDING_2D);
-  gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
-  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
-  gl.viewport(0, 0, side, side);
-  gl.drawArrays(gl.TRIANGLES, 0, 3);
-  const found = new Float32Array(4 * side * side);
-  gl.readPixels(0, 0, side, side, gl.RGBA, gl.FLOAT, found);
-  let text = "";
-  for (const byte of new Uint8Array(found.buffer)) text += String.fromCharCode(byte);
-  return btoa(text);
-})()"""
-COMPUTE = """{code}
-@group(0) @binding({binding}) var<storage, read> colours: array<vec4f>;
-@group(0) @binding({binding} + 1) var<storage, read_write> found: array<vec4f>;
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3u) {{
-    if (id.x < arrayLength(&found)) {{
-        found[id.x] = cube_reflectances(colours[id.x].xyz, vec4f({wavelengths}));
-    }}
-}}
-"""
-WEBGPU = """(async () => {
-  const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
-  const { code, table, textures, colours } = DATA;
-  const adapter = navigator.gpu ? await navigator.gpu.requestAdapter() : null;
-  if (!adapter) return null;
-  const device = await adapter.requestDevice();
-  const module = device.createShaderModule({ code });
-  const wrong = (await module.getCompilationInfo()).messages.filter(each => each.type === "error");
-  if (wrong.length) throw new Error(wrong.map(each => `${each.lineNum}: ${each.message}`).join());
-  const buffer = (data, usage) => {
-    const made = device.createBuffer({ size: data.byteLength, usage: usage | GPUBufferUsage.COPY_DST });
-    device.queue.writeBuffer(made, 0, data);
-    return made;
-  };
-  const rgb = bytes(colours), { STORAGE, COPY_SRC, MAP_READ } = GPUBufferUsage;
-  const found = buffer(new Uint8Array(rgb.byteLength), STORAGE | COPY_SRC);
-  const result = buffer(new Uint8Array(rgb.byteLength), MAP_READ);
-  const compute = { module, entryPoint: "main" };
-  const pipeline = await device.createComputePipelineAsync({ layout: "auto", compute });
-  const upload = text => {
-    const { width, height, depth, texels } = ktx2(text), usage = GPUTextureUsage;
-    const size = [width, height, depth || 1], dimension = depth ? "3d" : "2d";
-    const made = device.createTexture(
-      { size, dimension, format: "rgba32float", usage: usage.TEXTURE_BINDING | usage.COPY_DST });
-    device.queue.writeTexture({ texture: made }, texels, { bytesPerRow: 16 * width, rowsPerImage: height }, size);
-    return made.createView();
-  };
-  const held = table ? [{ buffer: buffer(bytes(table), STORAGE) }] : Object.values(textures).map(upload);
-  const entries = [...held, { buffer: buffer(rgb, STORAGE) }, { buffer: found }].map((resource, binding) => (
-    { binding, resource }));
-  const commands = device.createCommandEncoder(), pass = commands.beginComputePass();
-  pass.setPipeline(pipeline);
-  pass.setBindGroup(0, device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries }));
-  pass.dispatchWorkgroups(Math.ceil(rgb.byteLength / 16 / 64));
-  pass.end();
-  commands.copyBufferToBuffer(found, 0, result, 0, rgb.byteLength);
-  device.queue.submit([commands.finish()]);
-  await result.mapAsync(GPUMapMode.READ);
-  let text = "";
-  for (const byte of new Uint8Array(result.getMappedRange())) text += String.fromCharCode(byte);
-  return btoa(text);
-})()"""
 SHADER = """{code}
 shader lookup(output color found = 0)
 {{
@@ -170,13 +61,6 @@ extern "C" __global__ void lookup(const float *table, const float *rgb, const fl
     int at = blockIdx.x * blockDim.x + threadIdx.x;
     cube_reflectances(table, rgb + 3 * at, wavelengths, found + 4 * at);
 }}
-"""
-KTX2 = """const ktx2 = text => {
-  const { buffer } = Uint8Array.from(atob(text), c => c.charCodeAt(0));
-  const view = new DataView(buffer), number = at => view.getUint32(at, true);
-  const [width, height, depth] = [20, 24, 28].map(number), start = number(80), length = number(88) / 4;
-  return { width, height, depth, texels: new Float32Array(buffer, start, length) };
-};
 """
 PIXEL = """{code}
 StructuredBuffer<float4> colours : register(t{binding});
@@ -227,14 +111,14 @@ def osl(path, rgb, wavelengths, form="file"):
     if not BLENDER.exists():
         pytest.skip("needs Blender: make osl")
     side = int(np.ceil(np.sqrt(len(rgb))))
-    pixels = np.ascontiguousarray(_padded(rgb, side * side)[:, :3].reshape(side, side, 3))
+    pixels = np.ascontiguousarray(padded(rgb, side * side)[:, :3].reshape(side, side, 3))
     colours, shader, out = (path.with_name(name) for name in ("colours.exr", "lookup.osl", "found.exr"))
     _exr(colours, pixels)
     code, table = path.read_text(), path.with_suffix(".exr")
     code = code[: code.index("shader cube_reflectance")]
     found = []
     for three in (wavelengths[:3], wavelengths[1:]):
-        words = {"wavelengths": _listed(three), "colours": colours, "table": table}
+        words = {"wavelengths": listed(three), "colours": colours, "table": table}
         shader.write_text(SHADER.format(code=code, **words))
         command = [BLENDER, Path(__file__).with_name("render_osl.py"), shader, str(side), out]
         subprocess.run(command, check=True, capture_output=True)
@@ -251,7 +135,7 @@ def _compiled(path, rgb, wavelengths, compiler, call, load):
     if shutil.which(compiler[0]) is None:
         pytest.skip(f"needs a compiler, {compiler[0]}")
     folder = path.parent
-    text = HOST.format(header=path.name, wavelengths=_listed(wavelengths), call=call, load=load)
+    text = HOST.format(header=path.name, wavelengths=listed(wavelengths), call=call, load=load)
     (folder / "main.c").write_text(text)
     subprocess.run([*compiler, *STRICT, "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
     done = subprocess.run(
@@ -262,49 +146,21 @@ def _compiled(path, rgb, wavelengths, compiler, call, load):
 
 def glsl(path, rgb, wavelengths, form="file"):
     """In Chromium, by WebGL 2."""
-    code = FRAGMENT.format(code=path.read_text(), wavelengths=_listed(wavelengths))
-    side = int(np.ceil(np.sqrt(len(rgb))))
-    tables = _tables(path, form)
-    rows = len(tables["table"]) * 3 // 4 // (2048 * 16)
-    shape = {"columns": 2048, "rows": rows, "side": side}
-    return _in_browser(path, WEBGL, _padded(rgb, side * side), code=code, **tables, **shape)[: len(rgb)]
+    return _in_browser(shaders.glsl, path, rgb, wavelengths, form)
 
 
 def wgsl(path, rgb, wavelengths, form="file"):
     """In Chromium, by WebGPU."""
-    tables = _tables(path, form)
-    places = {"wavelengths": _listed(wavelengths), "binding": max(1, len(tables["textures"]))}
-    code = COMPUTE.format(code=path.read_text(), **places)
-    return _in_browser(path, WEBGPU, _padded(rgb, len(rgb)), code=code, **tables)
+    return _in_browser(shaders.wgsl, path, rgb, wavelengths, form)
 
 
-def _tables(path, form):
-    """Return the table as text, or textures as text by the names of their uniforms."""
-    if form == "file":
-        return {"table": _text(path.with_suffix(".bin").read_bytes()), "textures": {}}
-    names = [each.stem.split("-") for each in textures(path, ".ktx2")]
-    names = ["cube_entries" if name[-1] == "entries" else f"cube_points_{name[-1]}" for name in names]
-    files = (_text(each.read_bytes()) for each in textures(path, ".ktx2"))
-    return {"table": "", "textures": dict(zip(names, files, strict=True))}
-
-
-def textures(path, suffix):
-    """Return the files of textures, that of the entries last."""
-    return sorted(path.parent.glob(f"{path.stem}-*{suffix}"))
-
-
-def _in_browser(path, script, colours, **data):
+def _in_browser(run, *arguments):
     if chromium() is None:
         pytest.skip("needs Chromium")
-    page = path.with_suffix(".html")
-    page.write_text("<!doctype html><main aria-busy='false'></main>")
-    content = json.dumps({**data, "colours": _text(colours.tobytes())})
-    with browser() as opened:
-        opened.open(page)
-        found = opened.evaluate("{ " + KTX2 + script.replace("DATA", content) + " }")
+    found = run(*arguments)
     if found is None:
         pytest.skip("the browser has no such graphics interface")
-    return np.frombuffer(base64.b64decode(found), np.float32).reshape(-1, 4)
+    return found.reflectances
 
 
 def hlsl(path, rgb, wavelengths, form="file"):
@@ -313,7 +169,7 @@ def hlsl(path, rgb, wavelengths, form="file"):
         pytest.skip("needs glslangValidator")
     folder, count = path.parent, -(-len(rgb) // 64) * 64
     binding = 1 if form == "file" else len(textures(path, ".dds"))
-    places = {"wavelengths": _listed(wavelengths), "binding": binding, "after": binding + 1}
+    places = {"wavelengths": listed(wavelengths), "binding": binding, "after": binding + 1}
     (folder / "main.hlsl").write_text(PIXEL.format(code=path.read_text(), **places))
     command = ["glslangValidator", "-D", "-V", "-S", "comp", "-e", "main", "main.hlsl", "-o", "main.spv"]
     subprocess.run(command, cwd=folder, check=True, capture_output=True)
@@ -323,7 +179,7 @@ def hlsl(path, rgb, wavelengths, form="file"):
     except (RuntimeError, AttributeError, OSError) as error:
         pytest.skip(f"needs a Vulkan driver: {error}")
     storage, source = wgpu.BufferUsage.STORAGE, wgpu.BufferUsage.COPY_SRC
-    colours = _padded(rgb, count)
+    colours = padded(rgb, count)
     if form == "file":
         data = path.with_suffix(".bin").read_bytes()
         held = [_whole(device.create_buffer_with_data(data=data, usage=storage))]
@@ -361,18 +217,3 @@ def _dds(wgpu, device, data):
     layout = {"bytes_per_row": 16 * width, "rows_per_image": height}
     device.queue.write_texture({"texture": texture}, data[148:], layout, size)
     return texture.create_view()
-
-
-def _listed(wavelengths):
-    return ", ".join(str(float(nm)) for nm in wavelengths)
-
-
-def _padded(rgb, count):
-    """Colours (count, 4) with a fourth channel."""
-    colours = np.zeros((count, 4), np.float32)
-    colours[: len(rgb), :3] = rgb
-    return colours
-
-
-def _text(data):
-    return base64.b64encode(data).decode()
