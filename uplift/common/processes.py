@@ -6,6 +6,7 @@ import contextlib
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -18,6 +19,8 @@ __all__ = ["tied_processes"]
 
 ENDED = 1
 """Exit code of a worker whose parent ended."""
+SILENT = "ignore:resource_tracker:UserWarning"
+"""Warnings of the process that frees what killed processes leave behind: it does so, and need not say it."""
 
 
 @contextlib.contextmanager
@@ -37,6 +40,7 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
         The processes, started as they are needed.
     """
     spawn = multiprocessing.get_context("spawn")  # JAX cannot be forked
+    _start_silent_tracker()
     reader, writer = spawn.Pipe(duplex=False)
     pool = ProcessPoolExecutor(count, mp_context=spawn, initializer=_tie, initargs=(reader,))
     try:
@@ -48,6 +52,19 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
         pool.shutdown(cancel_futures=True)
         writer.close()
         reader.close()
+
+
+def _start_silent_tracker() -> None:
+    """Start multiprocessing's resource tracker, which takes its filter of warnings from this process."""
+    if os.name != "posix":
+        return
+    from multiprocessing import resource_tracker
+
+    sys.warnoptions.append(SILENT)
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        sys.warnoptions.remove(SILENT)
 
 
 def _tie(reader: Connection) -> None:
