@@ -208,6 +208,18 @@ KNOWN_FINDINGS = (
         "now": "they end with the command and remove their files",
     },
     {
+        "target": "signals to 'texture' on two processes",
+        "input": "a signal in the moment in which the processes are started",
+        "was": "once in 30 runs, a warning of multiprocessing on leaked semaphores",
+        "now": "they are freed without a warning",
+    },
+    {
+        "target": "numbers of options",
+        "input": "a white of 1e308 in --primaries",
+        "was": "a warning of numpy before the error",
+        "now": "rejected without a warning",
+    },
+    {
         "target": "signals to 'build'",
         "input": "Ctrl-C during a callback of JAX, or while it is imported",
         "was": "ignored, or a crash",

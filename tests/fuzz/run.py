@@ -61,17 +61,17 @@ TARGETS = {
 COMMANDS = {module.TARGET.name: module.TARGET for module in (hostile_text, places, same_file, last_net)}
 """Targets that run the command line, by name."""
 WriterTest = Callable[[int, np.random.Generator, Path], Tally]
-WRITERS: tuple[tuple[WriterTest, int], ...] = (
-    (writers.kill_saves, 2),
-    (writers.kill_builds, 1),
-    (writers.concurrent_builds, 4),
-    (writers.builds_in_threads, 1),
-    (writers.full_disk, 6),
-    (writers.no_permission, 6),
-    (signalled.end_textures, 1),
-    (signalled.end_builds, 1),
-)
-"""Tests of writers, each with a divisor of the number of runs."""
+WRITERS: dict[str, tuple[WriterTest, int]] = {
+    "SIGKILL while saving": (writers.kill_saves, 2),
+    "SIGKILL while building": (writers.kill_builds, 1),
+    "two builds at once": (writers.concurrent_builds, 4),
+    "builds in threads": (writers.builds_in_threads, 1),
+    "disk full": (writers.full_disk, 6),
+    "read-only folder": (writers.no_permission, 6),
+    "signals to 'texture' on two processes": (signalled.end_textures, 1),
+    "signals to 'build'": (signalled.end_builds, 1),
+}
+"""Tests of writers by name, each with a divisor of the number of runs."""
 KEPT = ROOT / "out" / "fuzz"
 """Folder of inputs that failed."""
 

@@ -22,7 +22,7 @@ def test_old_or_complete_new_file_remains(target):
 
 
 def test_all_writer_tests_are_registered():
-    assert len({target for target, _ in WRITERS}) == 8
+    assert len({target for target, _ in WRITERS.values()}) == 8
 
 
 def test_builds_in_threads_give_equal_cubes():

@@ -78,12 +78,12 @@ class Writer:
         self._heights = [part.window.height for part in parts]
         self._total = sum(part.window.height * part.window.width * len(part.channels) for part in parts)
         self._written = 0
-        handle = OpenImageIO.ImageOutput.create("openexr")
-        if handle is None:
-            raise OSError(read_error(OpenImageIO))
-        self._handle = handle
         specs = tuple(self._specs) if len(self._specs) > 1 else self._specs[0]
         with _compression_threads(max(part.rows_per_band for part in parts) // ROWS_PER_CHUNK):
+            handle = OpenImageIO.ImageOutput.create("openexr")  # takes the number of threads
+            if handle is None:
+                raise OSError(read_error(OpenImageIO))
+            self._handle = handle
             self._check(self._handle.open(utf8_name(path, OutputError), specs))
 
     def start_part(self, number: int) -> None:
