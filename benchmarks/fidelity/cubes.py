@@ -28,6 +28,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra, lab_jacobian
 from uplift.common.arrays import Array
 from uplift.cube import contents
+from uplift.fit import families_with
 from uplift.lab.study.held_out import HoldoutSplit, holdout
 from uplift.lookup import Cube
 from uplift.models import Moments
@@ -72,7 +73,7 @@ def build(name: str | None, **options: object) -> Cube:
 
 def shipped(name: str) -> tuple[str, ...]:
     """Return the shipped families that must not shape a prior that is tested on an atlas."""
-    return () if name == "munsell" else (name,)
+    return families_with(materials(name).measured)
 
 
 def at_entries(name: str) -> Iterator[dict[str, Any]]:

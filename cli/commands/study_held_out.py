@@ -35,6 +35,7 @@ def held_out(
 
     Reports the rms difference of the spectra and mean ΔE00 under A, FL2, FL7, FL11, LED-B3, LED-RGB1 and HP1, compared
     with cubes of moments and of sigmoids that have no atlas, and the predicted and the actual standard errors.
+    The prior does not know the families of its library that contain spectra of the atlas.
 
     \b
     Examples:

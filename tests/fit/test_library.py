@@ -7,11 +7,13 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
+from tests.conftest import ATLASES
 from tests.helpers import raises
 from tools import ship_library
+from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.common.errors import UnknownNameError
-from uplift.fit.library import FILE, STEPS, shipped_library
+from uplift.fit.library import FILE, STEPS, families_with, shipped_library
 
 
 @pytest.fixture(scope="module")
@@ -55,3 +57,11 @@ def test_families_can_be_left_out():
     ]
     with raises(UnknownNameError, "unknown-library-family"):
         shipped_library(["absent"])
+
+
+@pytest.mark.parametrize(("atlas", "families"), [("macbeth", ("checker",)), ("cie2017", ("cie2017",))])
+def test_families_are_found_by_their_spectra(sensor, atlas, families):
+    measured = resample(read_atlas(ATLASES / f"{atlas}.txt"), sensor.wavelengths).values
+    assert families_with(measured) == families
+    assert families_with(np.clip(measured + 0.01, 0, 1)) == ()
+    assert families_with(measured[:0]) == ()

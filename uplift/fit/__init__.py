@@ -7,7 +7,7 @@ from uplift.fit.improve import Improvement
 from uplift.fit.lattice import STRATEGIES, LatticeFit, fit_lattice
 from uplift.fit.lattice_size import DIMS, LatticeChoice, choose_lattice
 from uplift.fit.learnt import LearntBase, has_freedom, learn_base
-from uplift.fit.library import Family, shipped_library
+from uplift.fit.library import Family, families_with, shipped_library
 from uplift.fit.objective import Weights
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import NO_LATTICE, Method, Problem, solver_tolerance
@@ -35,6 +35,7 @@ __all__ = [
     "Unrealisable",
     "Weights",
     "choose_lattice",
+    "families_with",
     "fit_entries",
     "fit_lattice",
     "fit_prior",

@@ -14,6 +14,8 @@ from uplift.common.errors import unknown_name
 
 FILE = "library.npz"
 """Package data, written by tools/ship_library.py."""
+SAME_RMS = 1e-3
+"""rms difference within which spectra are the same measurement."""
 STEPS = 10_000
 """Steps of reflectance from 0 to 1 in the file."""
 
@@ -79,3 +81,25 @@ def shipped_library(leave_out: Collection[str] = ()) -> tuple[Family, ...]:
         if name not in names:
             raise unknown_name(name, names, "library family")
     return tuple(family for family in families if family.name not in leave_out)
+
+
+def families_with(measured: Array) -> tuple[str, ...]:
+    """Find the families of the shipped library that contain given spectra, to leave them out of tests on these spectra.
+
+    Parameters
+    ----------
+    measured : ndarray, shape (n, 81)
+        Reflectances at the wavelengths of the sensors.
+
+    Returns
+    -------
+    tuple of str
+        Names of the families with a spectrum that differs from one of ``measured`` by an rms of at most `SAME_RMS`.
+    """
+    from scipy.spatial import cKDTree
+
+    if not len(measured):
+        return ()
+    tree, limit = cKDTree(measured), SAME_RMS * np.sqrt(measured.shape[1])
+    nearest = {family.name: tree.query(family.measured)[0].min() for family in shipped_library()}
+    return tuple(name for name, distance in nearest.items() if distance <= limit)

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.conftest import ATLASES
 from tests.helpers import raises
-from uplift.atlas import Atlas, Entry
+from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
+from uplift.lab.study import held_out as module
 from uplift.lab.study.held_out import (
     HoldoutSplit,
     SpectrumErrors,
@@ -19,6 +21,7 @@ from uplift.lab.study.held_out import (
     pooled_calibration,
     spectrum_errors,
 )
+from uplift.pipeline import build
 
 GRID = observer.grid()
 
@@ -50,6 +53,21 @@ def test_every_split_predicts_another_half(splits):
     assert [len(split.actual) for split in splits] == [12, 12]
     assert not np.array_equal(splits[0].actual, splits[1].actual)
     assert splits[0].errors["sigmoid"].delta_e.shape == (12, len(HELD_OUT_LIGHTS))
+
+
+def test_the_prior_does_not_know_the_atlas(monkeypatch):
+    known = []
+
+    def recorded(*args, **options):
+        known.append(options["leave_out"])
+        return build(*args, **options)
+
+    monkeypatch.setattr(module, "build", recorded)
+    atlas = read_atlas(ATLASES / "tcs.txt")
+    holdout(atlas, 1, dim=4, coefficients=4)
+    assert known == [("tcs",)] * 3
+    holdout(atlas, 1, dim=4, coefficients=4, leave_out=("vs",))
+    assert known[3:] == [("vs",)] * 3
 
 
 def test_spectrum_errors_equal_their_definitions():

@@ -16,6 +16,7 @@ from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.fit import families_with
 from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.report.calibration import Calibration, check_calibration
@@ -109,7 +110,8 @@ def holdout(
     progress : callable, optional
         Called with the stage ``"builds"``.
     **options
-        Options of `uplift.pipeline.build`.
+        Options of `uplift.pipeline.build`. By default, the prior does not know the families of the shipped library that
+        contain spectra of the atlas (``leave_out``).
 
     Returns
     -------
@@ -122,6 +124,7 @@ def holdout(
         Too few entries lie within the RGB space.
     """
     total = 2 + splits
+    options = {"leave_out": families_with(resample(atlas, observer.grid()).values), **options}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         others = {NO_ATLAS: build(**options), SIGMOID: build(**{**options, "model": "sigmoid"})}

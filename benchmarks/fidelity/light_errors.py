@@ -1,0 +1,70 @@
+"""Standard errors under every light: how many of the actual errors they cover."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from benchmarks.fidelity.between import split
+from benchmarks.fidelity.cubes import build, build_from, shipped
+from benchmarks.fidelity.materials import Materials, large, materials
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.lights import HELD_OUT_LIGHTS
+from uplift.common.arrays import Array, Mask
+from uplift.lookup import Cube
+
+SPLITS = 6
+COUNTS = (9, 17)
+KNOWN = ("macbeth", "cie2017")
+"""Atlases of the cubes that are queried for other sets."""
+Pair = tuple[Cube, Materials]
+
+
+def measure() -> dict[str, Any]:
+    """Query halves of atlases, then other sets."""
+    return {
+        "light_splits": SPLITS,
+        "light_errors": [coverage(name, count) for name, count in product(large(), COUNTS)],
+        "other_families": [
+            row for known in KNOWN for name in large() if name != known for row in across(known, name)
+        ],
+    }
+
+
+def coverage(name: str, count: int) -> dict[str, Any]:
+    """Return the coverage of the other halves of an atlas."""
+    pairs = []
+    for seed in range(SPLITS):
+        kept, queried = (materials(name).take(rows) for rows in split(materials(name), seed))
+        pairs.append((build_from(kept, coefficients=count, leave_out=shipped(name)), queried))
+    return {"atlas": name, "coefficients": count, "covered": covered(pairs)}
+
+
+def across(known: str, name: str) -> Iterator[dict[str, Any]]:
+    """Yield the coverage of another set, of colours that are like the atlas and of those that are not."""
+    cube, some = build(known, leave_out=shipped(name)), materials(name)
+    unlike = cube.unlike_atlas(some.rgb)
+    for label, rows in {"like the atlas": ~unlike, "unlike the atlas": unlike}.items():
+        if rows.any():
+            share, found = float(rows.mean()), covered([(cube, some)], rows)
+            yield {"atlas": known, "queried": name, "colours": label, "share": share, "covered": found}
+
+
+def covered(pairs: list[Pair], rows: Mask | None = None) -> dict[str, list[float]]:
+    """Return, by light, the shares of errors within one and within two standard errors."""
+    found = {}
+    for name in HELD_OUT_LIGHTS:
+        ratio = np.concatenate([_ratio(cube, some, name) for cube, some in pairs])[
+            slice(None) if rows is None else rows
+        ]
+        found[name] = [float((ratio <= 1).mean()), float((ratio <= 2).mean())]
+    return found
+
+
+def _ratio(cube: Cube, some: Materials, light: str) -> Array:
+    actual = delta_e_spectra(observer.light(light), cube.reflectance(some.rgb), some.measured)
+    return np.asarray(actual / cube.standard_error(some.rgb, light))
