@@ -223,7 +223,7 @@ def test_single_entry_has_no_close_entries(lossy_cube, count):
 
 def test_calibration_against_an_unknown_atlas(small_cube, repository):
     other = uplift.read_atlas(repository / "atlases" / "cie2017.txt")
-    found = assess(small_cube, "small.uplift", 1, other, ("D65",))
+    found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11", "A"))
     squares, errors, one, two = [], [], 0, 0
     for entry in other.entries:
         (measured,) = on_grid(uplift.Atlas((entry,)), small_cube.wavelengths)
@@ -243,10 +243,14 @@ def test_calibration_against_an_unknown_atlas(small_cube, repository):
     assert found_numbers == pytest.approx(expected, abs=1e-6)
     assert measured.count == count == len(found.entries.names)
     assert measured.actual > measured.predicted  # these materials are unlike the ColorChecker
+    assert list(found.light_calibrations) == ["FL11"]
+    predicted = small_cube.standard_error(found.entries.rgb, "FL11")
+    assert found.light_calibrations["FL11"] == check_calibration(found.entries.delta_e[:, 1], predicted)
+    assert found.unlike == small_cube.unlike_atlas(found.entries.rgb).mean()
 
 
 def test_own_entries_give_no_calibration(judged, plain_cube, macbeth):
-    assert judged.calibration is None
+    assert (judged.calibration, judged.light_calibrations, judged.unlike) == (None, {}, 0)
     assert judged.standard_error.counts.sum() == 512
     assert judged.standard_error.mean == pytest.approx(judged.facts["mean_standard_error"])
     unknowing = assess(plain_cube, "plain.uplift", 1, macbeth, ("A",))

@@ -142,8 +142,13 @@ def test_lost_entries_are_named(lossy_cube):
 
 def test_predicted_and_actual_errors_are_shown(small_cube, repository):
     other = read_atlas(repository / "atlases" / "cie2017.txt")
-    found = assess(small_cube, "small.uplift", 1, other, ("D65",))
+    found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11"))
     read, measured = Page(render_report(found, worst=0)), found.calibration
+    under = found.light_calibrations["FL11"]
+    assert f"FL11 {under.predicted:.2f} {under.actual:.2f} {under.within_one:.0%}" in " ".join(
+        read.text.split()
+    )
+    assert f"{found.unlike:.0%} of these colours are unlike" in read.text
     assert f"predicted an error of ΔE00 {measured.predicted:.2f} under A; the actual error is" in read.text
     assert f"the actual error is {measured.actual:.2f} (root mean squares)" in read.text
     assert "The standard errors are too small" in read.text
@@ -151,8 +156,10 @@ def test_predicted_and_actual_errors_are_shown(small_cube, repository):
     assert f"mean {found.standard_error.mean:.2f}, ΔE00 under A" in read.text
     values = to_json(found)
     assert values["standard_error"]["calibration"]["within_two"] == measured.within_two
+    assert values["standard_error"]["calibrations"]["FL11"]["real"] == under.actual
+    assert values["standard_error"]["unlike_atlas"] == found.unlike
     headings, *rows = read.tables[-1]
-    assert [cell.text for cell in headings] == ["entry", "worst", "D65", "rms", "predicted", "actual"]
+    assert [cell.text for cell in headings] == ["entry", "worst", "D65", "FL11", "rms", "predicted", "actual"]
     assert [[cell.value for cell in row[-2:]] for row in rows] == pytest.approx(
         np.array([(entry["standard_error"], entry["delta_e_2000_reference"]) for entry in values["entries"]])
     )

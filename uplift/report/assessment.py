@@ -82,6 +82,11 @@ class Assessment:
         Entries of ``sources`` for which a sparse cube has no points.
     calibration : Calibration or None
         Actual against predicted errors; None if the cube was built from the entries or has no standard errors.
+    light_calibrations : dict of str to Calibration
+        The same under the other of ``lights``, by their names; empty without ``calibration``, and for cubes of earlier
+        versions.
+    unlike : float
+        Share of the entries whose colours are unlike those of the cube's atlas; 0 without ``calibration``.
     crowding : Crowding or None
         Close entries of the cube, None if it has no entries. Errors are relative to the measured spectra if ``own``,
         otherwise relative to the stored ones.
@@ -106,6 +111,8 @@ class Assessment:
     out_of_gamut: tuple[str, ...]
     not_covered: tuple[str, ...]
     calibration: Calibration | None
+    light_calibrations: dict[str, Calibration]
+    unlike: float
     crowding: Crowding | None
 
 
@@ -143,6 +150,7 @@ def assess(
     own = atlas is not None and _built_from(data, atlas)
     query = _entry_query(cube, atlas, own)
     errors = None if query is None or not query.names else entry_errors(cube, query, sensors)
+    calibration = None if own or errors is None else check_calibration(errors.actual, errors.predicted)
     present = data.points.present
     steps, distances = compute_smoothness(data), data.points.distance[present]
     standard_errors = None if data.points.standard_error is None else data.points.standard_error[present]
@@ -167,9 +175,29 @@ def assess(
         delta_e={} if errors is None else _comparable(_by_light(errors, sensors), linear_edges),
         out_of_gamut=() if query is None else query.out_of_gamut,
         not_covered=() if query is None else query.not_covered,
-        calibration=None if own or errors is None else check_calibration(errors.actual, errors.predicted),
+        calibration=calibration,
+        light_calibrations={}
+        if calibration is None or errors is None
+        else _light_calibrations(cube, errors, sensors),
+        unlike=0.0 if calibration is None or errors is None else float(cube.unlike_atlas(errors.rgb).mean()),
         crowding=_crowding(cube, errors if own else None, sensors),
     )
+
+
+def _light_calibrations(
+    cube: Cube, errors: EntryErrors, lights: tuple[Sensor, ...]
+) -> dict[str, Calibration]:
+    """Calibrations under lights other than that of `Assessment.calibration`, and that of the build."""
+    data = cube.data
+    if data.atlas.left_out is None:
+        return {}
+    found = {}
+    for sensor, actual in zip(lights, errors.delta_e.T, strict=True):
+        if sensor.illuminant not in (data.error_illuminant, data.sensor.illuminant):
+            found[sensor.illuminant] = check_calibration(
+                actual, cube.standard_error(errors.rgb, sensor.light)
+            )
+    return {light: each for light, each in found.items() if each is not None}
 
 
 def _built_from(data: CubeData, atlas: Atlas) -> bool:

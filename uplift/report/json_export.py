@@ -92,6 +92,8 @@ def _standard_error(assessment: Assessment) -> dict[str, Any]:
         "light": assessment.data.error_illuminant,
         "delta_e_2000": None if errors is None else _histogram(errors),
         "calibration": None if calibration is None else calibration.to_json(),
+        "calibrations": {light: each.to_json() for light, each in assessment.light_calibrations.items()},
+        "unlike_atlas": assessment.unlike,
     }
 
 
