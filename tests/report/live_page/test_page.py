@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.browser import browser, chromium
+from tests.browsing import check_page
 from tests.helpers import raises
 from tests.pages import external_links
 from uplift.colorimetry.observer import light
@@ -35,6 +36,10 @@ def page(small_cube, tmp_path_factory):
 
 def test_the_page_loads_nothing(page):
     assert external_links(page.read_text(encoding="utf-8")) == []
+
+
+def test_the_page_fits_and_is_accessible(page, tmp_path):
+    check_page(page.read_text(encoding="utf-8"), tmp_path)
 
 
 def encoded(rgb):

@@ -7,8 +7,8 @@ import pytest
 from PIL import Image
 
 from benchmarks.browser import browser, chromium
-from tests.helpers import raises
 from tests.browsing import check_page
+from tests.helpers import raises
 from tests.pages import Page
 from uplift.common.errors import OutputError
 from uplift.report.relight import RGB_PRODUCT, relight, write_relit_page, write_relit_sheet
@@ -62,8 +62,10 @@ def test_the_page_is_well_formed_and_holds_its_images(page):
     assert "without <atlas>" in found.text
 
 
-def test_the_page_fits_and_is_accessible(page, tmp_path):
-    check_page(page.read_text(encoding="utf-8"), tmp_path)
+def test_the_page_fits_and_is_accessible(relit, tmp_path):
+    path = tmp_path / "relit.html"
+    write_relit_page([relit], path)
+    check_page(path.read_text(encoding="utf-8"), tmp_path)
 
 
 def test_the_table_has_every_light_and_pair(page, relit):
