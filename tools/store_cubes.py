@@ -12,6 +12,9 @@ import uplift
 ROOT = Path(__file__).parents[1]
 DEFAULT = "moments-16"
 """The stored cube that is installed with the package: sRGB, D65, without an atlas."""
+WIDE = {"acescg": "ACEScg"}
+"""Other cubes that are installed with the package, by file name and space."""
+LOOKUP = ROOT / "uplift" / "lookup"
 
 
 def main() -> None:
@@ -22,7 +25,15 @@ def main() -> None:
         path = ROOT / "cubes" / ("-".join(filter(None, (model, str(dim), atlas))) + ".uplift")
         uplift.build(source, dim=dim, model=model, debug=True).save(path, force=True)
         print(path.relative_to(ROOT))
-    shutil.copyfile(ROOT / "cubes" / f"{DEFAULT}.uplift", ROOT / "uplift" / "lookup" / "default.uplift")
+    shutil.copyfile(ROOT / "cubes" / f"{DEFAULT}.uplift", LOOKUP / "default.uplift")
+    store_wide()
+
+
+def store_wide() -> None:
+    """Build the cubes of other spaces that are installed with the package."""
+    for name, space in WIDE.items():
+        uplift.build(dim=16, space=space).save(LOOKUP / f"{name}.uplift", force=True)
+        print(f"uplift/lookup/{name}.uplift")
 
 
 if __name__ == "__main__":

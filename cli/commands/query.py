@@ -15,6 +15,7 @@ import click
 from uplift.common.errors import UpliftWarning
 
 from ..output.query_output import WRITERS
+from ..params.number_types import NUMBER
 from ..params.options import (
     cube_option,
     fill_option,
@@ -53,6 +54,21 @@ class ColourCommand(click.Command):
 @click.option(
     "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
 )
+@click.option(
+    "--xyz",
+    type=NUMBER,
+    nargs=3,
+    metavar="X Y Z",
+    help="Colour by XYZ under the cube's illuminant, where white has Y = 1; also outside the cube's space.",
+)
+@click.option(
+    "--xy",
+    type=NUMBER,
+    nargs=2,
+    metavar="X Y",
+    help="Colour by chromaticity, with --luminance, as for --xyz.",
+)
+@click.option("--luminance", type=NUMBER, metavar="Y", help="Luminance of --xy from 0 to 1.")
 @click.option("--encoded", is_flag=True, help="Numbers are encoded 8-bit codes from 0 to 255.")
 @wavelengths_option()
 @click.option(
@@ -73,6 +89,9 @@ def command(
     colour: tuple[str, ...],
     cube_path: str | None,
     input_path: str | None,
+    xyz: tuple[float, float, float] | None,
+    xy: tuple[float, float] | None,
+    luminance: float | None,
     encoded: bool,
     wavelengths: str | None,
     mode: str,
@@ -97,6 +116,8 @@ def command(
       uplift query --input colours.csv --format csv > spectra.csv
       uplift query 1.4 0.3 -0.1 --out-of-gamut desaturate
       uplift query --space P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
+      uplift query --xyz 0.05 0.2 0.1
+      uplift query --xy 0.17 0.7 --luminance 0.15 --format json
       echo 0.5,0.5,0.5 | uplift query - --format json
       uplift query '#cc3319' --cube macbeth-32.uplift --light FL11 --light HP1
 
@@ -114,7 +135,11 @@ def command(
     cube = load(cube_path)
     bounded = method == "error" and input_space is None
     space = resolve_space(input_space)
-    blocks = _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded, space=space)
+    point = _as_xyz(xyz, xy, luminance)
+    if point is not None and (colour or input_path is not None):
+        raise click.UsageError(
+            "Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'."
+        )
     answers = _Answers(
         cube,
         method,
@@ -123,14 +148,19 @@ def command(
         _read_lights(lights, cube),
         fill_missing=fill_missing,
     )
-    results: Iterable[list[QueryResult]] = answers.results(blocks)
+    results: Iterable[list[QueryResult]]
+    if point is not None:
+        results = answers.result_of_xyz(point)
+    else:
+        blocks = _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded, space=space)
+        results = answers.results(blocks)
     if plot_path is not None:
         from uplift.viz.spectra import plot_spectra
 
         hide_drawing_notes()
         results = list(results)
         plot_spectra(cube, list(chain.from_iterable(results)), plot_path, force=force)
-    WRITERS[style](cube, results, bool(colour) and colour != ("-",))
+    WRITERS[style](cube, results, point is not None or (bool(colour) and colour != ("-",)))
     answers.warn()
 
 
@@ -166,6 +196,12 @@ class _Answers:
             yield list(results)
             sys.stdout.flush()
 
+    def result_of_xyz(self, xyz: tuple[float, float, float]) -> list[list[QueryResult]]:
+        """Answer one colour by XYZ."""
+        from uplift.lookup import query_xyz
+
+        return [list(query_xyz(self.cube, [xyz], self.wavelengths, self.mode, self.lights))]
+
     def warn(self) -> None:
         """Warn of colours that were mapped or filled."""
         if self.mapped:
@@ -178,6 +214,23 @@ class _Answers:
             count = f"{self.filled} of {self.count} colours"
             problem = f"{count} are not in the cube's scene: filled from the packaged cube"
             warnings.warn(UpliftWarning(problem, code="colours-filled"), stacklevel=1)
+
+
+def _as_xyz(
+    xyz: tuple[float, float, float] | None, xy: tuple[float, float] | None, luminance: float | None
+) -> tuple[float, float, float] | None:
+    """Return XYZ of --xyz, or of --xy and --luminance; None without them. Raises `ColourError` and click's error."""
+    if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
+        raise click.UsageError("--xy X Y and --luminance Y require each other, and --xyz is an alternative.")
+    if xy is None or luminance is None:
+        return xyz
+    from uplift.common.errors import ColourError
+
+    x, y = xy
+    if not y > 0:
+        problem = f"y of a chromaticity must be positive, got {y:g}"
+        raise ColourError(problem, code="invalid-chromaticity", hint="give CIE x and y")
+    return x * luminance / y, luminance, (1 - x - y) * luminance / y
 
 
 def _read_lights(names: Sequence[str], cube: Cube) -> list[Light]:

@@ -109,12 +109,13 @@ def command(
     """
     enable_jit_cache()
     from uplift.io import texture
+    from uplift.lookup.cube import find_cube_file
 
     pairs = texture_paths(sources, target)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
     form = _pixel_encoding(kind, parse_wavelengths(wavelengths))
-    cube = None if cube_path is None else os.path.abspath(cube_path)
+    cube = None if cube_path is None else os.path.abspath(find_cube_file(cube_path))
     settings = texture.TextureSettings(
         cube, form, depth, encoding, max(cores // count, 1), fill_missing, method, input_space
     )

@@ -49,7 +49,7 @@ def cube_option() -> Decorator:
         "--cube",
         "cube_path",
         metavar="FILE",
-        help="Cube file. [default: the packaged sRGB cube]",
+        help="Cube file, or ACEScg for the packaged ACEScg cube. [default: the packaged sRGB cube]",
         shell_complete=complete_cube,
     )
 

@@ -499,3 +499,20 @@ def test_lines_and_their_numbers_do_not_depend_on_the_blocks(monkeypatch, chunk)
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="needs /dev/zero")
 def test_an_endless_line_is_an_error(refuse):
     assert refuse("query", "--input", "/dev/zero").code == "line-too-long"
+
+
+def test_colours_by_xyz_and_by_chromaticity(ask):
+    xyz = ask("--xyz", "0.05", "0.2", "0.1")
+    assert min(xyz["rgb"]) < 0
+    assert xyz["round_trip"]["delta_e_2000"] < 1e-3
+    x, y = 0.05 / 0.35, 0.2 / 0.35
+    by_xy = ask("--xy", str(x), str(y), "--luminance", "0.2")
+    np.testing.assert_allclose(by_xy["reflectance"], xyz["reflectance"], rtol=0, atol=1e-6)
+
+
+def test_xyz_excludes_other_colours(misuse, refuse):
+    assert "--xyz" in misuse("query", "#fff", "--xyz", "0.1", "0.1", "0.1")
+    assert "--luminance" in misuse("query", "--xy", "0.3", "0.3")
+    assert "--luminance" in misuse("query", "--luminance", "0.3", "#fff")
+    assert refuse("query", "--xyz", "0.05", "0.9", "0.1").code == "colour-unrealisable"
+    assert refuse("query", "--xy", "0.3", "0", "--luminance", "0.1").code == "invalid-chromaticity"

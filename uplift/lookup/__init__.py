@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from uplift.lookup.cube import Cube, load
 from uplift.lookup.interpolate import MODES
-from uplift.lookup.query import QueryResult, query
+from uplift.lookup.query import QueryResult, query, query_xyz
 
-__all__ = ["MODES", "Cube", "QueryResult", "load", "query"]
+__all__ = ["MODES", "Cube", "QueryResult", "load", "query", "query_xyz"]

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 DEFAULT = Path(__file__).with_name("default.uplift")
 """The cube that comes with the package."""
+PACKAGED = {"srgb": DEFAULT, "acescg": Path(__file__).with_name("acescg.uplift")}
+"""Cubes that come with the package, by the name of their space in lower case."""
 MAX_TABLE_BYTES = 1 << 28
 """Largest table of the spectra of all lattice points that a query computes."""
 OBSERVER = "uplift.colorimetry.observer"
@@ -452,7 +454,8 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
     Parameters
     ----------
     path : path-like, optional
-        Cube file. By default the cube of the package: sRGB, D65, without an atlas.
+        Cube file, or the name of a space of `PACKAGED` if no file has this name. By default the sRGB cube of the
+        package. The packaged cubes have D65 and no atlas.
 
     Returns
     -------
@@ -470,9 +473,28 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
     >>> uplift.load().space
     'sRGB'
     """
-    if path is not None:
-        return Cube(read(path))
-    return Cube(read(DEFAULT))
+    if path is None:
+        return Cube(read(DEFAULT))
+    return Cube(read(find_cube_file(path)))
+
+
+def find_cube_file(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
+    """Return the file that a path or the name of a packaged cube stands for.
+
+    Parameters
+    ----------
+    path : path-like
+        A file, which takes precedence, or a name of `PACKAGED`, in any case.
+
+    Returns
+    -------
+    path-like
+        The file; it may be missing.
+    """
+    name = os.fspath(path)
+    if name.casefold() in PACKAGED and not os.path.lexists(name):
+        return PACKAGED[name.casefold()]
+    return path
 
 
 def _reflectance(data: CubeData, mode: str, wavelengths: Array, rgb: Array) -> Array:

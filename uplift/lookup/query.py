@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.sensor import Light
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Indices, Mask
@@ -16,6 +17,7 @@ from uplift.cube import CubeData
 from uplift.lattice import Status
 from uplift.lookup.blocks import BLOCK
 from uplift.lookup.cube import Cube
+from uplift.lookup.outside import MAPPING, reflectance_outside, xyz_to_rgb
 
 CODE_TOLERANCE = 0.5
 """A colour is that of an entry if their 8-bit codes differ by at most this."""
@@ -118,6 +120,70 @@ def query(
     for start in range(0, len(rgb), BLOCK):
         block = slice(start, start + BLOCK)
         yield from _block(cube, rgb[block], requested[block], at, mode, lights)
+
+
+def query_xyz(
+    cube: Cube,
+    xyz: ArrayLike,
+    wavelengths: ArrayLike | None = None,
+    mode: str = "spectra",
+    lights: Sequence[Light] = (),
+) -> Iterator[QueryResult]:
+    """Answer colours by XYZ, also those outside the RGB space of the cube.
+
+    The cube answers colours in its RGB space. The spectra of others are computed from the nearest one that it holds
+    (`uplift.lookup.outside`); they have no atlas entry and no standard error.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    xyz : array_like, shape (n, 3)
+        XYZ under the illuminant of the cube, where white has Y = 1.
+    wavelengths : array_like, shape (N,), optional
+        Wavelengths in nm, by default those of the sensor.
+    mode : str, default "spectra"
+        One of `MODES`, for colours in the RGB space of the cube.
+    lights : sequence of Light
+        Illuminants of standard errors.
+
+    Yields
+    ------
+    QueryResult
+        The answers in order; the RGB of some lie outside [0, 1].
+
+    Raises
+    ------
+    ColourError
+        No reflectance has a colour (``colour-unrealisable``), or the model does not reach it
+        (``colour-not-reached``).
+    """
+    sensor = cube.data.sensor
+    rgb = xyz_to_rgb(cube.data, xyz)
+    at = cube.resolve_wavelengths(wavelengths)
+    mapped = map_to_gamut(rgb, sensor, MAPPING)
+    for row, result in enumerate(query(cube, mapped.rgb, at, mode, lights=lights)):
+        yield _outside(cube, result, rgb[row], at) if mapped.outside[row] else result
+
+
+def _outside(cube: Cube, nearest: QueryResult, rgb: Array, at: Array) -> QueryResult:
+    """Replace the answer to the nearest colour in the RGB space by that to linear RGB (3,) outside [0, 1]."""
+    sensor = cube.data.sensor
+    spectrum = reflectance_outside(cube.data, rgb[None], np.concatenate([sensor.wavelengths, at]))[0]
+    round_trip = sensor.rgb(spectrum[: len(sensor.wavelengths)])
+    return replace(
+        nearest,
+        rgb=rgb,
+        requested_rgb=rgb,
+        reflectance=spectrum[len(sensor.wavelengths) :],
+        round_trip=round_trip,
+        delta_e_2000=float(delta_e_rgb(sensor, rgb, round_trip)),
+        entry=None,
+        standard_error=None,
+        standard_errors={},
+        unlike_atlas=False,
+        realisable=True,
+    )
 
 
 def _block(
