@@ -142,7 +142,5 @@ def test_the_line_moves_by_key_and_by_mouse(tab):
     assert tab.evaluate(SPLIT) == "25%"
 
 
-@pytest.mark.parametrize("width", [390, 1440])
-def test_nothing_is_wider_than_the_window(tab, width):
-    tab.window(width, 900)
-    assert tab.evaluate("document.documentElement.scrollWidth") <= width
+def test_the_page_fits_and_is_accessible(page, tmp_path):
+    check_page(page.read_text(encoding="utf-8"), tmp_path)
