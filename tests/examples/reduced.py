@@ -31,10 +31,10 @@ REDUCED: dict[str, tuple[str | None, str]] = {
         None,
         "needs the cubes of the full chart",
     ),
-    "uplift compare --target 1.0": ("uplift compare --quick --target 1.0", TENS_OF_SECONDS),
+    "uplift compare --target 1.0": (None, TENS_OF_SECONDS),
     "uplift compare --atlas paints.csv --light LED-B3 --light HP1 --target 0.5": (None, TENS_OF_SECONDS),
     "uplift compare --atlas paints.csv --light LED-B3 --light HP1 --filters --output filters": (
-        "uplift compare --quick --atlas paints.csv --light LED-B3 --light HP1 --filters --output filters",
+        None,
         TENS_OF_SECONDS,
     ),
     "uplift compare --filters --output filters --force": (None, TENS_OF_SECONDS),
