@@ -1,4 +1,4 @@
-"""Workers of a killed process leave nothing behind, and nothing is said of it."""
+"""Workers of a killed process leave nothing behind, and no warning."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ __all__ = ["tied_processes"]
 ENDED = 1
 """Exit code of a worker whose parent ended."""
 SILENT = "ignore:resource_tracker:UserWarning"
-"""Warnings of the process that frees what killed processes leave behind: it does so, and need not say it."""
+"""Warnings of the process that frees what killed processes leave behind."""
 
 
 @contextlib.contextmanager

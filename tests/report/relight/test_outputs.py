@@ -140,7 +140,3 @@ def test_the_line_moves_by_key_and_by_mouse(tab):
     tab.mouse("mouseMoved", x + width / 4, y + height / 2)
     tab.mouse("mouseReleased", x + width / 4, y + height / 2)
     assert tab.evaluate(SPLIT) == "25%"
-
-
-def test_the_page_fits_and_is_accessible(page, tmp_path):
-    check_page(page.read_text(encoding="utf-8"), tmp_path)
