@@ -98,6 +98,7 @@ determinism: $(INSTALLED)
 # The ColorChecker rendered with Mitsuba: docs/render.md.
 demo-render: $(INSTALLED)
 	$(BIN)/python -m benchmarks.render
+	$(BIN)/python -m benchmarks.render.rates
 	$(BIN)/python -m tools.render_docs render
 
 # Accuracy, speed and memory of textures: docs/textures.md.
