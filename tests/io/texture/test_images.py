@@ -311,3 +311,12 @@ def test_files_that_are_not_images_raise(spectral, colours, tmp_path):
             texture.convert(spectral, tmp_path / name, tmp_path / "out.exr")
         assert caught.value.path == tmp_path / name
     assert not (tmp_path / "out.exr").exists()
+
+
+def test_statements_of_the_image_are_kept(colours, convert_image, tmp_path):
+    header = {"owner": "a studio", "comments": "scanned", "colorInteropID": "lin_rec709_scene"}
+    path = write_exr(tmp_path / "a.exr", planes(colours), **header)
+    result, _ = convert_image(path)
+    found = OpenEXR.File(str(result.target)).header()
+    assert (found["owner"], found["comments"]) == ("a studio", "scanned")
+    assert "colorInteropID" not in found

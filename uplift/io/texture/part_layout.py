@@ -69,7 +69,7 @@ def _layout(converter: Converter, image: Image, part: Part, rgb: RGBChannels | N
             )
         names, types = (*converted, *names), (*(converter.depth,) * len(converted), *types)
     date = part.date or _modification_date(image)
-    output = OutputPart(part.name, part.window, names, types, converter.header, date)
+    output = OutputPart(part.name, part.window, names, types, {**part.metadata, **converter.header}, date)
     decoder = make_decoder(
         converter.sensor, part, converter.encoding, converter.out_of_gamut, converter.space
     )

@@ -6,10 +6,11 @@ OpenImageIO reads all formats. Bands hold the numbers of the file, unconverted.
 from __future__ import annotations
 
 import contextlib
+import itertools
 import os
 import threading
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,14 @@ UNKNOWN_PROBLEM = "the image cannot be read"
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 PNG_INTERLACE = 28
 """Offset of the byte that marks an interlaced PNG file, which can only be decoded in one piece."""
+TECHNICAL = frozenset(
+    ("compression", "colorInteropID", "DateTime", "ICCProfile", "lineOrder", "name", "type", "view", "planarconfig",
+     "ResolutionUnit", "Orientation", "chunkCount", "version", "PixelAspectRatio", "screenWindowWidth", "textureformat",
+     "wrapmodes")
+)  # fmt: skip
+"""Attributes of text that textures do not keep, as they describe the file that is read."""
+MAX_METADATA, MAX_METADATA_LENGTH = 100, 10_000
+"""Numbers of attributes and of characters that textures keep."""
 FORMAT_HINT = "use an EXR, PNG, JPEG or TIFF image"
 
 Values = NDArray[Any]
@@ -74,6 +83,8 @@ class Part:
         The colour space that the file states.
     date : str or None
         The date that the file states.
+    metadata : mapping of str to str
+        Statements of the file in text, such as its author, which textures keep.
     """
 
     number: int
@@ -85,6 +96,7 @@ class Part:
     is_tiled: bool
     profile: Profile | None
     date: str | None
+    metadata: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def max_code(self) -> int:
@@ -278,7 +290,16 @@ def _part(spec: Any, number: int) -> Part:
         is_tiled=bool(spec.tile_width),
         profile=read_profile(spec),
         date=_text(spec, "DateTime") or None,
+        metadata=_metadata(spec),
     )
+
+
+def _metadata(spec: Any) -> dict[str, str]:
+    """Return the attributes of text that are not about how the image is stored."""
+    names = [each.name for each in spec.extra_attribs if isinstance(each.value, str)]
+    kept = (name for name in names if name not in TECHNICAL and not set(name) & set(":.") and _is_text(name))
+    texts = {name: _text(spec, name) for name in itertools.islice(kept, MAX_METADATA)}
+    return {name: text for name, text in texts.items() if text and len(text) <= MAX_METADATA_LENGTH}
 
 
 def _text(spec: Any, name: str) -> str:
