@@ -19,7 +19,7 @@
 #ifndef ${NAME}_WIDTH
 #define ${NAME}_WIDTH 16
 #endif
-#define ${NAME}_LANES 8
+#define ${NAME}_LANES 16
 /* Loops over wavelengths and lanes are vectorised, not unrolled. */
 #if defined(__clang__)
 #define ${NAME}_VECTORISE _Pragma("clang loop vectorize(enable) interleave_count(1)")
