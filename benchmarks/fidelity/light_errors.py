@@ -21,6 +21,8 @@ SPLITS = 6
 COUNTS = (9, 17)
 KNOWN = ("macbeth", "cie2017")
 """Atlases of the cubes that are queried for other sets."""
+MIN_COLOURS = 10
+"""Fewer colours are not listed."""
 Pair = tuple[Cube, Materials]
 
 
@@ -49,7 +51,7 @@ def across(known: str, name: str) -> Iterator[dict[str, Any]]:
     cube, some = build(known, leave_out=shipped(name)), materials(name)
     unlike = cube.unlike_atlas(some.rgb)
     for label, rows in {"like the atlas": ~unlike, "unlike the atlas": unlike}.items():
-        if rows.any():
+        if rows.sum() >= MIN_COLOURS:
             share, found = float(rows.mean()), covered([(cube, some)], rows)
             yield {"atlas": known, "queried": name, "colours": label, "share": share, "covered": found}
 
