@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import click
@@ -10,11 +10,20 @@ import pytest
 import uplift_cli.main
 from click.testing import CliRunner, Result
 from uplift_cli.main import main
+from uplift_cli.output import progress
 from uplift_cli.output.diagnostics import UsageFailure
 
 from uplift.common.errors import UpliftError
 
 Run = Callable[..., Result]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _no_progress() -> Iterator[None]:
+    """Print no progress, however slow the machine is."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(progress, "INTERVAL", 1e6)
+        yield
 
 
 @pytest.fixture

@@ -23,6 +23,7 @@ def clock(monkeypatch):
         return now[0]
 
     monkeypatch.setattr(module.time, "monotonic", look)
+    monkeypatch.setattr(module, "INTERVAL", 10.0)
 
 
 def test_a_line_appears_when_ten_seconds_have_passed(clock, capsys):
