@@ -22,6 +22,14 @@ textures = ["image.exr"]
 atlases = ["atlas.txt"]
 """
 INPUTS = ("atlas.txt", "cube.uplift", "image.exr", "colours.csv", "palette.toml", "scene.toml")
+LINKS = {
+    "link.exr": "image.exr",
+    "atlas.png": "atlas.txt",
+    "colours.pdf": "colours.csv",
+    "cube.svg": "cube.uplift",
+    "palette.png": "palette.toml",
+}
+"""Other names of inputs, with suffixes of outputs."""
 
 
 @pytest.fixture
@@ -33,7 +41,8 @@ def inputs(home, cubes, macbeth):
     (home / "colours.csv").write_text("0.5,0.5,0.5\n")
     (home / "palette.toml").write_text(PALETTE)
     (home / "scene.toml").write_text(SCENE)
-    (home / "link.exr").symlink_to("image.exr")
+    for link, target in LINKS.items():
+        (home / link).symlink_to(target)
     return {name: (home / name).read_bytes() for name in INPUTS}
 
 
@@ -46,16 +55,16 @@ def inputs(home, cubes, macbeth):
         "export cube.uplift cube.uplift --format csv",
         "mix #c8342a --over image.exr -o image.exr",
         "mix #c8342a --over image.exr -o link.exr",
-        "mix black --atlas atlas.txt --swatches atlas.txt",
-        "palette palette.toml --matrix palette.toml",
+        "mix black --atlas atlas.txt --swatches atlas.png",
+        "palette palette.toml --matrix palette.png",
         "palette palette.toml --atlas atlas.txt",
-        "palette palette.toml --spectra cube.uplift",
+        "palette palette.toml --spectra palette.png",
         "palette palette.toml --html image.exr --image image.exr",
         "plan scene.toml -o scene.toml",
         "plan scene.toml -o image.exr",
         "plan scene.toml -o atlas.txt",
-        "query --cube cube.uplift #c8342a --plot cube.uplift",
-        "query --input colours.csv --plot colours.csv",
+        "query --cube cube.uplift #c8342a --plot cube.svg",
+        "query --input colours.csv --plot colours.pdf",
         "report cube.uplift -o cube.uplift",
         "report cube.uplift --atlas atlas.txt -o atlas.txt",
         "slices cube.uplift cube.uplift",
@@ -63,13 +72,13 @@ def inputs(home, cubes, macbeth):
         "texture image.exr image.exr",
         "texture image.exr link.exr",
         "texture image.exr .",
-        "wavelengths --count 4 --atlas atlas.txt --plot atlas.txt",
+        "wavelengths --count 4 --atlas atlas.txt --plot atlas.png",
     ],
 )
 def test_inputs_are_not_replaced(refuse, home, inputs, words):
     assert refuse(*words.split(), "--force").code == "output-is-input"
     assert {name: (home / name).read_bytes() for name in INPUTS} == inputs
-    assert {path.name for path in home.iterdir()} == {*INPUTS, "link.exr"}
+    assert {path.name for path in home.iterdir()} == {*INPUTS, *LINKS}
 
 
 @pytest.mark.parametrize(
