@@ -51,6 +51,8 @@ def main(folder: Path = FOLDER) -> None:
     write_png(planks(), folder / "wood.png")
     for frame, left in enumerate((60, 96), 1):
         write_exr(picture[92:252:2, left : left + 240 : 2], folder / f"shot.{frame:04}.exr")
+    for tile, half in zip((1001, 1002), np.split(planks(), 2, axis=1), strict=True):
+        write_exr(half[::2, ::2], folder / f"tile.{tile}.exr")
     write_exr(picture[::4, ::4], folder / "painting.exr")
     write_exr(fire(), folder / "fire.exr")
     write_png(label(), folder / "labels.png")
