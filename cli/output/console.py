@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from .tables import SafeTable
 
 
+MIN_WIDTH = 40
+"""Characters of a line, even where a window has fewer."""
+
+
 def say(text: str = "", *, err: bool = False) -> None:
     """Print one line with control characters escaped."""
     emit(printable(text), err=err)
@@ -76,7 +80,10 @@ def console() -> Console:
     """Return a rich console on standard output, as wide as the window, COLUMNS or 80 characters."""
     from rich.console import Console
 
-    return Console(file=sys.stdout, highlight=False, markup=False, emoji=False)
+    console = Console(file=sys.stdout, highlight=False, markup=False, emoji=False)
+    if console.width < MIN_WIDTH:
+        console.width = MIN_WIDTH
+    return console
 
 
 def columns() -> int:

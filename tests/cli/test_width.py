@@ -139,3 +139,10 @@ def test_the_check_detects_lost_numbers(monkeypatch):
     monkeypatch.setattr(SafeTable, "fitted", lambda self, width: self)
     with pytest.raises(AssertionError):
         check(table)
+
+
+@pytest.mark.parametrize("width", ["1", "17", "40"])
+def test_tiny_windows_have_lines_of_forty_characters(run, monkeypatch, width):
+    monkeypatch.setenv("COLUMNS", width)
+    for args in (("query", "0.2", "0.4", "0.6"), ("info",), ("atlas",), ("mix", "#005fa0", "#ffd200")):
+        assert max(map(cell_len, run(*args).stdout.splitlines())) <= 40
