@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
-from .console import make_table, print_csv, print_json, say, show
+from .console import make_table, paragraph, print_csv, print_json, say, show
 
 if TYPE_CHECKING:
     from uplift.atlas import ShippedAtlas
@@ -39,7 +39,7 @@ def _print_table(atlases: Iterable[ShippedAtlas]) -> None:
         table.add_row(*(str(value) for value in _record(atlas).values()))
     show(table)
     say()
-    say("Use a name as --atlas NAME, or in place of FILE.")
+    paragraph("Use a name as --atlas NAME, or in place of FILE.")
 
 
 def _record(atlas: ShippedAtlas) -> dict[str, Any]:
