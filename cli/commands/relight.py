@@ -149,7 +149,9 @@ def _relight(
     )
     for warning in picture.warnings:
         warnings.warn(warning, stacklevel=1)
-    return relight(Path(path).name, picture.rgb, cubes, lights, reduction=picture.reduction)
+    return relight(
+        Path(path).name, picture.rgb, cubes, lights, opacity=picture.opacity, reduction=picture.reduction
+    )
 
 
 def _as_table(relit: list[Relit], output: str) -> None:

@@ -100,7 +100,8 @@ def command(
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
     and mip-mapped. 'multipliers' can be evaluated directly, by the formula in the header. Alpha and other channels are
-    copied. Several images, or a quoted pattern, go into the folder OUT.
+    copied; colours multiplied by alpha, as in OpenEXR, are divided by it first and multiplied after. Several images, or
+    a quoted pattern, go into the folder OUT.
 
     Colours of an image in another RGB space than the cube's are converted. Its space is that of --space, or the one
     that the file states by colorInteropID, chromaticities, code points or an ICC profile.

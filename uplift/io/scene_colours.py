@@ -137,7 +137,7 @@ class Images:
                 for _, band in image.bands(part):
                     pixels = band.reshape(-1, band.shape[-1])
                     for first in range(0, len(pixels), BLOCK_PIXELS):
-                        yield decode(pixels[first : first + BLOCK_PIXELS, channels])[0].astype(float)
+                        yield decode(channels.straight(pixels[first : first + BLOCK_PIXELS]))[0].astype(float)
 
 
 def cells_touched(lattice: Lattice, rgb: Array) -> Array:

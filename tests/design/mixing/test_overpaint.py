@@ -42,16 +42,24 @@ def test_colours_are_those_of_the_coated_spectra(small_cube, glaze, overpainter,
 
 
 def test_other_channels_of_an_exr_pass_through(overpainter, image, tmp_path):
-    alpha = np.linspace(0, 1, 30, dtype=np.float16).reshape(6, 5)
-    write_exr(tmp_path / "in.exr", {**planes(image), "A": alpha})
+    mask = np.linspace(0, 1, 30, dtype=np.float16).reshape(6, 5)
+    write_exr(tmp_path / "in.exr", {**planes(image), "mask": mask})
     result = convert(overpainter, tmp_path / "in.exr", tmp_path / "out.exr")
     assert (result.counts.pixels, result.counts.painted_outside, result.warnings) == (30, 0, ())
     np.testing.assert_array_equal(read_channels(tmp_path / "out.exr", "RGB"), overpainter.paint(image))
     found = channels(tmp_path / "out.exr")
     assert found["R"].dtype == np.float32
-    np.testing.assert_array_equal(found["A"], alpha)
+    np.testing.assert_array_equal(found["mask"], mask)
     header = OpenEXR.File(str(tmp_path / "out.exr"), separate_channels=True).header()
     assert json.loads(header["uplift.mix"]) == {"of": "red"}
+
+
+def test_colours_multiplied_by_alpha_are_painted_divided(overpainter, image, tmp_path):
+    alpha = np.linspace(0, 1, 30, dtype=np.float32).reshape(6, 5)
+    write_exr(tmp_path / "in.exr", {**planes(image * alpha[..., None]), "A": alpha})
+    convert(overpainter, tmp_path / "in.exr", tmp_path / "out.exr")
+    expected = overpainter.paint(image) * alpha[..., None]
+    np.testing.assert_allclose(read_channels(tmp_path / "out.exr", "RGB"), expected, atol=1e-6)
 
 
 def test_8_bit_images_are_decoded(small_cube, overpainter, tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import OpenEXR
@@ -184,12 +185,12 @@ def test_encoded_floats_cannot_be_mapped(colours, spectral, tmp_path):
 
 
 def other_planes(shape):
-    """Return alpha, a depth with NaN and infinity, and object numbers."""
+    """Return a mask, a depth with NaN and infinity, and object numbers."""
     rng = np.random.default_rng(3)
     depth = rng.normal(0, 1e6, shape).astype(np.float32)
     depth[0, :3] = (np.nan, np.inf, -np.inf)
     return {
-        "A": rng.random(shape).astype(np.float16),
+        "mask": rng.random(shape).astype(np.float16),
         "Z": depth,
         "id": rng.integers(0, 1 << 24, shape, dtype=np.uint32, endpoint=True),
     }
@@ -313,10 +314,38 @@ def test_files_that_are_not_images_raise(spectral, colours, tmp_path):
     assert not (tmp_path / "out.exr").exists()
 
 
-def test_statements_of_the_image_are_kept(colours, convert_image, tmp_path):
-    header = {"owner": "a studio", "comments": "scanned", "colorInteropID": "lin_rec709_scene"}
-    path = write_exr(tmp_path / "a.exr", planes(colours), **header)
-    result, _ = convert_image(path)
-    found = OpenEXR.File(str(result.target)).header()
-    assert (found["owner"], found["comments"]) == ("a studio", "scanned")
-    assert "colorInteropID" not in found
+def write_statements(path):
+    """Write an OpenEXR file with attributes of all types that OpenImageIO can write."""
+    import OpenImageIO
+
+    spec = OpenImageIO.ImageSpec(4, 3, 3, "half")
+    for name, kind, value in (
+        ("owner", "string", "a studio"),
+        ("crew", "string[2]", ("Ann", "Bo")),
+        ("framesPerSecond", "rational", (24000, 1001)),
+        ("smpte:TimeCode", "timecode", (0x01020304, 0)),
+        ("smpte:KeyCode", "keycode", (1, 2, 3, 4, 5, 4, 64)),
+        ("worldToCamera", "matrix", tuple(range(16))),
+        ("focus", "float", 1.5),
+        ("take", "int", 3),
+        ("screenWindowCenter", "float[2]", (0.25, 0.5)),
+        ("colorInteropID", "string", "lin_rec709_scene"),
+    ):
+        spec.attribute(name, OpenImageIO.TypeDesc(kind), value)
+    image = OpenImageIO.ImageOutput.create("openexr")
+    assert image.open(str(path), spec)
+    assert image.write_image(np.zeros((3, 4, 3), np.float32))
+    image.close()
+
+
+def test_statements_of_the_image_are_kept(convert_image, tmp_path):
+    write_statements(tmp_path / "a.exr")
+    result, _ = convert_image(tmp_path / "a.exr")
+    before, after = (OpenEXR.File(str(path)).header() for path in (result.source, result.target))
+    assert before.keys() - after.keys() == {"colorInteropID"}
+    assert before["framesPerSecond"] == Fraction(24000, 1001)
+    for name in (
+        *("owner", "crew", "framesPerSecond", "timeCode", "keyCode"),
+        *("worldToCamera", "focus", "take", "screenWindowCenter"),
+    ):
+        np.testing.assert_array_equal(after[name], before[name], err_msg=name)

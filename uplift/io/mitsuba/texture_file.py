@@ -77,10 +77,12 @@ def read_colours(path: Path, sensor: Sensor, method: str) -> tuple[Floats, tuple
     The first part with colours counts, other channels do not. Raises `TextureError` and `ColourError`.
     """
     with open_image(path) as image:
-        part, channels = next(each for each in colour_channels_by_part(image) if each[1] is not None)
+        part, channels = next(
+            (part, channels) for part, channels in colour_channels_by_part(image) if channels is not None
+        )
         decode, bands, counts = make_decoder(sensor, part, "auto", method), [], Counts()
         for _, rows in image.bands(part):
-            rgb, changed = decode(rows[..., channels])
+            rgb, changed = decode(channels.straight(rows))
             bands.append(rgb)
             counts += changed
         return np.concatenate(bands), (*space_warnings(image, sensor), *counts.warnings(method, path))

@@ -14,12 +14,11 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, TextureError, UpliftWarning
+from uplift.io.texture.alpha import ColourChannels, without_rounding
 from uplift.io.texture.source import Part, Values
 from uplift.io.texture.source_space import source_space
 
 Floats = NDArray[np.float32]
-RGBChannels = tuple[int, int, int]
-"""Indices of red, green and blue among the channels of a part."""
 
 ENCODINGS = ("auto", "linear", "encoded")
 """How the numbers of an image are interpreted; ``auto`` takes integers as encoded, floats as linear."""
@@ -31,8 +30,6 @@ PAST_TENSE = {
     "desaturate-oklab": "desaturated in Oklab",
 }
 """Words for messages, by the names in `uplift.colorimetry.gamut.METHODS`."""
-HALF_ROUNDING = 1e-3
-"""Linear RGB by which the conversion of half floats between spaces can leave [0, 1] by rounding."""
 COLOUR_TYPES = {"uint8", "uint16", "half", "float", "double"}
 
 
@@ -113,7 +110,7 @@ class Counts:
         return tuple(warning for count, warning in zip(counts, warnings, strict=True) if count)
 
 
-def colour_channels(part: Part) -> RGBChannels | None:
+def colour_channels(part: Part) -> ColourChannels | None:
     """Find the colour channels of a part: R, G, B, else those of the only layer that has them, else Y.
 
     Parameters
@@ -123,8 +120,8 @@ def colour_channels(part: Part) -> RGBChannels | None:
 
     Returns
     -------
-    tuple of three int, or None
-        Indices of red, green and blue, all the same for a grey image. None for a part without colour.
+    ColourChannels or None
+        None for a part without colour.
 
     Raises
     ------
@@ -142,7 +139,9 @@ def colour_channels(part: Part) -> RGBChannels | None:
             code="unsupported-colour-type",
             hint="convert them",
         )
-    return red, green, blue
+    alpha = names[0][:-1] + "A"
+    is_multiplied = part.has_associated_alpha and alpha in part.channels
+    return ColourChannels((red, green, blue), part.channels.index(alpha) if is_multiplied else None)
 
 
 def _colour_names(part: Part) -> tuple[str, str, str] | None:
@@ -204,7 +203,7 @@ class Decoder:
             colours, outside, max_change = self._mapped(colours)
         rgb = self.function(colours)
         if self.matrix is not None:
-            rgb = _without_rounding(np.asarray(rgb, dtype=float) @ self.matrix.T)
+            rgb = without_rounding(np.asarray(rgb, dtype=float) @ self.matrix.T)
         if self.matrix is not None or not (self.is_bounded or self.maps_codes):
             rgb, outside, max_change = self._mapped(rgb)
         counts = Counts(colours.size // 3, outside, not_finite, max_change=max_change)
@@ -226,13 +225,6 @@ class Decoder:
             return colours, 0, 0.0
         mapped = map_to_gamut(colours, self.sensor, self.method)
         return mapped.rgb, mapped.count, mapped.max_change
-
-
-def _without_rounding(rgb: Values) -> Values:
-    """Clip colours that lie outside [0, 1] by no more than the rounding of half floats."""
-    inside = np.clip(rgb, 0, 1)
-    is_rounding = np.abs(rgb - inside).max(axis=-1, keepdims=True) <= HALF_ROUNDING
-    return np.where(is_rounding, inside, rgb)
 
 
 def _all_inside(colours: Values) -> bool:

@@ -57,7 +57,8 @@ def convert(
 ) -> Conversion:
     """Convert the colours of an image and write the result as OpenEXR, atomically.
 
-    Channels that are not colours pass through, parts and windows stay.
+    Channels that are not colours pass through, parts and windows stay. Colours that the file holds multiplied by alpha
+    are divided by it before the conversion and multiplied after.
 
     Parameters
     ----------
@@ -120,7 +121,7 @@ def _write_parts(
 
 def _converted_from(converter: Converter, layouts: list[PartLayout]) -> tuple[str, ...]:
     """Return the names of the spaces that differ from that of the cube."""
-    parts = (layout.part for layout in layouts if layout.rgb is not None)
+    parts = (layout.part for layout in layouts if layout.colours is not None)
     spaces = (source_space(part, converter.sensor, converter.space) for part in parts)
     return tuple(dict.fromkeys(space.name for space in spaces if space is not None))
 
@@ -145,10 +146,12 @@ def _convert_band(converter: Converter, layout: PartLayout, band: Values) -> tup
     others = band[..., layout.others]
     if layout.part.max_code:
         others = others / np.float32(layout.part.max_code)
-    if layout.rgb is None:
+    if layout.colours is None:
         return others, Counts()
-    rgb, decoded = layout.decoder(band[..., layout.rgb])
+    rgb, decoded = layout.decoder(layout.colours.straight(band))
     values, converted = converter.convert(rgb)
+    if (opacity := layout.colours.opacity(band)) is not None:
+        values = converter.multiply(values, opacity)
     # OpenImageIO would convert floats to half floats in another array.
     is_half = set(layout.output.types) == {"half"}
     dtype = np.float16 if is_half else np.result_type(np.float32, others)

@@ -42,6 +42,23 @@ class Converter(ABC):
     header: Mapping[str, Any]
     space: ImageSpace | None = field(default=None, kw_only=True)
 
+    def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
+        """Multiply converted channels by alpha.
+
+        Parameters
+        ----------
+        values : tuple of ndarray
+            What `convert` returns; the arrays are not changed.
+        opacity : ndarray of shape (..., 1)
+            Alpha in [0, 1].
+
+        Returns
+        -------
+        tuple of ndarray
+            Arrays of the same shapes.
+        """
+        return tuple(each * opacity for each in values)
+
     @abstractmethod
     def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
         """Convert a block of colours.

@@ -6,7 +6,8 @@ import time
 from dataclasses import dataclass
 
 from uplift.common.errors import TextureError
-from uplift.io.texture.colours import Decoder, RGBChannels, colour_channels, make_decoder
+from uplift.io.texture.alpha import ColourChannels
+from uplift.io.texture.colours import Decoder, colour_channels, make_decoder
 from uplift.io.texture.converter import Converter
 from uplift.io.texture.source import Image, Part
 from uplift.io.texture.writer import OutputPart
@@ -22,8 +23,8 @@ class PartLayout:
     ----------
     part : Part
         The part of the image.
-    rgb : tuple of three int, or None
-        Indices of the colour channels, if the part has any.
+    colours : ColourChannels or None
+        The colour channels, if the part has any.
     others : tuple of int
         Indices of the channels that pass through.
     decoder : Decoder
@@ -33,7 +34,7 @@ class PartLayout:
     """
 
     part: Part
-    rgb: RGBChannels | None
+    colours: ColourChannels | None
     others: tuple[int, ...]
     decoder: Decoder
     output: OutputPart
@@ -41,13 +42,13 @@ class PartLayout:
 
 def part_layouts(converter: Converter, image: Image) -> list[PartLayout]:
     """Return the layout of every part. Raises `TextureError` for an image without usable colours."""
-    return [_layout(converter, image, part, rgb) for part, rgb in colour_channels_by_part(image)]
+    return [_layout(converter, image, *each) for each in colour_channels_by_part(image)]
 
 
-def colour_channels_by_part(image: Image) -> list[tuple[Part, RGBChannels | None]]:
+def colour_channels_by_part(image: Image) -> list[tuple[Part, ColourChannels | None]]:
     """Return every part and its colour channels. Raises `TextureError` if no part has any (``no-colour-channels``)."""
     parts = [(part, colour_channels(part)) for part in image.parts]
-    if not any(rgb for _, rgb in parts):
+    if not any(colours for _, colours in parts):
         names = ", ".join(dict.fromkeys(name for part in image.parts for name in part.channels))
         raise TextureError(
             f"no colour channels among {names}", code="no-colour-channels", hint="name them R, G and B, or Y"
@@ -55,11 +56,12 @@ def colour_channels_by_part(image: Image) -> list[tuple[Part, RGBChannels | None
     return parts
 
 
-def _layout(converter: Converter, image: Image, part: Part, rgb: RGBChannels | None) -> PartLayout:
-    others = tuple(index for index in range(len(part.channels)) if rgb is None or index not in rgb)
+def _layout(converter: Converter, image: Image, part: Part, colours: ColourChannels | None) -> PartLayout:
+    rgb = () if colours is None else colours.rgb
+    others = tuple(index for index in range(len(part.channels)) if index not in rgb)
     names = tuple(part.channels[index] for index in others)
     types = tuple(_lossless_type(part.types[index]) for index in others)
-    if rgb is not None:
+    if colours is not None:
         converted = (*"RGB", *converter.channels)
         if duplicates := set(converted) & set(names):
             raise TextureError(
@@ -73,7 +75,7 @@ def _layout(converter: Converter, image: Image, part: Part, rgb: RGBChannels | N
     decoder = make_decoder(
         converter.sensor, part, converter.encoding, converter.out_of_gamut, converter.space
     )
-    return PartLayout(part, rgb, others, decoder, output)
+    return PartLayout(part, colours, others, decoder, output)
 
 
 def _lossless_type(name: str) -> str:

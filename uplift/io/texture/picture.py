@@ -23,7 +23,9 @@ class Picture:
     Parameters
     ----------
     rgb : ndarray of float32, shape (height, width, 3)
-        Linear RGB in [0, 1].
+        Linear RGB in [0, 1], not multiplied by alpha.
+    opacity : ndarray of float32, shape (height, width, 1), or None
+        Alpha in [0, 1], if the file holds colours multiplied by it.
     reduction : int
         Pixels of the image per pixel of the picture, along each side.
     warnings : tuple of UpliftWarning
@@ -31,6 +33,7 @@ class Picture:
     """
 
     rgb: Floats
+    opacity: Floats | None
     reduction: int
     warnings: tuple[UpliftWarning, ...]
 
@@ -44,7 +47,8 @@ def read_picture(
     out_of_gamut: str = "clip",
     space: ImageSpace | None = None,
 ) -> Picture:
-    """Read the first part of an image that has colours. Pixels of a larger image are averaged in linear RGB.
+    """Read the first part of an image that has colours. Pixels of a larger image are averaged in linear RGB,
+    weighted by alpha where the file holds colours multiplied by it.
 
     Parameters
     ----------
@@ -81,32 +85,39 @@ def read_picture(
             (part, channels) for part, channels in colour_channels_by_part(image) if channels is not None
         )
         decode = make_decoder(sensor, part, encoding, out_of_gamut, space)
-        mean = _Reducer(part, max_side)
+        mean, opacities = _Reducer(part, max_side, 3), _Reducer(part, max_side, 1)
         counts = Counts()
         for first, band in image.bands(part):
-            rgb, decoded = decode(band[..., channels])
-            mean.add(first - part.window.y, rgb)
+            rgb, decoded = decode(channels.straight(band))
+            opacity = channels.opacity(band)
+            if opacity is not None:
+                opacities.add(first - part.window.y, opacity)
+            mean.add(first - part.window.y, rgb if opacity is None else rgb * opacity)
             counts += decoded
         warnings = (*counts.warnings(out_of_gamut, path), *space_warnings(image, sensor, space))
-    return Picture(mean.result(), mean.step, warnings)
+    if channels.alpha is None:
+        return Picture(mean.result(), None, mean.step, warnings)
+    weights = opacities.result()
+    colours = np.minimum(mean.result() / np.where(weights > 0, weights, 1), 1)
+    return Picture(colours.astype(np.float32), weights, mean.step, warnings)
 
 
 class _Reducer:
     """Means of squares of pixels, from bands of rows."""
 
-    def __init__(self, part: Part, max_side: int) -> None:
+    def __init__(self, part: Part, max_side: int, channels: int) -> None:
         width, height = part.window.width, part.window.height
         self.step = -(-max(width, height) // max_side)
         self._columns = np.arange(0, width, self.step)
-        self._total = np.zeros((-(-height // self.step), len(self._columns), 3))
+        self._total = np.zeros((-(-height // self.step), len(self._columns), channels))
         self._rows = np.bincount(np.arange(height) // self.step)
         self._widths = np.diff(np.append(self._columns, width))
 
     def add(self, first: int, rgb: Values) -> None:
-        """Add rows (k, width, 3) from row ``first`` on."""
+        """Add rows (k, width, channels) from row ``first`` on."""
         sums = np.add.reduceat(rgb, self._columns, axis=1, dtype=float)
         np.add.at(self._total, (first + np.arange(len(rgb))) // self.step, sums)
 
     def result(self) -> Floats:
-        """Return the means (height, width, 3)."""
+        """Return the means (height, width, channels)."""
         return (self._total / (self._rows[:, None, None] * self._widths[:, None])).astype(np.float32)

@@ -28,6 +28,8 @@ class PixelEncoding(ABC):
     """Name of the encoding."""
     depths: ClassVar[tuple[str, ...]]
     """Channel types that are precise enough, the default first."""
+    is_linear: ClassVar[bool] = True
+    """Whether the numbers are linear in the spectrum, and so can be filtered and multiplied by alpha."""
 
     @abstractmethod
     def channels(self, cube: Cube) -> tuple[str, ...]:
@@ -246,6 +248,7 @@ class Multipliers(PixelEncoding):
 
     name = "multipliers"
     depths = ("float",)
+    is_linear = False
 
     def channels(self, cube: Cube) -> tuple[str, ...]:
         """Return the channel names; see `PixelEncoding`.

@@ -36,12 +36,14 @@ PNG_INTERLACE = 28
 """Offset of the byte that marks an interlaced PNG file, which can only be decoded in one piece."""
 TECHNICAL = frozenset(
     ("compression", "colorInteropID", "DateTime", "ICCProfile", "lineOrder", "name", "type", "view", "planarconfig",
-     "ResolutionUnit", "Orientation", "chunkCount", "version", "PixelAspectRatio", "screenWindowWidth", "textureformat",
-     "wrapmodes")
+     "ResolutionUnit", "Orientation", "chunkCount", "version", "PixelAspectRatio", "textureformat",
+     "wrapmodes", "CICP", "chromaticities", "multiView", "XResolution", "YResolution")
 )  # fmt: skip
-"""Attributes of text that textures do not keep, as they describe the file that is read."""
+"""Attributes that textures do not keep, as they describe the file that is read."""
+FILM = frozenset(("smpte:KeyCode", "smpte:TimeCode"))
+"""Attributes that are kept although OpenImageIO gives them a prefix, as it does to those of other formats."""
 MAX_METADATA, MAX_METADATA_LENGTH = 100, 10_000
-"""Numbers of attributes and of characters that textures keep."""
+"""Numbers of attributes, and of their characters or numbers, that textures keep."""
 FORMAT_HINT = "use an EXR, PNG, JPEG or TIFF image"
 
 Values = NDArray[Any]
@@ -57,6 +59,14 @@ class Window:
     height: int
     display: tuple[int, int, int, int]
     aspect: float
+
+
+@dataclass(frozen=True)
+class Attribute:
+    """Value of an attribute, with its type as `OpenImageIO.TypeDesc`."""
+
+    type: Any
+    value: Any
 
 
 @dataclass(frozen=True)
@@ -83,8 +93,10 @@ class Part:
         The colour space that the file states.
     date : str or None
         The date that the file states.
-    metadata : mapping of str to str
-        Statements of the file in text, such as its author, which textures keep.
+    metadata : mapping of str to Attribute
+        Statements of the file that textures keep, such as its author, frame rate or camera.
+    has_associated_alpha : bool
+        Whether colours next to an alpha are multiplied by it.
     """
 
     number: int
@@ -96,7 +108,8 @@ class Part:
     is_tiled: bool
     profile: Profile | None
     date: str | None
-    metadata: Mapping[str, str] = field(default_factory=dict)
+    metadata: Mapping[str, Attribute] = field(default_factory=dict)
+    has_associated_alpha: bool = False
 
     @property
     def max_code(self) -> int:
@@ -291,15 +304,28 @@ def _part(spec: Any, number: int) -> Part:
         profile=read_profile(spec),
         date=_text(spec, "DateTime") or None,
         metadata=_metadata(spec),
+        has_associated_alpha=not spec.get_int_attribute("oiio:UnassociatedAlpha"),
     )
 
 
-def _metadata(spec: Any) -> dict[str, str]:
-    """Return the attributes of text that are not about how the image is stored."""
-    names = [each.name for each in spec.extra_attribs if isinstance(each.value, str)]
-    kept = (name for name in names if name not in TECHNICAL and not set(name) & set(":.") and _is_text(name))
-    texts = {name: _text(spec, name) for name in itertools.islice(kept, MAX_METADATA)}
-    return {name: text for name, text in texts.items() if text and len(text) <= MAX_METADATA_LENGTH}
+def _metadata(spec: Any) -> dict[str, Attribute]:
+    """Return the attributes that are not about how the image is stored."""
+    found = (each for each in spec.extra_attribs if _is_kept_name(each.name) and _is_kept_value(each.value))
+    return {each.name: Attribute(each.type, each.value) for each in itertools.islice(found, MAX_METADATA)}
+
+
+def _is_kept_name(name: str) -> bool:
+    is_own = name in FILM or not set(name) & set(":.")
+    return is_own and name not in TECHNICAL and _is_text(name)
+
+
+def _is_kept_value(value: Any) -> bool:
+    """Return whether a value is text, a number, or a tuple of either, and neither empty nor long. Bytes are not."""
+    if isinstance(value, tuple):
+        return 0 < len(value) <= MAX_METADATA_LENGTH and all(map(_is_kept_value, value))
+    if isinstance(value, str):
+        return 0 < len(value) <= MAX_METADATA_LENGTH and _is_text(value)
+    return isinstance(value, int | float)
 
 
 def _text(spec: Any, name: str) -> str:

@@ -31,11 +31,14 @@ class Uplifter(Converter):
     rgb_error : callable or None
         From linear RGB (..., 3) to the largest error (..., 1) of the spectrum's colour. None if the cube has no
         unrealisable nodes.
+    is_linear : bool
+        Whether the numbers are linear in the spectrum.
     """
 
     cube: Cube
     sample: Sampler
     rgb_error: Sampler | None
+    is_linear: bool
 
     def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
         """Uplift a block of colours.
@@ -53,6 +56,24 @@ class Uplifter(Converter):
             Pixels close to unrealisable colours.
         """
         return (rgb, self.sample(rgb)), self._unrealisable(rgb)
+
+    def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
+        """Multiply converted channels by alpha, multipliers excepted, as they are not linear in the spectrum.
+
+        Parameters
+        ----------
+        values : tuple of ndarray
+            What `convert` returns.
+        opacity : ndarray of shape (..., 1)
+            Alpha in [0, 1].
+
+        Returns
+        -------
+        tuple of ndarray
+            Arrays of the same shapes.
+        """
+        rgb, numbers = values
+        return rgb * opacity, numbers * opacity if self.is_linear else numbers
 
     def _unrealisable(self, rgb: Floats) -> Counts:
         if self.rgb_error is None:
@@ -127,6 +148,7 @@ def prepare(
         cube,
         sample=pixels.make_sampler(cube, threads),
         rgb_error=_rgb_error(cube, threads),
+        is_linear=pixels.is_linear,
         space=None if space is None else find_space(space),
     )
 

@@ -16,7 +16,7 @@ from uplift.common.errors import OutputError, TextureError
 from uplift.common.files import atomic_write
 from uplift.io.texture import exr_file
 from uplift.io.texture.file_name import utf8_name
-from uplift.io.texture.source import Values, Window, read_error
+from uplift.io.texture.source import Attribute, Values, Window, read_error
 
 ROWS_PER_CHUNK = 16
 """Rows that OpenEXR compresses together as ZIP."""
@@ -60,7 +60,9 @@ class OutputPart:
         if self.name:
             spec.attribute("oiio:subimagename", self.name)
         for name, value in self.header.items():
-            if isinstance(value, tuple):
+            if isinstance(value, Attribute):
+                spec.attribute(name, value.type, value.value)
+            elif isinstance(value, tuple):
                 spec.attribute(name, f"float[{len(value)}]", value)
             else:
                 spec.attribute(name, value)

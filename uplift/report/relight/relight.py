@@ -149,6 +149,7 @@ def relight(
     cubes: Mapping[str, Cube],
     lights: Sequence[str] = RELIGHT_LIGHTS,
     *,
+    opacity: Floats | None = None,
     reduction: int = 1,
     threads: int = 2,
 ) -> Relit:
@@ -159,11 +160,13 @@ def relight(
     name : str
         Name of the image.
     rgb : ndarray, shape (height, width, 3)
-        Linear RGB in [0, 1], in the space of the cubes.
+        Linear RGB in [0, 1], in the space of the cubes, not multiplied by alpha.
     cubes : mapping of str to Cube
         At least one cube, by the name of its method. All have the same space, illuminant and observer.
     lights : sequence of str
         Illuminants.
+    opacity : ndarray, shape (height, width, 1), optional
+        Alpha in [0, 1] to multiply the colours of the renderings by: the image on black.
     reduction : int
         Pixels of the image per pixel of ``rgb``.
     threads : int
@@ -185,11 +188,12 @@ def relight(
     sensor = _common_sensor(cubes)
     screens = display_sensors(lights, sensor.observer)
     by_spectra = {method: _by_spectra(cube, rgb, screens, threads) for method, cube in cubes.items()}
+    weight = np.float32(1) if opacity is None else opacity
     renderings = (
         Rendering(
             screen,
-            {RGB_PRODUCT: _by_product(sensor, rgb, screen)}
-            | {method: colours[number] for method, colours in by_spectra.items()},
+            {RGB_PRODUCT: _by_product(sensor, rgb, screen) * weight}
+            | {method: colours[number] * weight for method, colours in by_spectra.items()},
         )
         for number, screen in enumerate(screens)
     )

@@ -94,7 +94,7 @@ def _weights_of_labels(
     if channels is None or part.max_code != 255:
         text = "an image of labels must have 8-bit colours"
         raise TextureError(text, code="not-a-label-image", path=path, hint="convert it to an 8-bit PNG")
-    red, green, blue = (values[..., channel].astype(np.int32) for channel in channels)
+    red, green, blue = (values[..., channel].astype(np.int32) for channel in channels.rgb)
     pixels = (red << 16) | (green << 8) | blue
     alpha = values[..., part.channels.index("A")] / 255 if "A" in part.channels else np.ones(pixels.shape)
     alpha = np.where((pixels == 0) & (0 not in codes), 0, alpha)
