@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -30,7 +31,10 @@ def build(source, target):
         str(source),
         str(target),
     ]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    clean = {
+        name: value for name, value in os.environ.items() if name != "MPLBACKEND"
+    }  # commands in this process set it
+    return subprocess.run(command, cwd=ROOT, env=clean, capture_output=True, text=True, check=False)
 
 
 @pytest.fixture(scope="module")

@@ -53,4 +53,4 @@ def test_invalid_cubes_are_errors(refuse, home):
 def test_help_has_examples(run):
     text = run("slices", "--help").stdout
     assert "[OUT.exr]" in text
-    assert "    uplift slices macbeth-32.uplift --sheet macbeth-32.png" in text.splitlines()
+    assert "    uplift slices macbeth-32.uplift --sheet sheet.png" in text.splitlines()

@@ -12,9 +12,10 @@ from tests.fuzz.target import ROOT, Target
 from uplift.colorimetry import observer
 from uplift.design.palette import FactorModel, design, matrix, read_palette, standard_model
 
+SAMPLES = ROOT / "uplift" / "samples" / "files"
 SEEDS = tuple(
-    path.read_bytes().replace(b"../../atlases", bytes(ROOT / "atlases"))
-    for path in sorted((ROOT / "docs" / "palette").glob("*.toml"))
+    (SAMPLES / f"{name}.toml").read_bytes().replace(b"paints.csv", bytes(SAMPLES / "paints.csv"))
+    for name in ("constant", "engine", "light", "metamers", "vanish")
 )
 TOKENS = (
     b"lights", b"materials", b"colours", b"free", b"apart", b"design", b"bounds", b"illuminant", b"planck",

@@ -30,7 +30,9 @@ CLOSENESS = 1e-5
 round."""
 SMALL_STEP = 1e-2
 """Change at which a stock solver stops, relative to the residual requested."""
-MAX_STEPS = 256
+MAX_STEPS = 64
+"""Steps of a round for a problem of the lattice."""
+MAX_ENTRY_STEPS = 256
 MAX_STEEPNESS = 1e-5
 """`Objective.steepness` of a minimum; MINPACK ends below 2e-6, stock solvers below 1e-7."""
 MAX_ROUNDS = 4
@@ -137,7 +139,7 @@ def _minimise(solver: Solver, goal: Objective, measured: jax.Array) -> jax.Array
 
     def one(spectrum: jax.Array) -> jax.Array:
         return optimistix.least_squares(
-            goal.residuals, solver, start, args=spectrum, max_steps=MAX_STEPS, throw=False
+            goal.residuals, solver, start, args=spectrum, max_steps=MAX_ENTRY_STEPS, throw=False
         ).value
 
     return jax.vmap(one)(measured)
