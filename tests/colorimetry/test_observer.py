@@ -106,3 +106,25 @@ def test_primaries_of_a_named_space():
     assert str(found) == "0.68,0.32 0.265,0.69 0.15,0.06 0.3127,0.329"
     with raises(UnknownNameError, "unknown-rgb-space"):
         observer.primaries("P9")
+
+
+@pytest.mark.parametrize("limits", [(360, 830, 1), (360, 1000, 5), (380, 780, 10)])
+def test_other_ranges_agree_with_colour_science(limits, sensor):
+    found = observer.on_range(sensor, *limits)
+    assert found.range == limits
+    np.testing.assert_allclose(found.rgb(np.ones(len(found.wavelengths))), 1, rtol=0, atol=1e-14)
+    shape = colour.SpectralShape(*limits)
+    steep = colour.SpectralDistribution(np.linspace(0.1, 0.9, len(found.wavelengths)), found.wavelengths)
+    cmfs, light = (
+        colour.MSDS_CMFS[sensor.observer].copy().align(shape),
+        colour.SDS_ILLUMINANTS["D65"].copy().align(shape),
+    )
+    expected = colour.sd_to_XYZ(steep, cmfs, light, method="Integration") / 100
+    np.testing.assert_allclose(found.xyz(found.rgb(steep.values)), expected, rtol=1e-9)
+    displays = observer.display_sensors(["D65", "A"], sensor.observer, *limits)
+    assert [each.range for each in displays] == [limits] * 2
+    np.testing.assert_array_equal(observer.light("D65", sensor.observer, *limits).xyz, found.light.xyz)
+
+
+def test_the_own_range_changes_nothing(sensor):
+    assert observer.on_range(sensor, *sensor.range) is sensor

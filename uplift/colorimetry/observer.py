@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -98,7 +99,40 @@ def sensor(
     )
 
 
-def display_sensors(illuminants: Sequence[str], observer: str) -> tuple[Sensor, ...]:
+def on_range(sensor: Sensor, start: float, end: float, step: float) -> Sensor:
+    """Return a sensor with another range of wavelengths, where the perfect reflector is white again.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        The sensor.
+    start, end, step : float
+        Range and step in nm. Outside their tables, illuminant and observer are extrapolated as constants.
+
+    Returns
+    -------
+    Sensor
+        The sensor itself for its own range.
+    """
+    if sensor.range == (start, end, step):
+        return sensor
+    wide = light(sensor.illuminant, sensor.observer, start, end, step)
+    return replace(
+        sensor,
+        wavelengths=np.arange(start, end + step / 2, step),
+        cmfs=matching_functions(sensor.observer, start, end, step),
+        power=illuminant_spd(sensor.illuminant, start, end, step),
+        xyz_to_rgb=sensor.xyz_to_rgb / (sensor.xyz_to_rgb @ wide.white)[:, None],
+    )
+
+
+def display_sensors(
+    illuminants: Sequence[str],
+    observer: str,
+    start: float = START,
+    end: float = END,
+    step: float = STEP,
+) -> tuple[Sensor, ...]:
     """Create an sRGB sensor for each illuminant, without duplicates.
 
     Their linear RGB can be displayed directly: the white of each illuminant becomes the white of the screen.
@@ -109,6 +143,8 @@ def display_sensors(illuminants: Sequence[str], observer: str) -> tuple[Sensor, 
         Illuminants; aliases of one illuminant give one sensor.
     observer : str
         Colour-matching functions.
+    start, end, step : float
+        Range and step in nm, as `Sensor.range`.
 
     Returns
     -------
@@ -119,7 +155,7 @@ def display_sensors(illuminants: Sequence[str], observer: str) -> tuple[Sensor, 
     UnknownNameError
         A name is unknown.
     """
-    sensors = (sensor("sRGB", name, observer) for name in illuminants)
+    sensors = (on_range(sensor("sRGB", name, observer), start, end, step) for name in illuminants)
     return tuple({each.illuminant: each for each in sensors}.values())
 
 
@@ -144,8 +180,14 @@ def primaries(space: str) -> Primaries:
     return Primaries.of([*rgb_space.primaries.ravel(), *rgb_space.whitepoint])
 
 
-def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:
-    """Create a light on the wavelengths of `grid`.
+def light(
+    illuminant: str,
+    observer: str = DEFAULT_OBSERVER,
+    start: float = START,
+    end: float = END,
+    step: float = STEP,
+) -> Light:
+    """Create a light, by default on the wavelengths of `grid`.
 
     Parameters
     ----------
@@ -153,6 +195,8 @@ def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:
         Illuminant.
     observer : str
         Colour-matching functions.
+    start, end, step : float
+        Range and step in nm, as `Sensor.range`.
 
     Returns
     -------
@@ -163,7 +207,8 @@ def light(illuminant: str, observer: str = DEFAULT_OBSERVER) -> Light:
     UnknownNameError
         A name is unknown.
     """
-    weights = matching_functions(observer) * illuminant_spd(illuminant)[:, None]
+    power = illuminant_spd(illuminant, start, end, step)
+    weights = matching_functions(observer, start, end, step) * power[:, None]
     name = _look_up(colour_science().SDS_ILLUMINANTS, illuminant, "illuminant").name
     return Light(name, (weights / weights[:, 1].sum()).T)
 

@@ -69,6 +69,15 @@ class Sensor:
     xyz_to_rgb: Array
     decoding: Array
 
+    @property
+    def range(self) -> tuple[float, float, float]:
+        """First and last wavelength and step in nm."""
+        return (
+            float(self.wavelengths[0]),
+            float(self.wavelengths[-1]),
+            float(np.diff(self.wavelengths[:2])[0]),
+        )
+
     @cached_property
     def light(self) -> Light:
         """The build illuminant."""
