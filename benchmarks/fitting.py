@@ -21,6 +21,7 @@ from uplift.lab.timing import spread
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, Sigmoid, reflectance
 from uplift.models.minimum_norm import forward_map
+from uplift.pipeline.libraries import families as library_families
 from uplift.pipeline.options import Options
 
 MODELS = (Sigmoid(), *(Moments(count) for count in (3, 5, 9, 13, 17)))
@@ -105,9 +106,12 @@ def _fit_once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float]
     )
     seeds = fit.seed(lattice, rgb)
     mark("entries")
-    prior = fit.fit_prior(problem, sensor, entries, lights, observer.light("A"))
+    families = library_families(Options(), (), sensor)
+    base = fit.learn_base(problem, sensor, lights, families, entries).base
+    prior = fit.fit_prior(problem, sensor, entries, lights, observer.light("A"), base)
     mark("prior")
-    fitted = fit.fit_lattice(problem, seeds, entries.multipliers, prior, progress)
+    starts = fit.Starts(prior, seeds, entries.multipliers, prior.corner_share)
+    fitted = fit.fit_lattice(problem, starts, progress)
     mark("errors")
     wall = time.perf_counter() - wall
     phases = ("begin", "entries", "prior", "lattice", "storing", "errors")

@@ -30,7 +30,7 @@ def _lattice(name: str, count: int, dim: int, runs: int) -> Peer:
 
     def fit_all() -> Array:
         prior = fit.fit_prior(problem, sensor, none, [reference], reference)
-        return fit.fit_lattice(problem, seeds, none.multipliers, prior).points.coefficients
+        return fit.fit_lattice(problem, fit.Starts(prior, seeds, none.multipliers)).points.coefficients
 
     fit_all()  # compiles
     stored, cpu = task.measured(fit_all, lattice.size, runs)
