@@ -156,6 +156,7 @@ def command(
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
+      uplift build --atlas macbeth --observer 'Nikon 5100 (NPL)' --space camera
       uplift build --plan kitchen.plan.json
 
     Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the
@@ -173,7 +174,7 @@ def command(
     inputs: tuple[str | Path | None, ...]
     if plan_path is None:
         scene = _scene(images, encoding, method, input_space)
-        inputs = (*files, *options["library"], *(scene.paths if scene else ()))
+        inputs = (*files, *options["library"], options["observer"], *(scene.paths if scene else ()))
         given = {name: value for name, value in options.items() if value not in (None, ())}
         given["coefficients"] = coefficient_count(coefficients, moments)
         given["entry_coefficients"] = entry_coefficient_count(entry_coefficients, entry_moments)
@@ -246,7 +247,9 @@ def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], options: di
 
 def _space_name(name: str) -> str:
     """Return the name of a space by one of its names."""
-    if name == "sRGB":
+    from uplift.colorimetry.camera import CAMERA
+
+    if name in ("sRGB", CAMERA):
         return name
     from uplift.colorimetry.observer import look_up_space
 

@@ -12,6 +12,7 @@ HINTS = {
     "atlas-changed": "name the folder of the recorded file with --atlas-dir, or build the cube again",
     "atlas-not-found": "name its folder with --atlas-dir, or build the cube again",
     "auto-tolerance-out-of-range": "use --auto-tolerance with a ΔE00 of 0 or more",
+    "camera-without-space": "add --space camera",
     "chart-without-cubes": "measure one with 'uplift chart'",
     "chart-without-methods": "name the CSV file that 'uplift chart' wrote",
     "coefficients-out-of-range": "use --coefficients 3 to 17",

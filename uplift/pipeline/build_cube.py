@@ -15,6 +15,7 @@ import numpy as np
 from uplift import fit
 from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.colorimetry import observer as observers
+from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.colorimetry.spaces import holding_note
@@ -68,7 +69,7 @@ def build(
     axis: Literal["srgb", "linear"] = "srgb",
     space: str = "sRGB",
     illuminant: str = DEFAULT_ILLUMINANT,
-    observer: str = observers.DEFAULT_OBSERVER,
+    observer: str | Camera = observers.DEFAULT_OBSERVER,
     lights: Sequence[str] = SCENE_LIGHTS,
     prior: PriorName = "learnt",
     library: AtlasLike = None,
@@ -104,11 +105,13 @@ def build(
     axis : {"srgb", "linear"}, default "srgb"
         Spacing of the axis nodes: equal steps of the sRGB encoding, or of linear RGB.
     space : str, default "sRGB"
-        RGB space of queries, by its name in colour-science.
+        RGB space of queries, by its name in colour-science, or ``"camera"``: raw values of a camera, balanced so that
+        a perfect white under the illuminant is (1, 1, 1).
     illuminant : str, default "D65"
         Illuminant under which reflectances have their RGB.
-    observer : str, default "CIE 1931 2 Degree Standard Observer"
-        Colour-matching functions, by their name in colour-science.
+    observer : str or Camera, default "CIE 1931 2 Degree Standard Observer"
+        Colour-matching functions, by their name in colour-science. With ``space="camera"`` a camera: its name in
+        colour-science, a CSV file of its sensitivities, or a `Camera`.
     lights : sequence of str, default ("D65", "A", "FL2", "FL11", "LED-B3")
         Illuminants under which fitted atlas entries must keep their measured colours.
     prior : {"learnt", "smooth"}, default "learnt"
@@ -178,7 +181,7 @@ def build(
         axis=axis,
         space=space,
         illuminant=illuminant,
-        observer=observer,
+        observer=observer.name if isinstance(observer, Camera) else observer,
         lights=(lights,) if isinstance(lights, str) else tuple(lights),
         prior=prior,
         leave_out=(leave_out,) if isinstance(leave_out, str) else tuple(leave_out),
@@ -193,12 +196,14 @@ def build(
     tolerance = fit.solver_tolerance(options.threshold)
     chosen, method = _chosen_solver(solver, tolerance)
     scene = None if scene is None else _as_scene(scene)
-    sensor = observers.sensor(options.space, options.illuminant, options.observer)
-    options = replace(options, space=sensor.space)  # not an alias, which $OCIO may define
+    sensor = observers.sensor(
+        options.space, options.illuminant, observer if isinstance(observer, Camera) else options.observer
+    )
+    options = _with_names(options, sensor)
     spectrum_model = options.spectrum_model()
     forward = forward_map(spectrum_model, sensor.wavelengths, sensor.matrix)
-    scene_lights = [observers.light(name, observer) for name in options.lights]
-    error_light = observers.light(ERROR_ILLUMINANT, observer)
+    scene_lights = [observers.light(name, sensor.observer) for name in options.lights]
+    error_light = observers.light(ERROR_ILLUMINANT, sensor.observer)
 
     libraries = read_libraries(library)
     families = library_families(options, libraries, sensor)
@@ -264,6 +269,13 @@ def build(
             | describe_libraries(libraries, families, learnt.relevance),
         )
     )
+
+
+def _with_names(options: Options, sensor: Sensor) -> Options:
+    """Record the names of the space, not an alias, which $OCIO may define, and of a camera, not its file."""
+    if sensor.sensitivities is None:
+        return replace(options, space=sensor.space)
+    return replace(options, observer=sensor.space)
 
 
 def _chosen_solver(solver: str | Solver, tolerance: float) -> tuple[Solver | None, fit.Method]:
