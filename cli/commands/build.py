@@ -156,7 +156,7 @@ def command(
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
-      uplift build --atlas macbeth --observer 'Nikon 5100 (NPL)' --space camera
+      uplift build --atlas macbeth --observer 'Nikon 5100 (NPL)' --space camera --dim 16
       uplift build --plan kitchen.plan.json
 
     Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the
