@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from uplift import fit
-from uplift.atlas import Atlas, on_grid, read_atlas
+from uplift.atlas import Atlas, on_grid, read_atlas, resample
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
@@ -70,6 +70,9 @@ def build(
     space: str = "sRGB",
     illuminant: str = DEFAULT_ILLUMINANT,
     observer: str | Camera = observers.DEFAULT_OBSERVER,
+    shortest: float = observers.START,
+    longest: float = observers.END,
+    step: float = observers.STEP,
     lights: Sequence[str] = SCENE_LIGHTS,
     prior: PriorName = "learnt",
     library: AtlasLike = None,
@@ -112,6 +115,12 @@ def build(
     observer : str or Camera, default "CIE 1931 2 Degree Standard Observer"
         Colour-matching functions, by their name in colour-science. With ``space="camera"`` a camera: its name in
         colour-science, a CSV file of its sensitivities, or a `Camera`.
+    shortest, longest : float, default 380 and 780
+        Range of the spectra in nm, at most 300 to 1000. Outside the range of an entry, its spectrum continues as a
+        constant, and outside the range of the cube, every spectrum does. The coefficients are shared by the whole
+        range, so a wider one resolves less (docs/accuracy.md).
+    step : {1, 5, 10}, default 5
+        Distance in nm of the wavelengths at which spectra are integrated and compared.
     lights : sequence of str, default ("D65", "A", "FL2", "FL11", "LED-B3")
         Illuminants under which fitted atlas entries must keep their measured colours.
     prior : {"learnt", "smooth"}, default "learnt"
@@ -182,6 +191,9 @@ def build(
         space=space,
         illuminant=illuminant,
         observer=observer.name if isinstance(observer, Camera) else observer,
+        shortest=shortest,
+        longest=longest,
+        step=step,
         lights=(lights,) if isinstance(lights, str) else tuple(lights),
         prior=prior,
         leave_out=(leave_out,) if isinstance(leave_out, str) else tuple(leave_out),
@@ -196,14 +208,19 @@ def build(
     tolerance = fit.solver_tolerance(options.threshold)
     chosen, method = _chosen_solver(solver, tolerance)
     scene = None if scene is None else _as_scene(scene)
-    sensor = observers.sensor(
-        options.space, options.illuminant, observer if isinstance(observer, Camera) else options.observer
+    sensor = observers.on_range(
+        observers.sensor(
+            options.space, options.illuminant, observer if isinstance(observer, Camera) else options.observer
+        ),
+        options.shortest,
+        options.longest,
+        options.step,
     )
     options = _with_names(options, sensor)
     spectrum_model = options.spectrum_model()
     forward = forward_map(spectrum_model, sensor.wavelengths, sensor.matrix)
-    scene_lights = [observers.light(name, sensor.observer) for name in options.lights]
-    error_light = observers.light(ERROR_ILLUMINANT, sensor.observer)
+    scene_lights = [observers.light(name, sensor.observer, *sensor.range) for name in options.lights]
+    error_light = observers.light(ERROR_ILLUMINANT, sensor.observer, *sensor.range)
 
     libraries = read_libraries(library)
     families = library_families(options, libraries, sensor)
@@ -334,7 +351,7 @@ def _entries_in_gamut(atlas: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Ar
     measured = on_grid(atlas, sensor.wavelengths)
     rgb = sensor.rgb(measured)
     inside = sensor.contains(rgb)
-    way_out = "" if inside.all() else f"; {holding_note(measured, sensor.illuminant, sensor.observer)}"
+    way_out = "" if inside.all() else f"; {_holding_note(atlas, sensor)}"
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
         _warn(
@@ -344,6 +361,11 @@ def _entries_in_gamut(atlas: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Ar
         )
     names = tuple(name for name, kept in zip(atlas.names, inside, strict=True) if kept)
     return names, np.clip(rgb[inside], 0, 1), measured[inside]
+
+
+def _holding_note(atlas: Atlas, sensor: Sensor) -> str:
+    spectra = resample(atlas, observers.grid()).values
+    return holding_note(spectra, sensor.illuminant, sensor.observer)
 
 
 def _with_dim(
