@@ -282,6 +282,7 @@ def test_equal_input_gives_equal_bytes(tmp_path):
         ({"longest": float("nan")}, OptionError, "range-out-of-limits"),
         ({"longest": 830, "step": 10, "shortest": 375}, OptionError, "range-not-in-steps"),
         ({"step": 2}, OptionError, "unsupported-step"),
+        ({"step": 10, "space": "camera", "observer": "Nikon 5100 (NPL)"}, OptionError, "unsupported-step"),
         ({"step": 0}, OptionError, "unsupported-step"),
         ({"warp": "visions"}, OptionError, "unknown-warp"),
         ({"scene": []}, OptionError, "scene-without-colours"),

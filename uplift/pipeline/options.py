@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from uplift.colorimetry.camera import CAMERA
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
 from uplift.common.errors import OptionError, unknown_name
@@ -145,6 +146,12 @@ class Options:
                 f"the range must hold {START:g} to {END:g} nm and lie within {low:g} to {high:g} nm, "
                 f"got {self.shortest:g} to {self.longest:g}",
                 code="range-out-of-limits",
+            )
+        if self.space == CAMERA and self.step > STEP:  # a rebuild has the sensitivities of the cube only
+            raise OptionError(
+                f"step of a camera's cube must be 1 or 5 nm, got {self.step:g}",
+                code="unsupported-step",
+                hint="use 5",
             )
         if self.step not in STEPS:
             raise OptionError(
