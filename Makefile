@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl examples showcase first-steps
+.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl cameras examples showcase first-steps
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -77,6 +77,11 @@ library: $(INSTALLED)
 prior: $(INSTALLED)
 	$(BIN)/python -m benchmarks.prior
 	$(BIN)/python -m tools.render_docs prior
+
+# Raw values of cameras, by cubes and by matrices: docs/cameras.md.
+cameras: $(INSTALLED)
+	$(BIN)/python -m benchmarks.cameras
+	$(BIN)/python -m tools.render_docs cameras
 
 # Failures and sensitivity: docs/stability.md.
 stability: $(INSTALLED)

@@ -10,11 +10,23 @@ import numpy as np
 
 import uplift
 from benchmarks.record import ROOT, write
+from uplift.atlas import on_grid
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import on_range
 from uplift.lookup import MODES, Cube
 
 MACBETH = ROOT / "atlases" / "macbeth.txt"
+RANGES = (
+    (380, 780, 10),
+    (380, 780, 5),
+    (380, 780, 1),
+    (360, 830, 10),
+    (360, 830, 5),
+    (360, 830, 1),
+    (360, 1000, 5),
+)
+"""First and last wavelength and step in nm."""
+VISIBLE = np.arange(400, 701, 5)
 QUERIES = np.random.default_rng(20000).random((20000, 3))
 
 
@@ -26,7 +38,8 @@ def main() -> None:
         fitted.append({"cube": name, **fit_quality(cube)})
         errors = {mode: round_trip(cube, mode) for mode in MODES}
         round_trips.append({"cube": name, "errors": errors, "fine": round_trip_at_1_nm(cube)})
-    write("accuracy", "make accuracy", queries=len(QUERIES), fitted=fitted, round_trips=round_trips)
+    figures = {"fitted": fitted, "round_trips": round_trips, "ranges": [at_range(*each) for each in RANGES]}
+    write("accuracy", "make accuracy", queries=len(QUERIES), **figures)
 
 
 def cubes() -> Iterator[tuple[str, Cube]]:
@@ -39,6 +52,18 @@ def cubes() -> Iterator[tuple[str, Cube]]:
         yield f"sigmoid, no atlas, {dim}³", build(dim=dim, model="sigmoid")
     for count in (3, 17):
         yield f"{count} coefficients, Macbeth, 32³", build(MACBETH, dim=32, coefficients=count)
+
+
+def at_range(shortest: int, longest: int, step: int) -> dict[str, object]:
+    """Build the ColorChecker at a range; return errors at 1 nm, and those of the spectra of its entries."""
+    cube = uplift.build(MACBETH, shortest=shortest, longest=longest, step=step)
+    measured = dict(
+        zip(uplift.read_atlas(MACBETH).names, on_grid(uplift.read_atlas(MACBETH), VISIBLE), strict=True)
+    )
+    answers = cube.reflectance(cube.data.atlas.rgb, VISIBLE)
+    off = answers - [measured[name] for name in cube.data.atlas.names]
+    names = {"range": f"{shortest}–{longest} nm", "step": step}
+    return {**names, "fine": round_trip_at_1_nm(cube), "rms": float(np.sqrt((off**2).mean()))}
 
 
 def fit_quality(cube: Cube) -> dict[str, float]:

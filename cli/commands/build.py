@@ -31,6 +31,7 @@ from ..params.options import (
     sensor_options,
     verbose_option,
 )
+from ..params.wavelengths import parse_range
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -70,6 +71,16 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 @click.option("--warp", default="none", show_default=True, help="Phase warp of the moments: none or vision.")
 @click.option("--axis", default="srgb", show_default=True, help="Spacing of the nodes: srgb or linear.")
 @sensor_options
+@click.option(
+    "--range",
+    "limits",
+    default="380:780",
+    show_default=True,
+    help="First and last wavelength of the spectra in nm, from 300 to 1000.",
+)
+@click.option(
+    "--step", type=NUMBER, default=5, show_default=True, help="Distance of wavelengths in nm: 1, 5 or 10."
+)
 @light_option("Illuminant under which entries must keep their colour", "D65 A FL2 FL11 LED-B3")
 @click.option(
     "--prior",
@@ -144,6 +155,7 @@ def command(
     moments: int | None,
     entry_coefficients: int | None,
     entry_moments: int | None,
+    limits: str,
     **options: Any,
 ) -> None:
     """Build an uplifting cube constrained by measured spectra.
@@ -155,11 +167,15 @@ def command(
       uplift build --atlas paints.csv --dim auto --auto-tolerance 1
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
+      uplift build --atlas paints.csv --range 360:830 --step 1
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
+      uplift build --atlas macbeth --observer 'Nikon 5100 (NPL)' --space camera --dim 16
       uplift build --plan kitchen.plan.json
 
     Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the
     spectra that real materials of such colours are expected to have.
+
+    Entries have their own values in the --range as far as they were measured, and continue as constants.
 
     With --scene the cube is sparse: it is smaller and faster to build, and gives the same spectra for colours of the
     images. Other colours are errors, unless 'query' and 'texture' are given --fill-missing.
@@ -173,8 +189,9 @@ def command(
     inputs: tuple[str | Path | None, ...]
     if plan_path is None:
         scene = _scene(images, encoding, method, input_space)
-        inputs = (*files, *options["library"], *(scene.paths if scene else ()))
+        inputs = (*files, *options["library"], options["observer"], *(scene.paths if scene else ()))
         given = {name: value for name, value in options.items() if value not in (None, ())}
+        given["shortest"], given["longest"] = parse_range(limits)
         given["coefficients"] = coefficient_count(coefficients, moments)
         given["entry_coefficients"] = entry_coefficient_count(entry_coefficients, entry_moments)
         build = partial(_build, files, measured, scene=scene, **given)
@@ -246,7 +263,9 @@ def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], options: di
 
 def _space_name(name: str) -> str:
     """Return the name of a space by one of its names."""
-    if name == "sRGB":
+    from uplift.colorimetry.camera import CAMERA
+
+    if name in ("sRGB", CAMERA):
         return name
     from uplift.colorimetry.observer import look_up_space
 

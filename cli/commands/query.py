@@ -238,7 +238,7 @@ def _read_lights(names: Sequence[str], cube: Cube) -> list[Light]:
         return []
     from uplift.colorimetry.observer import light
 
-    return [light(name, cube.observer) for name in names]
+    return [light(name, cube.observer, *cube.data.sensor.range) for name in names]
 
 
 def _read_colours(

@@ -55,6 +55,7 @@ def _object(cube: Cube, result: QueryResult) -> dict[str, Any]:
         "requested_rgb": result.requested_rgb.tolist(),
         "wavelengths": result.wavelengths.tolist(),
         "reflectance": result.reflectance.tolist(),
+        "xyz": result.xyz.tolist(),
         "round_trip": {"rgb": result.round_trip.tolist(), "delta_e_2000": result.delta_e_2000},
         "cell": list(result.cell),
         "status": [status.label for status in result.statuses],
@@ -100,6 +101,7 @@ def _print_details(cube: Cube, result: QueryResult) -> None:
         "linear RGB": f"{format_rgb(result.rgb)}  {hex_code(cube, result.rgb)}",
         "cell": f"{result.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in result.statuses)}",
         "round trip": f"{format_rgb(result.round_trip)}  ΔE00 {result.delta_e_2000:.2g} ({data.sensor.illuminant})",
+        **({} if data.sensor.sensitivities is None else {"XYZ": format_rgb(result.xyz)}),
         **(
             {}
             if result.realisable

@@ -38,10 +38,10 @@ def complete_illuminant(ctx: click.Context, param: click.Parameter, text: str) -
 
 
 def complete_observer(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:
-    """Complete names of observers."""
-    from uplift.colorimetry.observer import observer_names
+    """Complete names of observers and cameras."""
+    from uplift.colorimetry.observer import camera_names, observer_names
 
-    return _matching(map(CompletionItem, observer_names()), text)
+    return _matching(map(CompletionItem, (*observer_names(), *camera_names())), text)
 
 
 def complete_space(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:

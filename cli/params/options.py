@@ -185,7 +185,7 @@ def sensor_options(function: Callable[..., Any]) -> Callable[..., Any]:
         "--space",
         default="sRGB",
         show_default=True,
-        help="RGB space by its name in colour-science or OpenColorIO, such as ACEScg.",
+        help="RGB space by its name in colour-science or OpenColorIO, such as ACEScg; or camera: raw values.",
         shell_complete=complete_space,
     )
     illuminant = click.option(
@@ -197,7 +197,8 @@ def sensor_options(function: Callable[..., Any]) -> Callable[..., Any]:
     )
     observer = click.option(
         "--observer",
-        help="Standard observer. [default: CIE 1931 2 Degree Standard Observer]",
+        help="Standard observer, or with --space camera a camera: name or CSV file of sensitivities. "
+        "[default: CIE 1931 2 Degree Standard Observer]",
         shell_complete=complete_observer,
     )
     return space(illuminant(observer(function)))

@@ -32,6 +32,21 @@ def parse_wavelengths(text: str | None) -> Array | None:
     return start + step * np.arange(count, dtype=float)
 
 
+def parse_range(text: str) -> tuple[float, float]:
+    """Parse '360:830', a first and a last wavelength in nm. Raises `OptionError`."""
+    try:
+        start, end = (parse_float(part) for part in text.split(":"))
+    except ValueError as error:
+        from uplift.common.errors import OptionError
+
+        raise OptionError(
+            f"a range must be START:END in nm, got {format_value(text)}",
+            code="invalid-range",
+            hint="write for example 360:830",
+        ) from error
+    return start, end
+
+
 def _unreadable(text: str) -> Exception:
     from uplift.common.errors import OptionError
 

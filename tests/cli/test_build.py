@@ -86,6 +86,14 @@ def test_all_options_are_passed_to_the_build(run, home):
     assert data.provenance["options"]["solver"] == "dogleg"
 
 
+def test_range_and_step(run, home):
+    run("build", "--dim", "2", "--moments", "3", "--range", "360:830", "--step", "10", "-o", "cube")
+    data = uplift.load(home / "cube").data
+    assert data.sensor.range == (360, 830, 10)
+    assert (data.model.phase.start, data.model.phase.end) == (360, 830)
+    run("check", "cube")
+
+
 def test_sigmoid_model(run, home):
     run("build", "--dim", "3", "--model", "sigmoid", "-o", "cube")
     assert uplift.load(home / "cube").data.model.name == "sigmoid"
@@ -159,6 +167,12 @@ def test_files_are_replaced_only_with_force(run, refuse, home):
         (("--axis", "log"), "unknown-axis-spacing"),
         (("--start", "seeds"), "unknown-start"),
         (("--solver", "newton"), "unknown-solver"),
+        (("--range", "360"), "invalid-range"),
+        (("--range", "360:830:5"), "invalid-range"),
+        (("--range", "830:360"), "range-out-of-limits"),
+        (("--range", "360:1100"), "range-out-of-limits"),
+        (("--range", "361:830"), "range-not-in-steps"),
+        (("--step", "3"), "unsupported-step"),
         (("--moments", "1"), "coefficients-out-of-range"),
         (("--moments", "17"), "coefficients-out-of-range"),
         (("--entry-moments", "17"), "entry-coefficients-out-of-range"),

@@ -274,7 +274,8 @@ def test_json_has_all_fields(ask, cubes):
     row = cube.data.atlas.names.index("red")
     answer = ask("--cube", path, *cube.data.atlas.rgb[row].tolist())
     assert answer.keys() == {
-        *("rgb", "requested_rgb", "wavelengths", "reflectance", "round_trip", "cell", "status", "realisable"),
+        *("rgb", "requested_rgb", "wavelengths", "reflectance", "xyz", "round_trip", "cell", "status"),
+        "realisable",
         *("entry", "standard_error", "reference", "standard_errors", "unlike_atlas"),
     }
     assert (answer["standard_errors"], answer["unlike_atlas"]) == ({}, False)

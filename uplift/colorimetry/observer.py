@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from uplift.colorimetry.camera import CAMERA, Camera, read_camera
 from uplift.colorimetry.gamut import Primaries, conversion
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.colorimetry.ocio import AP0, OcioSpace, find_ocio_space
@@ -17,7 +18,7 @@ from uplift.colorimetry.sensor import Light, Sensor
 from uplift.colorimetry.srgb import decode_portably
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
-from uplift.common.errors import unknown_name
+from uplift.common.errors import OptionError, unknown_name
 
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
 CRT = "Typical CRT Brainard 1997"
@@ -37,6 +38,10 @@ FIRST_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "Adobe RGB (199
 """Spaces of colour-science that stand for others with the same primaries."""
 MAX_MATRIX_DIFFERENCE = 1e-3
 """Largest difference between matrices of the same primaries, of which some are rounded."""
+CORRELATED = 50.0
+"""Distance in nm at which the correlation of reflectances that a camera's matrix is fitted to falls to 1/e."""
+MAX_CONDITION = 1e4
+"""Limit of the condition number of a camera's matrix: one channel is a mixture of the others beyond it."""
 START, END, STEP = 380.0, 780.0, 5.0
 """Range and step in nm that every table of the CIE covers."""
 
@@ -47,7 +52,7 @@ def grid() -> Array:
 
 
 def sensor(
-    space: str = "sRGB", illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
+    space: str = "sRGB", illuminant: str = DEFAULT_ILLUMINANT, observer: str | Camera = DEFAULT_OBSERVER
 ) -> Sensor:
     """Create a sensor from names of colour-science.
 
@@ -58,11 +63,12 @@ def sensor(
     ----------
     space : str
         RGB space: a name of colour-science, a short name such as ``AP1``, or a name of OpenColorIO, such as
-        ``lin_rec2020``, of a space that colour-science has as well.
+        ``lin_rec2020``, of a space that colour-science has as well. ``"camera"`` are raw values of a camera.
     illuminant : str
         Illuminant that the RGB refer to.
-    observer : str
-        Colour-matching functions.
+    observer : str or Camera
+        Colour-matching functions; for the space ``"camera"`` a camera, see `find_camera`. XYZ of a camera's sensor are
+        those of the CIE 1931 observer.
 
     Returns
     -------
@@ -72,6 +78,8 @@ def sensor(
     ------
     UnknownNameError
         A name is unknown; the hint gives the nearest names.
+    OptionError
+        A camera without its space (``camera-without-space``), or one that cannot be used; see `Camera`.
 
     Examples
     --------
@@ -79,7 +87,15 @@ def sensor(
     >>> sensor("sRGB").rgb(np.full(81, 0.5)).round(12).tolist()
     [0.5, 0.5, 0.5]
     """
+    if space == CAMERA:
+        return _camera_sensor(find_camera(observer), illuminant)
     colour = colour_science()
+    if isinstance(observer, Camera) or observer in colour.MSDS_CAMERA_SENSITIVITIES:
+        raise OptionError(
+            "a camera in place of an observer has its own RGB space",
+            code="camera-without-space",
+            hint=f'use space="{CAMERA}"',
+        )
     rgb_space = look_up_space(space)
     build_light = light(illuminant, observer)
     white = colour.xy_to_XYZ(rgb_space.whitepoint)
@@ -107,7 +123,8 @@ def on_range(sensor: Sensor, start: float, end: float, step: float) -> Sensor:
     sensor : Sensor
         The sensor.
     start, end, step : float
-        Range and step in nm. Outside their tables, illuminant and observer are extrapolated as constants.
+        Range and step in nm. Outside their tables, illuminant and observer are extrapolated as constants; the
+        sensitivities of a camera are 0.
 
     Returns
     -------
@@ -117,12 +134,79 @@ def on_range(sensor: Sensor, start: float, end: float, step: float) -> Sensor:
     if sensor.range == (start, end, step):
         return sensor
     wide = light(sensor.illuminant, sensor.observer, start, end, step)
+    wavelengths = np.arange(start, end + step / 2, step)
+    sensitivities = None
+    if sensor.sensitivities is not None:
+        sensitivities = Camera(sensor.space, sensor.wavelengths, sensor.sensitivities).at(wavelengths)
     return replace(
         sensor,
-        wavelengths=np.arange(start, end + step / 2, step),
+        wavelengths=wavelengths,
         cmfs=matching_functions(sensor.observer, start, end, step),
         power=illuminant_spd(sensor.illuminant, start, end, step),
         xyz_to_rgb=sensor.xyz_to_rgb / (sensor.xyz_to_rgb @ wide.white)[:, None],
+        sensitivities=sensitivities,
+    )
+
+
+def find_camera(camera: str | Camera) -> Camera:
+    """Find the sensitivities of a camera.
+
+    Parameters
+    ----------
+    camera : str or Camera
+        Name of colour-science, such as ``"Nikon 5100 (NPL)"``, or the path of a CSV file; see
+        `uplift.colorimetry.camera.read_camera`.
+
+    Returns
+    -------
+    Camera
+
+    Raises
+    ------
+    UnknownNameError
+        The name is unknown (``unknown-camera``).
+    OptionError
+        The file cannot be used.
+    """
+    if isinstance(camera, Camera):
+        return camera
+    if camera.casefold().endswith(".csv"):
+        return read_camera(camera)
+    found = _look_up(colour_science().MSDS_CAMERA_SENSITIVITIES, camera, "camera")
+    return Camera(found.name, found.wavelengths, found.values)
+
+
+def _camera_sensor(camera: Camera, illuminant: str) -> Sensor:
+    if camera.name in colour_science().RGB_COLOURSPACES:
+        raise OptionError(
+            f"a camera must not have the name of an RGB space, got '{camera.name}'", code="camera-name-taken"
+        )
+    build_light, power, sensitivities = light(illuminant), illuminant_spd(illuminant), camera.at(grid())
+    weights = sensitivities * power[:, None]
+    if not (weights.sum(axis=0) > 0).all():
+        raise OptionError(
+            f"every channel must respond to {build_light.name} within {START:g}–{END:g} nm",
+            code="camera-without-response",
+            hint="give wavelengths in nm, and sensitivities of red, green and blue",
+        )
+    balanced = (weights / weights.sum(axis=0)).T
+    correlation = np.exp(-np.abs(np.subtract.outer(grid(), grid())) / CORRELATED)
+    expected = correlation @ build_light.xyz.T
+    matrix = balanced @ expected @ np.linalg.inv(build_light.xyz @ expected)
+    if np.linalg.cond(matrix) > MAX_CONDITION:
+        raise OptionError(
+            "the channels of a camera must have different sensitivities", code="camera-channels-dependent"
+        )
+    return Sensor(
+        space=camera.name,
+        illuminant=build_light.name,
+        observer=DEFAULT_OBSERVER,
+        wavelengths=grid(),
+        cmfs=matching_functions(),
+        power=power,
+        xyz_to_rgb=matrix / (matrix @ build_light.white)[:, None],
+        decoding=np.arange(256) / 255,
+        sensitivities=sensitivities,
     )
 
 
@@ -364,6 +448,22 @@ def observer_names() -> tuple[str, ...]:
     True
     """
     return tuple(colour_science().MSDS_CMFS)
+
+
+def camera_names() -> tuple[str, ...]:
+    """Return the names of all cameras.
+
+    Returns
+    -------
+    tuple of str
+        Names of colour-science.
+
+    Examples
+    --------
+    >>> camera_names()
+    ('Nikon 5100 (NPL)', 'Sigma SDMerill (NPL)')
+    """
+    return tuple(colour_science().MSDS_CAMERA_SENSITIVITIES)
 
 
 def space_names() -> tuple[str, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Mask, Values
+from uplift.common.errors import ColourError
 
 SLACK = 1e-9
 """Distance from [0, 1] that counts as rounding."""
@@ -55,9 +56,12 @@ class Sensor:
     power : ndarray, shape (N,)
         Relative spectral power of the illuminant.
     xyz_to_rgb : ndarray, shape (3, 3)
-        XYZ under the illuminant, where white has Y = 1, to linear RGB, where white is (1, 1, 1).
+        XYZ under the illuminant, where white has Y = 1, to linear RGB, where white is (1, 1, 1). For a camera, an
+        approximation, for distances between colours only.
     decoding : ndarray, shape (256,)
         Linear value of each 8-bit code of the space.
+    sensitivities : ndarray, shape (N, 3), optional
+        Spectral sensitivities of a camera, whose raw values the RGB are. By default RGB are a linear map of XYZ.
     """
 
     space: str
@@ -68,6 +72,7 @@ class Sensor:
     power: Array
     xyz_to_rgb: Array
     decoding: Array
+    sensitivities: Array | None = None
 
     @property
     def range(self) -> tuple[float, float, float]:
@@ -87,7 +92,19 @@ class Sensor:
     @cached_property
     def matrix(self) -> Array:
         """W, shape (3, N): ``W @ reflectance`` is linear RGB; the perfect reflector gives (1, 1, 1)."""
-        return self.xyz_to_rgb @ self.light.xyz
+        if self.sensitivities is None:
+            return self.xyz_to_rgb @ self.light.xyz
+        weights = self.sensitivities * self.power[:, None]
+        return np.asarray((weights / weights.sum(axis=0)).T)
+
+    def require_xyz(self) -> None:
+        """Raise `ColourError` (``camera-without-xyz``) for a camera, whose raw values do not determine XYZ."""
+        if self.sensitivities is not None:
+            raise ColourError(
+                f"the colours of '{self.space}' are raw values of a camera, and no matrix converts them to or from XYZ",
+                code="camera-without-xyz",
+                hint="give raw values, or use a cube of an RGB space",
+            )
 
     @cached_property
     def rgb_to_xyz(self) -> Array:
@@ -109,7 +126,7 @@ class Sensor:
         return np.asarray(reflectance, dtype=float) @ self.matrix.T
 
     def xyz(self, rgb: ArrayLike) -> Array:
-        """Convert linear RGB to XYZ under the build illuminant.
+        """Convert linear RGB to XYZ under the build illuminant; approximately for a camera.
 
         Parameters
         ----------

@@ -66,7 +66,13 @@ class ImageSpace:
         -------
         ndarray of shape (3, 3), or None
             None if the primaries agree.
+
+        Raises
+        ------
+        ColourError
+            The sensor is a camera (``camera-without-xyz``).
         """
+        sensor.require_xyz()
         matrix = conversion(self.gamut, sensor)
         return None if np.abs(matrix - np.eye(3)).max() <= MAX_PRIMARIES_DIFFERENCE else matrix
 
@@ -84,7 +90,7 @@ class ImageSpace:
         -------
         bool
         """
-        if self.mixes_channels or self.matrix_to(sensor) is not None:
+        if sensor.sensitivities is not None or self.mixes_channels or self.matrix_to(sensor) is not None:
             return False
         if not encoded or self.decode is None:
             return True

@@ -14,6 +14,8 @@ from uplift.lattice import Status
 from uplift.models import Model
 
 SENSOR_ARRAYS = ("wavelengths", "cmfs", "power", "xyz_to_rgb", "decoding")
+SENSITIVITIES = "sensor.sensitivities"
+"""Sensitivities of a camera: name in the file."""
 POINT_TYPES: dict[str, tuple[str, ...]] = {
     "coefficients": ("float32", "float64"),
     "rgb": ("float32",),
@@ -46,6 +48,7 @@ NOT_NEGATIVE = (
     "sensor.wavelengths",
     "sensor.power",
     "sensor.decoding",
+    SENSITIVITIES,
 )
 MAX_VALUE = 1e30
 """Limit of all numbers: far above those of any cube, and their squares do not overflow."""
@@ -133,6 +136,8 @@ def _arrays(
     shapes = ((samples,), (samples, 3), (samples,), (3, 3), (256,))
     for name, shape in zip(SENSOR_ARRAYS, shapes, strict=True):
         yield f"sensor.{name}", tensors[f"sensor.{name}"], shape, double
+    if SENSITIVITIES in tensors:
+        yield SENSITIVITIES, tensors[SENSITIVITIES], (samples, 3), double
     for name in ATLAS_ARRAYS:
         yield f"atlas.{name}", tensors[f"atlas.{name}"], (entries, *columns.get(name, ())), double
     if ENTRY_COEFFICIENTS in tensors:

@@ -27,6 +27,7 @@ from uplift.cube.checks import (
     ENTRY_COEFFICIENTS,
     LEFT_OUT_ARRAYS,
     POINT_TYPES,
+    SENSITIVITIES,
     SENSOR_ARRAYS,
     STORED_TYPES,
     check,
@@ -48,6 +49,8 @@ KEY = "uplift"
 Tensors = dict[str, NDArray[Any]]
 LEFT_OUT = "left-out"
 """Feature of files with left-out entries."""
+CAMERA = "camera"
+"""Feature of files of a camera's raw values."""
 FEATURES = {"debug": "round", "errors": "standard_error"}
 """Optional arrays by the features that announce them."""
 INVALID = (AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError, UpliftError)
@@ -251,6 +254,8 @@ def _digest(tensors: Tensors, metadata: str) -> str:
 def _tensors(data: CubeData) -> Tensors:
     tensors: Tensors = {"nodes": data.lattice.nodes}
     tensors |= {f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR_ARRAYS}
+    if data.sensor.sensitivities is not None:
+        tensors[SENSITIVITIES] = data.sensor.sensitivities
     tensors |= {f"atlas.{name}": getattr(data.atlas, attribute) for name, attribute in ATLAS_ARRAYS.items()}
     if data.atlas.spectra is not None:
         tensors[ENTRY_COEFFICIENTS] = data.atlas.spectra.coefficients
@@ -287,6 +292,7 @@ def _metadata(data: CubeData) -> dict[str, Any]:
 def _features(data: CubeData) -> list[str]:
     optional = [name for name, array in FEATURES.items() if getattr(data.points, array) is not None]
     optional += [LEFT_OUT] if data.atlas.left_out is not None else []
+    optional += [CAMERA] if data.sensor.sensitivities is not None else []
     return optional if data.complete_cells is None else [*optional, sparse.FEATURE]
 
 
@@ -301,6 +307,8 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
     )
     absent = {array for feature, array in FEATURES.items() if feature not in features}
     arrays: dict[str, Any] = {name: None if name in absent else tensors[name] for name in POINT_TYPES}
+    sensor: dict[str, Any] = {name: tensors[f"sensor.{name}"] for name in SENSOR_ARRAYS}
+    sensor |= {"sensitivities": tensors[SENSITIVITIES]} if CAMERA in features else {}
     return CubeData(
         model=model,
         lattice=lattice,
@@ -308,7 +316,7 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
             metadata["space"],
             metadata["illuminant"],
             metadata["observer"],
-            *(tensors[f"sensor.{name}"] for name in SENSOR_ARRAYS),
+            **sensor,
         ),
         threshold=float(metadata["threshold"]),
         error_illuminant=metadata["reference"],

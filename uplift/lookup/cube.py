@@ -317,7 +317,9 @@ class Cube:
         function: Function = partial(standard_error, self.data)
         if light is not None:
             lit: Light = (
-                import_module(OBSERVER).light(light, self.observer) if isinstance(light, str) else light
+                import_module(OBSERVER).light(light, self.observer, *self.data.sensor.range)
+                if isinstance(light, str)
+                else light
             )
             if lit.name != self.data.error_illuminant:
                 function = light_errors(self.data, lit)

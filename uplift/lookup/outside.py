@@ -53,6 +53,7 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
 
 def xyz_to_rgb(data: CubeData, xyz: ArrayLike) -> Array:
     """Convert XYZ (n, 3) under the illuminant of a cube, with Y = 1 for white, to linear RGB. Raises `ColourError`."""
+    data.sensor.require_xyz()
     values = as_rgb(xyz).astype(float)
     if not np.isfinite(values).all():
         raise ColourError("XYZ must be finite", code="rgb-not-finite", hint="fix its source")

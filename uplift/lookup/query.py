@@ -39,8 +39,10 @@ class QueryResult:
         Reflectances in [0, 1].
     round_trip : ndarray, shape (3,)
         Linear RGB of the reflectance.
+    xyz : ndarray, shape (3,)
+        XYZ of the reflectance under the illuminant of the cube, where white has Y = 1.
     delta_e_2000 : float
-        ΔE00 between ``rgb`` and ``round_trip``.
+        ΔE00 between ``rgb`` and ``round_trip``; for raw values of a camera, by an approximate matrix.
     cell : tuple of int
         Position of the lowest corner of the cell along the axes.
     statuses : tuple of Status
@@ -62,6 +64,7 @@ class QueryResult:
     wavelengths: Array
     reflectance: Array
     round_trip: Array
+    xyz: Array
     delta_e_2000: float
     cell: tuple[int, int, int]
     statuses: tuple[Status, ...]
@@ -177,6 +180,7 @@ def _outside(cube: Cube, nearest: QueryResult, rgb: Array, at: Array) -> QueryRe
         requested_rgb=rgb,
         reflectance=spectrum[len(sensor.wavelengths) :],
         round_trip=round_trip,
+        xyz=sensor.light.xyz @ spectrum[: len(sensor.wavelengths)],
         delta_e_2000=float(delta_e_rgb(sensor, rgb, round_trip)),
         entry=None,
         standard_error=None,
@@ -193,6 +197,7 @@ def _block(
     count = len(sensor.wavelengths)
     spectra = cube.reflectance(rgb, np.concatenate([sensor.wavelengths, at]), mode)
     round_trip = sensor.rgb(spectra[:, :count])
+    xyz = spectra[:, :count] @ sensor.light.xyz.T
     delta_e = delta_e_rgb(sensor, rgb, round_trip)
     errors = cube.standard_error(rgb)
     by_light = {} if errors is None else {light.name: cube.standard_error(rgb, light) for light in lights}
@@ -207,6 +212,7 @@ def _block(
             wavelengths=at,
             reflectance=spectra[row, count:],
             round_trip=round_trip[row],
+            xyz=xyz[row],
             delta_e_2000=float(delta_e[row]),
             cell=(int(cell[0]), int(cell[1]), int(cell[2])),
             statuses=tuple(map(Status, sorted(set(data.points.status[corners[row]].tolist())))),

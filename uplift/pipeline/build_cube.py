@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from uplift import fit
-from uplift.atlas import Atlas, on_grid, read_atlas
+from uplift.atlas import Atlas, on_grid, read_atlas, resample
 from uplift.colorimetry import observer as observers
+from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.colorimetry.spaces import holding_note
@@ -68,7 +69,10 @@ def build(
     axis: Literal["srgb", "linear"] = "srgb",
     space: str = "sRGB",
     illuminant: str = DEFAULT_ILLUMINANT,
-    observer: str = observers.DEFAULT_OBSERVER,
+    observer: str | Camera = observers.DEFAULT_OBSERVER,
+    shortest: float = observers.START,
+    longest: float = observers.END,
+    step: float = observers.STEP,
     lights: Sequence[str] = SCENE_LIGHTS,
     prior: PriorName = "learnt",
     library: AtlasLike = None,
@@ -104,11 +108,19 @@ def build(
     axis : {"srgb", "linear"}, default "srgb"
         Spacing of the axis nodes: equal steps of the sRGB encoding, or of linear RGB.
     space : str, default "sRGB"
-        RGB space of queries, by its name in colour-science.
+        RGB space of queries, by its name in colour-science, or ``"camera"``: raw values of a camera, balanced so that
+        a perfect white under the illuminant is (1, 1, 1).
     illuminant : str, default "D65"
         Illuminant under which reflectances have their RGB.
-    observer : str, default "CIE 1931 2 Degree Standard Observer"
-        Colour-matching functions, by their name in colour-science.
+    observer : str or Camera, default "CIE 1931 2 Degree Standard Observer"
+        Colour-matching functions, by their name in colour-science. With ``space="camera"`` a camera: its name in
+        colour-science, a CSV file of its sensitivities, or a `Camera`.
+    shortest, longest : float, default 380 and 780
+        Range of the spectra in nm, at most 300 to 1000. Outside the range of an entry, its spectrum continues as a
+        constant, and outside the range of the cube, every spectrum does. The coefficients are shared by the whole
+        range, so a much wider one resolves less (docs/accuracy.md).
+    step : {1, 5, 10}, default 5
+        Distance in nm of the wavelengths at which spectra are integrated and compared.
     lights : sequence of str, default ("D65", "A", "FL2", "FL11", "LED-B3")
         Illuminants under which fitted atlas entries must keep their measured colours.
     prior : {"learnt", "smooth"}, default "learnt"
@@ -178,7 +190,10 @@ def build(
         axis=axis,
         space=space,
         illuminant=illuminant,
-        observer=observer,
+        observer=observer.name if isinstance(observer, Camera) else observer,
+        shortest=shortest,
+        longest=longest,
+        step=step,
         lights=(lights,) if isinstance(lights, str) else tuple(lights),
         prior=prior,
         leave_out=(leave_out,) if isinstance(leave_out, str) else tuple(leave_out),
@@ -193,12 +208,19 @@ def build(
     tolerance = fit.solver_tolerance(options.threshold)
     chosen, method = _chosen_solver(solver, tolerance)
     scene = None if scene is None else _as_scene(scene)
-    sensor = observers.sensor(options.space, options.illuminant, options.observer)
-    options = replace(options, space=sensor.space)  # not an alias, which $OCIO may define
+    sensor = observers.on_range(
+        observers.sensor(
+            options.space, options.illuminant, observer if isinstance(observer, Camera) else options.observer
+        ),
+        options.shortest,
+        options.longest,
+        options.step,
+    )
+    options = _with_names(options, sensor)
     spectrum_model = options.spectrum_model()
     forward = forward_map(spectrum_model, sensor.wavelengths, sensor.matrix)
-    scene_lights = [observers.light(name, observer) for name in options.lights]
-    error_light = observers.light(ERROR_ILLUMINANT, observer)
+    scene_lights = [observers.light(name, sensor.observer, *sensor.range) for name in options.lights]
+    error_light = observers.light(ERROR_ILLUMINANT, sensor.observer, *sensor.range)
 
     libraries = read_libraries(library)
     families = library_families(options, libraries, sensor)
@@ -266,6 +288,13 @@ def build(
     )
 
 
+def _with_names(options: Options, sensor: Sensor) -> Options:
+    """Record the names of the space, not an alias, which $OCIO may define, and of a camera, not its file."""
+    if sensor.sensitivities is None:
+        return replace(options, space=sensor.space)
+    return replace(options, observer=sensor.space)
+
+
 def _chosen_solver(solver: str | Solver, tolerance: float) -> tuple[Solver | None, fit.Method]:
     """The solver of optimistix, None for the step of least change, and the method for lattices."""
     if solver == SOLVERS[0]:
@@ -322,7 +351,7 @@ def _entries_in_gamut(atlas: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Ar
     measured = on_grid(atlas, sensor.wavelengths)
     rgb = sensor.rgb(measured)
     inside = sensor.contains(rgb)
-    way_out = "" if inside.all() else f"; {holding_note(measured, sensor.illuminant, sensor.observer)}"
+    way_out = "" if inside.all() else f"; {_holding_note(atlas, sensor)}"
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
         _warn(
@@ -332,6 +361,11 @@ def _entries_in_gamut(atlas: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Ar
         )
     names = tuple(name for name, kept in zip(atlas.names, inside, strict=True) if kept)
     return names, np.clip(rgb[inside], 0, 1), measured[inside]
+
+
+def _holding_note(atlas: Atlas, sensor: Sensor) -> str:
+    spectra = resample(atlas, observers.grid()).values
+    return holding_note(spectra, sensor.illuminant, sensor.observer)
 
 
 def _with_dim(

@@ -5,11 +5,14 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
+
+import numpy as np
 
 from uplift import fit
 from uplift.atlas import Atlas, read_atlas, resample
+from uplift.colorimetry.observer import grid
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OptionError, UpliftWarning
@@ -71,10 +74,18 @@ def families(options: Options, libraries: Sequence[Library], sensor: Sensor) -> 
             code="library-not-used",
             hint='use prior="learnt" and the moments model with 4 to 17 coefficients, or leave out the library',
         )
-    shipped = fit.shipped_library(options.leave_out)
+    shipped = [_on_range(family, sensor) for family in fit.shipped_library(options.leave_out)]
     if not learnt:
         return ()
     return (*shipped, *(_family(each, sensor) for each in libraries))
+
+
+def _on_range(family: fit.Family, sensor: Sensor) -> fit.Family:
+    """Interpolate a shipped family at the wavelengths of a sensor; outside 380–780 nm it is constant."""
+    if np.array_equal(sensor.wavelengths, grid()):
+        return family
+    measured = np.array([np.interp(sensor.wavelengths, grid(), row) for row in family.measured])
+    return replace(family, measured=measured)
 
 
 def _family(library: Library, sensor: Sensor) -> fit.Family:

@@ -10,8 +10,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from uplift.colorimetry import observer
+from uplift.colorimetry.camera import CAMERA
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
+from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
 from uplift.common.errors import OptionError, unknown_name
 from uplift.common.quoting import format_value
 from uplift.cube.metadata import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
@@ -31,6 +32,10 @@ CUSTOM = "custom"
 """Recorded in place of a solver that was given as an object, and cannot be repeated."""
 MAX_AUTO_TOLERANCE = 100.0
 """ΔE00 between black and white."""
+MAX_RANGE = 300.0, 1000.0
+"""Limits of the range in nm: illuminants and observers have no shorter wavelengths, atlases hardly longer ones."""
+STEPS = (1.0, 5.0, 10.0)
+"""Steps of the sensor's wavelengths in nm."""
 PROCESS_BYTES = 500_000_000
 """Memory of a build without its lattice."""
 
@@ -60,7 +65,10 @@ class Options:
     axis: str = "srgb"
     space: str = "sRGB"
     illuminant: str = DEFAULT_ILLUMINANT
-    observer: str = observer.DEFAULT_OBSERVER
+    observer: str = DEFAULT_OBSERVER
+    shortest: float = START
+    longest: float = END
+    step: float = STEP
     lights: tuple[str, ...] = SCENE_LIGHTS
     prior: str = "learnt"
     leave_out: tuple[str, ...] = ()
@@ -74,6 +82,7 @@ class Options:
     def __post_init__(self) -> None:
         for name, convert in CONVERSIONS.items():
             object.__setattr__(self, name, convert(name, getattr(self, name)))
+        self._check_range()
         self.spectrum_model()
         self._check_entry_coefficients()
         if self.axis not in AXES:
@@ -109,7 +118,7 @@ class Options:
         Returns
         -------
         Model
-            `Moments` or `Sigmoid` over the wavelengths of every sensor.
+            `Moments` or `Sigmoid` from `shortest` to `longest` nm.
         """
         return self._model(self.coefficients)
 
@@ -125,10 +134,36 @@ class Options:
 
     def _model(self, coefficients: int) -> Model:
         if self.model == Moments.name:
-            return Moments(coefficients, Phase(observer.START, observer.END, self.warp))
+            return Moments(coefficients, Phase(self.shortest, self.longest, self.warp))
         if self.model == Sigmoid.name:
-            return Sigmoid(observer.START, observer.END)
+            return Sigmoid(self.shortest, self.longest)
         raise unknown_name(self.model, MODELS, "model")
+
+    def _check_range(self) -> None:
+        low, high = MAX_RANGE
+        if not low <= self.shortest <= START < END <= self.longest <= high:
+            raise OptionError(
+                f"the range must hold {START:g} to {END:g} nm and lie within {low:g} to {high:g} nm, "
+                f"got {self.shortest:g} to {self.longest:g}",
+                code="range-out-of-limits",
+            )
+        if self.space == CAMERA and self.step > STEP:  # a rebuild has the sensitivities of the cube only
+            raise OptionError(
+                f"step of a camera's cube must be 1 or 5 nm, got {self.step:g}",
+                code="unsupported-step",
+                hint="use 5",
+            )
+        if self.step not in STEPS:
+            raise OptionError(
+                f"step must be 1, 5 or 10 nm, got {self.step:g}", code="unsupported-step", hint="use 5"
+            )
+        if (self.longest - self.shortest) % self.step:
+            raise OptionError(
+                f"the range must be a multiple of the step of {self.step:g} nm, "
+                f"got {self.shortest:g} to {self.longest:g}",
+                code="range-not-in-steps",
+                hint="use a step of 1",
+            )
 
     def _check_entry_coefficients(self) -> None:
         if self.model == Moments.name and not self.coefficients <= self.entry_coefficients <= MAX_COUNT:
@@ -212,6 +247,9 @@ CONVERSIONS: dict[str, Callable[[str, object], Any]] = {
     "space": _text,
     "illuminant": _text,
     "observer": _text,
+    "shortest": _number,
+    "longest": _number,
+    "step": _number,
     "lights": _texts,
     "prior": _text,
     "leave_out": _texts,

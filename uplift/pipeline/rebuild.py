@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import CubeFileError, OptionError, UnknownNameError, UpliftWarning
@@ -91,9 +92,17 @@ def rebuild(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         try:
-            return build(atlas, library=library, scene=scene, progress=progress, **asdict(options))
+            given = asdict(options) | _recorded_camera(stored.data.sensor)
+            return build(atlas, library=library, scene=scene, progress=progress, **given)
         except (OptionError, UnknownNameError) as error:
             raise _unknown_options(error, path) from error
+
+
+def _recorded_camera(sensor: Sensor) -> dict[str, Camera]:
+    """Return the option that has the sensitivities of a cube of a camera."""
+    if sensor.sensitivities is None:
+        return {}
+    return {"observer": Camera(sensor.space, sensor.wavelengths, sensor.sensitivities)}
 
 
 def _recorded_options(data: CubeData, path: StrPath) -> Options:

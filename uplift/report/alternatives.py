@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.observer import on_range
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
@@ -81,19 +82,22 @@ def find_alternatives(
     tuple of Alternative
         The packaged cube, which knows no atlas, and the sigmoid of Jakob & Hanika 2019, fitted to each colour.
     """
-    answers = {WITHOUT_ATLAS: _without_atlas(errors.target), JAKOB_HANIKA: _sigmoid(data, errors.rgb)}
+    answers = {
+        WITHOUT_ATLAS: _without_atlas(errors.target, data.sensor),
+        JAKOB_HANIKA: _sigmoid(data, errors.rgb),
+    }
     return tuple(
         Alternative(name, answer, _delta_e(lights, answer, errors.target)) for name, answer in answers.items()
     )
 
 
-def _without_atlas(target: Array) -> Array:
+def _without_atlas(target: Array, assessed: Sensor) -> Array:
     """Reflectance (E, N) of the packaged cube at the colours of measured spectra (E, N)."""
     cube = load()
-    rgb = cube.data.sensor.rgb(target)
+    rgb = on_range(cube.data.sensor, *assessed.range).rgb(target)
     inside = cube.data.sensor.contains(rgb)
     answer = np.full_like(target, np.nan)
-    answer[inside] = cube.reflectance(np.clip(rgb[inside], 0, 1))
+    answer[inside] = cube.reflectance(np.clip(rgb[inside], 0, 1), assessed.wavelengths)
     return answer
 
 

@@ -146,7 +146,7 @@ def assess(
         If a light is not in the tables.
     """
     data = cube.data
-    sensors = display_sensors(lights, data.sensor.observer)
+    sensors = display_sensors(lights, data.sensor.observer, *data.sensor.range)
     own = atlas is not None and _built_from(data, atlas)
     query = _entry_query(cube, atlas, own)
     errors = None if query is None or not query.names else entry_errors(cube, query, sensors)

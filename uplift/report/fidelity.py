@@ -239,7 +239,9 @@ def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> E
         answer=answer,
         delta_e=_delta_e(lights, answer, target),
         rms=_rms(answer, target),
-        actual=delta_e_spectra(light(data.error_illuminant, data.sensor.observer), answer, target),
+        actual=delta_e_spectra(
+            light(data.error_illuminant, data.sensor.observer, *data.sensor.range), answer, target
+        ),
         predicted=cube.standard_error(query.rgb),
         cells=data.lattice.cell(query.rgb)[0],
     )

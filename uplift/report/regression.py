@@ -10,6 +10,7 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
+from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import CubeFileError
@@ -99,7 +100,7 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
         "spectra_rms": float(np.sqrt((difference**2).mean())),
     }
     for name in REGRESSION_LIGHTS:
-        measures[f"delta_e_{name}"] = _largest_delta_e(name, stored.sensor.observer, first, second)
+        measures[f"delta_e_{name}"] = _largest_delta_e(name, stored.sensor, first, second)
     return RebuildDifference(path, measures, _counts(stored, compared), _counts(rebuilt, compared))
 
 
@@ -128,5 +129,5 @@ def _counts(data: CubeData, compared: Mask) -> dict[str, int]:
     return counts | {Status.UNFITTED.label: int((data.points.status == Status.UNFITTED).sum())}
 
 
-def _largest_delta_e(name: str, observer: str, first: Array, second: Array) -> float:
-    return float(delta_e_spectra(light(name, observer), first, second).max())
+def _largest_delta_e(name: str, sensor: Sensor, first: Array, second: Array) -> float:
+    return float(delta_e_spectra(light(name, sensor.observer, *sensor.range), first, second).max())

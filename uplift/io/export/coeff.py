@@ -65,11 +65,14 @@ def write_coeff(
 
     Raises
     ------
+    ColourError
+        The cube is that of a camera (``camera-without-xyz``).
     OptionError
         ``res`` is out of range (code ``resolution-out-of-range``).
     OutputError
         The file cannot be written, or exists and ``force`` is off.
     """
+    data.sensor.require_xyz()
     if not MIN_RES <= res <= MAX_RES:
         raise OptionError(
             f"res must be from {MIN_RES} to {MAX_RES}, got {res}",

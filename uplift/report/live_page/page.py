@@ -7,7 +7,7 @@ import os
 
 import numpy as np
 
-from uplift.colorimetry.observer import grid, light
+from uplift.colorimetry.observer import light
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
@@ -101,9 +101,11 @@ def page(data: CubeData) -> str:
 
 def _weights(data: CubeData) -> tuple[Array, dict[str, Array]]:
     """Return wavelengths (N,) and, for each light, the weights (3, N) from reflectance to linear sRGB."""
-    sensor, at = data.sensor, grid()
+    sensor, at = data.sensor, data.sensor.wavelengths
     missing = -len(at) % GROUP
     return np.pad(at, (0, missing), mode="edge"), {
-        name: np.pad(sensor.xyz_to_rgb @ light(name, sensor.observer).xyz, ((0, 0), (0, missing)))
+        name: np.pad(
+            sensor.xyz_to_rgb @ light(name, sensor.observer, *sensor.range).xyz, ((0, 0), (0, missing))
+        )
         for name in dict.fromkeys((sensor.illuminant, *LIGHTS))
     }

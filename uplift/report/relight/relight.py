@@ -186,7 +186,7 @@ def relight(
         A light is unknown.
     """
     sensor = _common_sensor(cubes)
-    screens = display_sensors(lights, sensor.observer)
+    screens = display_sensors(lights, sensor.observer, *sensor.range)
     by_spectra = {method: _by_spectra(cube, rgb, screens, threads) for method, cube in cubes.items()}
     weight = np.float32(1) if opacity is None else opacity
     renderings = (

@@ -1,0 +1,153 @@
+"""Raw values of cameras to XYZ: cubes against the usual 3×3 matrices, on held-out patches of the ColorChecker.
+
+Examples
+--------
+    python -m benchmarks.cameras
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from benchmarks.record import write
+from uplift.atlas import Atlas, on_grid, read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.camera import CAMERA
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.solid import solid
+from uplift.common.arrays import Array
+from uplift.common.errors import UpliftWarning
+from uplift.fit import families_with, shipped_library
+from uplift.lattice import Lattice
+from uplift.lookup import Cube
+from uplift.pipeline import build
+
+ATLAS = "macbeth"
+LIGHTS = ("D65", "A")
+SPLITS = 5
+DIM = 32
+ToXyz = Callable[[Array], Array]
+"""From raw values (n, 3) to XYZ (n, 3)."""
+
+
+def xyz_matrix(raw: Array, xyz: Array) -> Array:
+    """Fit the matrix (3, 3) from raw values to XYZ by least squares of XYZ."""
+    return np.asarray(np.linalg.lstsq(raw, xyz, rcond=None)[0].T)
+
+
+def lab_matrix(raw: Array, xyz: Array, white: Array) -> Array:
+    """Fit the matrix (3, 3) from raw values to XYZ by least squares of L*a*b*, with (1, 1, 1) as ``white``.
+
+    RAW to ACES 1.0 (Dyer et al. 2017) fits its matrices so, with six free numbers.
+    """
+    expected = lab(xyz, white)
+
+    def matrix(free: Array) -> Array:
+        first = free.reshape(3, 2)
+        return np.column_stack([first, white - first.sum(axis=1)])
+
+    def residuals(free: Array) -> Array:
+        return np.asarray((lab(raw @ matrix(free).T, white) - expected).ravel())
+
+    start = xyz_matrix(raw, xyz)
+    return matrix(least_squares(residuals, start[:, :2].ravel()).x)
+
+
+def methods(atlas: Atlas, training: Array, sensor: Sensor) -> dict[str, ToXyz]:
+    """Return the methods, each trained on the entries of an atlas in rows ``training``."""
+    measured = on_grid(atlas, sensor.wavelengths)
+    left_out = families_with(measured)
+    library = np.concatenate([family.measured for family in shipped_library(left_out)])
+
+    def samples(spectra: Array) -> tuple[Array, Array]:
+        return sensor.rgb(spectra), spectra @ sensor.light.xyz.T
+
+    def by_matrix(matrix: Array) -> ToXyz:
+        return lambda raw: raw @ matrix.T
+
+    def by_cube(cube: Cube, mode: str = "spectra") -> ToXyz:
+        return lambda raw: cube.reflectance(raw, sensor.wavelengths, mode) @ sensor.light.xyz.T
+
+    cube = _build(Atlas(tuple(atlas.entries[row] for row in training)), sensor, left_out)
+    half, white = samples(measured[training]), sensor.light.white
+    more = samples(np.concatenate([measured[training], library]))
+    return {
+        "matrix, XYZ": by_matrix(xyz_matrix(*half)),
+        "matrix, L*a*b*": by_matrix(lab_matrix(*half, white)),
+        "matrix, L*a*b*, with the library": by_matrix(lab_matrix(*more, white)),
+        "cube without an atlas": by_cube(_build(None, sensor, left_out)),
+        "cube": by_cube(cube),
+        "cube, refined": by_cube(cube, "refined"),
+    }
+
+
+def _build(entries: Atlas | None, sensor: Sensor, left_out: tuple[str, ...]) -> Cube:
+    return build(
+        entries,
+        dim=DIM,
+        space=CAMERA,
+        observer=sensor.space,
+        illuminant=sensor.illuminant,
+        leave_out=left_out,
+    )
+
+
+def realisable_share(sensor: Sensor) -> float:
+    """Return the share of raw values in [0, 1]³ that a reflectance has, from the nodes of a lattice."""
+    nodes = Lattice(observer.axis_nodes("srgb", DIM)).points
+    return float(solid(sensor.matrix).contains(nodes).mean())
+
+
+def compare(camera: str, illuminant: str) -> dict[str, Any]:
+    """Compare the methods on the held-out halves of all splits."""
+    atlas, sensor = read_atlas(ATLAS), observer.sensor(CAMERA, illuminant, camera)
+    measured, white = on_grid(atlas, sensor.wavelengths), sensor.light.white
+    raw, expected = sensor.rgb(measured), lab(measured @ sensor.light.xyz.T, white)
+    errors: dict[str, list[Array]] = {}
+    for seed in range(SPLITS):
+        training, held_out = np.array_split(np.random.default_rng(seed).permutation(len(measured)), 2)
+        for name, to_xyz in methods(atlas, training, sensor).items():
+            found = lab(to_xyz(raw[held_out]), white)
+            errors.setdefault(name, []).append(delta_e_2000(found, expected[held_out]))
+    figures = {name: _summary(np.concatenate(each)) for name, each in errors.items()}
+    return {
+        "camera": camera,
+        "light": illuminant,
+        "realisable": 100 * realisable_share(sensor),
+        "errors": figures,
+    }
+
+
+def _summary(delta_e: Array) -> dict[str, float]:
+    return {
+        "mean": float(delta_e.mean()),
+        "high": float(np.percentile(delta_e, 95)),
+        "largest": float(delta_e.max()),
+    }
+
+
+def main() -> None:
+    """Measure, and write the data of the page."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        rows = [compare(camera, light) for camera in observer.camera_names() for light in LIGHTS]
+    left_out = list(families_with(on_grid(read_atlas(ATLAS), observer.grid())))
+    write(
+        "cameras",
+        "python -m benchmarks.cameras",
+        atlas=ATLAS,
+        splits=SPLITS,
+        dim=DIM,
+        left_out=left_out,
+        rows=rows,
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,98 @@
+"""Cubes of cameras: built, stored, read, queried and rebuilt."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.helpers import raises
+from uplift.colorimetry import observer
+from uplift.colorimetry.camera import CAMERA, Camera
+from uplift.common.errors import ColourError, CubeFileError
+from uplift.cube import digest
+from uplift.cube.file import contents
+from uplift.io.export.coeff import write_coeff
+from uplift.lookup import Cube, query, query_xyz
+from uplift.pipeline import rebuild
+
+NIKON = "Nikon 5100 (NPL)"
+GREYS = np.array([[0.2, 0.2, 0.2], [0.5, 0.48, 0.45]])
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory):
+    """The sensitivities of a shipped camera as a file."""
+    camera = observer.find_camera(NIKON)
+    rows = np.column_stack([camera.wavelengths, camera.sensitivities]).tolist()
+    path = tmp_path_factory.mktemp("camera") / "lens.csv"
+    path.write_text("nm,r,g,b\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows))
+    return path
+
+
+@pytest.fixture(scope="module")
+def cube(table):
+    """Dim 4 of the camera of the file, under A."""
+    return uplift.build(dim=4, coefficients=5, space=CAMERA, observer=str(table), illuminant="A")
+
+
+def test_a_stored_cube_is_read_and_rebuilt_without_its_file(cube, table, tmp_path):
+    path = tmp_path / "camera.uplift"
+    cube.save(path)
+    stored = uplift.load(path)
+    assert (stored.space, stored.observer, stored.illuminant) == ("lens", observer.DEFAULT_OBSERVER, "A")
+    options = stored.data.provenance["options"]
+    assert (options["space"], options["observer"]) == (CAMERA, "lens")
+    assert stored.data.sensor.matrix.tobytes() == cube.data.sensor.matrix.tobytes()
+    assert digest(stored.data) == digest(cube.data)
+    assert digest(rebuild(stored, path).data) == digest(cube.data)
+
+
+def test_a_name_a_file_and_arrays_give_the_same_sensor(table):
+    camera = observer.find_camera(NIKON)
+    given = (NIKON, str(table), Camera("mine", camera.wavelengths, camera.sensitivities))
+    first, *others = (observer.sensor(CAMERA, "A", each).matrix for each in given)
+    for each in others:
+        assert each.tobytes() == first.tobytes()
+
+
+def test_answers_have_the_raw_values_and_xyz_of_the_spectrum(cube):
+    sensor = cube.data.sensor
+    for result, raw in zip(query(cube, GREYS, mode="refined"), GREYS, strict=True):
+        np.testing.assert_allclose(sensor.rgb(result.reflectance), raw, atol=1e-4)
+        np.testing.assert_allclose(result.xyz, sensor.light.xyz @ result.reflectance, rtol=1e-12)
+
+
+def test_xyz_are_not_taken_for_raw_values(cube, tmp_path):
+    with raises(ColourError, "camera-without-xyz"):
+        list(query_xyz(cube, [[0.2, 0.2, 0.2]]))
+    with raises(ColourError, "camera-without-xyz"):
+        write_coeff(cube.data, tmp_path / "table.coeff", res=2)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("sensitivities", "code"),
+    [
+        (np.full((81, 3), np.nan), "array-not-finite"),
+        (np.full((81, 3), -1.0), "array-not-finite"),
+        (np.ones((80, 3)), "invalid-array"),
+        (np.zeros((81, 3)), "invalid-white"),
+    ],
+)
+def test_files_with_invalid_sensitivities_are_refused(cube, tmp_path, monkeypatch, sensitivities, code):
+    path = tmp_path / "bad.uplift"
+    monkeypatch.setattr("uplift.cube.file.read", lambda path: None)  # which `write` reads back with
+    bad = dataclasses.replace(cube.data.sensor, sensitivities=sensitivities)
+    Cube(dataclasses.replace(cube.data, sensor=bad)).save(path)
+    monkeypatch.undo()
+    with raises(CubeFileError, code):
+        uplift.load(path)
+
+
+def test_the_feature_announces_the_sensitivities(cube, small_cube):
+    for data, expected in ((cube.data, True), (small_cube.data, False)):
+        tensors, metadata = contents(data)
+        assert ("sensor.sensitivities" in tensors, "camera" in metadata["features"]) == (expected, expected)

@@ -1,0 +1,159 @@
+"""Cameras: measured spectral sensitivities, in place of the colour-matching functions of an observer."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import OptionError
+from uplift.common.input_file import read_bytes
+from uplift.common.number_text import parse_float
+from uplift.common.quoting import format_value
+
+CAMERA = "camera"
+"""Name of the RGB space of raw values, balanced so that the perfect reflector is (1, 1, 1)."""
+LAYOUT = "give rows of a wavelength in nm and the sensitivities of red, green and blue"
+MAX_BYTES = 1_000_000
+COLUMNS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """Spectral sensitivities of a camera with three channels, validated on creation.
+
+    Parameters
+    ----------
+    name : str
+        Name.
+    wavelengths : array_like, shape (N,)
+        Wavelengths in nm, ascending.
+    sensitivities : array_like, shape (N, 3)
+        Sensitivities of red, green and blue, not negative, in any one unit. They are divided by the largest.
+
+    Raises
+    ------
+    OptionError
+        The shapes differ (``sensitivities-shape``), a number is not finite (``sensitivity-not-finite``) or negative
+        (``sensitivity-negative``), or the wavelengths do not ascend (``camera-wavelengths``).
+
+    Examples
+    --------
+    >>> Camera("narrow", [400, 550, 700], [[0, 0, 2], [0, 4, 0], [3, 0, 0]]).sensitivities.tolist()
+    [[0.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.75, 0.0, 0.0]]
+    """
+
+    name: str
+    wavelengths: Array
+    sensitivities: Array
+
+    def __post_init__(self) -> None:
+        wavelengths = np.array(self.wavelengths, dtype=float)
+        sensitivities = np.array(self.sensitivities, dtype=float)
+        if wavelengths.ndim != 1 or len(wavelengths) < 2 or sensitivities.shape != (len(wavelengths), 3):
+            raise OptionError(
+                f"sensitivities need at least 2 wavelengths (N,) and values (N, 3), got {wavelengths.shape} and "
+                f"{sensitivities.shape}",
+                code="sensitivities-shape",
+                hint=LAYOUT,
+            )
+        if not (np.isfinite(wavelengths).all() and np.isfinite(sensitivities).all()):
+            raise OptionError(
+                "wavelengths and sensitivities must be finite", code="sensitivity-not-finite", hint=LAYOUT
+            )
+        bad = np.flatnonzero(np.diff(wavelengths) <= 0)
+        if len(bad):
+            first, second = wavelengths[bad[0] : bad[0] + 2]
+            raise OptionError(
+                f"wavelengths must ascend, got {first:g} nm, then {second:g} nm",
+                code="camera-wavelengths",
+                hint="sort the rows by wavelength, each wavelength once",
+            )
+        if (sensitivities < 0).any():
+            row, channel = np.argwhere(sensitivities < 0)[0]
+            raise OptionError(
+                f"sensitivities must not be negative, got {sensitivities[row, channel]:g} at {wavelengths[row]:g} nm",
+                code="sensitivity-negative",
+                hint="set noise below zero to 0",
+            )
+        object.__setattr__(self, "wavelengths", wavelengths)
+        object.__setattr__(self, "sensitivities", sensitivities / (sensitivities.max() or 1.0))
+
+    def at(self, wavelengths: ArrayLike) -> Array:
+        """Interpolate the sensitivities linearly; outside the measured range they are 0.
+
+        Parameters
+        ----------
+        wavelengths : array_like, shape (M,)
+            Wavelengths in nm.
+
+        Returns
+        -------
+        ndarray, shape (M, 3)
+        """
+        at = np.asarray(wavelengths, dtype=float)
+        channels = (
+            np.interp(at, self.wavelengths, channel, left=0, right=0) for channel in self.sensitivities.T
+        )
+        return np.stack(list(channels), axis=1)
+
+
+def read_camera(path: StrPath) -> Camera:
+    """Read sensitivities from a CSV file: rows of a wavelength in nm, red, green and blue.
+
+    A first row without numbers is a header; lines that begin with ``#`` are comments.
+
+    Parameters
+    ----------
+    path : path-like
+        The file. Its name without the suffix is the name of the camera.
+
+    Returns
+    -------
+    Camera
+
+    Raises
+    ------
+    OptionError
+        The file cannot be read, is not such a table (``not-sensitivities``), or its values are not valid; see `Camera`.
+    """
+    text = read_bytes(path, OptionError, limit=MAX_BYTES, hint=LAYOUT).decode("utf-8-sig", errors="replace")
+    try:
+        table = np.array(list(_rows(text, path))).reshape(-1, COLUMNS)
+    except csv.Error as error:
+        problem = f"not a readable table: {error}"
+        raise OptionError(problem, code="not-sensitivities", path=path, hint=LAYOUT) from error
+    name = Path(path).stem.encode(errors="backslashreplace").decode()
+    try:
+        return Camera(name, table[:, 0], table[:, 1:])
+    except OptionError as error:
+        raise OptionError(error.problem, code=error.code, path=path, hint=error.hint) from error
+
+
+def _rows(text: str, path: StrPath) -> Iterator[list[float]]:
+    """Yield the numbers of each row but the header, comments and blank lines."""
+    reader, begun = csv.reader(text.splitlines()), False
+    for cells in reader:
+        filled = [cell for cell in cells if cell.strip()]
+        if not filled or filled[0].lstrip().startswith("#"):
+            continue
+        numbers = [_number(cell) for cell in filled]
+        known = [number for number in numbers if number is not None]
+        if len(known) == len(filled) == COLUMNS:
+            yield known
+        elif begun or known:
+            problem = f"a row must have {COLUMNS} numbers, got {format_value(','.join(cells))}"
+            raise OptionError(problem, code="not-sensitivities", path=path, line=reader.line_num, hint=LAYOUT)
+        begun = True
+
+
+def _number(cell: str) -> float | None:
+    try:
+        return parse_float(cell)
+    except ValueError:
+        return None
