@@ -11,7 +11,7 @@ from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.fit.learn_kernel import MIN_ENTRIES
-from uplift.fit.prior import _bounded
+from uplift.fit.prior import STEEP, _bounded
 from uplift.lattice import Lattice
 from uplift.models import Moments
 from uplift.models.minimum_norm import forward_map
@@ -77,6 +77,21 @@ def test_a_deviation_that_leaves_the_moment_space_is_shrunk(problem):
     shrunk = problem.model.to_storage(found)[1] - grey[1]
     assert 0.1 < shrunk[3] < 5
     np.testing.assert_allclose(np.delete(shrunk, 3), 0, atol=1e-6)
+
+
+def test_a_deviation_that_ends_in_a_box_is_shrunk(problem):
+    model = problem.model
+    grey, away = model.to_storage(np.zeros((1, model.count))), np.zeros((1, model.count))
+    away[:, 3] = 1.0
+    low, high = 0.0, 1e3
+    for _ in range(60):
+        middle = (low + high) / 2
+        valid = model.try_from_storage(grey + middle * away)[1].all()
+        low, high = (middle, high) if valid else (low, middle)
+    box = 0.99999 * low * away
+    assert np.abs(model.from_storage(grey + box)).max() > STEEP
+    found = _bounded(model, grey, box)
+    assert 0.1 < np.abs(found).max() <= STEEP
 
 
 def test_too_few_entries_give_no_standard_error(problem, sensor, materials):

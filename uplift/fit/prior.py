@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.expected_error import LENGTH, ExpectedError, expected_error
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask
 from uplift.fit.base import Base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import Kernel, Kriging, kernel_sums, krige
@@ -33,6 +33,9 @@ NEIGHBOURHOOD = Kernel(length=LENGTH, nugget=0.0)
 SHRINK = 0.7
 """Factor of a deviation that leaves the space of valid coefficients, repeated until it does not."""
 MAX_SHRINKS = 16
+STEEP = 100
+"""Multipliers that a deviation must not exceed: beyond them a spectrum is nearly a box, which small changes of its
+coefficients reshape."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -211,15 +214,19 @@ def _kernel(
 
 def _bounded(model: Model, expected: Array, deviation: Array) -> Array:
     """Multipliers (n, C) of expected coefficients plus their deviation (n, C), shrunk as little as is necessary."""
-    multipliers, valid = model.try_from_storage(expected + deviation)
+    multipliers, usable = _try(model, expected + deviation)
     share = 1.0
     for _ in range(MAX_SHRINKS):
-        outside = np.flatnonzero(~valid)
+        outside = np.flatnonzero(~usable)
         if not outside.size:
             return multipliers
         share *= SHRINK
-        multipliers[outside], valid[outside] = model.try_from_storage(
-            expected[outside] + share * deviation[outside]
-        )
-    multipliers[~valid] = model.from_storage(expected[~valid])
+        multipliers[outside], usable[outside] = _try(model, expected[outside] + share * deviation[outside])
+    multipliers[~usable] = model.from_storage(expected[~usable])
     return multipliers
+
+
+def _try(model: Model, coefficients: Array) -> tuple[Array, Mask]:
+    """Multipliers (n, C), and which rows are valid and not `STEEP`."""
+    multipliers, valid = model.try_from_storage(coefficients)
+    return multipliers, valid & (np.abs(multipliers).max(axis=1, initial=0) <= STEEP)
