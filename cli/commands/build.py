@@ -167,7 +167,7 @@ def command(
       uplift build --atlas paints.csv --dim auto --auto-tolerance 1
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
-      uplift build --atlas paints.csv --range 360:830 --step 1 -o wide.uplift
+      uplift build --atlas paints.csv --range 360:830 --step 1 -o range.uplift
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
       uplift build --atlas macbeth --observer 'Nikon 5100 (NPL)' --space camera --dim 16
       uplift build --plan kitchen.plan.json
