@@ -68,6 +68,12 @@ def test_csv(spectra):
     check_same(round_trip(spectra, "atlas.csv"), spectra)
 
 
+def test_quoted_hash_is_a_name_and_not_a_comment(tmp_path):
+    path = tmp_path / "atlas.csv"
+    path.write_text('# a comment\n"name",400,700\n  # another\n"#",0.1,0.2\n"# 1",0.3,0.4\n')
+    assert [entry.name for entry in read_atlas(path)] == ["#", "# 1"]
+
+
 @settings(max_examples=50)
 @given(atlases(one_sampling=False), st.randoms())
 def test_order_of_entries_is_kept(spectra, random):

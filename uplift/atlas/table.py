@@ -91,11 +91,11 @@ def _rows(document: Document) -> list[Row]:
 
 def _split(document: Document, delimiter: str) -> Iterator[Row]:
     line = 1
-    lines = iter(io.StringIO(document.text, newline=""))
+    lines = list(io.StringIO(document.text, newline=""))
     reader = csv.reader(lines, delimiter=delimiter, skipinitialspace=delimiter == BLANKS)
     for cells in reader:
-        first = cells[0].lstrip() if cells else ""
-        if cells and not first.startswith("#") and not (line == 1 and SEPARATOR.match(first)):
+        is_comment = lines[line - 1].lstrip().startswith("#")  # a quoted "#" is a name
+        if cells and not is_comment and not (line == 1 and SEPARATOR.match(cells[0].lstrip())):
             plain = (plain_cell(cell.strip()) for cell in cells)
             texts = (cell for cell in plain if cell or delimiter != BLANKS)
             if row := trimmed(Cell(_decimal_point(cell, delimiter), line) for cell in texts):
