@@ -44,10 +44,10 @@ def test_all_other_points_start_from_the_prior(prior):
 
 
 def test_without_entries_all_points_start_from_the_prior(prior):
-    nobody = Starts(prior, seed(LATTICE, np.zeros((0, 3))), np.zeros((0, 5)), 0.5)
+    unconstrained = Starts(prior, seed(LATTICE, np.zeros((0, 3))), np.zeros((0, 5)), 0.5)
     points = np.arange(LATTICE.size)
-    np.testing.assert_array_equal(nobody(points, LATTICE.points), prior(LATTICE.points))
-    assert nobody.describe() == {}
+    np.testing.assert_array_equal(unconstrained(points, LATTICE.points), prior(LATTICE.points))
+    assert unconstrained.describe() == {}
 
 
 @pytest.mark.parametrize(("nugget", "share"), [(0.0, 0.5), (0.03, 0.55), (0.3, 1.0), (2.0, 1.0)])

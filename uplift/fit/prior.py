@@ -31,7 +31,7 @@ DETERMINED = Kernel(length=6.0, nugget=0.0)
 NEIGHBOURHOOD = Kernel(length=LENGTH, nugget=0.0)
 """Weights of `ExpectedError`."""
 SHRINK = 0.7
-"""Factor of a deviation that leaves the space of valid coefficients, repeated until it does not."""
+"""Factor of a deviation that leaves the space of valid coefficients or is `STEEP`, repeated until neither holds."""
 MAX_SHRINKS = 16
 STEEP = 100
 """Multipliers that a deviation must not exceed: beyond them a spectrum is nearly a box, which small changes of its
