@@ -36,7 +36,6 @@
 ${constants}
 
 ${access}
-
 static inline float ${name}_number(int index)
 {
     return ${name}_table[index];
@@ -53,6 +52,7 @@ static inline void ${name}_load_row(int index, float row[${NAME}_STRIDE])
     int k;
     for (k = 0; k < ${NAME}_STRIDE; ++k) row[k] = stored[k];
 }
+
 ${kernel}
 /* Reflectances of multipliers, mixed with those of an entry unless it is negative, at wavelengths in nm. */
 static inline void ${name}_mix_all(
