@@ -13,11 +13,11 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import PaletteError
 from uplift.design.palette import Palette, design, matrix
 from uplift.design.palette.colours import screen_matrix
-from uplift.design.palette.equations import Equations, equations, unknowns
+from uplift.design.palette.equations import equations, unknowns
 from uplift.design.palette.lights import illuminant
 from uplift.design.palette.matrix import difference
 from uplift.design.palette.palette import ColourGoal, MinDifference, SpectrumSpec
-from uplift.design.palette.solve import solve
+from uplift.fit.bounded_least_squares import BoundedProblem, solve_bounded
 
 BLACK = np.zeros(3)
 
@@ -55,7 +55,7 @@ def test_spectra_stay_within_their_bounds(found, metamers, model):
 def test_bounded_solutions_satisfy_the_optimality_conditions(sensor, model, seed):
     """Karush–Kuhn–Tucker: zero gradient between the bounds, outward descent at them."""
     problem = equations(at_random(sensor, np.random.default_rng(seed)), model)
-    x = solve(problem)
+    x = solve_bounded(problem)
     assert ((x >= problem.low) & (x <= problem.high)).all()
     slope = problem.matrix.T @ (problem.matrix @ x - problem.values)
     slack = 1e-7 * np.abs(problem.matrix.T @ problem.values).max()
@@ -85,7 +85,7 @@ def test_unbounded_solutions_are_those_of_the_pseudo_inverse():
     """The minimum of least norm."""
     draw = np.random.default_rng(1)
     rows, values, wide = draw.random((4, 9)), draw.random(4), np.full(9, np.inf)
-    x = solve(Equations(rows, values, -wide, wide))
+    x = solve_bounded(BoundedProblem(rows, values, -wide, wide))
     np.testing.assert_allclose(x, np.linalg.pinv(rows) @ values, atol=1e-12)
 
 
@@ -97,7 +97,7 @@ def test_independent_blocks_are_solved_separately():
     matrix[:5, :4], matrix[5:, 4:7] = first, second
     rows, columns = draw.permutation(11), draw.permutation(8)
     values, low, high = draw.random(11), np.full(8, 0.1), np.full(8, 0.6)
-    found = solve(Equations(matrix[np.ix_(rows, columns)], values[rows], low, high))
+    found = solve_bounded(BoundedProblem(matrix[np.ix_(rows, columns)], values[rows], low, high))
     expected = [
         lsq_linear(block, part, (0.1, 0.6), method="bvls").x
         for block, part in ((first, values[:5]), (second, values[5:]))
@@ -109,12 +109,12 @@ def test_a_free_colour_is_optimal(metamers, model, found):
     """Fixing it at its value changes nothing; fixing it elsewhere increases the cost."""
     problem = equations(metamers, model)
     place, free = unknowns(metamers).free("coat"), found.free["coat"]
-    least = cost(problem, solve(problem))
+    least = cost(problem, solve_bounded(problem))
     for shift, more in ((0.0, 1 + 1e-3), (0.05, np.inf)):
         at = free + shift
         low, high = problem.low.copy(), problem.high.copy()
         low[place], high[place] = at - 1e-9, at + 1e-9
-        fixed = cost(problem, solve(dataclasses.replace(problem, low=low, high=high)))
+        fixed = cost(problem, solve_bounded(dataclasses.replace(problem, low=low, high=high)))
         assert least * (1 - 1e-6) <= fixed <= least * more + 1e-12
     assert fixed > 1.5 * least
 

@@ -17,7 +17,7 @@ from uplift.common.errors import PaletteError
 from uplift.design.palette.equations import equations, underdetermined_goal, unknowns
 from uplift.design.palette.factor import FactorModel
 from uplift.design.palette.palette import Palette
-from uplift.design.palette.solve import solve
+from uplift.fit.bounded_least_squares import solve_bounded
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +77,7 @@ def design(palette: Palette, model: FactorModel) -> Design:
             code="goal-underdetermined",
             hint="give one of them, or remove the goal",
         )
-    where, x = unknowns(palette), solve(equations(palette, model))
+    where, x = unknowns(palette), solve_bounded(equations(palette, model))
     return Design(
         palette,
         model,

@@ -20,6 +20,7 @@ from uplift.common.arrays import Array
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.factor import FactorModel
 from uplift.design.palette.palette import ColourGoal, Palette, SpectrumSpec
+from uplift.fit.bounded_least_squares import BoundedProblem
 
 SPACING = 10.0
 """Sample distance in nm that the weights of the paper refer to."""
@@ -46,16 +47,6 @@ class Unknowns:
 
 
 @dataclass(frozen=True, eq=False)
-class Equations:
-    """Least-squares problem: matrix (rows, n), values (rows,), and bounds low, high (n,) of x."""
-
-    matrix: Array
-    values: Array
-    low: Array
-    high: Array
-
-
-@dataclass(frozen=True, eq=False)
 class _Rows:
     """Some equations: blocks (r, k) with their positions in x, and values (r,)."""
 
@@ -74,7 +65,7 @@ def unknowns(palette: Palette) -> Unknowns:
     return Unknowns(slices, int(ends[-1]))
 
 
-def equations(palette: Palette, model: FactorModel) -> Equations:
+def equations(palette: Palette, model: FactorModel) -> BoundedProblem:
     """Stack all criteria of non-zero weight (eq. 22)."""
     where = unknowns(palette)
     rows = [*_colour_rows(palette, model, where), *_smoothness_rows(palette, where)]
@@ -86,7 +77,7 @@ def equations(palette: Palette, model: FactorModel) -> Equations:
         for position, block in part.blocks:
             matrix[top : top + len(part.values), position] = block
         top += len(part.values)
-    return Equations(matrix, values, *_bounds(palette, where))
+    return BoundedProblem(matrix, values, *_bounds(palette, where))
 
 
 def _colour_rows(palette: Palette, model: FactorModel, where: Unknowns) -> Iterator[_Rows]:

@@ -9,11 +9,12 @@ from pydantic import Field
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.written_colour import WrittenColour
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import PaletteError, unknown_name
 from uplift.common.spec_file import Key, SpecFile, SpecModel, read_toml
 from uplift.design.palette.factor import COUNTS
-from uplift.design.palette.fields import Name, NonNegative, SpecColour
+from uplift.design.palette.fields import Name, NonNegative
 from uplift.design.palette.palette import ColourGoal, Fit, MinDifference, Palette
 from uplift.design.palette.spec_entries import (
     AtlasMaterial,
@@ -107,7 +108,7 @@ def _goals(file: SpecFile, table: _PaletteTable, sensor: Sensor) -> Iterator[Col
         _check_known(file, ("colours", material), material, table.materials, "material")
         for light, goal in goals.items():
             _check_known(file, ("colours", material, light), light, table.lights, "light")
-            if isinstance(goal, SpecColour):
+            if isinstance(goal, WrittenColour):
                 yield ColourGoal(material, light, rgb=goal.rgb(sensor))
             elif isinstance(goal, FreeGoal):
                 yield ColourGoal(material, light, free=goal.free, weight=goal.weight)

@@ -14,14 +14,15 @@ from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.atlas.shipped import find_atlas_file
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.written_colour import WrittenColour
 from uplift.common.errors import unknown_name
 from uplift.common.quoting import format_value
 from uplift.common.spec_file import SpecModel, problem, resolves
-from uplift.design.palette.fields import Bounds, Colour, Name, NonNegative, Number, SpecColour, TrueFlag
+from uplift.design.palette.fields import Bounds, Colour, Name, NonNegative, Number, TrueFlag
 from uplift.design.palette.lights import MAX_KELVIN, MIN_KELVIN, illuminant, planck
 from uplift.design.palette.palette import SpectrumSpec
 
-BLACK, WHITE = SpecColour(codes=(0, 0, 0)), SpecColour(codes=(255, 255, 255))
+BLACK, WHITE = WrittenColour(codes=(0, 0, 0)), WrittenColour(codes=(255, 255, 255))
 """Default range of free colours: all that a display shows."""
 
 Kelvin = Annotated[Number, Field(ge=MIN_KELVIN, le=MAX_KELVIN)]

@@ -1,9 +1,13 @@
-"""Linear least squares within bounds. The problem is convex, so the minimum is global (Bergner, section 3.3)."""
+"""Linear least squares within bounds: spectra for given colours. The problem is convex, so the minimum is global.
+
+Palettes are solved by it (Bergner, Möller & Drew 2004, section 3.3), and the reflectances of looks.
+"""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +15,6 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.threads import single_threaded_blas
-from uplift.design.palette.equations import Equations
 
 TOLERANCE, MAX_ITERATIONS = 1e-12, 1000
 """Relative change at which the bounded solver stops, and its limit of iterations."""
@@ -19,7 +22,17 @@ TOLERANCE, MAX_ITERATIONS = 1e-12, 1000
 Rows = NDArray[np.intp]
 
 
-def solve(problem: Equations) -> Array:
+@dataclass(frozen=True, eq=False)
+class BoundedProblem:
+    """Least-squares problem: matrix (rows, n), values (rows,), and bounds low, high (n,) of x."""
+
+    matrix: Array
+    values: Array
+    low: Array
+    high: Array
+
+
+def solve_bounded(problem: BoundedProblem) -> Array:
     """Minimise ‖M x − y‖ within the bounds, x (n,).
 
     Without bounds the pseudo-inverse gives the minimum of least norm. With bounds an active-set method does: BVLS of
@@ -28,7 +41,7 @@ def solve(problem: Equations) -> Array:
     x = np.zeros(problem.matrix.shape[1])
     with single_threaded_blas():
         for rows, columns in _independent_blocks(problem.matrix):
-            block = Equations(
+            block = BoundedProblem(
                 problem.matrix[np.ix_(rows, columns)],
                 problem.values[rows],
                 problem.low[columns],
@@ -50,7 +63,7 @@ def _independent_blocks(matrix: Array) -> Iterator[tuple[Rows, Rows]]:
         yield np.flatnonzero(labels[:rows] == label), np.flatnonzero(labels[rows:] == label)
 
 
-def _solve_block(problem: Equations) -> Array:
+def _solve_block(problem: BoundedProblem) -> Array:
     from scipy.optimize import lsq_linear
 
     unbounded = np.isinf(problem.low).all() and np.isinf(problem.high).all()
