@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
 
-.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl cameras examples showcase first-steps
+.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl cameras examples showcase first-steps measurements
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -185,6 +185,11 @@ showcase: $(INSTALLED)
 first-steps: $(INSTALLED)
 	$(BIN)/python -m benchmarks.first_steps
 	$(BIN)/python -m tools.render_docs showcase README
+
+# All measured pages, one after the other, on a quiet machine: hours. Run again, it goes on where it stopped. Before it,
+# `make peers munsell` installs what some steps compare with.
+measurements: $(INSTALLED)
+	$(BIN)/python -m benchmarks.measurements
 
 # Every example of the README, the documentation and the help, in full, from a wheel: takes about half an hour.
 examples: $(INSTALLED)

@@ -38,3 +38,23 @@ def test_commit_is_unknown_outside_the_working_tree(tmp_path, monkeypatch, repos
     monkeypatch.setattr(timing, "SOURCES", tmp_path)
     monkeypatch.setattr(timing, "__file__", str(copy))
     assert timing.commit() == "unknown"
+
+
+def test_commit_states_changed_code_but_not_the_measurements_of_the_package(tmp_path, monkeypatch):
+    def git(*words):
+        names = ("-c", "user.name=test", "-c", "user.email=test@example.org")
+        subprocess.run(["git", *names, *words], cwd=tmp_path, check=True, capture_output=True)
+
+    code, chart = (tmp_path / "uplift" / "lab" / name for name in ("timing.py", "chart/measured.csv"))
+    chart.parent.mkdir(parents=True)
+    for file in (code, chart):
+        file.write_text("first")
+    git("init", "-q")
+    git("add", ".")
+    git("commit", "-q", "-m", "first")
+    monkeypatch.setattr(timing, "SOURCES", tmp_path / "uplift")
+    monkeypatch.setattr(timing, "__file__", str(code))
+    chart.write_text("measured again")
+    assert len(timing.commit()) == 12
+    code.write_text("changed")
+    assert timing.commit().endswith(" with changes")

@@ -27,3 +27,7 @@ def test_front_of_no_points_is_empty():
 def test_steps_pass_through_the_front():
     steps = pareto_steps(np.array([[1.0, 5.0], [3.0, 2.0]]), 10.0)
     assert steps.tolist() == [[1, 5], [3, 5], [3, 2], [10, 2]]
+
+
+def test_steps_of_an_empty_front_are_empty():
+    assert pareto_steps(np.empty((0, 2)), 10.0).shape == (0, 2)

@@ -19,6 +19,8 @@ PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors")
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 """Environment variables, read when numpy is imported. Matrices here are small: with more threads colour-science took
 twice as long."""
+CODE = (":/uplift", ":/cli", ":/benchmarks", ":(top,exclude)uplift/lab/chart/measured.csv")
+"""Files whose changes a commit states: the code, without the measurements that are part of the package."""
 SOURCES = Path(__file__).parents[1]
 
 
@@ -135,7 +137,7 @@ def commit() -> str:
     """
     if not _git("ls-files", "--", __file__):
         return "unknown"
-    changed = _git("status", "--porcelain", "--", ":/uplift", ":/cli", ":/benchmarks")
+    changed = _git("status", "--porcelain", "--", *CODE)
     return _git("rev-parse", "--short=12", "HEAD") + (" with changes" if changed else "")
 
 

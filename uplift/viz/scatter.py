@@ -128,7 +128,9 @@ def pareto_front(points: Array, ratio: float = 1.0) -> list[int]:
 
 
 def pareto_steps(front: Array, right: float) -> Array:
-    """Convert a Pareto front (k, 2), cheapest first, to a staircase up to ``right``."""
+    """Convert a Pareto front (k, 2), cheapest first, to a staircase (2 k, 2) up to ``right``."""
+    if not len(front):
+        return np.empty((0, 2))
     x = np.append(front[:, 0].repeat(2)[1:], right)
     return np.stack([x, front[:, 1].repeat(2)], axis=1)
 
@@ -139,7 +141,7 @@ def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array)
         return
     labels = sorted(labels, key=lambda label: not label.bold)
     scale = _POINTS_PER_INCH / axes.figure.dpi
-    line = np.concatenate([np.geomspace(*pair, 40) for pair in pairwise(line)])
+    line = np.concatenate([np.empty((0, 2)), *(np.geomspace(*pair, 40) for pair in pairwise(line))])
     anchors, markers, line = (
         scale * axes.transData.transform(points)
         for points in ([label.point for label in labels], markers, line)

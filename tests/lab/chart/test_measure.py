@@ -40,7 +40,16 @@ BROKEN = {
     "too bright": (lambda rgb, at: 1.1 + grey(rgb, at), Claims(), "0 to 1 are claimed"),
     "negative": (lambda rgb, at: grey(rgb, at) - 0.2, Claims(), "0 to 1 are claimed"),
     "wrong colour": (grey, Claims(round_trip=0.01), "0.01 is claimed"),
-    "wrong shape": (lambda rgb, at: grey(rgb, at)[:, :-1], Claims(), "spectra have shape (80,)"),
+    "wrong shape": (
+        lambda rgb, at: grey(rgb, at)[:, :-1],
+        Claims(),
+        "spectra have shape (1, 80) instead of (1, 81)",
+    ),
+    "no axis of colours": (
+        lambda rgb, at: grey(rgb, at).squeeze(),
+        Claims(),
+        "shape (81,) instead of (1, 81)",
+    ),
     "an exception": (fail, Claims(), "raises ZeroDivisionError: by the last of these"),
 }
 

@@ -58,6 +58,15 @@ def test_cubes_that_others_of_their_kind_beat_are_not_drawn(row_of, chart_of):
     assert drawn == ["cube 0", "cube 2", "fast", "slow"]
 
 
+def test_a_panel_without_a_front_is_empty(row_of, chart_of, tmp_path):
+    """The tables of the only method come from elsewhere, so nothing is drawn over the time to build."""
+    numbers = {key: value for key, value in row_of("one", 1, 1).numbers.items() if key != "build_s"}
+    chart = chart_of(row_of("one", 80, 0.4, numbers=numbers))
+    write_pictures(chart, tmp_path / "chart.png", tmp_path / "chart.svg")
+    assert f'id="marker-{len(PANELS) - 1}-' not in (tmp_path / "chart.svg").read_text(encoding="utf-8")
+    assert render_chart(chart)
+
+
 def test_page_is_self_contained_and_escapes_names(row_of, chart_of):
     rows = row_of(HOSTILE, 80, 0.4), row_of("wrong", 1, 1, state=State.BROKEN, why=HOSTILE, numbers={})
     text = render_chart(chart_of(*rows))

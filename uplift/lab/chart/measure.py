@@ -124,12 +124,16 @@ def _numbers(method: Method, task: Task) -> dict[str, float]:
 
 def _guarded(uplift: Uplift, wavelengths: Array) -> UpliftRgb:
     """Function of colours (n, 3) alone that raises no error but `BrokenError`."""
+    width = len(wavelengths)
 
     def uplift_rgb(rgb: Array) -> Array:
         try:
-            return uplift(rgb, wavelengths)
+            spectra = uplift(rgb, wavelengths)
         except Exception as error:  # code of other packages may raise anything
             raise BrokenError(f"raises {type(error).__name__}: {str(error)[:80]}") from error
+        if spectra.shape != (len(rgb), width):
+            raise BrokenError(f"spectra have shape {spectra.shape} instead of ({len(rgb)}, {width})")
+        return spectra
 
     return uplift_rgb
 
@@ -159,7 +163,7 @@ def _spectra(method: Method, uplift: UpliftRgb, task: Task, rgb: Array) -> tuple
     count = len(rgb) if method.batch else min(len(rgb), int(task.effort.seconds_per_error / seconds))
     rest = count > TRIAL_COLOURS
     spectra = np.concatenate([first, uplift(rgb[TRIAL_COLOURS:count])]) if rest else first
-    _check_range(spectra, len(task.sensor.wavelengths), method.claims)
+    _check_range(spectra, method.claims)
     return rgb[: len(spectra)], spectra
 
 
@@ -174,9 +178,7 @@ def _check_batch(uplift: UpliftRgb, count: int) -> None:
         )
 
 
-def _check_range(spectra: Array, width: int, claims: Claims) -> None:
-    if spectra.shape[1:] != (width,):
-        raise BrokenError(f"spectra have shape {spectra.shape[1:]} instead of ({width},)")
+def _check_range(spectra: Array, claims: Claims) -> None:
     finite = np.isfinite(spectra).all(axis=1)
     if not finite.all():
         raise BrokenError(f"{(~finite).sum()} of {len(spectra)} spectra are not finite")

@@ -45,7 +45,8 @@ def prepare_table(task: Task) -> PreparedMethod:
     )
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
-        return evaluate_unscaled(table.RGB_to_coefficients(rgb), wavelengths)
+        # For one colour the result has no axis of colours.
+        return evaluate_unscaled(table.RGB_to_coefficients(rgb).reshape(-1, 3), wavelengths)
 
     return PreparedMethod(uplift, table.coefficients.nbytes, seconds)
 
