@@ -13,10 +13,12 @@ from functools import partial
 from typing import Any
 
 import click
+from click.shell_completion import add_completion_class
 
 from uplift.common.errors import OutputError, UpliftError, UpliftWarning
 from uplift.common.version import VERSION
 
+from .bash_completion import QuotingBashComplete
 from .output.diagnostics import (
     InternalFailure,
     InterruptFailure,
@@ -96,6 +98,7 @@ class LazyGroup(click.Group):
         The exit code is 0 for success, 1 for a failed check or a closed pipe, 2 for bad input, and 70 for an internal
         error. A signal ends the process as it would end others: shells report 128 and its number.
         """
+        add_completion_class(QuotingBashComplete)
         run: Callable[[], Any] = partial(super().main, *args, **options | {"standalone_mode": False})
         if not options.get("standalone_mode", True):
             return run()
