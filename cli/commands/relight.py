@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from uplift.report.relight import Relit
 
 SAMPLE, SAMPLE_ATLAS = "still-life.png", "macbeth"
+PAGE = ".html"
 DIM = 32
 """Lattice of the cubes that are built for --atlas."""
 MAX_SIDE = 960
@@ -51,7 +52,7 @@ MAX_SIDE = 960
     metavar="FILE",
     default="relit.png",
     show_default=True,
-    help="File to write: a picture if it ends in .png, a page if it ends in .html.",
+    help="File to write: a picture if it ends in .png, .svg or .pdf, a page if it ends in .html.",
 )
 @format_option("table", "json")
 @force_option()
@@ -106,16 +107,19 @@ def command(
 def _writer(output: str) -> Callable[..., object]:
     from uplift.common.errors import OutputError
     from uplift.report.relight import write_relit_page, write_relit_sheet
+    from uplift.viz.figure import SUFFIXES
 
     suffix = Path(output).suffix.lower()
-    if suffix not in (".png", ".html"):
-        raise OutputError(
-            "relit images are a PNG picture or an HTML page",
-            code="unknown-suffix",
-            path=output,
-            hint="give a file name ending in .png or .html",
-        )
-    return write_relit_sheet if suffix == ".png" else write_relit_page
+    if suffix == PAGE:
+        return write_relit_page
+    if suffix in SUFFIXES:
+        return write_relit_sheet
+    raise OutputError(
+        f"the suffix of relit images must be one of {', '.join((*SUFFIXES, PAGE))}, got '{suffix}'",
+        code="unknown-suffix",
+        path=output,
+        hint="give a file name ending in .png for a picture, or .html for a page",
+    )
 
 
 def _cubes(path: str | None, atlases: tuple[str, ...]) -> dict[str, Cube]:

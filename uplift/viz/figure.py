@@ -22,6 +22,7 @@ __all__ = [
     "OTHER",
     "PALE",
     "STYLE",
+    "SUFFIXES",
     "check_suffix",
     "figure_text",
     "new_figure",

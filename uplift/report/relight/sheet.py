@@ -1,4 +1,4 @@
-"""Relit images as one PNG: a row per light, a column per method, and a map of the differences."""
+"""Relit images as one figure: a row per light, a column per method, and a map of the differences."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from uplift.common.arrays import StrPath
 from uplift.report.relight.relight import RGB_PRODUCT, Difference, Relit, Rendering
-from uplift.viz.figure import GREY, INK, figure_text, new_figure, write_png
+from uplift.viz.figure import GREY, INK, figure_text, new_figure, write_figure
 from uplift.viz.ramp import colour_map
 
 PANEL = 3.4
@@ -18,7 +18,7 @@ LABELS = 0.3
 
 
 def write_relit_sheet(relit: Sequence[Relit], path: StrPath, *, force: bool = False) -> None:
-    """Write relit images as one PNG.
+    """Write relit images as one figure: PNG, SVG or PDF, by the suffix of its file.
 
     Parameters
     ----------
@@ -32,7 +32,8 @@ def write_relit_sheet(relit: Sequence[Relit], path: StrPath, *, force: bool = Fa
     Raises
     ------
     OutputError
-        The file exists and ``force`` is off, or cannot be written.
+        The suffix is another one (code ``unknown-plot-format``), the file exists and ``force`` is off, or it cannot be
+        written.
     """
     rows = [(image, rendering) for image in relit for rendering in image.renderings]
     columns = len(relit[0].methods) + 1
@@ -45,7 +46,7 @@ def write_relit_sheet(relit: Sequence[Relit], path: StrPath, *, force: bool = Fa
         _draw_row(figure, axes, image, rendering)
     for axes, title in zip(grid[0], (*relit[0].methods, "ΔE00, first to last"), strict=True):
         axes.set_title(figure_text(title), fontsize=11, color=INK, pad=6)
-    write_png(figure, path, force=force)
+    write_figure(figure, path, force=force)
 
 
 def _aspect(rendering: Rendering) -> float:
