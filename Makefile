@@ -6,8 +6,9 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
+AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl cameras examples showcase first-steps measurements
+.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl axe cameras examples showcase first-steps measurements
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -23,7 +24,7 @@ lint: $(INSTALLED)
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
 
-test: lint
+test: lint axe
 	$(BIN)/pytest
 
 # Render the pages from the stored measurements in docs/data; nothing is measured.
@@ -34,6 +35,13 @@ docs: $(INSTALLED)
 # The documentation site, out/site/index.html; it runs the notebooks.
 site: $(INSTALLED)
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs $(OUT)/site
+
+# axe-core, the rules of accessibility by which the tests check pages, from a package that contains it. Where it cannot be
+# fetched, these tests are skipped.
+axe: $(AXE)
+
+$(AXE): $(INSTALLED)
+	-$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/axe axe-playwright-python==0.1.8 && touch $(AXE)
 
 # Blender as a Python module, with which the tests run exported OSL programs: 0.9 GB, Python 3.11.
 osl:
