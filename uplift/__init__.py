@@ -34,8 +34,8 @@ if TYPE_CHECKING:
         UpliftError,
         UpliftWarning,
     )
-    from uplift.lookup import Cube, bulk, load
-    from uplift.pipeline import build
+    from uplift.lookup import Cube, EmissionTable, bulk, load, load_emission
+    from uplift.pipeline import build, build_emission
 
 __all__ = [
     "Atlas",
@@ -44,6 +44,7 @@ __all__ = [
     "ColourError",
     "Cube",
     "CubeFileError",
+    "EmissionTable",
     "Entry",
     "OptionError",
     "OutputError",
@@ -54,16 +55,18 @@ __all__ = [
     "UpliftError",
     "UpliftWarning",
     "build",
+    "build_emission",
     "bulk",
     "load",
+    "load_emission",
     "read_atlas",
     "write_atlas",
 ]
 
 _EXPORTS = {
     "uplift.atlas": ("Atlas", "Entry", "read_atlas", "write_atlas"),
-    "uplift.lookup": ("Cube", "load"),
-    "uplift.pipeline": ("build",),
+    "uplift.lookup": ("Cube", "EmissionTable", "load", "load_emission"),
+    "uplift.pipeline": ("build", "build_emission"),
 }
 _MODULES = {"bulk": "uplift.lookup.bulk"}
 """Subpackages reached by a short name."""

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from safetensors.numpy import save_file
 
-from uplift.cube import CubeData, file
+from uplift.cube import CubeData, container, file
 
 
 def forge(data: CubeData, path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None]) -> Path:
@@ -20,8 +20,8 @@ def forge(data: CubeData, path: Path, change: Callable[[dict[str, Any], dict[str
     metadata = json.loads(json.dumps(metadata))
     change(tensors, metadata)
     tensors = {name: np.ascontiguousarray(array) for name, array in tensors.items()}
-    metadata["digest"] = file._digest(tensors, forged_json(metadata))
-    save_file(tensors, path, metadata={file.KEY: forged_json(metadata)})
+    metadata["digest"] = container._digest(tensors, forged_json(metadata))
+    save_file(tensors, path, metadata={container.KEY: forged_json(metadata)})
     return path
 
 

@@ -14,7 +14,8 @@ from tests.cube.cube_files import forge, header_length, with_header, with_header
 from tests.helpers import raises, with_points
 from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube import digest, file, read, write
-from uplift.cube.file import KEY, POINT_TYPES, SENSOR_ARRAYS, VERSION
+from uplift.cube.container import KEY
+from uplift.cube.file import POINT_TYPES, SENSOR_ARRAYS, VERSION
 from uplift.lattice import Status
 from uplift.models import Moments, Phase
 
@@ -540,7 +541,7 @@ def test_a_cube_that_cannot_be_read_back_leaves_the_old_file(data, path, content
 
 
 def test_files_are_read_back_before_they_replace_another(data, path, content, monkeypatch):
-    monkeypatch.setattr(file, "_write", lambda data, path: path.write_bytes(content[:-1] + b"x"))
+    monkeypatch.setattr(file, "save", lambda tensors, metadata, path: path.write_bytes(content[:-1] + b"x"))
     with raises(OutputError, "cube-unreadable"):
         write(data, path, force=True)
     assert path.read_bytes() == content

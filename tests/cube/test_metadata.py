@@ -13,7 +13,7 @@ from tests.helpers import raises
 from uplift.common.errors import CubeFileError
 from uplift.cube import read
 from uplift.cube.checks import POINT_TYPES
-from uplift.cube.file import KEY
+from uplift.cube.container import KEY
 from uplift.cube.metadata import MAX_LIGHTS
 
 

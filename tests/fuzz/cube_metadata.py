@@ -13,7 +13,7 @@ from tests.fuzz.cube_valid_digest import SEEDS
 from tests.fuzz.mutate import Random
 from tests.fuzz.target import Target
 from uplift.common.errors import CubeFileError
-from uplift.cube import file
+from uplift.cube import container, file
 from uplift.lookup import load
 from uplift.pipeline.options import Options, recorded_options
 from uplift.pipeline.provenance import recorded_atlas
@@ -89,7 +89,7 @@ def _generate(random: Random, path: Path) -> None:
         return
     tensors, metadata = file.contents(seed)
     text = forged_json(metadata).replace('"sRGB"', '"\\ud800"', 1)  # a lone surrogate has no digest
-    save_file(tensors, path, metadata={file.KEY: text})
+    save_file(tensors, path, metadata={container.KEY: text})
 
 
 def _use(path: Path) -> None:

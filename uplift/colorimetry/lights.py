@@ -1,10 +1,14 @@
-"""Illuminants for each purpose, by the names of colour-science.
+"""Illuminants for each purpose, by the names of colour-science, and sets of lamps.
 
 D65 is daylight, A tungsten. Of fluorescent lamps, FL2 is a cheap, FL7 a broadband and FL11 a three-band one. LED-B3 is
 a white LED, LED-RGB1 one of three narrow bands, HP1 a high-pressure sodium lamp.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+
+from uplift.common.arrays import Array
 
 DEFAULT_ILLUMINANT = "D65"
 """Illuminant that RGB refers to by default."""
@@ -51,3 +55,25 @@ NARROW_BAND_LIGHT = "FL11"
 
 KMENT_LIGHTS = {"smooth": ("A", "B", "C"), "spiky": ("FL2", "FL7", "FL11")}
 """Sets of lights of Kment 2011, 5.4: non-fluorescent and fluorescent."""
+
+STANDARD_ILLUMINANTS = ("A", "D50", "D55", "D65", "D75")
+"""Illuminants that an emission table without an atlas returns exactly."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lamps:
+    """Spectral powers of lamps.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names, each once.
+    power : ndarray, shape (L, N)
+        Power at the wavelengths of a sensor, not negative, relative to the equal-energy light of luminance 1.
+    """
+
+    names: tuple[str, ...]
+    power: Array
+
+    def __len__(self) -> int:
+        return len(self.names)

@@ -12,7 +12,7 @@ import numpy as np
 
 from uplift.colorimetry.camera import CAMERA, Camera, read_camera
 from uplift.colorimetry.gamut import Primaries, conversion
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, Lamps
 from uplift.colorimetry.ocio import AP0, OcioSpace, find_ocio_space
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.colorimetry.srgb import decode_portably
@@ -42,6 +42,11 @@ CORRELATED = 50.0
 """Distance in nm at which the correlation of reflectances that a camera's matrix is fitted to falls to 1/e."""
 MAX_CONDITION = 1e4
 """Limit of the condition number of a camera's matrix: one channel is a mixture of the others beyond it."""
+LAMP_TABLES = ("SDS_ILLUMINANTS", "SDS_LIGHT_SOURCES")
+VISIBLE = (400.0, 700.0)
+"""Range in nm that a lamp must cover."""
+SAME_LAMP = 1e-3
+"""Difference, as a share of the largest power, below which two lamps are one."""
 START, END, STEP = 380.0, 780.0, 5.0
 """Range and step in nm that every table of the CIE covers."""
 
@@ -392,6 +397,46 @@ def illuminant_spd(illuminant: str, start: float = START, end: float = END, step
         The illuminant is unknown.
     """
     return _samples("SDS_ILLUMINANTS", illuminant, "illuminant", start, end, step)
+
+
+def lamps(
+    observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
+) -> Lamps:
+    """Return the lights of colour-science: CIE illuminants and measured lamps.
+
+    Lights that are measured on less than 400–700 nm, and lights with the spectrum of an earlier one, are left out.
+
+    Parameters
+    ----------
+    observer : str
+        Colour-matching functions.
+    start, end, step : float
+        Range and step in nm; outside the table, values are extrapolated as constants.
+
+    Returns
+    -------
+    Lamps
+        Powers of luminance 1.
+
+    Raises
+    ------
+    UnknownNameError
+        The observer is unknown.
+    """
+    luminance = matching_functions(observer, start, end, step)[:, 1]
+    colour = colour_science()
+    names: list[str] = []
+    powers: list[Array] = []
+    for table in LAMP_TABLES:
+        for name, found in getattr(colour, table).items():
+            if found.wavelengths[0] > VISIBLE[0] or found.wavelengths[-1] < VISIBLE[1]:
+                continue
+            power = np.maximum(_samples(table, name, "lamp", start, end, step), 0.0)
+            power = power * (luminance.sum() / (power @ luminance))
+            if all(np.abs(power - other).max() > SAME_LAMP * other.max() for other in powers):
+                names.append(name)
+                powers.append(power)
+    return Lamps(tuple(names), np.array(powers))
 
 
 def display_primaries(

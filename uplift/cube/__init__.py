@@ -1,17 +1,23 @@
-"""The content of a cube, and the file that stores it."""
+"""The content of a cube and of an emission table, and the files that store them."""
 
 from __future__ import annotations
 
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
+from uplift.cube.emission import EmissionData, LampEntries, emission_digest, read_emission, write_emission
 from uplift.cube.file import contents, digest, read, write
 
 __all__ = [
     "AtlasTable",
     "CubeData",
+    "EmissionData",
     "EntrySpectra",
+    "LampEntries",
     "LeftOut",
     "contents",
     "digest",
+    "emission_digest",
     "read",
+    "read_emission",
     "write",
+    "write_emission",
 ]

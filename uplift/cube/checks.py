@@ -32,15 +32,6 @@ ENTRY_COEFFICIENTS = "atlas.entry_coefficients"
 """Coefficients of `EntrySpectra`: name in the file."""
 LEFT_OUT_ARRAYS = {"measured": "atlas.measured", "answered": "atlas.left_out"}
 """Names in the file by the attributes of `LeftOut`."""
-STORED_TYPES = {
-    "F64": "float64",
-    "F32": "float32",
-    "U8": "uint8",
-    "I32": "int32",
-    "I16": "int16",
-    "U32": "uint32",
-}
-"""Names of the types in numpy, by their names in the file."""
 NOT_NEGATIVE = (
     "distance",
     "standard_error",

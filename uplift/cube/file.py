@@ -1,12 +1,7 @@
-"""Read and write cube files: safetensors with one JSON text of metadata (docs/cube-file.md).
-
-Equal cubes have equal bytes.
-"""
+"""Read and write cube files (docs/cube-file.md)."""
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 from collections.abc import Mapping
 from dataclasses import replace
@@ -14,13 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.errors import CubeFileError, OutputError, UpliftError
+from uplift.common.errors import CubeFileError, OutputError
 from uplift.common.files import atomic_write
-from uplift.common.json_text import parse_json
-from uplift.common.quoting import format_value
 from uplift.cube import sparse
 from uplift.cube.checks import (
     ATLAS_ARRAYS,
@@ -29,10 +21,19 @@ from uplift.cube.checks import (
     POINT_TYPES,
     SENSITIVITIES,
     SENSOR_ARRAYS,
-    STORED_TYPES,
     check,
     check_tensors,
     require,
+)
+from uplift.cube.container import (
+    INVALID,
+    Kind,
+    Tensors,
+    content_digest,
+    error_text,
+    invalid_file,
+    load,
+    save,
 )
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
 from uplift.cube.metadata import check_metadata
@@ -43,20 +44,13 @@ FORMAT = "uplift cube"
 VERSION = 4
 READABLE = (3, 4)
 """Versions that are read. The entries of version 3 have as many coefficients as the nodes."""
-KEY = "uplift"
-"""The only metadata entry: safetensors does not keep the order of several."""
-
-Tensors = dict[str, NDArray[Any]]
+KIND = Kind(FORMAT, READABLE, "cube", "not-a-cube")
 LEFT_OUT = "left-out"
 """Feature of files with left-out entries."""
 CAMERA = "camera"
 """Feature of files of a camera's raw values."""
 FEATURES = {"debug": "round", "errors": "standard_error"}
 """Optional arrays by the features that announce them."""
-INVALID = (AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError, UpliftError)
-"""Errors caused by the content of a file."""
-MAX_REASON = 200
-"""Characters of an error of another library."""
 
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -78,7 +72,7 @@ def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) 
     """
     with atomic_write(path, force=force) as temporary:
         try:
-            _write(data, temporary)
+            save(*contents(data), temporary)
             read(temporary)
         except CubeFileError as error:
             raise OutputError(
@@ -109,17 +103,7 @@ def read(path: str | os.PathLike[str]) -> CubeData:
         version (``cube-version``), or its content is invalid (``cube-invalid``, or a code of `check`).
     """
     path = Path(path)
-    tensors, metadata = _load(path)
-    if metadata.get("version") not in READABLE:
-        raise CubeFileError(
-            f"must have format version {' or '.join(map(str, READABLE))}, got {format_value(metadata.get('version'))}",
-            code="cube-version",
-            path=path,
-            hint="build the cube again, or use the version of uplift that wrote it",
-        )
-    digest = metadata.pop("digest", None)
-    if digest != _digest(tensors, _json(metadata)):
-        raise _error(path, "is damaged: the content does not match its digest", "cube-damaged")
+    tensors, metadata = load(path, KIND)
     try:
         if metadata["version"] < VERSION:
             metadata["entry_model"] = metadata.get("model")
@@ -131,10 +115,10 @@ def read(path: str | os.PathLike[str]) -> CubeData:
         size, count = data.lattice.size, len(data.points)
         require(count == size, "invalid-array", f"there must be {size} points, got {count}")
     except CubeFileError as error:
-        raise _error(path, f"is not a valid cube: {error.problem}", error.code) from error
+        raise invalid_file(path, KIND, f"is not a valid cube: {error.problem}", error.code) from error
     except INVALID as error:
-        problem = f"is not a valid cube ({type(error).__name__}: {_shown(error)})"
-        raise _error(path, problem, "cube-invalid") from error
+        problem = f"is not a valid cube ({type(error).__name__}: {error_text(error)})"
+        raise invalid_file(path, KIND, problem, "cube-invalid") from error
     return data
 
 
@@ -152,7 +136,7 @@ def digest(data: CubeData) -> str:
         SHA-256 in hexadecimal.
     """
     tensors, metadata = contents(data)
-    return _digest(tensors, _json(metadata))
+    return content_digest(tensors, metadata)
 
 
 def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
@@ -171,84 +155,6 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
         JSON values.
     """
     return _tensors(data), _metadata(data)
-
-
-def _write(data: CubeData, path: Path) -> None:
-    from safetensors.numpy import save
-
-    tensors, metadata = contents(data)
-    metadata["digest"] = _digest(tensors, _json(metadata))
-    # safetensors' own save_file uses another temporary file, which would remain if this process were killed.
-    path.write_bytes(save(tensors, metadata={KEY: _json(metadata)}))
-
-
-def _load(path: Path) -> tuple[Tensors, dict[str, Any]]:
-    from safetensors import SafetensorError, safe_open
-
-    if not os.path.isfile(path):  # Path.is_file raises for impossible names
-        raise _not_a_file(path)
-    try:
-        with safe_open(path, framework="numpy") as file:
-            metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
-            if not isinstance(metadata, dict) or metadata.get("format") != FORMAT:
-                raise _error(path, "is not an uplift cube", "not-a-cube")
-            for name in file.keys():  # noqa: SIM118  not a dictionary
-                if file.get_slice(name).get_dtype() not in STORED_TYPES:
-                    raise _error(
-                        path, f"has an array of an unknown type, {ascii(name)[:40]}", "invalid-array"
-                    )
-            tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
-    except CubeFileError:
-        raise
-    except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
-        raise _error(path, f"is not a cube file, or is truncated ({_shown(error)})", "not-a-cube") from error
-    return tensors, metadata
-
-
-def _not_a_file(path: Path) -> CubeFileError:
-    if os.path.exists(path):
-        return CubeFileError(
-            "must be a file, got a folder, a device or a pipe",
-            code="not-a-regular-file",
-            path=path,
-            hint="name a cube file",
-        )
-    try:
-        os.stat(path)
-    except PermissionError as error:
-        problem = f"cannot be read: {error.strerror}"
-        return CubeFileError(problem, code="file-unreadable", path=path, hint="check its permissions")
-    except (OSError, ValueError):
-        pass
-    return CubeFileError("no such file", code="cube-not-found", path=path, hint="build the cube first")
-
-
-def _shown(error: Exception) -> str:
-    """Text of an error of another library, which may quote the file."""
-    text = str(error)[:MAX_REASON]
-    return text if text.isprintable() else ascii(text)
-
-
-def _error(path: Path, problem: str, code: str) -> CubeFileError:
-    return CubeFileError(problem, code=code, path=path, hint="build the cube again")
-
-
-def _json(metadata: Mapping[str, Any]) -> str:
-    try:
-        return json.dumps(
-            metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":"), allow_nan=False
-        )
-    except (TypeError, ValueError, RecursionError) as error:
-        raise CubeFileError(f"the metadata are not JSON values ({error})", code="invalid-metadata") from error
-
-
-def _digest(tensors: Tensors, metadata: str) -> str:
-    content = hashlib.sha256(metadata.encode())
-    for name in sorted(tensors):
-        array = np.ascontiguousarray(tensors[name])
-        content.update(f"{name} {array.dtype.str} {array.shape}".encode())
-        content.update(array.data)
-    return content.hexdigest()
 
 
 def _tensors(data: CubeData) -> Tensors:

@@ -11,7 +11,7 @@ from typing import Any
 from uplift.common.errors import CubeFileError
 from uplift.common.quoting import format_value, shorten
 
-__all__ = ["MAX_THRESHOLD", "MIN_THRESHOLD", "check_metadata"]
+__all__ = ["MAX_THRESHOLD", "MIN_THRESHOLD", "check_emission_metadata", "check_metadata"]
 
 MIN_THRESHOLD, MAX_THRESHOLD = 1e-12, 0.1
 """Linear RGB. Smaller distances are lost in the rounding of double precision."""
@@ -41,7 +41,27 @@ def check_metadata(metadata: Mapping[str, Any]) -> None:
         The first value that does not fit (``invalid-metadata``), by its key path.
     """
     METADATA(metadata, "")
-    names = metadata["entries"]
+    _require_unique(metadata["entries"])
+
+
+def check_emission_metadata(metadata: Mapping[str, Any]) -> None:
+    """Check types and ranges of all metadata of an emission table, as `check_metadata` does.
+
+    Parameters
+    ----------
+    metadata : mapping
+        JSON values without the digest.
+
+    Raises
+    ------
+    CubeFileError
+        The first value that does not fit (``invalid-metadata``), by its key path.
+    """
+    EMISSION(metadata, "")
+    _require_unique(metadata["entries"])
+
+
+def _require_unique(names: list[str]) -> None:
     if len(set(names)) < len(names):
         raise CubeFileError("the names of entries must be unique", code="invalid-metadata")
 
@@ -163,6 +183,16 @@ METADATA = _table(
         "observer": _text,
         "threshold": _number(MIN_THRESHOLD, MAX_THRESHOLD),
         "reference": _text,
+        "entries": _list(_text, MAX_ENTRIES),
+        "provenance": PROVENANCE,
+    }
+)
+EMISSION = _table(
+    {
+        "format": _text,
+        "version": _count,
+        "space": _text,
+        "observer": _text,
         "entries": _list(_text, MAX_ENTRIES),
         "provenance": PROVENANCE,
     }

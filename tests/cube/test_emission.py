@@ -1,0 +1,115 @@
+"""Files of emission tables: round trip, damage, and content that is refused although its digest is valid."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.helpers import raises
+from uplift.common.errors import CubeFileError, OutputError
+from uplift.cube import container, emission, emission_digest, read_emission, write_emission
+
+
+@pytest.fixture(scope="module")
+def data():
+    return uplift.load_emission().data
+
+
+def forge(data, path, change):
+    """Write ``data`` after ``change(tensors, metadata)``, with the digest of the changed content."""
+    tensors, metadata = emission._tensors(data), emission._metadata(data)
+    change(tensors, metadata)
+    container.save(tensors, metadata, path)
+    return path
+
+
+def test_round_trip_is_exact(tmp_path, data):
+    write_emission(data, tmp_path / "a.uplift")
+    found = read_emission(tmp_path / "a.uplift")
+    assert emission_digest(found) == emission_digest(data)
+    np.testing.assert_array_equal(found.spectra, data.spectra)
+    assert found.entries.names == data.entries.names
+    write_emission(found, tmp_path / "b.uplift")
+    assert (tmp_path / "a.uplift").read_bytes() == (tmp_path / "b.uplift").read_bytes()
+
+
+def test_an_existing_file_is_kept(tmp_path, data):
+    path = tmp_path / "table.uplift"
+    path.write_text("mine")
+    with raises(OutputError, "file-exists"):
+        write_emission(data, path)
+    assert path.read_text() == "mine"
+
+
+def test_a_cube_is_not_an_emission_table_and_the_reverse(tmp_path, data):
+    uplift.load().save(tmp_path / "cube.uplift")
+    with raises(CubeFileError, "not-an-emission-table"):
+        uplift.load_emission(tmp_path / "cube.uplift")
+    write_emission(data, tmp_path / "table.uplift")
+    with raises(CubeFileError, "not-a-cube"):
+        uplift.load(tmp_path / "table.uplift")
+
+
+@pytest.mark.parametrize("place", [0.3, 0.6, 0.95])
+def test_a_flipped_bit_is_detected(tmp_path, data, place):
+    path = tmp_path / "table.uplift"
+    write_emission(data, path)
+    content = bytearray(path.read_bytes())
+    content[int(place * len(content))] ^= 1
+    path.write_bytes(content)
+    with raises(CubeFileError, "cube-damaged"):
+        read_emission(path)
+
+
+def test_a_missing_file(tmp_path):
+    with raises(CubeFileError, "cube-not-found"):
+        read_emission(tmp_path / "none.uplift")
+
+
+def spoil(name, value):
+    """A change that replaces one element of an array."""
+
+    def change(tensors, metadata):
+        tensors[name] = tensors[name].copy()
+        tensors[name].flat[-1] = value
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("code", "change"),
+    [
+        ("array-not-finite", spoil("spectra", np.nan)),
+        ("array-not-finite", spoil("spectra", -1)),
+        ("array-not-finite", spoil("error", np.inf)),
+        ("array-not-finite", spoil("entries.radius", -0.1)),
+        ("misplaced-spectrum", spoil("spectra", 5e3)),
+        ("misplaced-spectrum", spoil("entries.uv", 0.9)),
+        ("sensor-wavelengths", spoil("wavelengths", 100)),
+        ("invalid-primaries", lambda tensors, _: tensors.update(rgb_to_xyz=np.ones((3, 3)))),
+        ("invalid-chromaticity-lattice", spoil("rings", 0.5)),
+        ("invalid-array", lambda tensors, _: tensors.pop("error")),
+        ("invalid-array", lambda tensors, _: tensors.update(more=np.zeros(1))),
+        ("invalid-array", lambda tensors, _: tensors.update(white=np.zeros(3))),
+        ("invalid-array", lambda tensors, _: tensors.update(white=np.zeros(2, dtype=np.float32))),
+        ("invalid-metadata", lambda _, metadata: metadata.update(space=1)),
+        ("invalid-metadata", lambda _, metadata: metadata.update(extra="more")),
+        ("invalid-metadata", lambda _, metadata: metadata.update(entries=["A"] * 5)),
+        ("cube-version", lambda _, metadata: metadata.update(version=2)),
+    ],
+)
+def test_invalid_content_is_refused(tmp_path, data, code, change):
+    with pytest.raises(CubeFileError) as found:
+        read_emission(forge(data, tmp_path / "forged.uplift", change))
+    assert found.value.code in (code, "cube-invalid")
+    assert found.value.code == code or code == "invalid-chromaticity-lattice"
+
+
+def test_an_unreadable_table_is_not_written(tmp_path, data):
+    broken = replace(data, error=np.full_like(data.error, np.nan))
+    with raises(OutputError, "cube-unreadable"):
+        write_emission(broken, tmp_path / "table.uplift")
+    assert not list(tmp_path.iterdir())

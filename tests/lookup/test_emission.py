@@ -1,0 +1,201 @@
+"""Queries of an emission table: exact colour, no negative power, lamps, and colours that no light has."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import uplift
+from tests.helpers import raises
+from uplift.common.errors import ColourError, OptionError
+from uplift.fit.emission import unit_xyz
+from uplift.lattice.chromaticity import DENOMINATOR
+from uplift.lookup.blocks import BLOCK
+
+TABLE = uplift.load_emission()
+RADIOMETRY = TABLE.data.cmfs / TABLE.data.cmfs[:, 1].sum()
+
+
+def random_lights(count, seed=0):
+    """XYZ of random mixtures of few wavelengths, which cover the spectral locus, of many brightnesses."""
+    rng = np.random.default_rng(seed)
+    power = rng.random((count, 81)) ** 40 * 10.0 ** rng.uniform(-4, 5, (count, 1))
+    return power @ RADIOMETRY
+
+
+def plain_spectrum(xyz):
+    """A slow lookup of one colour: the triangles of all cells are tried one by one."""
+    data = TABLE.data
+    size = xyz @ DENOMINATOR
+    uv = xyz[:2] * (4, 9) / size
+    share, entry = 0.0, 0
+    for number, (centre, radius) in enumerate(zip(data.entries.uv, data.entries.radius, strict=True)):
+        distance = np.linalg.norm(uv - centre)
+        if distance < radius:
+            share, entry = 1 - distance / radius, number
+            uv = centre + (uv - centre) * radius / distance
+            break
+    nodes = data.lattice.nodes
+    knots, rings = data.lattice.shape
+    for k in range(knots):
+        following = (k + 1) % knots
+        spokes = np.stack([nodes[k, -1], nodes[following, -1]], axis=1) - data.lattice.white[:, None]
+        a, b = np.linalg.solve(spokes, uv - data.lattice.white)
+        if a < 0 or b < 0:
+            continue
+        j = min(int(np.sum(data.lattice.rings <= a + b)) - 1, rings - 2)
+        low, high = data.lattice.rings[[j, j + 1]]
+        t, s = b / (a + b), (a + b - low) / (high - low)
+        inner = (1 - t) * data.spectra[k, j] + t * data.spectra[following, j]
+        outer = (1 - t) * data.spectra[k, j + 1] + t * data.spectra[following, j + 1]
+        lattice = (1 - s) * inner + s * outer
+        return size * ((1 - share) * lattice + share * data.entries.spectra[entry])
+    raise AssertionError("no cell")
+
+
+def test_lookups_agree_with_a_plain_one():
+    xyz = np.concatenate([random_lights(40), TABLE.xyz(np.random.default_rng(1).random((20, 3)) + 0.5)])
+    found = TABLE.spectrum_of_xyz(xyz)
+    for row, power in zip(xyz, found, strict=True):
+        np.testing.assert_allclose(power, plain_spectrum(row), rtol=1e-9, atol=1e-9 * power.max())
+
+
+def test_colours_are_exact_and_powers_are_not_negative():
+    xyz = random_lights(5000)
+    power = TABLE.spectrum_of_xyz(xyz)
+    assert power.min() >= 0
+    size = xyz @ DENOMINATOR
+    assert np.abs(power @ RADIOMETRY - xyz).max(axis=1) / size == pytest.approx(0, abs=2e-7)
+
+
+@pytest.mark.parametrize("scale", [1e-20, 1.0, 1e5, 1e20])
+def test_light_scales(scale):
+    rgb = np.array([0.9, 0.5, 0.2])
+    np.testing.assert_allclose(TABLE.spectrum(scale * rgb), scale * TABLE.spectrum(rgb), rtol=1e-12)
+
+
+def test_black_is_dark():
+    assert not TABLE.spectrum([0.0, 0.0, 0.0]).any()
+    assert TABLE.contains([0, 0, 0])
+
+
+def test_white_is_daylight_of_luminance_one():
+    power = TABLE.spectrum([1.0, 1.0, 1.0])
+    assert power @ RADIOMETRY[:, 1] == pytest.approx(1, abs=1e-6)
+    row = TABLE.lamp_names.index("D65")
+    daylight = TABLE.data.entries.spectra[row]
+    assert np.abs(power / power.sum() - daylight / daylight.sum()).max() < 1e-4
+
+
+def test_lamps_are_exact_at_their_colours():
+    entries = TABLE.data.entries
+    found = TABLE.spectrum_of_xyz(entries.spectra @ RADIOMETRY)
+    np.testing.assert_allclose(found, entries.spectra, rtol=1e-6, atol=1e-9)
+
+
+def test_answers_are_continuous_at_the_circles_of_lamps():
+    entries = TABLE.data.entries
+    angle = np.linspace(0, 6, 20)
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    for centre, radius in zip(entries.uv, entries.radius, strict=True):
+        inside, outside = (unit_xyz(centre + radius * (1 + change) * circle) for change in (-1e-9, 1e-9))
+        difference = TABLE.spectrum_of_xyz(inside) - TABLE.spectrum_of_xyz(outside)
+        assert np.abs(difference).max() < 1e-6
+
+
+@given(st.tuples(*[st.floats(-1, 1)] * 3))
+def test_clipped_colours_are_lights_of_the_same_luminance(rgb):
+    power = TABLE.spectrum(rgb, outside="clip")
+    assert power.min() >= 0
+    luminance = TABLE.xyz(rgb)[1]
+    assert power @ RADIOMETRY[:, 1] == pytest.approx(max(luminance, 0), abs=1e-6)
+    if TABLE.contains(rgb):
+        np.testing.assert_array_equal(power, TABLE.spectrum(rgb))
+
+
+def test_clipped_colours_lie_on_the_way_to_white():
+    rgb = np.array([-0.5, 1.0, -0.5])
+    assert not TABLE.contains(rgb)
+    clipped = TABLE.rgb(TABLE.spectrum(rgb, outside="clip"))
+    grey = TABLE.xyz(rgb)[1]
+    share = (clipped - grey) / (rgb - grey)
+    np.testing.assert_allclose(share, share[0], rtol=1e-5)
+    assert 0 < share[0] < 1
+
+
+def test_colours_of_no_light_are_errors():
+    for rgb in ([-0.5, 1.0, -0.5], [-1.0, -1.0, -1.0], [0.0, -1e-3, 0.0]):
+        assert not TABLE.contains(rgb)
+        with raises(ColourError, "colour-not-a-light"):
+            TABLE.spectrum(rgb)
+        with raises(ColourError, "colour-not-a-light"):
+            TABLE.expected_error(rgb)
+
+
+def test_contains_agrees_with_mixtures_of_wavelengths():
+    """The realisable colours are those of non-negative powers; the others have a positive distance from them."""
+    from scipy.optimize import nnls
+
+    rng = np.random.default_rng(3)
+    rgb = rng.uniform(-0.6, 1.2, (60, 3))
+    found = TABLE.contains(rgb)
+    reach = np.array([nnls(RADIOMETRY.T, xyz)[1] for xyz in TABLE.xyz(rgb)])
+    assert 10 < found.sum() < 50
+    np.testing.assert_array_equal(found, reach < 1e-9)
+
+
+def test_wavelengths_are_interpolated_linearly():
+    rgb = [0.9, 0.5, 0.2]
+    stored = TABLE.spectrum(rgb)
+    found = TABLE.spectrum(rgb, [300, 380, 382.5, 500, 780, 830])
+    expected = [stored[0], stored[0], stored[:2].mean(), stored[24], stored[-1], stored[-1]]
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (5,), (2, 3), (0,), (2, 0)])
+def test_results_keep_the_shape_of_the_input(shape):
+    rgb = np.random.default_rng(0).random((*shape, 3))
+    assert TABLE.spectrum(rgb).shape == (*shape, 81)
+    assert TABLE.spectrum(rgb, [500, 600]).shape == (*shape, 2)
+    assert TABLE.contains(rgb).shape == shape
+    assert TABLE.expected_error(rgb).shape == shape
+
+
+def test_results_do_not_depend_on_threads_or_blocks():
+    rgb = np.random.default_rng(0).random((BLOCK + 5, 3))
+    together = TABLE.spectrum(rgb, [450.0, 650.0])
+    np.testing.assert_array_equal(TABLE.spectrum(rgb, [450.0, 650.0], threads=3), together)
+    np.testing.assert_array_equal(TABLE.spectrum(rgb[BLOCK], [450.0, 650.0]), together[BLOCK])
+
+
+def test_single_precision_is_close():
+    rgb = np.random.default_rng(0).random((50, 3)) * 1e4
+    found = TABLE.spectrum(rgb.astype(np.float32), dtype=np.float32)
+    assert found.dtype == np.float32
+    np.testing.assert_allclose(found, TABLE.spectrum(rgb.astype(np.float32)), rtol=1e-6)
+
+
+def test_rgb_is_the_inverse():
+    rgb = np.random.default_rng(0).random((50, 3))
+    np.testing.assert_allclose(TABLE.rgb(TABLE.spectrum(rgb)), rgb, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("code", "kind", "rgb", "options"),
+    [
+        ("rgb-not-finite", ColourError, [np.nan, 0, 0], {}),
+        ("rgb-not-finite", ColourError, [np.inf, 0, 0], {"outside": "clip"}),
+        ("rgb-not-finite", ColourError, [1e200, 0, 0], {}),
+        ("rgb-wrong-shape", ColourError, [1, 2], {}),
+        ("rgb-not-numeric", ColourError, ["a", 1, 1], {}),
+        ("unknown-treatment", OptionError, [1, 1, 1], {"outside": "wrap"}),
+        ("invalid-wavelengths", OptionError, [1, 1, 1], {"wavelengths": [-5]}),
+        ("unsupported-dtype", OptionError, [1, 1, 1], {"dtype": int}),
+        ("invalid-threads", OptionError, [1, 1, 1], {"threads": 0}),
+    ],
+)
+def test_bad_input_is_refused(code, kind, rgb, options):
+    with raises(kind, code):
+        TABLE.spectrum(rgb, **options)

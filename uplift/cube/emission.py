@@ -1,0 +1,283 @@
+"""The content of an emission table, and the file that stores it (docs/cube-file.md, "Emission tables")."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.common.arrays import Array
+from uplift.common.errors import CubeFileError, OutputError
+from uplift.common.files import atomic_write
+from uplift.cube.checks import MAX_CONDITION, MAX_VALUE, require
+from uplift.cube.container import INVALID, Kind, Tensors, content_digest, error_text, invalid_file, load, save
+from uplift.cube.metadata import check_emission_metadata
+from uplift.lattice.chromaticity import ChromaticityLattice, chromaticity
+
+VERSION = 1
+KIND = Kind("uplift emission table", (VERSION,), "emission table", "not-an-emission-table")
+MAX_OFFSET = 1e-4
+"""Largest distance in u′v′ between a stored spectrum and its place; single precision keeps 1e-6."""
+ARRAYS = {
+    "white": ("float64",),
+    "knots": ("float64",),
+    "rings": ("float64",),
+    "spectra": ("float32",),
+    "error": ("float32",),
+    "wavelengths": ("float64",),
+    "cmfs": ("float64",),
+    "rgb_to_xyz": ("float64",),
+    "entries.uv": ("float64",),
+    "entries.spectra": ("float64",),
+    "entries.radius": ("float64",),
+}
+"""Types of the arrays of a file."""
+SIGNED = ("rgb_to_xyz", "cmfs")
+
+
+@dataclass(frozen=True, eq=False)
+class LampEntries:
+    """Measured lamps that a table returns exactly at their chromaticities.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names, each once.
+    uv : ndarray, shape (E, 2)
+        u′v′ of the lamps.
+    spectra : ndarray, shape (E, N)
+        Power of unit X + 15 Y + 3 Z.
+    radius : ndarray, shape (E,)
+        Radius in u′v′ of the disc around each lamp in which answers blend to it. Discs do not overlap.
+    """
+
+    names: tuple[str, ...]
+    uv: Array
+    spectra: Array
+    radius: Array
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EmissionData:
+    """Content of an emission table.
+
+    Powers are relative to the equal-energy light of luminance 1, whose power is 1 at every wavelength: XYZ of a power s
+    is Σ s cmfs / Σ ȳ.
+
+    Parameters
+    ----------
+    space : str
+        RGB space of queries.
+    observer : str
+        Colour-matching functions.
+    rgb_to_xyz : ndarray, shape (3, 3)
+        Linear RGB to XYZ; white has Y = 1.
+    wavelengths : ndarray, shape (N,)
+        Wavelengths in nm, evenly spaced, ascending.
+    cmfs : ndarray, shape (N, 3)
+        Colour-matching functions.
+    lattice : ChromaticityLattice
+        K knots and R rings.
+    spectra : ndarray of float32, shape (K, R, N)
+        Power of unit X + 15 Y + 3 Z at each node.
+    error : ndarray of float32, shape (K, R)
+        Expected ΔE00 of surfaces lit by the answer instead of a measured lamp of the same chromaticity.
+    entries : LampEntries
+        Lamps that are exact.
+    provenance : mapping
+        Version, options and files of the build.
+    """
+
+    space: str
+    observer: str
+    rgb_to_xyz: Array
+    wavelengths: Array
+    cmfs: Array
+    lattice: ChromaticityLattice
+    spectra: NDArray[np.float32]
+    error: NDArray[np.float32]
+    entries: LampEntries
+    provenance: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        lamps = f"{len(self.entries.names)} {'lamp' if len(self.entries.names) == 1 else 'lamps'}"
+        knots, rings = self.lattice.shape
+        return f"EmissionData({knots} × {rings} nodes, {len(self.wavelengths)} wavelengths, {self.space}, {lamps})"
+
+
+def write_emission(data: EmissionData, path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Write an emission table, atomically. The new file is read back before it replaces an existing one.
+
+    Parameters
+    ----------
+    data : EmissionData
+        The table.
+    path : path-like
+        File to write.
+    force : bool, default False
+        Replace an existing file.
+
+    Raises
+    ------
+    OutputError
+        The file exists and ``force`` is false, cannot be written, or does not read back (``cube-unreadable``).
+    """
+    with atomic_write(path, force=force) as temporary:
+        try:
+            save(_tensors(data), _metadata(data), temporary)
+            read_emission(temporary)
+        except CubeFileError as error:
+            raise OutputError(
+                f"the emission table would not be readable: {error.problem}",
+                code="cube-unreadable",
+                path=path,
+                hint="an existing file is unchanged",
+            ) from error
+
+
+def read_emission(path: str | os.PathLike[str]) -> EmissionData:
+    """Read an emission table, and check its digest and all its content.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+
+    Returns
+    -------
+    EmissionData
+        The table.
+
+    Raises
+    ------
+    CubeFileError
+        The file is missing (``cube-not-found``), damaged (``cube-damaged``), not an emission table
+        (``not-an-emission-table``), of another version (``cube-version``), or its content is invalid.
+    """
+    path = Path(path)
+    tensors, metadata = load(path, KIND)
+    try:
+        check_emission_metadata(metadata)
+        _check_arrays(tensors, len(metadata["entries"]))
+        data = _data(tensors, metadata)
+        _check(data)
+    except CubeFileError as error:
+        raise invalid_file(
+            path, KIND, f"is not a valid emission table: {error.problem}", error.code
+        ) from error
+    except INVALID as error:
+        problem = f"is not a valid emission table ({type(error).__name__}: {error_text(error)})"
+        raise invalid_file(path, KIND, problem, "cube-invalid") from error
+    return data
+
+
+def emission_digest(data: EmissionData) -> str:
+    """Compute the digest of a table. Tables with equal digests give equal answers, bit for bit.
+
+    Parameters
+    ----------
+    data : EmissionData
+        The table.
+
+    Returns
+    -------
+    str
+        SHA-256 in hexadecimal.
+    """
+    return content_digest(_tensors(data), _metadata(data))
+
+
+def _tensors(data: EmissionData) -> Tensors:
+    found: Tensors = {
+        "white": data.lattice.white,
+        "knots": data.lattice.knots,
+        "rings": data.lattice.rings,
+        "spectra": data.spectra,
+        "error": data.error,
+        "wavelengths": data.wavelengths,
+        "cmfs": data.cmfs,
+        "rgb_to_xyz": data.rgb_to_xyz,
+        "entries.uv": data.entries.uv,
+        "entries.spectra": data.entries.spectra,
+        "entries.radius": data.entries.radius,
+    }
+    return {name: np.ascontiguousarray(found[name], dtype=types[0]) for name, types in ARRAYS.items()}
+
+
+def _metadata(data: EmissionData) -> dict[str, Any]:
+    return {
+        "format": KIND.format,
+        "version": VERSION,
+        "space": data.space,
+        "observer": data.observer,
+        "entries": list(data.entries.names),
+        "provenance": dict(data.provenance),
+    }
+
+
+def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> EmissionData:
+    return EmissionData(
+        space=metadata["space"],
+        observer=metadata["observer"],
+        rgb_to_xyz=tensors["rgb_to_xyz"],
+        wavelengths=tensors["wavelengths"],
+        cmfs=tensors["cmfs"],
+        lattice=ChromaticityLattice(tensors["white"], tensors["knots"], tensors["rings"]),
+        spectra=tensors["spectra"],
+        error=tensors["error"],
+        entries=LampEntries(
+            tuple(metadata["entries"]), *(tensors[f"entries.{name}"] for name in ("uv", "spectra", "radius"))
+        ),
+        provenance=metadata["provenance"],
+    )
+
+
+def _check_arrays(tensors: Tensors, entries: int) -> None:
+    """Check type, shape and range of every array as it is stored."""
+    require(set(tensors) == set(ARRAYS), "invalid-array", f"the arrays must be {', '.join(ARRAYS)}")
+    samples, knots, rings = (tensors[name].size for name in ("wavelengths", "knots", "rings"))
+    shapes = {
+        "white": (2,),
+        "knots": (knots // 2, 2),
+        "rings": (rings,),
+        "spectra": (knots // 2, rings, samples),
+        "error": (knots // 2, rings),
+        "wavelengths": (samples,),
+        "cmfs": (samples, 3),
+        "rgb_to_xyz": (3, 3),
+        "entries.uv": (entries, 2),
+        "entries.spectra": (entries, samples),
+        "entries.radius": (entries,),
+    }
+    for name, types in ARRAYS.items():
+        array = tensors[name]
+        fits = array.shape == shapes[name] and array.dtype.name in types
+        require(fits, "invalid-array", f"{name} must be {' or '.join(types)} of shape {shapes[name]}")
+        low = -MAX_VALUE if name in SIGNED else 0
+        within = bool(((array >= low) & (array <= MAX_VALUE)).all())
+        require(within, "array-not-finite", f"{name} must have numbers in [{low:g}, {MAX_VALUE:g}]")
+
+
+def _check(data: EmissionData) -> None:
+    """Check that the arrays belong together."""
+    steps = np.diff(data.wavelengths)
+    even = len(steps) > 0 and bool((steps > 0).all()) and float(np.ptp(steps)) < 1e-6
+    require(even, "sensor-wavelengths", "the wavelengths must ascend evenly")
+    luminance = float(data.cmfs[:, 1].sum())
+    require(luminance > 0, "invalid-observer", "the colour-matching functions must respond")
+    condition = float(np.linalg.cond(data.rgb_to_xyz))
+    require(condition < MAX_CONDITION, "invalid-primaries", "the RGB space must have three primaries")
+    places = ((data.spectra, data.lattice.nodes), (data.entries.spectra, data.entries.uv))
+    for spectra, uv in places:
+        xyz = spectra @ (data.cmfs / luminance)
+        unit = np.abs(xyz @ (1.0, 15.0, 3.0) - 1).max(initial=0) <= MAX_OFFSET
+        there = unit and np.abs(chromaticity(xyz) - uv).max(initial=0) <= MAX_OFFSET
+        require(bool(there), "misplaced-spectrum", "every spectrum must have the chromaticity of its place")
+    require(
+        bool(data.lattice.contains(data.entries.uv).all()), "misplaced-spectrum", "lamps must be realisable"
+    )

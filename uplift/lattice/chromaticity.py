@@ -1,0 +1,208 @@
+"""The lattice over chromaticity: rings around white that follow the spectral locus, numbered by sector and ring.
+
+Coordinates are CIE 1976 u′v′. A knot is a point on the locus of the realisable chromaticities. Node (k, j) lies on the
+segment from white to knot k, at the share of ring j. A cell lies between two neighbouring knots and two neighbouring
+rings. Its two ring sides are parallel, so weights that are linear along the rings and across them give back the
+chromaticity exactly. With every spectrum at its node scaled to X + 15 Y + 3 Z = 1, the denominator of u′v′, so do the
+weighted spectra.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.errors import OptionError
+
+DENOMINATOR = np.array([1.0, 15.0, 3.0])
+"""Weights of X, Y and Z in the denominator of u′ and v′."""
+SLACK = 1e-9
+"""Excess over the locus that counts as rounding, as a share of the distance of white from the locus."""
+
+
+def chromaticity(xyz: Array) -> Array:
+    """Compute CIE 1976 u′v′.
+
+    Parameters
+    ----------
+    xyz : ndarray, shape (..., 3)
+        XYZ, not black.
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        u′ = 4 X / (X + 15 Y + 3 Z) and v′ = 9 Y / (X + 15 Y + 3 Z).
+
+    References
+    ----------
+    CIE 015:2018, "Colorimetry", 8.2.1.1.
+    """
+    return xyz[..., :2] * (4.0, 9.0) / (xyz @ DENOMINATOR)[..., None]
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Cells of n colours and the weights of their corners.
+
+    Parameters
+    ----------
+    sector, ring : ndarray of int, shape (n,)
+        Knot and ring of the lowest corner.
+    along, across : ndarray, shape (n,)
+        Position in the cell from 0 to 1: towards the next knot, and towards the next ring.
+    """
+
+    sector: Indices
+    ring: Indices
+    along: Array
+    across: Array
+
+    @property
+    def weights(self) -> Array:
+        """(n, 4) weights of the corners; they sum to 1."""
+        t, s = self.along, self.across
+        return np.stack([(1 - t) * (1 - s), (1 - t) * s, t * (1 - s), t * s], axis=1)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ChromaticityLattice:
+    """Nodes over all chromaticities of lights.
+
+    Parameters
+    ----------
+    white : ndarray, shape (2,)
+        u′v′ of the centre.
+    knots : ndarray, shape (K, 2)
+        u′v′ of the knots, counterclockwise, the corners of a convex polygon around the centre.
+    rings : ndarray, shape (R,)
+        Shares of the way from the centre to the polygon, from 0 to 1, increasing.
+
+    Raises
+    ------
+    OptionError
+        Rings that do not increase from 0 to 1, or knots that do not surround the centre
+        (``invalid-chromaticity-lattice``).
+    """
+
+    white: Array
+    knots: Array
+    rings: Array
+
+    def __post_init__(self) -> None:
+        shapes = (
+            self.white.shape == (2,) and self.knots.shape == (len(self.knots), 2) and self.rings.ndim == 1
+        )
+        if not shapes or len(self.knots) < 3 or len(self.rings) < 2:
+            raise _error(f"must have 3 knots and 2 rings or more, got {self.knots.shape}, {self.rings.shape}")
+        if not (self.rings[0] == 0 and self.rings[-1] == 1 and (np.diff(self.rings) > 0).all()):
+            raise _error("must have rings that increase from 0 to 1")
+        following = np.roll(self._spokes, -1, axis=0)
+        if not (_cross(self._spokes, following) > 0).all() or not (np.diff(self._angles) > 0).all():
+            raise _error("must have knots counterclockwise around the centre")
+
+    def __repr__(self) -> str:
+        return f"ChromaticityLattice({len(self.knots)} knots, {len(self.rings)} rings)"
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Numbers of knots and rings."""
+        return len(self.knots), len(self.rings)
+
+    @property
+    def nodes(self) -> Array:
+        """(K, R, 2) u′v′ of all nodes."""
+        return np.asarray(self.white + self._spokes[:, None] * self.rings[:, None])
+
+    @cached_property
+    def _spokes(self) -> Array:
+        """(K, 2) from the centre to the knots."""
+        return np.asarray(self.knots - self.white)
+
+    @cached_property
+    def _angles(self) -> Array:
+        """(K,) `_pseudo_angle` of the knots from the first one, increasing from 0."""
+        angles = _pseudo_angle(self._spokes)
+        return np.asarray((angles - angles[0]) % 4.0)
+
+    @cached_property
+    def _inverses(self) -> Array:
+        """(K, 2, 2) from an offset to its shares of the two spokes of a sector."""
+        pairs = np.stack([self._spokes, np.roll(self._spokes, -1, axis=0)], axis=2)
+        return np.asarray(np.linalg.inv(pairs))
+
+    def polar(self, offset: Array) -> tuple[Indices, Array, Array]:
+        """Find the sectors of offsets from the centre.
+
+        Parameters
+        ----------
+        offset : ndarray, shape (n, 2)
+            u′v′ minus that of the centre, or any multiple of it.
+
+        Returns
+        -------
+        sector : ndarray of int, shape (n,)
+            Number of the first of two knots.
+        along : ndarray, shape (n,)
+            Position from 0 to 1 between them.
+        share : ndarray, shape (n,)
+            Length of the offset, where the polygon has 1.
+        """
+        first = _pseudo_angle(self._spokes[:1])
+        angles = (_pseudo_angle(offset) - first) % 4.0
+        sector = np.searchsorted(self._angles, angles, side="right") - 1
+        shares = np.maximum((self._inverses[sector] @ offset[:, :, None])[..., 0], 0.0)
+        share = shares.sum(axis=1)
+        along = np.divide(shares[:, 1], share, out=np.zeros(len(offset)), where=share > 0)
+        return sector, along, share
+
+    def locate(self, uv: Array) -> Cells:
+        """Find the cells of chromaticities, of which those outside are moved to the polygon.
+
+        Parameters
+        ----------
+        uv : ndarray, shape (n, 2)
+            u′v′.
+
+        Returns
+        -------
+        Cells
+        """
+        sector, along, share = self.polar(uv - self.white)
+        share = np.minimum(share, 1.0)
+        ring = np.clip(np.searchsorted(self.rings, share, side="right") - 1, 0, len(self.rings) - 2)
+        across = (share - self.rings[ring]) / (self.rings[ring + 1] - self.rings[ring])
+        return Cells(sector, ring, along, across)
+
+    def contains(self, uv: Array) -> Mask:
+        """Test whether chromaticities are realisable.
+
+        Parameters
+        ----------
+        uv : ndarray, shape (n, 2)
+            u′v′.
+
+        Returns
+        -------
+        ndarray of bool, shape (n,)
+            False for NaN.
+        """
+        return np.asarray(self.polar(uv - self.white)[2] <= 1 + SLACK)
+
+
+def _error(problem: str) -> OptionError:
+    return OptionError(f"a lattice over chromaticity {problem}", code="invalid-chromaticity-lattice")
+
+
+def _cross(first: Array, second: Array) -> Array:
+    return np.asarray(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0])
+
+
+def _pseudo_angle(offset: Array) -> Array:
+    """Increase with the angle counterclockwise from the u′ axis, from 0 to 4, without transcendental functions."""
+    u, v = offset[..., 0], offset[..., 1]
+    length = np.abs(u) + np.abs(v)
+    slope = np.divide(u, length, out=np.ones_like(length), where=length > 0)
+    return np.asarray(np.where(v < 0, 3 + slope, 1 - slope))
