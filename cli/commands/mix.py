@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import click
 
 from ..output.mixtures import as_json, as_table, make_mixture, plot
@@ -22,13 +20,10 @@ from ..params.options import (
     wavelengths_option,
 )
 from ..params.plots import plot_option
+from ..params.scattering import SCATTERINGS, make_scattering
 from ..params.spaces import resolve_space
 from ..params.wavelengths import parse_wavelengths
 from .query import ColourCommand
-
-if TYPE_CHECKING:
-    from uplift.design.mixing.recipes import Medium
-    from uplift.design.mixing.surface import Surface
 
 WRITERS = {"table": as_table, "json": as_json}
 
@@ -64,17 +59,17 @@ WRITERS = {"table": as_table, "json": as_json}
     help="Incidence of light on the surface given by --refractive-index.",
 )
 @click.option(
-    "--km-constants",
-    type=click.Choice(("two", "one")),
-    default="two",
+    "--scattering",
+    type=click.Choice(SCATTERINGS),
+    default=SCATTERINGS[0],
     show_default=True,
-    help="Kubelka–Munk constants of a paint given by one colour: two lets scattering decrease with reflectance, one "
-    "keeps it constant.",
+    help="Scattering S that is assumed of a paint given by one colour: dispersive is strongest on the long-wave side of "
+    "an absorption, root is √R, constant is 1.",
 )
 @click.option(
     "--theories",
     is_flag=True,
-    help="Mix the colours by every model: Kubelka and Munk, Amy, dyes, filters, and heuristics of RGB.",
+    help="Mix the colours by every model: Kubelka and Munk, Amy, Duntley, dyes, filters, and heuristics of RGB.",
 )
 @cube_option()
 @atlas_option("Measured spectra whose entries are ingredients")
@@ -101,7 +96,7 @@ def command(
     ground: str | None,
     refractive_index: float,
     incidence: str,
-    km_constants: str,
+    scattering: str,
     theories: bool,
     cube_path: str | None,
     files: tuple[str, ...],
@@ -134,6 +129,7 @@ def command(
       uplift mix --theories '#005fa0' '#ffd200'
     """
     from uplift.common.files import check_outputs
+    from uplift.design.mixing.recipes import Medium
     from uplift.design.mixing.surface import INCIDENCES
     from uplift.lookup import load
 
@@ -144,16 +140,21 @@ def command(
         )
     check_outputs((swatches, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
-    medium = _medium(thickness, INCIDENCES[incidence](refractive_index), km_constants)
+    surface = INCIDENCES[incidence](refractive_index)
     space = resolve_space(input_space)
-    resolver = make_resolver(cube, files, cube.resolve_wavelengths(parse_wavelengths(wavelengths)), space)
+    listed = cube.resolve_wavelengths(parse_wavelengths(wavelengths))
+    resolver = make_resolver(cube, files, listed, space)
     ingredients = resolver.ingredients(words)
     if theories:
         print_theories(cube, ingredients, method, style)
         return
+    sensor = cube.data.sensor
     if over is not None and output is not None:
-        paint(make_brush(cube, kind, ingredients, medium, encoding, method, space), over, output, force=force)
+        medium = Medium(thickness, surface, make_scattering(scattering, sensor))
+        brush = make_brush(cube, kind, ingredients, medium, scattering, encoding, method, space)
+        paint(brush, over, output, force=force)
         return
+    medium = Medium(thickness, surface, make_scattering(scattering, sensor, listed))
     mixture = make_mixture(resolver, kind, ingredients, medium, ground, steps, method)
     if swatches is not None:
         plot(cube, mixture, swatches, force=force)
@@ -179,9 +180,3 @@ def _check_usage(
             path=output,
             hint="give a file name ending in .exr",
         )
-
-
-def _medium(thickness: float | None, surface: Surface, constants: str) -> Medium:
-    from uplift.design.mixing.recipes import Medium
-
-    return Medium(thickness, surface) if constants == "two" else Medium(thickness, surface, grading=0.0)

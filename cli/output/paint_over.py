@@ -25,11 +25,12 @@ def make_brush(
     kind: str,
     ingredients: list[Ingredient],
     medium: Medium,
+    scattering: str,
     encoding: str,
     method: str,
     space: ImageSpace | None,
 ) -> Overpainter:
-    """Mix a coat and prepare it at the wavelengths of the cube's sensor."""
+    """Mix a coat and prepare it at the wavelengths of the cube's sensor; ``scattering`` is recorded by its name."""
     enable_jit_cache()
     from uplift.design.mixing.overpaint import prepare
     from uplift.design.mixing.recipes import make_coat
@@ -37,7 +38,13 @@ def make_brush(
     count = len(cube.data.sensor.wavelengths)
     parts = [one.parts for one in ingredients]
     mixture = make_coat(kind, library_ingredients(ingredients, count), parts, medium)
-    recipe = {"kind": kind, "of": [[one.parts, one.name] for one in ingredients], **asdict(medium)}
+    recipe = {
+        "kind": kind,
+        "of": [[one.parts, one.name] for one in ingredients],
+        "thickness": medium.thickness,
+        "surface": asdict(medium.surface),
+        "scattering": scattering,
+    }
     return prepare(cube, mixture, recipe, encoding=encoding, out_of_gamut=method, space=space)
 
 

@@ -8,13 +8,16 @@ import pytest
 from uplift.design.mixing import criteria, kubelka_munk, pigments
 from uplift.design.mixing.criteria import CRITERIA, evaluate
 from uplift.design.mixing.mixers import Mixer, mixers
+from uplift.design.mixing.scattering import dispersive
 
 SELF, CHROMATICITY, DARKER, HUE, LIGHTER, GREY, GREEN = range(len(CRITERIA))
 EXPECTED = {
     "pigments": {SELF, DARKER, LIGHTER, GREEN},
     "pigments in oil": {SELF, DARKER, LIGHTER},
-    "pigments, one constant": {SELF, DARKER, LIGHTER},
+    "pigments, S = √R": {SELF, DARKER, LIGHTER, GREEN},
+    "pigments, S = 1": {SELF, DARKER, LIGHTER},
     "pigments, Amy": {DARKER, GREEN},
+    "pigments, Duntley": {SELF, DARKER, LIGHTER, GREEN},
     "dyes": {SELF, DARKER, LIGHTER, GREEN},
     "filters": {DARKER, GREEN},
     "average": {SELF, CHROMATICITY, DARKER, HUE, LIGHTER},
@@ -63,7 +66,7 @@ def test_blue_and_yellow_of_an_atlas_are_green(small_cube, paints):
     pair = np.stack([paints["blue"], paints["yellow"]])
     spectra = small_cube.reflectance(pair)
     red, green, blue = small_cube.data.sensor.rgb(
-        kubelka_munk.opaque_reflectance(pigments.from_opaque(spectra).mix([1, 1]))
+        kubelka_munk.opaque_reflectance(pigments.from_opaque(spectra, dispersive(small_cube.data.sensor)).mix([1, 1]))
     )
     assert green > 1.05 * max(red, blue)
     average = pair.mean(axis=0)

@@ -107,3 +107,12 @@ def test_an_empty_layer_transmits_everything():
     found = duntley.layer(Flux(NONE, NONE, NONE), Flux(NONE, NONE, NONE), 3.0)
     np.testing.assert_array_equal(found.transmittance, 1)
     np.testing.assert_array_equal(found.reflectance, 0)
+
+
+def test_isotropic_paint_in_a_beam_is_two_r_over_three_minus_r(rng):
+    """Eq. 10.8 in the limit of thick layers against the closed form, and its inverse."""
+    paint = Pigment(rng.uniform(0.01, 4, 30), rng.uniform(0.2, 3, 30))
+    r = kubelka_munk.opaque_reflectance(paint)
+    thick = duntley.layer(*duntley.isotropic(paint), 400.0).reflectance
+    np.testing.assert_allclose(duntley.directed_reflectance(r), thick, rtol=1e-6)
+    np.testing.assert_allclose(duntley.diffuse_reflectance(duntley.directed_reflectance(r)), r, rtol=1e-12)

@@ -12,6 +12,7 @@ from tests.helpers import raises
 from tests.io.texture.conftest import channels, planes, read_channels, write_exr
 from uplift.common.errors import ColourError, OptionError, OutputError, TextureError
 from uplift.design.mixing import coats, overpaint
+from uplift.design.mixing.scattering import SQUARE_ROOT
 from uplift.io.texture import convert
 
 
@@ -23,7 +24,7 @@ def glaze(small_cube):
     atlas = small_cube.data.atlas
     red = small_cube.reflectance(atlas.rgb[atlas.names.index("red")])
     oil = surface.normal_incidence(1.5)
-    return coats.from_pigments(coats.stack([coats.pigment_from_reflectance(red, surface=oil)]), [1], 0.5, oil)
+    return coats.from_pigments(coats.stack([coats.pigment_from_reflectance(red, SQUARE_ROOT, oil)]), [1], 0.5, oil)
 
 
 @pytest.fixture(scope="module")
@@ -73,14 +74,14 @@ def test_8_bit_images_are_decoded(small_cube, overpainter, tmp_path):
 
 
 def test_opaque_paint_hides_the_image(small_cube, image):
-    paint = coats.pigment_from_reflectance(small_cube.reflectance([0.3, 0.2, 0.1]))
+    paint = coats.pigment_from_reflectance(small_cube.reflectance([0.3, 0.2, 0.1]), SQUARE_ROOT)
     opaque = overpaint.prepare(small_cube, coats.from_pigments(coats.stack([paint]), [1]), threads=1)
     expected = np.broadcast_to([0.3, 0.2, 0.1], image.shape)
     np.testing.assert_allclose(opaque.paint(image), expected, atol=1e-5)
 
 
 def test_a_coat_of_zero_thickness_leaves_the_image(small_cube, image):
-    paint = coats.pigment_from_reflectance(small_cube.reflectance([0.3, 0.2, 0.1]))
+    paint = coats.pigment_from_reflectance(small_cube.reflectance([0.3, 0.2, 0.1]), SQUARE_ROOT)
     none = coats.from_pigments(coats.stack([paint]), [1], 0.0)
     painted = overpaint.prepare(small_cube, none, threads=1).paint(image)
     np.testing.assert_allclose(painted, image, atol=1e-5)

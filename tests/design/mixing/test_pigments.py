@@ -9,32 +9,33 @@ from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
 from uplift.design.mixing import amy, kubelka_munk, pigments
 from uplift.design.mixing.pigments import Pigment, from_black_and_white, from_opaque
+from uplift.design.mixing.scattering import CONSTANT, SQUARE_ROOT, PowerOfReflectance
 
 R = np.linspace(pigments.DARKEST, 1, 200)
-GRADINGS = [0, 0.5, 1]
+SCATTERINGS = [CONSTANT, SQUARE_ROOT, PowerOfReflectance(1.0)]
 
 
-@pytest.mark.parametrize("grading", GRADINGS)
-def test_opaque_reflectance_round_trip(grading):
-    np.testing.assert_allclose(kubelka_munk.opaque_reflectance(from_opaque(R, grading)), R, rtol=1e-9)
+@pytest.mark.parametrize("scattering", SCATTERINGS)
+def test_opaque_reflectance_round_trip(scattering):
+    np.testing.assert_allclose(kubelka_munk.opaque_reflectance(from_opaque(R, scattering)), R, rtol=1e-9)
 
 
-@pytest.mark.parametrize("grading", GRADINGS)
-def test_mixing_with_itself_changes_nothing(grading):
-    twice = from_opaque(np.stack([R, R]), grading).mix([3, 2])
+@pytest.mark.parametrize("scattering", SCATTERINGS)
+def test_mixing_with_itself_changes_nothing(scattering):
+    twice = from_opaque(np.stack([R, R]), scattering).mix([3, 2])
     np.testing.assert_allclose(kubelka_munk.opaque_reflectance(twice), R, rtol=1e-9)
 
 
-@pytest.mark.parametrize("grading", GRADINGS)
-def test_mixtures_lie_between_their_paints(spectra, parts, grading):
-    found = kubelka_munk.opaque_reflectance(from_opaque(spectra, grading).mix(parts))
+@pytest.mark.parametrize("scattering", SCATTERINGS)
+def test_mixtures_lie_between_their_paints(spectra, parts, scattering):
+    found = kubelka_munk.opaque_reflectance(from_opaque(spectra, scattering).mix(parts))
     paints = np.maximum(spectra, pigments.DARKEST)
     assert (found >= paints.min(axis=1) - 1e-12).all()
     assert (found <= paints.max(axis=1) + 1e-12).all()
 
 
 def test_black_and_white_are_finite():
-    found = from_opaque([0.0, 1.0])
+    found = from_opaque([0.0, 1.0], SQUARE_ROOT)
     assert np.isfinite(found.absorption).all()
     assert found.absorption[1] == 0
 
@@ -42,7 +43,7 @@ def test_black_and_white_are_finite():
 def test_two_constants_with_equal_scattering_are_one(spectra, parts):
     """Eq. 10.7 with equal S: K/S of the mixture is the mean of K/S."""
     spectra = np.maximum(spectra, pigments.DARKEST)
-    mixture = from_opaque(spectra, 0).mix(parts)
+    mixture = from_opaque(spectra, CONSTANT).mix(parts)
     expected = sum(
         parts[:, i, None] * pigments.absorption_over_scattering(spectra[:, i]) for i in range(3)
     ) / parts.sum(axis=1, keepdims=True)

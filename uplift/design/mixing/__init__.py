@@ -8,9 +8,9 @@ Examples
 --------
 ::
 
-    from uplift.design.mixing import kubelka_munk, pigments
+    from uplift.design.mixing import dispersive, kubelka_munk, pigments
 
-    paints = pigments.from_opaque(cube.reflectance([blue, yellow]))
+    paints = pigments.from_opaque(cube.reflectance([blue, yellow]), dispersive(cube.data.sensor))
     kubelka_munk.opaque_reflectance(paints.mix([2, 1]))  # two parts of blue, one part of yellow
 """
 
@@ -25,6 +25,7 @@ from uplift.design.mixing.overpaint import Overpainter
 from uplift.design.mixing.phosphors import Monitor
 from uplift.design.mixing.pigments import Pigment
 from uplift.design.mixing.recipes import Ingredients, Medium, make_coat, mix, ramp
+from uplift.design.mixing.scattering import PowerOfReflectance, Scattering, dispersive
 from uplift.design.mixing.surface import Surface
 
 __all__ = [
@@ -39,7 +40,10 @@ __all__ = [
     "Monitor",
     "Overpainter",
     "Pigment",
+    "PowerOfReflectance",
+    "Scattering",
     "Surface",
+    "dispersive",
     "make_coat",
     "mix",
     "mixers",

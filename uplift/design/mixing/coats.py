@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike
 from uplift.common.arrays import Array
 from uplift.design.mixing import dyes, kubelka_munk
 from uplift.design.mixing.layers import Layer
-from uplift.design.mixing.pigments import GRADING, Pigment, from_black_and_white, from_opaque
+from uplift.design.mixing.pigments import Pigment, from_black_and_white, from_opaque
+from uplift.design.mixing.scattering import Scattering
 from uplift.design.mixing.surface import NO_SURFACE, Surface
 from uplift.design.mixing.validation import as_length
 
@@ -106,24 +107,38 @@ def from_pigments(
 
 
 def pigment_from_reflectance(
-    reflectance: ArrayLike,
-    on_black: ArrayLike | None = None,
-    *,
-    surface: Surface = NO_SURFACE,
-    grading: float = GRADING,
+    reflectance: ArrayLike, scattering: Scattering, surface: Surface = NO_SURFACE
 ) -> Pigment:
-    """Derive absorption and scattering of a paint from its reflectance, surface included.
+    """Derive absorption and scattering of an opaque paint from its reflectance, surface included.
 
     Parameters
     ----------
     reflectance : array_like of shape (N,)
-        Reflectance of the opaque paint; with ``on_black``, of one unit of thickness on white.
-    on_black : array_like of shape (N,), optional
-        Reflectance of one unit of thickness on black.
+        Reflectance of the opaque paint.
+    scattering : Scattering
+        S that is assumed for a reflectance beneath the surface.
     surface : Surface
         Surface of the vehicle.
-    grading : float
-        Exponent p of the assumed scattering S = R^p of opaque paint.
+
+    Returns
+    -------
+    Pigment
+        Absorption and scattering (N,).
+    """
+    return from_opaque(_internal(surface, reflectance), scattering)
+
+
+def pigment_from_two_grounds(
+    on_white: ArrayLike, on_black: ArrayLike, surface: Surface = NO_SURFACE
+) -> Pigment:
+    """Derive absorption and scattering of a paint, one unit thick, from its reflectances, surface included.
+
+    Parameters
+    ----------
+    on_white, on_black : array_like of shape (N,)
+        Reflectances on white and on black.
+    surface : Surface
+        Surface of the vehicle.
 
     Returns
     -------
@@ -135,10 +150,7 @@ def pigment_from_reflectance(
     ColourError
         No paint has both reflectances; see `pigments.from_black_and_white`.
     """
-    internal = _internal(surface, reflectance)
-    if on_black is None:
-        return from_opaque(internal, grading)
-    return from_black_and_white(_internal(surface, on_black), internal)
+    return from_black_and_white(_internal(surface, on_black), _internal(surface, on_white))
 
 
 def stack(paints: Sequence[Pigment]) -> Pigment:

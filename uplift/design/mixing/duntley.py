@@ -15,6 +15,10 @@ fluxes Q' from above and P' e^−μX from below. With the reflectance r and tran
 which is eq. 10.8 of Fishkin 1983. The denominator of P' and Q' is μ² − γ². Both limits exist where it vanishes. There
 the mean of values on both sides is taken.
 
+Two colours cannot determine eight constants. Particles that scatter in all directions alike leave two (`isotropic`): a
+path of diffuse light is on average twice as long as the beam's, so that K' = K/2 and B' = F' = S/2 for Kubelka and
+Munk's K and S = B. An opaque layer of reflectance r in diffuse light then has R = 2r / (3 − r) in a beam.
+
 References
 ----------
 S. Q. Duntley, J. Opt. Soc. Am. 32(2), 1942.
@@ -25,6 +29,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
 from uplift.design.mixing import kubelka_munk
@@ -53,6 +58,62 @@ class Flux:
     def attenuation(self) -> Array:
         """Sum of all three (..., N)."""
         return self.absorption + self.backward + self.forward
+
+
+def isotropic(pigment: Pigment) -> tuple[Flux, Flux]:
+    """Derive the constants of a pigment that scatters in all directions alike.
+
+    Parameters
+    ----------
+    pigment : Pigment
+        Kubelka and Munk's K and S (..., N).
+
+    Returns
+    -------
+    beam, diffuse : Flux
+        Constants of the incident beam and of diffuse light.
+    """
+    K, S = pigment.absorption, pigment.scattering
+    return Flux(K / 2, S / 2, S / 2), Flux(K, S, S)
+
+
+def directed_reflectance(diffuse: ArrayLike) -> Array:
+    """Return the reflectance in a beam of an opaque, isotropic layer, R = 2r / (3 − r).
+
+    Parameters
+    ----------
+    diffuse : array_like of shape (...)
+        Its reflectance r in diffuse light, in [0, 1]; see `kubelka_munk.opaque_reflectance`.
+
+    Returns
+    -------
+    ndarray of shape (...)
+        Reflectance in [0, 1].
+
+    Examples
+    --------
+    >>> directed_reflectance([0.0, 0.6, 1.0]).tolist()
+    [0.0, 0.5, 1.0]
+    """
+    r = np.asarray(diffuse, dtype=float)
+    return 2 * r / (3 - r)
+
+
+def diffuse_reflectance(directed: ArrayLike) -> Array:
+    """Return the reflectance in diffuse light of an opaque, isotropic layer, r = 3R / (2 + R).
+
+    Parameters
+    ----------
+    directed : array_like of shape (...)
+        Its reflectance R in a beam, in [0, 1].
+
+    Returns
+    -------
+    ndarray of shape (...)
+        Reflectance in [0, 1].
+    """
+    R = np.asarray(directed, dtype=float)
+    return 3 * R / (2 + R)
 
 
 def layer(beam: Flux, diffuse: Flux, thickness: float) -> Layer:

@@ -4,11 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.design.mixing import additive, amy, dyes, filters, kubelka_munk, phosphors, pigments, ryb, surface
+from uplift.design.mixing import (
+    additive,
+    amy,
+    duntley,
+    dyes,
+    filters,
+    kubelka_munk,
+    phosphors,
+    pigments,
+    ryb,
+    scattering,
+    surface,
+)
+from uplift.design.mixing.pigments import Pigment
+from uplift.design.mixing.scattering import Scattering
 from uplift.lookup import Cube
 
 Mix = Callable[[Array, Array], Array]
@@ -34,35 +50,43 @@ class Mixer:
     mix: Mix
 
 
-def _mix_in_oil(spectra: Array, parts: Array) -> Array:
+OIL = surface.normal_incidence(1.5)
+
+
+def spectral_models(sensor: Sensor) -> dict[str, tuple[str, Mix]]:
+    """Return the models of spectra (title, function) at the wavelengths of a sensor, by name."""
+    assumed = scattering.dispersive(sensor)
+    return {
+        "pigments": ("Kubelka–Munk", _pigments(assumed)),
+        "pigments in oil": ("Kubelka–Munk, in oil (index 1.5)", partial(_mix_in_oil, assumed)),
+        "pigments, S = √R": ("Kubelka–Munk, S = √R", _pigments(scattering.SQUARE_ROOT)),
+        "pigments, S = 1": ("Kubelka–Munk, S = 1", _pigments(scattering.CONSTANT)),
+        "pigments, Amy": ("Amy's approximation", _pigments(assumed, amy.opaque_reflectance)),
+        "pigments, Duntley": ("Duntley, in directed light", partial(_mix_in_directed_light, assumed)),
+        "dyes": ("dyes on white", _mix_dyes),
+        "filters": ("filters", filters.stack),
+    }
+
+
+def _pigments(
+    assumed: Scattering, opaque_reflectance: Callable[[Pigment], Array] = kubelka_munk.opaque_reflectance
+) -> Mix:
+    return lambda spectra, parts: opaque_reflectance(pigments.from_opaque(spectra, assumed).mix(parts))
+
+
+def _mix_in_oil(assumed: Scattering, spectra: Array, parts: Array) -> Array:
     internal = np.clip(OIL.remove(spectra), 0, 1)
-    return OIL.apply(kubelka_munk.opaque_reflectance(pigments.from_opaque(internal).mix(parts)))
+    return OIL.apply(_pigments(assumed)(internal, parts))
+
+
+def _mix_in_directed_light(assumed: Scattering, spectra: Array, parts: Array) -> Array:
+    return duntley.directed_reflectance(_pigments(assumed)(duntley.diffuse_reflectance(spectra), parts))
 
 
 def _mix_dyes(spectra: Array, parts: Array) -> Array:
     absorption = dyes.mix(dyes.from_reflectance(spectra), parts)
     return dyes.reflectance_on_ground(dyes.transmittance(absorption), 1.0)
 
-
-OIL = surface.normal_incidence(1.5)
-SPECTRAL: dict[str, tuple[str, Mix]] = {
-    "pigments": (
-        "Kubelka–Munk, S = √R",
-        lambda spectra, parts: kubelka_munk.opaque_reflectance(pigments.from_opaque(spectra).mix(parts)),
-    ),
-    "pigments in oil": ("Kubelka–Munk, S = √R, in oil (index 1.5)", _mix_in_oil),
-    "pigments, one constant": (
-        "Kubelka–Munk, S = 1",
-        lambda spectra, parts: kubelka_munk.opaque_reflectance(pigments.from_opaque(spectra, 0).mix(parts)),
-    ),
-    "pigments, Amy": (
-        "Amy's approximation",
-        lambda spectra, parts: amy.opaque_reflectance(pigments.from_opaque(spectra).mix(parts)),
-    ),
-    "dyes": ("dyes on white", _mix_dyes),
-    "filters": ("filters", filters.stack),
-}
-"""Models of spectra (title, function), by name."""
 
 RGB: dict[str, tuple[str, Mix]] = {
     "average": ("average of RGB", additive.average_areas),
@@ -85,7 +109,10 @@ def mixers(cube: Cube) -> tuple[Mixer, ...]:
     tuple of Mixer
         Spectral models, RGB heuristics, and phosphor curves.
     """
-    spectral = [Mixer(name, title, _uplifted(cube, mix)) for name, (title, mix) in SPECTRAL.items()]
+    spectral = [
+        Mixer(name, title, _uplifted(cube, mix))
+        for name, (title, mix) in spectral_models(cube.data.sensor).items()
+    ]
     heuristics = [Mixer(name, title, mix) for name, (title, mix) in RGB.items()]
     return (*spectral, *heuristics, Mixer("phosphors", "phosphor curves", phosphors.make_monitor().mix))
 

@@ -120,11 +120,12 @@ def prepare(
     --------
     ::
 
-        from uplift.design.mixing import coats, overpaint, pigments
+        from uplift.design.mixing import coats, dispersive, overpaint
         from uplift.io import texture
 
-        red = coats.pigment_from_reflectance(cube.reflectance([0.5, 0.05, 0.03]))
-        glaze = coats.from_pigments(pigments.stack([red]), [1], thickness=0.5)
+        spectrum = cube.reflectance([0.5, 0.05, 0.03])
+        red = coats.pigment_from_reflectance(spectrum, dispersive(cube.data.sensor))
+        glaze = coats.from_pigments(coats.stack([red]), [1], thickness=0.5)
         texture.convert(overpaint.prepare(cube, glaze), "painting.exr", "painted.exr")
     """
     from uplift.lookup import bulk

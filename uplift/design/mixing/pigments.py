@@ -1,12 +1,8 @@
 """Absorption K and scattering S of paints, from measured reflectances.
 
 Mixtures average both (eq. 10.7). Reflectances on two grounds determine both. The reflectance R of opaque paint
-determines K/S only (eq. 10.6, where Fishkin 1983 prints 1 − R² for (1 − R)²), so S must be assumed: S = R^p.
-
-- p = 0, equal scattering, is the single-constant theory. A trace of a dark paint dominates every mixture.
-- Measured dark paints scatter less. Larger p, up to 0.8, predicts their mixtures better, but makes blue and yellow
-  grey.
-- p = ½, the default, is a compromise; see docs/mixing.md.
+determines K/S only (eq. 10.6, where Fishkin 1983 prints 1 − R² for (1 − R)²), so S must be assumed; see
+`uplift.design.mixing.scattering`.
 
 References
 ----------
@@ -22,10 +18,9 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError
+from uplift.design.mixing.scattering import Scattering
 from uplift.design.mixing.validation import as_length, as_shares, weighted_sum
 
-GRADING = 0.5
-"""Exponent p of S = R^p."""
 DARKEST = 1e-4
 """Smallest reflectance that K and S are derived from; K diverges at 0."""
 SLACK = 1e-3
@@ -86,15 +81,15 @@ def absorption_over_scattering(reflectance: ArrayLike) -> Array:
     return (1 - R) ** 2 / (2 * R)
 
 
-def from_opaque(reflectance: ArrayLike, grading: float = GRADING) -> Pigment:
-    """Derive K and S = R^p from the reflectance of opaque paint.
+def from_opaque(reflectance: ArrayLike, scattering: Scattering) -> Pigment:
+    """Derive K and S from the reflectance of opaque paint.
 
     Parameters
     ----------
     reflectance : array_like of shape (..., N)
         Reflectance in [0, 1]; values below `DARKEST` are raised to it.
-    grading : float
-        Exponent p, at least 0.
+    scattering : Scattering
+        S that is assumed for a reflectance.
 
     Returns
     -------
@@ -102,7 +97,7 @@ def from_opaque(reflectance: ArrayLike, grading: float = GRADING) -> Pigment:
         Absorption and scattering (..., N).
     """
     R = np.clip(np.asarray(reflectance, dtype=float), DARKEST, 1)
-    S = R ** as_length(grading, "grading", code="invalid-grading")
+    S = scattering(R)
     return Pigment(S * absorption_over_scattering(R), S)
 
 

@@ -13,7 +13,8 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.design.mixing import additive, coats, filters
 from uplift.design.mixing.coats import Coat
-from uplift.design.mixing.pigments import GRADING
+from uplift.design.mixing.pigments import Pigment
+from uplift.design.mixing.scattering import Scattering
 from uplift.design.mixing.surface import NO_SURFACE, Surface
 from uplift.design.mixing.validation import as_amounts
 
@@ -48,13 +49,13 @@ class Medium:
         Thickness in units, by default opaque for pigments and 1 for dyes.
     surface : Surface
         Surface of the vehicle.
-    grading : float
-        Exponent of the pigments' scattering; see `uplift.design.mixing.pigments`.
+    scattering : Scattering, optional
+        S of pigments given by one colour, which need it; see `uplift.design.mixing.scattering`.
     """
 
     thickness: float | None = None
     surface: Surface = NO_SURFACE
-    grading: float = GRADING
+    scattering: Scattering | None = None
 
 
 def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium) -> Coat:
@@ -79,7 +80,8 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
     Raises
     ------
     OptionError
-        The kind makes no coat (code ``unknown-coat``), or a dye has a colour on black (``dye-on-black``).
+        The kind makes no coat (code ``unknown-coat``), a dye has a colour on black (``dye-on-black``), or a pigment of
+        one colour has no assumed scattering (``scattering-missing``).
     ColourError
         No paint has the reflectances of a pigment.
 
@@ -103,10 +105,22 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
         thickness = 1.0 if medium.thickness is None else medium.thickness
         return coats.from_dyes(ingredients.spectra, parts, thickness, medium.surface)
     paints = [
-        coats.pigment_from_reflectance(spectrum, on_black, surface=medium.surface, grading=medium.grading)
+        _pigment(spectrum, on_black, medium)
         for spectrum, on_black in zip(ingredients.spectra, ingredients.on_black, strict=True)
     ]
     return coats.from_pigments(coats.stack(paints), parts, medium.thickness, medium.surface)
+
+
+def _pigment(spectrum: Array, on_black: Array | None, medium: Medium) -> Pigment:
+    if on_black is not None:
+        return coats.pigment_from_two_grounds(spectrum, on_black, medium.surface)
+    if medium.scattering is None:
+        raise OptionError(
+            "one colour does not determine the scattering of a pigment",
+            code="scattering-missing",
+            hint="set the scattering of the medium, or give a colour on black",
+        )
+    return coats.pigment_from_reflectance(spectrum, medium.scattering, medium.surface)
 
 
 def _warn_of_dark(ingredients: Ingredients, surface: Surface) -> None:
@@ -153,7 +167,7 @@ def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, g
         raise OptionError(
             f"unknown kind of mixture '{kind}'", code="unknown-mixture", hint=f"use one of {', '.join(KINDS)}"
         )
-    if medium != Medium() or any(one is not None for one in ingredients.on_black):
+    if (medium.thickness, medium.surface) != (None, NO_SURFACE) or any(one is not None for one in ingredients.on_black):
         raise OptionError(
             f"{kind}s must not have a thickness, a surface or a colour on black",
             code="medium-not-applicable",
