@@ -10,12 +10,20 @@ def main() -> None:
     enable_jit_cache()
     use_one_blas_thread()
     import uplift
-    from benchmarks.mixing import models, pictures, times
+    from benchmarks.mixing import assumptions, models, pictures, times
     from benchmarks.record import ROOT, write
 
     cube = uplift.load(ROOT / "cubes" / "moments-16-macbeth.uplift")
-    pictures.draw(cube, ROOT / "docs" / "mixing")
-    write("mixing", "make mixing", **models.criteria(cube), **models.gradings(cube), **times.measure(cube))
+    smooth = uplift.load()
+    pictures.draw(cube, smooth, ROOT / "docs" / "mixing")
+    write(
+        "mixing",
+        "make mixing",
+        **models.criteria(cube),
+        **assumptions.compare(smooth, cube),
+        **models.surfaces(),
+        **times.measure(cube),
+    )
 
 
 if __name__ == "__main__":

@@ -12,8 +12,9 @@ from benchmarks.mixing.pictures import colour
 from uplift.colorimetry.observer import colour_science
 from uplift.common.arrays import Array
 from uplift.design.mixing import coats, hsl, kubelka_munk, overpaint
-from uplift.design.mixing.mixers import SPECTRAL, mixers
+from uplift.design.mixing.mixers import mixers, spectral_models
 from uplift.design.mixing.pigments import Pigment
+from uplift.design.mixing.scattering import dispersive
 from uplift.lab.timing import Spread, time_calls
 from uplift.lookup import Cube
 
@@ -39,10 +40,10 @@ def mixtures(cube: Cube) -> list[dict[str, Any]]:
     rng = np.random.default_rng(0)
     rgb, parts = rng.random((MIXTURES, 2, 3)), rng.random((MIXTURES, 2)) + 0.1
     spectra = cube.reflectance(rgb)
-    rows = []
+    rows, spectral_mixers = [], spectral_models(cube.data.sensor)
     for mixer in mixers(cube):
         _check(mixer.mix, rgb, parts)
-        between = SPECTRAL.get(mixer.name)
+        between = spectral_mixers.get(mixer.name)
         spectral = _ns(partial(between[1], spectra, parts), MIXTURES) if between else None
         rows.append(
             {"mixer": mixer.title, "rgb": _ns(partial(mixer.mix, rgb, parts), MIXTURES), "spectra": spectral}
@@ -61,7 +62,8 @@ def _check(mix: Callable[[Array, Array], Array], rgb: Array, parts: Array) -> No
 def images(cube: Cube) -> list[dict[str, Any]]:
     """Return nanoseconds of a coat over an image, and of HSL to RGB."""
     rng = np.random.default_rng(0)
-    red = coats.stack([coats.pigment_from_reflectance(cube.reflectance(colour(cube, "red")))])
+    spectrum = cube.reflectance(colour(cube, "red"))
+    red = coats.stack([coats.pigment_from_reflectance(spectrum, dispersive(cube.data.sensor))])
     coat = coats.from_pigments(red, [1], 0.5)
     brush = overpaint.prepare(cube, coat, threads=1)
     image = rng.random((PIXELS, 3)).astype(np.float32)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.design.mixing.reference import paint_mixtures, published_mixtures
+from benchmarks.mixing.paints import BLUES, acrylics, published
 from tests.helpers import raises
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import OptionError
@@ -36,6 +36,16 @@ def smooth_cube():
     import uplift
 
     return uplift.load()
+
+
+def errors(mixtures, mixer, sensor):
+    """ΔE00 (n,) of mixtures from the colours of their paints."""
+    found = np.clip(mixer.mix(mixtures.components, mixtures.shares), 0, 1)
+    return delta_e_rgb(sensor, mixtures.expected, found)
+
+
+def mean_error(mixtures, mixer, sensor):
+    return errors(mixtures, mixer, sensor).mean()
 
 
 def test_grey_paints_scatter_alike_at_all_wavelengths(assumed):
@@ -95,19 +105,14 @@ def test_an_invalid_exponent_raises(exponent):
 @pytest.mark.parametrize(("name", "largest"), [("pigments", 8.0), ("pigments, S = √R", 11.0)])
 def test_mixtures_of_measured_paints_from_their_rgb(by_name, sensor, name, largest):
     """Mean ΔE00 over 513 mixtures of acrylics; docs/mixing.md has the table."""
-    pairs, shares, expected = paint_mixtures()
-    found = np.clip(by_name[name].mix(pairs, shares), 0, 1)
-    error = delta_e_rgb(sensor, expected, found).mean()
+    error = mean_error(acrylics(), by_name[name], sensor)
     assert largest - 1 < error < largest
 
 
 def test_blues_and_yellows_are_nearer_to_measured_greens(by_name, sensor):
-    pairs, shares, expected = paint_mixtures(("ultramarine", "cobalt", "cerulean", "phthalo blue"), "yellow")
-    assert len(pairs) == 45
-    now, before = (
-        delta_e_rgb(sensor, expected, np.clip(by_name[name].mix(pairs, shares), 0, 1)).mean()
-        for name in ("pigments", "pigments, S = √R")
-    )
+    greens = acrylics(BLUES, "yellow")
+    assert len(greens.pairs) == 45
+    now, before = (mean_error(greens, by_name[name], sensor) for name in ("pigments", "pigments, S = √R"))
     assert now < 0.65 * before
 
 
@@ -122,11 +127,10 @@ def test_common_blues_and_yellows_are_green(by_name, smooth_cube, blue, yellow):
 
 
 def test_mixbox_s_published_mixtures_are_nearer_than_before(by_name, smooth_cube):
-    pairs, shares, expected = published_mixtures("mixbox", smooth_cube)
-    assert len(pairs) == 11
+    examples = published("mixbox", smooth_cube)
+    assert len(examples.pairs) == 11
     now, before = (
-        delta_e_rgb(smooth_cube.data.sensor, expected, np.clip(by_name[name].mix(pairs, shares), 0, 1))
-        for name in ("pigments", "pigments, S = √R")
+        errors(examples, by_name[name], smooth_cube.data.sensor) for name in ("pigments", "pigments, S = √R")
     )
     assert now[0] < 8 < 30 < before[0], "cobalt blue and Hansa yellow"
     assert now.mean() < before.mean()

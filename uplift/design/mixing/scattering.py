@@ -75,16 +75,20 @@ class Dispersive:
         Weights of Y, of sum 1.
     imbalance : ndarray of shape (N, N)
         Matrix from √(K/S) to h. Each row sums to 0: a grey paint has h = 0.
+    exponent, weight : float
+        Exponent of Y and factor of h.
     """
 
     luminance: Array
     imbalance: Array
+    exponent: float = LUMINANCE_EXPONENT
+    weight: float = DISPERSION
 
     def __call__(self, reflectance: Array) -> Array:
         R = np.maximum(reflectance, DARKEST_DISPERSED)
         h = ((1 - R) / np.sqrt(2 * R)) @ self.imbalance.T
         Y = (reflectance @ self.luminance)[..., None]
-        return np.asarray(Y**LUMINANCE_EXPONENT * np.exp(DISPERSION * h))
+        return np.asarray(Y**self.exponent * np.exp(self.weight * h))
 
 
 def dispersive(sensor: Sensor, further: ArrayLike = ()) -> Dispersive:
