@@ -24,7 +24,9 @@ def glaze(small_cube):
     atlas = small_cube.data.atlas
     red = small_cube.reflectance(atlas.rgb[atlas.names.index("red")])
     oil = surface.normal_incidence(1.5)
-    return coats.from_pigments(coats.stack([coats.pigment_from_reflectance(red, SQUARE_ROOT, oil)]), [1], 0.5, oil)
+    return coats.from_pigments(
+        coats.stack([coats.pigment_from_reflectance(red, SQUARE_ROOT, oil)]), [1], 0.5, oil
+    )
 
 
 @pytest.fixture(scope="module")

@@ -24,7 +24,13 @@ def two(rng):
 
 @pytest.mark.parametrize("kind", recipes.COATS)
 @pytest.mark.parametrize(
-    "medium", [PLAIN, Medium(surface=OIL, scattering=SQUARE_ROOT), Medium(surface=DIFFUSE, scattering=SQUARE_ROOT), Medium(scattering=CONSTANT)]
+    "medium",
+    [
+        PLAIN,
+        Medium(surface=OIL, scattering=SQUARE_ROOT),
+        Medium(surface=DIFFUSE, scattering=SQUARE_ROOT),
+        Medium(scattering=CONSTANT),
+    ],
 )
 def test_a_single_colour_is_unchanged(two, kind, medium):
     for parts, expected in (([1, 0], two.spectra[0]), ([0, 3], two.spectra[1])):
@@ -54,9 +60,7 @@ def test_paint_measured_on_white_and_black_round_trip(rng):
 
 
 def test_filters_and_lights(two):
-    np.testing.assert_allclose(
-        mix("filter", two, [2, 1], PLAIN, 0.0), two.spectra[0] ** 2 * two.spectra[1]
-    )
+    np.testing.assert_allclose(mix("filter", two, [2, 1], PLAIN, 0.0), two.spectra[0] ** 2 * two.spectra[1])
     np.testing.assert_allclose(mix("light", two, [2, 1], PLAIN, 0.0), 2 * two.spectra[0] + two.spectra[1])
 
 
@@ -64,7 +68,9 @@ def test_many_proportions_at_once(two):
     parts = ramp([2, 1], 4)
     found = mix("pigment", two, parts, Medium(0.5, scattering=SQUARE_ROOT), WHITE)
     assert found.shape == (4, 5)
-    np.testing.assert_allclose(found[1], mix("pigment", two, parts[1], Medium(0.5, scattering=SQUARE_ROOT), WHITE))
+    np.testing.assert_allclose(
+        found[1], mix("pigment", two, parts[1], Medium(0.5, scattering=SQUARE_ROOT), WHITE)
+    )
 
 
 def test_ramps():

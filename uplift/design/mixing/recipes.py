@@ -167,7 +167,9 @@ def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, g
         raise OptionError(
             f"unknown kind of mixture '{kind}'", code="unknown-mixture", hint=f"use one of {', '.join(KINDS)}"
         )
-    if (medium.thickness, medium.surface) != (None, NO_SURFACE) or any(one is not None for one in ingredients.on_black):
+    if (medium.thickness, medium.surface) != (None, NO_SURFACE) or any(
+        one is not None for one in ingredients.on_black
+    ):
         raise OptionError(
             f"{kind}s must not have a thickness, a surface or a colour on black",
             code="medium-not-applicable",

@@ -35,7 +35,7 @@ DISPERSION = 0.25
 REACH = 40.0
 """Distance in nm at which the weight of absorption in h falls to 1/e."""
 DARKEST_DISPERSED = 0.01
-"""Smallest reflectance that h is computed from; √(K/S) diverges at 0, where the colour no longer tells it."""
+"""Smallest reflectance that h is computed from; √(K/S) diverges at 0, where the colour no longer determines it."""
 
 Scattering = Callable[[Array], Array]
 """From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has 1."""
