@@ -63,8 +63,8 @@ WRITERS = {"table": as_table, "json": as_json}
     type=click.Choice(SCATTERINGS),
     default=SCATTERINGS[0],
     show_default=True,
-    help="Scattering that is assumed of a paint given by one colour: dispersive is strongest on the long-wave side of an "
-    "absorption, root is √R for a reflectance R, constant is 1.",
+    help="Scattering that is assumed of a paint given by one colour: dispersive is strongest on the long-wave side of "
+    "an absorption, root is √R for a reflectance R, constant is 1.",
 )
 @click.option(
     "--theories",
