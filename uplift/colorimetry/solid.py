@@ -113,3 +113,24 @@ def solid(matrix: Array) -> Solid:
     along = normals @ matrix
     offsets = np.maximum(along, 0).sum(axis=1), np.maximum(-along, 0).sum(axis=1)
     return Solid(np.concatenate([normals, -normals]), np.concatenate(offsets))
+
+
+def solid_volume(matrix: Array) -> float:
+    """Compute the volume of the object-colour solid of three responses.
+
+    The zonotope consists of a parallelepiped for each triple of segments; each pair of segments takes part in those of
+    all third ones.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (3, N)
+        Responses, such as `Sensor.matrix` or `Light.xyz`.
+
+    Returns
+    -------
+    float
+    """
+    first, second = np.triu_indices(matrix.shape[1], k=1)
+    normals = np.cross(matrix.T[first], matrix.T[second])
+    blocks = [normals[start : start + BLOCK] for start in range(0, len(normals), BLOCK)]
+    return float(sum(np.abs(block @ matrix).sum() for block in blocks) / 3)

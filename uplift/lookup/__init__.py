@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from uplift.lookup.bounds import Bounds, bounds
 from uplift.lookup.cube import Cube, load
 from uplift.lookup.emission import EmissionTable, load_emission
 from uplift.lookup.interpolate import MODES
@@ -9,9 +10,11 @@ from uplift.lookup.query import QueryResult, query, query_xyz
 
 __all__ = [
     "MODES",
+    "Bounds",
     "Cube",
     "EmissionTable",
     "QueryResult",
+    "bounds",
     "load",
     "load_emission",
     "query",

@@ -1,0 +1,215 @@
+"""Mismatch volumes: all colours that the reflectances of one RGB can have under another light.
+
+Of all reflectances in [0, 1] with linear RGB r under the build illuminant, the XYZ under a second light fill a convex
+body: the object-colour solid of the six sensors, cut at r. In each direction its boundary is the XYZ of one extreme
+reflectance (`uplift.colorimetry.extreme_spectra`). The directions are spread evenly after the space is scaled so that
+the responses of the second light that the sensor does not share have the same size in all directions.
+
+References
+----------
+Finlayson & Morovic 2005, "Metamer sets", JOSA A 22(5). Logvinenko, Funt & Godau 2014, "Metamer mismatching", IEEE
+Transactions on Image Processing 23(1).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry.extreme_spectra import extreme_spectra, first_basis
+from uplift.colorimetry.sensor import Light, Sensor
+from uplift.colorimetry.solid import solid
+from uplift.colorimetry.sphere import COUNTS, Sphere, sphere
+from uplift.common.arrays import Array, Indices
+from uplift.common.errors import ColourError
+
+DIVISIONS = 2
+"""Divisions of the icosahedron: 162 directions."""
+MIN_SCALE = 1e-6
+"""Smallest scale of a direction, relative to the light: the volume of the build illuminant is a point."""
+BLOCK_PROBLEMS = 1 << 14
+"""Colours times directions processed at a time."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MismatchVolumes:
+    """Mismatch volumes of n colours under a light.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Sensor of the RGB.
+    light : Light
+        The second light.
+    rgb : ndarray, shape (n, 3)
+        Linear RGB.
+    directions : Sphere
+        D directions in the scaled space, and the triangles between them.
+    scale : ndarray, shape (3, 3)
+        From the scaled space to XYZ.
+    xyz : ndarray, shape (n, D, 3)
+        XYZ on the boundary, the extreme of each direction.
+    basis : ndarray of int, shape (n, D, 3)
+        Wavelengths at which the extreme reflectances are neither 0 nor 1.
+    """
+
+    sensor: Sensor
+    light: Light
+    rgb: Array
+    directions: Sphere
+    scale: Array
+    xyz: Array
+    basis: Indices
+
+    @cached_property
+    def lab(self) -> Array:
+        """L*a*b* on the boundary, shape (n, D, 3)."""
+        return lab(self.xyz, self.light.white)
+
+    @cached_property
+    def volume(self) -> Array:
+        """Volumes (n,) in XYZ of the meshes between the boundary points: less than those of the bodies."""
+        return mesh_volume(self.xyz, self.directions.faces)
+
+    @cached_property
+    def corners(self) -> Array:
+        """XYZ (n, F, 3) whose convex hull contains the body: where the planes of three neighbours meet."""
+        faces = self.directions.faces
+        return corners(self.scale, self.directions.directions[faces], self.xyz[:, faces])
+
+    def excess(self, xyz: Array) -> Array:
+        """Compute by how much colours exceed the body in the direction in which they do so most.
+
+        Parameters
+        ----------
+        xyz : ndarray, shape (n, 3)
+            XYZ under the light, one for each colour.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Not positive for all colours of the body; in XYZ, along the outward normal.
+        """
+        normals = self.directions.directions @ np.linalg.inv(self.scale)
+        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        return np.asarray(np.einsum("ndi,di->nd", xyz[:, None] - self.xyz, normals).max(axis=1))
+
+
+def mismatch_volumes(
+    sensor: Sensor, light: Light, rgb: Array, divisions: int = DIVISIONS
+) -> MismatchVolumes:
+    """Compute the mismatch volumes of colours under a light.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Sensor of the RGB.
+    light : Light
+        The second light, at the wavelengths of the sensor.
+    rgb : ndarray, shape (n, 3)
+        Linear RGB.
+    divisions : int, default 2
+        Divisions of the icosahedron of directions: 12, 42, 162, 642 directions for 0 to 3.
+
+    Returns
+    -------
+    MismatchVolumes
+
+    Raises
+    ------
+    ColourError
+        No reflectance has a colour (code ``colour-unrealisable``).
+    """
+    _require_realisable(sensor, rgb)
+    directions, scale = sphere(divisions), _scale(sensor, light)
+    response = directions.directions @ np.linalg.solve(scale, light.xyz)
+    xyz = np.empty((len(rgb), len(response), 3))
+    basis = np.empty(xyz.shape, dtype=np.intp)
+    for block in _blocks(len(rgb), len(response)):
+        _solve(sensor, light, rgb[block], response, directions.parents, xyz[block], basis[block])
+    return MismatchVolumes(sensor, light, rgb, directions, scale, xyz, basis)
+
+
+def mesh_volume(points: Array, faces: Indices) -> Array:
+    """Compute the volumes (n,) of closed triangle meshes with corners (n, D, 3) and faces (F, 3)."""
+    centred = points - points.mean(axis=1, keepdims=True)
+    a, b, c = (centred[:, faces[:, corner]] for corner in range(3))
+    return np.asarray(np.einsum("nfi,nfi->n", a, np.cross(b, c)) / 6)
+
+
+def corners(scale: Array, directions: Array, xyz: Array) -> Array:
+    """Compute where the tangent planes of three boundary points meet.
+
+    Every direction between the three has its extreme on the inner side of the corner.
+
+    Parameters
+    ----------
+    scale : ndarray, shape (3, 3)
+        `MismatchVolumes.scale`.
+    directions : ndarray, shape (..., 3, 3)
+        Three directions in the scaled space.
+    xyz : ndarray, shape (..., 3, 3)
+        XYZ of their extremes.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        XYZ.
+    """
+    support = ((xyz @ np.linalg.inv(scale).T) * directions).sum(axis=-1)
+    return np.asarray((np.linalg.inv(directions) @ support[..., None])[..., 0] @ scale.T)
+
+
+def _require_realisable(sensor: Sensor, rgb: Array) -> None:
+    outside = np.flatnonzero(~solid(sensor.matrix).contains(rgb))
+    if outside.size:
+        values = ", ".join(f"{value:.6g}" for value in rgb[outside[0]])
+        raise ColourError(
+            f"no reflectance has the colour ({values}) under {sensor.illuminant}",
+            code="colour-unrealisable",
+            hint="give a colour with less chroma",
+        )
+
+
+def _scale(sensor: Sensor, light: Light) -> Array:
+    """Square root of the products of the responses of the light that those of the sensor do not explain."""
+    explained = np.linalg.lstsq(sensor.matrix.T, light.xyz.T, rcond=None)[0]
+    rest = light.xyz - explained.T @ sensor.matrix
+    squares, axes = np.linalg.eigh(rest @ rest.T)
+    lengths = np.sqrt(np.maximum(squares, MIN_SCALE**2 * (light.xyz**2).sum()))
+    return np.asarray((axes * lengths) @ axes.T)
+
+
+def _blocks(count: int, directions: int) -> Iterator[slice]:
+    rows = max(BLOCK_PROBLEMS // directions, 1)
+    return (slice(first, first + rows) for first in range(0, count, rows))
+
+
+def _solve(
+    sensor: Sensor, light: Light, rgb: Array, response: Array, parents: Indices, xyz: Array, basis: Indices
+) -> None:
+    """Fill the boundary points (n, D, 3), from coarse to fine: each direction starts at its parent's optimum."""
+    basis[:] = first_basis(sensor.matrix)
+    for first, last in pairwise((0, *COUNTS)):
+        if first >= len(parents):
+            break
+        start = basis[:, parents[first:last]] if first else basis[:, :last]
+        found = extreme_spectra(
+            sensor.matrix,
+            np.repeat(rgb, last - first, axis=0),
+            np.tile(response[first:last], (len(rgb), 1)),
+            start.reshape(-1, 3),
+        )
+        if not found.solved.all():
+            raise ColourError(
+                "rounding prevents a decision whether a reflectance has a colour",
+                code="colour-unrealisable",
+                hint="give a colour with less chroma",
+            )
+        xyz[:, first:last] = (found.reflectance @ light.xyz.T).reshape(len(rgb), -1, 3)
+        basis[:, first:last] = found.basis.reshape(len(rgb), -1, 3)
