@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from uplift.colorimetry.lights import RELIGHT_LIGHTS
 from uplift.common.errors import UpliftWarning
 
 from ..output.query_output import WRITERS
@@ -35,8 +36,10 @@ if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Light
     from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
-    from uplift.lookup import Cube, QueryResult
+    from uplift.lookup import Bounds, Cube, QueryResult
 
+DIVISIONS, SINGLE_DIVISIONS = 2, 3
+"""Density of the directions of bounds: 162 of each of many colours, 642 of a single one."""
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
 
 
@@ -81,9 +84,15 @@ class ColourCommand(click.Command):
 @input_space_option("the colours", "--space", default="that of the cube")
 @out_of_gamut_option()
 @fill_option()
-@light_option("Illuminant of a standard error, in addition to that of the cube", "none")
+@light_option("Illuminant of a standard error, in addition to that of the cube, or of --bounds", "none")
+@click.option(
+    "--bounds",
+    "with_bounds",
+    is_flag=True,
+    help="Bounds of all reflectances of the colour under each --light, by default A, FL11 and HP1.",
+)
 @format_option("table", "json", "csv")
-@plot_option("--plot", "plot_path", "Plot the spectra")
+@plot_option("--plot", "plot_path", "Plot the spectra, or the bounds")
 @force_option()
 def command(
     colour: tuple[str, ...],
@@ -99,6 +108,7 @@ def command(
     method: str,
     fill_missing: bool,
     lights: tuple[str, ...],
+    with_bounds: bool,
     style: str,
     plot_path: str | None,
     force: bool,
@@ -120,9 +130,11 @@ def command(
       uplift query --xy 0.17 0.7 --luminance 0.15 --format json
       echo 0.5,0.5,0.5 | uplift query - --format json
       uplift query '#cc3319' --cube macbeth-32.uplift --light FL11 --light HP1
+      uplift query '#8a2a20' --bounds --light A --light FL11 --plot bounds.png
 
     Standard errors are those of materials like the entries of the cube's atlas. RGB does not identify a material:
-    others of the same colour may differ by more.
+    others of the same colour may differ by more. --bounds computes by how much any reflectance can: the largest ΔE00
+    from the answer under a light, and the ranges of L*, a* and b*.
 
     Lines of files and of standard input are answered in blocks as they come. An error in a later block follows the
     answers to earlier ones.
@@ -145,7 +157,7 @@ def command(
         method,
         parse_wavelengths(wavelengths),
         mode,
-        _read_lights(lights, cube),
+        _read_lights(lights or (RELIGHT_LIGHTS if with_bounds else ()), cube),
         fill_missing=fill_missing,
     )
     results: Iterable[list[QueryResult]]
@@ -154,14 +166,42 @@ def command(
     else:
         blocks = _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded, space=space)
         results = answers.results(blocks)
+    single = point is not None or (bool(colour) and colour != ("-",))
+    if with_bounds:
+        _write_bounds(answers, results, style, plot_path, single=single, force=force)
+    else:
+        if plot_path is not None:
+            from uplift.viz.spectra import plot_spectra
+
+            hide_drawing_notes()
+            results = list(results)
+            plot_spectra(cube, list(chain.from_iterable(results)), plot_path, force=force)
+        WRITERS[style](cube, results, single)
+    answers.warn()
+
+
+def _write_bounds(
+    answers: _Answers,
+    results: Iterable[list[QueryResult]],
+    style: str,
+    plot_path: str | None,
+    *,
+    single: bool,
+    force: bool,
+) -> None:
+    """Print the bounds of answers, and plot them."""
+    from ..output.bounds_output import BOUNDS_WRITERS
+
+    blocks: Iterable[tuple[list[QueryResult], list[Bounds]]] = (
+        (block, answers.bounds(block, single=single)) for block in results
+    )
     if plot_path is not None:
-        from uplift.viz.spectra import plot_spectra
+        from uplift.viz.bounds import plot_bounds
 
         hide_drawing_notes()
-        results = list(results)
-        plot_spectra(cube, list(chain.from_iterable(results)), plot_path, force=force)
-    WRITERS[style](cube, results, point is not None or (bool(colour) and colour != ("-",)))
-    answers.warn()
+        blocks = list(blocks)
+        plot_bounds(answers.cube, [found for _, found in blocks], plot_path, force=force)
+    BOUNDS_WRITERS[style](answers.cube, blocks, single)
 
 
 @dataclass
@@ -201,6 +241,16 @@ class _Answers:
         from uplift.lookup import query_xyz
 
         return [list(query_xyz(self.cube, [xyz], self.wavelengths, self.mode, self.lights))]
+
+    def bounds(self, block: Sequence[QueryResult], *, single: bool) -> list[Bounds]:
+        """Compute the bounds of a block under each light, from more directions for a single colour."""
+        import numpy as np
+
+        from uplift.lookup import bounds
+
+        rgb = np.stack([result.rgb for result in block])
+        divisions = SINGLE_DIVISIONS if single else DIVISIONS
+        return [bounds(self.cube, rgb, light, self.mode, divisions) for light in self.lights]
 
     def warn(self) -> None:
         """Warn of colours that were mapped or filled."""

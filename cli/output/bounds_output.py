@@ -33,7 +33,9 @@ def as_json(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
 
 def _objects(cube: Cube, results: Sequence[QueryResult], found: Sequence[Bounds]) -> Iterable[dict[str, Any]]:
     for row, result in enumerate(results):
-        yield result_object(cube, result) | {"bounds": {each.light.name: _object(each, row) for each in found}}
+        yield result_object(cube, result) | {
+            "bounds": {each.light.name: _object(each, row) for each in found}
+        }
 
 
 def _object(found: Bounds, row: int) -> dict[str, Any]:
@@ -60,21 +62,18 @@ def _lab(found: Bounds, xyz: Array) -> Array:
 def as_csv(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
     """Print a row per colour and light."""
     writer = csv_writer()
-    writer.write(
-        ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error", "largest", "outer"]
-        + [f"{name}_{end}" for end in ("min", "max") for name in ("L*", "a*", "b*")]
-        + ["share"]
-    )
+    lab_range = [f"{name}_{end}" for end in ("min", "max") for name in ("L*", "a*", "b*")]
+    answer = ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error"]
+    writer.write([*answer, "largest", "outer", *lab_range, "share"])
     for results, found in blocks:
         for row, result in enumerate(results):
             for each in found:
                 error = result.standard_errors.get(each.light.name, "")
                 largest = each.largest
-                writer.write(
-                    [*result.rgb.tolist(), each.light.name, *each.lab[row].tolist(), error]
-                    + [float(largest.delta_e_2000[row]), float(largest.outer[row])]
-                    + [*each.box[row].ravel().tolist(), float(each.share[row])]
-                )
+                differences = [float(values[row]) for values in (largest.delta_e_2000, largest.outer)]
+                lab_range = each.box[row].ravel().tolist()
+                answer: list[object] = [*result.rgb.tolist(), each.light.name, *each.lab[row].tolist(), error]
+                writer.write([*answer, *differences, *lab_range, float(each.share[row])])
 
 
 def as_table(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
@@ -85,8 +84,12 @@ def as_table(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
             fields = {"linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"}
             print_fields(fields, {"linear RGB": patch(cube, rgb)})
             emit("")
-        headings = ("hex",) * (not single) + ("light", "L* a* b*", "likely", "largest", "a*", "b*", "share")
-        table = make_table(headings, box=None, show_header=number == 0)
+        table = make_table(
+            ("hex",) * (not single) + ("light",),
+            ("L* a* b*", "likely", "largest", "a*", "b*", "share"),
+            box=None,
+            show_header=number == 0,
+        )
         for row, result in enumerate(results):
             for column, each in enumerate(found):
                 code = hex_code(cube, result.rgb) if column == 0 else ""

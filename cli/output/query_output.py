@@ -41,15 +41,16 @@ Writer = Callable[["Cube", Iterable[Sequence["QueryResult"]], bool], None]
 def as_json(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) -> None:
     """Print one object for a colour given on the command line, else an array."""
     if single:
-        print_json(_object(cube, _only(blocks)), indent=None)
+        print_json(result_object(cube, _only(blocks)), indent=None)
         return
     for number, result in enumerate(chain.from_iterable(blocks)):
         separator = "[\n" if number == 0 else ",\n"
-        emit(separator + terminal_json(_object(cube, result)), nl=False)
+        emit(separator + terminal_json(result_object(cube, result)), nl=False)
     emit("\n]")
 
 
-def _object(cube: Cube, result: QueryResult) -> dict[str, Any]:
+def result_object(cube: Cube, result: QueryResult) -> dict[str, Any]:
+    """Return an answer as JSON values."""
     return {
         "rgb": result.rgb.tolist(),
         "requested_rgb": result.requested_rgb.tolist(),

@@ -517,3 +517,41 @@ def test_xyz_excludes_other_colours(misuse, refuse):
     assert "--luminance" in misuse("query", "--luminance", "0.3", "#fff")
     assert refuse("query", "--xyz", "0.05", "0.9", "0.1").code == "colour-unrealisable"
     assert refuse("query", "--xy", "0.3", "0", "--luminance", "0.1").code == "invalid-chromaticity"
+
+
+def test_bounds_of_a_colour_in_json(ask):
+    found = ask("#8a2a20", "--bounds", "--light", "A", "--light", "FL11")
+    assert list(found["bounds"]) == ["A", "FL11"]
+    for name, each in found["bounds"].items():
+        (least, most), answer = np.array(each["lab_range"]), np.array(each["lab"])
+        assert ((least < answer) & (answer < most)).all()
+        light = uplift.colorimetry.observer.light(name)
+        lab = uplift.colorimetry.delta_e.lab(light.xyz @ found["reflectance"], light.white)
+        np.testing.assert_allclose(answer, lab, atol=1e-9)
+        assert 0 < each["largest_delta_e_2000"] <= each["outer_delta_e_2000"]
+        assert len(each["outline"]) == 120
+        assert each["likely"] is None  # the packaged cube has no atlas
+    assert found["bounds"]["FL11"]["share"] > 10 * found["bounds"]["A"]["share"]
+
+
+def test_bounds_of_many_colours(run, table):
+    text = run("query", "--input", table("0.2,0.3,0.4\n0.9,0.1,0.1"), "--bounds", "--format", "csv").stdout
+    rows = list(csv.DictReader(io.StringIO(text)))
+    assert [row["light"] for row in rows] == 2 * ["A", "FL11", "HP1"]
+    assert all(0 < float(row["largest"]) <= float(row["outer"]) for row in rows)
+    assert all(float(row["a*_min"]) < float(row["a*"]) < float(row["a*_max"]) for row in rows)
+
+
+def test_table_and_plot_of_bounds(run, home):
+    text = run("query", "0.2,0.3,0.4", "--bounds", "--light", "D65", "--plot", "bounds.png").stdout
+    heading, row = text.splitlines()[-2:]
+    assert heading.split() == ["light", "L*", "a*", "b*", "likely", "largest", "a*", "b*", "share"]
+    assert row.split()[0] == "D65"
+    assert float(row.split()[5]) == 0  # metamers match under the build light
+    assert max(map(len, text.splitlines())) <= 80
+    assert matplotlib.image.imread(home / "bounds.png").shape[2] == 4
+
+
+def test_bounds_of_an_unrealisable_colour(run):
+    result = run("query", "--xyz", "1", "0.1", "0.02", "--bounds", code=2)
+    assert "no reflectance has the colour" in result.stderr

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
+from scipy.spatial import ConvexHull
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.solid import solid
+from uplift.colorimetry.solid import solid, solid_volume
 from uplift.lattice import Lattice
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
@@ -63,3 +64,10 @@ def test_ray_fraction_ends_on_the_boundary():
 
 def test_empty_input_gives_empty_output(sensor):
     assert solid(sensor.matrix).contains(np.zeros((0, 3))).shape == (0,)
+
+
+def test_solid_volume_is_that_of_the_convex_hull(sensor):
+    """For few wavelengths, all corners of the zonotope can be listed."""
+    few = sensor.matrix[:, ::9]
+    corners = np.array(np.meshgrid(*[(0, 1)] * few.shape[1])).reshape(few.shape[1], -1).T @ few.T
+    assert solid_volume(few) == pytest.approx(ConvexHull(corners).volume)

@@ -52,6 +52,26 @@ def lab_of(xyz: Any, white: Any) -> Any:
     return compressed @ OPPONENTS.T - np.array([16.0, 0.0, 0.0])
 
 
+def lab_to_xyz(lab: ArrayLike, white: ArrayLike) -> Array:
+    """Convert CIE 1976 L*a*b* to XYZ, the inverse of `lab`.
+
+    Parameters
+    ----------
+    lab : array_like, shape (..., 3)
+        CIE L*a*b*.
+    white : array_like, shape (3,)
+        XYZ of the white.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        XYZ, in the units of ``white``.
+    """
+    compressed = (np.asarray(lab, dtype=float) + np.array([16.0, 0, 0])) @ np.linalg.inv(OPPONENTS.T)
+    linear = (compressed - 4 / 29) * 3 * (6 / 29) ** 2
+    return np.asarray(np.where(compressed > 6 / 29, compressed**3, linear) * np.asarray(white, dtype=float))
+
+
 def lab_jacobian(xyz: ArrayLike, white: ArrayLike) -> Array:
     """Compute the derivative of L*a*b* with respect to XYZ.
 

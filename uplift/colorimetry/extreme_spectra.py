@@ -18,10 +18,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Indices, Mask
 
 FEASIBLE = 1e-9
 """Violation of [0, 1] that counts as rounding."""
+ROUNDING = 1e-10
+"""Part of a violation that may remain at the boundary of the object-colour solid, where the objective ends to fall."""
 PERTURBATION = 1e-11
 """Size, relative to the largest response, of the changes that keep the reduced responses away from 0."""
 MAX_STEPS = 500
@@ -36,7 +38,7 @@ class ExtremeSpectra(NamedTuple):
     """(n, N), 0 or 1 but at the basis."""
     basis: Indices
     """(n, 3) wavelengths whose reflectance may lie between 0 and 1."""
-    solved: Array
+    solved: Mask
     """(n,) True unless no reflectance has the colour, or rounding prevents a decision."""
 
 
@@ -59,14 +61,16 @@ def extreme_spectra(
     Returns
     -------
     ExtremeSpectra
-        The optima. Results do not depend on other problems.
+        The optima, which depend on other problems and on the start by rounding alone.
     """
     start = np.tile(first_basis(matrix), (len(rgb), 1)) if basis is None else basis
     found = ExtremeSpectra(np.empty(response.shape), start.copy(), np.zeros(len(rgb), dtype=bool))
     rows = max(BLOCK_NUMBERS // matrix.shape[1], 1)
     for first in range(0, len(rgb), rows):
         block = slice(first, first + rows)
-        _solve(matrix, rgb[block], _perturbed(response[block]), ExtremeSpectra(*(each[block] for each in found)))
+        _solve(
+            matrix, rgb[block], _perturbed(response[block]), ExtremeSpectra(*(each[block] for each in found))
+        )
     return found
 
 
@@ -132,7 +136,7 @@ def _solve(matrix: Array, rgb: Array, response: Array, found: ExtremeSpectra) ->
 def _state(matrix: Array, rgb: Array, response: Array, basis: Indices) -> tuple[Array, Array, Array, Array]:
     """Reduced responses (n, N), reflectances (n, 3) of the basis, inverse (n, 3, 3), reflectances (n, N) at bounds."""
     rows = np.arange(len(basis))[:, None]
-    inverse = np.linalg.inv(matrix.T[basis].mT)
+    inverse = np.asarray(np.linalg.inv(matrix.T[basis].mT))
     multipliers = (np.take_along_axis(response, basis, axis=1)[:, None, :] @ inverse)[:, 0]
     reduced = response - multipliers @ matrix
     reduced[rows, basis] = 0
@@ -141,7 +145,7 @@ def _state(matrix: Array, rgb: Array, response: Array, basis: Indices) -> tuple[
     return reduced, inner, inverse, spectra
 
 
-def _entering(reduced: Array, rate: Array, violation: Array, basis: Indices) -> tuple[Indices, Array]:
+def _entering(reduced: Array, rate: Array, violation: Array, basis: Indices) -> tuple[Indices, Mask]:
     """Choose the wavelengths that enter the basis, and whether (n,) the dual objective ends to fall.
 
     Along the step reduced responses change at ``rate`` (n, N). Each change of sign raises the slope of the objective,
@@ -153,5 +157,5 @@ def _entering(reduced: Array, rate: Array, violation: Array, basis: Indices) -> 
     length = np.divide(-reduced, rate, out=np.full_like(reduced, np.inf), where=crosses)
     order = np.argsort(length, axis=1)
     size = np.take_along_axis(np.where(crosses, np.abs(rate), 0), order, axis=1)
-    passed = size.cumsum(axis=1) >= violation[:, None]
-    return order[rows[:, 0], passed.argmax(axis=1)], passed[:, -1]
+    passed = size.cumsum(axis=1) >= (violation - ROUNDING * (1 + violation))[:, None]
+    return order[rows[:, 0], passed.argmax(axis=1)], np.asarray(passed[:, -1])

@@ -77,10 +77,18 @@ class MismatchVolumes:
         return mesh_volume(self.xyz, self.directions.faces)
 
     @cached_property
+    def normals(self) -> Array:
+        """Unit vectors (D, 3) of XYZ, in whose directions the boundary points are the extremes."""
+        found = self.directions.directions @ np.linalg.inv(self.scale)
+        return np.asarray(found / np.linalg.norm(found, axis=1)[:, None])
+
+    @cached_property
     def corners(self) -> Array:
         """XYZ (n, F, 3) whose convex hull contains the body: where the planes of three neighbours meet."""
-        faces = self.directions.faces
-        return corners(self.scale, self.directions.directions[faces], self.xyz[:, faces])
+        faces, directions = self.directions.faces, self.directions.directions
+        scaled = self.xyz @ np.linalg.inv(self.scale).T
+        support = np.einsum("kdi,di->kd", scaled, directions)[:, faces]
+        return np.asarray(np.einsum("fij,kfj->kfi", np.linalg.inv(directions[faces]), support) @ self.scale.T)
 
     def excess(self, xyz: Array) -> Array:
         """Compute by how much colours exceed the body in the direction in which they do so most.
@@ -95,14 +103,10 @@ class MismatchVolumes:
         ndarray, shape (n,)
             Not positive for all colours of the body; in XYZ, along the outward normal.
         """
-        normals = self.directions.directions @ np.linalg.inv(self.scale)
-        normals /= np.linalg.norm(normals, axis=1)[:, None]
-        return np.asarray(np.einsum("ndi,di->nd", xyz[:, None] - self.xyz, normals).max(axis=1))
+        return np.asarray(np.einsum("kdi,di->kd", xyz[:, None] - self.xyz, self.normals).max(axis=1))
 
 
-def mismatch_volumes(
-    sensor: Sensor, light: Light, rgb: Array, divisions: int = DIVISIONS
-) -> MismatchVolumes:
+def mismatch_volumes(sensor: Sensor, light: Light, rgb: Array, divisions: int = DIVISIONS) -> MismatchVolumes:
     """Compute the mismatch volumes of colours under a light.
 
     Parameters
@@ -139,30 +143,7 @@ def mesh_volume(points: Array, faces: Indices) -> Array:
     """Compute the volumes (n,) of closed triangle meshes with corners (n, D, 3) and faces (F, 3)."""
     centred = points - points.mean(axis=1, keepdims=True)
     a, b, c = (centred[:, faces[:, corner]] for corner in range(3))
-    return np.asarray(np.einsum("nfi,nfi->n", a, np.cross(b, c)) / 6)
-
-
-def corners(scale: Array, directions: Array, xyz: Array) -> Array:
-    """Compute where the tangent planes of three boundary points meet.
-
-    Every direction between the three has its extreme on the inner side of the corner.
-
-    Parameters
-    ----------
-    scale : ndarray, shape (3, 3)
-        `MismatchVolumes.scale`.
-    directions : ndarray, shape (..., 3, 3)
-        Three directions in the scaled space.
-    xyz : ndarray, shape (..., 3, 3)
-        XYZ of their extremes.
-
-    Returns
-    -------
-    ndarray, shape (..., 3)
-        XYZ.
-    """
-    support = ((xyz @ np.linalg.inv(scale).T) * directions).sum(axis=-1)
-    return np.asarray((np.linalg.inv(directions) @ support[..., None])[..., 0] @ scale.T)
+    return np.asarray(np.einsum("kfi,kfi->k", a, np.cross(b, c)) / 6)
 
 
 def _require_realisable(sensor: Sensor, rgb: Array) -> None:

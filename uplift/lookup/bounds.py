@@ -66,20 +66,39 @@ class Bounds:
         return np.stack([found.min(axis=1), found.max(axis=1)], axis=1)
 
     def outline(self, row: int) -> Array:
-        """Outline in a* and b* of all colours that the reflectances of a colour can have, shape (M, 2)."""
+        """Compute the outline in a* and b* of all colours that the reflectances of a colour can have.
+
+        Parameters
+        ----------
+        row : int
+            The colour.
+
+        Returns
+        -------
+        ndarray, shape (M, 2)
+        """
         return outline(self.volumes.lab[row, :, 1:], self.volumes.directions.faces)
 
     def likely(self, row: int) -> Array | None:
-        """Ellipse in a* and b* that holds `LIKELY` of the materials like the atlas, shape (M, 2), or None."""
+        """Compute the ellipse in a* and b* that holds `LIKELY` of the materials like the atlas.
+
+        Parameters
+        ----------
+        row : int
+            The colour.
+
+        Returns
+        -------
+        ndarray, shape (M, 2), optional
+            None without a covariance.
+        """
         if self.covariance is None:
             return None
         radius = np.sqrt(-2 * np.log1p(-LIKELY))  # the quantile of two normal variables
         values, axes = np.linalg.eigh(self.covariance[row, 1:, 1:])
         turn = np.linspace(0, 2 * np.pi, 73)[:-1]
         circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        return np.asarray(
-            self.lab[row, 1:] + radius * (circle * np.sqrt(np.maximum(values, 0))) @ axes.T
-        )
+        return np.asarray(self.lab[row, 1:] + radius * (circle * np.sqrt(np.maximum(values, 0))) @ axes.T)
 
 
 def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", divisions: int = DIVISIONS) -> Bounds:

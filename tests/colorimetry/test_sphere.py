@@ -1,0 +1,29 @@
+"""Directions spread over the sphere."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from uplift.colorimetry.mismatch import mesh_volume
+from uplift.colorimetry.sphere import COUNTS, sphere
+
+
+@pytest.mark.parametrize("divisions", range(4))
+def test_directions_are_unit_vectors_of_a_closed_mesh(divisions):
+    found = sphere(divisions)
+    assert found.directions.shape == (COUNTS[divisions], 3)
+    np.testing.assert_allclose(np.linalg.norm(found.directions, axis=1), 1)
+    assert len(found.directions) - 3 * len(found.faces) // 2 + len(found.faces) == 2  # Euler
+    edges = np.sort(found.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+    volume = mesh_volume(found.directions[None], found.faces)[0]
+    assert 4 * np.pi / 3 * (1 - 0.6 / 4**divisions) < volume < 4 * np.pi / 3
+
+
+def test_parents_are_near():
+    found = sphere(3)
+    children = np.arange(12, len(found.directions))
+    assert (found.parents[children] < children).all()
+    near = (found.directions[children] * found.directions[found.parents[children]]).sum(axis=1)
+    assert near.min() > 0.85

@@ -1,0 +1,63 @@
+"""Bounds of answers under other lights."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.helpers import raises
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra, lab
+from uplift.common.errors import ColourError
+from uplift.lookup import bounds
+from uplift.lookup.bounds import LIKELY
+
+FL11 = observer.light("FL11")
+
+
+def test_the_answer_lies_inside(small_cube):
+    rgb = np.random.default_rng(1).uniform(size=(40, 3))
+    found = bounds(small_cube, rgb, FL11)
+    np.testing.assert_array_equal(found.reflectance, small_cube.reflectance(rgb))
+    assert found.volumes.excess(found.xyz).max() <= 1e-6  # answers have their RGB to rounding
+    least, most = np.moveaxis(found.box, 1, 0)
+    assert ((least <= found.lab + 1e-3) & (found.lab <= most + 1e-3)).all()
+    assert ((found.share > 0) & (found.share < 1)).all()
+
+
+def test_entries_are_metamers_of_their_colours(small_cube):
+    """Measured spectra differ from the answers by no more than the largest difference."""
+    left_out = small_cube.data.atlas.left_out
+    spectra = left_out.measured[:20].astype(float)
+    found = bounds(small_cube, small_cube.data.sensor.rgb(spectra), FL11)
+    differences = delta_e_spectra(FL11, spectra, found.reflectance)
+    assert (differences <= found.largest.delta_e_2000).all()
+
+
+def test_the_likely_region_is_the_ellipse_of_the_covariance(small_cube):
+    found = bounds(small_cube, np.array([[0.3, 0.4, 0.2]]), FL11)
+    offset = found.likely(0) - found.lab[0, 1:]
+    squares = np.einsum("mi,ij,mj->m", offset, np.linalg.inv(found.covariance[0, 1:, 1:]), offset)
+    np.testing.assert_allclose(squares, 5.991464547107979)  # 95 % of chi-squared with two degrees of freedom
+    draws = np.random.default_rng(2).multivariate_normal(np.zeros(2), found.covariance[0, 1:, 1:], 4000)
+    inside = np.einsum("mi,ij,mj->m", draws, np.linalg.inv(found.covariance[0, 1:, 1:]), draws) <= squares[0]
+    assert inside.mean() == pytest.approx(LIKELY, abs=0.015)
+
+
+def test_without_an_atlas_nothing_is_likely(plain_cube):
+    found = bounds(plain_cube, np.array([[0.3, 0.4, 0.2]]), FL11)
+    assert found.covariance is None
+    assert found.likely(0) is None
+    assert found.outline(0).shape == (120, 2)
+
+
+def test_colours_outside_the_space_are_answered(plain_cube):
+    rgb = np.array([[0.5, 0.5, 0.5], [-0.05, 0.4, 0.3]])
+    found = bounds(plain_cube, rgb, FL11, divisions=1)
+    np.testing.assert_allclose(plain_cube.data.sensor.rgb(found.reflectance), rgb, atol=1e-4)
+    np.testing.assert_allclose(found.lab, lab(found.reflectance @ FL11.xyz.T, FL11.white))
+
+
+def test_colours_without_reflectance_are_refused(plain_cube):
+    with raises(ColourError, "colour-unrealisable"):
+        bounds(plain_cube, np.array([[-1.0, 0.4, 0.3]]), FL11)

@@ -1,0 +1,42 @@
+"""Plots of bounds."""
+
+from __future__ import annotations
+
+import matplotlib.image
+import numpy as np
+import pytest
+
+from tests.helpers import raises
+from uplift.colorimetry import observer
+from uplift.common.errors import OutputError
+from uplift.lookup import bounds
+from uplift.viz.bounds import plot_bounds
+
+
+@pytest.fixture(scope="module")
+def blocks(small_cube):
+    rgb = np.array([[0.2, 0.5, 0.1], [0.5, 0.1, 0.1]])
+    return [[bounds(small_cube, rgb, observer.light(name), divisions=1) for name in ("A", "FL11", "D65")]]
+
+
+def test_a_row_per_colour_and_a_column_per_light(small_cube, blocks, tmp_path):
+    plot_bounds(small_cube, blocks, tmp_path / "plot.svg")
+    text = (tmp_path / "plot.svg").read_text()
+    for found in blocks[0]:
+        for largest in found.largest.delta_e_2000:
+            assert f"{found.light.name}: ΔE00 up to {largest:.1f}" in text
+    assert {"all reflectances", "likely", "answer"} <= set(text.replace("<", ">").split(">"))
+
+
+def test_regions_have_their_colours(small_cube, blocks, tmp_path):
+    plot_bounds(small_cube, [[blocks[0][1]]], tmp_path / "plot.png")
+    pixels = matplotlib.image.imread(tmp_path / "plot.png")[..., :3].reshape(-1, 3)
+    spread = pixels.max(axis=1) - pixels.min(axis=1)
+    assert 0.05 < (spread > 0.3).mean() < 0.6
+
+
+def test_existing_files_stay(small_cube, blocks, tmp_path):
+    (tmp_path / "plot.png").write_bytes(b"mine")
+    with raises(OutputError, "file-exists"):
+        plot_bounds(small_cube, blocks, tmp_path / "plot.png")
+    assert (tmp_path / "plot.png").read_bytes() == b"mine"
