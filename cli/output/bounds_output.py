@@ -63,8 +63,8 @@ def as_csv(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
     """Print a row per colour and light."""
     writer = csv_writer()
     lab_range = [f"{name}_{end}" for end in ("min", "max") for name in ("L*", "a*", "b*")]
-    answer = ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error"]
-    writer.write([*answer, "largest", "outer", *lab_range, "share"])
+    columns = ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error"]
+    writer.write([*columns, "largest", "outer", *lab_range, "share"])
     for results, found in blocks:
         for row, result in enumerate(results):
             for each in found:

@@ -69,7 +69,10 @@ def extreme_spectra(
     for first in range(0, len(rgb), rows):
         block = slice(first, first + rows)
         _solve(
-            matrix, rgb[block], _perturbed(response[block]), ExtremeSpectra(*(each[block] for each in found))
+            matrix,
+            rgb[block],
+            _perturbed(response[block]),
+            ExtremeSpectra(found.reflectance[block], found.basis[block], found.solved[block]),
         )
     return found
 
