@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         ChartFileError,
         ColourError,
         CubeFileError,
+        LookError,
         OptionError,
         OutputError,
         PaletteError,
@@ -35,7 +36,8 @@ if TYPE_CHECKING:
         UpliftWarning,
     )
     from uplift.lookup import Cube, EmissionTable, bulk, load, load_emission
-    from uplift.pipeline import build, build_emission
+    from uplift.pipeline import Look, build, build_emission
+    from uplift.pipeline.look_file import read_looks
 
 __all__ = [
     "Atlas",
@@ -46,6 +48,8 @@ __all__ = [
     "CubeFileError",
     "EmissionTable",
     "Entry",
+    "Look",
+    "LookError",
     "OptionError",
     "OutputError",
     "PaletteError",
@@ -60,13 +64,15 @@ __all__ = [
     "load",
     "load_emission",
     "read_atlas",
+    "read_looks",
     "write_atlas",
 ]
 
 _EXPORTS = {
     "uplift.atlas": ("Atlas", "Entry", "read_atlas", "write_atlas"),
     "uplift.lookup": ("Cube", "EmissionTable", "load", "load_emission"),
-    "uplift.pipeline": ("build", "build_emission"),
+    "uplift.pipeline": ("Look", "build", "build_emission"),
+    "uplift.pipeline.look_file": ("read_looks",),
 }
 _MODULES = {"bulk": "uplift.lookup.bulk"}
 """Subpackages reached by a short name."""

@@ -95,6 +95,12 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
     help="Measured spectra that shape the learnt prior without being constraints; repeatable.",
 )
 @click.option(
+    "--look",
+    "looks",
+    metavar="LOOKS.toml",
+    help="File of looks: colours, and what they are to be under other lights.",
+)
+@click.option(
     "--leave-out",
     multiple=True,
     metavar="FAMILY",
@@ -167,6 +173,7 @@ def command(
       uplift build --atlas paints.csv --dim auto --auto-tolerance 1
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
+      uplift build --atlas macbeth --look looks.toml -o looks.uplift
       uplift build --atlas paints.csv --range 360:830 --step 1 -o range.uplift
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
       uplift build --atlas macbeth --observer 'Nikon 5100 (NPL)' --space camera --dim 16
@@ -174,6 +181,9 @@ def command(
 
     Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the
     spectra that real materials of such colours are expected to have.
+
+    Looks state colours under other lights, such as rgb = "#8a2a20" and FL11 = "#70392a" (docs/looks.md). They become
+    entries. A look that no reflectance meets gets the nearest colour, and a warning.
 
     Entries have their own values in the --range as far as they were measured, and continue as constants.
 
@@ -189,7 +199,13 @@ def command(
     inputs: tuple[str | Path | None, ...]
     if plan_path is None:
         scene = _scene(images, encoding, method, input_space)
-        inputs = (*files, *options["library"], options["observer"], *(scene.paths if scene else ()))
+        inputs = (
+            *files,
+            *options["library"],
+            options["looks"],
+            options["observer"],
+            *(scene.paths if scene else ()),
+        )
         given = {name: value for name, value in options.items() if value not in (None, ())}
         given["shortest"], given["longest"] = parse_range(limits)
         given["coefficients"] = coefficient_count(coefficients, moments)

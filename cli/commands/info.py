@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import click
+import numpy as np
 
 from ..output.console import make_table, print_json, say, show
 from ..params.completion import complete_cube
@@ -39,10 +40,25 @@ def _table(name: str, fields: dict[str, Any]) -> None:
     table.add_column(overflow="fold")
     provenance = fields.pop("provenance")
     options = provenance.pop("options", {})
-    for section in (fields, provenance, {f"option {key}": value for key, value in options.items()}):
+    looks = {
+        f"look {each['name'].removeprefix('look ')}": _look(each) for each in provenance.pop("looks", ())
+    }
+    for section in (fields, looks, provenance, {f"option {key}": value for key, value in options.items()}):
         for key, value in section.items():
             table.add_row(key.replace("_", " "), _text(value))
     show(table)
+
+
+def _look(record: dict[str, Any]) -> str:
+    """Format a look: wish and distance of the answer by light."""
+    from uplift.colorimetry.srgb import hex_codes
+
+    wishes = (
+        f"{each['light']} {hex_codes(np.array([each['wish']]))[0]} (ΔE00 {each['delta_e']:.2f})"
+        for each in record["lights"]
+    )
+    weight = "" if record["weight"] == 1 else f"weight {record['weight']:g}, "
+    return weight + ", ".join(wishes)
 
 
 def _text(value: Any) -> str:

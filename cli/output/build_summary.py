@@ -32,7 +32,9 @@ def print_summary(cube: Cube, path: Path, seconds: float) -> None:
     if unrealisable:
         accuracy += f" except {unrealisable} unrealisable ones, stored with less chroma"
     worst = data.points.distance[data.points.status != Status.UNREALISABLE].max(initial=0)
-    entries = f"{len(data.atlas.names)} atlas entries, " if data.provenance["atlases"] else ""
+    measured, looks = data.atlas.measured_count, data.atlas.looks
+    entries = f"{measured} atlas entries, " if data.provenance["atlases"] else ""
+    entries += f"{looks} look{'s' * (looks != 1)}, " if looks else ""
     say(
         f"{path}: {_node_count(data)}, {entries}{accuracy} (worst {worst:.1e}), "
         f"{counts['improved']} improved, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"

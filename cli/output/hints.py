@@ -38,6 +38,8 @@ HINTS = {
     "lattice-mismatch": "build the cube again, or replace it with --update",
     "library-not-used": "use --prior learnt with --model moments and 4 to 17 coefficients, or leave out --library",
     "limit-not-positive": "give --time-ns and --delta-e above 0",
+    "look-not-reached": "use --entry-coefficients up to 17",
+    "looks-without-freedom": "use --model moments with --entry-coefficients 4 to 17",
     "mixed-scales": "correct the row, or use --measured percent or fraction if it is right",
     "no-left-out-entries": "build it again with 'uplift build', or use 'uplift check --update'",
     "no-moments": "use --store multipliers, or a cube of moments",

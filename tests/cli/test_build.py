@@ -263,3 +263,29 @@ def test_builds_killed_while_writing_leave_the_old_cube(home, cubes):
     assert done.returncode == -signal.SIGKILL
     assert path.read_bytes() == before
     assert len(os.listdir(home)) == 2  # the incomplete file has another name
+
+
+def test_looks_are_built_summarised_and_shown(run, home):
+    (home / "looks.toml").write_text('[[look]]\nrgb = "#8a2a20"\nHP1 = "#70392a"\nname = "brick"\n')
+    result = run("build", *SMALL, "--prior", "smooth", "--look", "looks.toml", "-o", "looks.uplift")
+    assert ", 1 look, " in result.stdout
+    assert result.stderr == ""
+    line = next(
+        line for line in run("info", "looks.uplift").stdout.splitlines() if line.startswith("look brick")
+    )
+    assert line.split()[2:] == ["HP1", "#70392a", "(ΔE00", "0.00)"]
+    assert run("check", "looks.uplift", "--format", "json").exit_code == 0
+
+
+def test_impossible_look_is_a_warning(run, home):
+    (home / "looks.toml").write_text('[[look]]\nrgb = "#4060a0"\nA = "#5060a0"\n')
+    result = run("build", *SMALL, "--prior", "smooth", "--look", "looks.toml", "-o", "looks.uplift")
+    (line,) = warning_lines(result)
+    assert "looks.toml:1" in line
+    assert "#5060a0" in line
+
+
+def test_looks_are_not_overwritten(run, home):
+    (home / "looks.toml").write_text('[[look]]\nrgb = "#4060a0"\nA = "#5060a0"\n')
+    result = run("build", *SMALL, "--look", "looks.toml", "-o", "looks.toml", "--force", code=2)
+    assert "looks.toml" in result.stderr

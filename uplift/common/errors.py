@@ -15,6 +15,7 @@ __all__ = [
     "ChartFileError",
     "ColourError",
     "CubeFileError",
+    "LookError",
     "OptionError",
     "OutputError",
     "PaletteError",
@@ -145,6 +146,12 @@ class PlanFileError(UpliftError, ValueError):
     """A scene file or a plan is missing, invalid, out of date, or cannot be satisfied."""
 
     code = "plan-file"
+
+
+class LookError(UpliftError, ValueError):
+    """A look cannot be read, or contradicts the cube or another look."""
+
+    code = "look"
 
 
 class PaletteError(UpliftError, ValueError):

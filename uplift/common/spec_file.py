@@ -211,6 +211,21 @@ class SpecFile:
         text = _one_line(where + text)
         raise self.error(text, code=code, path=self.path, line=line, hint=hint)
 
+    def line(self, keys: Iterable[Key]) -> int | None:
+        """Find the line of a value.
+
+        Parameters
+        ----------
+        keys : iterable of str or int
+            Path of the value.
+
+        Returns
+        -------
+        int or None
+            Line, counted from 1, of the key or of the nearest table around it; None if neither is found.
+        """
+        return _find_line(self.text, tuple(keys))
+
     def _existing(self, keys: Iterable[Key]) -> tuple[Key, ...]:
         """Key path without what pydantic adds for unions, keys of tables, and values that are made lists."""
         path: list[Key] = []

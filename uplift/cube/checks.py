@@ -50,7 +50,7 @@ Tensors = Mapping[str, NDArray[Any]]
 
 
 def check_tensors(
-    tensors: Tensors, points: int, coefficients: int, entries: int, entry_coefficients: int
+    tensors: Tensors, points: int, coefficients: int, entries: int, entry_coefficients: int, looks: int = 0
 ) -> None:
     """Check type, shape and range of every array as it is stored, before anything is computed from it.
 
@@ -64,13 +64,17 @@ def check_tensors(
         Number of coefficients of a node, and of atlas entries.
     entry_coefficients : int
         Number of coefficients of an entry.
+    looks : int
+        Number of the entries that are looks.
 
     Raises
     ------
     CubeFileError
         The first condition that is not met, by its code.
     """
-    for name, array, shape, types in _arrays(tensors, points, coefficients, entries, entry_coefficients):
+    for name, array, shape, types in _arrays(
+        tensors, points, coefficients, entries, entry_coefficients, looks
+    ):
         fits = array.shape == shape and array.dtype.name in types
         require(fits, "invalid-array", f"{name} must be {' or '.join(types)} of shape {shape}")
         low = 0 if name in NOT_NEGATIVE else -MAX_VALUE
@@ -94,13 +98,16 @@ def check(data: CubeData) -> None:
     _check_sensor(data)
     _check_entry_model(data.model, data.entry_spectra.model)
     atlas, points = data.atlas, data.points
+    recorded = tuple(look["name"] for look in data.provenance.get("looks", ()))
+    is_last = atlas.measured_count >= 0 and atlas.names[atlas.measured_count :] == recorded
+    require(is_last, "unknown-look", "the looks must be the last entries, by their names")
     require(tuple(data.lattice.nodes[[0, -1]]) == (0, 1), "invalid-nodes", "the nodes must run from 0 to 1")
     require(bool((points.status < len(Status)).all()), "unknown-status", "every status must be known")
     require(bool(points.present.all()), "absent-points-stored", "absent points must not be stored")
     require(_in_range(atlas.half_width, 0, 1), "invalid-entry-boxes", "half widths must be in [0, 1]")
     require(_in_range(atlas.rgb, 0, 1), "entry-out-of-gamut", "the RGB of every entry must be in [0, 1]")
     if atlas.left_out is not None:
-        require(len(atlas.names) > 0, "no-entries-left-out", "left-out spectra need entries")
+        require(atlas.measured_count > 0, "no-entries-left-out", "left-out spectra need entries")
         spectra = (atlas.left_out.measured, atlas.left_out.answered)
         valid = all(_in_range(each, 0, 1) for each in spectra)
         require(valid, "invalid-reflectance", "left-out entries must have reflectances in [0, 1]")
@@ -115,7 +122,7 @@ def require(condition: bool, code: str, problem: str) -> None:
 
 
 def _arrays(
-    tensors: Tensors, points: int, coefficients: int, entries: int, entry_coefficients: int
+    tensors: Tensors, points: int, coefficients: int, entries: int, entry_coefficients: int, looks: int
 ) -> Iterator[tuple[str, NDArray[Any], tuple[int, ...], tuple[str, ...]]]:
     """Name, array, shape and types of every array but the numbers of the points."""
     samples = tensors["sensor.wavelengths"].size
@@ -135,7 +142,7 @@ def _arrays(
         yield ENTRY_COEFFICIENTS, tensors[ENTRY_COEFFICIENTS], (entries, entry_coefficients), double
     for name in LEFT_OUT_ARRAYS.values():
         if name in tensors:
-            yield name, tensors[name], (entries, samples), ("float32",)
+            yield name, tensors[name], (entries - looks, samples), ("float32",)
 
 
 def _check_entry_model(model: Model, entry_model: Model) -> None:

@@ -69,9 +69,9 @@ class LeftOut:
 
     Parameters
     ----------
-    measured : ndarray of float32, shape (E, N)
-        Measured reflectances at the wavelengths of the sensor.
-    answered : ndarray of float32, shape (E, N)
+    measured : ndarray of float32, shape (M, N)
+        Measured reflectances at the wavelengths of the sensor, of all entries but looks.
+    answered : ndarray of float32, shape (M, N)
         Reflectances at the colours of the entries, each predicted from the others.
     """
 
@@ -104,6 +104,9 @@ class AtlasTable:
         The entries with more coefficients than the nodes; None if they have as many.
     left_out : LeftOut, optional
         Evidence for the errors of answers; None for a small atlas, and for files of earlier versions.
+    looks : int, default 0
+        Number of looks, which are the last entries: chosen spectra, of which no measurement is known. Their ``error``
+        is the standard error of the other entries at their colours.
     """
 
     names: tuple[str, ...]
@@ -113,6 +116,12 @@ class AtlasTable:
     error: Array
     spectra: EntrySpectra | None = None
     left_out: LeftOut | None = None
+    looks: int = 0
+
+    @property
+    def measured_count(self) -> int:
+        """Number M of the entries that were measured, which are the first ones."""
+        return len(self.names) - self.looks
 
     def __repr__(self) -> str:
         return f"AtlasTable({len(self.names)} entries)"
@@ -168,8 +177,8 @@ class CubeData:
 
     @cached_property
     def entry_lab(self) -> Array:
-        """(E, 3) CIE L*a*b* of the atlas entries under the build illuminant."""
-        return rgb_to_lab(self.sensor, self.atlas.rgb)
+        """(M, 3) CIE L*a*b* of the measured entries under the build illuminant."""
+        return rgb_to_lab(self.sensor, self.atlas.rgb[: self.atlas.measured_count])
 
     @cached_property
     def familiar_distance(self) -> float:

@@ -206,7 +206,10 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
     """Content of a file; the points of a sparse cube are not expanded."""
     model, entry_model = (from_description(metadata[key]) for key in ("model", "entry_model"))
     features = metadata["features"]
-    check_tensors(tensors, len(tensors["status"]), model.count, len(metadata["entries"]), entry_model.count)
+    looks = len(metadata["provenance"].get("looks", ()))
+    check_tensors(
+        tensors, len(tensors["status"]), model.count, len(metadata["entries"]), entry_model.count, looks
+    )
     lattice = Lattice(tensors["nodes"])
     require(
         metadata["dim"] == lattice.dim, "invalid-metadata", f"dim must be {lattice.dim}, the number of nodes"
@@ -237,6 +240,7 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
                 if LEFT_OUT in features
                 else None
             ),
+            looks=looks,
         ),
         provenance=metadata["provenance"],
         points=PointTable(**arrays),

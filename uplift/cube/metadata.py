@@ -144,6 +144,20 @@ def _error(path: str, constraint: str, value: object) -> CubeFileError:
 
 
 FILE = {"name": _text, "digest": _text}
+RGB = _list(_number(), 3)
+LOOK = _table(
+    {
+        "name": _text,
+        "rgb": RGB,
+        "weight": _number(0, 1),
+        "lights": _list(
+            _table(
+                {"light": _text, "wish": RGB, "answer": RGB, "delta_e": _number(0), "possible": _number(0)}
+            ),
+            MAX_LIGHTS,
+        ),
+    }
+)
 PROVENANCE = _table(
     {},
     {
@@ -152,6 +166,7 @@ PROVENANCE = _table(
         "atlases": _list(_table(FILE, {"measured": _text}), MAX_FILES),
         "libraries": _list(_table(FILE), MAX_FILES),
         "families": _list(_table({"name": _text, "relevance": _number()}), MAX_FILES),
+        "looks": _list(LOOK, MAX_FILES),
         "left_out": _list(_text, MAX_ENTRIES),
         "skipped": _list(_text, MAX_ENTRIES),
         "prior": _table({}, {"length": _number(0), "nugget": _number(0)}, others=True),

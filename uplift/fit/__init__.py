@@ -8,6 +8,15 @@ from uplift.fit.lattice import STRATEGIES, LatticeFit, fit_lattice
 from uplift.fit.lattice_size import DIMS, LatticeChoice, choose_lattice
 from uplift.fit.learnt import LearntBase, has_freedom, learn_base
 from uplift.fit.library import Family, families_with, shipped_library
+from uplift.fit.looks import (
+    MET,
+    LookGoal,
+    design_reflectance,
+    expected_reflectances,
+    fit_designs,
+    join_entries,
+    prior_with_looks,
+)
 from uplift.fit.objective import Weights
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import NO_LATTICE, Method, Problem, solver_tolerance
@@ -18,6 +27,7 @@ from uplift.fit.unrealisable import Unrealisable, unrealisable
 
 __all__ = [
     "DIMS",
+    "MET",
     "NO_LATTICE",
     "STRATEGIES",
     "Collision",
@@ -27,6 +37,7 @@ __all__ = [
     "LatticeChoice",
     "LatticeFit",
     "LearntBase",
+    "LookGoal",
     "Method",
     "Prior",
     "Problem",
@@ -35,12 +46,17 @@ __all__ = [
     "Unrealisable",
     "Weights",
     "choose_lattice",
+    "design_reflectance",
+    "expected_reflectances",
     "families_with",
+    "fit_designs",
     "fit_entries",
     "fit_lattice",
     "fit_prior",
     "has_freedom",
+    "join_entries",
     "learn_base",
+    "prior_with_looks",
     "seed",
     "shipped_library",
     "solve",

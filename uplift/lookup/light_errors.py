@@ -39,7 +39,7 @@ class LightErrors:
     expected : ExpectedError
         Squares of ΔE00, without entry boxes.
     entries : ndarray, shape (E,)
-        ΔE00 between the measured and the stored spectrum of each entry.
+        ΔE00 between the measured and the stored spectrum of each entry; of looks, the one expected at their colours.
     """
 
     data: CubeData
@@ -75,10 +75,13 @@ def light_errors(data: CubeData, light: Light) -> LightErrors:
     """
     left_out, at = _left_out(data), data.sensor.wavelengths
     missed = delta_e_spectra(light, left_out.answered, left_out.measured)
-    plain = delta_e_spectra(light, reflectance(data.model, data.atlas.coefficients, at), left_out.measured)
     rows = np.arange(len(left_out.measured))
+    coefficients = data.atlas.coefficients[rows]
+    plain = delta_e_spectra(light, reflectance(data.model, coefficients, at), left_out.measured)
     stored = delta_e_spectra(light, data.entry_spectra.reflectance(rows, at), left_out.measured)
-    return LightErrors(data, expected_error(data.entry_lab, missed, plain), stored)
+    expected = expected_error(data.entry_lab, missed, plain)
+    looks = rgb_to_lab(data.sensor, data.atlas.rgb[len(rows) :])
+    return LightErrors(data, expected, np.concatenate([stored, np.sqrt(expected(looks)[:, 0])]))
 
 
 def lab_covariance(data: CubeData, light: Light, rgb: Array) -> Array:
@@ -104,7 +107,8 @@ def lab_covariance(data: CubeData, light: Light, rgb: Array) -> Array:
         The cube has no left-out entries.
     """
     left_out = _left_out(data)
-    spectra = (left_out.answered, reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths))
+    coefficients = data.atlas.coefficients[: len(left_out.measured)]
+    spectra = (left_out.answered, reflectance(data.model, coefficients, data.sensor.wavelengths))
     errors = [delta_e_spectra(light, each, left_out.measured) for each in spectra]
     products = [_products(light, each, left_out.measured) for each in spectra]
     learnt = expected_products(data.entry_lab, *errors, *products)

@@ -35,6 +35,8 @@ from uplift.models.moments import MAX_COUNT
 from uplift.pipeline.libraries import AtlasLike, read_libraries
 from uplift.pipeline.libraries import describe as describe_libraries
 from uplift.pipeline.libraries import families as library_families
+from uplift.pipeline.looks import LooksLike, as_looks, design_looks, resolve_looks
+from uplift.pipeline.looks import describe as describe_looks
 from uplift.pipeline.options import (
     AUTO,
     AXES,
@@ -76,6 +78,7 @@ def build(
     lights: Sequence[str] = SCENE_LIGHTS,
     prior: PriorName = "learnt",
     library: AtlasLike = None,
+    looks: LooksLike = None,
     leave_out: Sequence[str] = (),
     threshold: float = 1e-4,
     auto_tolerance: float = 0.5,
@@ -128,6 +131,9 @@ def build(
     library : Atlas, path-like or sequence of path-like, optional
         Measured spectra that shape the learnt prior but are not constraints. Each file is a family of materials like
         those to be expected; with an atlas, its weight is learnt.
+    looks : Look, path-like or sequence of Look, optional
+        Colours and what they are to be under other lights, or a TOML file of them; see `uplift.Look`. Each is an entry
+        of the cube like a measured one. Colours near it follow.
     leave_out : sequence of str, optional
         Families of the shipped library that the learnt prior must not know, for tests on them; see
         `uplift.fit.shipped_library`.
@@ -164,6 +170,9 @@ def build(
         An atlas file that cannot be read.
     OptionError
         An option outside its range, or a library without a learnt prior.
+    LookError
+        A look that cannot be read, has the colour or the name of an entry or of another look, or needs a model with
+        more coefficients.
     UnknownNameError
         An unknown space, illuminant, observer, model, axis, prior, family, start or solver.
 
@@ -172,7 +181,8 @@ def build(
     UpliftWarning
         Entries out of gamut (``entry-out-of-gamut``), with the colour of another entry (``entry-duplicate``) or
         close to another entry (``entry-crowded``). Spectra of a library out of gamut (``library-out-of-gamut``) or
-        outside [0, 1] (``library-clipped``).
+        outside [0, 1] (``library-clipped``). Looks that no reflectance meets (``look-impossible``), or that the
+        coefficients of entries do not reach (``look-not-reached``); the nearest colour is used.
 
     Examples
     --------
@@ -226,6 +236,7 @@ def build(
     families = library_families(options, libraries, sensor)
     atlas = _as_atlas(atlas)
     names, rgb, measured = _entries_in_gamut(atlas, sensor)
+    wished = resolve_looks(as_looks(looks), options.entry_model(), sensor, atlas.names, names, rgb)
     fit_entries = partial(
         fit.fit_entries,
         measured=measured,
@@ -241,6 +252,15 @@ def build(
     learnt = fit.learn_base(colours, sensor, scene_lights, families, entries)
     fitted_prior = fit.fit_prior(colours, sensor, entries, scene_lights, error_light, learnt.base)
     corner_share = 1.0 if seed_corners or options.start == "neighbours" else fitted_prior.corner_share
+    left_out = _left_out(entries, fitted_prior)
+
+    designed = design_looks(wished, fitted_prior, forward, tolerance)
+    fit_looks = partial(designed.fit, sensor=sensor, error_light=error_light, tolerance=tolerance)
+    look_errors = _standard_errors(fitted_prior, wished.rgb)
+    fitted_looks = fit_looks(spectrum_model)
+    fitted_prior = fit.prior_with_looks(fitted_prior, entries, fitted_looks)
+    entries = fit.join_entries(entries, fitted_looks)
+    names, rgb = (*names, *wished.names), entries.rgb
 
     options = _with_dim(options, colours, fitted_prior, corner_share, scene_lights, entries)
     lattice = Lattice(observers.axis_nodes(options.axis, int(options.dim)))
@@ -257,7 +277,10 @@ def build(
     entry_model = options.entry_model()
     error, spectra, seed_multipliers = entries.error, None, entries.multipliers
     if names and entry_model != spectrum_model:
-        extended = fit_entries(entry_model, forward_map(entry_model, sensor.wavelengths, sensor.matrix))
+        extended = fit.join_entries(
+            fit_entries(entry_model, forward_map(entry_model, sensor.wavelengths, sensor.matrix)),
+            fit_looks(entry_model),
+        )
         error = extended.error
         spectra = EntrySpectra(entry_model, entry_model.to_storage(extended.multipliers))
         if options.start == "neighbours":
@@ -265,25 +288,28 @@ def build(
     starts = fit.Starts(fitted_prior, seeds, seed_multipliers, corner_share)
     fitted = fit.fit_lattice(problem, starts, progress, strategy)
     points = fitted.points if kept is None else fitted.points.restricted_to(kept)
+    table = AtlasTable(
+        names,
+        rgb,
+        spectrum_model.to_storage(entries.multipliers),
+        boxes.half_width,
+        np.concatenate([error[: len(measured)], look_errors]),
+        spectra,
+        left_out,
+        len(wished),
+    )
     return Cube(
         CubeData(
             model=spectrum_model,
             lattice=lattice,
             sensor=sensor,
             threshold=options.threshold,
-            atlas=AtlasTable(
-                names,
-                rgb,
-                spectrum_model.to_storage(entries.multipliers),
-                boxes.half_width,
-                error,
-                spectra,
-                _left_out(entries, fitted_prior),
-            ),
+            atlas=table,
             points=points if options.debug else replace(points, round=None),
             error_illuminant=ERROR_ILLUMINANT,
             provenance=_provenance(options, atlas, names, scene, starts, fitted)
-            | describe_libraries(libraries, families, learnt.relevance),
+            | describe_libraries(libraries, families, learnt.relevance)
+            | describe_looks(designed, table, spectrum_model, sensor),
         )
     )
 
@@ -312,6 +338,12 @@ def _chosen_solver(solver: str | Solver, tolerance: float) -> tuple[Solver | Non
         raise unknown_name(solver, SOLVERS, "solver")
     chosen = stock_solver.STOCK[solver](tolerance)
     return chosen, stock_solver.StockSolver(chosen)
+
+
+def _standard_errors(prior: fit.Prior, rgb: Array) -> Array:
+    """Standard errors (k,) of looks, which no measurement confirms; 0 if the cube has none."""
+    errors = prior.standard_error(rgb) if len(rgb) else None
+    return np.zeros(len(rgb)) if errors is None else errors
 
 
 def _left_out(entries: fit.FittedEntries, prior: fit.Prior) -> LeftOut | None:

@@ -10,12 +10,13 @@ from typing import Any
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
-from uplift.common.errors import CubeFileError, OptionError, UnknownNameError, UpliftWarning
+from uplift.common.errors import CubeFileError, LookError, OptionError, UnknownNameError, UpliftWarning
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
 from uplift.lookup import Cube
 from uplift.pipeline.build_cube import build
+from uplift.pipeline.looks import recorded_looks
 from uplift.pipeline.options import CUSTOM, Options, recorded_options
 from uplift.pipeline.provenance import REBUILD, missing_provenance, recorded_atlas, recorded_libraries
 
@@ -93,8 +94,9 @@ def rebuild(
         warnings.simplefilter("ignore", UpliftWarning)
         try:
             given = asdict(options) | _recorded_camera(stored.data.sensor)
-            return build(atlas, library=library, scene=scene, progress=progress, **given)
-        except (OptionError, UnknownNameError) as error:
+            looks = recorded_looks(stored.data.provenance)
+            return build(atlas, library=library, looks=looks, scene=scene, progress=progress, **given)
+        except (LookError, OptionError, UnknownNameError) as error:
             raise _unknown_options(error, path) from error
 
 

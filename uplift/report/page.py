@@ -42,6 +42,7 @@ def render_report(assessment: Assessment, worst: int) -> str:
         data=assessment.data,
         facts=assessment.facts,
         provenance=assessment.data.provenance,
+        looks=list(_looks(assessment)),
         entries=assessment.entries,
         crowding=assessment.crowding,
         worst=worst,
@@ -64,6 +65,16 @@ def render_report(assessment: Assessment, worst: int) -> str:
 def _severity(delta_e: float) -> str | None:
     """CSS class of a ΔE00."""
     return "bad" if delta_e > LARGE else "visible" if delta_e > VISIBLE else None
+
+
+def _looks(assessment: Assessment) -> Iterator[dict[str, Any]]:
+    """Name, colour and weight of each look, and a row for each of its lights."""
+    for look in assessment.data.provenance.get("looks", ()):
+        rows = [
+            {**each, "codes": hex_codes(np.array([each["wish"], each["answer"]]))} for each in look["lights"]
+        ]
+        (code,) = hex_codes(np.array([look["rgb"]]), assessment.data.sensor)
+        yield {"name": look["name"], "code": code, "weight": look["weight"], "rows": rows}
 
 
 def _failed_points(assessment: Assessment) -> Iterator[dict[str, Any]]:

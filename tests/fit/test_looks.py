@@ -1,0 +1,127 @@
+"""Designed reflectances of looks: exact colours, wishes of real materials met, and the nearest colour where none is."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+import uplift
+from tests.conftest import MACBETH
+from uplift import fit
+from uplift.atlas import on_grid, read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
+from uplift.fit.looks import MET, LookGoal, design_reflectance, fit_designs, join_entries, prior_with_looks
+from uplift.models import Moments
+from uplift.models.minimum_norm import forward_map
+
+TOLERANCE = 1e-6
+
+
+def goal_of(sensor, lights, reflectance, rgb=None):
+    """The colours of a reflectance, perhaps with the RGB of another one."""
+    return LookGoal(
+        sensor.rgb(reflectance) if rgb is None else rgb,
+        tuple(lights),
+        np.stack([light.xyz @ reflectance for light in lights]),
+    )
+
+
+@pytest.fixture(scope="module")
+def materials(sensor):
+    """Measured reflectances in gamut, and what a cube without an atlas answers to their colours."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        measured = on_grid(read_atlas(MACBETH), sensor.wavelengths)
+    measured = measured[sensor.contains(sensor.rgb(measured))]
+    return measured, uplift.load().reflectance(np.clip(sensor.rgb(measured), 0, 1))
+
+
+@pytest.mark.parametrize("names", [("FL11",), ("A", "HP1"), ("A", "FL2", "FL11", "LED-B3")])
+def test_looks_of_real_materials_are_met_in_their_entry_fit(sensor, materials, names):
+    lights = [observer.light(name) for name in names]
+    model = Moments(17)
+    goals = [goal_of(sensor, lights, spectrum) for spectrum in materials[0]]
+    designs = np.array([design_reflectance(sensor, *each) for each in zip(goals, materials[1], strict=True)])
+    assert designs.min() >= 0
+    assert designs.max() <= 1
+    fitted = fit_designs(model, sensor, goals, designs, lights[0], TOLERANCE)
+    answers = np.asarray(model.squash(fitted.multipliers @ model.basis(sensor.wavelengths).T))
+    assert np.abs(sensor.rgb(answers) - fitted.rgb).max() <= TOLERANCE
+    distances = np.array([goal.delta_e(answer) for goal, answer in zip(goals, answers, strict=True)])
+    assert distances.max() <= MET
+
+
+def test_expected_spectrum_that_meets_the_goal_stays(sensor, materials):
+    lights = [observer.light("FL11")]
+    for expected in materials[1][:4]:
+        found = design_reflectance(sensor, goal_of(sensor, lights, expected), expected)
+        np.testing.assert_allclose(found, expected, atol=1e-9)
+
+
+def impossible(sensor, materials):
+    """A material, and a goal that swaps its channels under tungsten."""
+    measured, expected = materials
+    row = 7  # purplish blue
+    light = observer.light("A")
+    other = measured[row] * np.linspace(0.2, 2.5, measured.shape[1]).clip(0, 2)
+    return goal_of(sensor, [light], np.clip(other, 0, 1), sensor.rgb(expected[row])), expected[row]
+
+
+def test_nearest_colour_is_that_of_a_linear_program(sensor, materials):
+    """No metamer lies farther towards the wish, in the metric of ΔE00 at the wish."""
+    goal, expected = impossible(sensor, materials)
+    found = design_reflectance(sensor, goal, expected)
+    assert goal.delta_e(found)[0] > 1
+    np.testing.assert_allclose(sensor.rgb(found), goal.rgb, atol=1e-4)
+    (light,), (wish,), xyz = goal.lights, goal.xyz, goal.colours(found)[0]
+    wished, answered = lab(wish, light.white), lab(xyz, light.white)
+    weights = delta_e_2000_weights(wished)
+    towards = (weights @ (wished - answered)) @ (weights @ lab_jacobian(xyz, light.white) @ light.xyz)
+    best = linprog(-towards, A_eq=sensor.matrix, b_eq=sensor.rgb(found), bounds=(0, 1))
+    assert best.status == 0
+    length = np.linalg.norm(weights @ (wished - answered))
+    assert (-best.fun - towards @ found) / length < 0.02 * length
+    # the test can fail: the expected spectrum is not the nearest
+    assert (-best.fun - towards @ expected) / length > 0.2 * length
+
+
+def test_softened_goal_lies_between(sensor, materials):
+    goal, expected = impossible(sensor, materials)
+    halfway = goal.softened(expected, 0.5)
+    np.testing.assert_allclose(halfway.xyz, (goal.xyz + goal.colours(expected)) / 2)
+    assert goal.softened(expected, 1).delta_e(expected) == pytest.approx(goal.delta_e(expected))
+
+
+def test_no_looks_change_nothing(sensor):
+    model = Moments(5)
+    nothing = fit_designs(model, sensor, (), np.zeros((0, 81)), observer.light("A"), TOLERANCE)
+    assert (len(nothing), nothing.multipliers.shape) == (0, (0, 5))
+    prior = object()
+    assert prior_with_looks(prior, nothing, nothing) is prior
+
+
+def test_the_prior_follows_looks_nearby_only(sensor, materials):
+    measured, expected = materials
+    model = Moments(9)
+    light = observer.light("FL11")
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
+    problem = fit.Problem(model, forward, fit.NO_LATTICE)
+    entries = fit.fit_entries(
+        model, forward, measured[:6], np.clip(sensor.rgb(measured[:6]), 0, 1), [light], light, TOLERANCE
+    )
+    plain = fit.fit_prior(problem, sensor, entries, [light], light)
+    goal = goal_of(sensor, [light], 0.9 * expected[7] + 0.05, sensor.rgb(expected[7]))
+    design = design_reflectance(sensor, goal, expected[7])
+    look = fit_designs(model, sensor, [goal], design[None], light, TOLERANCE)
+    changed = prior_with_looks(plain, entries, look)
+    assert changed.errors is plain.errors
+    assert changed.kriging.kernel == plain.kriging.kernel
+    near, far = goal.rgb[None] * 1.01, np.array([[0.9, 0.9, 0.2]])
+    move = [np.abs(changed(rgb) - plain(rgb)).max() for rgb in (near, far)]
+    assert move[0] > 10 * move[1]
+    turned = prior_with_looks(plain, join_entries(look, entries), look)
+    assert len(turned.kriging.locations) == 8

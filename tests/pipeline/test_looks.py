@@ -1,0 +1,235 @@
+"""Looks of a build: met exactly, recorded, rebuilt, refused where they contradict, and reported where impossible."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import warnings
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.conftest import ATLASES, MACBETH
+from tests.helpers import raises, warns
+from uplift import Look, LookError
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.observer import display_sensors, light
+from uplift.common.errors import CubeFileError
+from uplift.cube import read, write
+from uplift.lookup import Cube, query
+from uplift.lookup.light_errors import light_errors
+from uplift.pipeline import rebuild
+
+RED = Look("#8a2a20", {"FL11": "#70392a"}, name="brick")
+LOOKS = (RED, Look("#40a060", {"FL11": "#50a050"}), Look([0.5, 0.3, 0.2], {"A": [0.52, 0.295, 0.19]}, 0.5))
+IMPOSSIBLE = Look("#4060a0", {"A": "#5060a0"}, name="dusk")
+
+
+def quietly(*args, **options):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        return uplift.build(*args, **options)
+
+
+@pytest.fixture(scope="module")
+def cubes():
+    """The ColorChecker without and with looks."""
+    return quietly(MACBETH, dim=6), quietly(MACBETH, dim=6, looks=LOOKS)
+
+
+@pytest.fixture(scope="module")
+def bare():
+    """Looks without an atlas."""
+    return quietly(dim=4, prior="smooth", looks=[*LOOKS, IMPOSSIBLE])
+
+
+def distances(cube, looks):
+    """ΔE00 of the answers to the colours of looks from the wishes, computed from the definition."""
+    found = []
+    for look in looks:
+        rgb = cube.decode(list(bytes.fromhex(look.rgb[1:]))) if isinstance(look.rgb, str) else look.rgb
+        for name, wish in look.lights.items():
+            (screen,) = display_sensors([name], cube.observer)
+            codes = screen.decode(list(bytes.fromhex(wish[1:]))) if isinstance(wish, str) else wish
+            found.append(delta_e_rgb(screen, screen.rgb(cube.reflectance(rgb)), codes))
+    return np.array(found)
+
+
+def test_looks_are_met_and_other_entries_unchanged(cubes):
+    plain, looked = cubes
+    assert distances(looked, LOOKS[:2]).max() <= 0.1
+    assert distances(plain, LOOKS[:2]).min() > 2
+    atlas = plain.data.atlas
+    assert looked.data.atlas.names == (*atlas.names, "brick", "look #40a060", "look 0.5 0.3 0.2")
+    for mode in ("spectra", "refined", "moments"):
+        np.testing.assert_allclose(
+            looked.reflectance(atlas.rgb, mode=mode),
+            plain.reflectance(atlas.rgb, mode=mode),
+            rtol=0,
+            atol=1e-9,
+        )
+    rgb = looked.data.atlas.rgb
+    np.testing.assert_allclose(looked.data.sensor.rgb(looked.reflectance(rgb)), rgb, atol=1e-5)
+
+
+def test_half_a_look_is_half_way(cubes):
+    plain, looked = cubes
+    (screen,) = display_sensors(["A"], plain.observer)
+    rgb, wish = LOOKS[2].rgb, np.array(LOOKS[2].lights["A"])
+    expected = screen.rgb(plain.reflectance(rgb))
+    halfway = (wish + expected) / 2
+    assert delta_e_rgb(screen, screen.rgb(looked.reflectance(rgb)), halfway) < 0.5
+    assert delta_e_rgb(screen, wish, expected) > 1
+
+
+def test_colours_near_a_look_follow_it_and_others_hardly(cubes):
+    plain, looked = cubes
+    at = plain.decode(np.array([[0x8A, 0x2A, 0x20], [0x94, 0x32, 0x28], [0xF0, 0xF0, 0x60]]))
+    change = np.abs(looked.reflectance(at) - plain.reflectance(at)).max(axis=1)
+    assert change[0] > change[1] > 3 * change[2]
+
+
+def test_looks_work_without_an_atlas(bare):
+    assert distances(bare, LOOKS[:2]).max() <= 0.1
+    assert bare.data.points.standard_error is None
+    assert (bare.data.atlas.measured_count, bare.data.atlas.looks) == (0, 4)
+
+
+def test_looks_are_no_evidence_for_errors(cubes):
+    plain, looked = cubes
+    one, other = (each.data.atlas.left_out for each in cubes)
+    np.testing.assert_array_equal(one.measured, other.measured)
+    np.testing.assert_allclose(one.answered, other.answered, atol=1e-6)
+    rgb = looked.data.atlas.rgb
+    count = plain.data.atlas.measured_count
+    for kind in (None, light("FL11")):
+        errors = looked.standard_error(rgb) if kind is None else looked.standard_error(rgb, kind)
+        assert errors[:count].max() < 0.5 < errors[count:].min()
+    assert len(light_errors(looked.data, light("HP1")).entries) == count + 3
+    np.testing.assert_array_equal(looked.unlike_atlas(rgb), plain.unlike_atlas(rgb))
+    assert [each.entry for each in query(looked, rgb[count:])] == list(looked.data.atlas.names[count:])
+
+
+def test_impossible_look_is_reported_and_recorded():
+    with warns("look-impossible") as found:
+        cube = uplift.build(dim=2, prior="smooth", looks=IMPOSSIBLE)
+    (record,) = cube.data.provenance["looks"]
+    (at_a,) = record["lights"]
+    assert 0.5 < at_a["possible"] <= at_a["delta_e"] < at_a["possible"] + 0.2
+    np.testing.assert_allclose(at_a["delta_e"], distances(cube, [IMPOSSIBLE])[0], atol=1e-5)
+    assert "dusk" in str(found[0])
+    assert cube.reflectance(cube.data.atlas.rgb).max() <= 1
+
+
+def test_look_that_few_coefficients_miss_is_reported(small_cube):
+    screens = display_sensors(["FL11", "A"], small_cube.observer)
+    entry = small_cube.data.entry_spectra.reflectance(np.array([3]), small_cube.data.sensor.wavelengths)[0]
+    look = Look(
+        small_cube.data.atlas.rgb[3].tolist(), {each.illuminant: each.rgb(entry).tolist() for each in screens}
+    )
+    with warns("look-not-reached"):
+        cube = uplift.build(dim=2, prior="smooth", coefficients=4, entry_coefficients=4, looks=look)
+    (record,) = cube.data.provenance["looks"]
+    assert max(each["delta_e"] for each in record["lights"]) > 0.1
+    assert max(each["possible"] for each in record["lights"]) < 0.1
+
+
+def test_cube_with_looks_is_stored_and_rebuilt(cubes, tmp_path):
+    path = tmp_path / "looks.uplift"
+    cubes[1].save(path)
+    stored = uplift.load(path)
+    assert stored.data.provenance["looks"] == cubes[1].data.provenance["looks"]
+    rebuild(stored, path).save(tmp_path / "again.uplift")
+    assert (tmp_path / "again.uplift").read_bytes() == path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        (lambda looks: [{**looks[0], "name": "other"}, *looks[1:]], "unknown-look"),
+        (lambda looks: looks * 10, "unknown-look"),
+        (lambda looks: [{**looks[0], "rgb": [0.1, "x", 0]}], "invalid-metadata"),
+        (lambda looks: [{"name": "brick"}], "invalid-metadata"),
+    ],
+)
+def test_damaged_records_are_refused(bare, tmp_path, change, code):
+    provenance = {**bare.data.provenance, "looks": change(bare.data.provenance["looks"])}
+    data = dataclasses.replace(bare.data, provenance=provenance)
+    with pytest.raises(uplift.OutputError) as caught:
+        write(data, tmp_path / "damaged.uplift")
+    assert isinstance(caught.value.__cause__, CubeFileError)
+    assert caught.value.__cause__.code == code
+
+
+def test_invalid_recorded_look_fails_the_rebuild(bare, tmp_path):
+    records = json.loads(json.dumps(bare.data.provenance["looks"]))
+    records[0]["weight"] = 0
+    data = dataclasses.replace(bare.data, provenance={**bare.data.provenance, "looks": records})
+    write(data, tmp_path / "weight.uplift")
+    with raises(CubeFileError, "unknown-recorded-options"):
+        rebuild(Cube(read(tmp_path / "weight.uplift")), tmp_path / "weight.uplift")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (("#8a2a2", {"A": "#808080"}), "invalid-colour"),
+        (("#8a2a20", {"A": "brown"}), "invalid-colour"),
+        (([0.1, 0.2, 1.2], {"A": "#808080"}), "look-out-of-range"),
+        (([0.1, 0.2, float("nan")], {"A": "#808080"}), "invalid-colour"),
+        (("#8a2a20", {"A": [0.1, 0.2, 30]}), "look-out-of-range"),
+        (("#8a2a20", {}), "look-without-lights"),
+        (("#8a2a20", {"A": "#808080"}, 0), "look-weight-out-of-range"),
+        (("#8a2a20", {"A": "#808080"}, 1.5), "look-weight-out-of-range"),
+        (("#8a2a20", {"A": "#808080"}, "1"), "look-weight-out-of-range"),
+    ],
+)
+def test_invalid_looks_are_refused(arguments, code):
+    with raises(LookError, code):
+        Look(*arguments)
+
+
+@pytest.mark.parametrize(
+    ("looks", "code"),
+    [
+        ([RED, Look("#8a2a20", {"A": "#808080"})], "look-colour-taken"),
+        ([RED, Look("#40a060", {"A": "#808080"}, name="brick")], "look-name-taken"),
+        ([Look("#40a060", {"A": "#808080"}, name="orange")], "look-name-taken"),
+        ([Look("#40a060", {"A": "#808080"}, name="cyan")], "look-name-taken"),
+        ([Look("#40a060", {"D65": "#808080"})], "look-of-build-light"),
+        ([Look("#40a060", {"FL99": "#808080"})], "unknown-illuminant"),
+        ([Look("#40a060", {"FL11": "#808080", "fl11": "#808081"})], "look-light-repeated"),
+        (["#40a060"], "look-type"),
+    ],
+)
+def test_contradicting_looks_are_refused(looks, code):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        with raises(LookError, code):
+            uplift.build(MACBETH, dim=2, prior="smooth", looks=looks)
+
+
+def test_look_of_the_colour_of_an_entry_is_refused(small_cube):
+    codes = bytes(np.rint(small_cube.encode(small_cube.data.atlas.rgb[3])).astype(np.uint8).tolist())
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        with raises(LookError, "look-colour-taken") as caught:
+            uplift.build(MACBETH, dim=2, prior="smooth", looks=Look("#" + codes.hex(), {"A": "#808080"}))
+    assert small_cube.data.atlas.names[3] in str(caught.value)
+
+
+def test_look_that_no_reflectance_has_by_day_is_refused():
+    with raises(LookError, "look-unrealisable"):
+        uplift.build(dim=2, space="ITU-R BT.2020", looks=Look([0, 1, 0], {"A": "#808080"}))
+
+
+@pytest.mark.parametrize("options", [{"model": "sigmoid"}, {"coefficients": 3, "entry_coefficients": 3}])
+def test_models_without_freedom_are_refused(options):
+    with raises(LookError, "looks-without-freedom"):
+        uplift.build(dim=2, looks=RED, **options)
+
+
+def test_looks_and_other_atlases_share_auto_dim():
+    cube = quietly(ATLASES / "macbeth.txt", dim="auto", auto_tolerance=20, looks=RED)
+    assert "brick" in cube.data.atlas.names
