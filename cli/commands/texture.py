@@ -19,12 +19,14 @@ from ..params.image_paths import texture_paths
 from ..params.number_types import Whole
 from ..params.options import (
     cube_option,
+    emission_option,
     encoding_option,
     fill_option,
     force_option,
     input_space_option,
     out_of_gamut_option,
     quiet_option,
+    refuse_for_emission,
     wavelengths_option,
 )
 from ..params.wavelengths import parse_wavelengths
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
 @click.argument("sources", metavar="IN...", nargs=-1, required=True)
 @click.argument("target", metavar="OUT")
 @cube_option()
+@emission_option("Pixels are light, as in an environment map")
 @click.option(
     "--store",
     "kind",
@@ -51,7 +54,7 @@ if TYPE_CHECKING:
 @click.option(
     "--depth",
     type=click.Choice(("half", "float")),
-    help="16 or 32 bits per channel. [default: half for spectra, else float]",
+    help="16 or 32 bits per channel. [default: half for reflectances, else float]",
 )
 @encoding_option()
 @input_space_option("the images", "--space")
@@ -74,6 +77,7 @@ def command(
     sources: tuple[str, ...],
     target: str,
     cube_path: str | None,
+    is_emission: bool,
     kind: str,
     wavelengths: str | None,
     depth: str | None,
@@ -87,7 +91,7 @@ def command(
     force: bool,
     quiet: bool,
 ) -> None:
-    """Convert every pixel of an image (EXR, PNG, JPEG, TIFF) to a spectrum and write an OpenEXR texture.
+    """Convert every pixel of an image (EXR, HDR, PNG, JPEG, TIFF) to a spectrum and write an OpenEXR texture.
 
     \b
     Examples:
@@ -97,6 +101,7 @@ def command(
       uplift texture fire.exr bright.exr --out-of-gamut scale
       uplift texture painting.exr ap1.exr --space ACEScg
       uplift texture shot.*.exr uplifted --scheduler tcp://10.0.0.5:8786
+      uplift texture sky.hdr sky-spectral.exr --emission --wavelengths 400:700:10
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
     and mip-mapped. 'multipliers' can be evaluated directly, by the formula in the header. Alpha and other channels are
@@ -107,6 +112,10 @@ def command(
     that the file states by colorInteropID, chromaticities, code points or an ICC profile.
 
     Colours outside [0, 1] are treated by --out-of-gamut, and NaN becomes 0. A warning counts both.
+
+    With --emission, pixels are light of any brightness, such as those of an environment map, and channels hold spectral
+    power. Its unit is that of the equal-energy light of luminance 1; RGB (1, 1, 1) has luminance 1. Only colours
+    outside the spectral locus change.
     """
     enable_jit_cache()
     from uplift.io import texture
@@ -115,14 +124,20 @@ def command(
     pairs = texture_paths(sources, target)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
-    form = _pixel_encoding(kind, parse_wavelengths(wavelengths))
     cube = None if cube_path is None else os.path.abspath(find_cube_file(cube_path))
-    settings = texture.TextureSettings(
-        cube, form, depth, encoding, max(cores // count, 1), fill_missing, method, input_space
-    )
+    threads, at = max(cores // count, 1), parse_wavelengths(wavelengths)
+    settings: texture.TextureSettings | texture.LightSettings
+    if is_emission:
+        refuse_for_emission("kind", "method", "fill_missing")
+        settings = texture.LightSettings(cube, _as_tuple(at), depth, encoding, threads, input_space)
+    else:
+        form = _pixel_encoding(kind, at)
+        settings = texture.TextureSettings(
+            cube, form, depth, encoding, threads, fill_missing, method, input_space
+        )
     jobs = [texture.Job(settings, source.absolute(), path.absolute(), force) for source, path in pairs]
     pending = texture.pending(jobs, resume=resume)
-    texture.uplifter_for(settings)  # report invalid options once, not once per image
+    texture.converter_for(settings)  # report invalid options once, not once per image
     begin = time.perf_counter()
     if scheduler is None and len(jobs) == 1:
         results: list[Conversion | Failure] = [_convert_here(job, quiet=quiet) for job in pending]
@@ -148,7 +163,7 @@ def _pixel_encoding(kind: str, wavelengths: Array | None) -> PixelEncoding:
     from uplift.io import texture
 
     if kind == texture.Spectrum.name:
-        return texture.Spectrum(None if wavelengths is None else tuple(wavelengths.tolist()))
+        return texture.Spectrum(_as_tuple(wavelengths))
     if wavelengths is not None:
         raise OptionError(
             f"{kind} have no wavelengths",
@@ -158,13 +173,17 @@ def _pixel_encoding(kind: str, wavelengths: Array | None) -> PixelEncoding:
     return texture.PIXEL_ENCODINGS[kind]()
 
 
+def _as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:
+    return None if wavelengths is None else tuple(wavelengths.tolist())
+
+
 def _convert_here(job: Job, *, quiet: bool) -> Conversion:
     """Convert one image in this process, with a progress bar over its rows."""
     from uplift.io import texture
 
     with progress_bar("rows", quiet=quiet) as progress:
         return texture.convert(
-            texture.uplifter_for(job.settings), job.source, job.target, force=job.force, progress=progress
+            texture.converter_for(job.settings), job.source, job.target, force=job.force, progress=progress
         )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from uplift.common.number_text import parse_whole
 from uplift.common.quoting import format_value
@@ -96,6 +97,28 @@ def _repeatable(help: str, default: str) -> str:
 def output_folder_option() -> Decorator:
     """``--output`` of commands that write several files."""
     return click.option("-o", "--output", metavar="DIR", help="Folder for tables and plots.")
+
+
+def emission_option(meaning: str) -> Decorator:
+    """``--emission`` as ``is_emission``."""
+    return click.option(
+        "--emission", "is_emission", is_flag=True, help=f"{meaning}; --cube is an emission table."
+    )
+
+
+def refuse_for_emission(*names: str) -> None:
+    """Raise `OptionError` if a parameter of the current command that lights do not have was given."""
+    from uplift.common.errors import OptionError
+
+    context = click.get_current_context()
+    for parameter in context.command.params:
+        is_given = context.get_parameter_source(parameter.name or "") is ParameterSource.COMMANDLINE
+        if parameter.name in names and is_given:
+            raise OptionError(
+                f"{parameter.opts[0]} does not apply to lights",
+                code="not-for-lights",
+                hint=f"leave out {parameter.opts[0]} or --emission",
+            )
 
 
 def fill_option() -> Decorator:

@@ -85,3 +85,30 @@ def test_textures_do_not_replace_any_image_of_the_sequence(refuse, frames):
     for words in (("shot.*.exr",), ("shot.1.exr", "shot.0.exr")):
         assert refuse("texture", *words, ".", "--force").code == "output-is-input"
     assert {path.name: path.read_bytes() for path in frames.iterdir()} == before
+
+
+def test_lights(run, refuse, home):
+    write_exr(home / "sky.exr", planes(np.full((2, 3, 3), 1e5, np.float32)))
+    options = ("--emission", "--wavelengths", "450,550,650")
+    result = run("texture", "sky.exr", "out.exr", *options)
+    assert result.output.startswith("out.exr: 1 texture, 6 pixels, 0.0 MB, ")
+    found = OpenEXR.File("out.exr", separate_channels=True).channels()
+    assert found["S0.550,000000nm"].pixels.min() > 1e4
+    assert run("texture", "sky.exr", "out.exr", *options, "--resume").output.startswith("out.exr: 0 textures")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("--store", "moments"), ("--out-of-gamut", "scale"), ("--fill-missing",)],
+)
+def test_options_that_lights_do_not_have(refuse, home, words):
+    write_exr(home / "sky.exr", planes(np.ones((2, 3, 3), np.float32)))
+    assert refuse("texture", "sky.exr", "out.exr", "--emission", *words).code == "not-for-lights"
+
+
+def test_a_cube_is_no_emission_table(refuse, home, cubes):
+    write_exr(home / "sky.exr", planes(np.ones((2, 3, 3), np.float32)))
+    path = cubes / "moments-8.uplift"
+    assert (
+        refuse("texture", "sky.exr", "out.exr", "--emission", "--cube", path).code == "not-an-emission-table"
+    )

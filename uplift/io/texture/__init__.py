@@ -16,16 +16,18 @@ from __future__ import annotations
 from uplift.io.texture.colours import ENCODINGS, Counts
 from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.converter import Converter
+from uplift.io.texture.lights import LightUplifter, prepare_lights
 from uplift.io.texture.pixel_encoding import PIXEL_ENCODINGS, Moments, Multipliers, PixelEncoding, Spectrum
 from uplift.io.texture.sequence import (
     Failure,
     Job,
+    LightSettings,
     TextureSettings,
     convert_all,
+    converter_for,
     dask_executor,
     pending,
     process_executor,
-    uplifter_for,
 )
 from uplift.io.texture.uplifter import Uplifter, prepare
 
@@ -37,6 +39,8 @@ __all__ = [
     "Counts",
     "Failure",
     "Job",
+    "LightSettings",
+    "LightUplifter",
     "Moments",
     "Multipliers",
     "PixelEncoding",
@@ -45,9 +49,10 @@ __all__ = [
     "Uplifter",
     "convert",
     "convert_all",
+    "converter_for",
     "dask_executor",
     "pending",
     "prepare",
+    "prepare_lights",
     "process_executor",
-    "uplifter_for",
 ]

@@ -51,6 +51,10 @@ class Counts:
         Largest change of a component of linear RGB by gamut mapping.
     painted_outside : int
         Pixels outside [0, 1] after painting over.
+    not_lights : int
+        Pixels whose colour no light has.
+    too_bright : int
+        Pixels with numbers above the largest of the channels' type.
     """
 
     pixels: int = 0
@@ -59,6 +63,8 @@ class Counts:
     unrealisable: int = 0
     max_change: float = 0.0
     painted_outside: int = 0
+    not_lights: int = 0
+    too_bright: int = 0
 
     def __add__(self, other: Counts) -> Counts:
         """Counts of both."""
@@ -83,8 +89,15 @@ class Counts:
             The warnings. They are not emitted.
         """
         past, change = PAST_TENSE[method], f"a component by up to {self.max_change:.3g}"
-        counts = (self.outside, self.not_finite, self.unrealisable, self.painted_outside)
-        outside, not_finite, unrealisable, painted = (
+        counts = (
+            self.outside,
+            self.not_finite,
+            self.unrealisable,
+            self.painted_outside,
+            self.not_lights,
+            self.too_bright,
+        )
+        outside, not_finite, unrealisable, painted, not_lights, too_bright = (
             f"{count:,} of {self.pixels:,} pixels" for count in counts
         )
         warnings = (
@@ -105,6 +118,17 @@ class Counts:
                 f"{painted} lie outside [0, 1] after painting: {past}",
                 code="painted-pixels-out-of-gamut",
                 path=path,
+            ),
+            UpliftWarning(
+                f"{not_lights} have colours that no light has: moved towards white of the same luminance",
+                code="pixels-not-lights",
+                path=path,
+            ),
+            UpliftWarning(
+                f"{too_bright} are brighter than half floats can store: clamped",
+                code="pixels-too-bright",
+                path=path,
+                hint="use 32-bit channels",
             ),
         )
         return tuple(warning for count, warning in zip(counts, warnings, strict=True) if count)
@@ -281,7 +305,7 @@ def make_decoder(
         )
     if part.max_code:
         return Decoder(
-            _integer_reader(sensor, part.max_code, encoding, source), True, False, matrix, sensor, method
+            integer_reader(sensor, part.max_code, encoding, source), True, False, matrix, sensor, method
         )
     if source is not None and source.floats_are_codes and source.decode is not None:
         return Decoder(source.decode, False, False, matrix, sensor, method)
@@ -292,22 +316,22 @@ def make_decoder(
                 code="encoded-floats-not-mapped",
                 hint="their encoding ends at 0 and 1; pass out_of_gamut='clip' or encoding='linear'",
             )
-        return Decoder(_code_decoder(sensor, source), False, True, matrix, sensor, method)
+        return Decoder(code_decoder(sensor, source), False, True, matrix, sensor, method)
     return Decoder(lambda floats: floats, False, False, matrix, sensor, method)
 
 
-def _code_decoder(sensor: Sensor, source: ImageSpace | None) -> Callable[[Values], Values]:
-    """Return the function from codes in [0, 1] to linear values."""
+def code_decoder(sensor: Sensor, source: ImageSpace | None) -> Callable[[Values], Values]:
+    """Return the function from codes in [0, 1] of a space, None for that of the sensor, to linear values."""
     if source is None or source.decode is None:
         return lambda codes: sensor.decode(255 * codes)
     return source.decode
 
 
-def _integer_reader(
+def integer_reader(
     sensor: Sensor, max_code: int, encoding: str, source: ImageSpace | None
 ) -> Callable[[Values], Values]:
     """Return the function from integers (…, 3) to linear values, by a table where channels are independent."""
-    decode = _code_decoder(sensor, source)
+    decode = code_decoder(sensor, source)
     if source is not None and source.mixes_channels:
         return lambda codes: decode(codes / max_code)
     share = np.repeat(np.linspace(0, 1, max_code + 1)[:, None], 3, axis=1)

@@ -65,7 +65,7 @@ def convert(
     converter : Converter
         An `Uplifter`, or a coat of paint (`uplift.design.mixing.overpaint`).
     source : path-like
-        OpenEXR, PNG, JPEG or TIFF image.
+        OpenEXR, Radiance HDR, PNG, JPEG or TIFF image.
     target : path-like
         OpenEXR file to write.
     force : bool

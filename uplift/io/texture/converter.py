@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
-from uplift.io.texture.colours import Counts, Floats
+from uplift.io.texture.alpha import ColourChannels
+from uplift.io.texture.colours import Counts, Floats, make_decoder
+from uplift.io.texture.source import Part, Values
+
+ReadColours = Callable[[Values], tuple[Floats, Counts]]
+"""From the numbers of an image (…, 3) to linear RGB (…, 3), and counts of unusual pixels."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +64,41 @@ class Converter(ABC):
         """
         return tuple(each * opacity for each in values)
 
+    def colour_channels(self, found: ColourChannels) -> ColourChannels:
+        """Choose how the colour channels of a part are read.
+
+        Parameters
+        ----------
+        found : ColourChannels
+            The channels that the part has.
+
+        Returns
+        -------
+        ColourChannels
+            The same, by default.
+        """
+        return found
+
+    def decoder(self, part: Part) -> ReadColours:
+        """Make the conversion of a part's colours to linear RGB.
+
+        Parameters
+        ----------
+        part : Part
+            Part of an image.
+
+        Returns
+        -------
+        callable
+            From the numbers of the part to linear RGB, by default in [0, 1].
+
+        Raises
+        ------
+        OptionError
+            As `make_decoder`.
+        """
+        return make_decoder(self.sensor, part, self.encoding, self.out_of_gamut, self.space)
+
     @abstractmethod
     def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
         """Convert a block of colours.
@@ -66,7 +106,7 @@ class Converter(ABC):
         Parameters
         ----------
         rgb : ndarray of shape (..., 3)
-            Linear RGB in [0, 1], float32.
+            Linear RGB of `decoder`, float32.
 
         Returns
         -------

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from uplift.common.errors import TextureError
 from uplift.io.texture.alpha import ColourChannels
-from uplift.io.texture.colours import Decoder, colour_channels, make_decoder
-from uplift.io.texture.converter import Converter
+from uplift.io.texture.colours import colour_channels
+from uplift.io.texture.converter import Converter, ReadColours
 from uplift.io.texture.source import Image, Part
 from uplift.io.texture.writer import OutputPart
 
@@ -27,8 +27,8 @@ class PartLayout:
         The colour channels, if the part has any.
     others : tuple of int
         Indices of the channels that pass through.
-    decoder : Decoder
-        Conversion of the colours to linear RGB.
+    decoder : callable
+        Conversion of the colours to linear RGB, and counts of unusual pixels.
     output : OutputPart
         The part to write.
     """
@@ -36,13 +36,16 @@ class PartLayout:
     part: Part
     colours: ColourChannels | None
     others: tuple[int, ...]
-    decoder: Decoder
+    decoder: ReadColours
     output: OutputPart
 
 
 def part_layouts(converter: Converter, image: Image) -> list[PartLayout]:
     """Return the layout of every part. Raises `TextureError` for an image without usable colours."""
-    return [_layout(converter, image, *each) for each in colour_channels_by_part(image)]
+    return [
+        _layout(converter, image, part, colours and converter.colour_channels(colours))
+        for part, colours in colour_channels_by_part(image)
+    ]
 
 
 def colour_channels_by_part(image: Image) -> list[tuple[Part, ColourChannels | None]]:
@@ -72,10 +75,7 @@ def _layout(converter: Converter, image: Image, part: Part, colours: ColourChann
         names, types = (*converted, *names), (*(converter.depth,) * len(converted), *types)
     date = part.date or _modification_date(image)
     output = OutputPart(part.name, part.window, names, types, {**part.metadata, **converter.header}, date)
-    decoder = make_decoder(
-        converter.sensor, part, converter.encoding, converter.out_of_gamut, converter.space
-    )
-    return PartLayout(part, colours, others, decoder, output)
+    return PartLayout(part, colours, others, converter.decoder(part), output)
 
 
 def _lossless_type(name: str) -> str:

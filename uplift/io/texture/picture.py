@@ -53,7 +53,7 @@ def read_picture(
     Parameters
     ----------
     path : path-like
-        OpenEXR, PNG, JPEG or TIFF image.
+        OpenEXR, Radiance HDR, PNG, JPEG or TIFF image.
     sensor : Sensor
         RGB space of the colours.
     max_side : int

@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from uplift import models
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.io.texture.colours import Floats
 from uplift.lookup import Cube
@@ -19,6 +20,8 @@ from uplift.lookup.interpolate import refined_multipliers
 
 Sampler = Callable[[Floats], Floats]
 """From linear RGB (…, 3) in [0, 1] to numbers (…, N)."""
+SPECTRAL_LAYOUT = {"spectralLayoutVersion": "1.0"}
+"""Attribute of files in the layout of Fichet et al. 2021."""
 
 
 class PixelEncoding(ABC):
@@ -130,15 +133,7 @@ class Spectrum(PixelEncoding):
         OptionError
             The wavelengths do not ascend (code ``wavelengths-not-ascending``).
         """
-        wavelengths = cube.resolve_wavelengths(self.wavelengths)
-        names = tuple("T." + f"{wavelength:.6f}nm".replace(".", ",") for wavelength in wavelengths)
-        if (np.diff(wavelengths) <= 0).any() or len(set(names)) < len(names):
-            raise OptionError(
-                "wavelengths of a spectral image must ascend in steps of at least 1e-6 nm",
-                code="wavelengths-not-ascending",
-                hint="sort them and remove duplicates",
-            )
-        return names
+        return spectral_channels("T", cube.resolve_wavelengths(self.wavelengths))
 
     def header(self) -> dict[str, str]:
         """Return the version of the spectral layout.
@@ -148,7 +143,7 @@ class Spectrum(PixelEncoding):
         dict
             ``spectralLayoutVersion``.
         """
-        return {"spectralLayoutVersion": "1.0"}
+        return dict(SPECTRAL_LAYOUT)
 
     def describe(self, cube: Cube) -> dict[str, Any]:
         """Return the name and the wavelengths.
@@ -289,6 +284,36 @@ PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {
     each.name: each for each in (Spectrum, Moments, Multipliers)
 }
 """Pixel encodings with their defaults, by name."""
+
+
+def spectral_channels(quantity: str, wavelengths: Array) -> tuple[str, ...]:
+    """Name the channels of a spectral image in the layout of Fichet et al. 2021.
+
+    Parameters
+    ----------
+    quantity : {"T", "S0"}
+        Reflectance, or power that is not polarised.
+    wavelengths : ndarray, shape (N,)
+        Ascending wavelengths in nm.
+
+    Returns
+    -------
+    tuple of str
+        Such as ``T.550,000000nm``.
+
+    Raises
+    ------
+    OptionError
+        The wavelengths do not ascend (code ``wavelengths-not-ascending``).
+    """
+    names = tuple(f"{quantity}." + f"{wavelength:.6f}nm".replace(".", ",") for wavelength in wavelengths)
+    if (np.diff(wavelengths) <= 0).any() or len(set(names)) < len(names):
+        raise OptionError(
+            "wavelengths of a spectral image must ascend in steps of at least 1e-6 nm",
+            code="wavelengths-not-ascending",
+            hint="sort them and remove duplicates",
+        )
+    return names
 
 
 def _numbered(name: str, count: int) -> tuple[str, ...]:

@@ -20,16 +20,20 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
 from uplift.common.errors import OptionError, TextureError, UpliftError
 from uplift.common.files import check_outputs, remove_stale
 from uplift.common.processes import tied_processes
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.texture import exr_file
 from uplift.io.texture.conversion import Conversion, convert
+from uplift.io.texture.converter import Converter
+from uplift.io.texture.lights import prepare_lights
 from uplift.io.texture.pixel_encoding import PixelEncoding
 from uplift.io.texture.source import open_image
-from uplift.io.texture.uplifter import Uplifter, prepare
-from uplift.lookup import load
+from uplift.io.texture.uplifter import prepare
+from uplift.lookup import load, load_emission
 
 MAX_NAMES = 4
 """Finished textures that an error names."""
@@ -72,6 +76,66 @@ class TextureSettings:
     out_of_gamut: str = "clip"
     space: str | None = None
 
+    def prepare(self) -> Converter:
+        """Prepare the cube for textures.
+
+        Returns
+        -------
+        Converter
+            An `Uplifter`.
+        """
+        cube = load(self.cube)
+        if self.fill_missing:
+            cube = cube.fill_missing(threads=self.threads)
+        return prepare(
+            cube,
+            self.pixel_encoding,
+            depth=self.depth,
+            encoding=self.encoding,
+            out_of_gamut=self.out_of_gamut,
+            space=self.space,
+            threads=self.threads,
+        )
+
+
+@dataclass(frozen=True)
+class LightSettings:
+    """Settings that all images of lights in a sequence share.
+
+    Parameters
+    ----------
+    cube : str or None
+        Path of the emission table, None for that of the package.
+    wavelengths : tuple of float or None
+        Wavelengths of the channels in nm, None for those of the table.
+    depth, encoding, threads, space
+        As in `TextureSettings`.
+    """
+
+    cube: str | None
+    wavelengths: tuple[float, ...] | None
+    depth: str | None
+    encoding: str
+    threads: int
+    space: str | None = None
+
+    def prepare(self) -> Converter:
+        """Prepare the emission table for textures.
+
+        Returns
+        -------
+        Converter
+            A `LightUplifter`.
+        """
+        return prepare_lights(
+            load_emission(self.cube),
+            None if self.wavelengths is None else np.array(self.wavelengths),
+            depth=self.depth,
+            encoding=self.encoding,
+            space=self.space,
+            threads=self.threads,
+        )
+
 
 @dataclass(frozen=True)
 class Job:
@@ -79,7 +143,7 @@ class Job:
 
     Parameters
     ----------
-    settings : TextureSettings
+    settings : TextureSettings or LightSettings
         Settings of the sequence.
     source, target : Path
         The image to read and the file to write.
@@ -87,7 +151,7 @@ class Job:
         Whether to replace an existing file.
     """
 
-    settings: TextureSettings
+    settings: TextureSettings | LightSettings
     source: Path
     target: Path
     force: bool = False
@@ -110,37 +174,28 @@ class Failure:
 
 
 @lru_cache(maxsize=1)
-def uplifter_for(settings: TextureSettings) -> Uplifter:
-    """Return the uplifter of the settings, which each process prepares once.
+def converter_for(settings: TextureSettings | LightSettings) -> Converter:
+    """Return the converter of the settings, which each process prepares once.
 
     Parameters
     ----------
-    settings : TextureSettings
+    settings : TextureSettings or LightSettings
         Settings of the sequence.
 
     Returns
     -------
-    Uplifter
+    Converter
         The converter.
     """
-    cube = load(settings.cube)
-    if settings.fill_missing:
-        cube = cube.fill_missing(threads=settings.threads)
-    return prepare(
-        cube,
-        settings.pixel_encoding,
-        depth=settings.depth,
-        encoding=settings.encoding,
-        out_of_gamut=settings.out_of_gamut,
-        space=settings.space,
-        threads=settings.threads,
-    )
+    return settings.prepare()
 
 
 def run(job: Job, progress: ProgressCallback = ignore_progress) -> Conversion | Failure:
     """Convert the image of a job. Errors are returned, so that one bad image does not stop the others."""
     try:
-        return convert(uplifter_for(job.settings), job.source, job.target, force=job.force, progress=progress)
+        return convert(
+            converter_for(job.settings), job.source, job.target, force=job.force, progress=progress
+        )
     except UpliftError as error:
         return Failure(job.source, error)
     except MemoryError:
@@ -257,7 +312,7 @@ def _is_up_to_date(job: Job) -> bool:
             return False
     except OSError:
         return False
-    header = uplifter_for(job.settings).header
+    header = converter_for(job.settings).header
     try:
         with open_image(job.target) as image:
             equal = all(image.header_text(name) == header[name] for name in ("uplift.cube", "uplift.texture"))

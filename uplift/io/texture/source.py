@@ -1,4 +1,4 @@
-"""Image files as they are: parts, channels, and rows a band at a time (OpenEXR, PNG, JPEG, TIFF).
+"""Image files as they are: parts, channels, and rows a band at a time (OpenEXR, Radiance HDR, PNG, JPEG, TIFF).
 
 OpenImageIO reads all formats. Bands hold the numbers of the file, unconverted.
 """
@@ -23,7 +23,7 @@ from uplift.io.texture import exr_file
 from uplift.io.texture.colour_profile import Profile, read_profile
 from uplift.io.texture.file_name import utf8_name
 
-FORMATS = ("openexr", "png", "jpeg", "tiff")
+FORMATS = ("openexr", "hdr", "png", "jpeg", "tiff")
 MAX_BAND_BYTES = 1 << 25
 """Size of a band to read, unless the file's own blocks of rows are larger."""
 UINT32_SCALE = 2**32 - 1
@@ -42,9 +42,11 @@ TECHNICAL = frozenset(
 """Attributes that textures do not keep, as they describe the file that is read."""
 FILM = frozenset(("smpte:KeyCode", "smpte:TimeCode"))
 """Attributes that are kept although OpenImageIO gives them a prefix, as it does to those of other formats."""
+ENVIRONMENTS = ("LatLong Environment", "CubeFace Environment")
+"""Values of ``textureformat`` that are kept: they stand for the attribute ``envmap`` of OpenEXR."""
 MAX_METADATA, MAX_METADATA_LENGTH = 100, 10_000
 """Numbers of attributes, and of their characters or numbers, that textures keep."""
-FORMAT_HINT = "use an EXR, PNG, JPEG or TIFF image"
+FORMAT_HINT = "use an EXR, HDR, PNG, JPEG or TIFF image"
 
 Values = NDArray[Any]
 
@@ -310,8 +312,16 @@ def _part(spec: Any, number: int) -> Part:
 
 def _metadata(spec: Any) -> dict[str, Attribute]:
     """Return the attributes that are not about how the image is stored."""
-    found = (each for each in spec.extra_attribs if _is_kept_name(each.name) and _is_kept_value(each.value))
+    found = (
+        each
+        for each in spec.extra_attribs
+        if _is_environment(each) or (_is_kept_name(each.name) and _is_kept_value(each.value))
+    )
     return {each.name: Attribute(each.type, each.value) for each in itertools.islice(found, MAX_METADATA)}
+
+
+def _is_environment(attribute: Any) -> bool:
+    return attribute.name == "textureformat" and attribute.value in ENVIRONMENTS
 
 
 def _is_kept_name(name: str) -> bool:

@@ -85,7 +85,7 @@ class Writer:
             handle = OpenImageIO.ImageOutput.create("openexr")  # takes the number of threads
             if handle is None:
                 raise OSError(read_error(OpenImageIO))
-            self._handle = handle
+            self._handle: Any = handle
             self._check(self._handle.open(utf8_name(path, OutputError), specs))
 
     def start_part(self, number: int) -> None:
@@ -103,6 +103,7 @@ class Writer:
     def close(self) -> None:
         """Finish the file, check that all of it is there, and add its checksum. Raises `OSError` and `OutputError`."""
         self._check(self._handle.close())
+        self._handle = None  # closed only now, if the image is an environment map
         try:  # a disk that fills up with the last bytes gives no other sign
             exr_file.check_chunks(self._path, self._heights, ROWS_PER_CHUNK)
         except TextureError as error:
@@ -113,6 +114,8 @@ class Writer:
 
     def abort(self) -> None:
         """Close an incomplete file and ignore errors."""
+        if self._handle is None:
+            return
         self._handle.close()
         read_error(self._handle)  # otherwise it is printed when the process ends
 

@@ -1,0 +1,222 @@
+"""An emission table prepared for images of lights: environment maps, screens, textures of lamps."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from uplift.colorimetry.gamut import conversion
+from uplift.colorimetry.observer import sensor
+from uplift.colorimetry.spaces import ImageSpace, find_space
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
+from uplift.cube import emission_digest
+from uplift.io.slices import exr
+from uplift.io.texture.alpha import ColourChannels
+from uplift.io.texture.colours import Counts, Floats, check_encoding, code_decoder, integer_reader
+from uplift.io.texture.converter import Converter, ReadColours
+from uplift.io.texture.pixel_encoding import SPECTRAL_LAYOUT, spectral_channels
+from uplift.io.texture.source import Part, Values
+from uplift.io.texture.source_space import source_space
+from uplift.lookup import EmissionTable
+from uplift.lookup.emission import MAX_VALUE
+from uplift.lookup.validation import as_wavelengths
+
+DEPTHS = ("float", "half")
+"""Types of channels, the default first."""
+BRIGHTEST = 65504.0
+"""What replaces infinity: the largest half float."""
+UNITS = "W.m^-2.sr^-1"
+"""Units of emissive channels in the layout of Fichet et al. 2021."""
+
+
+@dataclass(frozen=True, eq=False)
+class LightUplifter(Converter):
+    """A converter of the colours of lights to spectral power, made by `prepare_lights`, for any number of images.
+
+    Parameters
+    ----------
+    sensor, depth, encoding, out_of_gamut, channels, header, space
+        As in `Converter`; ``out_of_gamut`` is ``clip``, towards white at the same luminance.
+    table : EmissionTable
+        The table that uplifts.
+    wavelengths : ndarray, shape (N,)
+        Wavelengths of the channels in nm.
+    threads : int
+        Threads that share a band.
+    """
+
+    table: EmissionTable
+    wavelengths: Array
+    threads: int
+
+    def colour_channels(self, found: ColourChannels) -> ColourChannels:
+        """Leave colours multiplied by alpha: a spectrum scales with its light, and light needs no opacity.
+
+        Parameters
+        ----------
+        found : ColourChannels
+            The channels that the part has.
+
+        Returns
+        -------
+        ColourChannels
+            The same without alpha.
+        """
+        return replace(found, alpha=None)
+
+    def decoder(self, part: Part) -> ReadColours:
+        """Make the conversion of a part's colours to linear RGB of the table, of any size and sign.
+
+        Parameters
+        ----------
+        part : Part
+            Part of an image.
+
+        Returns
+        -------
+        callable
+            From the numbers of the part to linear RGB.
+
+        Raises
+        ------
+        OptionError
+            Encoded floats (``encoded-lights``): a transfer function ends at 1, lights do not.
+        """
+        source = source_space(part, self.sensor, self.space)
+        floats_are_codes = source is not None and source.floats_are_codes
+        if self.encoding == "encoded" and not (part.max_code or floats_are_codes):
+            raise OptionError(
+                "floats of lights must be linear",
+                code="encoded-lights",
+                hint="leave out encoding='encoded', or name an encoded space",
+            )
+        matrix = None if source is None else conversion(source.gamut, self.table)
+        return _LightReader(self._linear(part, source), matrix)
+
+    def _linear(self, part: Part, source: ImageSpace | None) -> Callable[[Values], Values]:
+        if part.max_code:
+            return integer_reader(self.sensor, part.max_code, self.encoding, source)
+        if source is not None and source.floats_are_codes:
+            return code_decoder(self.sensor, source)
+        return lambda floats: floats
+
+    def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
+        """Uplift a block of colours.
+
+        Parameters
+        ----------
+        rgb : ndarray of shape (..., 3)
+            Linear RGB of any size and sign, finite, float32.
+
+        Returns
+        -------
+        tuple of ndarray
+            R, G, B (..., 3) of the spectra, and power (..., N) at the wavelengths.
+        Counts
+            Pixels whose colour no light has, and those that are too bright for half floats.
+        """
+        lights, limit = rgb.astype(float), np.finfo(np.float16 if self.depth == "half" else np.float32).max
+        wrong = ~self.table.contains(lights)
+        lights[wrong] = self.table.rgb(self.table.spectrum(lights[wrong], outside="clip"))
+        power = self.table.spectrum(
+            lights, self.wavelengths, outside="clip", dtype=np.float32, threads=self.threads
+        )
+        values = lights.astype(np.float32), power
+        bright = (np.abs(values[0]) > limit).any(axis=-1) | (power > limit).any(axis=-1)
+        counts = Counts(not_lights=int(wrong.sum()), too_bright=int(bright.sum()))
+        return (np.clip(values[0], -limit, limit), np.clip(values[1], 0, limit)), counts
+
+
+@dataclass(frozen=True, eq=False)
+class _LightReader:
+    """From the numbers of an image to linear RGB of a table."""
+
+    linear: Callable[[Values], Values]
+    matrix: Array | None
+
+    def __call__(self, colours: Values) -> tuple[Floats, Counts]:
+        rgb = np.asarray(self.linear(colours), dtype=float)
+        usable = np.abs(rgb) <= MAX_VALUE  # NaN is not
+        rgb = np.where(usable, rgb, np.where(rgb > 0, BRIGHTEST, 0.0))
+        if self.matrix is not None:
+            rgb = rgb @ self.matrix.T
+        changed = int((~usable.all(axis=-1)).sum())
+        return rgb.astype(np.float32, copy=False), Counts(colours.size // 3, not_finite=changed)
+
+
+def prepare_lights(
+    table: EmissionTable,
+    wavelengths: Values | None = None,
+    *,
+    depth: str | None = None,
+    encoding: str = "auto",
+    space: str | None = None,
+    threads: int = 2,
+) -> LightUplifter:
+    """Prepare an emission table for images of lights.
+
+    Parameters
+    ----------
+    table : EmissionTable
+        The table.
+    wavelengths : array_like, shape (N,), optional
+        Ascending wavelengths in nm, by default those of the table.
+    depth : {"float", "half"}, optional
+        Type of the channels, by default ``float``; half floats end at 65504.
+    encoding : {"auto", "linear", "encoded"}, default "auto"
+        Interpretation of whole numbers; ``auto`` takes them as encoded. Floats are linear.
+    space : str, optional
+        RGB space of images, as for `uplift.colorimetry.spaces.find_space`, by default the one that each file states.
+    threads : int, default 2
+        Threads that share a band.
+
+    Returns
+    -------
+    LightUplifter
+        The converter to pass to `convert`.
+
+    Raises
+    ------
+    OptionError
+        The depth or encoding is unknown (``unsupported-depth``, ``unknown-encoding``), or the wavelengths do not ascend
+        (``wavelengths-not-ascending``).
+    UnknownNameError
+        The RGB space is unknown.
+
+    Examples
+    --------
+    >>> import uplift
+    >>> from uplift.io import texture
+    >>> texture.prepare_lights(uplift.load_emission(), [450, 550]).channels
+    ('S0.450,000000nm', 'S0.550,000000nm')
+    """
+    depth = DEPTHS[0] if depth is None else depth
+    if depth not in DEPTHS:
+        raise OptionError(
+            f"depth of lights must be {' or '.join(DEPTHS)}, got '{depth}'",
+            code="unsupported-depth",
+            hint="use float where a component exceeds 65504",
+        )
+    check_encoding(encoding)
+    at = table.wavelengths if wavelengths is None else as_wavelengths(wavelengths)
+    channels = spectral_channels("S0", at)
+    settings = {"as": "emission", "wavelengths": at.tolist(), "depth": depth, "encoding": encoding}
+    settings |= {} if space is None else {"space": space}
+    colour_space = sensor(table.space)
+    header = {
+        "chromaticities": exr.chromaticities(colour_space),
+        "uplift.cube": emission_digest(table.data),
+        "uplift.texture": json.dumps(settings, allow_nan=False),
+        "uplift.space": table.space,
+        "uplift.observer": table.observer,
+        **SPECTRAL_LAYOUT,
+        "emissiveUnits": UNITS,
+    }
+    chosen = None if space is None else find_space(space)
+    return LightUplifter(
+        colour_space, depth, encoding, "clip", channels, header, table, at, threads, space=chosen
+    )
