@@ -84,7 +84,7 @@ class ColourCommand(click.Command):
 @input_space_option("the colours", "--space", default="that of the cube")
 @out_of_gamut_option()
 @fill_option()
-@light_option("Illuminant of a standard error, in addition to that of the cube, or of --bounds", "none")
+@light_option("Illuminant under which colour, standard error or --bounds are shown", "none")
 @click.option(
     "--bounds",
     "with_bounds",

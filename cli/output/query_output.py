@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import sys
 import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -65,6 +66,10 @@ def result_object(cube: Cube, result: QueryResult) -> dict[str, Any]:
         "standard_error": result.standard_error,
         "reference": cube.data.error_illuminant,
         "standard_errors": dict(result.standard_errors),
+        "lights": {
+            light: {"srgb": rgb.tolist(), "hex": code, "xyz": result.light_xyz[light].tolist()}
+            for light, (rgb, code) in light_colours(cube, result).items()
+        },
         "unlike_atlas": result.unlike_atlas,
     }
 
@@ -76,10 +81,12 @@ def as_csv(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) ->
         if number == 0:
             wavelengths = [f"{wavelength:g}" for wavelength in result.wavelengths]
             by_light = [f"standard_error_{name}" for name in result.standard_errors]
+            by_light += [f"hex_{name}" for name in result.light_xyz]
             writer.write(["r", "g", "b", "delta_e_2000", "standard_error", *by_light, "entry", *wavelengths])
         expected = "" if result.standard_error is None else result.standard_error
         numbers = [*result.rgb.tolist(), result.delta_e_2000, expected, *result.standard_errors.values()]
-        writer.write([*numbers, result.entry or "", *result.reflectance.tolist()])
+        codes = [code for _, code in light_colours(cube, result).values()]
+        writer.write([*numbers, *codes, result.entry or "", *result.reflectance.tolist()])
 
 
 def as_table(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) -> None:
@@ -108,7 +115,8 @@ def _print_details(cube: Cube, result: QueryResult) -> None:
             if result.realisable
             else {"realisable": "no: the spectrum has less chroma, because no reflectance has this colour"}
         ),
-        "atlas entry": _entry(result),
+        **_relit(cube, result),
+        **_entry(cube, result),
         "std. error": _standard_error(cube, result),
         "spectrum": f"{sparkline(result.reflectance)}  {result.wavelengths[0]:g}–{result.wavelengths[-1]:g} nm",
     }
@@ -128,6 +136,31 @@ def _mapped(cube: Cube, result: QueryResult) -> dict[str, str]:
     return {"requested": f"{format_rgb(result.requested_rgb)}  outside [0, 1], mapped by ΔE00 {distance:.2g}"}
 
 
+def light_colours(cube: Cube, result: QueryResult) -> dict[str, tuple[Array, str]]:
+    """Return linear sRGB (3,) and '#rrggbb' of an answer by light; the white of each light is that of the screen."""
+    if not result.light_xyz:
+        return {}
+    from uplift.colorimetry.srgb import hex_codes
+
+    matrices = _to_srgb(tuple(result.light_xyz), cube.observer, cube.data.sensor.range)
+    colours = {light: matrix @ result.light_xyz[light] for light, matrix in matrices.items()}
+    return {light: (rgb, hex_codes(rgb[None])[0]) for light, rgb in colours.items()}
+
+
+@functools.lru_cache(maxsize=1)
+def _to_srgb(lights: tuple[str, ...], observer: str, limits: tuple[float, float, float]) -> dict[str, Array]:
+    """Return the matrices (3, 3) from XYZ to linear sRGB by light."""
+    from uplift.colorimetry.observer import display_sensors
+
+    return {each.illuminant: each.xyz_to_rgb for each in display_sensors(lights, observer, *limits)}
+
+
+def _relit(cube: Cube, result: QueryResult) -> dict[str, str]:
+    colours = light_colours(cube, result).items()
+    text = ", ".join(f"{code} {light} ({format_rgb(rgb)})" for light, (rgb, code) in colours)
+    return {"sRGB under": text} if text else {}
+
+
 def _standard_error(cube: Cube, result: QueryResult) -> str:
     if result.standard_error is None:
         return "unknown: too few atlas entries"
@@ -136,10 +169,12 @@ def _standard_error(cube: Cube, result: QueryResult) -> str:
     return f"ΔE00 {values} to a measured material"
 
 
-def _entry(result: QueryResult) -> str:
-    if result.entry:
-        return result.entry
-    return "none, and none is near: unlike the atlas" if result.unlike_atlas else "none"
+def _entry(cube: Cube, result: QueryResult) -> dict[str, str]:
+    atlas = cube.data.atlas
+    if result.entry in atlas.names[atlas.measured_count :]:
+        return {"look": str(result.entry)}
+    unknown = "none, and none is near: unlike the atlas" if result.unlike_atlas else "none"
+    return {"atlas entry": result.entry or unknown}
 
 
 def print_fields(fields: Mapping[str, str], patches: Mapping[str, str]) -> None:

@@ -19,6 +19,8 @@ from uplift_cli.output.hints import hint_for
 from uplift_cli.params.text_lines import line_blocks
 
 import uplift
+from uplift.colorimetry.observer import display_sensors
+from uplift.colorimetry.srgb import hex_codes
 
 from .conftest import warning_lines
 
@@ -276,8 +278,9 @@ def test_json_has_all_fields(ask, cubes):
     assert answer.keys() == {
         *("rgb", "requested_rgb", "wavelengths", "reflectance", "xyz", "round_trip", "cell", "status"),
         "realisable",
-        *("entry", "standard_error", "reference", "standard_errors", "unlike_atlas"),
+        *("entry", "standard_error", "reference", "standard_errors", "lights", "unlike_atlas"),
     }
+    assert answer["lights"] == {}
     assert (answer["standard_errors"], answer["unlike_atlas"]) == ({}, False)
     assert answer["standard_error"] == pytest.approx(cube.data.atlas.error[row])
     assert answer["rgb"] == cube.data.atlas.rgb[row].tolist()
@@ -555,3 +558,23 @@ def test_table_and_plot_of_bounds(run, home):
 def test_bounds_of_an_unrealisable_colour(run):
     result = run("query", "--xyz", "1", "0.1", "0.02", "--bounds", code=2)
     assert "no reflectance has the colour" in result.stderr
+
+
+def test_colours_under_lights_are_those_of_relit_images(run, ask, cubes):
+    """sRGB with the white of the light, as looks state them."""
+    path = cubes / "moments-8-macbeth.uplift"
+    cube = uplift.load(path)
+    (screen,) = display_sensors(["FL11"], cube.observer)
+    expected = screen.rgb(cube.reflectance([0.2, 0.1, 0.05]))
+    found = ask("--cube", path, "0.2", "0.1", "0.05", "--light", "FL11")["lights"]["FL11"]
+    np.testing.assert_allclose(found["srgb"], expected, atol=1e-12)
+    np.testing.assert_allclose(found["xyz"], screen.xyz(expected), atol=1e-12)
+    assert found["hex"] == hex_codes(expected[None])[0]
+    assert found["hex"] in run("query", "--cube", path, "0.2", "0.1", "0.05", "--light", "FL11").stdout
+    rows = run("query", "--cube", path, "#fff", "--light", "FL11", "--format", "csv").stdout.splitlines()
+    assert dict(zip(rows[0].split(","), rows[1].split(","), strict=True))["hex_FL11"] == "#ffffff"
+
+
+def test_colours_outside_the_space_have_colours_under_lights(ask):
+    found = ask("--xyz", "0.05", "0.2", "0.1", "--light", "D65")
+    np.testing.assert_allclose(found["lights"]["D65"]["xyz"], [0.05, 0.2, 0.1], atol=1e-5)

@@ -53,6 +53,8 @@ class QueryResult:
         ΔE00 expected between the answer and a measurement; None if the cube has no estimate.
     standard_errors : mapping of str to float
         The same under other lights, by their names; empty if the cube has no estimate.
+    light_xyz : mapping of str to ndarray, shape (3,)
+        XYZ of the reflectance under these lights; the perfect reflector has that of `Light.white`.
     unlike_atlas : bool
         Whether no atlas entry has a colour near this one; see `Cube.unlike_atlas`. False without standard errors.
     realisable : bool
@@ -71,6 +73,7 @@ class QueryResult:
     entry: str | None
     standard_error: float | None
     standard_errors: Mapping[str, float]
+    light_xyz: Mapping[str, Array]
     unlike_atlas: bool
     realisable: bool
 
@@ -104,7 +107,7 @@ def query(
     requested_rgb : ndarray, shape (n, 3), optional
         The colours before gamut mapping, ``rgb`` by default.
     lights : sequence of Light, optional
-        Lights of `QueryResult.standard_errors`.
+        Lights of `QueryResult.standard_errors` and `QueryResult.light_xyz`.
 
     Yields
     ------
@@ -166,10 +169,10 @@ def query_xyz(
     at = cube.resolve_wavelengths(wavelengths)
     mapped = map_to_gamut(rgb, sensor, MAPPING)
     for row, result in enumerate(query(cube, mapped.rgb, at, mode, lights=lights)):
-        yield _outside(cube, result, rgb[row], at) if mapped.outside[row] else result
+        yield _outside(cube, result, rgb[row], at, lights) if mapped.outside[row] else result
 
 
-def _outside(cube: Cube, nearest: QueryResult, rgb: Array, at: Array) -> QueryResult:
+def _outside(cube: Cube, nearest: QueryResult, rgb: Array, at: Array, lights: Sequence[Light]) -> QueryResult:
     """Replace the answer to the nearest colour in the RGB space by that to linear RGB (3,) outside [0, 1]."""
     sensor = cube.data.sensor
     spectrum = reflectance_outside(cube.data, rgb[None], np.concatenate([sensor.wavelengths, at]))[0]
@@ -185,6 +188,7 @@ def _outside(cube: Cube, nearest: QueryResult, rgb: Array, at: Array) -> QueryRe
         entry=None,
         standard_error=None,
         standard_errors={},
+        light_xyz={light.name: light.xyz @ spectrum[: len(sensor.wavelengths)] for light in lights},
         unlike_atlas=False,
         realisable=True,
     )
@@ -199,6 +203,7 @@ def _block(
     round_trip = sensor.rgb(spectra[:, :count])
     xyz = spectra[:, :count] @ sensor.light.xyz.T
     delta_e = delta_e_rgb(sensor, rgb, round_trip)
+    relit = {light.name: spectra[:, :count] @ light.xyz.T for light in lights}
     errors = cube.standard_error(rgb)
     by_light = {} if errors is None else {light.name: cube.standard_error(rgb, light) for light in lights}
     unlike = None if errors is None else cube.unlike_atlas(rgb)
@@ -219,6 +224,7 @@ def _block(
             entry=_entry(cube, rgb[row]),
             standard_error=None if errors is None else float(errors[row]),
             standard_errors={name: float(each[row]) for name, each in by_light.items() if each is not None},
+            light_xyz={name: each[row] for name, each in relit.items()},
             unlike_atlas=unlike is not None and bool(unlike[row]),
             realisable=bool(realisable[row]),
         )
