@@ -10,6 +10,7 @@ from uplift.common.errors import UpliftWarning
 
 from ..params.ingredients import library_ingredients
 from .console import emit, print_json
+from .coordinates import coordinates, describe
 from .query_output import format_rgb, hex_code, patch, print_columns, print_fields, sparkline
 
 if TYPE_CHECKING:
@@ -79,7 +80,12 @@ def make_mixture(
 def as_json(cube: Cube, mixture: Mixture) -> None:
     """Print one JSON object."""
     steps = [
-        {"parts": parts.tolist(), "rgb": rgb.tolist(), "hex": hex_code(cube, rgb)}
+        {
+            "parts": parts.tolist(),
+            "rgb": rgb.tolist(),
+            "hex": hex_code(cube, rgb),
+            **coordinates(cube, rgb),
+        }
         for parts, rgb in zip(mixture.parts, mixture.rgb, strict=True)
     ]
     fields = {
@@ -99,6 +105,7 @@ def as_table(cube: Cube, mixture: Mixture) -> None:
     fields = {
         mixture.kind: mixture.recipe,
         "linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}",
+        **describe(cube, rgb),
         **_ramp(cube, mixture),
         "spectrum": f"{sparkline(spectrum / max(1, spectrum.max()))}  "
         f"{mixture.wavelengths[0]:g}–{mixture.wavelengths[-1]:g} nm",

@@ -24,6 +24,7 @@ from .console import (
     show,
     terminal_json,
 )
+from .coordinates import coordinates, describe
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -58,6 +59,7 @@ def result_object(cube: Cube, result: QueryResult) -> dict[str, Any]:
         "wavelengths": result.wavelengths.tolist(),
         "reflectance": result.reflectance.tolist(),
         "xyz": result.xyz.tolist(),
+        **coordinates(cube, result.rgb),
         "round_trip": {"rgb": result.round_trip.tolist(), "delta_e_2000": result.delta_e_2000},
         "cell": list(result.cell),
         "status": [status.label for status in result.statuses],
@@ -107,6 +109,7 @@ def _print_details(cube: Cube, result: QueryResult) -> None:
     fields = {
         **_mapped(cube, result),
         "linear RGB": f"{format_rgb(result.rgb)}  {hex_code(cube, result.rgb)}",
+        **describe(cube, result.rgb),
         "cell": f"{result.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in result.statuses)}",
         "round trip": f"{format_rgb(result.round_trip)}  ΔE00 {result.delta_e_2000:.2g} ({data.sensor.illuminant})",
         **({} if data.sensor.sensitivities is None else {"XYZ": format_rgb(result.xyz)}),

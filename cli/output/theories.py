@@ -6,6 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from .console import emit, print_json
+from .coordinates import coordinates
 from .query_output import format_rgb, hex_code, patch
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ def print_theories(cube: Cube, ingredients: list[Ingredient], method: str, style
     mixtures = _mixtures(cube, ingredients, method)
     if style == "json":
         rows = [
-            {"theory": title, "rgb": rgb.tolist(), "hex": hex_code(cube, rgb)}
+            {"theory": title, "rgb": rgb.tolist(), "hex": hex_code(cube, rgb), **coordinates(cube, rgb)}
             for title, rgb in mixtures.items()
         ]
         print_json({"names": [one.name for one in ingredients], "theories": rows}, indent=None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import colorsys
 import json
 
 import matplotlib.image
@@ -33,6 +34,11 @@ def test_blue_and_yellow_are_green(mixed):
     assert (found["ramp"][0]["hex"], found["ramp"][-1]["hex"]) == (BLUE, YELLOW)
     assert found["ramp"][4]["hex"] == found["hex"]
     assert mixed(BLUE, YELLOW) == found
+    assert 490 < found["dominant_wavelength"] < 560
+    assert not found["complementary"]
+    assert found["hsv"] == pytest.approx(
+        colorsys.rgb_to_hsv(*(int(found["hex"][i : i + 2], 16) / 255 for i in (1, 3, 5)))
+    )
 
 
 @pytest.mark.parametrize("kind", ["--pigment", "--dye"])
@@ -54,9 +60,11 @@ def test_table_has_mixture_ramp_and_spectrum(run):
     lines = run("mix", f"2:{BLUE}", YELLOW, "--wavelengths", "450,550", "--steps", 3).stdout.splitlines()
     assert lines[0] == f"pigment     2 of {BLUE}, 1 of {YELLOW}"
     assert lines[1].startswith("linear RGB  0.")
-    assert lines[2].endswith(YELLOW)
-    assert lines[3].endswith("450–550 nm")
-    assert lines[5].startswith("   450 nm")
+    assert lines[2].startswith("hue         550 nm, purity 0.")
+    assert lines[3].startswith("encoded     HSV 0.3")
+    assert lines[4].endswith(YELLOW)
+    assert lines[5].endswith("450–550 nm")
+    assert lines[7].startswith("   450 nm")
     assert "ramp" not in run("mix", BLUE).stdout
 
 

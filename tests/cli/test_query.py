@@ -279,6 +279,7 @@ def test_json_has_all_fields(ask, cubes):
         *("rgb", "requested_rgb", "wavelengths", "reflectance", "xyz", "round_trip", "cell", "status"),
         "realisable",
         *("entry", "standard_error", "reference", "standard_errors", "lights", "unlike_atlas"),
+        *("hsv", "hsl", "yiq", "dominant_wavelength", "complementary", "purity"),
     }
     assert answer["lights"] == {}
     assert (answer["standard_errors"], answer["unlike_atlas"]) == ({}, False)
@@ -292,6 +293,17 @@ def test_json_has_all_fields(ask, cubes):
     assert len(answer["cell"]) == 3
     assert answer["status"] == ["atlas primary", "atlas corner"]
     assert answer["entry"] == "red"
+
+
+def test_classical_coordinates(ask):
+    """Of encoded RGB; #ff0000 has the I and Q that the FCC's matrix of 1953 gives to red."""
+    red = ask("#ff0000")
+    assert (red["hsv"], red["hsl"]) == ([0, 1, 1], [0, 1, 0.5])
+    np.testing.assert_allclose(red["yiq"], [0.30, 0.60, 0.21], atol=0.005)
+    assert red["dominant_wavelength"] == pytest.approx(611.4, abs=0.5)
+    grey = ask("#808080")
+    assert (grey["dominant_wavelength"], grey["purity"]) == (None, 0)
+    assert ask("#ff00ff")["complementary"]
 
 
 def test_standard_output_is_valid_csv(run, table, cubes):
