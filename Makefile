@@ -74,6 +74,7 @@ accuracy: $(INSTALLED)
 # Measurements behind the design: docs/moments.md and docs/fidelity.md.
 study: $(INSTALLED)
 	$(BIN)/python -m benchmarks.moments
+	$(BIN)/python -m benchmarks.coefficients
 	$(BIN)/python -m benchmarks.fidelity
 	$(BIN)/python -m tools.render_docs moments fidelity
 
