@@ -1,8 +1,8 @@
 """Bytes that a number of coefficients per node would save, part of ``make study``.
 
-Writes docs/data/coefficients.json for docs/moments.md. Each node of a cube gets the smallest number of coefficients whose
-spectrum, moved to exactly the colour of the node, stays within a tolerance of that of all coefficients, under each of
-four lights.
+Writes docs/data/coefficients.json for docs/moments.md. Each node of a cube gets the smallest number of coefficients
+whose spectrum, moved to exactly the colour of the node, stays within a tolerance of that of all coefficients, under
+each of four lights.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ def _one_count(count: int, errors: Array) -> dict[str, float]:
 
 
 def saving(worst: Array, counts: Array, tolerance: float, full: int) -> dict[str, float]:
-    """Return the mean number of coefficients within a tolerance, and the share of bytes saved with the counts stored."""
+    """Return the mean number of coefficients within a tolerance, and the share of bytes saved."""
     within = worst <= tolerance
     smallest = counts[within.argmax(axis=1)]
     size = FLOAT_BYTES * smallest.mean() + COUNT_BYTES
