@@ -1,4 +1,6 @@
-"""The texture plugin ``uplift`` for the spectral variants of Mitsuba 3. Extra: ``spectral-uplift[mitsuba]``.
+"""Plugins for the spectral variants of Mitsuba 3. Extra: ``spectral-uplift[mitsuba]``.
+
+The texture ``uplift``:
 
 =======================================  ======================================================================
 ``cube``                                 file of the cube, found by Mitsuba's file resolver; the default cube of
@@ -13,7 +15,13 @@
 ``filter_type``                          ``bilinear``, ``nearest``, or ``stochastic``: one of the four texels around,
                                          chosen by its weight, which is faster and has the same mean
 ``wrap_mode``, ``to_uv``                 options of images, as in Mitsuba's ``bitmap``
+``emission``                             whether the colours are of lights, for ``radiance`` of emitters; ``cube`` is
+                                         then an emission table, and colours may have any brightness
 =======================================  ======================================================================
+
+The emitter ``uplift_envmap`` takes ``filename`` or ``bitmap``, ``cube``, ``to_world`` and ``scale``, as Mitsuba's
+``envmap``. Images are uplifted when they are loaded, to 4 bytes per wavelength of the emission table and pixel; a
+spectral image of ``uplift texture --emission`` has the wavelengths that it was written with.
 
 One colour becomes a regular spectrum of Mitsuba, without extra cost. Images are uplifted when they are loaded, to the
 multipliers of each texel, 4 bytes per coefficient. An image with colours near atlas entries has as many multipliers per
@@ -31,6 +39,7 @@ Examples
     mi.set_variant("scalar_spectral")
     register()
     mi.load_dict({"type": "uplift", "cube": "paints.uplift", "rgb": [0.8, 0.2, 0.1]})
+    mi.load_dict({"type": "uplift_envmap", "filename": "sky.exr"})
 """
 
 from __future__ import annotations

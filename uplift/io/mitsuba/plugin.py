@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 import warnings
-from functools import lru_cache
+from collections.abc import Callable
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry.gamut import METHODS, check_method, map_to_gamut
+from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftError, UpliftWarning
+from uplift.io.mitsuba.environment import make_environment
 from uplift.io.mitsuba.native import find_plugin, native_properties
-from uplift.io.mitsuba.texels import Placement, Texels, uplift_texels
+from uplift.io.mitsuba.texels import Placement, Texels, light_texels, uplift_texels
 from uplift.io.mitsuba.texture import make_texture
-from uplift.io.mitsuba.texture_file import read_colours, read_texels
+from uplift.io.mitsuba.texture_file import read_colours, read_lights, read_texels
 from uplift.io.texture.colours import Decoder
 from uplift.io.texture.exr_file import is_exr
-from uplift.lookup import Cube, load
+from uplift.lookup import Cube, EmissionTable, load, load_emission
 
 START, END = 360, 830
 """Wavelength range of Mitsuba in nm."""
 NATIVE_VARIANT = "scalar_spectral"
-SOURCES = ("rgb", "filename", "bitmap")
+IMAGES = ("filename", "bitmap")
+SOURCES = ("rgb", *IMAGES)
 HINTS = {
     "cube-not-found": "set the property cube to the file of a cube, or add its folder to Mitsuba's file resolver",
     "rgb-out-of-gamut": f"set the property out_of_gamut to {', '.join(METHODS[1:])}",
@@ -33,7 +37,9 @@ HINTS = {
 
 
 def register() -> None:
-    """Register the plugin ``uplift`` in Mitsuba's current variant. Call it after each `mitsuba.set_variant`.
+    """Register the plugins ``uplift`` and ``uplift_envmap`` in Mitsuba's current variant.
+
+    Call it after each `mitsuba.set_variant`.
 
     Raises
     ------
@@ -56,13 +62,14 @@ def register() -> None:
             code="unsupported-variant",
             hint="set scalar_spectral or llvm_ad_spectral",
         )
-    mitsuba.register_texture("uplift", _make_plugin)
+    mitsuba.register_texture("uplift", partial(_make_plugin, _make))
+    mitsuba.register_emitter("uplift_envmap", partial(_make_plugin, _make_environment))
 
 
-def _make_plugin(props: Any) -> Any:
+def _make_plugin(make: Callable[[Any], Any], props: Any) -> Any:
     """Make the object of a scene description. Mitsuba shows the message of exceptions, and rejects unknown keys."""
     try:
-        return _make(props)
+        return make(props)
     except UpliftError as error:
         if error.code not in HINTS:
             raise
@@ -70,18 +77,48 @@ def _make_plugin(props: Any) -> Any:
 
 
 def _make(props: Any) -> Any:
-    sources = [name for name in SOURCES if name in props]
+    source = _source(props, SOURCES)
+    if props.get("emission", False):
+        return _make_light(props, source)
+    if source == "rgb":
+        cube, method = _cube(props), str(props.get("out_of_gamut", "error"))
+        rgb = map_to_gamut(_parse_rgb(props["rgb"]), cube.data.sensor, method).rgb
+        return _constant(cube.reflectance(rgb, np.arange(START, END + 1)))
+    texels = read_texels(_resolve(props["filename"])) if source == "filename" else None
+    return _texture(props, _uplifted(props) if texels is None else texels)
+
+
+def _make_light(props: Any, source: str) -> Any:
+    if source == "rgb":
+        power = _table(props).spectrum(_parse_rgb(props["rgb"]), np.arange(START, END + 1))
+        return _constant(power)
+    return _texture(props, _light_texels(props))
+
+
+def _make_environment(props: Any) -> Any:
+    import mitsuba
+
+    _source(props, IMAGES)
+    if mitsuba.variant() == NATIVE_VARIANT:
+        _warn_of_python("environment", "set llvm_ad_spectral")
+    return make_environment(props, _light_texels(props))
+
+
+def _warn_of_python(name: str, hint: str) -> None:
+    problem = f"the {name} calls Python for every ray in scalar variants"
+    warnings.warn(UpliftWarning(problem, code="texture-in-python", hint=hint), stacklevel=3)
+
+
+def _source(props: Any, names: tuple[str, ...]) -> str:
+    """Return the only one of the properties that is given. Raises `OptionError` (``texture-source``)."""
+    sources = [name for name in names if name in props]
     if len(sources) != 1:
         raise OptionError(
-            f"an uplift texture must have one of {', '.join(SOURCES)}, got {len(sources)}",
+            f"an uplift texture must have one of {', '.join(names)}, got {len(sources)}",
             code="texture-source",
             hint="pass one of them",
         )
-    if sources == ["rgb"]:
-        cube, method = _cube(props), str(props.get("out_of_gamut", "error"))
-        return _constant(cube, map_to_gamut(_parse_rgb(props["rgb"]), cube.data.sensor, method).rgb)
-    texels = read_texels(_resolve(props["filename"])) if "filename" in props else None
-    return _texture(props, _uplifted(props) if texels is None else texels)
+    return sources[0]
 
 
 def _texture(props: Any, texels: Texels) -> Any:
@@ -93,13 +130,8 @@ def _texture(props: Any, texels: Texels) -> Any:
         return make_texture(props, texels, placement)
     folder = find_plugin()
     if folder is None:
-        warnings.warn(
-            UpliftWarning(
-                "the texture calls Python for every ray in scalar variants",
-                code="texture-in-python",
-                hint="run 'python -m uplift.io.mitsuba' once to compile it, or set llvm_ad_spectral",
-            ),
-            stacklevel=2,
+        _warn_of_python(
+            "texture", "run 'python -m uplift.io.mitsuba' once to compile it, or set llvm_ad_spectral"
         )
         return make_texture(props, texels, placement)
     if str(folder) not in map(str, mitsuba.file_resolver()):
@@ -116,12 +148,30 @@ def _uplifted(props: Any) -> Texels:
         rgb, found = read_colours(path, cube.data.sensor, method)
     else:
         rgb, counts = Decoder(np.asarray, False, False, None, cube.data.sensor, method)(
-            _linear(cube, _bitmap(props, path))
+            _linear(lambda codes: cube.decode(255 * codes), _bitmap(props, path))
         )
         found = counts.warnings(method, path)
     for warning in found:
         warnings.warn(warning, stacklevel=2)
     return uplift_texels(cube, rgb.astype(float))
+
+
+def _light_texels(props: Any) -> Texels:
+    """Read the spectra of lights, or uplift the colours of lights."""
+    path = _resolve(props["filename"]) if "filename" in props else None
+    if path is not None and (texels := read_texels(path)) is not None:
+        return texels
+    table = _table(props)
+    if path is None:
+        return light_texels(table, _linear(decode, props["bitmap"]))
+    rgb, found = read_lights(path, table)
+    for warning in found:
+        warnings.warn(warning, stacklevel=2)
+    return light_texels(table, rgb.astype(float))
+
+
+def _table(props: Any) -> EmissionTable:
+    return load_emission(_resolve(props["cube"]) if "cube" in props else None)
 
 
 def _cube(props: Any) -> Cube:
@@ -157,10 +207,9 @@ def _parse_rgb(value: Any) -> Array:
     return np.array([red, green, blue])
 
 
-def _constant(cube: Cube, rgb: Array) -> Any:
+def _constant(values: Array) -> Any:
     import mitsuba
 
-    values = cube.reflectance(rgb, np.arange(START, END + 1))
     text = ", ".join(f"{value:.9g}" for value in values)
     return mitsuba.load_dict(
         {"type": "regular", "wavelength_min": START, "wavelength_max": END, "values": text}
@@ -173,12 +222,12 @@ def _bitmap(props: Any, path: Path | None) -> Any:
     return props["bitmap"] if path is None else mitsuba.Bitmap(str(path))
 
 
-def _linear(cube: Cube, bitmap: Any) -> Array:
-    """Return linear RGB (h, w, 3) of a `mitsuba.Bitmap`. Encoded images are decoded in the cube's space."""
+def _linear(decoding: Callable[[Array], Array], bitmap: Any) -> Array:
+    """Return linear RGB (h, w, 3) of a `mitsuba.Bitmap`. Codes in [0, 1] are decoded."""
     import mitsuba
 
     rgb = bitmap.convert(pixel_format=mitsuba.Bitmap.PixelFormat.RGB)
     values = np.array(rgb)
     if values.dtype.kind == "u":
         values = values / np.iinfo(values.dtype).max
-    return cube.decode(255 * values) if bitmap.srgb_gamma() else values.astype(float)
+    return decoding(values) if bitmap.srgb_gamma() else values.astype(float)

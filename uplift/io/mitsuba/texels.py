@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.lookup import Cube
+from uplift.lookup import Cube, EmissionTable
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import extended_multipliers, refined_multipliers
 from uplift.lookup.validation import as_colours
@@ -29,9 +29,9 @@ WRAPS = {"repeat": "wrap", "mirror": "symmetric", "clamp": "edge"}
 
 @dataclass(frozen=True)
 class Samples:
-    """Reflectances at ``count`` equidistant wavelengths from ``start`` to ``end`` nm, with straight lines between.
+    """Reflectances, or powers of lights, at ``count`` equidistant wavelengths from ``start`` to ``end`` nm.
 
-    Outside, spectra are constant.
+    Between them spectra are straight lines, outside they are constant.
     """
 
     start: float
@@ -44,7 +44,7 @@ class Samples:
 class Texels:
     """Numbers (h, w, C), float32, of the texels' spectra, and the mean reflectance.
 
-    The numbers are the multipliers of a model, or reflectances if ``model`` is `Samples`.
+    The numbers are the multipliers of a model, or reflectances or powers if ``model`` is `Samples`.
     """
 
     model: Model | Samples
@@ -54,7 +54,7 @@ class Texels:
     def describe(self, wrap: str) -> str:
         """Return a summary for Mitsuba, with the mode beyond the edges."""
         height, width, count = self.numbers.shape
-        numbers = "reflectances" if isinstance(self.model, Samples) else "multipliers"
+        numbers = "samples" if isinstance(self.model, Samples) else "multipliers"
         return f"UpliftTexture[{width} × {height}, {self.model.name}, {count} {numbers}, {wrap}]"
 
 
@@ -78,6 +78,16 @@ def model_texels(model: Model, multipliers: NDArray[Any]) -> Texels:
         lambda rows: evaluate(model, rows, MEAN_WAVELENGTHS).mean(axis=1, keepdims=True), multipliers, 1
     )
     return Texels(model, multipliers, float(means.mean()))
+
+
+def light_texels(table: EmissionTable, rgb: Array) -> Texels:
+    """Uplift linear RGB (h, w, 3) of lights to power at the wavelengths of the table.
+
+    Colours that no light has are moved towards white. Raises `ColourError` for values that are not finite.
+    """
+    at = table.wavelengths
+    power = table.spectrum(rgb, outside="clip", dtype=np.float32, threads=THREADS)
+    return Texels(Samples(float(at[0]), float(at[-1]), len(at)), power, float(power.mean(dtype=float)))
 
 
 @dataclass(frozen=True, eq=False)

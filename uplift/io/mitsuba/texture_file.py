@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,15 +17,20 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import TextureError, UpliftError, UpliftWarning
 from uplift.io.mitsuba.texels import THREADS, Samples, Texels, model_texels
 from uplift.io.texture import exr_file
+from uplift.io.texture.alpha import ColourChannels
 from uplift.io.texture.colours import Counts, Floats, make_decoder
+from uplift.io.texture.converter import ReadColours
+from uplift.io.texture.lights import prepare_lights
 from uplift.io.texture.part_layout import colour_channels_by_part
-from uplift.io.texture.source import open_image
+from uplift.io.texture.source import Image, Part, open_image
 from uplift.io.texture.source_space import space_warnings
+from uplift.lookup import EmissionTable
 from uplift.lookup.blocks import blockwise
 from uplift.models import Model, Moments, from_description
 
-REFLECTANCE = re.compile(r"T\.(\d+)(?:,(\d+))?nm")
-"""Channels of Fichet et al. 2021."""
+QUANTITIES = ("T", "S0")
+"""Beginnings of the names of channels of reflectance and of power in the layout of Fichet et al. 2021."""
+WAVELENGTH = re.compile(r"(\d+)(?:,(\d+))?nm")
 NUMBERED = re.compile(r"(moment|multiplier)\.\d+")
 GREY_SHARES = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
 EVEN = 1e-3
@@ -56,11 +61,11 @@ def read_texels(path: Path) -> Texels | None:
         return None
     exr_file.check_size(path)
     header, channels = _read(path)
-    reflectances = {_wavelength(name): name for name in channels if REFLECTANCE.fullmatch(name)}
+    spectral = next(filter(None, (_spectral_channels(channels, each) for each in QUANTITIES)), None)
     numbered = sorted(name for name in channels if NUMBERED.fullmatch(name))
-    if reflectances:
-        wavelengths = np.array(sorted(reflectances))
-        numbers = _stack(path, channels, [reflectances[each] for each in wavelengths])
+    if spectral:
+        wavelengths = np.array(sorted(spectral))
+        numbers = _stack(path, channels, [spectral[each] for each in wavelengths])
         return Texels(_samples(path, wavelengths), numbers, float(numbers.mean(dtype=float)))
     if not numbered:
         return None
@@ -77,15 +82,38 @@ def read_colours(path: Path, sensor: Sensor, method: str) -> tuple[Floats, tuple
     The first part with colours counts, other channels do not. Raises `TextureError` and `ColourError`.
     """
     with open_image(path) as image:
-        part, channels = next(
-            (part, channels) for part, channels in colour_channels_by_part(image) if channels is not None
-        )
-        decode, bands, counts = make_decoder(sensor, part, "auto", method), [], Counts()
-        for _, rows in image.bands(part):
-            rgb, changed = decode(channels.straight(rows))
-            bands.append(rgb)
-            counts += changed
-        return np.concatenate(bands), (*space_warnings(image, sensor), *counts.warnings(method, path))
+        part, channels = _first_colours(image)
+        rgb, counts = _decoded(image, part, channels, make_decoder(sensor, part, "auto", method))
+        return rgb, (*space_warnings(image, sensor), *counts.warnings(method, path))
+
+
+def read_lights(path: Path, table: EmissionTable) -> tuple[Floats, tuple[UpliftWarning, ...]]:
+    """Read linear RGB (h, w, 3) of the lights in an image, as `uplift texture --emission` does, and its warnings.
+
+    Raises `TextureError` and `OptionError`.
+    """
+    converter = prepare_lights(table, threads=THREADS)
+    with open_image(path) as image:
+        part, found = _first_colours(image)
+        rgb, counts = _decoded(image, part, converter.colour_channels(found), converter.decoder(part))
+        return rgb, (*space_warnings(image, converter.sensor), *counts.warnings(path=path))
+
+
+def _first_colours(image: Image) -> tuple[Part, ColourChannels]:
+    """Return the first part with colours."""
+    parts = colour_channels_by_part(image)
+    return next((part, channels) for part, channels in parts if channels is not None)
+
+
+def _decoded(
+    image: Image, part: Part, channels: ColourChannels, decode: ReadColours
+) -> tuple[Floats, Counts]:
+    bands, counts = [], Counts()
+    for _, rows in image.bands(part):
+        rgb, changed = decode(channels.straight(rows))
+        bands.append(rgb)
+        counts += changed
+    return np.concatenate(bands), counts
 
 
 def _read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -103,10 +131,12 @@ def _read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     return part.header, part.channels
 
 
-def _wavelength(name: str) -> float:
-    found = REFLECTANCE.fullmatch(name)
-    assert found
-    return float(f"{found[1]}.{found[2] or 0}")
+def _spectral_channels(channels: Iterable[str], quantity: str) -> dict[float, str]:
+    """Return the names of the channels of a quantity by wavelength in nm."""
+    ends = {name: WAVELENGTH.fullmatch(name.removeprefix(f"{quantity}.")) for name in channels}
+    return {
+        float(f"{end[1]}.{end[2] or 0}"): name for name, end in ends.items() if end and name[0] == quantity[0]
+    }
 
 
 def _stack(path: Path, channels: dict[str, Any], names: list[str]) -> NDArray[Any]:
