@@ -10,7 +10,7 @@ from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.fit.entries import fit_entries
-from uplift.fit.objective import BALANCED, Weights, objective, shape_weights
+from uplift.fit.objective import BALANCED, FLATNESS, Weights, multiplier_weights, objective, shape_weights
 from uplift.models import Moments, Sigmoid
 from uplift.models.minimum_norm import forward_map
 
@@ -62,6 +62,33 @@ def test_the_ends_of_the_spectrum_follow_the_measurement(sensor, measured):
 
     assert off(BALANCED) <= 0.04
     assert off(Weights(ends=0.001)) > 1.5 * off(BALANCED)
+
+
+def steps_along_noise(sensor, spectrum, weights):
+    """Steps of fitted spectra while a measurement gains noise evenly, in units of the steps of the measurement."""
+    noise = np.random.default_rng(2).normal(0, 0.002, (23, len(spectrum)))[22]
+    path = np.clip(spectrum + np.linspace(0, 1, 41)[:, None] * noise, 1e-4, 1)
+    changes = [
+        np.linalg.norm(np.diff(each, axis=0), axis=1)
+        for each in (path, fitted(sensor, path, weights=weights))
+    ]
+    return changes[1] / changes[0]
+
+
+def test_fit_of_a_dark_entry_is_continuous_in_the_measurement(sensor, measured):
+    """Black of the ColorChecker: without smoothness, noise of a spectrophotometer moves it to another minimum."""
+    black = measured[-1]
+    assert black.mean() < 0.05
+    assert steps_along_noise(sensor, black, BALANCED).max() <= 8
+    assert steps_along_noise(sensor, black, Weights(smoothness=0.0)).max() >= 50
+
+
+def test_smoothness_leaves_the_level_to_the_measurement():
+    for model in (Moments(5), Sigmoid()):
+        weights = multiplier_weights(model, Weights(smoothness=0.5))
+        constant = model.constant() > 0
+        assert weights[constant] == FLATNESS
+        np.testing.assert_allclose(weights[~constant], 0.5 * np.sqrt(model.roughness()[~constant]))
 
 
 @pytest.mark.parametrize("model", [Moments(5), Sigmoid()], ids=lambda m: m.name)

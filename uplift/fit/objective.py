@@ -16,7 +16,7 @@ from uplift.models import Model
 ENDS = 8
 """Each end of the spectrum is this part of it: 50 nm of 380–780."""
 FLATNESS = 1e-5
-"""Weight that keeps multipliers finite where neither the spectrum nor the lights constrain them."""
+"""Weight that keeps the constant multiplier finite where neither the spectrum nor the lights constrain it."""
 
 
 @dataclass(frozen=True)
@@ -31,11 +31,16 @@ class Weights:
         Weight of the two ends of the spectrum relative to its middle.
     curvature : float, default 0
         Weight of the second difference.
+    smoothness : float, default 1e-3
+        Weight of the multipliers but the constant one, in the metric M of docs/mathematics.md, 5. Without it the
+        minimum of a dark entry jumps: of two spectra that meet its colours nearly equally well, one has multipliers
+        ten times as large, and noise of the measurement decides between them.
     """
 
     lights: float = 0.03
     ends: float = 1.0
     curvature: float = 0.0
+    smoothness: float = 1e-3
 
 
 BALANCED = Weights()
@@ -61,6 +66,8 @@ class Objective:
         XYZ of the perfect reflector.
     weight : float
         Weight of a unit of CIE L*a*b*.
+    multipliers : ndarray, shape (C,)
+        Weights of the multipliers.
     """
 
     model: Model
@@ -70,6 +77,7 @@ class Objective:
     lights: Array
     whites: Array
     weight: float
+    multipliers: Array
 
     def residuals(self, multipliers: Any, measured: Any) -> Any:
         """Residuals (N + B + 3 L + C,) of multipliers (C,); both of numpy or of JAX."""
@@ -88,7 +96,7 @@ class Objective:
                 self.values * difference,
                 self.bends @ difference,
                 self.weight * colour_difference.ravel(),
-                FLATNESS * multipliers,
+                self.multipliers * multipliers,
             ]
         )
 
@@ -103,7 +111,7 @@ class Objective:
                 self.values[:, None] * change,
                 self.bends @ change,
                 self.weight * colours,
-                FLATNESS * np.eye(len(multipliers)),
+                np.diag(self.multipliers),
             ]
         )
 
@@ -117,7 +125,21 @@ def objective(model: Model, basis: Array, lights: Sequence[Light], weights: Weig
     """Make the objective at the wavelengths of ``basis`` (N, C) and of the lights."""
     matrices = np.stack([light.xyz for light in lights])
     whites = np.stack([light.white for light in lights])
-    return Objective(model, basis, *shape_weights(len(basis), weights), matrices, whites, weights.lights)
+    return Objective(
+        model,
+        basis,
+        *shape_weights(len(basis), weights),
+        matrices,
+        whites,
+        weights.lights,
+        multiplier_weights(model, weights),
+    )
+
+
+def multiplier_weights(model: Model, weights: Weights) -> Array:
+    """Weights (C,) of multipliers: the constant one is left to the measurement."""
+    smooth = np.maximum(weights.smoothness * np.sqrt(model.roughness()), FLATNESS)
+    return np.where(model.constant() > 0, FLATNESS, smooth)
 
 
 def shape_weights(count: int, weights: Weights) -> tuple[Array, Array]:
