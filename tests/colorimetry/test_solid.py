@@ -8,7 +8,7 @@ from scipy.optimize import lsq_linear
 from scipy.spatial import ConvexHull
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.solid import solid, solid_volume
+from uplift.colorimetry.solid import solid, solid_volume, toward_grey
 from uplift.lattice import Lattice
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
@@ -71,3 +71,25 @@ def test_solid_volume_is_that_of_the_convex_hull(sensor):
     few = sensor.matrix[:, ::9]
     corners = np.array(np.meshgrid(*[(0, 1)] * few.shape[1])).reshape(few.shape[1], -1).T @ few.T
     assert solid_volume(few) == pytest.approx(ConvexHull(corners).volume)
+
+
+def test_colours_move_toward_grey_until_they_are_a_margin_inside():
+    """Against bisection on the signed distance, and unchanged deeper inside."""
+    wide = observer.sensor("ProPhoto RGB", "D65")
+    limits = solid(wide.matrix)
+    target = np.random.default_rng(4).uniform(0, 1, (200, 3))
+    grey = wide.grey(target)
+    margin = 1e-3
+    moved = toward_grey(limits, grey, target, margin)
+    deep = limits.signed_distance(target) < -2 * margin
+    assert 20 < deep.sum() < 180
+    np.testing.assert_array_equal(moved[deep], target[deep])
+    assert limits.contains(moved).all()
+    for row in np.flatnonzero(~limits.contains(target)):
+        low, high = 0.0, 1.0
+        for _ in range(50):
+            middle = (low + high) / 2
+            at = grey[row] + middle * (target[row] - grey[row])
+            low, high = (middle, high) if limits.contains(at[None])[0] else (low, middle)
+        boundary = grey[row] + low * (target[row] - grey[row])
+        assert np.abs(moved[row] - boundary).max() == pytest.approx(margin, rel=1e-3)

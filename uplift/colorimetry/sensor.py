@@ -139,6 +139,21 @@ class Sensor:
         """
         return np.asarray(rgb, dtype=float) @ self.rgb_to_xyz.T
 
+    def grey(self, rgb: ArrayLike) -> Array:
+        """Return the greys of the luminances of colours.
+
+        Parameters
+        ----------
+        rgb : array_like, shape (..., 3)
+            Linear RGB.
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+            Linear RGB with equal channels, in [0, 1].
+        """
+        return np.clip(self.xyz(rgb)[..., 1:2], 0, 1).repeat(3, axis=-1)
+
     def decode(self, codes: ArrayLike) -> Array:
         """Convert 8-bit codes to linear values.
 

@@ -15,8 +15,8 @@ from uplift.common.arrays import Array, Mask
 
 SLACK = 1e-9
 """Distance from the solid, in linear RGB, that counts as rounding."""
-BLOCK = 1 << 12
-"""Colours processed per block."""
+BLOCK = 1 << 6
+"""Colours processed per block: with thousands of facets, larger arrays do not fit into the cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +90,37 @@ class Solid:
                 np.divide(margin, speed, out=np.ones_like(margin), where=speed > margin).min(axis=1)
             )
         return np.concatenate(fractions)
+
+
+def toward_grey(limits: Solid, grey: Array, target: Array, margin: float) -> Array:
+    """Move colours that lie outside the solid, or less than a margin inside, onto their line to a grey.
+
+    Colours deeper inside are unchanged, bit for bit, and the result is continuous.
+
+    Parameters
+    ----------
+    limits : Solid
+        The solid.
+    grey : ndarray, shape (n, 3)
+        Linear RGB inside the solid.
+    target : ndarray, shape (n, 3)
+        Linear RGB anywhere.
+    margin : float
+        Largest change of a channel between the boundary and the results, along the line.
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+        Colours inside the solid.
+    """
+    result = target.copy()
+    near = np.flatnonzero(limits.signed_distance(target) > -2 * margin)
+    grey, chroma = grey[near], target[near] - grey[near]
+    inward = margin / np.maximum(np.abs(chroma).max(axis=1), margin)
+    reach = 2 * limits.ray_fraction(grey, grey + 2 * chroma) - inward
+    moved = reach < 1
+    result[near[moved]] = (grey + np.maximum(reach, 0)[:, None] * chroma)[moved]
+    return result
 
 
 def solid(matrix: Array) -> Solid:

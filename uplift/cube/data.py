@@ -194,3 +194,12 @@ class CubeData:
     def complete_cells(self) -> Mask | None:
         """(n,) True for cells with eight present corners, by the number of the lowest. None if no point is absent."""
         return None if self.points.present.all() else self.lattice.complete_cells(self.points.present)
+
+    @cached_property
+    def inexact_cells(self) -> Mask | None:
+        """(n,) True for cells with a corner that has not its own colour, by the number of the lowest. None without any.
+
+        Corners are unrealisable in wide gamuts, or were not fitted.
+        """
+        exact = self.points.distance <= self.threshold
+        return None if exact.all() else ~self.lattice.complete_cells(exact)

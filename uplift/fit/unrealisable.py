@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.solid import solid
+from uplift.colorimetry.solid import solid, toward_grey
 from uplift.common.arrays import Array, Indices
 from uplift.lattice import CORNERS, Lattice
 
@@ -66,10 +66,6 @@ def unrealisable(
         block = active[first : first + BLOCK_POINTS]
         outside = block[~limits.contains(lattice.target(block))]
         target = lattice.target(outside)
-        grey = np.clip(sensor.xyz(target)[:, 1:2], 0, 1).repeat(3, axis=1)
-        chroma = target - grey
-        inward = margin / np.maximum(np.abs(chroma).max(axis=1), margin)
-        share = np.maximum(limits.ray_fraction(grey, target) - inward, 0)
         points.append(outside)
-        nearest.append(grey + share[:, None] * chroma)
+        nearest.append(toward_grey(limits, sensor.grey(target), target, margin))
     return Unrealisable(np.concatenate(points), np.concatenate(nearest))

@@ -1,6 +1,7 @@
 """Interpolate coefficients and spectra between nodes, in four modes (docs/mathematics.md, 8). Needs numpy only.
 
-spectra   weighted spectra of the surrounding nodes; exact colours, as RGB is linear in the spectrum
+spectra   weighted spectra of the surrounding nodes; exact colours, as RGB is linear in the spectrum, and by steps where
+          nodes are unrealisable (`uplift.lookup.exact`)
 moments   weighted coefficients; one reconstruction instead of eight
 refined   ``moments``, then minimum-norm steps to the exact colour
 nearest   the spectrum of the node of largest weight, of another colour
@@ -21,6 +22,7 @@ import numpy as np
 from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
 from uplift.lattice import weighted_sum
+from uplift.lookup.exact import inexact_rows, with_colours
 from uplift.lookup.nodes import Nodes, around
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models import evaluate, reflectance
@@ -53,6 +55,16 @@ def standard_error(data: CubeData, rgb: Array) -> Array:
 
 
 def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
+    """Reflectance (n, N) as weighted spectra of the nodes, moved to exact colours where nodes have not their own."""
+    mixed = _mixed_spectra(data, rgb, wavelengths)
+    rows = inexact_rows(data, rgb)
+    if rows.size:
+        at_sensor = _mixed_spectra(data, rgb[rows], data.sensor.wavelengths)
+        mixed[rows] = with_colours(data, mixed[rows], at_sensor, rgb[rows], wavelengths)
+    return mixed
+
+
+def _mixed_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) as weighted spectra of the nodes."""
     nodes, points = _unique_points(around(data, rgb))
     values = reflectance(data.model, data.points.coefficients[points], wavelengths)

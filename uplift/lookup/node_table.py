@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -11,9 +11,12 @@ from numpy.typing import DTypeLike
 from uplift.common.arrays import Array, Values
 from uplift.cube import CubeData
 from uplift.lookup.blocks import blockwise
-from uplift.lookup.interpolate import extend_coefficients
+from uplift.lookup.exact import inexact_rows
+from uplift.lookup.interpolate import extend_coefficients, spectra
 from uplift.lookup.nodes import around
 from uplift.models import reflectance
+
+NONE = np.zeros(0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -28,24 +31,33 @@ class NodeTable:
         Values of the lattice points, NaN at absent points.
     atlas : ndarray, shape (E, K)
         Values of the atlas entries.
+    wavelengths : ndarray, shape (K,), optional
+        Wavelengths in nm of a table of reflectances; none for other values.
     """
 
     data: CubeData
     lattice: Values
     atlas: Values
+    wavelengths: Array = field(default_factory=lambda: NONE)
 
     @classmethod
-    def of_present_points(cls, data: CubeData, points: Values, atlas: Values) -> NodeTable:
+    def of_present_points(
+        cls, data: CubeData, points: Values, atlas: Values, wavelengths: Array = NONE
+    ) -> NodeTable:
         """Make a table from values (m, K) of the present points."""
         if data.complete_cells is None:
-            return cls(data, points, atlas)
+            return cls(data, points, atlas, wavelengths)
         lattice = np.full((data.lattice.size, points.shape[1]), np.nan, points.dtype)
         lattice[data.points.present] = points
-        return cls(data, lattice, atlas)
+        return cls(data, lattice, atlas, wavelengths)
 
     def spectra(self, rgb: Array) -> Values:
         """Reflectance (n, N) in mode ``spectra``."""
-        return np.clip(self.values(rgb), 0, 1)
+        mixed = np.clip(self.values(rgb), 0, 1)
+        rows = inexact_rows(self.data, rgb)
+        if rows.size:
+            mixed[rows] = spectra(self.data, rgb[rows], self.wavelengths)
+        return mixed
 
     def nearest(self, rgb: Array) -> Values:
         """Reflectance (n, N) in mode ``nearest``."""
@@ -73,7 +85,7 @@ def tabulate(
     )
     entries = np.arange(len(data.atlas.names))
     own = data.entry_spectra.reflectance(entries, wavelengths).astype(dtype, copy=False)
-    return NodeTable.of_present_points(data, present, own)
+    return NodeTable.of_present_points(data, present, own, wavelengths)
 
 
 def tabulate_coefficients(

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uplift.colorimetry.solid import solid, toward_grey
 from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
 from uplift.models import Model
@@ -29,11 +30,11 @@ BLOCK_COLUMNS = 1024
 def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Array:
     """Move multipliers ``start`` (n, C) of a model to linear RGB (n, 3), to the sensor and threshold of a cube.
 
-    Colours that do not converge, such as those of the sigmoid near white in coarse cells, start again from grey.
+    Unrealisable colours are replaced by the nearest realisable ones of less chroma. Colours that do not converge, such
+    as those of the sigmoid near white in coarse cells, start again from grey.
     """
     forward = forward_map(model, data.sensor.wavelengths, data.sensor.matrix)
-    multipliers, target = np.array(start.T, order="C"), np.array(rgb.T, order="C")
-    distance = _descend(model, forward, multipliers, target)
+    multipliers, target, distance = _reach(data, model, forward, np.array(start.T, order="C"), rgb)
     failed = np.flatnonzero(distance > data.threshold)
     if failed.size:
         from_grey = np.zeros((len(multipliers), failed.size))
@@ -42,12 +43,71 @@ def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Arr
     return multipliers.T
 
 
-def _descend(model: Model, forward: ForwardMap, multipliers: Array, target: Array) -> Array:
-    """Move multipliers (C, n) in place towards linear RGB (3, n) and return the final distances (n,)."""
+def change_to_rgb(data: CubeData, reflectances: Array, rgb: Array) -> Array:
+    """Find the multipliers (n, C) to add to the linear part of reflectances (n, N) that gives them linear RGB (n, 3).
+
+    The reflectances, at the wavelengths of the sensor, need not be of the model: mixtures are not. Those that have
+    their colour do not change, and the others continuously. Unrealisable colours are replaced as by `refine_to_rgb`.
+    """
+    forward = forward_map(data.model, data.sensor.wavelengths, data.sensor.matrix)
+    linear = data.model.unsquash(np.array(reflectances.T, order="C"))
+    return _reach(
+        data, data.model, forward, np.zeros((data.model.count, len(rgb))), rgb, linear
+    ).multipliers.T
+
+
+class _Reached(NamedTuple):
+    """Multipliers (C, n), the linear RGB (3, n) that they were moved to, and distances (n,) from it."""
+
+    multipliers: Array
+    target: Array
+    distance: Array
+
+
+def _reach(
+    data: CubeData, model: Model, forward: ForwardMap, start: Array, rgb: Array, fixed: Array | None = None
+) -> _Reached:
+    """Move multipliers (C, n) to linear RGB (n, 3); what is not reached may be unrealisable and is moved inside."""
+    multipliers, target = start.copy(), np.array(rgb.T, order="C")
+    distance = _descend(model, forward, multipliers, target, fixed)
+    failed = np.flatnonzero(distance > data.threshold)
+    if failed.size and data.inexact_cells is not None:
+        inside = within_solid(data, rgb[failed])
+        moved = failed[(inside != rgb[failed]).any(axis=1)]
+        target[:, failed] = inside.T
+        again = start[:, moved].copy()
+        part = None if fixed is None else fixed[:, moved]
+        distance[moved] = _descend(model, forward, again, target[:, moved], part)
+        multipliers[:, moved] = again
+    return _Reached(multipliers, target, distance)
+
+
+def within_solid(data: CubeData, rgb: Array) -> Array:
+    """Return the linear RGB (n, 3) to which unrealisable colours are moved; others are unchanged.
+
+    Half of the threshold inside the object-colour solid, on the line to the grey of the same luminance, as
+    unrealisable points of the lattice (`uplift.fit.unrealisable`).
+    """
+    sensor = data.sensor
+    return toward_grey(solid(sensor.matrix), sensor.grey(rgb), rgb, data.threshold / 2)
+
+
+def _descend(
+    model: Model, forward: ForwardMap, multipliers: Array, target: Array, fixed: Array | None = None
+) -> Array:
+    """Move multipliers (C, n) in place towards linear RGB (3, n) and return the final distances (n,).
+
+    A fixed linear part (N, n) may be added to that of the multipliers.
+    """
+
+    def linear_part(columns: slice | Indices) -> Array:
+        linear = matmul_columns(forward.basis, multipliers[:, columns])
+        return linear if fixed is None else linear + fixed[:, columns]
+
     state = _DescentState(multipliers, np.empty_like(target), np.zeros(target.shape[1]))
     for first in range(0, target.shape[1], BLOCK_COLUMNS):
         block = slice(first, first + BLOCK_COLUMNS)
-        linear = matmul_columns(forward.basis, multipliers[:, block])
+        linear = linear_part(block)
         state.off[:, block] = target[:, block] - matmul_columns(forward.sensor, model.squash(linear))
         _move(model, forward, state, block, linear)
     for _ in range(MAX_STEPS - 1):
@@ -56,7 +116,7 @@ def _descend(model: Model, forward: ForwardMap, multipliers: Array, target: Arra
             break
         for first in range(0, pending.size, BLOCK_COLUMNS):
             columns = pending[first : first + BLOCK_COLUMNS]
-            _move(model, forward, state, columns, matmul_columns(forward.basis, multipliers[:, columns]))
+            _move(model, forward, state, columns, linear_part(columns))
     return state.distance
 
 

@@ -11,10 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from uplift.colorimetry.gamut import as_rgb
 from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array
+from uplift.cube import CubeData
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.bulk.grid import Grid, make_grid
 from uplift.lookup.bulk.kernel import interpolate
+from uplift.lookup.exact import inexact_rows
+from uplift.lookup.interpolate import spectra as reflectances
 from uplift.lookup.node_table import NodeTable, tabulate, tabulate_coefficients
 from uplift.lookup.nodes import require
 from uplift.lookup.validation import as_coefficient_count, as_thread_count, clip_rounding
@@ -37,11 +41,14 @@ class Sampler:
         Arrays of the cube, on the device of JAX.
     threads : int
         Number of threads; each processes a chunk at a time.
+    exact : SlowSpectra, optional
+        Reflectances of the colours whose nodes have not all their own colours, if there are any.
     """
 
     sensor: Sensor
     grid: Grid
     threads: int
+    exact: SlowSpectra | None = None
 
     def __repr__(self) -> str:
         return f"Sampler({self.grid.lattice.shape[1]} values per colour, {self.nbytes / 1e6:.1f} MB)"
@@ -53,7 +60,7 @@ class Sampler:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle arrays of numpy: JAX would restore those of float64 as float32."""
-        return _on_device, (self.sensor, Grid(*map(np.asarray, self.grid)), self.threads)
+        return _on_device, (self.sensor, Grid(*map(np.asarray, self.grid)), self.threads, self.exact)
 
     @property
     def nbytes(self) -> int:
@@ -68,7 +75,32 @@ class Sampler:
         with jax.enable_x64(True):
             values = np.asarray(interpolate(self.grid, padded))[: len(colours)]
         require(~np.isnan(values[:, 0]), colours)  # absent points make NaN
-        return values
+        return values if self.exact is None else self.exact.replace(values, colours)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SlowSpectra:
+    """Reflectances computed by `uplift.lookup.interpolate` where the kernel is not exact (`uplift.lookup.exact`).
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    wavelengths : ndarray, shape (N,)
+        Wavelengths in nm.
+    """
+
+    data: CubeData
+    wavelengths: Array
+
+    def replace(self, values: Floats, rgb: Array) -> Floats:
+        """Replace the inexact rows of reflectances (n, N) of linear RGB (n, 3)."""
+        rows = inexact_rows(self.data, rgb)
+        if not rows.size:
+            return values
+        exact = values.copy()
+        exact[rows] = reflectances(self.data, rgb[rows], self.wavelengths)
+        return exact
 
 
 def spectra(cube: Cube, wavelengths: ArrayLike | None = None, *, threads: int = 2) -> Sampler:
@@ -152,9 +184,11 @@ def max_rgb_error(cube: Cube, *, threads: int = 2) -> Sampler:
 
 
 def _sampler(table: NodeTable, threads: int) -> Sampler:
-    return _on_device(table.data.sensor, make_grid(table), threads)
+    inexact = table.wavelengths.size and table.data.inexact_cells is not None
+    exact = SlowSpectra(table.data, table.wavelengths) if inexact else None
+    return _on_device(table.data.sensor, make_grid(table), threads, exact)
 
 
-def _on_device(sensor: Sensor, grid: Grid, threads: int) -> Sampler:
+def _on_device(sensor: Sensor, grid: Grid, threads: int, exact: SlowSpectra | None) -> Sampler:
     with jax.enable_x64(True):
-        return Sampler(sensor, jax.device_put(grid), threads)
+        return Sampler(sensor, jax.device_put(grid), threads, exact)

@@ -1,0 +1,110 @@
+"""Exact colours where nodes are unrealisable: docs/mathematics.md, 9."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+import uplift
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.solid import solid
+from uplift.lookup import interpolate
+from uplift.lookup.exact import inexact_rows
+from uplift.lookup.refine import within_solid
+
+GREYS = np.linspace(0, 1, 33)[:, None].repeat(3, axis=1)
+EXACT_MODES = ("spectra", "refined")
+
+
+@pytest.fixture(scope="module")
+def wide():
+    """A coarse cube of ITU-R BT.2020: each of its cells has an unrealisable corner."""
+    return uplift.build(dim=3, space="ITU-R BT.2020")
+
+
+@pytest.fixture(scope="module")
+def colours():
+    return np.random.default_rng(3).uniform(0, 1, (600, 3))
+
+
+def delta_e(cube, rgb, spectra):
+    return delta_e_rgb(cube.data.sensor, rgb, cube.data.sensor.rgb(spectra))
+
+
+def inside(cube, rgb, depth=0.0):
+    return solid(cube.data.sensor.matrix).signed_distance(rgb) < -depth
+
+
+@pytest.mark.parametrize("mode", EXACT_MODES)
+def test_realisable_colours_are_exact(wide, colours, mode):
+    realisable = colours[inside(wide, colours, 0.01)]
+    assert delta_e(wide, GREYS, wide.reflectance(GREYS, mode=mode)).max() <= 0.001
+    assert delta_e(wide, realisable, wide.reflectance(realisable, mode=mode)).max() <= 0.001
+
+
+def test_plain_mixtures_are_not_exact(wide):
+    """The test above can fail."""
+    mixed = interpolate._mixed_spectra(wide.data, GREYS, wide.wavelengths)
+    assert delta_e(wide, GREYS, mixed).max() >= 1
+
+
+@pytest.mark.parametrize("mode", EXACT_MODES)
+def test_unrealisable_colours_become_the_nearest_realisable_of_their_hue(wide, colours, mode):
+    sensor = wide.data.sensor
+    outside = colours[~inside(wide, colours)]
+    assert len(outside) >= 20
+    goal = within_solid(wide.data, outside)
+    answers = wide.reflectance(outside, mode=mode)
+    assert ((answers >= 0) & (answers <= 1)).all()
+    assert np.abs(sensor.rgb(answers) - goal).max() <= 0.02
+    assert np.median(np.abs(sensor.rgb(answers) - goal)) <= 1e-4
+    np.testing.assert_allclose(sensor.xyz(goal)[:, 1], sensor.xyz(outside)[:, 1], atol=1e-9)
+
+
+@pytest.mark.parametrize("mode", EXACT_MODES)
+def test_answers_are_continuous_across_the_boundary_of_the_solid(wide, mode):
+    grey, target = np.full(3, 0.3), np.array([0.9, 0.05, 0.02])
+    path = grey + np.linspace(0.7, 1, 101)[:, None] * (target - grey)
+    assert inside(wide, path).any()
+    assert not inside(wide, path).all()
+    found = wide.data.sensor.rgb(wide.reflectance(path, mode=mode))
+    assert np.abs(np.diff(found, axis=0)).max() <= 1.5 * np.abs(np.diff(path, axis=0)).max()
+
+
+def test_mixtures_with_their_colours_do_not_change():
+    cube = uplift.build(dim=3)
+    assert cube.data.inexact_cells is None
+    assert not inexact_rows(cube.data, GREYS).size
+    np.testing.assert_array_equal(
+        cube.reflectance(GREYS), interpolate._mixed_spectra(cube.data, GREYS, cube.wavelengths)
+    )
+
+
+def test_other_wavelengths_have_the_same_spectra(wide, colours):
+    every = wide.reflectance(colours[:50])
+    np.testing.assert_allclose(
+        wide.reflectance(colours[:50], wide.wavelengths[::4]), every[:, ::4], atol=1e-12
+    )
+
+
+def test_tables_and_the_bulk_query_have_the_same_answers(wide, colours):
+    few = np.concatenate([wide.reflectance(part) for part in np.array_split(colours, 60)])
+    np.testing.assert_allclose(
+        wide.reflectance(colours), few, atol=1e-6
+    )  # unrealisable ones are nearly boxes
+    sampler = uplift.bulk.spectra(wide)
+    np.testing.assert_allclose(sampler(colours), few, atol=2e-6)
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(sampler))(colours), sampler(colours))
+
+
+def test_an_entry_in_an_inexact_cell_keeps_its_spectrum():
+    spectrum = uplift.Entry("paint", np.array([380.0, 780.0]), np.array([0.2, 0.5]))
+    cube = uplift.build(uplift.Atlas((spectrum,)), dim=3, space="ITU-R BT.2020")
+    rgb = cube.data.atlas.rgb
+    near = np.clip(rgb + np.random.default_rng(0).uniform(-0.05, 0.05, (40, 3)), 0, 1)
+    assert delta_e(cube, near, cube.reflectance(near)).max() <= 0.001
+    np.testing.assert_allclose(
+        cube.reflectance(rgb), cube.data.entry_spectra.reflectance([0], cube.wavelengths), atol=1e-5
+    )
