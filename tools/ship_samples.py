@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO
+from numpy.typing import NDArray
 from PIL import Image
 
 from tests.atlas.vendor_files import argyll_ti3, cxf3, plain_csv, xlsx
@@ -49,6 +50,7 @@ def main(folder: Path = FOLDER) -> None:
     picture = still_life()
     write_png(picture, folder / "still-life.png")
     write_png(planks(), folder / "wood.png")
+    Image.fromarray(knot()).save(folder / "mask.png", optimize=True)
     for frame, left in enumerate((60, 96), 1):
         write_exr(picture[92:252:2, left : left + 240 : 2], folder / f"shot.{frame:04}.exr")
     for tile, half in zip((1001, 1002), np.split(planks(), 2, axis=1), strict=True):
@@ -145,6 +147,12 @@ def planks() -> Array:
     """Return linear RGB (96, 128, 3) of boards from above."""
     y, x = np.mgrid[:96, :128] + 0.5
     return _wood(palette(), 4 * x, y / 96)
+
+
+def knot() -> NDArray[np.uint8]:
+    """Return weights (96, 128) from 0 to 255: a disc with a soft edge, as a mask of the boards."""
+    y, x = np.mgrid[:96, :128] + 0.5
+    return np.rint(255 * np.clip((36 - np.hypot(x - 64, y - 48)) / 8, 0, 1)).astype(np.uint8)
 
 
 def fire() -> Array:

@@ -15,10 +15,10 @@ from uplift.common.progress import Progress
 from ..output.console import say
 from ..output.diagnostics import UsageFailure
 from ..output.progress import progress_bar
+from ..params.completion import complete_cube
 from ..params.image_paths import texture_paths
 from ..params.number_types import Whole
 from ..params.options import (
-    cube_option,
     emission_option,
     encoding_option,
     fill_option,
@@ -40,7 +40,19 @@ if TYPE_CHECKING:
 @click.command("texture")
 @click.argument("sources", metavar="IN...", nargs=-1, required=True)
 @click.argument("target", metavar="OUT")
-@cube_option()
+@click.option(
+    "--cube",
+    "cube_paths",
+    multiple=True,
+    metavar="FILE",
+    help="Cube file, or ACEScg for the packaged ACEScg cube; repeatable with --mask. [default: the packaged sRGB cube]",
+    shell_complete=complete_cube,
+)
+@click.option(
+    "--mask",
+    metavar="FILE",
+    help="Image of which cube a pixel belongs to: 0 for the first, 1 for the second …, or from black to white.",
+)
 @emission_option("Pixels are light, as in an environment map")
 @click.option(
     "--store",
@@ -76,7 +88,8 @@ if TYPE_CHECKING:
 def command(
     sources: tuple[str, ...],
     target: str,
-    cube_path: str | None,
+    cube_paths: tuple[str, ...],
+    mask: str | None,
     is_emission: bool,
     kind: str,
     wavelengths: str | None,
@@ -101,6 +114,7 @@ def command(
       uplift texture fire.exr bright.exr --out-of-gamut scale
       uplift texture painting.exr ap1.exr --space ACEScg
       uplift texture shot.*.exr uplifted --scheduler tcp://10.0.0.5:8786
+      uplift texture wood.png parts.exr --mask mask.png --cube macbeth-32.uplift --cube looks.uplift
       uplift texture sky.hdr sky-spectral.exr --emission --wavelengths 400:700:10
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
@@ -113,6 +127,10 @@ def command(
 
     Colours outside [0, 1] are treated by --out-of-gamut, and NaN becomes 0. A warning counts both.
 
+    With --mask, pixels have the spectra of several cubes. A grey mask holds the numbers of the cubes, from 0 in the
+    order of --cube; or, for two cubes, weights: black is the first, white the second, and grey mixes both. A coloured
+    mask holds the weights of three cubes in R, G and B. Mixed spectra keep the colour of the pixel.
+
     With --emission, pixels are light of any brightness, such as those of an environment map, and channels hold spectral
     power. Its unit is that of the equal-energy light of luminance 1; RGB (1, 1, 1) has luminance 1. Only colours
     outside the spectral locus change.
@@ -124,17 +142,22 @@ def command(
     pairs = texture_paths(sources, target)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
-    cube = None if cube_path is None else os.path.abspath(find_cube_file(cube_path))
+    if len(cube_paths) > 1 and mask is None:
+        raise click.UsageError("Several cubes need --mask, an image of which cube a pixel belongs to.")
+    named = [os.path.abspath(find_cube_file(path)) for path in cube_paths]
+    cubes: list[str | None] = [*named] or [None]
     threads, at = max(cores // count, 1), parse_wavelengths(wavelengths)
-    settings: texture.TextureSettings | texture.LightSettings
+    settings: texture.Settings
     if is_emission:
-        refuse_for_emission("kind", "method", "fill_missing")
-        settings = texture.LightSettings(cube, _as_tuple(at), depth, encoding, threads, input_space)
+        refuse_for_emission("kind", "method", "fill_missing", "mask")
+        settings = texture.LightSettings(cubes[0], _as_tuple(at), depth, encoding, threads, input_space)
     else:
         form = _pixel_encoding(kind, at)
-        settings = texture.TextureSettings(
-            cube, form, depth, encoding, threads, fill_missing, method, input_space
-        )
+        each = [
+            texture.TextureSettings(cube, form, depth, encoding, threads, fill_missing, method, input_space)
+            for cube in cubes
+        ]
+        settings = each[0] if mask is None else texture.MaskedSettings(tuple(each), os.path.abspath(mask))
     jobs = [texture.Job(settings, source.absolute(), path.absolute(), force) for source, path in pairs]
     pending = texture.pending(jobs, resume=resume)
     texture.converter_for(settings)  # report invalid options once, not once per image

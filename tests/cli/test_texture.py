@@ -10,6 +10,7 @@ import pytest
 from uplift_cli.output.hints import hint_for
 
 from tests.io.texture.conftest import planes, write_exr
+from uplift.io.texture import converter_for
 
 from .conftest import warning_lines
 
@@ -112,3 +113,20 @@ def test_a_cube_is_no_emission_table(refuse, home, cubes):
     assert (
         refuse("texture", "sky.exr", "out.exr", "--emission", "--cube", path).code == "not-an-emission-table"
     )
+
+
+def test_masks_choose_among_cubes(run, refuse, frames, cubes):
+    two = ("--cube", cubes / "moments-8.uplift", "--cube", cubes / "moments-8-macbeth.uplift")
+    write_exr(frames / "mask.exr", {"Y": np.full((6, 5), 0.25, dtype=np.float32)})
+    options = ("--mask", "mask.exr", *two, "--store", "moments")
+    run("texture", "shot.0.exr", "mixed.exr", *options)
+    result = run("texture", "shot.0.exr", "mixed.exr", *options, "--resume")
+    assert "0 textures, 1 skipped" in result.output
+    write_exr(frames / "mask.exr", {"Y": np.full((6, 5), 0.5, dtype=np.float32)})
+    converter_for.cache_clear()  # as of another process
+    result = run("texture", "shot.0.exr", "mixed.exr", *options, "--resume", "--force")
+    assert result.output.startswith("mixed.exr: 1 texture, ")
+    assert refuse("texture", "shot.0.exr", "mask.exr", *options, "--force").code == "output-is-input"
+    assert refuse("texture", "shot.0.exr", "one.exr", *options[:4]).code == "mask-without-cubes"
+    result = run("texture", "shot.0.exr", "one.exr", *two, code=2)
+    assert "--mask" in result.stderr

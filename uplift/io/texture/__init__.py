@@ -17,11 +17,14 @@ from uplift.io.texture.colours import ENCODINGS, Counts
 from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.converter import Converter
 from uplift.io.texture.lights import LightUplifter, prepare_lights
+from uplift.io.texture.masked import MaskedUplifter, prepare_masked
 from uplift.io.texture.pixel_encoding import PIXEL_ENCODINGS, Moments, Multipliers, PixelEncoding, Spectrum
 from uplift.io.texture.sequence import (
     Failure,
     Job,
     LightSettings,
+    MaskedSettings,
+    Settings,
     TextureSettings,
     convert_all,
     converter_for,
@@ -41,9 +44,12 @@ __all__ = [
     "Job",
     "LightSettings",
     "LightUplifter",
+    "MaskedSettings",
+    "MaskedUplifter",
     "Moments",
     "Multipliers",
     "PixelEncoding",
+    "Settings",
     "Spectrum",
     "TextureSettings",
     "Uplifter",
@@ -54,5 +60,6 @@ __all__ = [
     "pending",
     "prepare",
     "prepare_lights",
+    "prepare_masked",
     "process_executor",
 ]

@@ -92,7 +92,7 @@ def convert(
     """
     begin = time.perf_counter()
     check_output(target, inputs=[source], force=force)
-    with open_image(source) as image:
+    with open_image(source) as image, converter.opened(image) as converter:
         layouts = part_layouts(converter, image)
         with open_writer(target, [each.output for each in layouts], force=force) as writer:
             counts = _write_parts(converter, image, layouts, writer, progress)
@@ -114,7 +114,8 @@ def _write_parts(
     for layout in layouts:
         writer.start_part(layout.part.number)
         for first, band in _bands(image, layout):
-            counts, done = counts + _write_band(converter, layout, writer, first, band), done + len(band)
+            ready = converter if layout.colours is None else converter.at_rows(layout.part, first, len(band))
+            counts, done = counts + _write_band(ready, layout, writer, first, band), done + len(band)
             progress(Progress("rows", done, total))
     return counts
 

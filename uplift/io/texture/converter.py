@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,7 +12,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.io.texture.alpha import ColourChannels
 from uplift.io.texture.colours import Counts, Floats, make_decoder
-from uplift.io.texture.source import Part, Values
+from uplift.io.texture.source import Image, Part, Values
 
 ReadColours = Callable[[Values], tuple[Floats, Counts]]
 """From the numbers of an image (…, 3) to linear RGB (…, 3), and counts of unusual pixels."""
@@ -98,6 +99,39 @@ class Converter(ABC):
             As `make_decoder`.
         """
         return make_decoder(self.sensor, part, self.encoding, self.out_of_gamut, self.space)
+
+    @contextlib.contextmanager
+    def opened(self, image: Image) -> Iterator[Converter]:
+        """Prepare for an image.
+
+        Parameters
+        ----------
+        image : Image
+            The image.
+
+        Yields
+        ------
+        Converter
+            The converter for this image: the same, by default.
+        """
+        yield self
+
+    def at_rows(self, part: Part, first: int, count: int) -> Converter:
+        """Prepare for rows of an image, which follow one another.
+
+        Parameters
+        ----------
+        part : Part
+            Part of the image.
+        first, count : int
+            Number of the first row, in the window of the part, and number of rows.
+
+        Returns
+        -------
+        Converter
+            The converter for these rows: the same, by default.
+        """
+        return self
 
     @abstractmethod
     def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:

@@ -30,9 +30,10 @@ from uplift.io.texture import exr_file
 from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.converter import Converter
 from uplift.io.texture.lights import prepare_lights
+from uplift.io.texture.masked import prepare_masked
 from uplift.io.texture.pixel_encoding import PixelEncoding
 from uplift.io.texture.source import open_image
-from uplift.io.texture.uplifter import prepare
+from uplift.io.texture.uplifter import Uplifter, prepare
 from uplift.lookup import load, load_emission
 
 MAX_NAMES = 4
@@ -76,13 +77,18 @@ class TextureSettings:
     out_of_gamut: str = "clip"
     space: str | None = None
 
-    def prepare(self) -> Converter:
+    @property
+    def inputs(self) -> tuple[str | None, ...]:
+        """Files that the settings name."""
+        return (self.cube,)
+
+    def prepare(self) -> Uplifter:
         """Prepare the cube for textures.
 
         Returns
         -------
-        Converter
-            An `Uplifter`.
+        Uplifter
+            The converter.
         """
         cube = load(self.cube)
         if self.fill_missing:
@@ -119,6 +125,11 @@ class LightSettings:
     threads: int
     space: str | None = None
 
+    @property
+    def inputs(self) -> tuple[str | None, ...]:
+        """Files that the settings name."""
+        return (self.cube,)
+
     def prepare(self) -> Converter:
         """Prepare the emission table for textures.
 
@@ -138,12 +149,46 @@ class LightSettings:
 
 
 @dataclass(frozen=True)
+class MaskedSettings:
+    """Settings of images with several cubes.
+
+    Parameters
+    ----------
+    cubes : tuple of TextureSettings
+        Settings of at least two cubes, which differ in the cube only.
+    mask : str
+        Path of the mask; see `uplift.io.texture.mask`.
+    """
+
+    cubes: tuple[TextureSettings, ...]
+    mask: str
+
+    @property
+    def inputs(self) -> tuple[str | None, ...]:
+        """Files that the settings name."""
+        return (*(each.cube for each in self.cubes), self.mask)
+
+    def prepare(self) -> Converter:
+        """Prepare the cubes for textures.
+
+        Returns
+        -------
+        Converter
+            A `MaskedUplifter`.
+        """
+        return prepare_masked([each.prepare() for each in self.cubes], Path(self.mask))
+
+
+Settings = TextureSettings | LightSettings | MaskedSettings
+
+
+@dataclass(frozen=True)
 class Job:
     """The conversion of one image.
 
     Parameters
     ----------
-    settings : TextureSettings or LightSettings
+    settings : TextureSettings, LightSettings or MaskedSettings
         Settings of the sequence.
     source, target : Path
         The image to read and the file to write.
@@ -151,7 +196,7 @@ class Job:
         Whether to replace an existing file.
     """
 
-    settings: TextureSettings | LightSettings
+    settings: Settings
     source: Path
     target: Path
     force: bool = False
@@ -174,12 +219,12 @@ class Failure:
 
 
 @lru_cache(maxsize=1)
-def converter_for(settings: TextureSettings | LightSettings) -> Converter:
+def converter_for(settings: Settings) -> Converter:
     """Return the converter of the settings, which each process prepares once.
 
     Parameters
     ----------
-    settings : TextureSettings or LightSettings
+    settings : TextureSettings, LightSettings or MaskedSettings
         Settings of the sequence.
 
     Returns
@@ -299,7 +344,7 @@ def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
                 hint="write them to different folders",
             )
     remaining = [job for job in jobs if not (resume and _is_up_to_date(job))]
-    inputs = [path for job in jobs for path in (job.source, job.settings.cube)]
+    inputs = [path for job in jobs for path in (job.source, *job.settings.inputs)]
     for force in (False, True):
         check_outputs([job.target for job in remaining if job.force == force], inputs=inputs, force=force)
     return remaining

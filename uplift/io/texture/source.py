@@ -137,6 +137,11 @@ class Image:
         for first in range(window.y, window.y + window.height, step):
             yield first, self._band(part, first, min(first + step, window.y + window.height))
 
+    def rows(self, part: Part, first: int, count: int) -> Values:
+        """Read rows (count, width, channels) from row ``first`` of the window, as `bands` does."""
+        top = part.window.y + first
+        return self._band(part, top, top + count)
+
     def header_text(self, name: str) -> str:
         """Return a text attribute of the first part, empty if it is missing."""
         return str(self.handle.spec(0).get_string_attribute(name))

@@ -16,9 +16,9 @@ from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError
 from uplift.io.texture.colours import Floats
 from uplift.lookup import Cube, bulk
+from uplift.lookup.common_sensor import common_sensor
 
 RGB_PRODUCT = "RGB × light"
 """Name of the method that multiplies the RGB of the image by those of the light."""
@@ -185,7 +185,7 @@ def relight(
     UnknownNameError
         A light is unknown.
     """
-    sensor = _common_sensor(cubes)
+    sensor = common_sensor(cubes.values())
     screens = display_sensors(lights, sensor.observer, *sensor.range)
     by_spectra = {method: _by_spectra(cube, rgb, screens, threads) for method, cube in cubes.items()}
     weight = np.float32(1) if opacity is None else opacity
@@ -198,18 +198,6 @@ def relight(
         for number, screen in enumerate(screens)
     )
     return Relit(name, reduction, tuple(renderings))
-
-
-def _common_sensor(cubes: Mapping[str, Cube]) -> Sensor:
-    spaces = {(cube.space, cube.illuminant, cube.observer) for cube in cubes.values()}
-    if len(spaces) > 1:
-        names = " and ".join(", ".join(space) for space in sorted(spaces))
-        raise OptionError(
-            f"cubes that are compared must have one RGB space, illuminant and observer, got {names}",
-            code="cubes-of-different-spaces",
-            hint="build the cube with the settings of the other",
-        )
-    return next(iter(cubes.values())).data.sensor
 
 
 def _by_product(sensor: Sensor, rgb: Floats, screen: Sensor) -> Floats:

@@ -1,0 +1,183 @@
+"""Textures of several cubes: numbers and weights in masks, soft edges, and the errors of masks that do not fit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import uplift
+from tests.helpers import raises
+from uplift.common.errors import OptionError, TextureError
+from uplift.io import texture
+from uplift.models import evaluate, reflectance
+
+from .conftest import WAVELENGTHS, read_channels, write_exr
+
+SHAPE = (20, 30)
+SPECTRUM = texture.Spectrum(WAVELENGTHS)
+NAMES = SPECTRUM.channels(uplift.load())
+
+
+@pytest.fixture(scope="module")
+def cubes(small_cube, plain_cube, macbeth_cube):
+    """Three cubes of one space; the first two have one model."""
+    return small_cube, plain_cube, macbeth_cube
+
+
+@pytest.fixture(scope="module")
+def image(tmp_path_factory, colours):
+    path = tmp_path_factory.mktemp("image") / "image.exr"
+    return write_exr(path, {name: np.ascontiguousarray(colours[..., k]) for k, name in enumerate("RGB")})
+
+
+def prepared(cubes, mask, encoding=SPECTRUM):
+    uplifters = [texture.prepare(cube, encoding, depth="float", threads=1) for cube in cubes]
+    return texture.prepare_masked(uplifters, mask)
+
+
+def png(path, values):
+    Image.fromarray(values).save(path)
+    return path
+
+
+@pytest.fixture
+def converted(tmp_path, image):
+    """From cubes, a mask and an encoding to the channels (h, w, N) of the texture."""
+
+    def converted(cubes, mask, encoding=SPECTRUM):
+        converter = prepared(cubes, mask, encoding)
+        texture.convert(converter, image, tmp_path / "out.exr", force=True)
+        return read_channels(tmp_path / "out.exr", converter.channels)
+
+    return converted
+
+
+def spectra(cube, colours):
+    return cube.reflectance(colours.reshape(-1, 3), WAVELENGTHS).reshape(*SHAPE, -1)
+
+
+def test_numbers_choose_the_cube(converted, cubes, colours, tmp_path):
+    numbers = np.random.default_rng(1).integers(0, 3, SHAPE, dtype=np.uint8)
+    found = converted(cubes, png(tmp_path / "ids.png", numbers))
+    for number, cube in enumerate(cubes):
+        rows = numbers == number
+        np.testing.assert_allclose(found[rows], spectra(cube, colours)[rows], atol=2e-6)
+    assert np.abs(spectra(cubes[0], colours) - spectra(cubes[1], colours)).max() > 0.05
+
+
+@pytest.mark.parametrize("kind", ["png", "png16", "exr"])
+def test_grey_mixes_two_cubes(converted, cubes, colours, tmp_path, sensor, kind):
+    ramp = np.tile(np.linspace(0, 1, SHAPE[1]), (SHAPE[0], 1))
+    if kind == "exr":
+        mask = write_exr(tmp_path / "mask.exr", {"Y": ramp.astype(np.float32)})
+    else:
+        dtype, white = (np.uint8, 255) if kind == "png" else (np.uint16, 65535)
+        codes = np.rint(ramp * white).astype(dtype)
+        ramp, mask = codes / white, png(tmp_path / "mask.png", codes)
+    found = converted(cubes[:2], mask)
+    one, two = (spectra(cube, colours) for cube in cubes[:2])
+    np.testing.assert_allclose(found, (1 - ramp)[..., None] * one + ramp[..., None] * two, atol=3e-6)
+
+
+def test_mixtures_have_the_colour_of_the_pixel(converted, cubes, colours, tmp_path, sensor):
+    mask = png(tmp_path / "mask.png", np.random.default_rng(2).integers(0, 256, SHAPE, dtype=np.uint8))
+    found = converted(cubes[:2], mask, texture.Spectrum(tuple(sensor.wavelengths)))
+    np.testing.assert_allclose(sensor.rgb(found.astype(float)), colours, atol=1e-4)
+
+
+def test_colours_are_weights_of_three_cubes(converted, cubes, colours, tmp_path):
+    codes = np.random.default_rng(3).integers(1, 256, (*SHAPE, 3), dtype=np.uint8)
+    found = converted(cubes, png(tmp_path / "mask.png", codes))
+    weights = codes / codes.sum(axis=-1, keepdims=True)
+    expected = sum(weights[..., k, None] * spectra(cube, colours) for k, cube in enumerate(cubes))
+    np.testing.assert_allclose(found, expected, atol=3e-6)
+
+
+def test_moments_mix_as_reflectances_do(converted, cubes, colours, tmp_path):
+    mask = png(tmp_path / "mask.png", np.tile(np.uint8([0, 128, 255]), (SHAPE[0], 10)))
+    found = converted(cubes[:2], mask, texture.Moments())
+    parts = [cube.coefficients(colours.reshape(-1, 3)).reshape(*SHAPE, -1) for cube in cubes[:2]]
+    share = 128 / 255
+    np.testing.assert_allclose(
+        found[:, 1::3], (1 - share) * parts[0][:, 1::3] + share * parts[1][:, 1::3], atol=1e-5
+    )
+    values = reflectance(cubes[0].data.model, found[:, 1::3].reshape(-1, 9).astype(float), WAVELENGTHS)
+    assert values.min() >= 0
+    assert values.max() <= 1
+
+
+def test_multipliers_mix_as_moments_and_stay_exact(converted, cubes, colours, tmp_path, sensor):
+    mask = png(tmp_path / "mask.png", np.tile(np.uint8([0, 128, 255]), (SHAPE[0], 10)))
+    found = converted(cubes[:2], mask, texture.Multipliers()).astype(float)
+    model = cubes[0].data.model
+    got = evaluate(model, found.reshape(-1, 9), sensor.wavelengths)
+    np.testing.assert_allclose(sensor.rgb(got).reshape(*SHAPE, 3), colours, atol=2e-4)
+    alone = prepared(cubes[:2], mask, texture.Multipliers()).uplifters[0].sample(colours[:, ::3])
+    np.testing.assert_array_equal(found[:, ::3], alone)
+
+
+def test_one_cube_everywhere_is_the_texture_of_that_cube(converted, cubes, colours, tmp_path):
+    found = converted(cubes[:2], png(tmp_path / "mask.png", np.zeros(SHAPE, np.uint8)))
+    np.testing.assert_allclose(found, spectra(cubes[0], colours), atol=2e-6)
+
+
+def test_bands_read_the_rows_of_the_mask(converted, cubes, colours, tmp_path, monkeypatch):
+    numbers = np.random.default_rng(4).integers(0, 2, SHAPE, dtype=np.uint8)
+    mask = png(tmp_path / "ids.png", numbers)
+    expected = converted(cubes[:2], mask)
+    monkeypatch.setattr("uplift.io.texture.writer.MAX_BAND_BYTES", 1)
+    monkeypatch.setattr("uplift.io.texture.source.MAX_BAND_BYTES", 1)
+    np.testing.assert_array_equal(converted(cubes[:2], mask), expected)
+
+
+@pytest.mark.parametrize(
+    ("values", "count", "code"),
+    [
+        (np.zeros((20, 29), np.uint8), 2, "mask-size"),
+        (
+            np.full(SHAPE, 2, np.uint8),
+            2,
+            "mask-values",
+        ),  # a number too large, or weights that are nearly black
+        (np.full(SHAPE, 255, np.uint8), 3, "mask-values"),
+        (np.zeros((*SHAPE, 3), np.uint8) + np.uint8([1, 0, 0]), 2, "mask-values"),
+        (np.eye(20, 30, dtype=np.uint8)[..., None] * np.uint8([9, 0, 0]), 3, "mask-values"),  # black pixels
+    ],
+)
+def test_masks_that_do_not_fit_are_refused(image, cubes, tmp_path, values, count, code):
+    with raises(TextureError, code) as caught:
+        texture.convert(
+            prepared(cubes[:count], png(tmp_path / "mask.png", values)), image, tmp_path / "out.exr"
+        )
+    assert caught.value.path == tmp_path / "mask.png"
+    assert not (tmp_path / "out.exr").exists()
+
+
+@pytest.mark.parametrize("value", [np.nan, -0.1, 1.1, np.inf])
+def test_float_weights_outside_are_refused(image, cubes, tmp_path, value):
+    weights = np.full(SHAPE, 0.5, np.float32)
+    weights[3, 4] = value
+    mask = write_exr(tmp_path / "mask.exr", {"Y": weights})
+    with raises(TextureError, "mask-values"):
+        texture.convert(prepared(cubes[:2], mask), image, tmp_path / "out.exr")
+
+
+def test_cubes_that_do_not_fit_are_refused(cubes, small_sigmoid_cube, tmp_path):
+    mask = png(tmp_path / "mask.png", np.zeros(SHAPE, np.uint8))
+    with raises(OptionError, "mask-without-cubes"):
+        prepared(cubes[:1], mask)
+    with raises(OptionError, "masked-cubes-differ"):
+        prepared((cubes[0], small_sigmoid_cube), mask, texture.Multipliers())
+    with raises(OptionError, "cubes-of-different-spaces"):
+        prepared((cubes[0], uplift.load("ACEScg")), mask)
+    with raises(TextureError, "file-not-found"):
+        prepared(cubes[:2], tmp_path / "none.png")
+
+
+def test_a_changed_mask_is_not_up_to_date(cubes, tmp_path):
+    headers = []
+    for number in (0, 1):
+        mask = png(tmp_path / "mask.png", np.full(SHAPE, number, np.uint8))
+        headers.append(prepared(cubes[:2], mask).header["uplift.texture"])
+    assert headers[0] != headers[1]
