@@ -88,6 +88,8 @@ def spoil(name, value):
         ("array-not-finite", spoil("entries.radius", -0.1)),
         ("misplaced-spectrum", spoil("spectra", 5e3)),
         ("misplaced-spectrum", spoil("entries.uv", 0.9)),
+        ("invalid-discs", spoil("entries.radius", 0.2)),
+        ("invalid-discs", spoil("entries.radius", 0.05)),
         ("sensor-wavelengths", spoil("wavelengths", 100)),
         ("invalid-primaries", lambda tensors, _: tensors.update(rgb_to_xyz=np.ones((3, 3)))),
         ("invalid-chromaticity-lattice", spoil("rings", 0.5)),

@@ -14,7 +14,7 @@ import numpy as np
 from uplift.atlas.atlas import Header
 from uplift.atlas.document import Document, SourceLocation, parse_number
 from uplift.atlas.grid import Cell, Row, find_table, read_grid, wavelength
-from uplift.atlas.measurements import Measurements, check_quantity
+from uplift.atlas.measurements import Measurements, check_quantity, refuse_quantity
 from uplift.common.number_text import parse_float
 
 FORMAT, DATA = "DATA_FORMAT", "DATA"
@@ -43,10 +43,10 @@ def read(document: Document) -> Measurements:
     text = "\n".join(preamble)
     check_quantity(text, location)
     if LIGHT_SOURCES.search(text):
-        raise location.error(
+        refuse_quantity(
             "the file states measurements of a display, not reflectance",
             "measure the reflectance: a cube holds reflectances",
-            code="not-a-reflectance",
+            location,
         )
     if not any(wavelength(cell.text) is not None for cell in rows[0]):
         raise location.at(rows[0][0].line).error(

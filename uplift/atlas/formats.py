@@ -64,6 +64,11 @@ FORMATS = (
 
 def read_any(document: Document, measured: str = "auto") -> Atlas:
     """Read a document by the first format that recognises it. Raise `AtlasError`."""
-    chosen = next(each for each in FORMATS if each.recognise(document))
+    chosen = recognise(document)
     found = chosen.read(document)
     return found if isinstance(found, Atlas) else to_atlas(document, found, chosen.name, measured)
+
+
+def recognise(document: Document) -> Format:
+    """Return the first format that recognises a document."""
+    return next(each for each in FORMATS if each.recognise(document))

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from uplift.atlas.checks import SLACK, VISIBLE
 from uplift.atlas.document import SourceLocation, parse_number, without_unit
-from uplift.atlas.measurements import Measurements, Spectrum, check_quantity, not_used_note
+from uplift.atlas.measurements import Measurements, Spectrum, check_quantity, not_used_note, refuse_quantity
 from uplift.common.number_text import parse_float
 
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
@@ -146,10 +146,10 @@ def check_table_quantity(table: Table, rows: Sequence[Row], path: str, comments:
     check_quantity(" ".join((comments, *preamble, *labels)), location)
     prefix = _prefix(header[table.first].text)
     if prefix in TRANSMITTANCE_PREFIXES:
-        raise location.error(
+        refuse_quantity(
             f"the label '{header[table.first].text}' states transmittance, not reflectance",
             "measure the reflectance, or rename the columns: a cube holds reflectances",
-            code="not-a-reflectance",
+            location,
         )
 
 

@@ -10,7 +10,14 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas.document import Document, SourceLocation, truncate
-from uplift.atlas.measurements import PERCENT, Measurements, Spectrum, check_quantity, parsed_by
+from uplift.atlas.measurements import (
+    PERCENT,
+    Measurements,
+    Spectrum,
+    check_quantity,
+    parsed_by,
+    refuse_quantity,
+)
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
 from uplift.common.extras import needs_extra
@@ -80,10 +87,10 @@ def _spectrum(block: dict[str, Any], document: Document, count: int) -> tuple[Sp
     if "reflect" not in unit:
         check_quantity(unit + " " + str(block.get("data type", "")), location)
     if "reflect" not in unit and unit not in ("", "%r", "r", "arbitrary units"):
-        raise location.error(
+        refuse_quantity(
             f"YUNITS must be reflectance, got '{truncate(unit)}'",
             "measure the reflectance: a cube holds reflectances",
-            code="not-a-reflectance",
+            location,
         )
     values = np.asarray(block.get("y", ()), dtype=float)
     return (

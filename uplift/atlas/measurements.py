@@ -6,6 +6,7 @@ import contextlib
 import re
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -30,6 +31,7 @@ NOT_REFLECTANCE = re.compile(
     r"transmi(?:ttance|ssion|ssive)|absorbance|absorptance|irradiance|radiance|emissi(?:on|ve)|t-factor", re.I
 )
 REFLECTANCE = re.compile(r"reflect|remission|\br-factor", re.I)
+_ANY_QUANTITY = ContextVar("any quantity", default=False)
 MAX_LISTED = 8
 """Names of columns that a note lists."""
 
@@ -131,14 +133,30 @@ def not_used_note(labels: Iterable[str]) -> tuple[str, ...]:
     return (f"not used: {', '.join(names[:MAX_LISTED])}{more}",)
 
 
+@contextlib.contextmanager
+def accept_any_quantity() -> Iterator[None]:
+    """Let readers accept files that state another quantity than reflectance, such as the power of lamps."""
+    token = _ANY_QUANTITY.set(True)
+    try:
+        yield
+    finally:
+        _ANY_QUANTITY.reset(token)
+
+
+def refuse_quantity(problem: str, hint: str, location: SourceLocation) -> None:
+    """Raise `AtlasError` (code ``not-a-reflectance``), except within `accept_any_quantity`."""
+    if not _ANY_QUANTITY.get():
+        raise location.error(problem, hint, code="not-a-reflectance")
+
+
 def check_quantity(text: str, location: SourceLocation) -> None:
     """Raise `AtlasError` (code ``not-a-reflectance``) if a text names another quantity, and not reflectance."""
     found = NOT_REFLECTANCE.search(text)
     if found and not REFLECTANCE.search(text):
-        raise location.error(
+        refuse_quantity(
             f"the file states '{found[0].lower()}', not reflectance",
             "measure the reflectance, or remove the statement if it is wrong: a cube holds reflectances",
-            code="not-a-reflectance",
+            location,
         )
 
 

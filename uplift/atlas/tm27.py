@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from uplift.atlas.document import Document, SourceLocation, truncate
-from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
+from uplift.atlas.measurements import Measurements, Spectrum, parsed_by, refuse_quantity
 from uplift.atlas.xml_text import check_xml, root_name
 from uplift.common.colour_science import colour_science
 
@@ -33,10 +33,10 @@ def read(document: Document) -> Measurements:
         header = found.header
         nm, values = found.wavelengths.tolist(), found.values.tolist()
     if quantity not in REFLECTANCES:
-        raise SourceLocation(document.path).error(
+        refuse_quantity(
             f"the file states '{truncate(quantity)}', not reflectance",
             "measure the reflectance: a cube holds reflectances",
-            code="not-a-reflectance",
+            SourceLocation(document.path),
         )
     described = " ".join((header.description or "").split())
     date = " ".join((header.report_date or "").split())

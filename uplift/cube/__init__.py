@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
-from uplift.cube.emission import EmissionData, LampEntries, emission_digest, read_emission, write_emission
+from uplift.cube.emission import EmissionData, emission_digest, read_emission, write_emission
 from uplift.cube.file import contents, digest, read, write
 
 __all__ = [
@@ -11,7 +11,6 @@ __all__ = [
     "CubeData",
     "EmissionData",
     "EntrySpectra",
-    "LampEntries",
     "LeftOut",
     "contents",
     "digest",

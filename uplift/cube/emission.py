@@ -18,11 +18,14 @@ from uplift.cube.checks import MAX_CONDITION, MAX_VALUE, require
 from uplift.cube.container import INVALID, Kind, Tensors, content_digest, error_text, invalid_file, load, save
 from uplift.cube.metadata import check_emission_metadata
 from uplift.lattice.chromaticity import ChromaticityLattice, chromaticity
+from uplift.lattice.lamp_discs import LampEntries
 
 VERSION = 1
 KIND = Kind("uplift emission table", (VERSION,), "emission table", "not-an-emission-table")
 MAX_OFFSET = 1e-4
 """Largest distance in u′v′ between a stored spectrum and its place; single precision keeps 1e-6."""
+MAX_RADIUS = 0.1
+"""Largest radius of a disc in u′v′."""
 ARRAYS = {
     "white": ("float64",),
     "knots": ("float64",),
@@ -38,28 +41,6 @@ ARRAYS = {
 }
 """Types of the arrays of a file."""
 SIGNED = ("rgb_to_xyz", "cmfs")
-
-
-@dataclass(frozen=True, eq=False)
-class LampEntries:
-    """Measured lamps that a table returns exactly at their chromaticities.
-
-    Parameters
-    ----------
-    names : tuple of str
-        Names, each once.
-    uv : ndarray, shape (E, 2)
-        u′v′ of the lamps.
-    spectra : ndarray, shape (E, N)
-        Power of unit X + 15 Y + 3 Z.
-    radius : ndarray, shape (E,)
-        Radius in u′v′ of the disc around each lamp in which answers blend to it. Discs do not overlap.
-    """
-
-    names: tuple[str, ...]
-    uv: Array
-    spectra: Array
-    radius: Array
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -278,6 +259,10 @@ def _check(data: EmissionData) -> None:
         unit = np.abs(xyz @ (1.0, 15.0, 3.0) - 1).max(initial=0) <= MAX_OFFSET
         there = unit and np.abs(chromaticity(xyz) - uv).max(initial=0) <= MAX_OFFSET
         require(bool(there), "misplaced-spectrum", "every spectrum must have the chromaticity of its place")
-    require(
-        bool(data.lattice.contains(data.entries.uv).all()), "misplaced-spectrum", "lamps must be realisable"
-    )
+    realisable = bool(data.lattice.contains(data.entries.uv).all())
+    require(realisable, "misplaced-spectrum", "lamps must be realisable")
+    uv, radius = data.entries.uv, data.entries.radius
+    apart = np.linalg.norm(uv[:, None] - uv, axis=-1) - radius[:, None] - radius
+    overlap = bool((apart[~np.eye(len(uv), dtype=bool)] < -MAX_OFFSET).any())
+    valid = not overlap and bool((radius <= MAX_RADIUS).all())
+    require(valid, "invalid-discs", f"discs must not overlap, and have radii up to {MAX_RADIUS:g}")

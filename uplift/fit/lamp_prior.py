@@ -7,17 +7,41 @@ mean of the power. It is spiky near the chromaticities of lamps, and smooth far 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
+from uplift.colorimetry.lamp_errors import relit_delta_e
 from uplift.common.arrays import Array
 from uplift.fit.emission import nearest_lights
 from uplift.lattice.chromaticity import DENOMINATOR, chromaticity
 
-LENGTH, NUGGET = 0.05, 0.3
-"""Correlation length in u′v′, and variance of the deviations that a lamp shares with no other."""
+LENGTHS = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
+NUGGETS = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)
+"""Candidates of `LampKernel`."""
 SMOOTHEST_SHARE = 1e-3
 """Smallest power of an expected light, as a share of that of the smoothest light."""
+
+
+@dataclass(frozen=True)
+class LampKernel:
+    """Covariance exp(−d / length) of the deviations of two lamps, where d is their distance in u′v′.
+
+    Parameters
+    ----------
+    length : float
+        Correlation length in u′v′.
+    nugget : float
+        Variance that a lamp shares with no other.
+    """
+
+    length: float
+    nugget: float
+
+    def __call__(self, first: Array, second: Array) -> Array:
+        """Shared covariance (n, m) at u′v′ (n, 2) and (m, 2)."""
+        distance = np.linalg.norm(first[:, None] - second, axis=-1)
+        return np.exp(distance / -self.length)
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,27 +54,32 @@ class LampPrior:
         u′v′ of the lamps.
     weights : ndarray, shape (L, N)
         Weights of the kernel around each lamp.
+    kernel : LampKernel
+        Covariance of the deviations.
     radiometry : ndarray, shape (N, 3)
         From power to XYZ.
     """
 
     uv: Array
     weights: Array
+    kernel: LampKernel
     radiometry: Array
 
     def __call__(self, uv: Array) -> Array:
         """Power (n, N), of unit X + 15 Y + 3 Z nearly, expected at u′v′ (n, 2)."""
         smooth = smoothest_lights(uv, self.radiometry)
-        return np.maximum(smooth + covariance(uv, self.uv) @ self.weights, SMOOTHEST_SHARE * smooth)
+        return _bounded(smooth + self.kernel(uv, self.uv) @ self.weights, smooth)
 
 
-def fit_lamp_prior(power: Array, radiometry: Array) -> tuple[LampPrior, Array]:
-    """Fit the prior to lamps.
+def fit_lamp_prior(power: Array, surfaces: Array, radiometry: Array) -> tuple[LampPrior, Array]:
+    """Fit the prior to lamps, with the kernel that predicts left-out lamps best.
 
     Parameters
     ----------
     power : ndarray, shape (L, N)
         Power of the lamps, of any scale.
+    surfaces : ndarray, shape (P, N)
+        Reflectances of the surfaces by whose colours predictions are judged.
     radiometry : ndarray, shape (N, 3)
         From power to XYZ.
 
@@ -60,15 +89,26 @@ def fit_lamp_prior(power: Array, radiometry: Array) -> tuple[LampPrior, Array]:
         Expected lights.
     left_out : ndarray, shape (L, N)
         Light expected at the chromaticity of each lamp without the lamp, exact in chromaticity.
+
+    References
+    ----------
+    Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 5.12, for the left-out predictions.
     """
     power = power / (power @ radiometry @ DENOMINATOR)[:, None]
     uv = chromaticity(power @ radiometry)
     smooth = smoothest_lights(uv, radiometry)
-    inverse = np.linalg.inv(covariance(uv, uv) + NUGGET * np.eye(len(uv)))
-    weights = inverse @ (power - smooth)
-    expected = power - weights / np.diag(inverse)[:, None]
-    left_out = nearest_lights(np.maximum(expected, SMOOTHEST_SHARE * smooth), uv, radiometry)
-    return LampPrior(uv, weights, radiometry), left_out
+
+    def predict(kernel: LampKernel) -> tuple[Array, Array]:
+        inverse = np.linalg.inv(kernel(uv, uv) + kernel.nugget * np.eye(len(uv)))
+        weights = inverse @ (power - smooth)
+        return weights, _bounded(power - weights / np.diag(inverse)[:, None], smooth)
+
+    def error(kernel: LampKernel) -> float:
+        return float(relit_delta_e(power, predict(kernel)[1], surfaces, radiometry).mean())
+
+    best = min((LampKernel(*pair) for pair in product(LENGTHS, NUGGETS)), key=error)
+    weights, expected = predict(best)
+    return LampPrior(uv, weights, best, radiometry), nearest_lights(expected, uv, radiometry)
 
 
 def smoothest_lights(uv: Array, radiometry: Array) -> Array:
@@ -76,7 +116,6 @@ def smoothest_lights(uv: Array, radiometry: Array) -> Array:
     return nearest_lights(np.ones((len(uv), len(radiometry))), uv, radiometry)
 
 
-def covariance(first: Array, second: Array) -> Array:
-    """Covariance (n, m) of the deviations at u′v′ (n, 2) and (m, 2)."""
-    distance = np.linalg.norm(first[:, None] - second, axis=-1)
-    return np.exp(distance / -LENGTH)
+def _bounded(power: Array, smooth: Array) -> Array:
+    """Replace powers that are not positive by a little of the smoothest light."""
+    return np.maximum(power, SMOOTHEST_SHARE * smooth)

@@ -388,36 +388,10 @@ def _as_lights(data: EmissionData, xyz: Array) -> tuple[Array, Array]:
     return data.lattice.white + uv, size
 
 
-@dataclass(frozen=True, eq=False)
-class _Discs:
-    """Colours in the discs of entries."""
-
-    rows: NDArray[np.int64]
-    """(k,) numbers of the colours."""
-    entry: NDArray[np.int64]
-    """(k,) numbers of the entries."""
-    share: Array
-    """(k,) share of the entry in the answer, 1 at its chromaticity and 0 on the circle."""
-    exit_uv: Array
-    """(k, 2) where the ray from the entry through the colour leaves the disc."""
-
-
-def _discs(data: EmissionData, uv: Array) -> _Discs:
-    entries = data.entries
-    offsets = uv[:, None] - entries.uv
-    distance = np.hypot(offsets[..., 0], offsets[..., 1])
-    rows, entry = np.nonzero(distance < entries.radius)
-    away, radius = distance[rows, entry], entries.radius[entry]
-    direction = np.divide(
-        offsets[rows, entry], away[:, None], out=np.tile([1.0, 0.0], (len(rows), 1)), where=away[:, None] > 0
-    )
-    return _Discs(rows, entry, 1 - away / radius, entries.uv[entry] + direction * radius[:, None])
-
-
 def _spectra(data: EmissionData, samples: _Samples, xyz: Array) -> Array:
     """Power (n, N) of colours (n, 3)."""
     uv, size = _as_lights(data, xyz)
-    discs = _discs(data, uv)
+    discs = data.entries.locate(uv)
     uv[discs.rows] = discs.exit_uv
     power = _mix(data, samples.nodes, uv)
     share = discs.share[:, None]

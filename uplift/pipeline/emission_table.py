@@ -2,37 +2,46 @@
 
 from __future__ import annotations
 
+import os
+import warnings
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.atlas import on_grid, read_atlas
+from uplift.atlas import Atlas, on_grid, read_atlas, read_lamps
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.lamp_errors import relit_delta_e
 from uplift.colorimetry.lights import STANDARD_ILLUMINANTS, Lamps
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.quoting import format_value
 from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
-from uplift.cube import EmissionData, LampEntries
+from uplift.cube import EmissionData
 from uplift.fit.chromaticity_lattice import locus_lattice
 from uplift.fit.emission import mix_with_rim, nearest_lights
-from uplift.fit.lamp_prior import covariance, fit_lamp_prior
-from uplift.lattice.chromaticity import DENOMINATOR, ChromaticityLattice, chromaticity
+from uplift.fit.lamp_entries import lamp_entries
+from uplift.fit.lamp_prior import LampPrior, fit_lamp_prior
+from uplift.lattice.chromaticity import ChromaticityLattice, chromaticity
 from uplift.lookup import EmissionTable
+from uplift.pipeline.libraries import AtlasLike
+from uplift.pipeline.provenance import describe_source
 
-MAX_RADIUS = 0.01
-"""Largest radius in u′v′ of the disc around a lamp."""
 FAR_SHARE = 1e-3
 """Weight of the mean error of all lamps, which far from them is the expected one."""
 MAX_KNOTS, MAX_RINGS = 1024, 512
+SURFACES = "macbeth"
+"""Atlas of the surfaces by which predictions of lamps are judged."""
+STACK_LEVEL = 4
+"""Frames between a warning and the caller of `build_emission`, whose decorator adds two."""
 
 
 @single_threaded_blas()
 def build_emission(
+    atlas: AtlasLike = None,
     *,
     knots: int = 96,
     rings: int = 24,
@@ -40,18 +49,22 @@ def build_emission(
     observer: str = observers.DEFAULT_OBSERVER,
     progress: ProgressCallback = ignore_progress,
 ) -> EmissionTable:
-    """Build a table of the spectra of lights.
+    """Build a table of the spectra of lights, constrained by measured lamps.
 
-    Lights scale, so the table is a lattice over chromaticity, the whole spectral locus.
+    Lights scale, so the table is a lattice over chromaticity, the whole spectral locus. Lamps are exact at their
+    chromaticities. Between them, spectra are those expected by the lamps around, and smooth where no lamp is near.
 
     Parameters
     ----------
+    atlas : Atlas, path-like or sequence of path-like, optional
+        Measured lamps, or the files that contain them, in addition to those of colour-science. Of lamps of nearly the
+        same chromaticity, those of the atlas are exact; without an atlas, the CIE illuminants A and D50 to D75.
     knots : int, default 96
         Nodes around white, at least as many as the spectral locus has corners.
     rings : int, default 24
         Nodes from white to the locus.
     space : str, default "sRGB"
-        RGB space of queries, by its name in colour-science.
+        RGB space of queries, by its name in colour-science. White is the white of the space, without adaptation.
     observer : str, default "CIE 1931 2 Degree Standard Observer"
         Colour-matching functions.
     progress : callable, optional
@@ -64,26 +77,43 @@ def build_emission(
 
     Raises
     ------
+    AtlasError
+        A file of lamps that cannot be read.
     OptionError
         An option outside its range.
     UnknownNameError
         An unknown space or observer.
+
+    Warns
+    -----
+    UpliftWarning
+        A lamp of the atlas with the chromaticity of another one of it, which is left out (``entry-duplicate``).
+
+    Examples
+    --------
+    >>> import uplift
+    >>> table = uplift.build_emission(knots=64, rings=4)
+    >>> table.rgb(table.spectrum([3.0, 0.2, 0.1])).round(6).tolist()
+    [3.0, 0.2, 0.1]
     """
     _check_count("knots", knots, MAX_KNOTS)
     _check_count("rings", rings, MAX_RINGS)
     sensor = observers.sensor(space, "D65", observer)
     radiometry = sensor.cmfs / sensor.cmfs[:, 1].sum()
     matrix = observers.primaries(space).rgb_to_xyz
-    lattice, rim = locus_lattice(
-        radiometry, chromaticity(matrix @ np.ones(3)), int(knots), np.linspace(0, 1, int(rings))
-    )
-    lamps = observers.lamps(observer)
-    prior, left_out = fit_lamp_prior(lamps.power, radiometry)
-    uv = lattice.nodes[:, :-1].reshape(-1, 2)
-    progress(Progress("fit", 0, len(uv)))
-    power = mix_with_rim(nearest_lights(prior(uv), uv, radiometry), uv, lattice, rim, radiometry)
-    progress(Progress("fit", len(uv), len(uv)))
-    spectra = np.concatenate([power.reshape(len(rim), -1, power.shape[1]), rim[:, None]], axis=1)
+    white = chromaticity(matrix.sum(axis=1))
+    lattice, rim = locus_lattice(radiometry, white, int(knots), np.linspace(0, 1, int(rings)))
+    constraints, sources = _read(atlas, sensor.wavelengths, radiometry)
+    lamps = _choose(constraints, observers.lamps(observer))
+    prior, left_out = fit_lamp_prior(lamps.all.power, _surfaces(), radiometry)
+    power = _nodes(prior, lattice, rim, radiometry, progress)
+    entries, duplicates = lamp_entries(lamps.exact, lamps.others, lattice, radiometry)
+    for name, other in duplicates:
+        problem = f"left out: it has the chromaticity of '{other}'"
+        warnings.warn(
+            UpliftWarning(problem, code="entry-duplicate", entry=name),
+            stacklevel=STACK_LEVEL,
+        )
     return EmissionTable(
         EmissionData(
             space=sensor.space,
@@ -92,45 +122,95 @@ def build_emission(
             wavelengths=sensor.wavelengths,
             cmfs=sensor.cmfs,
             lattice=lattice,
-            spectra=spectra.astype(np.float32),
-            error=_expected_error(lamps, left_out, prior.uv, lattice, radiometry),
-            entries=_entries(_standard(lamps), lattice, radiometry),
-            provenance={"uplift": VERSION, "options": {"knots": int(knots), "rings": int(rings)}},
+            spectra=power,
+            error=_expected_error(lamps.all, left_out, prior, lattice),
+            entries=entries,
+            provenance={
+                "uplift": VERSION,
+                "options": {"knots": int(knots), "rings": int(rings)},
+                "atlases": sources,
+                "left_out": [name for name, _ in duplicates],
+                "prior": asdict(prior.kernel),
+            },
         )
     )
 
 
+@dataclass(frozen=True)
+class _Lamps:
+    """Lamps of a build."""
+
+    exact: Lamps
+    """Constraints."""
+    others: Lamps
+    """Lamps of colour-science that are none."""
+
+    @property
+    def all(self) -> Lamps:
+        names = (*self.exact.names, *self.others.names)
+        return Lamps(names, np.concatenate([self.exact.power, self.others.power]))
+
+
+def _read(
+    atlas: AtlasLike, wavelengths: Array, radiometry: Array
+) -> tuple[Lamps | None, list[dict[str, str]]]:
+    """Return the lamps of an atlas at luminance 1, and what the table records of their files."""
+    if atlas is None:
+        return None, []
+    if not isinstance(atlas, Atlas):
+        atlas = read_lamps(*([atlas] if isinstance(atlas, str | os.PathLike) else atlas))
+    if not len(atlas):
+        raise OptionError("an atlas of lamps must have lamps, got none", code="no-lamps")
+    power = on_grid(atlas, wavelengths)
+    luminance = power @ radiometry[:, 1]
+    if not (luminance > 0).all():
+        dark = atlas.names[int(luminance.argmin())]
+        raise OptionError(f"a lamp must have visible power, got none of '{dark}'", code="lamp-without-power")
+    return Lamps(atlas.names, power / luminance[:, None]), [describe_source(each) for each in atlas.sources]
+
+
+def _choose(constraints: Lamps | None, known: Lamps) -> _Lamps:
+    """Split the known lamps into constraints and others, of which none has the name or spectrum of a constraint."""
+    if constraints is None:
+        is_standard = np.isin(known.names, STANDARD_ILLUMINANTS)
+        return _Lamps(_rows(known, is_standard), _rows(known, ~is_standard))
+    kept = [
+        name not in constraints.names
+        and np.abs(constraints.power - row).max(axis=1).min() > observers.SAME_LAMP * row.max()
+        for name, row in zip(known.names, known.power, strict=True)
+    ]
+    return _Lamps(constraints, _rows(known, np.array(kept)))
+
+
+def _rows(lamps: Lamps, kept: NDArray[np.bool_]) -> Lamps:
+    return Lamps(tuple(np.array(lamps.names)[kept].tolist()), lamps.power[kept])
+
+
+def _nodes(
+    prior: LampPrior, lattice: ChromaticityLattice, rim: Array, radiometry: Array, progress: ProgressCallback
+) -> NDArray[np.float32]:
+    """Fit all nodes (K, R, N)."""
+    uv = lattice.nodes[:, :-1].reshape(-1, 2)
+    progress(Progress("fit", 0, len(uv)))
+    power = mix_with_rim(nearest_lights(prior(uv), uv, radiometry), uv, lattice, rim, radiometry)
+    progress(Progress("fit", len(uv), len(uv)))
+    inner = power.reshape(len(rim), -1, power.shape[1])
+    return np.asarray(np.concatenate([inner, rim[:, None]], axis=1), dtype=np.float32)
+
+
+def _surfaces() -> Array:
+    """Reflectances (P, N) of the ColorChecker."""
+    return on_grid(read_atlas(SURFACES), observers.grid())
+
+
 def _expected_error(
-    lamps: Lamps, left_out: Array, uv: Array, lattice: ChromaticityLattice, radiometry: Array
+    lamps: Lamps, left_out: Array, prior: LampPrior, lattice: ChromaticityLattice
 ) -> NDArray[np.float32]:
     """ΔE00 (K, R) of the ColorChecker lit by an answer: the errors of left-out lamps, averaged by distance."""
-    surfaces = on_grid(read_atlas("macbeth"), observers.grid())
-    errors = relit_delta_e(lamps.power, left_out, surfaces, radiometry).mean(axis=1)
-    weights = covariance(lattice.nodes.reshape(-1, 2), uv)
+    errors = relit_delta_e(lamps.power, left_out, _surfaces(), prior.radiometry).mean(axis=1)
+    weights = prior.kernel(lattice.nodes.reshape(-1, 2), prior.uv)
     expected = (weights @ errors + FAR_SHARE * errors.mean()) / (weights.sum(axis=1) + FAR_SHARE)
     return np.asarray(expected.reshape(lattice.shape), dtype=np.float32)
-
-
-def _standard(lamps: Lamps) -> Lamps:
-    rows = [lamps.names.index(name) for name in STANDARD_ILLUMINANTS]
-    return Lamps(STANDARD_ILLUMINANTS, lamps.power[rows])
-
-
-def _entries(lamps: Lamps, lattice: ChromaticityLattice, radiometry: Array) -> LampEntries:
-    """Give each lamp a disc that reaches half of the way to the next one, and does not leave the lattice."""
-    power = lamps.power / (lamps.power @ radiometry @ DENOMINATOR)[:, None]
-    uv = chromaticity(power @ radiometry)
-    apart = np.linalg.norm(uv[:, None] - uv, axis=-1) + np.diag(np.full(len(uv), np.inf))
-    radius = np.minimum(apart.min(axis=1, initial=np.inf) / 2, MAX_RADIUS)
-    radius = np.minimum(radius, _distance_to_rim(uv, lattice))
-    return LampEntries(lamps.names, uv, power, radius)
-
-
-def _distance_to_rim(uv: Array, lattice: ChromaticityLattice) -> Array:
-    edges = np.roll(lattice.knots, -1, axis=0) - lattice.knots
-    offset = uv[:, None] - lattice.knots
-    across = edges[:, 0] * offset[..., 1] - edges[:, 1] * offset[..., 0]
-    return np.asarray((across / np.linalg.norm(edges, axis=1)).min(axis=1).clip(0.0))
 
 
 def _check_count(name: str, value: Any, most: int) -> None:
