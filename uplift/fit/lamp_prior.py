@@ -19,6 +19,8 @@ from uplift.lattice.chromaticity import DENOMINATOR, chromaticity
 LENGTHS = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 NUGGETS = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)
 """Candidates of `LampKernel`."""
+EXACT_SHARE = 1e-2
+"""Nugget of exact lamps, as a share of that of others."""
 SMOOTHEST_SHARE = 1e-3
 """Smallest power of an expected light, as a share of that of the smoothest light."""
 
@@ -54,6 +56,8 @@ class LampPrior:
         u′v′ of the lamps.
     weights : ndarray, shape (L, N)
         Weights of the kernel around each lamp.
+    precision : ndarray, shape (L, L)
+        Inverse of the covariance of the lamps.
     kernel : LampKernel
         Covariance of the deviations.
     radiometry : ndarray, shape (N, 3)
@@ -62,6 +66,7 @@ class LampPrior:
 
     uv: Array
     weights: Array
+    precision: Array
     kernel: LampKernel
     radiometry: Array
 
@@ -70,8 +75,21 @@ class LampPrior:
         smooth = smoothest_lights(uv, self.radiometry)
         return _bounded(smooth + self.kernel(uv, self.uv) @ self.weights, smooth)
 
+    def standard_deviation(self, uv: Array) -> Array:
+        """Standard deviation (n,) of another lamp at u′v′ (n, 2), relative to that of a lamp far from all others."""
+        shared = self.kernel(uv, self.uv)
+        total = 1 + self.kernel.nugget
+        variance = total - np.einsum("nl,lm,nm->n", shared, self.precision, shared)
+        return np.sqrt(np.maximum(variance, self.kernel.nugget) / total)
 
-def fit_lamp_prior(power: Array, surfaces: Array, radiometry: Array) -> tuple[LampPrior, Array]:
+    def left_out_deviation(self) -> Array:
+        """Standard deviation (L,) of each lamp, as the others predict it; see `standard_deviation`."""
+        return np.asarray(np.sqrt(1 / np.diag(self.precision) / (1 + self.kernel.nugget)))
+
+
+def fit_lamp_prior(
+    power: Array, surfaces: Array, radiometry: Array, exact: int = 0
+) -> tuple[LampPrior, Array]:
     """Fit the prior to lamps, with the kernel that predicts left-out lamps best.
 
     Parameters
@@ -82,6 +100,8 @@ def fit_lamp_prior(power: Array, surfaces: Array, radiometry: Array) -> tuple[La
         Reflectances of the surfaces by whose colours predictions are judged.
     radiometry : ndarray, shape (N, 3)
         From power to XYZ.
+    exact : int, default 0
+        Number of the first lamps, which the expected lights reach nearly; others of one chromaticity are averaged.
 
     Returns
     -------
@@ -97,18 +117,19 @@ def fit_lamp_prior(power: Array, surfaces: Array, radiometry: Array) -> tuple[La
     power = power / (power @ radiometry @ DENOMINATOR)[:, None]
     uv = chromaticity(power @ radiometry)
     smooth = smoothest_lights(uv, radiometry)
+    own_share = np.where(np.arange(len(uv)) < exact, EXACT_SHARE, 1.0)
 
-    def predict(kernel: LampKernel) -> tuple[Array, Array]:
-        inverse = np.linalg.inv(kernel(uv, uv) + kernel.nugget * np.eye(len(uv)))
+    def predict(kernel: LampKernel) -> tuple[Array, Array, Array]:
+        inverse = np.asarray(np.linalg.inv(kernel(uv, uv) + np.diag(kernel.nugget * own_share)))
         weights = inverse @ (power - smooth)
-        return weights, _bounded(power - weights / np.diag(inverse)[:, None], smooth)
+        return inverse, weights, _bounded(power - weights / np.diag(inverse)[:, None], smooth)
 
     def error(kernel: LampKernel) -> float:
-        return float(relit_delta_e(power, predict(kernel)[1], surfaces, radiometry).mean())
+        return float(relit_delta_e(power, predict(kernel)[2], surfaces, radiometry).mean())
 
     best = min((LampKernel(*pair) for pair in product(LENGTHS, NUGGETS)), key=error)
-    weights, expected = predict(best)
-    return LampPrior(uv, weights, best, radiometry), nearest_lights(expected, uv, radiometry)
+    precision, weights, expected = predict(best)
+    return LampPrior(uv, weights, precision, best, radiometry), nearest_lights(expected, uv, radiometry)
 
 
 def smoothest_lights(uv: Array, radiometry: Array) -> Array:

@@ -24,13 +24,15 @@ from uplift.cube import EmissionData
 from uplift.fit.chromaticity_lattice import locus_lattice
 from uplift.fit.emission import mix_with_rim, nearest_lights
 from uplift.fit.lamp_entries import lamp_entries
-from uplift.fit.lamp_prior import LampPrior, fit_lamp_prior
+from uplift.fit.lamp_prior import LampKernel, LampPrior, fit_lamp_prior
 from uplift.lattice.chromaticity import ChromaticityLattice, chromaticity
 from uplift.lookup import EmissionTable
 from uplift.pipeline.libraries import AtlasLike
 from uplift.pipeline.provenance import describe_source
 
-FAR_SHARE = 1e-3
+ERROR_LENGTH = 0.02
+"""Distance in u′v′ over which errors of left-out lamps are averaged."""
+FAR_SHARE = 1e-2
 """Weight of the mean error of all lamps, which far from them is the expected one."""
 MAX_KNOTS, MAX_RINGS = 1024, 512
 SURFACES = "macbeth"
@@ -105,7 +107,7 @@ def build_emission(
     lattice, rim = locus_lattice(radiometry, white, int(knots), np.linspace(0, 1, int(rings)))
     constraints, sources = _read(atlas, sensor.wavelengths, radiometry)
     lamps = _choose(constraints, observers.lamps(observer))
-    prior, left_out = fit_lamp_prior(lamps.all.power, _surfaces(), radiometry)
+    prior, left_out = fit_lamp_prior(lamps.all.power, _surfaces(), radiometry, len(lamps.exact))
     power = _nodes(prior, lattice, rim, radiometry, progress)
     entries, duplicates = lamp_entries(lamps.exact, lamps.others, lattice, radiometry)
     for name, other in duplicates:
@@ -206,11 +208,16 @@ def _surfaces() -> Array:
 def _expected_error(
     lamps: Lamps, left_out: Array, prior: LampPrior, lattice: ChromaticityLattice
 ) -> NDArray[np.float32]:
-    """ΔE00 (K, R) of the ColorChecker lit by an answer: the errors of left-out lamps, averaged by distance."""
+    """ΔE00 (K, R) of the ColorChecker lit by an answer.
+
+    Errors of left-out lamps, in units of the standard deviation of the prior there, are averaged by distance.
+    """
     errors = relit_delta_e(lamps.power, left_out, _surfaces(), prior.radiometry).mean(axis=1)
-    weights = prior.kernel(lattice.nodes.reshape(-1, 2), prior.uv)
-    expected = (weights @ errors + FAR_SHARE * errors.mean()) / (weights.sum(axis=1) + FAR_SHARE)
-    return np.asarray(expected.reshape(lattice.shape), dtype=np.float32)
+    units = errors / prior.left_out_deviation()
+    uv = lattice.nodes.reshape(-1, 2)
+    weights = LampKernel(ERROR_LENGTH, 0.0)(uv, prior.uv)
+    unit = (weights @ units + FAR_SHARE * units.mean()) / (weights.sum(axis=1) + FAR_SHARE)
+    return np.asarray((unit * prior.standard_deviation(uv)).reshape(lattice.shape), dtype=np.float32)
 
 
 def _check_count(name: str, value: Any, most: int) -> None:
