@@ -12,7 +12,7 @@ from uplift.lattice.lamp_discs import LampEntries
 MAX_RADIUS = 0.01
 """Largest radius of a disc in u′v′."""
 SAME_CHROMATICITY = 1e-5
-"""Distance in u′v′ at which two constraints are one: RGB does not tell them apart."""
+"""Distance in u′v′ at which two constraints are one: they have one RGB."""
 CLEARANCE = 2e-3
 """Distance in u′v′ that other lamps keep from constraints: about two just noticeable differences."""
 
