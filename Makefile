@@ -145,6 +145,7 @@ plan: pictures
 # Frame rate of the relighting viewer in Chromium: docs/palette-dial.md.
 dial: $(INSTALLED)
 	$(BIN)/python -m benchmarks.dial
+	$(BIN)/python -m benchmarks.dial.scan
 	$(BIN)/python -m tools.render_docs palette-dial
 
 # Accuracy of the factor model of palettes, and the examples: docs/palette.md and its pictures.

@@ -102,6 +102,14 @@ def test_lights_have_their_luminance(read, sensor):
     np.testing.assert_allclose(luminances, [1, 0.5], atol=1e-12)
 
 
+def test_lights_may_have_a_norm(read, sensor):
+    """The root mean square: 1 for a flat power of 1, whatever the number of samples."""
+    text = 'colours.new.x = "#808080"\n[materials]\nnew = { design = true }\n[lights]\n'
+    palette = read(text + 'x = { planck = 3000, norm = 2 }\ny = { illuminant = "E", norm = 1 }')
+    assert np.sqrt(np.mean(palette.light("x").samples ** 2)) == pytest.approx(2)
+    np.testing.assert_allclose(palette.light("y").samples, 1, rtol=1e-9)
+
+
 def test_a_black_body_of_2856_k_is_illuminant_a(sensor):
     """The CIE defines A by Planck's law; its table has six digits."""
     from uplift.design.palette.lights import illuminant
@@ -182,6 +190,7 @@ HEAD = 'lights.day.illuminant = "D65"\nmaterials.new.design = true\n'
         (HEAD + 'lights.x = { planck = "hot" }', "wrong-type", "lights.x.planck"),
         (HEAD + "lights.x = { planck = 3 }", "out-of-range", "lights.x.planck"),
         (HEAD + "lights.x = { planck = 3000, luminance = -1 }", "out-of-range", "lights.x.luminance"),
+        (HEAD + "lights.x = { planck = 3000, luminance = 1, norm = 1 }", "scaled-twice", "lights.x"),
         (HEAD + 'lights.x.illuminant = "D66"', "unknown-illuminant", "lights.x.illuminant"),
         (HEAD + "apart = 3", "wrong-type", "apart"),
         (HEAD + '[[apart]]\nmaterials = ["new"]\nlight = "day"', "too-few-items", "apart[0].materials"),

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag
+import numpy as np
+from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from uplift import lookup
 from uplift.atlas import Atlas, on_grid, read_atlas
@@ -15,6 +16,7 @@ from uplift.atlas.shipped import find_atlas_file
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.written_colour import WrittenColour
+from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
 from uplift.common.quoting import format_value
 from uplift.common.spec_file import SpecModel, problem, resolves
@@ -28,26 +30,47 @@ BLACK, WHITE = WrittenColour(codes=(0, 0, 0)), WrittenColour(codes=(255, 255, 25
 Kelvin = Annotated[Number, Field(ge=MIN_KELVIN, le=MAX_KELVIN)]
 
 
-class IlluminantLight(SpecModel):
-    """A light by the name of its illuminant; ``luminance`` is that of the perfect reflector."""
+class KnownLight(SpecModel):
+    """A light whose spectrum is known up to its scale.
+
+    ``luminance`` is that of the perfect reflector. ``norm`` is the root mean square of the power over wavelengths, 1
+    for a flat power of 1: the L2 norm of Bergner et al. 2004, section 4, for any number of samples.
+    """
+
+    luminance: NonNegative | None = None
+    norm: NonNegative | None = None
+
+    @model_validator(mode="after")
+    def _scaled_once(self) -> Self:
+        if self.luminance is not None and self.norm is not None:
+            raise problem("scaled-twice", "a light has a luminance or a norm, not both", "remove one of them")
+        return self
+
+    def scaled(self, name: str, power: Array) -> SpectrumSpec:
+        """Scale a power (N,) of luminance 1."""
+        if self.norm is not None:
+            return SpectrumSpec(name, power * (self.norm / np.sqrt(np.mean(power**2))))
+        return SpectrumSpec(name, power * (1.0 if self.luminance is None else self.luminance))
+
+
+class IlluminantLight(KnownLight):
+    """A light by the name of its illuminant."""
 
     illuminant: Annotated[str, resolves(observer.illuminant_spd)]
-    luminance: NonNegative = 1.0
 
     def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
         """Spectrum on the wavelengths of the sensor."""
-        return SpectrumSpec(name, illuminant(sensor, self.illuminant) * self.luminance)
+        return self.scaled(name, illuminant(sensor, self.illuminant))
 
 
-class BlackBodyLight(SpecModel):
+class BlackBodyLight(KnownLight):
     """A black body by its temperature in K."""
 
     planck: Kelvin
-    luminance: NonNegative = 1.0
 
     def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
         """Spectrum on the wavelengths of the sensor."""
-        return SpectrumSpec(name, planck(sensor, self.planck) * self.luminance)
+        return self.scaled(name, planck(sensor, self.planck))
 
 
 class DesignedLight(SpecModel):
