@@ -103,7 +103,7 @@ def test_lights_have_their_luminance(read, sensor):
 
 
 def test_lights_may_have_a_norm(read, sensor):
-    """The root mean square: 1 for a flat power of 1, whatever the number of samples."""
+    """The root mean square: 1 for a flat power of 1, for any number of samples."""
     text = 'colours.new.x = "#808080"\n[materials]\nnew = { design = true }\n[lights]\n'
     palette = read(text + 'x = { planck = 3000, norm = 2 }\ny = { illuminant = "E", norm = 1 }')
     assert np.sqrt(np.mean(palette.light("x").samples ** 2)) == pytest.approx(2)
