@@ -125,4 +125,4 @@ def test_it_works_from_where_it_is_installed(wheel, tmp_path):
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
     )
-    assert done.stdout.startswith("r,g,b,delta_e_2000,standard_error,entry,550\n1.0,1.0,1.0,")
+    assert done.stdout.startswith("r,g,b,delta_e_2000,standard_error,error_bound,entry,550\n1.0,1.0,1.0,")

@@ -127,24 +127,25 @@ def shares(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> dict[str,
 
 
 def standard_errors(splits: Splits) -> list[dict[str, Any]]:
-    """Return actual and predicted errors as roots of mean squares, overall and by quartile of the predicted ones."""
+    """Return how many actual errors are within the predicted ones, overall and by quartile of the predicted ones."""
     others = {(f"macbeth, queried for {name}", 9): (_across("macbeth", name),) for name in large()}
     rows = []
     for (name, count), parts in (splits | others).items():
-        actual, predicted = (
-            np.concatenate([getattr(split, part) for split in parts]) for part in ("actual", "predicted")
+        actual, predicted, bound = (
+            np.concatenate([getattr(split, part) for split in parts])
+            for part in ("actual", "predicted", "bound")
         )
-        coverage = check_calibration(actual, predicted)
+        coverage = check_calibration(actual, predicted, bound)
         quartiles = np.array_split(predicted.argsort(kind="stable"), 4)
         rows.append(
             {
                 "atlas": name,
                 "coefficients": count,
-                "all": [_root_mean_square(actual), _root_mean_square(predicted)],
-                "within_1": coverage.within_one,
-                "within_2": coverage.within_two,
+                "all": [coverage.actual, coverage.predicted],
+                "within_error": coverage.within_error,
+                "within_bound": coverage.within_bound,
                 "quartiles": [
-                    [_root_mean_square(actual[part]), _root_mean_square(predicted[part])]
+                    [float((actual <= radius)[part].mean()) for radius in (predicted, bound)]
                     for part in quartiles
                 ],
             }
@@ -157,15 +158,8 @@ def _across(known: str, queried: str) -> HoldoutSplit:
     cube, some = build(known, leave_out=shipped(queried)), materials(queried)
     answers = cube.reflectance(some.rgb)
     light = observer.light(cube.data.error_illuminant)
-    return HoldoutSplit({}, delta_e_spectra(light, answers, some.measured), cube.standard_error(some.rgb))
-
-
-def _root(errors: Array) -> float:
-    return float(np.sqrt((errors**2).mean()))
-
-
-def _root_mean_square(values: Array) -> float:
-    return float(np.sqrt((values**2).mean()))
+    actual = delta_e_spectra(light, answers, some.measured)
+    return HoldoutSplit({}, actual, cube.standard_error(some.rgb), cube.error_bound(some.rgb))
 
 
 def seed_starts(name: str) -> Iterator[dict[str, Any]]:

@@ -18,6 +18,7 @@ from uplift.common.arrays import Array, Mask
 from uplift.lookup import Cube
 
 SPLITS = 6
+"""Random splits. Each half predicts the other, so that every material is known and queried equally often."""
 COUNTS = (9, 17)
 KNOWN = ("macbeth", "cie2017")
 """Atlases of the cubes that are queried for other sets."""
@@ -41,8 +42,9 @@ def coverage(name: str, count: int) -> dict[str, Any]:
     """Return the coverage of the other halves of an atlas."""
     pairs = []
     for seed in range(SPLITS):
-        kept, queried = (materials(name).take(rows) for rows in split(materials(name), seed))
-        pairs.append((build_from(kept, coefficients=count, leave_out=shipped(name)), queried))
+        halves = [materials(name).take(rows) for rows in split(materials(name), seed)]
+        for kept, queried in (halves, halves[::-1]):
+            pairs.append((build_from(kept, coefficients=count, leave_out=shipped(name)), queried))
     return {"atlas": name, "coefficients": count, "covered": covered(pairs)}
 
 
@@ -57,16 +59,17 @@ def across(known: str, name: str) -> Iterator[dict[str, Any]]:
 
 
 def covered(pairs: list[Pair], rows: Mask | None = None) -> dict[str, list[float]]:
-    """Return, by light, the shares of errors within one and within two standard errors."""
-    found = {}
-    for name in HELD_OUT_LIGHTS:
-        ratio = np.concatenate([_ratio(cube, some, name) for cube, some in pairs])[
-            slice(None) if rows is None else rows
-        ]
-        found[name] = [float((ratio <= 1).mean()), float((ratio <= 2).mean())]
-    return found
+    """Return, by light, the shares of errors within the standard error and within the error bound."""
+    chosen = slice(None) if rows is None else rows
+    return {
+        name: np.concatenate([_within(cube, some, name) for cube, some in pairs])[chosen]
+        .mean(axis=0)
+        .tolist()
+        for name in HELD_OUT_LIGHTS
+    }
 
 
-def _ratio(cube: Cube, some: Materials, light: str) -> Array:
+def _within(cube: Cube, some: Materials, light: str) -> Array:
     actual = delta_e_spectra(observer.light(light), cube.reflectance(some.rgb), some.measured)
-    return np.asarray(actual / cube.standard_error(some.rgb, light))
+    radii = [cube.standard_error(some.rgb, light), cube.error_bound(some.rgb, light)]
+    return np.stack([actual <= radius for radius in radii], axis=1)

@@ -131,7 +131,9 @@ def _summary(assessment: Assessment) -> str:
         )
     if assessment.calibration is not None:
         calibration, light = assessment.calibration, assessment.data.error_illuminant
-        parts.append(f"rms under {light} {calibration.actual:.2f}, predicted {calibration.predicted:.2f}")
+        parts.append(
+            f"68 % within {calibration.actual:.2f} under {light}, predicted {calibration.predicted:.2f}"
+        )
     if assessment.crowding is not None:
         parts.append(pluralise(len(assessment.crowding.entries.names), "crowded entry", "crowded entries"))
     return ", ".join(parts)

@@ -99,7 +99,7 @@ def _print_table(results: Results) -> None:
     for name, errors in standard_errors:
         say(
             f"{name}: predicted standard error ΔE00 {errors['stated']:.2f}, actual {errors['real']:.2f}; "
-            f"{errors['within_one']:.0%} within one, {errors['within_two']:.0%} within two"
+            f"{errors['within_error']:.0%} within it, {errors['within_bound']:.0%} within the error bound"
         )
 
 

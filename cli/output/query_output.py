@@ -66,8 +66,10 @@ def result_object(cube: Cube, result: QueryResult) -> dict[str, Any]:
         "realisable": result.realisable,
         "entry": result.entry,
         "standard_error": result.standard_error,
+        "error_bound": result.error_bound,
         "reference": cube.data.error_illuminant,
         "standard_errors": dict(result.standard_errors),
+        "error_bounds": dict(result.error_bounds),
         "lights": {
             light: {"srgb": rgb.tolist(), "hex": code, "xyz": result.light_xyz[light].tolist()}
             for light, (rgb, code) in light_colours(cube, result).items()
@@ -77,16 +79,18 @@ def result_object(cube: Cube, result: QueryResult) -> dict[str, Any]:
 
 
 def as_csv(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) -> None:
-    """Print a row per colour: r, g, b, round-trip ΔE00, standard error, entry, reflectance at each wavelength."""
+    """Print a row per colour: r, g, b, round-trip ΔE00, errors, entry, reflectance at each wavelength."""
     writer = csv_writer()
     for number, result in enumerate(chain.from_iterable(blocks)):
         if number == 0:
             wavelengths = [f"{wavelength:g}" for wavelength in result.wavelengths]
-            by_light = [f"standard_error_{name}" for name in result.standard_errors]
-            by_light += [f"hex_{name}" for name in result.light_xyz]
-            writer.write(["r", "g", "b", "delta_e_2000", "standard_error", *by_light, "entry", *wavelengths])
-        expected = "" if result.standard_error is None else result.standard_error
-        numbers = [*result.rgb.tolist(), result.delta_e_2000, expected, *result.standard_errors.values()]
+            names = ["", *(f"_{name}" for name in result.standard_errors)]
+            errors = [f"{kind}{name}" for name in names for kind in ("standard_error", "error_bound")]
+            codes = [f"hex_{name}" for name in result.light_xyz]
+            writer.write(["r", "g", "b", "delta_e_2000", *errors, *codes, "entry", *wavelengths])
+        expected = [value for pair in _errors(result).values() for value in pair]
+        unknown = [""] * (len(errors) - len(expected))
+        numbers = [*result.rgb.tolist(), result.delta_e_2000, *expected, *unknown]
         codes = [code for _, code in light_colours(cube, result).values()]
         writer.write([*numbers, *codes, result.entry or "", *result.reflectance.tolist()])
 
@@ -120,7 +124,7 @@ def _print_details(cube: Cube, result: QueryResult) -> None:
         ),
         **_relit(cube, result),
         **_entry(cube, result),
-        "std. error": _standard_error(cube, result),
+        **_expected(cube, result),
         "spectrum": f"{sparkline(result.reflectance)}  {result.wavelengths[0]:g}–{result.wavelengths[-1]:g} nm",
     }
     print_fields(fields, {"linear RGB": patch(cube, result.rgb)})
@@ -164,12 +168,20 @@ def _relit(cube: Cube, result: QueryResult) -> dict[str, str]:
     return {"sRGB under": text} if text else {}
 
 
-def _standard_error(cube: Cube, result: QueryResult) -> str:
-    if result.standard_error is None:
-        return "unknown: too few atlas entries"
-    errors = {cube.data.error_illuminant: result.standard_error, **result.standard_errors}
-    values = ", ".join(f"{error:.2g} ({light})" for light, error in errors.items())
-    return f"ΔE00 {values} to a measured material"
+def _expected(cube: Cube, result: QueryResult) -> dict[str, str]:
+    """Return the standard errors and error bounds under all lights."""
+    errors = _errors(result)
+    if not errors:
+        return {"std. error": "unknown: too few atlas entries"}
+    names = (cube.data.error_illuminant, *result.standard_errors)
+    standard, bound = (
+        ", ".join(f"{value:.2g} ({name})" for name, value in zip(names, values, strict=True))
+        for values in zip(*errors.values(), strict=True)
+    )
+    return {
+        "std. error": f"ΔE00 {standard} to a measured material",
+        "error bound": f"ΔE00 {bound} to 95 % of them",
+    }
 
 
 def _entry(cube: Cube, result: QueryResult) -> dict[str, str]:
@@ -216,7 +228,7 @@ def _print_lines(cube: Cube, results: Sequence[QueryResult], *, heading: bool) -
     table = make_table(headings, box=None, show_header=heading)
     for result in results:
         red, green, blue = display_codes(cube, result.rgb)
-        expected = [f"{value:.2f}" for value in _errors(result)]
+        expected = [f"{error:.2f}" for error, _ in _errors(result).values()]
         table.add_row(
             *(Text("   ", style=f"on rgb({red},{green},{blue})"),) * swatches,
             hex_code(cube, result.rgb),
@@ -228,8 +240,13 @@ def _print_lines(cube: Cube, results: Sequence[QueryResult], *, heading: bool) -
     show(table)
 
 
-def _errors(result: QueryResult) -> list[float]:
-    return [] if result.standard_error is None else [result.standard_error, *result.standard_errors.values()]
+def _errors(result: QueryResult) -> dict[str, tuple[float, float]]:
+    """Standard error and error bound by light, that of the cube first and without a name; empty if unknown."""
+    if result.standard_error is None or result.error_bound is None:
+        return {}
+    bounds = result.error_bounds
+    by_light = {name: (error, bounds[name]) for name, error in result.standard_errors.items()}
+    return {"": (result.standard_error, result.error_bound), **by_light}
 
 
 def _codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:

@@ -278,12 +278,14 @@ def test_json_has_all_fields(ask, cubes):
     assert answer.keys() == {
         *("rgb", "requested_rgb", "wavelengths", "reflectance", "xyz", "round_trip", "cell", "status"),
         "realisable",
-        *("entry", "standard_error", "reference", "standard_errors", "lights", "unlike_atlas"),
+        *("entry", "standard_error", "error_bound", "reference", "standard_errors", "error_bounds"),
+        *("lights", "unlike_atlas"),
         *("hsv", "hsl", "yiq", "dominant_wavelength", "complementary", "purity"),
     }
     assert answer["lights"] == {}
     assert (answer["standard_errors"], answer["unlike_atlas"]) == ({}, False)
     assert answer["standard_error"] == pytest.approx(cube.data.atlas.error[row])
+    assert answer["error_bound"] == pytest.approx(answer["standard_error"])
     assert answer["rgb"] == cube.data.atlas.rgb[row].tolist()
     assert answer["wavelengths"] == list(range(380, 781, 5))
     np.testing.assert_allclose(answer["reflectance"], cube.reflectance(answer["rgb"]), rtol=0, atol=1e-12)
@@ -311,11 +313,21 @@ def test_standard_output_is_valid_csv(run, table, cubes):
     result = run("query", "--input", path, "--format", "csv", "--wavelengths", "450,550.5")
     assert result.stderr == ""
     rows = list(csv.reader(io.StringIO(result.stdout)))
-    assert rows[0] == ["r", "g", "b", "delta_e_2000", "standard_error", "entry", "450", "550.5"]
+    assert rows[0] == [
+        "r",
+        "g",
+        "b",
+        "delta_e_2000",
+        "standard_error",
+        "error_bound",
+        "entry",
+        "450",
+        "550.5",
+    ]
     expected = uplift.load().reflectance([[0.8, 0.2, 0.1], [0.1] * 3], [450, 550.5])
-    np.testing.assert_allclose([[float(cell) for cell in row[6:]] for row in rows[1:]], expected, atol=1e-12)
+    np.testing.assert_allclose([[float(cell) for cell in row[7:]] for row in rows[1:]], expected, atol=1e-12)
     assert [float(cell) for cell in rows[1][:3]] == [0.8, 0.2, 0.1]
-    assert rows[1][4:6] == ["", ""]
+    assert rows[1][4:7] == ["", "", ""]
 
 
 def test_standard_errors_under_other_lights(ask, run, table, cubes):
@@ -323,13 +335,16 @@ def test_standard_errors_under_other_lights(ask, run, table, cubes):
     cube, rgb, lights = uplift.load(path), [0.8, 0.2, 0.1], ("FL11", "HP1")
     words = [word for light in lights for word in ("--light", light)]
     expected = {light: pytest.approx(float(cube.standard_error(rgb, light))) for light in lights}
-    assert ask("--cube", path, *rgb, *words)["standard_errors"] == expected
+    bounds = {light: pytest.approx(float(cube.error_bound(rgb, light))) for light in lights}
+    answer = ask("--cube", path, *rgb, *words)
+    assert (answer["standard_errors"], answer["error_bounds"]) == (expected, bounds)
     file = table("0.8,0.2,0.1\n0,1,0\n")
     lines = run(
         "query", "--cube", path, "--input", file, "--format", "csv", "--wavelengths", "500", *words
     ).stdout
     rows = list(csv.DictReader(io.StringIO(lines)))
     assert {light: float(rows[0][f"standard_error_{light}"]) for light in lights} == expected
+    assert {light: float(rows[0][f"error_bound_{light}"]) for light in lights} == bounds
     for options, style in ((["--input", file], ".2f"), (["0", "1", "0"], ".2g")):
         text = run("query", "--cube", path, *options, *words).stdout
         assert "unlike the atlas" in text

@@ -66,7 +66,7 @@ def test_another_atlas_tests_unseen_colours(run, repository, cube):
     assert found["standard_error"]["calibration"]["count"] == len(found["entries"])
     calibration = found["standard_error"]["calibration"]
     summary = run("report", cube, *SMALL, "--atlas", other, "--force").stdout
-    assert " under A " in summary
+    assert " under A, predicted " in summary
     assert f"{calibration['stated']:.2f}" in summary
 
 

@@ -21,7 +21,7 @@ PLACES = np.random.default_rng(5).uniform(-20, 60, (12, 3))
 
 def standard_error(places, left_out, kept):
     learnt = expected_error(places, left_out, kept)
-    return lambda lab: np.sqrt(learnt(lab)[:, 0])
+    return lambda lab: learnt.radii.standard * np.sqrt(learnt(lab)[:, 0] + learnt.floor)
 
 
 def test_the_standard_error_grows_with_the_distance_to_the_entries():
@@ -35,13 +35,15 @@ def test_the_standard_error_grows_with_the_distance_to_the_entries():
 
 @pytest.mark.parametrize("tail", [3, 8, 50])
 def test_errors_of_any_tail_are_covered(tail):
-    """Without the correction, the standard error of heavy tails is too large for most entries."""
+    """Of heavy tails, 95 % lie within more than twice the radius of 68 %."""
     rng = np.random.default_rng(tail)
     places, queried = rng.uniform(0, 300, (2, 1500, 3))
     known, unknown = np.abs(rng.standard_t(tail, (2, 1500)))
-    expected = standard_error(places, known, np.zeros(1500))(queried)
-    assert 0.62 < (unknown <= expected).mean() < 0.78
-    assert 0.91 < (unknown <= 2 * expected).mean() < 0.98
+    learnt = expected_error(places, known, np.zeros(1500))
+    expected = np.sqrt(learnt(queried)[:, 0])
+    assert (unknown <= learnt.radii.standard * expected).mean() == pytest.approx(0.68, abs=0.04)
+    assert (unknown <= learnt.radii.bound * expected).mean() == pytest.approx(0.95, abs=0.02)
+    assert (learnt.radii.ratio > 2.5) == (tail == 3)
 
 
 def test_what_remains_at_the_entries_is_not_counted_twice():
@@ -67,7 +69,7 @@ def test_blocks_equal_a_plain_sum(monkeypatch):
     weights = np.exp(-cdist(queried, PLACES) / LENGTH)
     squares = learnt.squares[:, 0]
     spread = (weights @ squares + PRIOR_COUNT * squares.mean()) / (weights.sum(axis=1) + PRIOR_COUNT)
-    plain = (1 - weights.max(axis=1) ** 2) * spread + learnt.floor
+    plain = (1 - weights.max(axis=1) ** 2) * spread
     np.testing.assert_allclose(learnt(queried)[:, 0], plain, rtol=1e-12)
     distances = nearest_distances(queried, PLACES)
     np.testing.assert_allclose(distances, cdist(queried, PLACES).min(axis=1), rtol=1e-12)
@@ -82,6 +84,13 @@ def test_products_of_components_are_averaged_like_squares():
     assert (np.linalg.eigvalsh(learnt.reshape(-1, 2, 2)) > -1e-12).all()
     squares = expected_error(PLACES, left_out, np.zeros(12))(PLACES + 1.0)
     np.testing.assert_allclose(learnt[:, 0] + learnt[:, 3], squares[:, 0], rtol=1e-12)
+
+
+def test_radii_of_few_entries_are_nearly_those_of_normal_errors():
+    few = expected_error(PLACES[:1], np.ones(1), np.zeros(1)).radii
+    assert few == pytest.approx((1, 2), rel=0.1)
+    assert expected_error(PLACES, np.zeros(12), np.zeros(12)).radii == (1, 2)
+    assert (few.ratio, few.scale) == (few.bound / few.standard, pytest.approx(1, rel=0.1))
 
 
 def test_nearly_all_entries_are_within_the_familiar_distance():

@@ -224,7 +224,7 @@ def test_single_entry_has_no_close_entries(lossy_cube, count):
 def test_calibration_against_an_unknown_atlas(small_cube, repository):
     other = uplift.read_atlas(repository / "atlases" / "cie2017.txt")
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11", "A"))
-    squares, errors, one, two = [], [], 0, 0
+    ratios, errors, within, bounded = [], [], 0, 0
     for entry in other.entries:
         (measured,) = on_grid(uplift.Atlas((entry,)), small_cube.wavelengths)
         rgb = small_cube.data.sensor.rgb(measured)
@@ -232,20 +232,22 @@ def test_calibration_against_an_unknown_atlas(small_cube, repository):
             continue
         actual = delta_e(small_cube.reflectance(rgb), measured, "A")
         error = float(small_cube.standard_error(rgb))
-        squares.append(actual**2)
-        errors.append(error**2)
-        one += actual <= error
-        two += actual <= 2 * error
-    count = len(squares)
-    expected = ((sum(squares) / count) ** 0.5, (sum(errors) / count) ** 0.5, one / count, two / count)
+        ratios.append(actual / error)
+        errors.append(error)
+        within += actual <= error
+        bounded += actual <= small_cube.error_bound(rgb)
+    count = len(ratios)
+    mean = sum(errors) / count
+    expected = (mean * np.quantile(ratios, 0.68), mean, within / count, bounded / count)
     measured = found.calibration
-    found_numbers = (measured.actual, measured.predicted, measured.within_one, measured.within_two)
+    found_numbers = (measured.actual, measured.predicted, measured.within_error, measured.within_bound)
     assert found_numbers == pytest.approx(expected, abs=1e-6)
     assert measured.count == count == len(found.entries.names)
     assert measured.actual > measured.predicted  # these materials are unlike the ColorChecker
     assert list(found.light_calibrations) == ["FL11"]
-    predicted = small_cube.standard_error(found.entries.rgb, "FL11")
-    assert found.light_calibrations["FL11"] == check_calibration(found.entries.delta_e[:, 1], predicted)
+    rgb = found.entries.rgb
+    predicted = small_cube.standard_error(rgb, "FL11"), small_cube.error_bound(rgb, "FL11")
+    assert found.light_calibrations["FL11"] == check_calibration(found.entries.delta_e[:, 1], *predicted)
     assert found.unlike == small_cube.unlike_atlas(found.entries.rgb).mean()
 
 
@@ -256,7 +258,7 @@ def test_own_entries_give_no_calibration(judged, plain_cube, macbeth):
     unknowing = assess(plain_cube, "plain.uplift", 1, macbeth, ("A",))
     assert (unknowing.standard_error, unknowing.facts["mean_standard_error"]) == (None, None)
     assert (
-        check_calibration(unknowing.entries.actual, unknowing.entries.predicted),
+        check_calibration(unknowing.entries.actual, unknowing.entries.predicted, None),
         unknowing.calibration,
     ) == (
         None,

@@ -145,17 +145,17 @@ def test_predicted_and_actual_errors_are_shown(small_cube, repository):
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11"))
     read, measured = Page(render_report(found, worst=0)), found.calibration
     under = found.light_calibrations["FL11"]
-    assert f"FL11 {under.predicted:.2f} {under.actual:.2f} {under.within_one:.0%}" in " ".join(
+    assert f"FL11 {under.predicted:.2f} {under.actual:.2f} {under.within_error:.0%}" in " ".join(
         read.text.split()
     )
     assert f"{found.unlike:.0%} of these colours are unlike" in read.text
-    assert f"predicted an error of ΔE00 {measured.predicted:.2f} under A; the actual error is" in read.text
-    assert f"the actual error is {measured.actual:.2f} (root mean squares)" in read.text
+    assert f"predicted that 68 % lie within ΔE00 {measured.predicted:.2f} under A" in read.text
+    assert f"they lie within {measured.actual:.2f}" in read.text
     assert "The standard errors are too small" in read.text
-    assert f"{measured.within_one:.0%} of the entries lie within one standard error" in read.text
+    assert f"{measured.within_error:.0%} of the entries lie within their standard error" in read.text
     assert f"mean {found.standard_error.mean:.2f}, ΔE00 under A" in read.text
     values = to_json(found)
-    assert values["standard_error"]["calibration"]["within_two"] == measured.within_two
+    assert values["standard_error"]["calibration"]["within_bound"] == measured.within_bound
     assert values["standard_error"]["calibrations"]["FL11"]["real"] == under.actual
     assert values["standard_error"]["unlike_atlas"] == found.unlike
     headings, *rows = read.tables[-1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,9 +14,9 @@ LENGTH = 6.0
 PRIOR_COUNT = 2.0
 """Weight of the mean error of all entries, in entries."""
 COVERAGE = ((0.68, 1.0), (0.95, 2.0))
-"""Shares of entries, when left out, whose error should be within one and within two standard errors."""
+"""Shares of materials within the standard error and within the error bound; their radii if errors were normal."""
 TRUST = 10.0
-"""Entries at which half of a correction by coverage is applied, on a logarithmic scale."""
+"""Entries at which half of the difference from a normal distribution is applied, on a logarithmic scale."""
 MIN_VARIANCE = 0.02
 """Lower limit of the variance assigned to a left-out entry."""
 FAMILIAR = 0.95
@@ -26,9 +27,28 @@ MAX_ROWS = 1000
 """Entries that the distances between neighbours are learnt from."""
 
 
+class Radii(NamedTuple):
+    """Radii that errors stay within, in roots of the expected squares. Normal errors would have 1 and 2."""
+
+    standard: float
+    """Radius of the standard error: 68 % of materials."""
+    bound: float
+    """Radius of the error bound: 95 % of materials."""
+
+    @property
+    def ratio(self) -> float:
+        """Error bound in standard errors."""
+        return self.bound / self.standard
+
+    @property
+    def scale(self) -> float:
+        """Factor of the normal distribution that fits both radii."""
+        return float(np.sqrt((self.standard**2 + (self.bound / COVERAGE[1][1]) ** 2) / 2))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class ExpectedError:
-    """Expected squares of errors around left-out entries.
+    """Expected squares of errors around left-out entries, and the radii that errors stay within.
 
     Parameters
     ----------
@@ -38,11 +58,14 @@ class ExpectedError:
         Squares or products of the errors of each entry when left out, per unit of variance.
     floor : ndarray, shape (K,)
         Squares or products that remain at the entries themselves.
+    radii : Radii
+        Radii in roots of the expected squares.
     """
 
     locations: Array
     squares: Array
     floor: Array
+    radii: Radii
 
     @property
     def columns(self) -> Array:
@@ -50,12 +73,12 @@ class ExpectedError:
         return np.concatenate([self.squares, np.ones((len(self.squares), 1))], axis=1)
 
     def combine(self, sums: Array, nearest: Array) -> Array:
-        """Expected squares (n, K) from weighted sums (n, K + 1) of `columns`, and the largest weights (n,)."""
+        """Squares (n, K) less `floor` from weighted sums (n, K + 1) of `columns`, and the largest weights (n,)."""
         spread = (sums[:, :-1] + PRIOR_COUNT * self.squares.mean(axis=0)) / (sums[:, -1:] + PRIOR_COUNT)
-        return (1 - nearest[:, None] ** 2) * spread + self.floor
+        return (1 - nearest[:, None] ** 2) * spread
 
     def __call__(self, lab: Array) -> Array:
-        """Expected squares (n, K) at L*a*b* (n, 3)."""
+        """Expected squares (n, K) less `floor` at L*a*b* (n, 3)."""
         columns, found = self.columns, np.empty((len(lab), self.squares.shape[1]))
         rows = max(BLOCK_NUMBERS // len(self.locations), 1)
         for first in range(0, len(lab), rows):
@@ -80,8 +103,7 @@ def expected_products(
     locations : ndarray, shape (E, 3)
         CIE L*a*b* of the entries.
     left_out, kept : ndarray, shape (E,)
-        ΔE00 of each entry when left out, and when kept. One factor gives the standard errors of left-out entries their
-        `COVERAGE`.
+        ΔE00 of each entry when left out, and when kept.
     left_out_products, kept_products : ndarray, shape (E, K)
         Squares or products of the components of these errors.
 
@@ -97,10 +119,8 @@ def expected_products(
     share = np.maximum(1 - floor / np.maximum(left_out**2, np.finfo(float).tiny), 0) / variance
     squares = left_out**2 * share
     spread = (weights @ squares + PRIOR_COUNT * squares.mean()) / (weights.sum(axis=1) + PRIOR_COUNT)
-    correction = _coverage_correction(left_out, np.sqrt(variance * spread + floor)) ** 2
-    return ExpectedError(
-        locations, left_out_products * share[:, None] * correction, kept_products.mean(axis=0) * correction
-    )
+    radii = _learn_radii(left_out, np.sqrt(variance * spread + floor))
+    return ExpectedError(locations, left_out_products * share[:, None], kept_products.mean(axis=0), radii)
 
 
 def nearest_distances(lab: Array, locations: Array) -> Array:
@@ -134,16 +154,17 @@ def _distances(first: Array, second: Array) -> Array:
     return np.sqrt(squares)
 
 
-def _coverage_correction(errors: Array, expected: Array) -> float:
-    """Factor that gives expected errors (E,) the `COVERAGE` of errors (E,), which have heavier tails than a normal.
+def _learn_radii(errors: Array, expected: Array) -> Radii:
+    """Radii with the `COVERAGE` of errors (E,), in expected ones (E,). Errors have heavier tails than a normal.
 
     The quantiles are those of conformal prediction: they hold on average for one more entry.
     """
     count = len(errors)
     ratio = errors / np.maximum(expected, np.finfo(float).tiny)
-    found = [
-        np.quantile(ratio, min(share * (count + 1) / count, 1), method="higher") / multiple
-        for share, multiple in COVERAGE
-    ]
-    square = np.square(found).mean()
-    return float(square ** (0.5 * count / (count + TRUST))) if square > 0 else 1.0
+    return Radii(*(_radius(ratio, share, normal, count / (count + TRUST)) for share, normal in COVERAGE))
+
+
+def _radius(ratio: Array, share: float, normal: float, trust: float) -> float:
+    count = len(ratio)
+    found = float(np.quantile(ratio, min(share * (count + 1) / count, 1), method="higher"))
+    return normal * (found / normal) ** trust if found > 0 else normal

@@ -89,12 +89,14 @@ class Prior:
         Returns
         -------
         dict
-            ``length`` in CIE L*a*b* and ``nugget``, see `Kernel`; empty without an atlas.
+            ``length`` in CIE L*a*b* and ``nugget``, see `Kernel`, and ``error_bound``, in standard errors, if there are
+            any; empty without an atlas.
         """
-        return {} if self.kriging is None else asdict(self.kriging.kernel)
+        bound = {} if self.errors is None else {"error_bound": self.errors.radii.ratio}
+        return {} if self.kriging is None else asdict(self.kriging.kernel) | bound
 
     def standard_error(self, rgb: Array) -> Array | None:
-        """Return the root-mean-square error expected between answers and measurements.
+        """Return the difference that 68 % of measurements are expected to have from answers.
 
         Parameters
         ----------
@@ -110,7 +112,8 @@ class Prior:
             return None
         lab = rgb_to_lab(self.sensor, rgb)
         sums = kernel_sums(lab, self.errors.locations, self.errors.columns, NEIGHBOURHOOD)
-        return np.asarray(np.sqrt(self.errors.combine(*sums)[:, 0]))
+        squares = self.errors.combine(*sums)[:, 0] + self.errors.floor
+        return np.asarray(self.errors.radii.standard * np.sqrt(squares))
 
     def standard_errors(self, problem: Problem) -> NDArray[np.float32] | None:
         """Return the standard error of every lattice point.

@@ -17,7 +17,7 @@ from uplift.common.errors import ColourError, OptionError
 from uplift.cube import CubeData, read, write
 from uplift.lookup.blocks import Function, blockwise
 from uplift.lookup.fill import fill_missing, missing_points
-from uplift.lookup.interpolate import MODES, coefficients, extended_coefficients, standard_error
+from uplift.lookup.interpolate import MODES, coefficients, extended_coefficients, node_errors
 from uplift.lookup.light_errors import light_errors, unlike_atlas
 from uplift.lookup.node_table import TABULATED, tabulate, tabulate_coefficients
 from uplift.lookup.nodes import covers
@@ -286,10 +286,11 @@ class Cube:
         return Cube(fill_missing(self.data, points, source.data, as_thread_count(threads)))
 
     def standard_error(self, rgb: ArrayLike, light: str | Light | None = None) -> Array | None:
-        """Estimate the root-mean-square difference between answers and measurements.
+        """Estimate the difference that 68 % of measurements have from answers.
 
-        The estimate is learned from atlas entries that are left out of the fit. It holds for materials like those of
-        the atlas, which colours alone do not identify; see `unlike_atlas`.
+        The estimate is learnt from atlas entries that are left out of the fit. It holds for materials like those of
+        the atlas, which colours alone do not identify; see `unlike_atlas`. Errors are not normal: for 95 % of
+        measurements, `error_bound` is learnt separately.
 
         Parameters
         ----------
@@ -312,18 +313,47 @@ class Cube:
         UnknownNameError
             An unknown illuminant.
         """
+        return self._errors(rgb, light, 0)
+
+    def error_bound(self, rgb: ArrayLike, light: str | Light | None = None) -> Array | None:
+        """Estimate the difference that 95 % of measurements stay within; see `standard_error`.
+
+        Parameters
+        ----------
+        rgb : array_like, shape (..., 3)
+            Linear RGB in [0, 1].
+        light : str or Light, optional
+            Illuminant, by its name in colour-science. ``data.error_illuminant`` by default.
+
+        Returns
+        -------
+        ndarray, shape (...), or None
+            ΔE00; None if the atlas is too small to estimate it.
+
+        Raises
+        ------
+        ColourError
+            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
+        OptionError
+            Another light, and a cube of an earlier version, which has no left-out entries.
+        UnknownNameError
+            An unknown illuminant.
+        """
+        return self._errors(rgb, light, 1)
+
+    def _errors(self, rgb: ArrayLike, light: str | Light | None, column: int) -> Array | None:
+        """Standard errors, column 0, or error bounds, column 1. Nodes have those under one light."""
         if self.data.points.standard_error is None:
             return None
-        function: Function = partial(standard_error, self.data)
-        if light is not None:
-            lit: Light = (
-                import_module(OBSERVER).light(light, self.observer, *self.data.sensor.range)
-                if isinstance(light, str)
-                else light
-            )
-            if lit.name != self.data.error_illuminant:
-                function = light_errors(self.data, lit)
-        return blockwise(function, as_colours(rgb, self.data.sensor), 1)[..., 0]
+        lit: Light | None = (
+            import_module(OBSERVER).light(light, self.observer, *self.data.sensor.range)
+            if isinstance(light, str)
+            else light
+        )
+        function: Function = partial(node_errors, self.data)
+        if lit is not None and lit.name != self.data.error_illuminant:
+            function = light_errors(self.data, lit)
+        return blockwise(function, as_colours(rgb, self.data.sensor), 2)[..., column]
 
     def unlike_atlas(self, rgb: ArrayLike) -> Mask:
         """Find colours that are far from all atlas entries, where standard errors rest on no evidence.

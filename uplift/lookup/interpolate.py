@@ -48,10 +48,14 @@ def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
     return extended
 
 
-def standard_error(data: CubeData, rgb: Array) -> Array:
-    """Expected ΔE00 (n, 1) between answers and measurements, for a cube with standard errors."""
-    lattice = np.asarray(data.points.standard_error, dtype=float)
-    return around(data, rgb).weighted_sum(lattice[:, None], data.atlas.error[:, None])
+def node_errors(data: CubeData, rgb: Array) -> Array:
+    """Standard errors and error bounds (n, 2) from those of the nodes, for a cube that has them."""
+    nodes, factors = around(data, rgb), np.array([1, data.error_bound_factor])
+    errors = np.asarray(data.points.standard_error, dtype=float)[:, None]
+    entries = np.repeat(data.atlas.error[:, None], 2, axis=1)
+    entries[data.atlas.measured_count :] *= factors  # errors of looks are expected ones
+    lattice = weighted_sum(errors, nodes.points, nodes.weights) * factors
+    return nodes.mix(lattice, entries[nodes.entry])
 
 
 def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:

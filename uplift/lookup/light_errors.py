@@ -30,7 +30,7 @@ from uplift.models import reflectance
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LightErrors:
-    """Standard errors under a light.
+    """Standard errors and error bounds under a light.
 
     Parameters
     ----------
@@ -38,8 +38,8 @@ class LightErrors:
         The cube.
     expected : ExpectedError
         Squares of ΔE00, without entry boxes.
-    entries : ndarray, shape (E,)
-        ΔE00 between the measured and the stored spectrum of each entry; of looks, the one expected at their colours.
+    entries : ndarray, shape (E, 2)
+        ΔE00 between the measured and the stored spectrum of each entry; of looks, what remains at entries on average.
     """
 
     data: CubeData
@@ -47,10 +47,15 @@ class LightErrors:
     entries: Array
 
     def __call__(self, rgb: Array) -> Array:
-        """Root-mean-square ΔE00 (n, 1) expected at linear RGB (n, 3) in [0, 1]."""
-        nodes = around(self.data, rgb)
-        lattice = np.sqrt(self.expected(rgb_to_lab(self.data.sensor, rgb)))
-        return nodes.mix(lattice, self.entries[nodes.entry, None])
+        """ΔE00 (n, 2) that 68 % and 95 % of measurements stay within, at linear RGB (n, 3) in [0, 1].
+
+        In an entry box, the error that remains at entries is mixed with that of the entry, as spectra are.
+        """
+        nodes, radii = around(self.data, rgb), np.array(self.expected.radii)
+        squares = self.expected(rgb_to_lab(self.data.sensor, rgb))
+        remaining = np.tile(radii * np.sqrt(self.expected.floor), (len(rgb), 1))
+        remaining = nodes.mix(remaining, self.entries[nodes.entry])
+        return np.asarray(np.sqrt(radii**2 * squares + remaining**2))
 
 
 def light_errors(data: CubeData, light: Light) -> LightErrors:
@@ -80,8 +85,9 @@ def light_errors(data: CubeData, light: Light) -> LightErrors:
     plain = delta_e_spectra(light, reflectance(data.model, coefficients, at), left_out.measured)
     stored = delta_e_spectra(light, data.entry_spectra.reflectance(rows, at), left_out.measured)
     expected = expected_error(data.entry_lab, missed, plain)
-    looks = rgb_to_lab(data.sensor, data.atlas.rgb[len(rows) :])
-    return LightErrors(data, expected, np.concatenate([stored, np.sqrt(expected(looks)[:, 0])]))
+    entries = np.tile(np.array(expected.radii) * np.sqrt(expected.floor), (len(data.atlas.names), 1))
+    entries[rows] = stored[:, None]
+    return LightErrors(data, expected, entries)
 
 
 def lab_covariance(data: CubeData, light: Light, rgb: Array) -> Array:
@@ -112,7 +118,8 @@ def lab_covariance(data: CubeData, light: Light, rgb: Array) -> Array:
     errors = [delta_e_spectra(light, each, left_out.measured) for each in spectra]
     products = [_products(light, each, left_out.measured) for each in spectra]
     learnt = expected_products(data.entry_lab, *errors, *products)
-    return learnt(rgb_to_lab(data.sensor, rgb)).reshape(-1, 3, 3)
+    expected = learnt(rgb_to_lab(data.sensor, rgb)) + learnt.floor
+    return (learnt.radii.scale**2 * expected).reshape(-1, 3, 3)
 
 
 def unlike_atlas(data: CubeData, rgb: Array) -> Mask:

@@ -49,9 +49,9 @@ class QueryResult:
         Statuses of the corners of the cell.
     entry : str, optional
         Atlas entry of the same colour.
-    standard_error : float, optional
-        ΔE00 expected between the answer and a measurement; None if the cube has no estimate.
-    standard_errors : mapping of str to float
+    standard_error, error_bound : float, optional
+        ΔE00 from the answer that 68 % and 95 % of measurements stay within; None if the cube has no estimate.
+    standard_errors, error_bounds : mapping of str to float
         The same under other lights, by their names; empty if the cube has no estimate.
     light_xyz : mapping of str to ndarray, shape (3,)
         XYZ of the reflectance under these lights; the perfect reflector has that of `Light.white`.
@@ -72,7 +72,9 @@ class QueryResult:
     statuses: tuple[Status, ...]
     entry: str | None
     standard_error: float | None
+    error_bound: float | None
     standard_errors: Mapping[str, float]
+    error_bounds: Mapping[str, float]
     light_xyz: Mapping[str, Array]
     unlike_atlas: bool
     realisable: bool
@@ -187,7 +189,9 @@ def _outside(cube: Cube, nearest: QueryResult, rgb: Array, at: Array, lights: Se
         delta_e_2000=float(delta_e_rgb(sensor, rgb, round_trip)),
         entry=None,
         standard_error=None,
+        error_bound=None,
         standard_errors={},
+        error_bounds={},
         light_xyz={light.name: light.xyz @ spectrum[: len(sensor.wavelengths)] for light in lights},
         unlike_atlas=False,
         realisable=True,
@@ -204,8 +208,10 @@ def _block(
     xyz = spectra[:, :count] @ sensor.light.xyz.T
     delta_e = delta_e_rgb(sensor, rgb, round_trip)
     relit = {light.name: spectra[:, :count] @ light.xyz.T for light in lights}
-    errors = cube.standard_error(rgb)
-    by_light = {} if errors is None else {light.name: cube.standard_error(rgb, light) for light in lights}
+    errors, bounds = cube.standard_error(rgb), cube.error_bound(rgb)
+    named = {} if errors is None else {light.name: light for light in lights}
+    errors_by_light = {name: cube.standard_error(rgb, light) for name, light in named.items()}
+    bounds_by_light = {name: cube.error_bound(rgb, light) for name, light in named.items()}
     unlike = None if errors is None else cube.unlike_atlas(rgb)
     low, fraction = data.lattice.cell(rgb)
     corners, _ = data.lattice.cell_corners(low, fraction)
@@ -223,11 +229,17 @@ def _block(
             statuses=tuple(map(Status, sorted(set(data.points.status[corners[row]].tolist())))),
             entry=_entry(cube, rgb[row]),
             standard_error=None if errors is None else float(errors[row]),
-            standard_errors={name: float(each[row]) for name, each in by_light.items() if each is not None},
+            error_bound=None if bounds is None else float(bounds[row]),
+            standard_errors=_of_row(errors_by_light, row),
+            error_bounds=_of_row(bounds_by_light, row),
             light_xyz={name: each[row] for name, each in relit.items()},
             unlike_atlas=unlike is not None and bool(unlike[row]),
             realisable=bool(realisable[row]),
         )
+
+
+def _of_row(by_light: Mapping[str, Array | None], row: int) -> dict[str, float]:
+    return {name: float(each[row]) for name, each in by_light.items() if each is not None}
 
 
 def _realisable(data: CubeData, rgb: Array, corners: Indices) -> Mask:

@@ -150,7 +150,11 @@ def assess(
     own = atlas is not None and _built_from(data, atlas)
     query = _entry_query(cube, atlas, own)
     errors = None if query is None or not query.names else entry_errors(cube, query, sensors)
-    calibration = None if own or errors is None else check_calibration(errors.actual, errors.predicted)
+    calibration = (
+        None
+        if own or errors is None
+        else check_calibration(errors.actual, errors.predicted, cube.error_bound(errors.rgb))
+    )
     present = data.points.present
     steps, distances = compute_smoothness(data), data.points.distance[present]
     standard_errors = None if data.points.standard_error is None else data.points.standard_error[present]
@@ -195,7 +199,9 @@ def _light_calibrations(
     for sensor, actual in zip(lights, errors.delta_e.T, strict=True):
         if sensor.illuminant not in (data.error_illuminant, data.sensor.illuminant):
             found[sensor.illuminant] = check_calibration(
-                actual, cube.standard_error(errors.rgb, sensor.light)
+                actual,
+                cube.standard_error(errors.rgb, sensor.light),
+                cube.error_bound(errors.rgb, sensor.light),
             )
     return {light: each for light, each in found.items() if each is not None}
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uplift.colorimetry.expected_error import COVERAGE
 from uplift.common.arrays import Array
 
 TOLERANCE = 1.25
@@ -20,17 +21,19 @@ class Calibration:
     ----------
     count : int
         Number of entries.
-    actual, predicted : float
-        Root mean squares of the errors and of the standard errors.
-    within_one, within_two : float
-        Shares in [0, 1] of the entries whose error is at most one and two of its standard errors.
+    predicted : float
+        Mean of the standard errors.
+    actual : float
+        Mean that they should have had, so that 68 % of the entries were within.
+    within_error, within_bound : float
+        Shares in [0, 1] of the entries whose error is at most its standard error, and its error bound.
     """
 
     count: int
     actual: float
     predicted: float
-    within_one: float
-    within_two: float
+    within_error: float
+    within_bound: float
 
     @property
     def verdict(self) -> int:
@@ -51,13 +54,13 @@ class Calibration:
             "count": self.count,
             "real": self.actual,
             "stated": self.predicted,
-            "within_one": self.within_one,
-            "within_two": self.within_two,
+            "within_error": self.within_error,
+            "within_bound": self.within_bound,
         }
 
 
-def check_calibration(actual: Array, predicted: Array | None) -> Calibration | None:
-    """Compare errors with standard errors.
+def check_calibration(actual: Array, predicted: Array | None, bound: Array | None) -> Calibration | None:
+    """Compare errors with standard errors and error bounds.
 
     Parameters
     ----------
@@ -65,6 +68,8 @@ def check_calibration(actual: Array, predicted: Array | None) -> Calibration | N
         Errors, ΔE00.
     predicted : ndarray, shape (n,), or None
         Standard errors, ΔE00; None if the cube has none.
+    bound : ndarray, shape (n,), or None
+        Error bounds, ΔE00; None likewise.
 
     Returns
     -------
@@ -73,19 +78,16 @@ def check_calibration(actual: Array, predicted: Array | None) -> Calibration | N
 
     Examples
     --------
-    >>> check_calibration(np.array([1.0, 3.0]), np.array([2.0, 2.0]))
-    Calibration(count=2, actual=2.23606797749979, predicted=2.0, within_one=0.5, within_two=1.0)
+    >>> check_calibration(np.array([1.0, 3.0]), np.array([2.0, 2.0]), np.array([4.0, 4.0]))
+    Calibration(count=2, actual=2.36, predicted=2.0, within_error=0.5, within_bound=1.0)
     """
-    if predicted is None:
+    if predicted is None or bound is None:
         return None
+    mean, ratio = float(predicted.mean()), actual / np.maximum(predicted, np.finfo(float).tiny)
     return Calibration(
         count=len(actual),
-        actual=_rms(actual),
-        predicted=_rms(predicted),
-        within_one=float((actual <= predicted).mean()),
-        within_two=float((actual <= 2 * predicted).mean()),
+        actual=mean * float(np.quantile(ratio, COVERAGE[0][0])),
+        predicted=mean,
+        within_error=float((actual <= predicted).mean()),
+        within_bound=float((actual <= bound).mean()),
     )
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt((values**2).mean()))

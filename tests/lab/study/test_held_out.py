@@ -86,13 +86,13 @@ def test_calibration_pools_splits_with_standard_errors():
     nothing = SpectrumErrors(np.zeros(2), np.zeros((2, 1)))
     result = pooled_calibration(
         [
-            HoldoutSplit({"": nothing}, np.array([1.0, 3.0]), np.array([2.0, 2.0])),
-            HoldoutSplit({"": nothing}, np.array([5.0, 9.0]), None),
+            HoldoutSplit({"": nothing}, np.array([1.0, 3.0]), np.array([2.0, 2.0]), np.array([5.0, 5.0])),
+            HoldoutSplit({"": nothing}, np.array([5.0, 9.0]), None, None),
         ]
     )
-    assert (result.count, result.predicted, result.within_one, result.within_two) == (2, 2, 0.5, 1)
-    assert result.actual == pytest.approx(5**0.5)
-    assert pooled_calibration([HoldoutSplit({"": nothing}, np.zeros(2), None)]) is None
+    assert (result.count, result.predicted, result.within_error, result.within_bound) == (2, 2, 0.5, 1)
+    assert result.actual == pytest.approx(2 * (0.5 + 0.68))
+    assert pooled_calibration([HoldoutSplit({"": nothing}, np.zeros(2), None, None)]) is None
 
 
 def test_small_atlas_raises(family):

@@ -67,11 +67,14 @@ class HoldoutSplit:
         ΔE00 of the cube with half the atlas, under its reference illuminant.
     predicted : ndarray, shape (n,), or None
         Standard errors that this cube predicts, if it has any.
+    bound : ndarray, shape (n,), or None
+        Error bounds that it predicts, likewise.
     """
 
     errors: dict[str, SpectrumErrors]
     actual: Array
     predicted: Array | None
+    bound: Array | None
 
 
 def spectrum_errors(
@@ -152,11 +155,10 @@ def pooled_calibration(splits: Sequence[HoldoutSplit]) -> Calibration | None:
     Calibration or None
         None if the cubes predict no standard errors.
     """
-    pairs = [(split.actual, split.predicted) for split in splits if split.predicted is not None]
-    if not pairs:
+    parts = [(split.actual, split.predicted, split.bound) for split in splits if split.predicted is not None]
+    if not parts:
         return None
-    actual, predicted = (np.concatenate(part) for part in zip(*pairs, strict=True))
-    return check_calibration(actual, predicted)
+    return check_calibration(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 
 def _evaluate(cubes: dict[str, Cube], held_out: Atlas) -> HoldoutSplit:
@@ -170,6 +172,7 @@ def _evaluate(cubes: dict[str, Cube], held_out: Atlas) -> HoldoutSplit:
         {name: spectrum_errors(spectra, measured) for name, spectra in predicted.items()},
         delta_e_spectra(light, predicted[HALF], measured),
         cube.standard_error(rgb),
+        cube.error_bound(rgb),
     )
 
 
