@@ -1,0 +1,142 @@
+"""The page: a spectrum, its colours under some lights, and the regions that they can be moved in.
+
+The browser moves the logarithm of the odds g / (1 − g) of the answer by cosines of the wavelength, so that every change
+is a reflectance in (0, 1). Of the changes that keep the RGB and have the chosen a* and b*, it takes steps of least change
+in the metric of the fit (docs/mathematics.md, 5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.gamut.boundary import conversion
+from uplift.colorimetry.lights import DESCRIPTIONS
+from uplift.colorimetry.observer import display_sensors
+from uplift.colorimetry.sensor import Light, Sensor
+from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import OptionError
+from uplift.common.files import write_text
+from uplift.lookup import Bounds, Cube
+from uplift.models import Moments
+from uplift.models.moments import MAX_COUNT
+from uplift.models.phase import Phase
+from uplift.viz.html import render, resource
+
+FOLDER = "report/look_page"
+SCRIPTS = ("colour.js", "solver.js", "draw.js", "page.js")
+DIGITS = 12
+"""Digits of the numbers of the page: the RGB of its spectra is exact to far less than a code."""
+MARGIN = 1e-6
+"""Distance of the answer from 0 and 1, where the odds are 0 or infinite."""
+CODE_SLACK = 1e-6
+"""Distance in encoded codes at which a colour is written as '#rrggbb'."""
+
+
+def write_look_page(cube: Cube, found: Sequence[Bounds], path: StrPath, *, force: bool = False) -> int:
+    """Write a page on which the look of a colour is chosen.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube that was queried.
+    found : sequence of Bounds
+        Bounds of one colour under each light to choose on.
+    path : path-like
+        The file to write.
+    force : bool, default False
+        Replace an existing file.
+
+    Returns
+    -------
+    int
+        Size of the page in bytes.
+
+    Raises
+    ------
+    OptionError
+        The bounds are those of several colours or of none (code ``page-needs-one-colour``).
+    OutputError
+        The file exists and ``force`` is off, or cannot be written.
+    """
+    text = page(cube, found)
+    write_text(text, path, force=force)
+    return len(text.encode())
+
+
+def page(cube: Cube, found: Sequence[Bounds]) -> str:
+    """Render the page."""
+    if not found or len(found[0].xyz) != 1:
+        count = len(found[0].xyz) if found else 0
+        raise OptionError(
+            f"a page shows one colour under one light or more, got {count} colours",
+            code="page-needs-one-colour",
+            hint="give a single colour",
+        )
+    sensor, rgb = cube.data.sensor, found[0].volumes.rgb[0]
+    written = _written(cube, rgb)
+    screens = {
+        screen.illuminant: screen
+        for screen in display_sensors([each.light.name for each in found], cube.observer, *sensor.range)
+    }
+    lights = [_light(each, screens[each.light.name]) for each in found]
+    return render(
+        f"{FOLDER}/templates/page.html.j2",
+        title=f"Looks of {written if isinstance(written, str) else ' '.join(f'{each:.4g}' for each in written)}",
+        lead=(
+            f"Many spectra have this RGB under {sensor.illuminant}. Drag its colour under another light: the spectrum "
+            f"follows, and the colour under {sensor.illuminant} stays."
+        ),
+        build=sensor.illuminant,
+        lights=lights,
+        numbers=_model(sensor, found[0].reflectance[0], rgb)
+        | {"build": _view(sensor.light, conversion(sensor, SRGB) @ sensor.xyz_to_rgb), "lights": lights}
+        | {"rgb": written, "luminance": SRGB.rgb_to_xyz[1].tolist()},
+        script=resource(*(f"{FOLDER}/{name}" for name in SCRIPTS)),
+    )
+
+
+def _model(sensor: Sensor, answer: Array, rgb: Array) -> dict[str, Any]:
+    """Linear part of the answer, basis in the metric of least change, and the RGB to keep."""
+    model = Moments(MAX_COUNT, Phase(*sensor.range[:2]))
+    inside = np.clip(answer, MARGIN, 1 - MARGIN)
+    basis = model.basis(sensor.wavelengths) / np.sqrt(model.roughness())
+    return {
+        "wavelengths": sensor.wavelengths.tolist(),
+        "start": _rounded(np.log(inside / (1 - inside))),
+        "basis": _rounded(basis),
+        "sensor": _rounded(sensor.matrix),
+        "target": rgb.tolist(),
+    }
+
+
+def _light(found: Bounds, screen: Sensor) -> dict[str, Any]:
+    likely = found.likely(0)
+    return _view(found.light, screen.xyz_to_rgb) | {
+        "about": DESCRIPTIONS.get(found.light.name, ""),
+        "region": np.round(found.outline(0), 3).tolist(),
+        "likely": None if likely is None else np.round(likely, 3).tolist(),
+        "largest": float(found.largest.delta_e_2000[0]),
+    }
+
+
+def _view(light: Light, to_rgb: Array) -> dict[str, Any]:
+    return {"name": light.name, "xyz": _rounded(light.xyz), "white": _rounded(light.white), "toRgb": _rounded(to_rgb)}
+
+
+def _written(cube: Cube, rgb: Array) -> str | list[float]:
+    """The colour as a file of looks has it: '#rrggbb' where that is exact, else linear RGB."""
+    codes = np.asarray(cube.encode(rgb))
+    whole = np.rint(codes)
+    if (np.abs(codes - whole) <= CODE_SLACK).all():
+        return "#" + bytes(whole.astype(np.uint8)).hex()
+    return [round(float(each), 6) for each in rgb]
+
+
+def _rounded(values: Array) -> Any:
+    """Numbers with `DIGITS` significant digits, as lists."""
+    flat = [float(f"{value:.{DIGITS}g}") for value in values.ravel().tolist()]
+    return np.reshape(flat, values.shape).tolist()
