@@ -93,6 +93,11 @@ class ColourCommand(click.Command):
 )
 @format_option("table", "json", "csv")
 @plot_option("--plot", "plot_path", "Plot the spectra, or the bounds")
+@click.option(
+    "--html",
+    metavar="FILE",
+    help="Write a page on which the colour under each --light is dragged within its bounds, for a file of looks.",
+)
 @force_option()
 def command(
     colour: tuple[str, ...],
@@ -111,6 +116,7 @@ def command(
     with_bounds: bool,
     style: str,
     plot_path: str | None,
+    html: str | None,
     force: bool,
 ) -> None:
     """Query the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
@@ -131,19 +137,20 @@ def command(
       echo 0.5,0.5,0.5 | uplift query - --format json
       uplift query '#cc3319' --cube macbeth-32.uplift --light FL11 --light HP1
       uplift query '#8a2a20' --bounds --light A --light FL11 --plot bounds.png
+      uplift query '#8a2a20' --light A --light FL11 --html red.html
 
     Standard errors are those of materials like the entries of the cube's atlas. RGB does not identify a material:
     others of the same colour may differ by more. --bounds computes by how much any reflectance can: the largest ΔE00
-    from the answer under a light, and the ranges of L*, a* and b*.
+    from the answer under a light, and the ranges of L*, a* and b*. The page of --html shows the bounds of one colour
+    and a spectrum for every choice in them; it writes the TOML for 'uplift build --look'.
 
     Lines of files and of standard input are answered in blocks as they come. An error in a later block follows the
     answers to earlier ones.
     """
-    from uplift.common.files import check_output
+    from uplift.common.files import check_outputs
     from uplift.lookup import load
 
-    if plot_path is not None:
-        check_output(plot_path, inputs=(cube_path, input_path), force=force)
+    check_outputs((plot_path, html), inputs=(cube_path, input_path), force=force)
     cube = load(cube_path)
     bounded = method == "error" and input_space is None
     space = resolve_space(input_space)
@@ -157,18 +164,24 @@ def command(
         method,
         parse_wavelengths(wavelengths),
         mode,
-        _read_lights(lights or (RELIGHT_LIGHTS if with_bounds else ()), cube),
+        _read_lights(lights or (RELIGHT_LIGHTS if with_bounds or html else ()), cube),
         fill_missing=fill_missing,
     )
     results: Iterable[list[QueryResult]]
     if point is not None:
         results = answers.result_of_xyz(point)
     else:
-        blocks = _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded, space=space)
-        results = answers.results(blocks)
+        results = answers.results(
+            _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded, space=space)
+        )
     single = point is not None or (bool(colour) and colour != ("-",))
-    if with_bounds:
-        _write_bounds(answers, results, style, plot_path, single=single, force=force)
+    if html is not None and not single:
+        raise click.UsageError("--html shows one colour: give it on the command line.")
+    if with_bounds or html is not None:
+        from ..output.bounds_output import write_bounds
+
+        blocks = ((block, answers.bounds(block, single=single)) for block in results)
+        write_bounds(cube, blocks, style, plot_path, html, single=single, force=force)
     else:
         if plot_path is not None:
             from uplift.viz.spectra import plot_spectra
@@ -178,30 +191,6 @@ def command(
             plot_spectra(cube, list(chain.from_iterable(results)), plot_path, force=force)
         WRITERS[style](cube, results, single)
     answers.warn()
-
-
-def _write_bounds(
-    answers: _Answers,
-    results: Iterable[list[QueryResult]],
-    style: str,
-    plot_path: str | None,
-    *,
-    single: bool,
-    force: bool,
-) -> None:
-    """Print the bounds of answers, and plot them."""
-    from ..output.bounds_output import BOUNDS_WRITERS
-
-    blocks: Iterable[tuple[list[QueryResult], list[Bounds]]] = (
-        (block, answers.bounds(block, single=single)) for block in results
-    )
-    if plot_path is not None:
-        from uplift.viz.bounds import plot_bounds
-
-        hide_drawing_notes()
-        blocks = list(blocks)
-        plot_bounds(answers.cube, [found for _, found in blocks], plot_path, force=force)
-    BOUNDS_WRITERS[style](answers.cube, blocks, single)
 
 
 @dataclass

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from .console import csv_writer, emit, make_table, print_json, show, terminal_json
+from ..startup import hide_drawing_notes
+from .console import csv_writer, emit, make_table, print_json, say, show, terminal_json
 from .query_output import format_rgb, hex_code, patch, print_fields, result_object
 
 if TYPE_CHECKING:
@@ -18,6 +19,32 @@ Block = tuple[Sequence["QueryResult"], Sequence["Bounds"]]
 Writer = Callable[["Cube", Iterable[Block], bool], None]
 """Prints blocks, each before the next one is computed."""
 UNKNOWN = "–"
+
+
+def write_bounds(
+    cube: Cube,
+    blocks: Iterable[Block],
+    style: str,
+    plot_path: str | None,
+    html: str | None,
+    *,
+    single: bool,
+    force: bool,
+) -> None:
+    """Print the bounds of answers, plot them and write their page."""
+    if plot_path is not None or html is not None:
+        blocks = list(blocks)
+    if plot_path is not None:
+        from uplift.viz.bounds import plot_bounds
+
+        hide_drawing_notes()
+        plot_bounds(cube, [found for _, found in blocks], plot_path, force=force)
+    if html is not None:
+        from uplift.report.look_page import write_look_page
+
+        write_look_page(cube, next(iter(blocks))[1], html, force=force)
+        say(f"{html}: page to choose a look on", err=True)
+    BOUNDS_WRITERS[style](cube, blocks, single)
 
 
 def as_json(cube: Cube, blocks: Iterable[Block], single: bool) -> None:

@@ -605,3 +605,14 @@ def test_colours_under_lights_are_those_of_relit_images(run, ask, cubes):
 def test_colours_outside_the_space_have_colours_under_lights(ask):
     found = ask("--xyz", "0.05", "0.2", "0.1", "--light", "D65")
     np.testing.assert_allclose(found["lights"]["D65"]["xyz"], [0.05, 0.2, 0.1], atol=1e-5)
+
+
+def test_page_of_bounds(run, home):
+    result = run("query", "#8a2a20", "--light", "FL11", "--html", "look.html")
+    assert "FL11" in result.stdout
+    assert "Looks of #8a2a20" in (home / "look.html").read_text()
+    assert "exists already" in run("query", "#8a2a20", "--html", "look.html", code=2).stderr
+
+
+def test_a_page_needs_one_colour(run, table):
+    assert "one colour" in run("query", "--input", table("0.2,0.3,0.4"), "--html", "p.html", code=2).stderr

@@ -3,6 +3,7 @@ const PLOT = { left: 38, right: 294, top: 6, bottom: 262 };
 const CURVE = { left: 8, right: 312, top: 8, bottom: 104 };
 const PIXELS = 96;
 const MIN_EXTENT = 5;
+const NEARLY = 0.999;
 const byId = id => document.getElementById(id);
 
 function createSvg(tag, attributes, ...children) {
@@ -87,7 +88,7 @@ function curve(wavelengths, reflectance) {
   return `M${pathOf(points)}`;
 }
 
-// The point of the segment from `inside` to `point` that lies in the polygon, the farthest from `inside`.
+// A point, or where the segment from `inside` to it nearly leaves the polygon.
 function clampToPolygon(point, polygon, inside) {
   let share = 1;
   const [dx, dy] = [point[0] - inside[0], point[1] - inside[1]];
@@ -101,5 +102,5 @@ function clampToPolygon(point, polygon, inside) {
     const across = (fx * dy - fy * dx) / cross;
     if (across >= 0 && across <= 1 && along > 0) share = Math.min(share, along);
   });
-  return [inside[0] + share * dx, inside[1] + share * dy];
+  return share < 1 ? [inside[0] + NEARLY * share * dx, inside[1] + NEARLY * share * dy] : point;
 }

@@ -71,8 +71,7 @@ function toml(reflectance) {
 }
 
 function choose(i, ab) {
-  const held = [0.999, 0.999].map((share, axis) => middles[i][axis] + share * (ab[axis] - middles[i][axis]));
-  goals.set(i, clampToPolygon(held, lights[i].region, middles[i]));
+  goals.set(i, clampToPolygon(ab, lights[i].region, middles[i]));
   requestFrame();
 }
 

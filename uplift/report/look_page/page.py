@@ -1,8 +1,8 @@
 """The page: a spectrum, its colours under some lights, and the regions that they can be moved in.
 
-The browser moves the logarithm of the odds g / (1 − g) of the answer by cosines of the wavelength, so that every change
-is a reflectance in (0, 1). Of the changes that keep the RGB and have the chosen a* and b*, it takes steps of least change
-in the metric of the fit (docs/mathematics.md, 5).
+The browser moves the logarithm of the odds g / (1 − g) of the answer by cosines of the wavelength, so that every result
+is a reflectance in (0, 1). Steps of least change, in the metric of the fit (docs/mathematics.md, 5), lead to the chosen
+a* and b* and keep the RGB.
 """
 
 from __future__ import annotations
@@ -124,7 +124,12 @@ def _light(found: Bounds, screen: Sensor) -> dict[str, Any]:
 
 
 def _view(light: Light, to_rgb: Array) -> dict[str, Any]:
-    return {"name": light.name, "xyz": _rounded(light.xyz), "white": _rounded(light.white), "toRgb": _rounded(to_rgb)}
+    return {
+        "name": light.name,
+        "xyz": _rounded(light.xyz),
+        "white": _rounded(light.white),
+        "toRgb": _rounded(to_rgb),
+    }
 
 
 def _written(cube: Cube, rgb: Array) -> str | list[float]:

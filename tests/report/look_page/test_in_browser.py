@@ -1,0 +1,174 @@
+"""The page in Chromium: a drag changes the spectrum, the RGB stays, and colours are those of Python."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+
+import numpy as np
+import pytest
+
+from tests.browsing import check_page
+from tests.report.look_page.conftest import LIGHTS
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.srgb import hex_codes, to_display_codes
+
+SETTLE = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+
+
+def drag(tab, light, dx, dy):
+    """Drag the point of a light by a part of the width of its plot."""
+    script = f"(box => [box.x + box.width / 2, box.y + box.height / 2])({rect(f'point-{light}')})"
+    x, y = tab.evaluate(script)
+    width = tab.evaluate(f"{rect(f'region-{light}')}.width")
+    tab.mouse("mousePressed", x, y)
+    for share in (0.3, 0.7, 1):
+        tab.mouse("mouseMoved", x + share * dx * width, y + share * dy * width)
+    tab.mouse("mouseReleased", x + dx * width, y + dy * width)
+    tab.evaluate(SETTLE)
+
+
+def rect(element):
+    return f"document.getElementById('{element}').getBoundingClientRect()"
+
+
+def text(tab, element):
+    return tab.evaluate(f"document.getElementById('{element}').textContent")
+
+
+def spectrum(tab):
+    return np.array(json.loads(tab.evaluate("document.getElementById('spectrum').dataset.reflectance")))
+
+
+def shown_lab(tab, light):
+    words = text(tab, f"lab-{light}").replace("−", "-").replace(",", "").split()
+    return [float(word) for word in words[1::2]]
+
+
+def look(tab):
+    (found,) = tomllib.loads(tab.evaluate("document.getElementById('toml').value"))["look"]
+    return found
+
+
+def expected(spectra):
+    """Codes of a spectrum under the build light and under the lights."""
+    sensors = [observer.sensor("sRGB", name) for name in ("D65", *LIGHTS)]
+    rgb = np.array([sensor.rgb(spectra) for sensor in sensors])
+    return hex_codes(rgb, SRGB)
+
+
+def test_the_page_opens_with_the_answer(opened, found):
+    np.testing.assert_allclose(spectrum(opened), found[0].reflectance[0], atol=1e-9)
+    for light, each in enumerate(found):
+        assert shown_lab(opened, light) == pytest.approx(each.lab[0], abs=0.051)
+        assert text(opened, f"state-{light}") == "free"
+    assert opened.evaluate("document.getElementById('toml').value").startswith("#")
+    assert opened.errors == []
+
+
+def test_a_drag_changes_the_spectrum_and_keeps_the_rgb(opened, red, sensor):
+    before = spectrum(opened)
+    drag(opened, 1, -0.12, -0.04)
+    after = spectrum(opened)
+    assert np.abs(after - before).max() > 0.05
+    assert ((after > 0) & (after < 1)).all()
+    np.testing.assert_allclose(sensor.rgb(after), red[0], atol=1e-5)
+    codes = to_display_codes(sensor.rgb(np.stack([before, after])), SRGB)
+    assert np.abs(codes[1] - codes[0]).max() <= 1
+    assert text(opened, "state-1") == "chosen"
+    assert text(opened, "state-0") == "free"
+
+
+def test_colours_equal_those_of_python(opened):
+    drag(opened, 1, -0.1, 0.05)
+    drag(opened, 0, 0.05, 0.05)
+    current = spectrum(opened)
+    shown = [text(opened, f"code-{name}").split(",")[0] for name in ("build", 0, 1)]
+    assert shown == expected(current)
+    for number, name in enumerate(LIGHTS):
+        light = observer.light(name)
+        assert shown_lab(opened, number) == pytest.approx(lab(light.xyz @ current, light.white), abs=0.051)
+
+
+def test_the_point_follows_the_mouse(opened):
+    x = opened.evaluate(f"{rect('point-1')}.x")
+    width = opened.evaluate(f"{rect('region-1')}.width")
+    drag(opened, 1, -0.1, 0.0)
+    assert opened.evaluate(f"{rect('point-1')}.x") == pytest.approx(x - 0.1 * width, abs=2)
+
+
+def test_goals_of_two_lights_hold_together(opened):
+    drag(opened, 0, 0.08, 0.0)
+    first = shown_lab(opened, 0)
+    drag(opened, 1, -0.1, -0.03)
+    assert shown_lab(opened, 0)[1:] == pytest.approx(first[1:], abs=0.5)
+    found = look(opened)
+    assert list(found) == ["rgb", *LIGHTS]
+    assert found["rgb"] == "#8a2a20"
+    assert [found[name] for name in LIGHTS] == expected(spectrum(opened))[1:]
+
+
+def test_the_mouse_does_not_leave_the_region(opened, found):
+    drag(opened, 0, 3.0, 0.0)
+    goal = np.array(shown_lab(opened, 0)[1:])
+    low, high = found[0].outline(0).min(axis=0), found[0].outline(0).max(axis=0)
+    assert ((goal >= low - 0.1) & (goal <= high + 0.1)).all()
+    assert goal[0] > found[0].lab[0, 1] + 5
+
+
+def test_keys_move_and_release_a_colour(opened, found):
+    opened.evaluate("document.getElementById('region-1').focus()")
+    start = shown_lab(opened, 1)
+    opened.key("ArrowRight")
+    opened.key("ArrowUp", modifiers=8)  # Shift
+    opened.evaluate(SETTLE)
+    assert shown_lab(opened, 1)[1:] == pytest.approx([start[1] + 0.5, start[2] + 5], abs=0.11)
+    value = opened.evaluate("document.getElementById('region-1').getAttribute('aria-valuetext')")
+    assert value == f"{text(opened, 'lab-1')}, chosen"
+    opened.key("0")
+    opened.evaluate(SETTLE)
+    np.testing.assert_allclose(spectrum(opened), found[0].reflectance[0], atol=1e-9)
+
+
+def test_the_spectrum_depends_on_the_choice_alone(opened):
+    opened.evaluate("document.getElementById('region-1').focus()")
+    opened.key("ArrowLeft", modifiers=8)
+    opened.evaluate(SETTLE)
+    direct = spectrum(opened)
+    for key in ("ArrowUp", "ArrowLeft", "ArrowRight", "ArrowDown"):
+        opened.key(key, modifiers=8)
+    opened.evaluate(SETTLE)
+    np.testing.assert_allclose(spectrum(opened), direct, atol=1e-6)
+
+
+def test_buttons_release_reset_and_copy(opened, found):
+    drag(opened, 0, 0.05, 0.0)
+    drag(opened, 1, 0.0, 0.1)
+    opened.evaluate("document.getElementById('release-0').click()")
+    opened.evaluate(SETTLE)
+    assert list(look(opened)) == ["rgb", "FL11"]
+    opened.evaluate("document.getElementById('copy').click()")
+    opened.evaluate(SETTLE)
+    assert text(opened, "copied") == "Copied."
+    opened.evaluate("document.getElementById('reset').click()")
+    opened.evaluate(SETTLE)
+    np.testing.assert_allclose(spectrum(opened), found[0].reflectance[0], atol=1e-9)
+    assert opened.errors == []
+
+
+def test_touch_moves_a_colour(opened):
+    x, y = opened.evaluate(f"(box => [box.x + box.width / 2, box.y + box.height / 2])({rect('point-1')})")
+    for kind, points in (
+        ("touchStart", [{"x": x, "y": y}]),
+        ("touchMove", [{"x": x - 40, "y": y}]),
+        ("touchEnd", []),
+    ):
+        opened.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+    opened.evaluate(SETTLE)
+    assert text(opened, "state-1") == "chosen"
+
+
+def test_the_page_fits_and_is_accessible(html, tmp_path):
+    check_page(html, tmp_path)
