@@ -277,7 +277,8 @@ def _read_lights(names: Sequence[str], cube: Cube) -> list[Light]:
         return []
     from uplift.colorimetry.observer import light
 
-    return [light(name, cube.observer, *cube.data.sensor.range) for name in names]
+    lights = (light(name, cube.observer, *cube.data.sensor.range) for name in names)
+    return list({each.name: each for each in lights}.values())
 
 
 def _read_colours(
