@@ -29,19 +29,19 @@ def test_the_page_is_well_formed_and_self_contained(html):
 
 
 def test_its_spectrum_is_the_answer(html, small_cube, found):
-    told = numbers(html)
-    start = 1 / (1 + np.exp(-np.array(told["start"])))
+    given = numbers(html)
+    start = 1 / (1 + np.exp(-np.array(given["start"])))
     np.testing.assert_allclose(start, found[0].reflectance[0], atol=1e-9)
-    np.testing.assert_allclose(np.array(told["sensor"]) @ start, told["target"], atol=1e-6)
-    assert np.shape(told["basis"]) == (81, 17)
-    assert told["rgb"] == "#8a2a20"
+    np.testing.assert_allclose(np.array(given["sensor"]) @ start, given["target"], atol=1e-6)
+    assert np.shape(given["basis"]) == (81, 17)
+    assert given["rgb"] == "#8a2a20"
 
 
 def test_regions_are_those_of_the_bounds(html, found):
-    for told, each in zip(numbers(html)["lights"], found, strict=True):
-        assert told["name"] == each.light.name
-        np.testing.assert_allclose(told["region"], each.outline(0), atol=1e-3)
-        np.testing.assert_allclose(told["likely"], each.likely(0), atol=1e-3)
+    for given, each in zip(numbers(html)["lights"], found, strict=True):
+        assert given["name"] == each.light.name
+        np.testing.assert_allclose(given["region"], each.outline(0), atol=1e-3)
+        np.testing.assert_allclose(given["likely"], each.likely(0), atol=1e-3)
 
 
 def test_colours_without_a_code_are_linear(small_cube, grey):
@@ -49,8 +49,8 @@ def test_colours_without_a_code_are_linear(small_cube, grey):
 
 
 def test_cubes_without_an_atlas_have_no_likely_region(plain_cube, red):
-    told = numbers(page(plain_cube, [bounds(plain_cube, red, observer.light("A"), divisions=1)]))
-    assert told["lights"][0]["likely"] is None
+    given = numbers(page(plain_cube, [bounds(plain_cube, red, observer.light("A"), divisions=1)]))
+    assert given["lights"][0]["likely"] is None
 
 
 def test_a_page_is_about_one_colour(small_cube):
