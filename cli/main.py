@@ -26,6 +26,7 @@ from .output.diagnostics import (
     show_usage_error,
     show_warning,
 )
+from .output.help_text import HelpFormatter
 from .output.streams import finish_stdout, prepare_streams
 from .params.options import OUTPUT_FORMAT
 from .params.renamed import renamed_option
@@ -50,6 +51,9 @@ SUMMARY_LENGTH = 200
 LOST_PIPE = 1
 """Exit code of a command whose reader closed the pipe."""
 DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+click.Context.formatter_class = HelpFormatter  # contexts of subcommands are of click's own class
 
 
 class LazyGroup(click.Group):

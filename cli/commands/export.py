@@ -57,12 +57,12 @@ def command(
     """Write a cube in a format that other tools read.
 
     \b
-      c, cuda, glsl, hlsl, osl, wgsl
-             program that looks up colours and evaluates spectra
-      coeff  table of rgb2spec, which Mitsuba and colour-science read
-      html   page that relights images in a browser, by spectra and by products of RGB
-      npz    all arrays of the cube, for numpy
-      csv    one line per node
+    c, cuda, glsl, hlsl, osl, wgsl
+           program that looks up colours
+    coeff  table of rgb2spec, for Mitsuba and colour-science
+    html   page that relights images in a browser
+    npz    all arrays of the cube, for numpy
+    csv    one line per node
 
     Names in a program start with the file's. A C header, also valid C++, contains the table, or loads it from a file
     of numbers. Programs in other languages come with a second file, which they explain. GLSL, HLSL and WGSL can have

@@ -36,12 +36,20 @@ class Whole(click.IntRange):
     def __init__(self, low: int | None = None, high: int = LARGEST) -> None:
         super().__init__(low, high)
 
+    def _describe_range(self) -> str:
+        """Return the range that the help shows, without the default limit."""
+        if self.max != LARGEST:
+            return super()._describe_range()
+        return "" if self.min is None else f"x>={self.min}"
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return a whole number."""
         try:
             number = parse_whole(value) if isinstance(value, str) else value
         except ValueError:
             self.fail(f"{format_value(value)} is not a whole number.", param, ctx)
+        if self.max == LARGEST and number > LARGEST:
+            self.fail(f"{format_value(value)} is greater than {LARGEST}.", param, ctx)
         return super().convert(number, param, ctx)
 
 

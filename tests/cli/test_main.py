@@ -29,7 +29,8 @@ def test_help_has_a_sentence_and_examples(run, name):
     assert usage.startswith(f"Usage: main {name} ")
     assert sentence.strip().endswith(".")
     (examples,) = [part for part in rest if part.startswith("  Examples:\n")]
-    assert all(f"uplift {name} " in f"{line} " for line in examples.splitlines()[1:])
+    lines = examples.replace("\\\n", "").splitlines()[1:]
+    assert all(f"uplift {name} " in f"{line} " for line in lines)
 
 
 def test_h_is_help(run):
