@@ -11,8 +11,8 @@ import numpy as np
 import uplift
 from benchmarks.record import ROOT, write
 from uplift.atlas import on_grid
-from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.observer import on_range
+from uplift.colorimetry.sensor import Sensor
+from uplift.lab.chart import judge
 from uplift.lookup import MODES, Cube
 
 MACBETH = ROOT / "atlases" / "macbeth.txt"
@@ -37,7 +37,8 @@ def main() -> None:
     for name, cube in cubes():
         fitted.append({"cube": name, **fit_quality(cube)})
         errors = {mode: round_trip(cube, mode) for mode in MODES}
-        round_trips.append({"cube": name, "errors": errors, "fine": round_trip_at_1_nm(cube)})
+        fine = {mode: round_trip_at_1_nm(cube, mode) for mode in MODES}
+        round_trips.append({"cube": name, "errors": errors, "fine": fine})
     figures = {"fitted": fitted, "round_trips": round_trips, "ranges": [at_range(*each) for each in RANGES]}
     write("accuracy", "make accuracy", queries=len(QUERIES), **figures)
 
@@ -77,18 +78,17 @@ def fit_quality(cube: Cube) -> dict[str, float]:
     }
 
 
-def round_trip(cube: Cube, mode: str) -> list[float]:
-    """Return the mean and the largest ΔE00 between the requested colours and those of the spectra."""
-    sensor = cube.data.sensor
-    errors = delta_e_rgb(sensor, QUERIES, sensor.rgb(cube.reflectance(QUERIES, mode=mode)))
+def round_trip(cube: Cube, mode: str, sensor: Sensor | None = None) -> list[float]:
+    """Return the mean and the largest ΔE00 between the requested colours and those of the spectra, for a judge."""
+    sensor = sensor or cube.data.sensor
+    spectra = cube.reflectance(QUERIES, sensor.wavelengths, mode)
+    errors = judge.round_trip(sensor, QUERIES, spectra)
     return [float(errors.mean()), float(errors.max())]
 
 
-def round_trip_at_1_nm(cube: Cube) -> list[float]:
-    """Return the same as `round_trip` if the observer and the light have 360–830 nm in steps of 1 nm."""
-    sensor = on_range(cube.data.sensor, 360, 830, 1)
-    errors = delta_e_rgb(sensor, QUERIES, sensor.rgb(cube.reflectance(QUERIES, sensor.wavelengths)))
-    return [float(errors.mean()), float(errors.max())]
+def round_trip_at_1_nm(cube: Cube, mode: str = "spectra") -> list[float]:
+    """Return the same as `round_trip` for the judge of the chart, whom no cube is fitted to."""
+    return round_trip(cube, mode, judge.at_1_nm(cube.data.sensor))
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from pathlib import Path
 from tests.fuzz.mutate import NUMBERS, Random, mutate
 from tests.fuzz.target import ROOT, Target
 from uplift.lab.chart.page import _tooltip
-from uplift.lab.chart.panels import PANELS
+from uplift.lab.chart.panels import all_panels
 from uplift.lab.chart.recommend import Requirement, recommend_cube
 from uplift.lab.chart.table import chart_csv, read_chart
 
@@ -69,7 +69,7 @@ def _use(path: Path) -> None:
     """Read the chart, write it again, and compute all that its pictures and pages show."""
     chart = read_chart(path)
     chart_csv(chart)
-    for panel in PANELS:
+    for panel in all_panels(chart):
         for result in panel.front(chart):
             panel.labels(result)
             if panel.whiskers:

@@ -39,8 +39,8 @@ def format_time(ns: float) -> str:
 
     Examples
     --------
-    >>> format_time(4217)
-    '4.22 µs'
+    >>> format_time(4217), format_time(2.5e12)
+    ('4.22 µs', '2,500 s')
     """
     return _with_unit(ns, TIME_UNITS)
 
@@ -232,7 +232,8 @@ def capitalise(text: str) -> str:
 
 def _with_unit(value: float, units: Sequence[tuple[float, str]]) -> str:
     factor, unit = next((pair for pair in units if value >= pair[0] * 0.9995), units[-1])
-    return f"{value / factor:.3g} {unit}"
+    number = value / factor
+    return f"{number:.3g} {unit}" if number < 999.5 else f"{number:,.0f} {unit}"
 
 
 def _power_of_ten(exponent: int) -> str:

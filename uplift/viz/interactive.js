@@ -40,6 +40,14 @@ function hide() {
   picture.classList.remove("dimmed");
   picture.querySelectorAll(".highlighted").forEach(part => part.classList.remove("highlighted"));
 }
+// A page with a choice shows the parts of one value.
+const choices = [...document.querySelectorAll(".choice input")];
+function choose() {
+  const value = choices.find(input => input.checked)?.value;
+  for (const part of document.querySelectorAll("[data-choice]")) part.hidden = part.dataset.choice !== value;
+}
+if (choices.length) choose();
+choices.forEach(input => input.addEventListener("change", choose));
 for (const box of document.querySelectorAll(".families input")) {
   box.addEventListener("change", () => {
     rows.forEach(({ family }, row) => {

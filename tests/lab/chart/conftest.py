@@ -12,9 +12,11 @@ from uplift.lab.chart.table import TEXTS, Chart, MethodResult, State
 from uplift.lab.chart.task import Effort, make_task
 
 FACTS = dict.fromkeys(("machine", "versions", "commit", "colours", "spectra", "effort"), "stated")
-HASTE = Effort(seconds_per_error=0.05, runs=3, lap=0.001, batch=64, builds=1)
+BATCHES = (1, 64)
+HASTE = Effort(seconds_per_error=0.05, runs=3, lap=0.001, batches=BATCHES, longest=0.05, builds=1)
 ERRORS = (
     "round_trip",
+    "coarse_round_trip",
     *CHART_LIGHTS,
     "lights",
     "rms",
@@ -52,10 +54,19 @@ def row_of():
 
     def row_of(name, time, error, **fields):
         numbers = {f"{key}_{kind}": error for key in ERRORS for kind in ("mean", "p99", "max")}
-        numbers |= {"time_ns": time, "batch_ns": time, "single_ns": 10 * time, "bytes": 1e4, "build_s": 1.0}
-        numbers |= {"batch_colours": 64, "round_trip_colours": 16, "unseen_spectra": 12, "own_spectra": 12}
+        numbers |= {"time_ns": time, "bytes": 1e4, "build_s": 1.0, "load_s": 0.5, "setup_s": 1.5}
+        numbers |= {"round_trip_colours": 16, "unseen_spectra": 12, "own_spectra": 12}
+        for batch, each in zip(BATCHES, (10 * time, time), strict=True):
+            key = f"ns_{batch}"
+            numbers |= {key: each, f"{key}_least": each, f"{key}_most": 2 * each, f"{key}_colours": batch}
         texts = dict.fromkeys(TEXTS, "") | dict.fromkeys(("label", "title"), name)
-        plain = {"family": "Mallett 2019", "source": "a test", "state": State.MEASURED, "numbers": numbers}
+        plain = {
+            "dtype": "float64",
+            "family": "Mallett 2019",
+            "source": "a test",
+            "state": State.MEASURED,
+            "numbers": numbers,
+        }
         return MethodResult(**(texts | {"method": name} | plain | fields))
 
     return row_of

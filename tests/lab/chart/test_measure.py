@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 
+from tests.lab.chart.conftest import BATCHES
 from tests.pages import Page
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.progress import Progress
+from uplift.lab.chart.judge import ours
 from uplift.lab.chart.measure import MAX_CLAIM_RATIO, measure_method, measure_methods
-from uplift.lab.chart.method import Claims, Method, NotInstalledError
+from uplift.lab.chart.method import Claims, Method, NotInstalledError, PreparedMethod
 from uplift.lab.chart.methods.mallett2019 import FAMILIES
 from uplift.lab.chart.page import render_chart
-from uplift.lab.chart.panels import PANELS
+from uplift.lab.chart.panels import all_panels
 from uplift.lab.chart.table import State
 from uplift.lab.study.held_out import spectrum_errors
 
@@ -70,7 +74,7 @@ def test_broken_method_is_listed_and_not_drawn(small_task, greys, method_of):
     good, bad = chart.results
     assert (good.state, bad.state) == (State.MEASURED, State.BROKEN)
     assert chart.measured == (good,)
-    assert all(bad not in panel.front(chart) and panel.point(bad) is None for panel in PANELS)
+    assert all(bad not in panel.front(chart) and panel.point(bad) is None for panel in all_panels(chart))
     (row,) = Page(render_chart(chart)).table("method", "state", "reason")
     assert [cell.text for cell in row] == [bad.title, "broken", bad.why]
 
@@ -97,30 +101,83 @@ def test_errors_are_those_of_the_holdout_study(small_task, greys, method_of):
         assert numbers[f"{prefix}lights_mean"] == pytest.approx(errors.delta_e.mean())
 
 
-def test_batches_and_single_colours_are_timed(small_task, greys, method_of):
-    sizes = []
+def test_each_number_of_colours_is_timed_in_the_type_of_the_method(small_task, greys, method_of):
+    calls = set()
 
     def uplift(rgb, wavelengths):
-        sizes.append(len(rgb))
+        calls.add((len(rgb), rgb.dtype))
         return grey(rgb, wavelengths)
 
-    numbers = measure_method(greys, method_of(uplift), small_task).numbers
-    assert {1, small_task.effort.batch} <= set(sizes)
-    assert numbers["time_ns"] == numbers["batch_ns"]
-    assert numbers["batch_ns_least"] <= numbers["batch_ns"] <= numbers["batch_ns_most"]
-    assert numbers["batch_colours"] == small_task.effort.batch
+    numbers = measure_method(greys, method_of(uplift, dtype="float32"), small_task).numbers
+    for batch in BATCHES:
+        assert (batch, np.dtype("float32")) in calls
+        assert numbers[f"ns_{batch}_least"] <= numbers[f"ns_{batch}"] <= numbers[f"ns_{batch}_most"]
+        assert numbers[f"ns_{batch}_colours"] == batch
+    assert numbers["time_ns"] == numbers["ns_64"]
+    assert {dtype for _, dtype in calls} == {np.dtype("float32")}
+
+
+def test_answers_in_another_type_are_broken(small_task, greys, method_of):
+    double = method_of(lambda rgb, at: grey(rgb.astype(float), at), dtype="float32")
+    row = measure_method(greys, double, small_task)
+    assert (row.state, row.why) == (State.BROKEN, "spectra are float64 instead of float32")
 
 
 def test_method_without_batches_processes_fewer_colours(small_task, greys, method_of):
     def slow(rgb, wavelengths):
-        for _ in range(len(rgb) * 200_000):
+        for _ in range(len(rgb) * 100_000):
             pass
         return grey(rgb, wavelengths)
 
     numbers = measure_method(greys, method_of(slow, batch=False), small_task).numbers
-    assert "batch_ns" not in numbers
-    assert numbers["time_ns"] == numbers["single_ns"]
+    assert numbers["ns_1_colours"] == 1
+    assert 1 <= numbers["ns_64_colours"] < 64
     assert 3 <= numbers["round_trip_colours"] < len(small_task.rgb)
+
+
+def test_set_up_is_charged(small_task, greys):
+    """Building and loading as stated, and what the first call takes longer."""
+    calls = []
+
+    def uplift(rgb, wavelengths):
+        if not calls:
+            burn(0.05)
+        calls.append(1)
+        return grey(rgb, wavelengths)
+
+    method = Method("test", "Test", lambda task: PreparedMethod(uplift, 8, build_s=3.0, load_s=2.0))
+    numbers = measure_method(greys, method, small_task).numbers
+    assert numbers["build_s"] == 3
+    assert 2.03 < numbers["load_s"] < 2.5
+    assert numbers["setup_s"] == numbers["build_s"] + numbers["load_s"]
+    elsewhere = Method("test", "Test", lambda task: PreparedMethod(grey, 8, build_s=None, load_s=2.0))
+    numbers = measure_method(greys, elsewhere, small_task).numbers
+    assert "build_s" not in numbers
+    assert numbers["setup_s"] == numbers["load_s"]
+
+
+def burn(seconds):
+    """Use CPU time."""
+    begin = time.process_time()
+    while time.process_time() < begin + seconds:
+        pass
+
+
+def test_judge_is_the_stated_sensor_at_1_nm(small_task, greys, method_of):
+    """Spectra that are exact for one judge are not for another, and the tables of cubes come second."""
+    weights = np.linalg.pinv(ours().matrix)
+
+    def exact(rgb, wavelengths):
+        if len(wavelengths) == len(ours().wavelengths):
+            return rgb @ weights.T
+        return grey(rgb, wavelengths)
+
+    free = Claims(min=-10, max=10)
+    numbers = measure_method(greys, method_of(exact, judge=ours, claims=free), small_task).numbers
+    assert numbers["round_trip_max"] < 1e-6
+    assert numbers["coarse_round_trip_mean"] > 1
+    other = measure_method(greys, method_of(exact, claims=free), small_task).numbers
+    assert 1e-3 < other["round_trip_mean"] < 0.1
 
 
 def test_missing_package_is_reported(small_task, greys):
@@ -138,4 +195,12 @@ def test_chart_describes_test_set_and_environment(small_task, greys, method_of):
     assert "16 random" in chart.facts["colours"]
     assert "12 of 24 entries of macbeth" in chart.facts["spectra"]
     assert "numpy" in chart.facts["versions"]
-    assert "64 colours per call" in chart.facts["effort"]
+    assert "1, 64 colours per call" in chart.facts["effort"]
+
+
+def test_a_method_that_cannot_be_prepared_is_broken(small_task, greys):
+    def prepare(task):
+        raise OSError("libLLVM.so: cannot open")
+
+    row = measure_method(greys, Method("absent", "Absent", prepare), small_task)
+    assert (row.state, row.why) == (State.BROKEN, "cannot be prepared: OSError: libLLVM.so: cannot open")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 
 import numpy as np
@@ -12,8 +13,9 @@ from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
 from uplift.lab.chart import methods
+from uplift.lab.chart.judge import RANGE, ours, published_srgb, round_trip
 from uplift.lab.chart.measure import measure_method
-from uplift.lab.chart.method import Family
+from uplift.lab.chart.method import Family, NotInstalledError
 from uplift.lab.chart.methods import FAMILIES, select_methods
 from uplift.lab.chart.methods.macadam1935 import boxes
 from uplift.lab.chart.table import State
@@ -36,7 +38,8 @@ def test_names_are_unique_and_selections_are_small():
     assert len(set(names)) == len(names) > 400
     usual, quick = select_methods(), select_methods(quick=True)
     assert 80 < len(usual) < 150
-    assert 8 <= len(quick) <= 12
+    assert 8 <= len(quick) <= 15
+    assert {"Jakob 2019", "Mitsuba 3"} <= {family.name for family, _ in quick}
     published = {family.name for family, method in usual if not method.build}
     assert published == {
         "Jakob 2019", "MacAdam 1935", "Mallett 2019", "Meng 2015", "Mitsuba 3", "Otsu 2018", "Smits 1999",
@@ -55,7 +58,7 @@ def test_cubes_cover_every_model_size_mode_and_type():
 
 
 def test_methods_are_selected_by_pattern():
-    assert [method.name for _, method in select_methods(("mallett2019", "sm*"))] == [
+    assert [method.name for _, method in select_methods(("mallett2019", "sm*9"))] == [
         "mallett2019",
         "smits1999",
     ]
@@ -85,7 +88,7 @@ def test_smits_and_mallett_match_colour_science(small_task, colours):
 @pytest.mark.filterwarnings("ignore::colour.utilities.ColourRuntimeWarning")
 def test_otsu_matches_colour_science(small_task, colours):
     cmfs, light = observer.aligned(small_task.sensor, 380, 730, 10)
-    sd = XYZ_to_sd_Otsu2018(small_task.sensor.xyz(colours[0]), cmfs, light)
+    sd = XYZ_to_sd_Otsu2018(published_srgb().xyz(colours[0]), cmfs, light)
     found = prepared("otsu2018", small_task).uplift(colours[:1], sd.wavelengths)
     np.testing.assert_allclose(found[0], sd.values, atol=1e-12)
 
@@ -125,3 +128,70 @@ def test_mitsuba_is_measured_or_reported_as_missing(small_task, monkeypatch):
 
 def test_families_have_a_source():
     assert all(isinstance(family, Family) and family.source for family in FAMILIES)
+
+
+TYPED = ("mallett2019", "smits1999", "moments9-8-spectra", "sigmoid-8-moments")
+
+
+@pytest.mark.parametrize("name", TYPED)
+def test_both_types_give_the_same_spectra(small_task, colours, name):
+    at = small_task.sensor.wavelengths
+    double, single = prepared(name, small_task), prepared(f"{name}-float32", small_task)
+    found = single.uplift(colours.astype(np.float32), at)
+    assert found.dtype == np.float32
+    np.testing.assert_allclose(found, double.uplift(colours, at), atol=2e-6)
+
+
+def test_compiled_cube_gives_the_reflectances_of_python(small_task, colours, monkeypatch):
+    """The compiler is that of the system; without one the method is not installed."""
+    from uplift.lab.chart.methods import c_export
+
+    options = c_export.CubeOptions("sigmoid", 3, 8, atlas=False)
+    if shutil.which("cc"):
+        at = small_task.sensor.wavelengths
+        found = c_export.prepare(small_task, options, "spectra").uplift(colours, at)
+        cube, _, _ = c_export.built_cube(small_task, options)
+        assert found.dtype == np.float32
+        np.testing.assert_allclose(found, cube.reflectance(colours, at), atol=1e-5)
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    with pytest.raises(NotInstalledError, match="cc, is not installed"):
+        c_export.prepare(small_task, options, "spectra")
+
+
+def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(small_task, colours):
+    pytest.importorskip("mitsuba")
+    try:
+        compiled = prepared("mitsuba3-llvm", small_task)
+    except NotInstalledError as error:
+        pytest.skip(str(error))
+    at = small_task.sensor.wavelengths
+    for count in (1, len(colours)):
+        found = compiled.uplift(colours[:count], at)
+        expected = prepared("mitsuba3-table", small_task).uplift(colours[:count], at)
+        np.testing.assert_allclose(found, expected, atol=1e-4)
+
+
+def test_table_of_one_colour_has_an_axis_of_colours(small_task, colours):
+    pytest.importorskip("mitsuba")
+    table = prepared("jakob2019-table64", small_task).uplift
+    at = small_task.sensor.wavelengths
+    assert table(colours[:1], at).shape == (1, len(at))
+    np.testing.assert_allclose(table(colours, at)[:1], table(colours[:1], at), atol=1e-12)
+
+
+def test_judges_have_the_range_of_the_cie_and_their_white():
+    sensors = {method.judge() for _, method in select_methods()}
+    assert len(sensors) == 4
+    for sensor in sensors:
+        assert sensor.range == RANGE
+        white = sensor.rgb(np.ones(len(sensor.wavelengths)))
+        np.testing.assert_allclose(white, 1, atol=1e-3)
+    assert published_srgb().illuminant == ours().illuminant == "D65"
+
+
+def test_smits_is_judged_under_an_equal_energy_white(small_task):
+    ((_, smits),) = select_methods(("smits1999",))
+    sensor = smits.judge()
+    assert sensor.illuminant == "E"
+    white = smits.prepare(small_task).uplift(np.ones((1, 3)), sensor.wavelengths)
+    assert round_trip(sensor, np.ones((1, 3)), white)[0] < 0.5

@@ -8,11 +8,13 @@ import re
 import matplotlib.image
 import pytest
 
-from tests.browsing import check_page
+from benchmarks.browser import browser, chromium
+from tests.browsing import check_page, open_page
 from tests.pages import Page, external_links
+from uplift.lab.chart.draw_panel import drawn_results
 from uplift.lab.chart.page import render_chart
-from uplift.lab.chart.panels import PANELS
-from uplift.lab.chart.picture import _drawn, write_pictures
+from uplift.lab.chart.panels import all_panels, panels_of
+from uplift.lab.chart.picture import SHOWN, write_panel, write_pictures
 from uplift.lab.chart.table import State
 
 HOSTILE = "</script><b>x</b>"
@@ -24,27 +26,30 @@ def folder(tmp_path_factory):
 
 
 def test_measured_methods_have_a_marker_in_every_panel(row_of, chart_of, folder):
-    numbers = {key: value for key, value in row_of("one", 1, 1).numbers.items() if key != "batch_ns"}
     chart = chart_of(
         row_of("Mallett 2019", 80, 0.4),
-        row_of("alone", 1e6, 0.1, numbers=numbers | {"time_ns": 1e6}),
+        row_of("alone", 1e6, 0.1, numbers=row_of("one", 1e6, 0.1).numbers | {"ns_64_colours": 3}),
         row_of("9 · 32³", 900, 0.02, build="uplift build", mode="refined", family="of another version"),
         row_of("wrong", 1, 1e-9, state=State.BROKEN),
     )
     write_pictures(chart, folder / "chart.png", folder / "chart.svg")
     text = (folder / "chart.svg").read_text(encoding="utf-8")
-    assert matplotlib.image.imread(folder / "chart.png").shape[:2] == (2150, 1320)
+    assert matplotlib.image.imread(folder / "chart.png").shape[:2] == (1200, 1680)
     markers = re.findall(r'id="marker-(\d+)-(\d+)"', text)
-    assert sorted(markers) == sorted((str(panel), row) for panel in range(len(PANELS)) for row in "012")
-    assert text.count('id="whisker-') == 2 * 3
+    drawn = range(SHOWN * len(chart.batches))
+    assert sorted(markers) == sorted((str(panel), row) for panel in drawn for row in "012")
+    assert text.count('id="whisker-') == 2 * 3 * len(chart.batches)
     assert "Mallett 2019" in text
     assert "wrong" not in text
 
 
 def test_page_has_every_panel_fits_and_is_accessible(row_of, chart_of, tmp_path):
-    text = render_chart(chart_of(row_of("one", 80, 0.4), row_of("two", 800, 0.2)))
+    chart = chart_of(row_of("one", 80, 0.4), row_of("two", 800, 0.2))
+    text = render_chart(chart)
     markers = re.findall(r'id="marker-(\d+)-(\d+)"', text)
-    assert sorted(markers) == sorted((str(panel), row) for panel in range(len(PANELS)) for row in "01")
+    assert sorted(markers) == sorted(
+        (str(number), row) for number in range(len(all_panels(chart))) for row in "01"
+    )
     check_page(text, tmp_path)
 
 
@@ -54,17 +59,38 @@ def test_cubes_that_others_of_their_kind_beat_are_not_drawn(row_of, chart_of):
         for row, (time, error) in enumerate([(10, 1.0), (20, 2.0), (30, 0.5)])
     ]
     others = [row_of(name, time, 3.0) for name, time in (("fast", 10), ("slow", 40))]
-    drawn = [result.method for _, result in _drawn(PANELS[0], chart_of(*cubes, *others))]
+    drawn = [result.method for _, result in drawn_results(panels_of(64)[0], chart_of(*cubes, *others))]
     assert drawn == ["cube 0", "cube 2", "fast", "slow"]
 
 
 def test_a_panel_without_a_front_is_empty(row_of, chart_of, tmp_path):
-    """The tables of the only method come from elsewhere, so nothing is drawn over the time to build."""
-    numbers = {key: value for key, value in row_of("one", 1, 1).numbers.items() if key != "build_s"}
+    numbers = {key: value for key, value in row_of("one", 1, 1).numbers.items() if "lights" not in key}
     chart = chart_of(row_of("one", 80, 0.4, numbers=numbers))
     write_pictures(chart, tmp_path / "chart.png", tmp_path / "chart.svg")
-    assert f'id="marker-{len(PANELS) - 1}-' not in (tmp_path / "chart.svg").read_text(encoding="utf-8")
-    assert render_chart(chart)
+    text = (tmp_path / "chart.svg").read_text(encoding="utf-8")
+    assert 'id="marker-0-' in text
+    assert 'id="marker-1-' not in text
+
+
+def test_the_reader_chooses_the_number_of_colours(row_of, chart_of, tmp_path):
+    if chromium() is None:
+        pytest.skip("no Chromium is installed")
+    visible = (
+        """[...document.querySelectorAll(".picture svg")].filter(each => each.checkVisibility()).length"""
+    )
+    with browser() as tab:
+        open_page(tab, render_chart(chart_of(row_of("one", 80, 0.4))), tmp_path)
+        shown = len(panels_of(64)) + 1
+        assert tab.evaluate(visible) == shown
+        assert tab.evaluate("document.querySelector('[data-choice=\"64\"]').hidden") is False
+        tab.evaluate("document.querySelector('.choice input[value=\"1\"]').click()")
+        assert tab.evaluate(visible) == shown
+        assert tab.evaluate("document.querySelector('[data-choice=\"64\"]').hidden") is True
+
+
+def test_a_panel_is_a_picture_as_wide_as_a_phone(row_of, chart_of, tmp_path):
+    write_panel(chart_of(row_of("one", 80, 0.4)), panels_of(64)[1], tmp_path / "one.png")
+    assert matplotlib.image.imread(tmp_path / "one.png").shape[1] == 410
 
 
 def test_page_is_self_contained_and_escapes_names(row_of, chart_of):

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from uplift.lab.chart.panels import CLEAR_RATIO, MIN_ERROR, PANELS
+from uplift.lab.chart.panels import CLEAR_RATIO, MIN_ERROR, all_panels, panels_of
 
+PANELS = panels_of(64)
 ROUND_TRIP = PANELS[0]
 times, errors = st.sampled_from([1.0, 10.0, 11.0, 100.0, 1e5]), st.floats(1e-6, 10)
 
@@ -19,9 +20,7 @@ times, errors = st.sampled_from([1.0, 10.0, 11.0, 100.0, 1e5]), st.floats(1e-6, 
 def test_front_is_clearly_more_accurate_than_all_faster_methods(row_of, chart_of, points):
     rows = [row_of(str(number), time, error) for number, (time, error) in enumerate(points)]
     front = ROUND_TRIP.front(chart_of(*rows))
-    points_of = {
-        row: (row.numbers["time_ns"], max(row.numbers["round_trip_mean"], MIN_ERROR)) for row in rows
-    }
+    points_of = {row: (row.numbers["ns_64"], max(row.numbers["round_trip_mean"], MIN_ERROR)) for row in rows}
     for one, other in pairwise(front):
         assert points_of[one][0] < points_of[other][0]
         assert points_of[other][1] < CLEAR_RATIO * points_of[one][1]
@@ -43,20 +42,32 @@ def test_invisible_errors_are_equal(row_of, chart_of):
 
 
 def test_method_without_a_number_is_not_drawn(row_of, chart_of):
-    built, given = row_of("built", 1, 1.0), row_of("given", 1, 0.5)
-    numbers = {key: value for key, value in given.numbers.items() if key != "build_s"}
-    elsewhere = row_of("given", 1, 0.5, numbers=numbers)
-    building = PANELS[-1]
-    assert building.time == "build_s"
-    assert building.point(elsewhere) is None
-    assert building.front(chart_of(built, elsewhere)) == (built,)
-    assert building.labels(built) == ("1 s", "1")
+    timed, other = row_of("timed", 1, 1.0), row_of("other", 1, 0.5)
+    numbers = {key: value for key, value in other.numbers.items() if not key.startswith("ns_64")}
+    other = row_of("other", 1, 0.5, numbers=numbers)
+    assert ROUND_TRIP.point(other) is None
+    assert ROUND_TRIP.front(chart_of(timed, other)) == (timed,)
 
 
-def test_panels_cover_all_errors():
-    assert [panel.error for panel in PANELS] == [
-        "round_trip", "A", "FL2", "FL7", "FL11", "LED-B3", "rms", "own_lights", "lights",
-    ]  # fmt: skip
+def test_set_up_is_part_of_the_time_of_a_call(row_of, chart_of):
+    row = row_of("one", 1000, 1.0)
+    each, whole = (panel for panel in PANELS if panel.error == "lights")
+    assert each.point(row) == (1000, 1)
+    assert whole.point(row) == (1.5e9 + 64 * 1000, 1)
+    assert whole.labels(row) == ("1.5 s", "1")
+
+
+def test_panels_of_each_number_of_colours(row_of, chart_of):
+    assert [panel.error for panel in PANELS] == ["round_trip", "lights", "lights", "rms", "own_lights"]
+    chart = chart_of(row_of("one", 1, 1.0))
+    assert chart.batches == (1, 64)
+    assert all_panels(chart) == (*panels_of(1), *panels_of(64))
+    assert panels_of(1)[0].colours == "1 colour per call"
+    assert panels_of(65_536)[0].colours == "65,536 colours per call"
+
+
+def test_chart_without_measurements_has_no_panels(chart_of):
+    assert all_panels(chart_of()) == ()
 
 
 @pytest.mark.parametrize("panel", PANELS, ids=lambda panel: panel.title)

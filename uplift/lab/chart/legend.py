@@ -19,7 +19,7 @@ WIDTHS = {OTHER_SHAPE: 9.5, "o": 6.5, "^": 6.5, "s": 6.0, "D": 5.5, "P": 7.0}
 BAR: dict[str, Any] = {"linestyle": "-", "marker": "none", "linewidth": 5, "solid_capstyle": "butt"}
 """Style of a colour in the legend, which no marker has."""
 SINGLE: dict[str, Any] = {"markerfacecolor": "white", "markeredgewidth": 1.2}
-"""Style of methods that accept one colour per call."""
+"""Style of methods that are too slow for the number of colours, and were timed with fewer per call."""
 WHISKER: dict[str, Any] = {"linestyle": "-", "marker": "none", "linewidth": 1.6}
 
 
@@ -50,7 +50,7 @@ def draw_shapes(axes: Any, chart: Chart, corner: tuple[float, float]) -> None:
     entries = [(f"uplift, mode {mode}", marker_style(mode)) for mode in modes]
     entries += [
         ("another method", marker_style("")),
-        ("another method, one colour per call", marker_style("") | single),
+        ("timed with fewer colours per call", marker_style("") | single),
         ("Pareto front", FRONT_LINE),
         ("mean to 99 % to largest", WHISKER),
     ]

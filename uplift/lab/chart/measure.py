@@ -8,14 +8,22 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.arrays import Array
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, Uplift
+from uplift.lab.chart.judge import round_trip
+from uplift.lab.chart.method import (
+    Claims,
+    Family,
+    Method,
+    NotInstalledError,
+    PreparedMethod,
+    Uplift,
+    stopwatch,
+)
 from uplift.lab.chart.table import Chart, MethodResult, State
 from uplift.lab.chart.task import Task
-from uplift.lab.chart.timing import batch_times, single_times
+from uplift.lab.chart.timing import REFERENCE, call_times
 from uplift.lab.study.held_out import spectrum_errors
 from uplift.lab.timing import environment
 
@@ -23,7 +31,7 @@ MAX_CLAIM_RATIO = 10
 """A method is broken if its mean round-trip error is larger than the claimed one by more than this factor."""
 TRIAL_COLOURS = 3
 """Colours from which the duration of a slow method is estimated."""
-SAMPLE, SAMPLE_TOLERANCE = 50, 1e-5
+SAMPLE, SAMPLE_TOLERANCE = 50, 2e-5
 """Colours of a large batch that are computed again in a small one, and the reflectance that rounding may change."""
 
 UpliftRgb = Callable[[Array], Array]
@@ -58,8 +66,9 @@ def measure_methods(
         progress(Progress("methods", len(results), len(methods)))
     effort = task.effort
     summary = (
-        f"CPU time of all threads, {effort.batch:,} colours per call, spectra at {len(task.sensor.wavelengths)} "
-        f"wavelengths; up to {effort.runs} runs; cubes are built {effort.builds}×, the last build counts; "
+        f"CPU time of all threads, {', '.join(f'{size:,}' for size in effort.batches)} colours per call, spectra at "
+        f"{len(task.sensor.wavelengths)} wavelengths; up to {effort.runs} runs; calls longer than {effort.longest:g} s "
+        f"take fewer colours; cubes are built {effort.builds}×, the last build counts; "
         f"{(time.perf_counter() - begin) / 60:.1f} minutes in all"
     )
     return Chart({**machine, **task.facts, "effort": summary}, tuple(results))
@@ -99,6 +108,7 @@ def measure_method(family: Family, method: Method, task: Task) -> MethodResult:
         family=family.name,
         source=family.source,
         mode=method.mode,
+        dtype=method.dtype,
         build=method.build,
         ask=method.call,
         note=method.note,
@@ -109,40 +119,74 @@ def measure_method(family: Family, method: Method, task: Task) -> MethodResult:
 
 
 def _numbers(method: Method, task: Task) -> dict[str, float]:
-    prepared = method.prepare(task)
-    uplift = _guarded(prepared.uplift, task.sensor.wavelengths)
+    prepared = _prepared(method, task)
+    uplift = _guarded(prepared.uplift, task.sensor.wavelengths, method.dtype)
     numbers: dict[str, float] = {"bytes": prepared.bytes}
-    if prepared.seconds is not None:
-        numbers["build_s"] = prepared.seconds
-    numbers |= _errors(method, uplift, task)
+    if prepared.build_s is not None:
+        numbers["build_s"] = prepared.build_s
+    numbers["load_s"] = prepared.load_s + _first_call(uplift, task.rgb[:1])
+    numbers["setup_s"] = numbers.get("build_s", 0.0) + numbers["load_s"]
+    numbers |= _round_trips(method, prepared, uplift, task) | _errors(method, uplift, task)
     if method.batch:
-        _check_batch(uplift, task.effort.batch)
-    single = single_times(uplift, task.effort)
-    batch = batch_times(uplift, task.effort) if method.batch else {}
-    return numbers | batch | single | {"time_ns": batch.get("batch_ns", single["single_ns"])}
+        _check_batch(uplift, min(task.effort.batches[-1], REFERENCE))
+    return numbers | call_times(uplift, method.dtype, task.effort, batch=method.batch)
 
 
-def _guarded(uplift: Uplift, wavelengths: Array) -> UpliftRgb:
+def _prepared(method: Method, task: Task) -> PreparedMethod:
+    try:
+        return method.prepare(task)
+    except NotInstalledError:
+        raise
+    except Exception as error:  # code of other packages may raise anything
+        raise BrokenError(f"cannot be prepared: {_text(error)}") from error
+
+
+def _first_call(uplift: UpliftRgb, rgb: Array) -> float:
+    """CPU seconds that the first call takes longer than the second."""
+    first, second = (stopwatch(lambda: uplift(rgb))[1] for _ in range(2))
+    return max(first - second, 0.0)
+
+
+def _guarded(uplift: Uplift, wavelengths: Array, dtype: str) -> UpliftRgb:
     """Function of colours (n, 3) alone that raises no error but `BrokenError`."""
     width = len(wavelengths)
 
     def uplift_rgb(rgb: Array) -> Array:
         try:
-            spectra = uplift(rgb, wavelengths)
+            spectra = uplift(rgb.astype(dtype, copy=False), wavelengths)
         except Exception as error:  # code of other packages may raise anything
-            raise BrokenError(f"raises {type(error).__name__}: {str(error)[:80]}") from error
+            raise BrokenError(f"raises {_text(error)}") from error
         if spectra.shape != (len(rgb), width):
             raise BrokenError(f"spectra have shape {spectra.shape} instead of ({len(rgb)}, {width})")
+        if spectra.dtype != dtype:
+            raise BrokenError(f"spectra are {spectra.dtype} instead of {dtype}")
         return spectra
 
     return uplift_rgb
 
 
+def _text(error: Exception) -> str:
+    return f"{type(error).__name__}: {str(error)[:80]}"
+
+
+def _round_trips(method: Method, prepared: PreparedMethod, uplift: UpliftRgb, task: Task) -> dict[str, float]:
+    """Judge at 1 nm with the stated white and matrix, and with the tables that cubes are fitted to."""
+    sensor = method.judge()
+    rgb, spectra = _spectra(
+        method, _guarded(prepared.uplift, sensor.wavelengths, method.dtype), task, task.rgb
+    )
+    errors = round_trip(sensor, rgb, spectra)
+    _check_round_trip(errors, method.claims)
+    fitted = round_trip(task.sensor, rgb, uplift(rgb))
+    return (
+        _summary("round_trip", errors)
+        | _summary("coarse_round_trip", fitted)
+        | {"round_trip_colours": len(rgb)}
+    )
+
+
 def _errors(method: Method, uplift: UpliftRgb, task: Task) -> dict[str, float]:
-    rgb, spectra = _spectra(method, uplift, task, task.rgb)
-    round_trip = delta_e_rgb(task.sensor, rgb, task.sensor.rgb(spectra))
-    _check_round_trip(round_trip, method.claims)
-    numbers = _summary("round_trip", round_trip) | {"round_trip_colours": len(rgb)}
+    numbers: dict[str, float] = {}
     for prefix, name, measured in (("", "unseen", task.unseen), ("own_", "own", task.own)):
         rgb, spectra = _spectra(method, uplift, task, np.clip(task.sensor.rgb(measured), 0, 1))
         errors = spectrum_errors(spectra, measured[: len(rgb)], CHART_LIGHTS)
@@ -155,16 +199,15 @@ def _errors(method: Method, uplift: UpliftRgb, task: Task) -> dict[str, float]:
 
 
 def _spectra(method: Method, uplift: UpliftRgb, task: Task, rgb: Array) -> tuple[Array, Array]:
-    """As many of the colours as time allows, (k, 3), and their spectra (k, N)."""
+    """As many of the colours as time allows, (k, 3), and their spectra (k, N) in float64."""
     uplift(rgb[:1])
-    begin = time.process_time()
-    first = uplift(rgb[:TRIAL_COLOURS])
-    seconds = max(time.process_time() - begin, 1e-9) / TRIAL_COLOURS
-    count = len(rgb) if method.batch else min(len(rgb), int(task.effort.seconds_per_error / seconds))
+    first, seconds = stopwatch(lambda: uplift(rgb[:TRIAL_COLOURS]))
+    each = max(seconds, 1e-9) / TRIAL_COLOURS
+    count = len(rgb) if method.batch else min(len(rgb), int(task.effort.seconds_per_error / each))
     rest = count > TRIAL_COLOURS
     spectra = np.concatenate([first, uplift(rgb[TRIAL_COLOURS:count])]) if rest else first
     _check_range(spectra, method.claims)
-    return rgb[: len(spectra)], spectra
+    return rgb[: len(spectra)], spectra.astype(float)
 
 
 def _check_batch(uplift: UpliftRgb, count: int) -> None:

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
 
-from uplift.common.arrays import Array
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array, Values
+from uplift.lab.chart.judge import published_srgb
 from uplift.lab.chart.task import Task
 
 Result = TypeVar("Result")
-Uplift = Callable[[Array, Array], Array]
-"""From linear sRGB (n, 3) in [0, 1] and wavelengths (N,) in nm to reflectances (n, N)."""
+Uplift = Callable[[Values, Array], Values]
+"""From linear sRGB (n, 3) in [0, 1] and wavelengths (N,) in nm to reflectances (n, N), in the method's data type."""
+DTYPES = ("float64", "float32")
 
 
 class NotInstalledError(Exception):
@@ -48,13 +51,16 @@ class PreparedMethod:
         From linear sRGB (n, 3) in [0, 1] and wavelengths (N,) in nm to reflectances (n, N).
     bytes : int
         Size of its tables.
-    seconds : float or None
-        CPU seconds of their build; 0 if there is nothing to build, None if they come from elsewhere.
+    build_s : float or None
+        CPU seconds to compute its tables, once; 0 if there are none to compute, None if they come from elsewhere.
+    load_s : float
+        CPU seconds to read and prepare them in a process. The first call, which may compile, is charged separately.
     """
 
     uplift: Uplift
     bytes: int
-    seconds: float | None = 0.0
+    build_s: float | None = 0.0
+    load_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -69,6 +75,10 @@ class Method:
         From a `Task` to a `PreparedMethod`. Raises `NotInstalledError`.
     claims : Claims
         Claims that its answers are checked against.
+    dtype : {"float64", "float32"}
+        Data type of colours and reflectances.
+    judge : callable
+        Returns the sensor of the white and the matrix that the method states; see `uplift.lab.chart.judge`.
     batch : bool
         Whether it accepts many colours per call; otherwise ``uplift`` loops over them.
     usual, quick : bool
@@ -87,6 +97,8 @@ class Method:
     title: str
     prepare: Callable[[Task], PreparedMethod]
     claims: Claims = field(default_factory=Claims)
+    dtype: str = "float64"
+    judge: Callable[[], Sensor] = published_srgb
     batch: bool = True
     usual: bool = True
     quick: bool = False
@@ -105,6 +117,33 @@ class Family:
     source: str
     colour: str
     methods: tuple[Method, ...]
+
+
+def in_both_types(method: Method, prepare: Callable[[Task, str], PreparedMethod]) -> tuple[Method, Method]:
+    """Return a method in float64, and in float32 with ``-float32`` after its name.
+
+    Parameters
+    ----------
+    method : Method
+        The method in float64.
+    prepare : callable
+        From a `Task` and a data type to a `PreparedMethod`.
+
+    Returns
+    -------
+    tuple of Method
+        Both; the second one is not part of a quick run.
+    """
+    single = replace(
+        method,
+        name=f"{method.name}-float32",
+        title=f"{method.title}, float32",
+        label=f"{method.label or method.title} f32",
+        prepare=lambda task: prepare(task, "float32"),
+        dtype="float32",
+        quick=False,
+    )
+    return replace(method, prepare=lambda task: prepare(task, "float64")), single
 
 
 def stopwatch(function: Callable[[], Result]) -> tuple[Result, float]:

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.legend import family_colours
-from uplift.lab.chart.panels import PANELS
-from uplift.lab.chart.picture import page_panels
-from uplift.lab.chart.table import Chart, MethodResult, State
+from uplift.lab.chart.panels import all_panels
+from uplift.lab.chart.picture import page_key, page_panels
+from uplift.lab.chart.table import BATCH, Chart, MethodResult, State
+from uplift.lab.chart.timing import REFERENCE
 from uplift.viz.format import format_build_time, format_error, format_size, format_time
 from uplift.viz.tooltip import Tooltip
 
 TITLE = "Spectral upsampling: speed against accuracy"
 ERRORS = {
-    "round_trip": "round trip",
+    "round_trip": "round trip, 1 nm",
+    "coarse_round_trip": "round trip, 5 nm",
     **{light: light for light in CHART_LIGHTS},
     "rms": "rms",
     "own_lights": "own, mean",
@@ -40,11 +42,14 @@ def render_chart(chart: Chart) -> str:
         title=TITLE,
         chart=chart,
         pictures=page_panels(chart),
+        key=page_key(chart),
         families=family_colours(result.family for result in chart.measured),
         tooltips=[_tooltip(result) for result in chart.results],
         facts=chart.facts,
         sources=list(dict.fromkeys(f"{result.family}: {result.source}" for result in chart.results)),
-        panels=PANELS,
+        panels=all_panels(chart),
+        batches=chart.batches,
+        chosen=max((batch for batch in chart.batches if batch <= REFERENCE), default=0),
         errors=ERRORS,
         not_measured=[result for result in chart.results if result.state != State.MEASURED],
     )
@@ -58,14 +63,14 @@ def _tooltip(result: MethodResult) -> Tooltip:
 def _lines(result: MethodResult) -> list[tuple[str, str]]:
     numbers = result.numbers
     lines = []
-    if "batch_ns" in numbers:
-        lines.append(
-            (f"{numbers['batch_colours']:,.0f} per call", f"{format_time(numbers['batch_ns'])} each")
-        )
-    lines.append(("one colour per call", format_time(numbers["single_ns"])))
+    for size in sorted(int(match[1]) for name in numbers if (match := BATCH.fullmatch(name))):
+        used = int(numbers[f"ns_{size}_colours"])
+        fewer = f", timed with {used:,}" if used < size else ""
+        lines.append((f"{size:,} per call{fewer}", f"{format_time(numbers[f'ns_{size}'])} each"))
     lines.append(("memory", format_size(numbers["bytes"])))
-    if "build_s" in numbers:
-        lines.append(("build", format_build_time(numbers["build_s"])))
+    for name in ("build", "load"):
+        if f"{name}_s" in numbers:
+            lines.append((name, format_build_time(numbers[f"{name}_s"])))
     lines.append(("errors", "mean / 99 % / largest"))
     lines += [
         (name, " / ".join(format_error(numbers[f"{error}_{kind}"]) for kind in ("mean", "p99", "max")))

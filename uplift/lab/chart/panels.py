@@ -6,13 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.table import Chart, MethodResult
-from uplift.viz.format import format_build_time, format_error, format_time
+from uplift.viz.format import format_error, format_time
 from uplift.viz.scatter import pareto_front
 
-MIN_TIMES = {"time_ns": 1.0, "build_s": 1e-3}
-"""Left ends of the time axes; methods with nothing to build are drawn there."""
+MIN_TIME = 1.0
+"""Left end of the time axes in ns."""
 MIN_ERROR = 1e-4
 """Smaller errors are not visible and are drawn here, so that the faster of two such methods is on the front."""
 CLEAR_RATIO = 0.99
@@ -26,13 +25,15 @@ class Panel:
     Parameters
     ----------
     title : str
-        Title.
+        Title, without the number of colours.
     error : str
         Name of the error in `MethodResult.numbers`, without ``_mean``; the mean is drawn.
     unit : str
         Its unit.
-    time : str
-        Name of the time.
+    batch : int
+        Number of colours per call.
+    whole : bool
+        Whether time is that of all colours of the batch and of the set-up, instead of that per RGB.
     whiskers : bool
         Whether lines join the mean with the 99 % quantile and the largest error.
     """
@@ -40,21 +41,37 @@ class Panel:
     title: str
     error: str
     unit: str
-    time: str = "time_ns"
+    batch: int
+    whole: bool = False
     whiskers: bool = False
+
+    @property
+    def colours(self) -> str:
+        """Return the number of colours per call as text."""
+        return f"{self.batch:,} colour{'s' if self.batch > 1 else ''} per call"
+
+    @property
+    def axis(self) -> str:
+        """Return the label of the time axis."""
+        return "CPU time of a call, with set-up" if self.whole else "CPU time per RGB"
+
+    def time(self, result: MethodResult) -> float | None:
+        """Return the time in ns, None if it is unknown."""
+        each = result.numbers.get(f"ns_{self.batch}")
+        if each is None or not self.whole:
+            return each
+        return 1e9 * result.numbers["setup_s"] + self.batch * each
 
     def point(self, result: MethodResult) -> tuple[float, float] | None:
         """Return time and mean error, None if either is unknown."""
-        time, error = result.numbers.get(self.time), result.numbers.get(f"{self.error}_mean")
+        time, error = self.time(result), result.numbers.get(f"{self.error}_mean")
         if time is None or error is None:
             return None
-        return max(time, MIN_TIMES[self.time]), max(error, MIN_ERROR)
+        return max(time, MIN_TIME), max(error, MIN_ERROR)
 
     def labels(self, result: MethodResult) -> tuple[str, str]:
         """Return time and mean error as text."""
-        time = result.numbers[self.time]
-        label = format_build_time(time) if self.time == "build_s" else format_time(time)
-        return label, format_error(result.numbers[f"{self.error}_mean"])
+        return format_time(self.time(result) or 0.0), format_error(result.numbers[f"{self.error}_mean"])
 
     def whisker(self, result: MethodResult) -> tuple[float, float]:
         """Return the 99 % quantile and the largest error."""
@@ -68,11 +85,43 @@ class Panel:
         return tuple(points[row][0] for row in pareto_front(array, CLEAR_RATIO))
 
 
-PANELS = (
-    Panel("Round trip under D65", "round_trip", "ΔE00", whiskers=True),
-    *(Panel(f"Unseen materials under {light}", light, "ΔE00") for light in CHART_LIGHTS),
-    Panel("Unseen materials, the spectrum", "rms", "rms of reflectance"),
-    Panel("Materials of the atlas itself, mean of the five lights", "own_lights", "ΔE00"),
-    Panel("Building: unseen materials, mean of the five lights", "lights", "ΔE00", time="build_s"),
-)
-AXES = {"time_ns": "CPU time per RGB", "build_s": "CPU time to build"}
+UNSEEN = "Unseen materials, mean of five lights"
+
+
+def panels_of(batch: int) -> tuple[Panel, ...]:
+    """Return the panels of a number of colours per call.
+
+    Parameters
+    ----------
+    batch : int
+        Number of colours.
+
+    Returns
+    -------
+    tuple of Panel
+        Round trip, unseen materials, their spectra, and those of the atlas over the time per RGB; unseen materials over
+        the time of all colours with set-up.
+    """
+    return (
+        Panel("Round trip, judged at 1 nm", "round_trip", "ΔE00", batch, whiskers=True),
+        Panel(UNSEEN, "lights", "ΔE00", batch),
+        Panel(f"{UNSEEN}, with set-up", "lights", "ΔE00", batch, whole=True),
+        Panel("Unseen materials, the spectrum", "rms", "rms of reflectance", batch),
+        Panel("Materials of the atlas itself, mean of five lights", "own_lights", "ΔE00", batch),
+    )
+
+
+def all_panels(chart: Chart) -> tuple[Panel, ...]:
+    """Return the panels of all numbers of colours per call, those of one number together.
+
+    Parameters
+    ----------
+    chart : Chart
+        The chart.
+
+    Returns
+    -------
+    tuple of Panel
+        The panels, by ascending number.
+    """
+    return tuple(panel for batch in chart.batches for panel in panels_of(batch))

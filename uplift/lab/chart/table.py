@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from enum import StrEnum
@@ -20,8 +21,10 @@ FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 MAX_BYTES = 16 << 20
 """Largest file that is read."""
 MAX_NUMBER = 1e30
-REQUIRED = ("bytes", "time_ns", "single_ns", "round_trip_mean", "round_trip_colours", "unseen_spectra")
+REQUIRED = ("bytes", "time_ns", "setup_s", "round_trip_mean", "coarse_round_trip_mean", "round_trip_colours")
 """Numbers of every method that was measured."""
+BATCH = re.compile(r"ns_([1-9]\d{0,8})")
+"""Name of a time by the number of colours per call."""
 KINDS = ("mean", "p99", "max")
 """Suffixes of the numbers of an error, which come together."""
 HINT = "give the CSV file of a chart"
@@ -41,18 +44,18 @@ class MethodResult:
 
     Parameters
     ----------
-    method, title, label, family, source, mode, build, note : str
+    method, title, label, family, source, mode, dtype, build, note : str
         As in `Method` and `Family`. The field `ask` is ``Method.call``.
     state : State
         Whether the method was measured.
     why : str
         The reason if it was not.
     numbers : mapping of str to float
-        ``bytes`` and ``build_s``; ``batch_ns`` and ``single_ns`` per RGB, each with ``_least``, ``_most``, ``_runs``
-        and ``_colours``; ``time_ns``, the batch time or without one the single time. Errors ``round_trip``, of every
-        light, ``lights`` (their mean) and ``rms``, and prefixed by ``own_`` those at entries that cubes were built
-        from, each with ``_mean``, ``_p99`` and ``_max``. Sizes ``round_trip_colours``, ``unseen_spectra`` and
-        ``own_spectra`` of the test set.
+        ``bytes``; CPU seconds ``build_s``, ``load_s`` and ``setup_s``, their sum; ``ns_N`` per RGB with N colours per
+        call, see `uplift.lab.chart.timing.call_times`; ``time_ns``, that of the recommendation. Errors ``round_trip``
+        (judged at 1 nm), ``coarse_round_trip`` (with the tables of cubes), of every light, ``lights`` (their mean) and
+        ``rms``, and prefixed by ``own_`` those at entries that cubes were built from, each with ``_mean``, ``_p99`` and
+        ``_max``. Sizes ``round_trip_colours``, ``unseen_spectra`` and ``own_spectra`` of the test set.
     """
 
     method: str
@@ -61,6 +64,7 @@ class MethodResult:
     family: str
     source: str
     mode: str
+    dtype: str
     build: str
     ask: str
     note: str
@@ -88,6 +92,12 @@ class Chart:
     def measured(self) -> tuple[MethodResult, ...]:
         """Return the results of the methods that were measured."""
         return tuple(result for result in self.results if result.state == State.MEASURED)
+
+    @property
+    def batches(self) -> tuple[int, ...]:
+        """Return the numbers of colours per call that were timed, ascending."""
+        names = {name for result in self.measured for name in result.numbers}
+        return tuple(sorted(int(match[1]) for name in names if (match := BATCH.fullmatch(name))))
 
 
 TEXTS = tuple(field.name for field in fields(MethodResult) if field.name != "numbers")
@@ -209,8 +219,8 @@ def _required(numbers: Mapping[str, float]) -> Iterator[str]:
         stem, _, kind = name.rpartition("_")
         if kind in KINDS:
             yield from (f"{stem}_{each}" for each in KINDS)
-    if "batch_ns" in numbers:
-        yield "batch_colours"
+        if BATCH.fullmatch(name):
+            yield from (f"{name}_{each}" for each in ("least", "most", "colours"))
 
 
 def _chart_error(path: str | os.PathLike[str], problem: str, code: str) -> ChartFileError:

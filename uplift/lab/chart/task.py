@@ -34,8 +34,10 @@ class Effort:
         Largest number of repetitions of a timing.
     lap : float
         Shortest duration of a repetition in seconds.
-    batch : int
-        Largest number of colours per call.
+    batches : tuple of int
+        Numbers of colours per call, ascending.
+    longest : float
+        CPU seconds of a call; slower ones take fewer colours than the batch has.
     builds : int
         Number of builds of each cube; the last one is timed.
     """
@@ -43,11 +45,12 @@ class Effort:
     seconds_per_error: float = 10.0
     runs: int = 7
     lap: float = 0.1
-    batch: int = 1 << 16
+    batches: tuple[int, ...] = (1, 1000, 65_536, 1_000_000)
+    longest: float = 4.0
     builds: int = 2
 
 
-QUICK = Effort(seconds_per_error=0.3, runs=3, lap=0.01, batch=1 << 12, builds=1)
+QUICK = Effort(seconds_per_error=0.3, runs=3, lap=0.01, batches=(1, 1000, 65_536), longest=0.1, builds=1)
 
 
 @dataclass(frozen=True, eq=False)

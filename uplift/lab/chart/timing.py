@@ -1,13 +1,14 @@
-"""CPU time per colour, of many colours per call and of one per call."""
+"""CPU time per colour, by the number of colours per call."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import cycle, islice
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from uplift.common.arrays import Array
 from uplift.lab.chart.task import Effort
 from uplift.lab.timing import Spread, time_calls
 
@@ -15,48 +16,89 @@ MIN_RUNS = 3
 MAX_LAPS = 15
 """Duration of all runs together, in units of `Effort.lap`, unless `MIN_RUNS` take longer."""
 TRIAL = 512
-"""Colours from which the size of the batch is estimated."""
-SINGLE_COLOURS = 64
-"""Different colours for single calls."""
+"""Colours from which the duration of the first batch of more than one is estimated."""
+INPUTS, INPUT_COLOURS = 64, 1 << 16
+"""Different inputs of repeated calls: at most so many, with so many colours in all."""
+REFERENCE = 65_536
+"""Colours per call of the time by which cubes are recommended."""
+
+Call = Callable[[Any], object]
 
 
-def batch_times(uplift: Callable[[Array], object], effort: Effort) -> dict[str, float]:
-    """Measure calls with many colours, fewer of them for slow methods; ns of all threads per colour."""
-    rgb = np.random.default_rng(2).random((effort.batch, 3))
-    uplift(rgb[:1])
-    _, trial = time_calls(lambda: uplift(rgb[:TRIAL]), 1)
-    rgb = rgb[: max(int(MAX_LAPS * effort.lap * TRIAL / max(trial.median, 1e-9)), TRIAL)]
-    return _numbers("batch", _repeated(lambda: uplift(rgb), len(rgb), effort), len(rgb))
+def call_times(uplift: Call, dtype: str, effort: Effort, *, batch: bool) -> dict[str, float]:
+    """Time calls with each number of colours of an effort, after one that warms up.
+
+    Parameters
+    ----------
+    uplift : callable
+        Function of colours (n, 3).
+    dtype : str
+        Data type of the colours.
+    effort : Effort
+        Numbers of colours, and limits.
+    batch : bool
+        Whether the function takes many colours at once; otherwise it loops over them.
+
+    Returns
+    -------
+    dict of str to float
+        ``ns_N`` for each N colours per call: CPU nanoseconds of all threads per colour, the median; with ``_least``,
+        ``_most``, ``_runs``, and ``_colours``, fewer than N if N would take longer than ``effort.longest``.
+    """
+    numbers: dict[str, float] = {}
+    found, shortened = None, False
+    for size in effort.batches:
+        if shortened and found is not None:  # as many colours per call as before
+            numbers |= _numbers(size, *found)
+            continue
+        seconds = _expected(uplift, dtype, found, size, batch=batch)
+        count = max(min(size, int(effort.longest / max(seconds, 1e-12))), 1)
+        found, shortened = (_timed(uplift, dtype, count, effort), count), count < size
+        numbers |= _numbers(size, *found)
+    reference = max((size for size in effort.batches if size <= REFERENCE), default=effort.batches[0])
+    return numbers | {"time_ns": numbers[f"ns_{reference}"]}
 
 
-def single_times(uplift: Callable[[Array], object], effort: Effort) -> dict[str, float]:
-    """Measure calls with one colour; ns of all threads per call."""
-    colours = np.random.default_rng(3).random((SINGLE_COLOURS, 1, 3))
-    uplift(colours[0])
-    _, once = time_calls(lambda: uplift(colours[1]), MIN_RUNS)
-    calls = max(1, min(int(effort.lap / 5 / max(once.median, 1e-9)), 1000))
+def _expected(uplift: Call, dtype: str, found: tuple[Spread, int] | None, size: int, *, batch: bool) -> float:
+    """CPU seconds per colour, from the calls before or from a trial."""
+    if found is not None and (found[1] > 1 or not batch):
+        return found[0].median
+    count = min(size, TRIAL) if batch else 1
+    rgb = _colours(1, count, dtype)[0]
+    uplift(rgb)
+    _, cpu = time_calls(lambda: uplift(rgb), 1)
+    return cpu.median / count
+
+
+def _timed(uplift: Call, dtype: str, count: int, effort: Effort) -> Spread:
+    """CPU seconds per colour of calls with ``count`` colours."""
+    inputs = _colours(max(1, min(INPUTS, INPUT_COLOURS // count)), count, dtype)
+    _, once = time_calls(lambda: uplift(inputs[0]), 1)
+    if once.min < effort.lap * MAX_LAPS:
+        _, once = time_calls(lambda: uplift(inputs[0]), 1)
+    calls = max(1, min(int(effort.lap / 5 / max(once.min, 1e-9)), 1000))
 
     def run() -> None:
-        for rgb in islice(cycle(colours), calls):
+        for rgb in islice(cycle(inputs), calls):
             uplift(rgb)
 
-    return _numbers("single", _repeated(run, calls, effort), calls)
-
-
-def _repeated(run: Callable[[], object], colours: int, effort: Effort) -> Spread:
-    """CPU seconds per colour, after a run that warms up and determines the number of the others."""
-    _, first = time_calls(run, 1)
-    runs = int(MAX_LAPS * effort.lap / max(first.median, 1e-9))
+    runs = int(MAX_LAPS * effort.lap / max(calls * once.min, 1e-9))
     _, cpu = time_calls(run, min(max(runs, MIN_RUNS), effort.runs))
-    return cpu.scaled(1 / colours)
+    return cpu.scaled(1 / (calls * count))
 
 
-def _numbers(kind: str, seconds: Spread, colours: int) -> dict[str, float]:
+def _colours(inputs: int, count: int, dtype: str) -> NDArray[Any]:
+    """Random RGB (inputs, count, 3)."""
+    return np.random.default_rng(2).random((inputs, count, 3)).astype(dtype)
+
+
+def _numbers(size: int, seconds: Spread, count: int) -> dict[str, float]:
     ns = seconds.scaled(1e9)
+    key = f"ns_{size}"
     return {
-        f"{kind}_ns": ns.median,
-        f"{kind}_ns_least": ns.min,
-        f"{kind}_ns_most": ns.max,
-        f"{kind}_runs": ns.runs,
-        f"{kind}_colours": colours,
+        key: ns.median,
+        f"{key}_least": ns.min,
+        f"{key}_most": ns.max,
+        f"{key}_runs": ns.runs,
+        f"{key}_colours": count,
     }

@@ -49,7 +49,7 @@ def select_methods(patterns: tuple[str, ...] = (), *, quick: bool = False) -> li
 
     Examples
     --------
-    >>> [method.name for _, method in select_methods(("s*1999", "mallett*"))]
+    >>> [method.name for _, method in select_methods(("s*1999", "mallett*9"))]
     ['mallett2019', 'smits1999']
     """
     methods = [(family, method) for family in FAMILIES for method in family.methods]

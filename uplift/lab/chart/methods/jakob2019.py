@@ -11,16 +11,21 @@ Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral up
 
 from __future__ import annotations
 
+from functools import partial
+from typing import Any
+
 from uplift.colorimetry.observer import aligned
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
+from uplift.lab.chart.judge import published_srgb
 from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbytes, one_by_one, stopwatch
+from uplift.lab.chart.methods.mitsuba3 import judge, table_file
 from uplift.lab.chart.task import Task
 from uplift.models.sigmoid import evaluate_unscaled
 
 SIZE = 5
-"""Points along each edge of the 3 × 5³ table: colour-science fits it in Python in half a minute. Published tables
-have 64."""
+"""Points along each edge of the 3 × 5³ table that colour-science fits in Python in half a minute; for 64, as published,
+it takes many hours."""
 
 
 def prepare_direct(task: Task) -> PreparedMethod:
@@ -29,7 +34,7 @@ def prepare_direct(task: Task) -> PreparedMethod:
     cmfs, light = aligned(task.sensor)
 
     def spectrum(rgb: Array) -> tuple[Array, Array]:
-        distribution = convert(task.sensor.xyz(rgb), cmfs, light)
+        distribution = convert(published_srgb().xyz(rgb), cmfs, light)
         return distribution.wavelengths, distribution.values
 
     return PreparedMethod(one_by_one(spectrum), nbytes((cmfs.values, light.values)))
@@ -44,11 +49,20 @@ def prepare_table(task: Task) -> PreparedMethod:
         lambda: table.generate(space, *aligned(task.sensor), SIZE, print_callable=lambda *_: None)
     )
 
-    def uplift(rgb: Array, wavelengths: Array) -> Array:
-        # For one colour the result has no axis of colours.
-        return evaluate_unscaled(table.RGB_to_coefficients(rgb).reshape(-1, 3), wavelengths)
+    return PreparedMethod(partial(look_up, table), table.coefficients.nbytes, seconds)
 
-    return PreparedMethod(uplift, table.coefficients.nbytes, seconds)
+
+def prepare_published_table(task: Task) -> PreparedMethod:
+    """Read the table of 64 that is part of Mitsuba 3."""
+    path, table = table_file(), colour_science().recovery.LUT3D_Jakob2019()
+    _, seconds = stopwatch(lambda: table.read(str(path)))
+    return PreparedMethod(partial(look_up, table), table.coefficients.nbytes, None, seconds)
+
+
+def look_up(table: Any, rgb: Array, wavelengths: Array) -> Array:
+    """Interpolate the coefficients of a table of colour-science, and evaluate them."""
+    # For one colour the result has no axis of colours.
+    return evaluate_unscaled(table.RGB_to_coefficients(rgb).reshape(-1, 3), wavelengths)
 
 
 FAMILIES = (
@@ -63,13 +77,24 @@ FAMILIES = (
                 prepare_direct,
                 Claims(round_trip=0.1),
                 batch=False,
+                quick=True,
                 note="colour-science, which stops at ΔE76 0.024",
             ),
             Method(
                 "jakob2019-table",
                 f"Jakob 2019, table of {SIZE}",
                 prepare_table,
-                note=f"colour-science, 3 × {SIZE}³ points; see Mitsuba 3 for a table of 64",
+                usual=False,
+                note=f"colour-science, 3 × {SIZE}³ points",
+            ),
+            Method(
+                "jakob2019-table64",
+                "Jakob 2019, table of 64",
+                prepare_published_table,
+                Claims(round_trip=0.1),
+                judge=judge,
+                quick=True,
+                note="looked up by colour-science in the table of Mitsuba 3",
             ),
         ),
     ),

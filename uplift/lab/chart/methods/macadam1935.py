@@ -19,6 +19,7 @@ from scipy.spatial import cKDTree
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
+from uplift.lab.chart.judge import ours
 from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbytes, stopwatch
 from uplift.lab.chart.task import Task
 
@@ -163,6 +164,7 @@ FAMILIES = (
                 "MacAdam 1935",
                 prepare,
                 Claims(round_trip=0.01),
+                judge=ours,
                 quick=True,
                 note="box spectra, a baseline of this package",
             ),

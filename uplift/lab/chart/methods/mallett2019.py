@@ -14,19 +14,20 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
-from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod
+from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, in_both_types, stopwatch
 from uplift.lab.chart.task import Task
 
 
-def prepare(task: Task) -> PreparedMethod:
+def prepare(task: Task, dtype: str = "float64") -> PreparedMethod:
     """Prepare the basis."""
     primaries = colour_science().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
-    values = np.ascontiguousarray(primaries.values.T)
+    values, seconds = stopwatch(lambda: np.ascontiguousarray(primaries.values.T))
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
-        return rgb @ np.stack([np.interp(wavelengths, primaries.wavelengths, row) for row in values])
+        at = np.stack([np.interp(wavelengths, primaries.wavelengths, row) for row in values])
+        return rgb @ at.astype(dtype, copy=False)
 
-    return PreparedMethod(uplift, values.nbytes)
+    return PreparedMethod(uplift, values.nbytes, load_s=seconds)
 
 
 FAMILIES = (
@@ -34,7 +35,7 @@ FAMILIES = (
         "Mallett 2019",
         "Mallett & Yuksel, Spectral primary decomposition for rendering with sRGB reflectance, EGSR 2019",
         "#8e44ad",
-        (
+        in_both_types(
             Method(
                 "mallett2019",
                 "Mallett 2019",
@@ -43,6 +44,7 @@ FAMILIES = (
                 quick=True,
                 note="basis of colour-science, one product of matrices",
             ),
+            prepare,
         ),
     ),
 )

@@ -14,6 +14,7 @@ from __future__ import annotations
 from uplift.colorimetry.observer import aligned
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
+from uplift.lab.chart.judge import published_srgb
 from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbytes, one_by_one
 from uplift.lab.chart.task import Task
 
@@ -27,7 +28,7 @@ def prepare(task: Task) -> PreparedMethod:
     cmfs, light = aligned(task.sensor, step=STEP)
 
     def spectrum(rgb: Array) -> tuple[Array, Array]:
-        distribution = convert(task.sensor.xyz(rgb), cmfs, light)
+        distribution = convert(published_srgb().xyz(rgb), cmfs, light)
         return distribution.wavelengths, distribution.values
 
     return PreparedMethod(one_by_one(spectrum), nbytes((cmfs.values, light.values)))

@@ -1,7 +1,8 @@
-"""Sigmoids of quadratic polynomials from the table of Mitsuba 3.
+"""Sigmoids of quadratic polynomials from the table of Mitsuba 3: from Python a colour per call, and compiled by LLVM.
 
 Domain: linear sRGB in [0, 1]. Range: reflectance in [0, 1] at any wavelengths. The table of 64 points along each edge
-is part of Mitsuba; it is queried from Python with one colour per call.
+is part of Mitsuba. From Python its lookup takes one colour per call. A bitmap texture looks up those of all its texels
+when it is loaded, and its evaluation is vectorised.
 
 References
 ----------
@@ -11,25 +12,40 @@ Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral up
 
 from __future__ import annotations
 
+import math
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, PreparedMethod
+from uplift.lab.chart.judge import stated_sensor
+from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, PreparedMethod, stopwatch
 from uplift.lab.chart.task import Task
 from uplift.models.sigmoid import evaluate_unscaled
 
-VARIANT = "scalar_spectral"
-"""The spectral variant that does not need LLVM."""
+VARIANT, COMPILED = "scalar_spectral", "llvm_ad_spectral"
+"""The spectral variant that does not need LLVM, and the vectorised one."""
 TABLE = Path("data", "srgb.coeff")
+XYZ_TO_RGB = np.array(
+    [[3.240479, -1.537150, -0.498535], [-0.969256, 1.875991, 0.041556], [0.055648, -0.204043, 1.057311]]
+)
+"""From XYZ to linear sRGB, in rgb2spec, the program that fitted the table."""
+AT_ONCE = 4
+"""Wavelengths of an evaluation."""
 
 
 def prepare(task: Task) -> PreparedMethod:
     """Load Mitsuba and locate its table."""
-    return PreparedMethod(spectra, (Path(_mitsuba().__file__).parent / TABLE).stat().st_size, None)
+    return PreparedMethod(spectra, table_file().stat().st_size, None)
+
+
+def table_file() -> Path:
+    """Return the file of the table; raise `NotInstalledError` without Mitsuba."""
+    return Path(_mitsuba().__file__).parent / TABLE
 
 
 def spectra(rgb: Array, wavelengths: Array) -> Array:
@@ -39,12 +55,52 @@ def spectra(rgb: Array, wavelengths: Array) -> Array:
     return evaluate_unscaled(np.array(coefficients, dtype=float), wavelengths)
 
 
-def _mitsuba() -> Any:
+def prepare_compiled(task: Task) -> PreparedMethod:
+    """Load Mitsuba's vectorised variant, on one thread, without the kernels of earlier calls."""
+    size, first = table_file().stat().st_size, task.rgb[:1]
+    drjit = import_module("drjit")
+    if not drjit.has_backend(drjit.JitBackend.LLVM):
+        raise NotInstalledError("LLVM is not installed: apt install libllvm19, or DRJIT_LIBLLVM_PATH")
+    drjit.set_thread_count(1)
+    drjit.flush_kernel_cache()
+    _, seconds = stopwatch(lambda: compiled_spectra(first, task.sensor.wavelengths))
+    return PreparedMethod(compiled_spectra, size, None, seconds)
+
+
+def compiled_spectra(rgb: Array, wavelengths: Array) -> Array:
+    """Return the reflectances (n, N) of a bitmap texture with the texels ``rgb`` (n, 3)."""
+    mitsuba, drjit = _mitsuba(COMPILED), import_module("drjit")
+    side = math.isqrt(len(rgb) - 1) + 1
+    texels = np.zeros((side * side, 3), np.float32)
+    texels[: len(rgb)] = rgb
+    bitmap = mitsuba.Bitmap(texels.reshape(side, side, 3), mitsuba.Bitmap.PixelFormat.RGB)
+    bitmap.set_srgb_gamma(False)
+    texture = mitsuba.load_dict({"type": "bitmap", "bitmap": bitmap, "filter_type": "nearest"})
+    at = drjit.zeros(mitsuba.SurfaceInteraction3f, len(rgb))
+    index = drjit.arange(mitsuba.UInt32, len(rgb))
+    at.uv = (mitsuba.Point2f(index % side, index // side) + 0.5) / side
+    channels = []
+    for start in range(0, len(wavelengths), AT_ONCE):
+        some = wavelengths[start : start + AT_ONCE]
+        at.wavelengths = type(at.wavelengths)(*np.resize(some, AT_ONCE).tolist())
+        values = texture.eval(at)
+        channels += [values[k] for k in range(len(some))]
+    drjit.eval(channels)
+    return np.stack(channels).T
+
+
+@cache
+def judge() -> Sensor:
+    """Return the sensor of the matrix of rgb2spec, under D65."""
+    return stated_sensor(XYZ_TO_RGB)
+
+
+def _mitsuba(variant: str = VARIANT) -> Any:
     try:
         mitsuba = import_module("mitsuba")
     except ImportError as error:
         raise NotInstalledError("Mitsuba is not installed: pip install 'spectral-uplift[peers]'") from error
-    mitsuba.set_variant(VARIANT)
+    mitsuba.set_variant(variant)
     return mitsuba
 
 
@@ -59,8 +115,19 @@ FAMILIES = (
                 "Mitsuba 3, table of 64",
                 prepare,
                 Claims(round_trip=0.1),
+                judge=judge,
                 batch=False,
                 note="coefficients from Python, one colour per call; spectra by numpy",
+            ),
+            Method(
+                "mitsuba3-llvm",
+                "Mitsuba 3, LLVM, table of 64",
+                prepare_compiled,
+                Claims(round_trip=0.1),
+                dtype="float32",
+                judge=judge,
+                quick=True,
+                note="a bitmap texture with a texel for each colour, loaded and evaluated, on one thread",
             ),
         ),
     ),

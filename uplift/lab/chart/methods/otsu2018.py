@@ -14,6 +14,7 @@ from __future__ import annotations
 from uplift.colorimetry.observer import aligned
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
+from uplift.lab.chart.judge import published_srgb
 from uplift.lab.chart.method import Family, Method, PreparedMethod, nbytes, one_by_one
 from uplift.lab.chart.task import Task
 
@@ -25,7 +26,7 @@ def prepare(task: Task) -> PreparedMethod:
     cmfs, light = aligned(task.sensor, shape.start, shape.end, shape.interval)
 
     def spectrum(rgb: Array) -> tuple[Array, Array]:
-        distribution = otsu.XYZ_to_sd_Otsu2018(task.sensor.xyz(rgb), cmfs, light)
+        distribution = otsu.XYZ_to_sd_Otsu2018(published_srgb().xyz(rgb), cmfs, light)
         return distribution.wavelengths, distribution.values
 
     data = (otsu.BASIS_FUNCTIONS_OTSU2018, otsu.CLUSTER_MEANS_OTSU2018, otsu.SELECTOR_ARRAY_OTSU2018)

@@ -10,24 +10,26 @@ Smits 1999, "An RGB-to-spectrum conversion for reflectances", Journal of Graphic
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
-from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod
+from uplift.lab.chart.judge import stated_sensor
+from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, in_both_types, nbytes, stopwatch
 from uplift.lab.chart.task import Task
 
 SECONDARIES, PRIMARIES = ("cyan", "magenta", "yellow"), ("red", "green", "blue")
 """Basis spectra by the smallest and by the largest component of RGB."""
 
 
-def prepare(task: Task) -> PreparedMethod:
+def prepare(task: Task, dtype: str = "float64") -> PreparedMethod:
     """Prepare the table."""
     table = colour_science().recovery.SDS_SMITS1999
     centres = table["white"].wavelengths
-    white, secondaries, primaries = (
-        np.stack([table[name].values for name in names]) for names in (("white",), SECONDARIES, PRIMARIES)
-    )
+    (white, secondaries, primaries), seconds = stopwatch(lambda: _spectra(dtype))
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         order = rgb.argsort(axis=1)
@@ -35,9 +37,26 @@ def prepare(task: Task) -> PreparedMethod:
         bins = (
             low * white + (middle - low) * secondaries[order[:, 0]] + (high - middle) * primaries[order[:, 2]]
         )
-        return bins @ _linear(wavelengths, centres)
+        return bins @ _linear(wavelengths, centres).astype(dtype, copy=False)
 
-    return PreparedMethod(uplift, white.nbytes + secondaries.nbytes + primaries.nbytes)
+    return PreparedMethod(uplift, nbytes((white, secondaries, primaries)), load_s=seconds)
+
+
+def _spectra(dtype: str) -> tuple[Array, Array, Array]:
+    """Spectra of white (1, 10), of the secondary and of the primary colours (3, 10)."""
+    table = colour_science().recovery.SDS_SMITS1999
+    white, secondaries, primaries = (
+        np.stack([table[name].values for name in names]).astype(dtype)
+        for names in (("white",), SECONDARIES, PRIMARIES)
+    )
+    return white, secondaries, primaries
+
+
+@cache
+def judge() -> Sensor:
+    """Return the sensor of the stated space, sRGB primaries with an equal-energy white."""
+    space = colour_science().recovery.smits1999.RGB_COLOURSPACE_SMITS1999
+    return stated_sensor(space.matrix_XYZ_to_RGB, space.whitepoint_name)
 
 
 def _linear(wavelengths: Array, centres: Array) -> Array:
@@ -50,15 +69,17 @@ FAMILIES = (
         "Smits 1999",
         "Smits, An RGB-to-spectrum conversion for reflectances, Journal of Graphics Tools 4(4), 1999",
         "#7a9a1d",
-        (
+        in_both_types(
             Method(
                 "smits1999",
                 "Smits 1999",
                 prepare,
                 Claims(max=1.02),
+                judge=judge,
                 quick=True,
                 note="table of colour-science, used with sRGB; reflectances up to 1.015",
             ),
+            prepare,
         ),
     ),
 )

@@ -5,16 +5,28 @@ Domain: linear sRGB in [0, 1] under D65. Range: reflectance in [0, 1] at any wav
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from pathlib import Path
 
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, Uplift, nbytes, stopwatch
+from uplift.lab.chart.judge import ours
+from uplift.lab.chart.method import (
+    DTYPES,
+    Claims,
+    Family,
+    Method,
+    PreparedMethod,
+    Uplift,
+    nbytes,
+    stopwatch,
+)
 from uplift.lab.chart.task import Task
-from uplift.lookup import MODES, Cube
+from uplift.lookup import MODES, Cube, load
 from uplift.models import Moments, Sigmoid
 from uplift.pipeline.options import ModelName
 
@@ -46,6 +58,11 @@ class CubeOptions:
         return f"{model}, {self.dim}³{', atlas' if self.atlas else ''}"
 
     @property
+    def label(self) -> str:
+        """Return the label of a marker: coefficients and dim."""
+        return f"{self.count} · {self.dim}³"
+
+    @property
     def command(self) -> str:
         """Return the command that builds the cube."""
         model = f"--coefficients {self.count}" if self.model == Moments.name else f"--model {self.model}"
@@ -74,14 +91,27 @@ class Lookup:
 
 
 LOOKUPS = (
-    *(Lookup(mode, dtype) for mode in MODES for dtype in ("float64", "float32")),
+    *(Lookup(mode, dtype) for mode in MODES for dtype in DTYPES),
     Lookup("bulk", "float32"),
 )
 
 
 @lru_cache(maxsize=1)
-def _cube(task: Task, options: CubeOptions) -> tuple[Cube, float]:
-    """The cube, and the CPU seconds of its last build, which does not include compilation."""
+def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
+    """Build a cube, store and load it.
+
+    Parameters
+    ----------
+    task : Task
+        Its kept entries are the atlas.
+    options : CubeOptions
+        Options of the build.
+
+    Returns
+    -------
+    tuple of Cube, float and float
+        The loaded cube, the CPU seconds of the last build, which does not include compilation, and those of loading.
+    """
     from uplift.pipeline import build
 
     for _ in range(task.effort.builds):
@@ -93,50 +123,61 @@ def _cube(task: Task, options: CubeOptions) -> tuple[Cube, float]:
                 coefficients=options.count,
             )
         )
-    return cube, seconds
+    with tempfile.TemporaryDirectory() as folder:
+        cube.save(Path(folder) / "cube.uplift")
+        return (
+            load(Path(folder) / "cube.uplift"),
+            seconds,
+            stopwatch(lambda: load(Path(folder) / "cube.uplift"))[1],
+        )
 
 
 def _prepare(task: Task, options: CubeOptions, lookup: Lookup) -> PreparedMethod:
-    cube, seconds = _cube(task, options)
+    cube, seconds, loading = built_cube(task, options)
     if lookup.mode == "bulk":
-        sampler, more = stopwatch(lambda: _sampler(cube, task.sensor.wavelengths))
-        return PreparedMethod(sampler[0], sampler[1], seconds + more)
+        (uplift, size), more = stopwatch(lambda: _sampler(cube, task))
+        return PreparedMethod(uplift, size, seconds, loading + more)
 
-    def uplift(rgb: Array, wavelengths: Array) -> Array:
+    def by_numpy(rgb: Array, wavelengths: Array) -> Array:
         spectra: Array = cube.reflectance(rgb, wavelengths, lookup.mode, dtype=lookup.dtype)
         return spectra
 
     data = cube.data
     arrays = (data.points.coefficients, data.lattice.nodes, data.atlas.rgb, data.entry_spectra.coefficients)
-    return PreparedMethod(uplift, nbytes(arrays), seconds)
+    return PreparedMethod(by_numpy, nbytes(arrays), seconds, loading)
 
 
-def _sampler(cube: Cube, at: Array) -> tuple[Uplift, int]:
-    """A bulk sampler, whose wavelengths are fixed, and its size."""
+def _sampler(cube: Cube, task: Task) -> tuple[Uplift, int]:
+    """A bulk sampler of the sensor's wavelengths, without the compiled code of earlier ones, and its size."""
+    import jax
+
     from uplift.lookup import bulk
 
+    jax.clear_caches()  # type: ignore[no-untyped-call]
+    at = task.sensor.wavelengths
     sampler = bulk.spectra(cube, at, threads=1)
+    sampler(task.rgb[:1])
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
-        assert np.array_equal(wavelengths, at)
-        return np.asarray(sampler(rgb))
+        usual = np.array_equal(wavelengths, at)
+        return np.asarray((sampler if usual else bulk.spectra(cube, wavelengths, threads=1))(rgb))
 
     return uplift, sampler.nbytes
 
 
 def _usual(options: CubeOptions, lookup: Lookup) -> bool:
     """Whether one option at most differs from the defaults, or the options are extreme."""
-    nine = options.count == 9
-    swept = (
-        nine
-        or (options.count == 17 and options.atlas)
-        or (options.model == Sigmoid.name and not options.atlas)
-    )
-    if lookup.mode == "bulk":
-        return swept and options.model == Moments.name
-    if lookup.dtype == "float32":
-        return nine and options.dim == 32
-    return swept or options.dim == 32
+    nine, default_size = options.count == 9, options.dim == 32
+    swept = nine or (options.model == Sigmoid.name and not options.atlas)
+    if lookup.mode == "nearest":
+        return nine and options.dim == 64 and not options.atlas and lookup.dtype == "float64"
+    if lookup.mode == "refined":
+        return swept and (lookup.dtype == "float64" or default_size)
+    if lookup.mode == "moments":
+        return swept
+    if lookup.mode == "bulk" and options.model == Sigmoid.name:
+        return False
+    return swept or (options.atlas and (default_size or (options.count, options.dim) == (17, 64)))
 
 
 def _quick(options: CubeOptions, lookup: Lookup) -> bool:
@@ -154,9 +195,11 @@ def _methods(model: ModelName, counts: tuple[int, ...], atlas: bool) -> Iterator
                 f"{options.title}, {lookup.suffix.replace('-', ', ')}",
                 partial(_prepare, options=options, lookup=lookup),
                 EXACT if exact else Claims(),
+                dtype=lookup.dtype,
+                judge=ours,
                 usual=_usual(options, lookup),
                 quick=_quick(options, lookup),
-                label=f"{options.count} · {options.dim}³ {lookup.mode}",
+                label=f"{options.label} {lookup.mode}{' f32' if lookup.dtype == 'float32' else ''}",
                 mode=lookup.mode,
                 build=options.command,
                 call=lookup.call,
