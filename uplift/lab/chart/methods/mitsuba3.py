@@ -57,13 +57,13 @@ def spectra(rgb: Array, wavelengths: Array) -> Array:
 
 def prepare_compiled(task: Task) -> PreparedMethod:
     """Load Mitsuba's vectorised variant, on one thread, without the kernels of earlier calls."""
-    size, first = table_file().stat().st_size, task.rgb[:1]
+    size = table_file().stat().st_size
     drjit = import_module("drjit")
     if not drjit.has_backend(drjit.JitBackend.LLVM):
         raise NotInstalledError("LLVM is not installed: apt install libllvm19, or DRJIT_LIBLLVM_PATH")
     drjit.set_thread_count(1)
     drjit.flush_kernel_cache()
-    _, seconds = stopwatch(lambda: compiled_spectra(first, task.sensor.wavelengths))
+    _, seconds = stopwatch(lambda: compiled_spectra(task.rgb[:1], task.sensor.wavelengths))
     return PreparedMethod(compiled_spectra, size, None, seconds)
 
 
