@@ -1,4 +1,4 @@
-"""Cubes of 32³: entries at their own colours, holdout tests, standard errors, seeds and smoothness."""
+"""Cubes of 32³: entries at their own colours, holdout tests, seeds and smoothness."""
 
 from __future__ import annotations
 
@@ -24,15 +24,13 @@ from benchmarks.fidelity.materials import (
 )
 from benchmarks.fidelity.start import solved
 from uplift.atlas import Atlas, Entry
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra, lab_jacobian
+from uplift.colorimetry.delta_e import lab_jacobian
 from uplift.common.arrays import Array
 from uplift.cube import contents
 from uplift.fit import families_with
 from uplift.lab.study.held_out import HoldoutSplit, holdout
 from uplift.lookup import Cube
 from uplift.models import Moments
-from uplift.report.calibration import check_calibration
 from uplift.report.smoothness import compute_smoothness
 
 DIM = 32
@@ -55,7 +53,6 @@ def measure() -> dict[str, Any]:
         "entries": [row for name in (*TESTED_ON, "rawtoaces") for row in at_entries(name)],
         "halves": [row for key in splits for row in halves(*key, splits[key])],
         "shares": [shares(*key, splits[key]) for key in splits],
-        "standard_errors": standard_errors(splits),
         "seed_starts": [row for name in large() for row in seed_starts(name)],
         "smoothness": [
             neighbour_steps(name, count)
@@ -124,42 +121,6 @@ def shares(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> dict[str,
         "FL11": share["errors"]["FL11"],
         "worst": {"ratio": against[worst], "light": worst},
     }
-
-
-def standard_errors(splits: Splits) -> list[dict[str, Any]]:
-    """Return how many actual errors are within the predicted ones, overall and by quartile of the predicted ones."""
-    others = {(f"macbeth, queried for {name}", 9): (_across("macbeth", name),) for name in large()}
-    rows = []
-    for (name, count), parts in (splits | others).items():
-        actual, predicted, bound = (
-            np.concatenate([getattr(split, part) for split in parts])
-            for part in ("actual", "predicted", "bound")
-        )
-        coverage = check_calibration(actual, predicted, bound)
-        quartiles = np.array_split(predicted.argsort(kind="stable"), 4)
-        rows.append(
-            {
-                "atlas": name,
-                "coefficients": count,
-                "all": [coverage.actual, coverage.predicted],
-                "within_error": coverage.within_error,
-                "within_bound": coverage.within_bound,
-                "quartiles": [
-                    [float((actual <= radius)[part].mean()) for radius in (predicted, bound)]
-                    for part in quartiles
-                ],
-            }
-        )
-    return rows
-
-
-def _across(known: str, queried: str) -> HoldoutSplit:
-    """Query a cube of one atlas for the colours of another."""
-    cube, some = build(known, leave_out=shipped(queried)), materials(queried)
-    answers = cube.reflectance(some.rgb)
-    light = observer.light(cube.data.error_illuminant)
-    actual = delta_e_spectra(light, answers, some.measured)
-    return HoldoutSplit({}, actual, cube.standard_error(some.rgb), cube.error_bound(some.rgb))
 
 
 def seed_starts(name: str) -> Iterator[dict[str, Any]]:

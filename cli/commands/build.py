@@ -185,7 +185,8 @@ def command(
     Looks state colours under other lights, such as rgb = "#8a2a20" and FL11 = "#70392a" (docs/looks.md). They become
     entries. A look that no reflectance meets gets the nearest colour, and a warning.
 
-    Entries have their own values in the --range as far as they were measured, and continue as constants.
+    Entries have their own values in the --range as far as they were measured, and continue as constants. So does the
+    learnt prior, from 380 and 780 nm.
 
     With --scene the cube is sparse: it is smaller and faster to build, and gives the same spectra for colours of the
     images. Other colours are errors, unless 'query' and 'texture' are given --fill-missing.

@@ -120,8 +120,8 @@ def build(
         colour-science, a CSV file of its sensitivities, or a `Camera`.
     shortest, longest : float, default 380 and 780
         Range of the spectra in nm, at most 300 to 1000. Outside the range of an entry, its spectrum continues as a
-        constant, and outside the range of the cube, every spectrum does. The coefficients are shared by the whole
-        range, so a much wider one resolves less (docs/accuracy.md).
+        constant, and so does the learnt prior outside 380 to 780; outside the range of the cube, every spectrum does.
+        The coefficients are shared by the whole range, so a much wider one resolves less (docs/accuracy.md).
     step : {1, 5, 10}, default 5
         Distance in nm of the wavelengths at which spectra are integrated and compared.
     lights : sequence of str, default ("D65", "A", "FL2", "FL11", "LED-B3")
