@@ -42,7 +42,7 @@ def draw(
             for place in layout.patches(round(INSET * layout.patch)):
                 image[place] = images[light, reference][place]
             axes.imshow(
-                to_display_codes(_binned(image) @ to_screen, SRGB).astype(np.uint8), interpolation="nearest"
+                to_display_codes(binned(image) @ to_screen, SRGB).astype(np.uint8), interpolation="nearest"
             )
             axes.set_xticks([])
             axes.set_yticks([])
@@ -55,7 +55,7 @@ def draw(
     write_png(figure, path, force=True)
 
 
-def _binned(image: Array) -> Array:
+def binned(image: Array) -> Array:
     """Average blocks of 2 × 2 pixels, which halves the noise."""
     height, width, count = image.shape
     return np.asarray(image.reshape(height // 2, 2, width // 2, 2, count).mean(axis=(1, 3)))

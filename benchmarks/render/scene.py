@@ -14,13 +14,17 @@ from uplift.io.mitsuba import register
 
 VARIANT = "scalar_spectral"
 """The spectral variant that does not need LLVM."""
+OF_SURFACES = {"type": "direct", "bsdf_samples": 1, "emitter_samples": 0}
+"""Integrator for uniform illumination, where only the wavelengths are random."""
+OF_LIGHTS = {"type": "direct", "bsdf_samples": 0, "emitter_samples": 1}
+"""Integrator for environments."""
 CIE_Y_INTEGRAL = 106.856895
 """Mitsuba divides by it, so that a constant radiance of 1 has Y = 1."""
 
 
-def start() -> None:
-    """Select the variant and register the plug-in."""
-    mi.set_variant(VARIANT)
+def start(variant: str = VARIANT) -> None:
+    """Select the variant and register the plug-ins."""
+    mi.set_variant(variant)
     register()
 
 
@@ -41,11 +45,26 @@ def from_cube(chart: Chart, cube: str) -> list[dict[str, Any]]:
 
 def render(reflectances: list[dict[str, Any]], illuminant: str, layout: Layout, spp: int, seed: int) -> Array:
     """Return XYZ (height, width, 3) of the chart; a perfect reflector has the XYZ of `Light.white`."""
-    scene = mi.load_dict(_scene(reflectances, illuminant, layout))
+    emitter = {"type": "constant", "radiance": _light(illuminant)}
+    return render_under(emitter, reflectances, layout, spp, seed, OF_SURFACES)
+
+
+def render_under(
+    emitter: dict[str, Any],
+    reflectances: list[dict[str, Any]],
+    layout: Layout,
+    spp: int,
+    seed: int,
+    integrator: dict[str, Any] = OF_LIGHTS,
+) -> Array:
+    """Return XYZ (height, width, 3) of the chart under an emitter."""
+    scene = mi.load_dict(_scene(reflectances, emitter, integrator, layout))
     return np.array(mi.render(scene, spp=spp, seed=seed), dtype=float)
 
 
-def _scene(reflectances: list[dict[str, Any]], illuminant: str, layout: Layout) -> dict[str, Any]:
+def _scene(
+    reflectances: list[dict[str, Any]], emitter: dict[str, Any], integrator: dict[str, Any], layout: Layout
+) -> dict[str, Any]:
     width, height = layout.size
     half = layout.patch / 2
     patches = {
@@ -57,9 +76,8 @@ def _scene(reflectances: list[dict[str, Any]], illuminant: str, layout: Layout) 
     behind = _square({"type": "uniform", "value": BACKGROUND}, [0, 0, -1e-3], [width, height, 1])
     return {
         "type": "scene",
-        # With uniform illumination only the wavelengths are random.
-        "integrator": {"type": "direct", "bsdf_samples": 1, "emitter_samples": 0},
-        "light": {"type": "constant", "radiance": _light(illuminant)},
+        "integrator": integrator,
+        "light": emitter,
         "camera": _camera(width, height),
         "background": behind,
         **patches,
