@@ -1,4 +1,4 @@
-"""The ColorChecker under uplifted environments: ``make environment`` writes docs/data/environment.json and a picture."""
+"""The ColorChecker under uplifted environments: ``make environment`` stores environment.json and a picture."""
 
 from __future__ import annotations
 
@@ -84,9 +84,7 @@ def render(skies: tuple[Sky, ...], folder: Path, layout: Layout, spp: int) -> Re
             method: lab(layout.means(images[sky.name, method]), whites[sky.name])
             for method in (*emitters, OTHER_SEED)
         }
-        delta_e |= {
-            (sky.name, method): delta_e_2000(found[TRUE], values) for method, values in found.items()
-        }
+        delta_e |= {(sky.name, method): delta_e_2000(found[TRUE], values) for method, values in found.items()}
         print(f"{sky.name}: {time.perf_counter() - begin:.0f} s", file=sys.stderr)
     return Renders(images, whites, delta_e)
 

@@ -26,7 +26,7 @@ from ..params.options import (
     input_space_option,
     out_of_gamut_option,
     quiet_option,
-    refuse_for_emission,
+    refuse_for_lights,
     wavelengths_option,
 )
 from ..params.wavelengths import parse_wavelengths
@@ -149,7 +149,7 @@ def command(
     threads, at = max(cores // count, 1), parse_wavelengths(wavelengths)
     settings: texture.Settings
     if is_emission:
-        refuse_for_emission("kind", "method", "fill_missing", "mask")
+        refuse_for_lights("kind", "method", "fill_missing", "mask")
         settings = texture.LightSettings(cubes[0], _as_tuple(at), depth, encoding, threads, input_space)
     else:
         form = _pixel_encoding(kind, at)

@@ -106,7 +106,7 @@ def emission_option(meaning: str) -> Decorator:
     )
 
 
-def refuse_for_emission(*names: str) -> None:
+def refuse_for_lights(*names: str) -> None:
     """Raise `OptionError` if a parameter of the current command that lights do not have was given."""
     from uplift.common.errors import OptionError
 
@@ -117,7 +117,7 @@ def refuse_for_emission(*names: str) -> None:
             raise OptionError(
                 f"{parameter.opts[0]} does not apply to lights",
                 code="not-for-lights",
-                hint=f"leave out {parameter.opts[0]} or --emission",
+                hint=f"leave out {parameter.opts[0]}",
             )
 
 

@@ -101,3 +101,12 @@ def test_invalid_input_is_an_error(refuse, home, cube):
     assert refuse("export", cube, "cube.coeff", "--res", "1").code == "resolution-out-of-range"
     assert refuse("export", cube, "missing/cube.csv").code == "folder-missing"
     assert [path.name for path in home.iterdir()] == [cube]
+
+
+def test_lights(run, refuse, home):
+    result = run("export", "emission", "lights.h")
+    assert result.output.startswith("lights.h: ")
+    assert "lights_power" in (home / "lights.h").read_text()
+    assert refuse("export", "emission", "lights.wgsl").code == "unknown-language"
+    assert refuse("export", "emission", "lights.csv").code == "unknown-language"
+    assert refuse("export", "emission", "l.h", "--mode", "moments").code == "not-for-lights"

@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
-from uplift.cube.emission import EmissionData, emission_digest, read_emission, write_emission
+from uplift.cube.emission import (
+    EmissionData,
+    emission_digest,
+    is_emission_table,
+    read_emission,
+    write_emission,
+)
 from uplift.cube.file import contents, digest, read, write
 
 __all__ = [
@@ -15,6 +21,7 @@ __all__ = [
     "contents",
     "digest",
     "emission_digest",
+    "is_emission_table",
     "read",
     "read_emission",
     "write",

@@ -123,6 +123,30 @@ def load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:
     return tensors, metadata
 
 
+def format_of(path: Path) -> str | None:
+    """Read of which format a file is.
+
+    Parameters
+    ----------
+    path : Path
+        A file.
+
+    Returns
+    -------
+    str or None
+        The word that files of a `Kind` begin with; None for other files and for those that cannot be read.
+    """
+    from safetensors import SafetensorError, safe_open
+
+    try:
+        with safe_open(path, framework="numpy") as file:
+            metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
+    except (SafetensorError, ValueError, TypeError, OSError, MemoryError):
+        return None
+    found = metadata.get("format") if isinstance(metadata, dict) else None
+    return found if isinstance(found, str) else None
+
+
 def content_digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
     """Compute the digest of arrays and metadata.
 

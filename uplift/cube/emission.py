@@ -15,7 +15,17 @@ from uplift.common.arrays import Array
 from uplift.common.errors import CubeFileError, OutputError
 from uplift.common.files import atomic_write
 from uplift.cube.checks import MAX_CONDITION, MAX_VALUE, require
-from uplift.cube.container import INVALID, Kind, Tensors, content_digest, error_text, invalid_file, load, save
+from uplift.cube.container import (
+    INVALID,
+    Kind,
+    Tensors,
+    content_digest,
+    error_text,
+    format_of,
+    invalid_file,
+    load,
+    save,
+)
 from uplift.cube.metadata import check_emission_metadata
 from uplift.lattice.chromaticity import ChromaticityLattice, chromaticity
 from uplift.lattice.lamp_discs import LampEntries
@@ -155,6 +165,22 @@ def read_emission(path: str | os.PathLike[str]) -> EmissionData:
         problem = f"is not a valid emission table ({type(error).__name__}: {error_text(error)})"
         raise invalid_file(path, KIND, problem, "cube-invalid") from error
     return data
+
+
+def is_emission_table(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is an emission table, by its first words; `read_emission` tells what is wrong with others.
+
+    Parameters
+    ----------
+    path : path-like
+        A file.
+
+    Returns
+    -------
+    bool
+        False for other files, and for those that cannot be read.
+    """
+    return os.path.isfile(path) and format_of(Path(path)) == KIND.format
 
 
 def emission_digest(data: EmissionData) -> str:

@@ -133,6 +133,18 @@ class ChromaticityLattice:
         pairs = np.stack([self._spokes, np.roll(self._spokes, -1, axis=0)], axis=2)
         return np.asarray(np.linalg.inv(pairs))
 
+    def sectors(self) -> tuple[Array, Array]:
+        """Return what finds the sector of an offset from the centre, for programs in other languages.
+
+        Returns
+        -------
+        angles : ndarray, shape (K,)
+            Pseudo angles of the knots, from 0 at the first one, increasing to at most 4.
+        inverses : ndarray, shape (K, 2, 2)
+            Matrices from an offset to its shares of the spokes of the knot and the next one.
+        """
+        return self._angles, self._inverses
+
     def polar(self, offset: Array) -> tuple[Indices, Array, Array]:
         """Find the sectors of offsets from the centre.
 

@@ -21,6 +21,8 @@ from uplift.lookup.validation import as_float_type, as_thread_count, as_waveleng
 
 DEFAULT_EMISSION = Path(__file__).with_name("emission.uplift")
 """The emission table that comes with the package."""
+PACKAGED_NAME = "emission"
+"""Name of that table on the command line."""
 MAX_VALUE = 1e30
 """Limit of the components of a colour."""
 OUTSIDE = ("error", "clip")
@@ -290,7 +292,8 @@ def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
     Parameters
     ----------
     path : path-like, optional
-        File of the table. By default the table of the package, for linear sRGB.
+        File of the table, or ``emission`` if no file has this name. By default the table of the package, for linear
+        sRGB.
 
     Returns
     -------
@@ -308,7 +311,24 @@ def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
     >>> uplift.load_emission().space
     'sRGB'
     """
-    return EmissionTable(read_emission(DEFAULT_EMISSION if path is None else path))
+    return EmissionTable(read_emission(DEFAULT_EMISSION if path is None else find_emission_file(path)))
+
+
+def find_emission_file(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
+    """Return the file that a path, or the name of the packaged table, stands for.
+
+    Parameters
+    ----------
+    path : path-like
+        A file, which takes precedence, or the name ``emission``, in any case.
+
+    Returns
+    -------
+    path-like
+        The file; it may be missing.
+    """
+    name = os.fspath(path)
+    return DEFAULT_EMISSION if name.casefold() == PACKAGED_NAME and not os.path.lexists(name) else path
 
 
 def _as_floats(colours: ArrayLike) -> Array:

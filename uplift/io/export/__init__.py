@@ -1,10 +1,11 @@
-"""Cubes in the formats of other programs, one format per module."""
+"""Cubes and emission tables in the formats of other programs, one format per module."""
 
 from __future__ import annotations
 
 from uplift.io.export.coeff import write_coeff
 from uplift.io.export.csv_points import write_csv
+from uplift.io.export.light_program import write_light_program
 from uplift.io.export.npz import write_npz
 from uplift.io.export.programs import FORMATS, write_program
 
-__all__ = ["FORMATS", "write_coeff", "write_csv", "write_npz", "write_program"]
+__all__ = ["FORMATS", "write_coeff", "write_csv", "write_light_program", "write_npz", "write_program"]

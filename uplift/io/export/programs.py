@@ -173,7 +173,7 @@ def _tables(
     if form == "header":
         return {}
     if form == "file":
-        write = _write_exr if output.file == ".exr" else _write_numbers
+        write = _write_exr if output.file == ".exr" else write_numbers
         return {path.with_suffix(output.file): partial(write, table.image())}
     textures = {str(t): texels for t, texels in enumerate(table.points())} | {"entries": table.others()}
     notes = {"KTXwriter": "uplift", "cube": digest(data)}
@@ -184,7 +184,8 @@ def _tables(
     }
 
 
-def _write_numbers(image: NDArray[np.float32], path: Path) -> None:
+def write_numbers(image: NDArray[np.float32], path: Path) -> None:
+    """Write float32 numbers, little-endian."""
     path.write_bytes(image.astype("<f4").tobytes())
 
 

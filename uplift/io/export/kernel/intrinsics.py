@@ -23,6 +23,8 @@ Corners = Floats
 Weights = Floats
 Lane = Floats
 Lanes = Floats
+Offset = Floats
+Spot = Floats
 
 SIZES = {
     "Colour": "3",
@@ -36,6 +38,8 @@ SIZES = {
     "Weights": "8",
     "Lane": "LANES",
     "Lanes": "(COUNT * LANES)",
+    "Offset": "4",
+    "Spot": "5",
 }
 """Elements of each array type, as expressions of the constants below."""
 
@@ -71,6 +75,24 @@ END: Float
 LOW: Float
 SCALE: Float
 """The warped wavelength at the start of the range, and the reciprocal of the length of the warped range."""
+KNOTS: Int
+RINGS: Int
+"""Nodes around white and from white to the locus, of an emission table."""
+SAMPLES: Int
+STEP: Float
+"""Wavelengths of a stored light, and the distance between them in nm."""
+MATRIX: Int
+"""Index of the matrix from RGB to u'v' from white, X + 15 Y + 3 Z, and that of white with the same luminance."""
+WHITE: Int
+"""Index of u'v' of white, and of the angle of the first knot."""
+ANGLES: Int
+INVERSES: Int
+"""Index of the angles of the knots, and of the matrices from offsets to shares of two spokes."""
+RING_SHARES: Int
+"""Index of the shares of the way to the locus at which the rings lie."""
+LAMPS: Int
+LAMP_SPECTRA: Int
+"""Index of u'v' and radius of the lamps, and of their spectra."""
 
 
 def number(index: Int) -> Float:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from string import Template
 from types import ModuleType
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from uplift.common.version import VERSION
 from uplift.cube import CubeData, digest
@@ -74,12 +77,9 @@ class Program:
 
     def parts(self) -> Iterator[str]:
         """Yield the text piece by piece."""
-        text = Template(self._read("")).safe_substitute(self._words())
-        before, found, after = text.partition("${table}")
-        yield before
-        if found:
-            yield from self._numbers()
-            yield after
+        stride = self.table.constants["STRIDE"]
+        text = Template(read_template(self.template)).safe_substitute(self._words())
+        yield from with_numbers(text, self.table.numbers, stride, self.language)
 
     def _words(self) -> dict[str, Any]:
         sensor, constants, image = self.data.sensor, self.table.constants, self.table.image()
@@ -102,28 +102,17 @@ class Program:
             "stem": comment(self.stem),
             "name": self.name,
             "NAME": self.name.upper(),
-            "constants": self._constants(),
+            "constants": declare(self.table.constants, self.language, self.name),
         }
         parts = {"kernel": self._kernel()}
-        for key, part in {"access": self.form, "wrappers": self.mode}.items():
-            text = repeat(self._read(f"{part}."), words["texels"])
-            parts[key] = Template(text).safe_substitute(words)
-        return words | parts
-
-    def _read(self, part: str) -> str:
-        """Return the template, or the part of it with this prefix, which may be lacking."""
-        path = files("uplift.io.export") / "templates" / f"{part}{self.template}"
-        return path.read_text(encoding="ascii") if path.is_file() else ""
-
-    def _constants(self) -> str:
-        lines = []
-        for key, value in self.table.constants.items():
-            text = literal(value) + self.language.suffix if isinstance(value, float) else str(value)
-            kind = self.language.types["Float" if isinstance(value, float) else "Int"]
-            lines.append(
-                self.language.constant.format(name=f"{self.name.upper()}_{key}", value=text, type=kind)
+        for key, names in {"access": ("numbers", self.form), "wrappers": (self.mode,)}.items():
+            texts = (
+                read_template(self.template, part)
+                for part in names
+                if (part, self.form) != ("numbers", "textures")
             )
-        return "\n".join(lines)
+            parts[key] = Template(repeat("".join(texts), words["texels"])).safe_substitute(words)
+        return words | parts
 
     def _kernel(self) -> str:
         is_moments = isinstance(self.data.model, Moments)
@@ -149,12 +138,47 @@ class Program:
             name=self.name, NAME=self.name.upper(), function=self.language.function, expression=expression
         ).format(NAME=self.name.upper())
 
-    def _numbers(self) -> Iterator[str]:
-        """Yield the table as text, a row per line."""
-        stride, numbers = self.table.constants["STRIDE"], self.table.numbers
-        for start in range(0, len(numbers), stride):
-            row = numbers[start : start + stride].tolist()
-            yield ", ".join(literal(number) + self.language.suffix for number in row) + ",\n"
+
+def read_template(template: str, part: str = "") -> str:
+    """Read a template, or a part of it.
+
+    Parameters
+    ----------
+    template : str
+        Name of the template.
+    part : str
+        Prefix of the part; none for the template itself.
+
+    Returns
+    -------
+    str
+        Empty if the language has no such part.
+    """
+    name = f"{part}.{template}" if part else template
+    path = files("uplift.io.export") / "templates" / name
+    return path.read_text(encoding="ascii") if path.is_file() else ""
+
+
+def declare(constants: Mapping[str, int | float], language: Language, name: str) -> str:
+    """Declare constants in a language, a line each; their names begin with ``name`` in capitals."""
+    lines = []
+    for key, value in constants.items():
+        text = literal(value) + language.suffix if isinstance(value, float) else str(value)
+        kind = language.types["Float" if isinstance(value, float) else "Int"]
+        lines.append(language.constant.format(name=f"{name.upper()}_{key}", value=text, type=kind))
+    return "\n".join(lines)
+
+
+def with_numbers(text: str, numbers: NDArray[np.float32], stride: int, language: Language) -> Iterator[str]:
+    """Yield a program with its table as text, ``stride`` numbers a line, where it has the word ``${table}``."""
+    before, found, after = text.partition("${table}")
+    yield before
+    if not found:
+        return
+    for start in range(0, len(numbers), stride):
+        row = numbers[start : start + stride].tolist()
+        yield ", ".join(literal(number) + language.suffix for number in row) + ",\n"
+    yield after
 
 
 def comment(text: str) -> str:

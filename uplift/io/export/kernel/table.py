@@ -41,7 +41,7 @@ class Table:
 
     def image(self) -> Floats:
         """Return the numbers as an image of (rows, COLUMNS, 4), filled up with zeros."""
-        return _image(self.numbers)
+        return as_image(self.numbers)
 
     def points(self) -> Floats:
         """Return the rows of lattice points as textures of (STRIDE / 4, red, green, blue, 4)."""
@@ -51,10 +51,21 @@ class Table:
 
     def others(self) -> Floats:
         """Return the numbers behind the rows of lattice points as an image of (rows, COLUMNS, 4)."""
-        return _image(self.numbers[self.constants["LATTICE"] * self.constants["STRIDE"] :])
+        return as_image(self.numbers[self.constants["LATTICE"] * self.constants["STRIDE"] :])
 
 
-def _image(numbers: Floats) -> Floats:
+def as_image(numbers: Floats) -> Floats:
+    """Return numbers as an image of (rows, COLUMNS, 4), filled up with zeros.
+
+    Parameters
+    ----------
+    numbers : ndarray, shape (n,)
+        The numbers.
+
+    Returns
+    -------
+    ndarray, shape (rows, COLUMNS, 4)
+    """
     row = COLUMNS * TEXEL
     return np.pad(numbers, (0, -len(numbers) % row)).reshape(-1, COLUMNS, TEXEL)
 

@@ -1,0 +1,95 @@
+"""Exported programs of lights agree with Python."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.helpers import raises
+from tests.io.export import run_program
+from uplift.common.errors import OptionError
+from uplift.io.export import write_light_program
+from uplift.lookup import load_emission
+
+WAVELENGTHS = [300.0, 455.0, 551.5, 790.0]
+WITHIN = 3e-5
+"""Tolerance of single precision as a share of the largest power."""
+ALIAS = "\n#define cube_reflectances cube_power\n"
+"""The function that programs of cubes have."""
+RUN = {"c": run_program.c, "glsl": run_program.glsl}
+SUFFIX = {"c": ".h", "glsl": ".glsl"}
+
+
+@pytest.fixture(scope="module")
+def table():
+    return load_emission()
+
+
+@pytest.fixture(scope="module")
+def colours(table):
+    """Linear RGB (6000, 3): bright ones, negative ones, those that no light has, and around lamps."""
+    rng = np.random.default_rng(3)
+    rgb = rng.random((6000, 3)) * np.exp(4 * rng.normal(size=(6000, 1)))
+    rgb[2000:4000] = rng.normal(size=(2000, 3)) + 0.5
+    lamps = table.rgb(table.data.entries.spectra)
+    rgb[4000:] = np.resize(lamps, (2000, 3)) * (1 + np.repeat([0, 0.003, 0.03, 0.1], 500)[:, None])
+    rgb[5000:] += 0.01 * rng.normal(size=(1000, 3))
+    rgb[:3] = [[0, 0, 0], [1, 1, 1], [-1, -1, -1]]
+    return rgb.astype(np.float32).astype(float)
+
+
+@pytest.fixture
+def worst(tmp_path, table):
+    """Function that returns the largest difference of power from Python, as a share of the largest of a colour."""
+
+    def measure(style, rgb, form, wavelengths=WAVELENGTHS):
+        path = tmp_path / f"cube{SUFFIX[style]}"
+        write_light_program(table.data, path, style=style, form=form)
+        path.write_text(path.read_text() + ALIAS)
+        found = RUN[style](path, rgb, WAVELENGTHS, form)
+        size = table.spectrum(rgb, outside="clip").max(axis=1, keepdims=True)
+        expected = table.spectrum(rgb, wavelengths, outside="clip")
+        return (np.abs(found - expected) / np.maximum(size, 1e-6)).max()
+
+    return measure
+
+
+@pytest.mark.parametrize(("style", "form"), [("c", "header"), ("c", "file"), ("glsl", "file")])
+def test_six_thousand_colours_equal_those_of_python(colours, worst, style, form):
+    assert worst(style, colours, form) < WITHIN
+
+
+def test_the_comparison_detects_other_wavelengths(colours, worst):
+    assert worst("c", colours, "header", [300.0, 455.0, 560.0, 790.0]) > 1e-3
+
+
+def test_nan_and_infinity_are_0(table, tmp_path):
+    path = tmp_path / "cube.h"
+    write_light_program(table.data, path)
+    path.write_text(path.read_text() + ALIAS)
+    odd = np.array([[np.nan, 1.0, 0.5], [1.0, np.inf, -np.inf]])
+    found = run_program.c(path, odd, WAVELENGTHS)
+    expected = table.spectrum([[0, 1, 0.5], [1, 0, 0]], WAVELENGTHS)
+    np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [
+        ({"style": "wgsl"}, "unknown-language"),
+        ({"style": "glsl", "form": "textures"}, "unknown-table"),
+        ({"style": "glsl", "form": "header"}, "unknown-table"),
+    ],
+)
+def test_unknown_options_are_refused(table, tmp_path, options, code):
+    with raises(OptionError, code):
+        write_light_program(table.data, tmp_path / "cube.h", **options)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_existing_files_stay(table, tmp_path):
+    (tmp_path / "cube.bin").write_bytes(b"mine")
+    with pytest.raises(OSError, match="exists"):
+        write_light_program(table.data, tmp_path / "cube.glsl", style="glsl")
+    assert (tmp_path / "cube.bin").read_bytes() == b"mine"
+    assert not (tmp_path / "cube.glsl").exists()
