@@ -8,7 +8,7 @@ INSTALLED := $(VENV)/.installed
 OUT := out
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: build lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl axe cameras examples showcase first-steps measurements
+.PHONY: build environment lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl axe cameras examples showcase first-steps measurements
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -114,6 +114,11 @@ demo-render: $(INSTALLED)
 	$(BIN)/python -m benchmarks.render
 	$(BIN)/python -m benchmarks.render.rates
 	$(BIN)/python -m tools.render_docs render
+
+# The ColorChecker under environments of measured lamps, rendered with Mitsuba: docs/emission.md.
+environment: $(INSTALLED)
+	$(BIN)/python -m benchmarks.environment
+	$(BIN)/python -m tools.render_docs emission
 
 # Accuracy, speed and memory of textures: docs/textures.md.
 textures: pictures

@@ -168,7 +168,7 @@ def read_emission(path: str | os.PathLike[str]) -> EmissionData:
 
 
 def is_emission_table(path: str | os.PathLike[str]) -> bool:
-    """Whether a file is an emission table, by its first words; `read_emission` tells what is wrong with others.
+    """Whether a file is an emission table, by its first words; `read_emission` reports what is wrong with others.
 
     Parameters
     ----------

@@ -15,6 +15,8 @@ from uplift.lattice.chromaticity import DENOMINATOR, ChromaticityLattice
 
 BIN_COUNT = 96
 """Bins of each axis of u′v′, from 0 to 1: most touch no lamp, or one."""
+MIN_RADIUS = 1e-4
+"""Radius in u′v′ below which the disc of a lamp is left out, as single precision cannot resolve it."""
 
 Floats = NDArray[np.float32]
 
@@ -57,19 +59,21 @@ def make_light_table(data: EmissionData) -> LightTable:
     LightTable
     """
     lattice, lamps = data.lattice, data.entries
+    kept = lamps.radius >= MIN_RADIUS
+    uv, radius = lamps.uv[kept], lamps.radius[kept]
     knots, rings = lattice.shape
     nodes = np.concatenate([data.spectra, data.spectra[:1]])
     angles, inverses = lattice.sectors()
     sections: dict[str, NDArray[Any]] = {
         "NODES": nodes,
-        "LAMP_SPECTRA": lamps.spectra,
+        "LAMP_SPECTRA": lamps.spectra[kept],
         "MATRIX": _matrix(data),
         "WHITE": np.array([*lattice.white, _first_angle(lattice)]),
         "ANGLES": angles,
         "INVERSES": inverses,
         "RING_SHARES": lattice.rings,
-        "LAMPS": np.column_stack([lamps.uv, lamps.radius]),
-        "BINS": _bins(lamps.uv, lamps.radius),
+        "LAMPS": np.column_stack([uv, radius]),
+        "BINS": _bins(uv, radius),
     }
     parts, offsets, end = [], {}, 0
     for name, section in sections.items():
