@@ -12,12 +12,14 @@ from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999, XYZ_to_s
 from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
+from uplift.fit import families_with
 from uplift.lab.chart import methods
 from uplift.lab.chart.judge import RANGE, ours, published_srgb, round_trip
 from uplift.lab.chart.measure import measure_method
 from uplift.lab.chart.method import Family, NotInstalledError
 from uplift.lab.chart.methods import FAMILIES, select_methods
 from uplift.lab.chart.methods.macadam1935 import boxes
+from uplift.lab.chart.methods.uplift_cubes import CubeOptions, built_cube
 from uplift.lab.chart.table import State
 from uplift.lab.chart.task import edges
 from uplift.lookup import MODES
@@ -195,3 +197,10 @@ def test_smits_is_judged_under_an_equal_energy_white(small_task):
     assert sensor.illuminant == "E"
     white = smits.prepare(small_task).uplift(np.ones((1, 3)), sensor.wavelengths)
     assert round_trip(sensor, np.ones((1, 3)), white)[0] < 0.5
+
+
+def test_prior_of_cubes_does_not_know_the_unseen_materials(small_task):
+    cube, _, _ = built_cube(small_task, CubeOptions("moments", 3, 8, atlas=False))
+    unknown = families_with(small_task.unseen)
+    assert unknown
+    assert tuple(cube.data.provenance["options"]["leave_out"]) == unknown

@@ -103,7 +103,8 @@ def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
     Parameters
     ----------
     task : Task
-        Its kept entries are the atlas.
+        Its kept entries are the atlas. The learnt prior does not know the families of the shipped library that contain
+        its unseen spectra.
     options : CubeOptions
         Options of the build.
 
@@ -112,8 +113,10 @@ def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
     tuple of Cube, float and float
         The loaded cube, the CPU seconds of the last build, which does not include compilation, and those of loading.
     """
+    from uplift.fit import families_with
     from uplift.pipeline import build
 
+    unknown = families_with(task.unseen)
     for _ in range(task.effort.builds):
         cube, seconds = stopwatch(
             lambda: build(
@@ -121,6 +124,7 @@ def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
                 dim=options.dim,
                 model=options.model,
                 coefficients=options.count,
+                leave_out=unknown,
             )
         )
     with tempfile.TemporaryDirectory() as folder:
