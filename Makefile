@@ -8,7 +8,7 @@ INSTALLED := $(VENV)/.installed
 OUT := out
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: build environment lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette dial dependencies growth atlas-files osl axe cameras examples showcase first-steps measurements
+.PHONY: build environment lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files osl axe cameras examples showcase first-steps measurements
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -157,6 +157,11 @@ dial: $(INSTALLED)
 palette: $(INSTALLED)
 	$(BIN)/python -m benchmarks.palette
 	$(BIN)/python -m tools.render_docs palette
+
+# Cubes with looks, and textures and scenes of several cubes: docs/look-cubes.md and its picture.
+look-cubes: $(INSTALLED)
+	$(BIN)/python -m benchmarks.look_cubes
+	$(BIN)/python -m tools.render_docs look-cubes
 
 # Wavelength selection, and reproduction of Meyer 1988: docs/wavelengths.md.
 wavelengths: $(INSTALLED)

@@ -31,7 +31,18 @@ STEPS = (
     # Times of few milliseconds first, while the machine has nothing else to do.
     *("bench", "chart", "first-steps", "dependencies", "growth", "mixing", "dial", "textures", "demo-render"),
     # Accuracy, which other processes do not change.
-    *("accuracy", "study", "prior", "cameras", "display", "scenes", "plan", "palette", "wavelengths"),
+    *(
+        "accuracy",
+        "study",
+        "prior",
+        "cameras",
+        "display",
+        "scenes",
+        "plan",
+        "palette",
+        "look-cubes",
+        "wavelengths",
+    ),
     *("representations", "atlas-files", "showcase", "determinism", "stability", "nightly"),
 )
 """Make targets that measure and render pages, in the order of a run."""

@@ -45,7 +45,7 @@ def from_cube(chart: Chart, cube: str) -> list[dict[str, Any]]:
 
 def render(reflectances: list[dict[str, Any]], illuminant: str, layout: Layout, spp: int, seed: int) -> Array:
     """Return XYZ (height, width, 3) of the chart; a perfect reflector has the XYZ of `Light.white`."""
-    emitter = {"type": "constant", "radiance": _light(illuminant)}
+    emitter = {"type": "constant", "radiance": light_spectrum(illuminant)}
     return render_under(emitter, reflectances, layout, spp, seed, OF_SURFACES)
 
 
@@ -109,8 +109,8 @@ def _camera(width: int, height: int) -> dict[str, Any]:
     }
 
 
-def _light(illuminant: str) -> dict[str, Any]:
-    """The illuminant, as bright as makes white's Y = 1."""
+def light_spectrum(illuminant: str) -> dict[str, Any]:
+    """Return the illuminant, as bright as makes white's Y = 1."""
     light_sensor = sensor(illuminant=illuminant)
     step = light_sensor.wavelengths[1] - light_sensor.wavelengths[0]
     luminous = (light_sensor.power * light_sensor.cmfs[:, 1]).sum() * step
