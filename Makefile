@@ -8,7 +8,7 @@ INSTALLED := $(VENV)/.installed
 OUT := out
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: build environment lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files osl axe cameras examples showcase first-steps measurements
+.PHONY: build environment lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files osl axe cameras examples showcase first-steps looks measurements
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -81,6 +81,11 @@ study: $(INSTALLED)
 # The library of the learnt prior, uplift/fit/library.npz, from atlases/ and colour-science.
 library: $(INSTALLED)
 	$(BIN)/python -m tools.ship_library
+
+# Bounds of colours under other lights: docs/looks.md.
+looks: $(INSTALLED)
+	$(BIN)/python -m benchmarks.looks
+	$(BIN)/python -m tools.render_docs looks
 
 # The learnt prior on materials that it does not know: docs/prior.md.
 prior: $(INSTALLED)

@@ -42,6 +42,7 @@ STEPS = (
         "palette",
         "look-cubes",
         "wavelengths",
+        "looks",
     ),
     *("representations", "atlas-files", "showcase", "determinism", "stability", "nightly"),
 )

@@ -1,0 +1,101 @@
+"""Bounds of the ColorChecker under other lights: ``make looks`` writes docs/data/looks.json.
+
+Largest ΔE00 and share of each colour, the cost of many colours, the extreme reflectances against a linear program of
+scipy, and how much more a search from 16 times as many directions finds.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+from scipy.optimize import linprog
+
+from benchmarks.record import ROOT, write
+from uplift.atlas import read_atlas, resample
+from uplift.colorimetry.observer import light
+from uplift.colorimetry.sensor import Light, Sensor
+from uplift.common.arrays import Array
+from uplift.lab.timing import time_calls
+from uplift.lookup import Bounds, Cube, bounds, load
+from uplift.viz.bounds import plot_bounds
+
+ATLAS = ROOT / "atlases" / "macbeth.txt"
+CUBE = ROOT / "cubes" / "moments-16-macbeth.uplift"
+LIGHTS = ("A", "FL11", "HP1", "LED-RGB1")
+PICTURE = ROOT / "docs" / "looks" / "regions.png"
+DRAWN, DRAWN_LIGHTS = (0, 14), 3
+"""Rows of the colours in the picture, and the number of lights."""
+PAGE_DIVISIONS, FINE_DIVISIONS = 3, 4
+PROGRAMS = 8
+"""Directions of each colour that are solved by linear programs too."""
+MANY, RUNS = 1000, 3
+"""Colours that are timed."""
+
+
+def main() -> None:
+    """Measure and store."""
+    warnings.simplefilter("ignore")
+    cube = load(CUBE)
+    sensor = cube.data.sensor
+    atlas = read_atlas(ATLAS)
+    rgb = sensor.rgb(resample(atlas, sensor.wavelengths).values)
+    lights = [light(name, sensor.observer, *sensor.range) for name in LIGHTS]
+    found = [bounds(cube, rgb, each, divisions=PAGE_DIVISIONS) for each in lights]
+    drawn = rgb[list(DRAWN)]
+    regions = [bounds(cube, drawn, each, divisions=PAGE_DIVISIONS) for each in lights[:DRAWN_LIGHTS]]
+    plot_bounds(cube, [regions], PICTURE, force=True)
+    write(
+        "looks",
+        "make looks",
+        precision="full",
+        lights=LIGHTS,
+        colours=[_colour(name, found, row) for row, name in enumerate(atlas.names)],
+        methods=[_method(cube, rgb, each) for each in found],
+        many=MANY,
+        runs=RUNS,
+        programs=PROGRAMS,
+    )
+
+
+def _colour(name: str, found: list[Bounds], row: int) -> dict[str, Any]:
+    return {
+        "name": name,
+        "largest": {each.light.name: float(each.largest.delta_e_2000[row]) for each in found},
+        "share": {each.light.name: float(each.share[row]) for each in found},
+    }
+
+
+def _method(cube: Cube, rgb: Array, found: Bounds) -> dict[str, Any]:
+    """Cost, and errors of the solver and of the search, under a light."""
+    sensor = cube.data.sensor
+    fine = bounds(cube, rgb, found.light, divisions=FINE_DIVISIONS)
+    more = fine.largest.delta_e_2000 - found.largest.delta_e_2000
+    many = np.random.default_rng(1).uniform(size=(MANY, 3))
+    _, times = time_calls(lambda: bounds(cube, many, found.light), RUNS)
+    return {
+        "light": found.light.name,
+        "seconds": times,
+        "program": _program_difference(sensor, found.light, rgb),
+        "missed": {"mean": float(np.maximum(more, 0).mean()), "largest": float(more.max())},
+        "volume": float((found.volumes.volume / fine.volumes.volume).mean()),
+    }
+
+
+def _program_difference(sensor: Sensor, found: Light, rgb: Array) -> float:
+    """Largest difference of the extremes in XYZ, relative to white, from those of linear programs."""
+    from uplift.colorimetry.extreme_spectra import extreme_spectra
+
+    directions = np.random.default_rng(2).normal(size=(len(rgb) * PROGRAMS, 3))
+    response, colours = directions @ found.xyz, np.repeat(rgb, PROGRAMS, axis=0)
+    ours = (extreme_spectra(sensor.matrix, colours, response).reflectance * response).sum(axis=1)
+    theirs = [
+        -linprog(-each, A_eq=sensor.matrix, b_eq=colour, bounds=(0, 1), method="highs").fun
+        for each, colour in zip(response, colours, strict=True)
+    ]
+    return float(np.abs(ours - theirs).max())
+
+
+if __name__ == "__main__":
+    main()
