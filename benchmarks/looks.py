@@ -25,8 +25,8 @@ ATLAS = ROOT / "atlases" / "macbeth.txt"
 CUBE = ROOT / "cubes" / "moments-16-macbeth.uplift"
 LIGHTS = ("A", "FL11", "HP1", "LED-RGB1")
 PICTURE = ROOT / "docs" / "looks" / "regions.png"
-DRAWN, DRAWN_LIGHTS = (0, 14), 3
-"""Rows of the colours in the picture, and the number of lights."""
+DRAWN, DRAWN_LIGHTS = ((0x8A, 0x2A, 0x20), (0x5F, 0x7F, 0x9F)), 3
+"""Encoded colours of the picture, between entries, and the number of lights."""
 PAGE_DIVISIONS, FINE_DIVISIONS = 3, 4
 PROGRAMS = 8
 """Directions of each colour that are solved by linear programs too."""
@@ -43,7 +43,7 @@ def main() -> None:
     rgb = sensor.rgb(resample(atlas, sensor.wavelengths).values)
     lights = [light(name, sensor.observer, *sensor.range) for name in LIGHTS]
     found = [bounds(cube, rgb, each, divisions=PAGE_DIVISIONS) for each in lights]
-    drawn = rgb[list(DRAWN)]
+    drawn = sensor.decode(DRAWN)
     regions = [bounds(cube, drawn, each, divisions=PAGE_DIVISIONS) for each in lights[:DRAWN_LIGHTS]]
     plot_bounds(cube, [regions], PICTURE, force=True)
     write(
