@@ -92,6 +92,12 @@ prior: $(INSTALLED)
 	$(BIN)/python -m benchmarks.prior
 	$(BIN)/python -m tools.render_docs prior
 
+# Halves of atlases predicted by the other halves, and by plain baselines: docs/held-out.md.
+.PHONY: held-out
+held-out: $(INSTALLED)
+	$(BIN)/python -m benchmarks.held_out
+	$(BIN)/python -m tools.render_docs held-out
+
 # Raw values of cameras, by cubes and by matrices: docs/cameras.md.
 cameras: $(INSTALLED)
 	$(BIN)/python -m benchmarks.cameras

@@ -1,18 +1,21 @@
 """Failure map of fits and sensitivity of stored cubes: ``make stability``.
 
-Writes docs/data/stability.json and the pictures of docs/stability.
+Writes docs/data/stability.json and the pictures of docs/stability. ``--keep-map`` measures the sensitivity alone.
 """
 
 from __future__ import annotations
 
+import json
 import sys
 import time
 import warnings
 from collections.abc import Callable
 from typing import Any
 
+import click
+
 import uplift
-from benchmarks.record import ROOT, write
+from benchmarks.record import DATA, ROOT, write
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.progress import Progress
 from uplift.lab.study import sensitivity
@@ -23,6 +26,7 @@ from uplift.lab.study.stability import NO_ATLAS, study_stability
 from uplift.lab.study.stability_design import DesignSpace, design, grids
 from uplift.lab.study.stability_plots import plot_map
 from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES
+from uplift.lab.timing import environment
 from uplift.pipeline.provenance import recorded_atlas
 
 FOLDER = ROOT / "docs" / "stability"
@@ -37,12 +41,18 @@ CHANGE_KINDS: dict[str, Callable[[str], bool]] = {
 }
 
 
-def main() -> None:
+@click.command()
+@click.option("--keep-map", is_flag=True, help="Keep the stored failure map, which takes most of the time.")
+def main(keep_map: bool) -> None:
     """Measure, draw and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     FOLDER.mkdir(exist_ok=True)
     begin = time.perf_counter()
-    rows = failure_map()
+    if keep_map:
+        stored = json.loads((DATA / "stability.json").read_text(encoding="utf-8"))
+        rows, map_environment = stored["map"], stored.get("map_environment", stored["environment"])
+    else:
+        rows, map_environment = failure_map(), environment()
     print(f"failure map: {time.perf_counter() - begin:.0f} s", file=sys.stderr)
     cubes = {name: cube_sensitivity(name) for name in CUBES}
     print(f"with sensitivity: {time.perf_counter() - begin:.0f} s", file=sys.stderr)
@@ -57,6 +67,7 @@ def main() -> None:
         plain=PLAIN,
         constrained=CONSTRAINED,
         map=rows,
+        map_environment=map_environment,
         cubes=cubes,
         atlas_changes=atlas_changes(cubes[CONSTRAINED]["changes"]),
     )

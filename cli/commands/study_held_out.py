@@ -37,6 +37,9 @@ def held_out(
     with cubes of moments and of sigmoids that have no atlas, and the predicted and the actual standard errors.
     The prior does not know the families of its library that contain spectra of the atlas.
 
+    Two plain baselines know the same half: a local-linear regression of reflectance on RGB, and the centroid of the
+    colours that mixtures of the known materials have under a light (Zhang, Funt & Mirzaei 2016).
+
     \b
     Examples:
       uplift study held-out --atlas paints.csv
@@ -65,7 +68,8 @@ def _records(results: Results) -> list[dict[str, Any]]:
     for name, splits in results.items():
         for method in splits[0].errors:
             rms, *delta_e = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
-            record = {"atlas": name, "cube": method, "colours": len(splits[0].actual), "rms": rms}
+            record = {"atlas": name, "cube": method, "colours": len(splits[0].actual)}
+            record["rms"] = None if np.isnan(rms) else rms
             records.append(record | dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True)))
         errors = pooled_calibration(splits)
         records[-len(splits[0].errors)]["standard_error"] = errors and errors.to_json()
@@ -91,7 +95,8 @@ def _print_table(results: Results) -> None:
     table = make_table(("atlas", "cube"), ("rms", *HELD_OUT_LIGHTS))
     standard_errors = []
     for record in _records(results):
-        cells = [f"{record['rms']:.4f}", *(f"{record[light]:.3f}" for light in HELD_OUT_LIGHTS)]
+        rms = "" if record["rms"] is None else f"{record['rms']:.4f}"
+        cells = [rms, *(f"{record[light]:.3f}" for light in HELD_OUT_LIGHTS)]
         table.add_row(record["atlas"], record["cube"], *cells)
         if record.get("standard_error"):
             standard_errors.append((record["atlas"], record["standard_error"]))

@@ -1,4 +1,4 @@
-"""Errors on held-out measurements: a cube built from half of an atlas predicts the other half."""
+"""Errors on held-out measurements: a cube or a baseline that knows half of an atlas predicts the other half."""
 
 from __future__ import annotations
 
@@ -11,22 +11,33 @@ import numpy as np
 
 from uplift.atlas import Atlas, resample
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.delta_e import delta_e_2000, delta_e_spectra, lab
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.cube import CubeData
 from uplift.fit import families_with
+from uplift.lab.study.baselines import local_linear, mismatch_centroids
 from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.report.calibration import Calibration, check_calibration
 
-__all__ = ["HoldoutSplit", "SpectrumErrors", "holdout", "pooled_calibration", "spectrum_errors"]
+__all__ = [
+    "HoldoutSplit",
+    "SpectrumErrors",
+    "baseline_errors",
+    "holdout",
+    "pooled_calibration",
+    "spectrum_errors",
+]
 
 MIN_ENTRIES = 8
 """Fewest entries within the RGB space of an atlas that is split."""
 HALF, NO_ATLAS, SIGMOID = "half the atlas", "without an atlas", "sigmoid"
 """Names of the cubes that are compared."""
+LOCAL_LINEAR, CENTROID = "local-linear regression", "centroid of mismatch"
+"""Names of the baselines, which know the same half of the atlas (`uplift.lab.study.baselines`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +47,7 @@ class SpectrumErrors:
     Parameters
     ----------
     rms : ndarray, shape (n,)
-        Root mean square over wavelength.
+        Root mean square over wavelength; NaN for a method that predicts colours only.
     delta_e : ndarray, shape (n, L)
         ΔE00 under L lights.
     """
@@ -62,7 +73,7 @@ class HoldoutSplit:
     Parameters
     ----------
     errors : dict of str to SpectrumErrors
-        Errors by the name of the cube.
+        Errors by the name of the cube or baseline.
     actual : ndarray, shape (n,)
         ΔE00 of the cube with half the atlas, under its reference illuminant.
     predicted : ndarray, shape (n,), or None
@@ -99,6 +110,41 @@ def spectrum_errors(
     return SpectrumErrors(rms, np.stack(delta_e, axis=1))
 
 
+def baseline_errors(
+    data: CubeData, known: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS
+) -> dict[str, SpectrumErrors]:
+    """Predict measured reflectances from known ones by `local_linear` and `mismatch_centroids`.
+
+    A colour without a centroid, as no mixture of known materials has it, has the error of the regression.
+
+    Parameters
+    ----------
+    data : CubeData
+        Sensor of RGB, and model of the steps to exact colours.
+    known, measured : ndarray, shape (E, N) and (n, N)
+        Reflectances on the wavelength grid of all sensors.
+    lights : sequence of str, optional
+        Names of the lights of ΔE00.
+
+    Returns
+    -------
+    dict of str to SpectrumErrors
+        Errors by the name of the baseline.
+    """
+    sensor = data.sensor
+    rgb = np.clip(sensor.rgb(measured), 0, 1)
+    shine = [observer.light(name) for name in lights]
+    linear = spectrum_errors(local_linear(data, known, rgb), measured, lights)
+    centroids = mismatch_centroids(sensor, known, rgb, shine)
+    without = np.isnan(centroids[:, 0, 0])
+    delta_e = [
+        delta_e_2000(lab(measured @ light.xyz.T, light.white), lab(centroids[:, number], light.white))
+        for number, light in enumerate(shine)
+    ]
+    of_centroids = np.where(without[:, None], linear.delta_e, np.stack(delta_e, axis=1))
+    return {LOCAL_LINEAR: linear, CENTROID: SpectrumErrors(np.full(len(measured), np.nan), of_centroids)}
+
+
 def holdout(
     atlas: Atlas, splits: int = 3, progress: ProgressCallback = ignore_progress, **options: Any
 ) -> tuple[HoldoutSplit, ...]:
@@ -119,7 +165,8 @@ def holdout(
     Returns
     -------
     tuple of HoldoutSplit
-        Errors of the cubes with half the atlas, of a cube without an atlas, and of a sigmoid cube without an atlas.
+        Errors of the cubes with half the atlas, of a cube without an atlas, of a sigmoid cube without an atlas, and of
+        the baselines.
 
     Raises
     ------
@@ -137,7 +184,8 @@ def holdout(
         for seed in range(splits):
             kept, held_out = np.array_split(np.random.default_rng(seed).permutation(len(inside)), 2)
             cube = build(_subset(atlas, inside[kept]), **options)
-            results.append(_evaluate({HALF: cube, **others}, _subset(atlas, inside[held_out])))
+            known, unknown = (_subset(atlas, inside[rows]) for rows in (kept, held_out))
+            results.append(_evaluate({HALF: cube, **others}, known, unknown))
             progress(Progress("builds", 3 + seed, total))
     return tuple(results)
 
@@ -161,15 +209,17 @@ def pooled_calibration(splits: Sequence[HoldoutSplit]) -> Calibration | None:
     return check_calibration(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 
-def _evaluate(cubes: dict[str, Cube], held_out: Atlas) -> HoldoutSplit:
+def _evaluate(cubes: dict[str, Cube], known: Atlas, held_out: Atlas) -> HoldoutSplit:
     cube = cubes[HALF]
     sensor = cube.data.sensor
     measured = resample(held_out, sensor.wavelengths).values
     rgb = np.clip(sensor.rgb(measured), 0, 1)
     predicted = {name: other.reflectance(rgb) for name, other in cubes.items()}
     light = observer.light(cube.data.error_illuminant, sensor.observer)
+    errors = {name: spectrum_errors(spectra, measured) for name, spectra in predicted.items()}
+    baselines = baseline_errors(cube.data, resample(known, sensor.wavelengths).values, measured)
     return HoldoutSplit(
-        {name: spectrum_errors(spectra, measured) for name, spectra in predicted.items()},
+        errors | baselines,
         delta_e_spectra(light, predicted[HALF], measured),
         cube.standard_error(rgb),
         cube.error_bound(rgb),
