@@ -129,7 +129,13 @@ def test_studies_are_subcommands(run):
 def test_held_out_has_the_same_numbers_in_all_formats(run, tcs):
     args = ("study", "held-out", "--atlas", tcs, "--dim", 4, "--splits", 1, "--format")
     objects = json.loads(run(*args, "json").stdout)
-    methods = ["half the atlas", "without an atlas", "sigmoid", "local-linear regression", "centroid of mismatch"]
+    methods = [
+        "half the atlas",
+        "without an atlas",
+        "sigmoid",
+        "local-linear regression",
+        "centroid of mismatch",
+    ]
     assert [one["cube"] for one in objects] == methods
     assert all(one["atlas"] == "tcs" and 0 < one["rms"] < 0.5 for one in objects[:-1])
     assert objects[-1]["rms"] is None
