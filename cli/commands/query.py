@@ -15,16 +15,19 @@ import click
 from uplift.colorimetry.lights import RELIGHT_LIGHTS
 from uplift.common.errors import UpliftWarning
 
+from ..output.light_output import query_lights, treatment, write_lights
 from ..output.query_output import WRITERS
 from ..params.number_types import NUMBER
 from ..params.options import (
     cube_option,
+    emission_option,
     fill_option,
     force_option,
     format_option,
     input_space_option,
     light_option,
     out_of_gamut_option,
+    refuse_for_emission,
     wavelengths_option,
 )
 from ..params.plots import plot_option
@@ -33,10 +36,10 @@ from ..params.wavelengths import parse_wavelengths
 from ..startup import hide_drawing_notes
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.sensor import Light
+    from uplift.colorimetry.sensor import Light, Sensor
     from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
-    from uplift.lookup import Bounds, Cube, QueryResult
+    from uplift.lookup import Bounds, Cube, EmissionTable, QueryResult
 
 DIVISIONS, SINGLE_DIVISIONS = 2, 3
 """Density of the directions of bounds: 162 of each of many colours, 642 of a single one."""
@@ -54,6 +57,7 @@ class ColourCommand(click.Command):
 @click.command("query", cls=ColourCommand)
 @click.argument("colour", nargs=-1)
 @cube_option()
+@emission_option("The colour is that of a light, of any brightness")
 @click.option(
     "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
 )
@@ -102,6 +106,7 @@ class ColourCommand(click.Command):
 def command(
     colour: tuple[str, ...],
     cube_path: str | None,
+    is_emission: bool,
     input_path: str | None,
     xyz: tuple[float, float, float] | None,
     xy: tuple[float, float] | None,
@@ -136,6 +141,7 @@ def command(
       uplift query --xy 0.17 0.7 --luminance 0.15 --format json
       echo 0.5,0.5,0.5 | uplift query - --format json
       uplift query '#cc3319' --cube macbeth-32.uplift --light FL11 --light HP1
+      uplift query 30 22 9 --emission
       uplift query '#8a2a20' --bounds --light A --light FL11 --plot bounds.png
       uplift query '#8a2a20' --light A --light FL11 --html red.html
 
@@ -144,21 +150,33 @@ def command(
     from the answer under a light, and the ranges of L*, a* and b*. The page of --html shows the bounds of one colour
     and a spectrum for every choice in them; it writes the TOML for 'uplift build --look'.
 
+    With --emission, colours are lights: linear RGB of any size, negative components included, and the spectrum is a
+    power of which 1 at all wavelengths has luminance 1. Colours that no light has are errors, or with --out-of-gamut
+    clip the nearest ones towards white.
+
     Lines of files and of standard input are answered in blocks as they come. An error in a later block follows the
     answers to earlier ones.
     """
     from uplift.common.files import check_outputs
-    from uplift.lookup import load
+    from uplift.lookup import load, load_emission
 
     check_outputs((plot_path, html), inputs=(cube_path, input_path), force=force)
-    cube = load(cube_path)
-    bounded = method == "error" and input_space is None
     space = resolve_space(input_space)
     point = _as_xyz(xyz, xy, luminance)
     if point is not None and (colour or input_path is not None):
         raise click.UsageError(
             "Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'."
         )
+    single = point is not None or (bool(colour) and colour != ("-",))
+    if is_emission:
+        refuse_for_emission("mode", "fill_missing", "lights", "with_bounds", "html")
+        table = load_emission(cube_path)
+        lights_xyz = _lights_xyz(table, point, colour, input_path, encoded=encoded, space=space)
+        lit = query_lights(table, lights_xyz, parse_wavelengths(wavelengths), treatment(method))
+        write_lights(table, lit, style, plot_path, single=single, force=force)
+        return
+    cube = load(cube_path)
+    bounded = method == "error" and input_space is None
     answers = _Answers(
         cube,
         method,
@@ -171,17 +189,17 @@ def command(
     if point is not None:
         results = answers.result_of_xyz(point)
     else:
-        results = answers.results(
-            _read_colours(colour, input_path, cube, encoded=encoded, bounded=bounded, space=space)
+        blocks = _read_colours(
+            colour, input_path, cube.data.sensor, encoded=encoded, bounded=bounded, space=space
         )
-    single = point is not None or (bool(colour) and colour != ("-",))
+        results = answers.results(blocks)
     if html is not None and not single:
         raise click.UsageError("--html shows one colour: give it on the command line.")
     if with_bounds or html is not None:
         from ..output.bounds_output import write_bounds
 
-        blocks = ((block, answers.bounds(block, single=single)) for block in results)
-        write_bounds(cube, blocks, style, plot_path, html, single=single, force=force)
+        bounds = ((block, answers.bounds(block, single=single)) for block in results)
+        write_bounds(cube, bounds, style, plot_path, html, single=single, force=force)
     else:
         if plot_path is not None:
             from uplift.viz.spectra import plot_spectra
@@ -272,6 +290,26 @@ def _as_xyz(
     return x * luminance / y, luminance, (1 - x - y) * luminance / y
 
 
+def _lights_xyz(
+    table: EmissionTable,
+    point: tuple[float, float, float] | None,
+    words: tuple[str, ...],
+    path: str | None,
+    *,
+    encoded: bool,
+    space: ImageSpace | None,
+) -> Iterable[Array]:
+    """Return blocks of XYZ (n, 3) of lights from arguments, a file or standard input."""
+    if point is not None:
+        import numpy as np
+
+        return [np.array([point])]
+    from uplift.colorimetry.observer import sensor
+
+    target = sensor(table.space)
+    return map(table.xyz, _read_colours(words, path, target, encoded=encoded, bounded=False, space=space))
+
+
 def _read_lights(names: Sequence[str], cube: Cube) -> list[Light]:
     if not names:
         return []
@@ -284,7 +322,7 @@ def _read_lights(names: Sequence[str], cube: Cube) -> list[Light]:
 def _read_colours(
     words: tuple[str, ...],
     path: str | None,
-    cube: Cube,
+    sensor: Sensor,
     *,
     encoded: bool,
     bounded: bool,
@@ -298,12 +336,12 @@ def _read_colours(
     if bool(words) == (path is not None):
         raise click.UsageError("Give one colour, or --input FILE, or '-'. See 'uplift query --help'.")
     if path is None:
-        return [from_arguments(words, cube, encoded=encoded, space=space)]
-    return _read_file(path, cube, encoded=encoded, bounded=bounded, space=space)
+        return [from_arguments(words, sensor, encoded=encoded, space=space)]
+    return _read_file(path, sensor, encoded=encoded, bounded=bounded, space=space)
 
 
 def _read_file(
-    path: str, cube: Cube, *, encoded: bool, bounded: bool, space: ImageSpace | None
+    path: str, sensor: Sensor, *, encoded: bool, bounded: bool, space: ImageSpace | None
 ) -> Iterator[Array]:
     from uplift.common.errors import ColourError
 
@@ -312,7 +350,7 @@ def _read_file(
     name = "standard input" if path == "-" else path
     try:
         with click.open_file(path, "rb") as file:
-            yield from from_table(file, name, cube, encoded=encoded, bounded=bounded, space=space)
+            yield from from_table(file, name, sensor, encoded=encoded, bounded=bounded, space=space)
     except OSError as error:
         raise ColourError(
             f"cannot be read: {error.strerror}",

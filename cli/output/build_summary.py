@@ -9,7 +9,7 @@ from .console import say
 
 if TYPE_CHECKING:
     from uplift.cube import CubeData
-    from uplift.lookup import Cube
+    from uplift.lookup import Cube, EmissionTable
 
 
 def print_improvements(cube: Cube) -> None:
@@ -38,6 +38,16 @@ def print_summary(cube: Cube, path: Path, seconds: float) -> None:
     say(
         f"{path}: {_node_count(data)}, {entries}{accuracy} (worst {worst:.1e}), "
         f"{counts['improved']} improved, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
+    )
+
+
+def print_emission_summary(table: EmissionTable, path: Path, seconds: float) -> None:
+    """Print nodes, lamps, expected error of white, size and time on one line."""
+    knots, rings = table.data.lattice.shape
+    say(
+        f"{path}: {knots} × {rings} nodes, {len(table.lamp_names)} lamps, "
+        f"expected ΔE00 of surfaces {float(table.expected_error([1.0, 1.0, 1.0])):.1f} (white), "
+        f"{path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
     )
 
 

@@ -16,9 +16,9 @@ from uplift.common.quoting import format_value
 from .text_lines import HINT, line_blocks
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.sensor import Sensor
     from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
-    from uplift.lookup import Cube
 
 HEX = re.compile(r"#?([0-9a-fA-F]{6})\Z")
 SHORT_HEX = re.compile(r"#([0-9a-fA-F]{3})\Z")
@@ -34,18 +34,24 @@ class Colour:
 
 
 def from_arguments(
-    words: Sequence[str], cube: Cube, *, encoded: bool, space: ImageSpace | None = None
+    words: Sequence[str], sensor: Sensor, *, encoded: bool, space: ImageSpace | None = None
 ) -> Array:
-    """Parse one colour, 'R G B', 'R,G,B' or '#rrggbb', into linear RGB (1, 3) of the cube. Raises `ColourError`."""
+    """Parse one colour, 'R G B', 'R,G,B' or '#rrggbb', into linear RGB (1, 3) of the sensor. Raises `ColourError`."""
     parts = [part for word in words for part in re.split(r"[,\s]+", word) if part]
     colour = _parse(parts)
     if colour is None or len(parts) > 3:
         raise _unreadable(parts)
-    return _linear([colour], cube, encoded=encoded, space=space)
+    return _linear([colour], sensor, encoded=encoded, space=space)
 
 
 def from_table(
-    file: IO[bytes], name: str, cube: Cube, *, encoded: bool, bounded: bool, space: ImageSpace | None = None
+    file: IO[bytes],
+    name: str,
+    sensor: Sensor,
+    *,
+    encoded: bool,
+    bounded: bool,
+    space: ImageSpace | None = None,
 ) -> Iterator[Array]:
     """Parse lines of 'r,g,b' or hex colours into blocks of linear RGB (n, 3), as the lines come.
 
@@ -59,7 +65,7 @@ def from_table(
             _check_range(colour, name, line, encoded=encoded or colour.encoded, bounded=bounded)
         if colours:
             empty = False
-            yield _linear(list(colours.values()), cube, encoded=encoded, space=space)
+            yield _linear(list(colours.values()), sensor, encoded=encoded, space=space)
     if empty:
         raise ColourError(
             "has no colours", code="no-colours", path=name, hint="give lines of r,g,b or of hex colours"
@@ -135,17 +141,19 @@ def _number(word: str) -> float | None:
         return None
 
 
-def _linear(colours: list[Colour], cube: Cube, *, encoded: bool, space: ImageSpace | None) -> Array:
-    """Decode hex colours, and with ``encoded`` all others, and convert colours of another space to the cube's."""
+def _linear(colours: list[Colour], sensor: Sensor, *, encoded: bool, space: ImageSpace | None) -> Array:
+    """Decode hex colours, and with ``encoded`` all others, and convert colours of another space to the sensor's."""
     import numpy as np
+
+    from uplift.lookup.validation import decode_codes
 
     values = np.array([colour.numbers for colour in colours], dtype=float)
     mask = np.array([encoded or colour.encoded for colour in colours])
     if space is None or space.decode is None:
-        values[mask] = cube.decode(values[mask])
+        values[mask] = decode_codes(sensor, values[mask])
     else:
         values[mask] = space.decode(values[mask] / 255)
         if space.floats_are_codes:
             values[~mask] = space.decode(values[~mask])
-    matrix = None if space is None else space.matrix_to(cube.data.sensor)
+    matrix = None if space is None else space.matrix_to(sensor)
     return values if matrix is None else np.asarray(values @ matrix.T)

@@ -88,7 +88,7 @@ class SpectrumResolver:
         from uplift.common.errors import ColourError
 
         try:
-            return from_arguments([text], self.cube, encoded=False, space=self.space)[0]
+            return from_arguments([text], self.cube.data.sensor, encoded=False, space=self.space)[0]
         except ColourError as error:
             raise ColourError(
                 f"{error.problem} and not an atlas entry",

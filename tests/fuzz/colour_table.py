@@ -38,7 +38,7 @@ def _generate(random: Random, path: Path) -> None:
 def _use(path: Path) -> None:
     cube = _cube()
     with path.open("rb") as file:
-        for rgb in from_table(file, path.name, cube, encoded=False, bounded=False):
+        for rgb in from_table(file, path.name, cube.data.sensor, encoded=False, bounded=False):
             for method in METHODS[1:]:
                 mapped = map_to_gamut(rgb, cube.data.sensor, method).rgb
                 if not ((mapped >= 0) & (mapped <= 1)).all():

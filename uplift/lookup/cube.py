@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.common.arrays import Array, Mask
-from uplift.common.errors import ColourError, OptionError
+from uplift.common.errors import OptionError
 from uplift.cube import CubeData, read, write
 from uplift.lookup.blocks import Function, blockwise
 from uplift.lookup.fill import fill_missing, missing_points
@@ -25,9 +25,9 @@ from uplift.lookup.validation import (
     as_coefficient_count,
     as_colours,
     as_float_type,
-    as_floats,
     as_thread_count,
     as_wavelengths,
+    decode_codes,
 )
 
 if TYPE_CHECKING:
@@ -415,15 +415,7 @@ class Cube:
         ColourError
             Codes outside 0 to 255.
         """
-        array = as_floats(codes, "8-bit codes must be numbers", "invalid-codes")
-        outside = array[~((array >= 0) & (array <= 255))]
-        if outside.size:
-            raise ColourError(
-                f"8-bit codes must be in [0, 255], got {outside[0]:g}",
-                code="invalid-codes",
-                hint="pass linear RGB to the query without decoding it",
-            )
-        return self.data.sensor.decode(array)
+        return decode_codes(self.data.sensor, codes)
 
     def encode(self, rgb: ArrayLike) -> Array:
         """Convert linear RGB to 8-bit codes, the inverse of `decode`.

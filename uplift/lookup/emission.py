@@ -210,8 +210,22 @@ class EmissionTable:
         ndarray, shape (..., 3)
             Linear RGB.
         """
-        xyz = np.asarray(power, dtype=float) @ self._radiometry
-        return np.asarray(xyz @ np.linalg.inv(self.data.rgb_to_xyz).T)
+        return self.rgb_of_xyz(np.asarray(power, dtype=float) @ self._radiometry)
+
+    def rgb_of_xyz(self, xyz: ArrayLike) -> Array:
+        """Convert XYZ to linear RGB, the inverse of `xyz`.
+
+        Parameters
+        ----------
+        xyz : array_like, shape (..., 3)
+            XYZ; white has Y = 1.
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+            Linear RGB.
+        """
+        return np.asarray(np.asarray(xyz, dtype=float) @ np.linalg.inv(self.data.rgb_to_xyz).T)
 
     def contains(self, rgb: ArrayLike) -> Mask:
         """Test whether a light can have the colours: black, or a chromaticity within the spectral locus.

@@ -72,3 +72,16 @@ def as_floats(values: Any, problem: str, code: str, kind: type[UpliftError] = Co
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:
         raise kind(problem, code=code) from error
+
+
+def decode_codes(sensor: Sensor, codes: ArrayLike) -> Array:
+    """Convert 8-bit codes (…) to linear values by the encoding of a sensor; `ColourError` outside 0 to 255."""
+    array = as_floats(codes, "8-bit codes must be numbers", "invalid-codes")
+    outside = array[~((array >= 0) & (array <= 255))]
+    if outside.size:
+        raise ColourError(
+            f"8-bit codes must be in [0, 255], got {outside[0]:g}",
+            code="invalid-codes",
+            hint="pass linear RGB to the query without decoding it",
+        )
+    return sensor.decode(array)
