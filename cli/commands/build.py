@@ -28,7 +28,7 @@ from ..params.options import (
     measured_option,
     out_of_gamut_option,
     quiet_option,
-    refuse_for_emission,
+    refuse_for_lights,
     sensor_options,
     verbose_option,
 )
@@ -251,7 +251,7 @@ def _build_emission(
     from uplift.pipeline import build_emission
 
     names = [each.name or "" for each in click.get_current_context().command.params]
-    refuse_for_emission(*(name for name in names if name not in ALLOWED_WITH_EMISSION))
+    refuse_for_lights(*(name for name in names if name not in ALLOWED_WITH_EMISSION))
     stem = "+".join(Path(file).stem for file in files)
     name = f"{stem}-emission.uplift" if stem else "emission.uplift"
     path = check_output(name if output is None else output, inputs=files, force=force)

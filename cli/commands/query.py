@@ -27,7 +27,7 @@ from ..params.options import (
     input_space_option,
     light_option,
     out_of_gamut_option,
-    refuse_for_emission,
+    refuse_for_lights,
     wavelengths_option,
 )
 from ..params.plots import plot_option
@@ -169,7 +169,7 @@ def command(
         )
     single = point is not None or (bool(colour) and colour != ("-",))
     if is_emission:
-        refuse_for_emission("mode", "fill_missing", "lights", "with_bounds", "html")
+        refuse_for_lights("mode", "fill_missing", "lights", "with_bounds", "html")
         table = load_emission(cube_path)
         lights_xyz = _lights_xyz(table, point, colour, input_path, encoded=encoded, space=space)
         lit = query_lights(table, lights_xyz, parse_wavelengths(wavelengths), treatment(method))
