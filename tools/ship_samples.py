@@ -57,6 +57,7 @@ def main(folder: Path = FOLDER) -> None:
         write_exr(half[::2, ::2], folder / f"tile.{tile}.exr")
     write_exr(picture[::4, ::4], folder / "painting.exr")
     write_exr(fire(), folder / "fire.exr")
+    write_exr(sky(), folder / "sky.exr")
     write_png(label(), folder / "labels.png")
     for name, atlas in MEASUREMENTS.items():
         write_atlas(read_atlas(atlas), folder / name, force=True)
@@ -153,6 +154,22 @@ def knot() -> NDArray[np.uint8]:
     """Return weights (96, 128) from 0 to 255: a disc with a soft edge, as a mask of the boards."""
     y, x = np.mgrid[:96, :128] + 0.5
     return np.rint(255 * np.clip((36 - np.hypot(x - 64, y - 48)) / 8, 0, 1)).astype(np.uint8)
+
+
+def sky() -> Array:
+    """Return an environment map, linear RGB (32, 64, 3): blue above, a warm horizon, a sun of 4e4, and a street lamp."""
+    row, column = np.mgrid[:32, :64] + 0.5
+    height, turn = np.pi * (0.5 - row / 32), 2 * np.pi * (column / 64)
+    rise = np.clip(np.sin(height), 0, 1)[..., None]
+    above = (1 - rise) ** 3 * np.array([1.1, 0.7, 0.4]) + rise**0.5 * np.array([0.16, 0.3, 0.8])
+    picture = np.where(height[..., None] > 0, above, np.array([0.05, 0.045, 0.04]))
+    picture += _glow(height - 0.45, turn - 1.6, 0.03) * np.array([4e4, 3.4e4, 2.2e4])
+    return picture + _glow(height - 0.2, turn - 4.4, 0.05) * np.array([260.0, 95.0, -6.0])
+
+
+def _glow(up: Array, aside: Array, size: float) -> Array:
+    """Return a soft disc (h, w, 1) around an angle, 1 in the middle."""
+    return np.exp(-(up**2 + aside**2) / (2 * size**2))[..., None]
 
 
 def fire() -> Array:

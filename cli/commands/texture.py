@@ -115,7 +115,7 @@ def command(
       uplift texture painting.exr ap1.exr --space ACEScg
       uplift texture shot.*.exr uplifted --scheduler tcp://10.0.0.5:8786
       uplift texture wood.png parts.exr --mask mask.png --cube macbeth-32.uplift --cube looks.uplift
-      uplift texture sky.hdr sky-spectral.exr --emission --wavelengths 400:700:10
+      uplift texture sky.exr sky-spectral.exr --emission --wavelengths 400:700:10
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
     and mip-mapped. 'multipliers' can be evaluated directly, by the formula in the header. Alpha and other channels are
