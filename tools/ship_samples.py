@@ -157,7 +157,7 @@ def knot() -> NDArray[np.uint8]:
 
 
 def sky() -> Array:
-    """Return an environment map, linear RGB (32, 64, 3): blue above, a warm horizon, a sun of 4e4, and a street lamp."""
+    """Return an environment map, linear RGB (32, 64, 3): sky, a warm horizon, a sun of up to 4e4, and a street lamp."""
     row, column = np.mgrid[:32, :64] + 0.5
     height, turn = np.pi * (0.5 - row / 32), 2 * np.pi * (column / 64)
     rise = np.clip(np.sin(height), 0, 1)[..., None]

@@ -21,7 +21,6 @@ from benchmarks.record import ROOT, write
 from benchmarks.render import scene
 from benchmarks.render.chart import Layout, chart
 from uplift.colorimetry.delta_e import delta_e_2000, lab
-from uplift.colorimetry.observer import lamps
 from uplift.common.arrays import Array
 from uplift.io.texture.pixel_encoding import SPECTRAL_LAYOUT, spectral_channels
 
@@ -97,8 +96,7 @@ def methods(sky: Sky, folder: Path) -> dict[str, dict[str, Any]]:
     spectral = _write(folder / f"{stem}-spectral.exr", names, power, **SPECTRAL_LAYOUT)
     rgb = _write(folder / f"{stem}.exr", ("R", "G", "B"), table.rgb(power))
     partial = folder / f"{stem}.uplift"
-    known = lamps()
-    uplift.build_emission(lamps=known.without(sky.lamp_names)).save(partial)
+    uplift.build_emission(without=sky.lamp_names).save(partial)
     return {
         TRUE: {"type": "uplift_envmap", "filename": str(spectral)},
         KNOWN: {"type": "uplift_envmap", "filename": str(rgb)},

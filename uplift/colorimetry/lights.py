@@ -6,9 +6,11 @@ a white LED, LED-RGB1 one of three narrow bands, HP1 a high-pressure sodium lamp
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from uplift.common.arrays import Array
+from uplift.common.errors import unknown_name
 
 DEFAULT_ILLUMINANT = "D65"
 """Illuminant that RGB refers to by default."""
@@ -77,3 +79,27 @@ class Lamps:
 
     def __len__(self) -> int:
         return len(self.names)
+
+    def without(self, names: Collection[str]) -> Lamps:
+        """Leave out lamps.
+
+        Parameters
+        ----------
+        names : collection of str
+            Names of lamps, spelled as in ``names``.
+
+        Returns
+        -------
+        Lamps
+            The others.
+
+        Raises
+        ------
+        UnknownNameError
+            A name is unknown (``unknown-lamp``).
+        """
+        for name in names:
+            if name not in self.names:
+                raise unknown_name(name, self.names, "lamp")
+        kept = [row for row, name in enumerate(self.names) if name not in names]
+        return Lamps(tuple(self.names[row] for row in kept), self.power[kept])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Collection
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -49,6 +50,7 @@ def build_emission(
     rings: int = 24,
     space: str = "sRGB",
     observer: str = observers.DEFAULT_OBSERVER,
+    without: Collection[str] = (),
     progress: ProgressCallback = ignore_progress,
 ) -> EmissionTable:
     """Build a table of the spectra of lights, constrained by measured lamps.
@@ -69,6 +71,8 @@ def build_emission(
         RGB space of queries, by its name in colour-science. White is the white of the space, without adaptation.
     observer : str, default "CIE 1931 2 Degree Standard Observer"
         Colour-matching functions.
+    without : collection of str, optional
+        Names of lamps of colour-science to leave out, to test how lamps are predicted that the table does not know.
     progress : callable, optional
         Called with `Progress` events of the stage ``"fit"``.
 
@@ -84,7 +88,7 @@ def build_emission(
     OptionError
         An option outside its range.
     UnknownNameError
-        An unknown space or observer.
+        An unknown space, observer or lamp.
 
     Warns
     -----
@@ -106,7 +110,7 @@ def build_emission(
     white = chromaticity(matrix.sum(axis=1))
     lattice, rim = locus_lattice(radiometry, white, int(knots), np.linspace(0, 1, int(rings)))
     constraints, sources = _read(atlas, sensor.wavelengths, radiometry)
-    lamps = _choose(constraints, observers.lamps(observer))
+    lamps = _choose(constraints, observers.lamps(observer).without(without))
     prior, left_out = fit_lamp_prior(lamps.all.power, _surfaces(), radiometry, len(lamps.exact))
     power = _nodes(prior, lattice, rim, radiometry, progress)
     entries, duplicates = lamp_entries(lamps.exact, lamps.others, lattice, radiometry)
@@ -129,7 +133,7 @@ def build_emission(
             entries=entries,
             provenance={
                 "uplift": VERSION,
-                "options": {"knots": int(knots), "rings": int(rings)},
+                "options": {"knots": int(knots), "rings": int(rings), "without": sorted(without)},
                 "atlases": sources,
                 "left_out": [name for name, _ in duplicates],
                 "prior": asdict(prior.kernel),
