@@ -32,7 +32,7 @@ TRUE, MITSUBA, KNOWN, UNKNOWN = (
     "table, lamps left out",
 )
 OTHER_SEED = "measured spectra, another seed"
-LAYOUT, SPP = Layout(patch=32, gap=4), 128
+LAYOUT, SPP = Layout(patch=32, gap=4), 512
 PICTURE = ROOT / "docs" / "emission" / "environments.png"
 
 
