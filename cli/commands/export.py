@@ -92,14 +92,13 @@ def command(
         raise click.UsageError("--table applies to programs only.")
     out = out or Path(cube).stem + SUFFIXES[style]
     from uplift.common.files import check_output
-    from uplift.cube import is_emission_table
     from uplift.lookup import load
-    from uplift.lookup.emission import find_emission_file
+    from uplift.lookup.emission import names_emission_table
 
     path = check_output(out, inputs=[cube], force=force)
     options = {"res": res, "mode": mode, "form": table, "style": style if style in PROGRAMS else None}
     options = {key: value for key, value in options.items() if value is not None}
-    if is_emission_table(find_emission_file(cube)):
+    if names_emission_table(cube):
         refuse_for_lights("mode", "fill_missing")
         say(f"{path}: {_light_program(cube, path, force=force, **{'style': style, **options})}")
         return

@@ -18,15 +18,22 @@ from ..params.options import format_option
 def command(file: str | None, style: str) -> None:
     """Show the contents and provenance of a cube file. FILE defaults to the packaged cube.
 
+    FILE can also be an emission table, or the packaged one, named emission.
+
     \b
     Examples:
       uplift info macbeth-32.uplift
       uplift info macbeth-32.uplift --format json | jq .status
+      uplift info emission
     """
-    from uplift.lookup import load
-    from uplift.report.summary import summarise
+    from uplift.lookup import load, load_emission
+    from uplift.lookup.emission import names_emission_table
+    from uplift.report.summary import summarise, summarise_emission
 
-    fields = summarise(load(file).data)
+    if file is not None and names_emission_table(file):
+        fields = summarise_emission(load_emission(file).data)
+    else:
+        fields = summarise(load(file).data)
     if style == "json":
         print_json(fields)
     else:

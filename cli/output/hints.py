@@ -46,7 +46,7 @@ HINTS = {
     "no-moments": "use --store multipliers, or a cube of moments",
     "no-requirements": "give --time-ns, --delta-e or both",
     "not-a-chart": "name the CSV file that 'uplift chart' wrote",
-    "not-a-cube": "build it again with 'uplift build'",
+    "not-a-cube": "name a cube by 'uplift build', or use --emission of 'query' and 'texture' for an emission table",
     "not-an-emission-table": "build one with 'uplift build --emission', or leave out --emission for a cube",
     "rgb-out-of-gamut": "map it inside with --out-of-gamut, or use --encoded for 8-bit codes",
     "rgb-space-mismatch": "build the cube with the image in --scene, or without --scene",

@@ -227,7 +227,7 @@ def _load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:
         with safe_open(path, framework="numpy") as file:
             metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
             if not isinstance(metadata, dict) or metadata.get("format") != kind.format:
-                raise invalid_file(path, kind, f"is not an {kind.format}", kind.foreign)
+                raise invalid_file(path, kind, _foreign_problem(metadata, kind), kind.foreign)
             for name in file.keys():  # noqa: SIM118  not a dictionary
                 if file.get_slice(name).get_dtype() not in STORED_TYPES:
                     problem = f"has an array of an unknown type, {ascii(name)[:40]}"
@@ -239,6 +239,12 @@ def _load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:
         problem = f"is not a {kind.noun} file, or is truncated ({error_text(error)})"
         raise invalid_file(path, kind, problem, kind.foreign) from error
     return tensors, metadata
+
+
+def _foreign_problem(metadata: Any, kind: Kind) -> str:
+    """Describe a file of another kind, which is named if the file names it."""
+    found = metadata.get("format") if isinstance(metadata, dict) else None
+    return f"must be an {kind.format}" + ("" if found is None else f", got {format_value(found)}")
 
 
 def _not_a_file(path: Path, kind: Kind) -> CubeFileError:

@@ -16,6 +16,7 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData, read, write
 from uplift.lookup.blocks import Function, blockwise
+from uplift.lookup.emission import find_emission_file
 from uplift.lookup.fill import fill_missing, missing_points
 from uplift.lookup.interpolate import MODES, coefficients, extended_coefficients, node_errors
 from uplift.lookup.light_errors import light_errors, unlike_atlas
@@ -513,12 +514,12 @@ def find_cube_file(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
     Returns
     -------
     path-like
-        The file; it may be missing.
+        The file; it may be missing. The name of the packaged emission table gives its file, which is not a cube.
     """
     name = os.fspath(path)
     if name.casefold() in PACKAGED and not os.path.lexists(name):
         return PACKAGED[name.casefold()]
-    return path
+    return find_emission_file(path)
 
 
 def _reflectance(data: CubeData, mode: str, wavelengths: Array, rgb: Array) -> Array:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from uplift.colorimetry.gamut import as_rgb
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError, OptionError
-from uplift.cube import EmissionData, read_emission, write_emission
+from uplift.cube import EmissionData, is_emission_table, read_emission, write_emission
 from uplift.lattice.chromaticity import DENOMINATOR, SLACK
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.validation import as_float_type, as_thread_count, as_wavelengths
@@ -343,6 +343,22 @@ def find_emission_file(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
     """
     name = os.fspath(path)
     return DEFAULT_EMISSION if name.casefold() == PACKAGED_NAME and not os.path.lexists(name) else path
+
+
+def names_emission_table(path: str | os.PathLike[str]) -> bool:
+    """Whether a path, or the name of the packaged table, stands for an emission table.
+
+    Parameters
+    ----------
+    path : path-like
+        As of `find_emission_file`.
+
+    Returns
+    -------
+    bool
+        False for other files, and for those that cannot be read.
+    """
+    return is_emission_table(find_emission_file(path))
 
 
 def _as_floats(colours: ArrayLike) -> Array:

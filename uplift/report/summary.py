@@ -1,4 +1,4 @@
-"""Facts about a cube as JSON values."""
+"""Facts about a cube or an emission table as JSON values."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.cube import CubeData, digest
+from uplift.cube import CubeData, EmissionData, digest, emission_digest
+from uplift.cube.emission import KIND
 
 
 def summarise(data: CubeData) -> dict[str, Any]:
@@ -46,4 +47,36 @@ def summarise(data: CubeData) -> dict[str, Any]:
         "rounds": None if points.round is None else int(points.round.max()) + 1,
         "provenance": dict(data.provenance),
         "digest": digest(data),
+    }
+
+
+def summarise_emission(data: EmissionData) -> dict[str, Any]:
+    """Summarise an emission table, most general facts first.
+
+    Parameters
+    ----------
+    data : EmissionData
+        The emission table.
+
+    Returns
+    -------
+    dict
+        JSON values. Expected errors are ΔE00 of surfaces, over the nodes of all chromaticities; wavelengths
+        are in nm.
+    """
+    knots, rings = data.lattice.shape
+    first, second = data.wavelengths[:2].tolist()
+    return {
+        "format": KIND.format,
+        "knots": knots,
+        "rings": rings,
+        "nodes": knots * rings,
+        "space": data.space,
+        "observer": data.observer,
+        "wavelengths": {"first": first, "last": float(data.wavelengths[-1]), "step": second - first},
+        "mean_expected_error": float(data.error.mean(dtype=np.float64)),
+        "largest_expected_error": float(data.error.max()),
+        "lamps": list(data.entries.names),
+        "provenance": dict(data.provenance),
+        "digest": emission_digest(data),
     }

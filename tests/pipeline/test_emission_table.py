@@ -1,0 +1,107 @@
+"""Emission tables of measured lamps: exact lamps, and input that is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.helpers import raises, warns
+from uplift.atlas import Atlas, Entry, read_lamps
+from uplift.common.errors import OptionError
+from uplift.lattice.chromaticity import chromaticity
+from uplift.pipeline import build_emission
+
+AT = np.arange(380.0, 781.0, 5.0)
+SMALL = {"knots": 64, "rings": 4}
+WARM = np.exp((AT - 560) / 90)
+BANDS = sum(np.exp(-(((AT - peak) / 12) ** 2)) for peak in (455, 540, 620)) + 0.01
+
+
+def lamps(*entries):
+    return Atlas(tuple(Entry(name, AT, power / power.max()) for name, power in entries))
+
+
+@pytest.fixture(scope="module")
+def table():
+    """Table of two lamps, of which one has bands."""
+    return build_emission(lamps(("warm", WARM), ("bands", BANDS)), **SMALL)
+
+
+def radiometry(table):
+    return table.data.cmfs / table.data.cmfs[:, 1].sum()
+
+
+def test_lamps_of_the_atlas_are_exact_at_their_colours(table):
+    for power in (WARM, BANDS):
+        unit = power / (power @ radiometry(table)[:, 1])
+        found = table.spectrum_of_xyz(unit @ radiometry(table))
+        np.testing.assert_allclose(found, unit, rtol=1e-5)
+
+
+def test_lamps_of_the_atlas_change_the_table(table):
+    """Without them, the packaged table has another light at the same colour: the test above can fail."""
+    unit = BANDS / (BANDS @ radiometry(table)[:, 1])
+    packaged = uplift.load_emission().spectrum_of_xyz(unit @ radiometry(table))
+    assert np.abs(packaged - unit).max() > 0.5
+
+
+def test_lamps_come_first_and_keep_known_ones_away(table):
+    entries = table.data.entries
+    assert entries.names[:2] == ("warm", "bands")
+    assert "A" in entries.names
+    apart = np.linalg.norm(entries.uv[2:, None] - entries.uv[:2], axis=-1)
+    assert apart.min() > 2e-3
+
+
+def test_colours_are_exact_and_powers_are_not_negative(table):
+    rng = np.random.default_rng(0)
+    xyz = rng.random((500, 81)) ** 30 @ radiometry(table)
+    power = table.spectrum_of_xyz(xyz)
+    assert power.min() >= 0
+    assert chromaticity(power @ radiometry(table)) == pytest.approx(chromaticity(xyz), abs=1e-6)
+
+
+def test_a_known_lamp_in_the_atlas_is_not_there_twice():
+    known = uplift.load_emission().data.entries
+    row = known.names.index("FL2")
+    table = build_emission(lamps(("mine", known.spectra[row])), **SMALL)
+    assert table.lamp_names[0] == "mine"
+    assert "FL2" not in table.lamp_names
+
+
+def test_lamps_of_one_colour_are_left_out_with_a_warning():
+    with warns("entry-duplicate") as found:
+        table = build_emission(lamps(("first", WARM), ("second", 0.5 * WARM)), **SMALL)
+    assert found[0].entry == "second"
+    assert table.data.provenance["left_out"] == ["second"]
+    assert "second" not in table.lamp_names
+
+
+def test_files_of_lamps_are_recorded(tmp_path):
+    path = tmp_path / "lamps.csv"
+    values = ",".join(f"{value:.6g}" for value in BANDS)
+    path.write_text(f"# spectral irradiance\nname,{','.join(f'{each:g}' for each in AT)}\nbands,{values}\n")
+    table = build_emission(path, **SMALL)
+    assert [source["name"] for source in table.data.provenance["atlases"]] == ["lamps.csv"]
+    assert table.lamp_names[0] == read_lamps(path).names[0] == "bands"
+
+
+@pytest.mark.parametrize(
+    ("code", "atlas"),
+    [
+        ("no-lamps", Atlas(())),
+        ("lamp-without-power", Atlas((Entry("dark", AT, np.zeros(81)),))),
+    ],
+)
+def test_atlases_without_light_are_refused(code, atlas):
+    with raises(OptionError, code):
+        build_emission(atlas, **SMALL)
+
+
+@pytest.mark.parametrize(
+    "options", [{"knots": 2}, {"rings": 2}, {"knots": True}, {"rings": 4.0}, {"knots": 10**6}]
+)
+def test_bad_numbers_of_nodes_are_refused(options):
+    with raises(OptionError, "nodes-out-of-range"):
+        build_emission(**options)
