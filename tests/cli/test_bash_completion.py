@@ -15,6 +15,12 @@ PROMPT, MARK = "ready> ", "<typed>"
 SET_UP = """eval "$(_UPLIFT_COMPLETE=bash_source uplift)"; bind 'set bell-style none'; PS1='re''ady> '"""
 
 
+# bash starts by fork and exec at once; JAX warns of its threads.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:os.fork\\(\\) was called:RuntimeWarning", "ignore::pytest.PytestUnraisableExceptionWarning"
+)
+
+
 @pytest.fixture(scope="module")
 def shell(tmp_path_factory):
     """An interactive bash in a folder with names that need quotes."""
