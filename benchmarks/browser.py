@@ -41,8 +41,10 @@ os.dup2(int(reads), 3)
 os.dup2(int(writes), 4)
 os.execv(command[0], command)"""
 """Chromium reads from descriptor 3 and writes to 4."""
+SETTLE = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+"""To evaluate: waits for the frame that is due."""
 CANVAS = """(async () => {
-  await new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)));
+  await SETTLE;
   const canvas = document.getElementById("NAME");
   const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
   copy.drawImage(canvas, 0, 0);
@@ -50,8 +52,10 @@ CANVAS = """(async () => {
   let text = "";
   for (let at = 0; at < codes.length; at += 8192) text += String.fromCharCode(...codes.subarray(at, at + 8192));
   return [canvas.width, canvas.height, btoa(text)];
-})()"""
+})()""".replace("SETTLE", SETTLE)
 """Read from a copy: the page's own canvas is drawn to and never read."""
+SHIFT = 8
+"""Modifier of keys."""
 PATIENCE = 60.0
 """Seconds that an answer may take."""
 

@@ -1,24 +1,34 @@
 """Bounds of the ColorChecker under other lights: ``make looks`` writes docs/data/looks.json.
 
 Largest ΔE00 and share of each colour, the cost of many colours, the extreme reflectances against a linear program of
-scipy, and how much more a search from 16 times as many directions finds.
+scipy, how much more a search from 16 times as many directions finds, the share of held-out materials in the likely
+region, and a screenshot of the page.
 """
 
 from __future__ import annotations
 
+import tempfile
 import warnings
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.optimize import linprog
 
+from benchmarks.browser import SETTLE, SHIFT, browser
+from benchmarks.fidelity.light_errors import SPLITS, other_halves
+from benchmarks.fidelity.materials import large
 from benchmarks.record import ROOT, write
 from uplift.atlas import read_atlas, resample
+from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry.expected_error import mahalanobis
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.lab.timing import time_calls
 from uplift.lookup import Bounds, Cube, bounds, load
+from uplift.lookup.light_errors import LIKELY, NORMAL_RADIUS, lab_errors
+from uplift.report.look_page import write_look_page
 from uplift.viz.bounds import plot_bounds
 
 ATLAS = ROOT / "atlases" / "macbeth.txt"
@@ -32,6 +42,11 @@ PROGRAMS = 8
 """Directions of each colour that are solved by linear programs too."""
 MANY, RUNS = 1000, 3
 """Colours that are timed."""
+LIKELY_LIGHTS, COEFFICIENTS = ("FL11", "A", "HP1"), 9
+"""Lights of the share of held-out materials, and coefficients of the cubes that do not know them."""
+SCREENSHOT, WINDOW, SCALE = ROOT / "docs" / "looks" / "page.jpg", (1440, 1400), 0.85
+CHOICE = (("region-1", "ArrowLeft", 6), ("region-1", "ArrowDown", 2))
+"""Keys that are pressed for the screenshot, with Shift, and how often: 30 less a*, 10 less b* under FL11."""
 
 
 def main() -> None:
@@ -46,6 +61,7 @@ def main() -> None:
     drawn = sensor.decode(DRAWN)
     regions = [bounds(cube, drawn, each, divisions=PAGE_DIVISIONS) for each in lights[:DRAWN_LIGHTS]]
     plot_bounds(cube, [regions], PICTURE, force=True)
+    screenshot(cube, [bounds(cube, drawn[:1], each, divisions=PAGE_DIVISIONS) for each in lights])
     write(
         "looks",
         "make looks",
@@ -56,6 +72,10 @@ def main() -> None:
         many=MANY,
         runs=RUNS,
         programs=PROGRAMS,
+        likely=[row for name in large() for row in likely(name)],
+        likely_share=LIKELY,
+        normal_radius=NORMAL_RADIUS,
+        splits=SPLITS,
     )
 
 
@@ -81,6 +101,48 @@ def _method(cube: Cube, rgb: Array, found: Bounds) -> dict[str, Any]:
         "missed": {"mean": float(np.maximum(more, 0).mean()), "largest": float(more.max())},
         "volume": float((found.volumes.volume / fine.volumes.volume).mean()),
     }
+
+
+def likely(name: str) -> list[dict[str, Any]]:
+    """Return the shares of held-out materials in the likely region and in that of normal errors, by light."""
+    pairs, rows = other_halves(name, COEFFICIENTS), []
+    for each in map(light, LIKELY_LIGHTS):
+        distances, radii = [], []
+        for cube, some in pairs:
+            errors = lab_errors(cube.data, each)
+            measured, answered = (
+                lab(spectra @ each.xyz.T, each.white)[:, 1:]
+                for spectra in (some.measured, cube.reflectance(some.rgb))
+            )
+            distances.append(mahalanobis(errors.covariance(some.rgb)[:, 1:, 1:], measured - answered))
+            radii.append(np.full(len(measured), errors.likely_radius))
+        found, radius = np.concatenate(distances), np.concatenate(radii)
+        rows.append(
+            {
+                "atlas": name,
+                "light": each.name,
+                "materials": len(found) // SPLITS,
+                "inside": float((found <= radius).mean()),
+                "normal": float((found <= NORMAL_RADIUS).mean()),
+                "radius": [float(radius.min()), float(radius.max())],
+            }
+        )
+    return rows
+
+
+def screenshot(cube: Cube, found: list[Bounds]) -> None:
+    """Choose a colour on the page and take a screenshot."""
+    with tempfile.TemporaryDirectory() as folder, browser() as tab:
+        path = Path(folder) / "page.html"
+        write_look_page(cube, found, path)
+        tab.window(*WINDOW)
+        tab.open(path)
+        for region, key, times in CHOICE:
+            tab.evaluate(f"document.getElementById('{region}').focus()")
+            for _ in range(times):
+                tab.key(key, SHIFT)
+        tab.evaluate(f"document.activeElement.blur(), {SETTLE}")
+        SCREENSHOT.write_bytes(tab.screenshot(scale=SCALE))
 
 
 def _program_difference(sensor: Sensor, found: Light, rgb: Array) -> float:

@@ -13,6 +13,8 @@ from uplift.colorimetry.expected_error import (
     expected_error,
     expected_products,
     familiar_distance,
+    learn_radii,
+    mahalanobis,
     nearest_distances,
 )
 
@@ -105,3 +107,46 @@ def test_nearly_all_entries_are_within_the_familiar_distance():
 def test_without_a_neighbour_no_distance_is_familiar(count):
     assert familiar_distance(PLACES[:count]) == 0
     assert (nearest_distances(PLACES[1:], PLACES[:count]) > 0).all()
+
+
+def test_distances_are_those_of_the_inverse_covariance():
+    rng = np.random.default_rng(3)
+    covariance = np.stack([np.cov(rng.normal(size=(2, 9))) for _ in range(20)])
+    difference = rng.normal(size=(20, 2))
+    plain = [
+        np.sqrt(each @ np.linalg.inv(matrix) @ each)
+        for each, matrix in zip(difference, covariance, strict=True)
+    ]
+    np.testing.assert_allclose(mahalanobis(covariance, difference), plain, rtol=1e-9)
+
+
+def test_distances_along_directions_without_variance_are_huge_but_finite():
+    singular = np.diag([4.0, 0.0])[None]
+    assert mahalanobis(singular, np.array([[6.0, 0.0]])) == pytest.approx(3)
+    assert 1e100 < mahalanobis(singular, np.array([[0.0, 1.0]])) < np.inf
+
+
+@pytest.mark.parametrize("freedom", [3, np.inf])
+def test_a_learnt_radius_holds_its_share_whatever_the_tails(freedom):
+    rng = np.random.default_rng(4)
+
+    def distances(count):
+        tail = 1 if np.isinf(freedom) else np.sqrt(freedom / rng.chisquare(freedom, count))
+        return np.linalg.norm(rng.normal(size=(2, count)), axis=0) * tail
+
+    (radius,) = learn_radii(distances(800), [(0.95, 2.4477)])
+    assert (distances(20_000) <= radius).mean() == pytest.approx(0.95, abs=0.02)
+    assert (radius > 2.9) == (freedom == 3)
+
+
+def test_left_out_products_are_expected_from_the_other_entries():
+    """Oracle: each entry is removed, and the expectation at its place is computed from the rest."""
+    rng = np.random.default_rng(5)
+    errors = rng.uniform(1, 3, 12)
+    learnt = expected_error(PLACES, errors, np.zeros(12))
+    for row in range(12):
+        weights = np.exp(-np.linalg.norm(PLACES - PLACES[row], axis=1) / 6)
+        weights[row] = 0
+        own = weights @ learnt.squares[:, 0] + PRIOR_COUNT * learnt.squares.mean()
+        expected = max(1 - weights.max() ** 2, 0.02) * own / (weights.sum() + PRIOR_COUNT)
+        assert learnt.left_out[row, 0] == pytest.approx(expected, rel=1e-12)

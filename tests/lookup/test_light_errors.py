@@ -17,7 +17,7 @@ from uplift.colorimetry.delta_e import delta_e_spectra, lab
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.cube import CubeData, read, write
 from uplift.lookup import Cube
-from uplift.lookup.light_errors import lab_covariance, light_errors
+from uplift.lookup.light_errors import LIKELY, lab_errors, light_errors
 from uplift.report.calibration import check_calibration
 
 LIGHTS = [observer.light(name) for name in ("FL2", "FL11", "LED-RGB1", "HP1")]
@@ -75,19 +75,31 @@ def test_errors_of_another_size_would_not_be_covered(halves, sensor, factor):
     assert abs(nearly_all - 0.95) > 0.03
 
 
-def test_the_covariance_has_the_size_of_the_differences(halves, sensor):
-    """Squared Mahalanobis distances of a* and b*: a sixth of a normal distribution's lies beyond 3.6."""
-    for light in LIGHTS[:2]:
-        outside = []
-        for cube, measured in halves:
-            rgb = np.clip(sensor.rgb(measured), 0, 1)
-            answered = lab(cube.reflectance(rgb) @ light.xyz.T, light.white)
-            difference = (lab(measured @ light.xyz.T, light.white) - answered)[:, 1:]
-            covariance = lab_covariance(cube.data, light, rgb)[:, 1:, 1:]
-            assert (np.linalg.eigvalsh(covariance) > 0).all()
-            weighted = np.linalg.solve(covariance, difference[..., None])[..., 0]
-            outside.append((difference * weighted).sum(axis=1) > 3.6)
-        assert 0.08 < np.concatenate(outside).mean() < 0.28
+def likely_share(halves, sensor, light, factor=1.0):
+    """Share of the other halves whose a* and b* lie in the likely region."""
+    inside = []
+    for cube, measured in halves:
+        rgb = np.clip(sensor.rgb(measured), 0, 1)
+        answered = lab(cube.reflectance(rgb) @ light.xyz.T, light.white)
+        difference = (lab(measured @ light.xyz.T, light.white) - answered)[:, 1:]
+        errors = lab_errors(cube.data, light)
+        covariance = errors.covariance(rgb)[:, 1:, 1:]
+        assert (np.linalg.eigvalsh(covariance) > 0).all()
+        weighted = np.linalg.solve(covariance, difference[..., None])[..., 0]
+        inside.append((difference * weighted).sum(axis=1) <= (factor * errors.likely_radius) ** 2)
+    return np.concatenate(inside).mean()
+
+
+def test_the_likely_region_holds_95_percent_of_the_other_halves(halves, sensor):
+    shares = [likely_share(halves, sensor, light) for light in LIGHTS]
+    assert np.mean(shares) == pytest.approx(LIKELY, abs=0.03)
+    assert min(shares) > 0.9
+
+
+@pytest.mark.parametrize("factor", [0.7, 2.0])
+def test_a_likely_region_of_another_size_would_not(halves, sensor, factor):
+    shares = [likely_share(halves, sensor, light, factor) for light in LIGHTS]
+    assert abs(np.mean(shares) - LIKELY) > 0.03
 
 
 def test_under_its_own_light_a_cube_answers_from_its_nodes(small_cube):
@@ -145,7 +157,7 @@ def test_a_cube_of_an_earlier_version_has_errors_under_its_own_light_only(small_
     with raises(OptionError, "no-left-out-entries"):
         old.standard_error([0.2, 0.3, 0.4], "FL11")
     with raises(OptionError, "no-left-out-entries"):
-        lab_covariance(old.data, LIGHTS[0], np.full((1, 3), 0.5))
+        lab_errors(old.data, LIGHTS[0])
 
 
 def test_bad_input(small_cube, plain_cube):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -58,6 +59,8 @@ class ExpectedError:
         Squares or products of the errors of each entry when left out, per unit of variance.
     floor : ndarray, shape (K,)
         Squares or products that remain at the entries themselves.
+    left_out : ndarray, shape (E, K)
+        Expected squares or products of each entry when left out, from the other entries.
     radii : Radii
         Radii in roots of the expected squares.
     """
@@ -65,6 +68,7 @@ class ExpectedError:
     locations: Array
     squares: Array
     floor: Array
+    left_out: Array
     radii: Radii
 
     @property
@@ -117,10 +121,43 @@ def expected_products(
     variance = np.maximum(1 - weights.max(axis=1) ** 2, MIN_VARIANCE)
     floor = (kept**2).mean()
     share = np.maximum(1 - floor / np.maximum(left_out**2, np.finfo(float).tiny), 0) / variance
-    squares = left_out**2 * share
-    spread = (weights @ squares + PRIOR_COUNT * squares.mean()) / (weights.sum(axis=1) + PRIOR_COUNT)
-    radii = _learn_radii(left_out, np.sqrt(variance * spread + floor))
-    return ExpectedError(locations, left_out_products * share[:, None], kept_products.mean(axis=0), radii)
+    products, product_floor = left_out_products * share[:, None], kept_products.mean(axis=0)
+
+    def expected(squares: Array, remaining: Array) -> Array:
+        sums = (weights @ squares).T + PRIOR_COUNT * squares.mean(axis=0)[..., None]
+        return (variance * (sums / (weights.sum(axis=1) + PRIOR_COUNT))).T + remaining
+
+    roots = np.sqrt(expected(left_out**2 * share, floor))
+    radii = Radii(*learn_radii(left_out / _positive(roots), COVERAGE))
+    return ExpectedError(locations, products, product_floor, expected(products, product_floor), radii)
+
+
+def mahalanobis(covariance: Array, difference: Array) -> Array:
+    """Mahalanobis distances (n,) of differences (n, d) by covariances (n, d, d), which may be singular."""
+    values, axes = np.linalg.eigh(covariance)
+    along = np.einsum("nij,ni->nj", axes, difference)
+    return np.asarray(np.sqrt((along**2 / _positive(values)).sum(axis=1)))
+
+
+def learn_radii(ratio: Array, coverage: Sequence[tuple[float, float]]) -> list[float]:
+    """Learn radii that shares of left-out entries stay within. Errors have heavier tails than a normal.
+
+    The quantiles are those of conformal prediction: they hold on average for one more entry.
+
+    Parameters
+    ----------
+    ratio : ndarray, shape (E,)
+        Error of each entry when left out, in the expected one.
+    coverage : sequence of tuple
+        Shares of materials, and the radii if errors were normal, which few entries lean towards.
+
+    Returns
+    -------
+    list of float
+        Radii, in expected errors.
+    """
+    trust = len(ratio) / (len(ratio) + TRUST)
+    return [_radius(ratio, share, normal, trust) for share, normal in coverage]
 
 
 def nearest_distances(lab: Array, locations: Array) -> Array:
@@ -154,14 +191,8 @@ def _distances(first: Array, second: Array) -> Array:
     return np.sqrt(squares)
 
 
-def _learn_radii(errors: Array, expected: Array) -> Radii:
-    """Radii with the `COVERAGE` of errors (E,), in expected ones (E,). Errors have heavier tails than a normal.
-
-    The quantiles are those of conformal prediction: they hold on average for one more entry.
-    """
-    count = len(errors)
-    ratio = errors / np.maximum(expected, np.finfo(float).tiny)
-    return Radii(*(_radius(ratio, share, normal, count / (count + TRUST)) for share, normal in COVERAGE))
+def _positive(values: Array) -> Array:
+    return np.maximum(values, np.finfo(float).tiny)
 
 
 def _radius(ratio: Array, share: float, normal: float, trust: float) -> float:

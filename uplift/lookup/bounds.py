@@ -14,11 +14,8 @@ from uplift.colorimetry.sensor import Light, in_unit_cube
 from uplift.colorimetry.solid import solid_volume
 from uplift.common.arrays import Array
 from uplift.lookup.cube import Cube
-from uplift.lookup.light_errors import lab_covariance
+from uplift.lookup.light_errors import lab_errors
 from uplift.lookup.outside import reflectance_outside
-
-LIKELY = 0.95
-"""Share of the materials like the entries of the atlas whose a* and b* lie in the likely region."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,6 +37,8 @@ class Bounds:
     covariance : ndarray, shape (n, 3, 3), optional
         Expected covariance of L*a*b* of a material of the colour, around the answer; None if the cube has no
         left-out entries.
+    likely_radius : float, optional
+        Mahalanobis distance in a* and b* that `LIKELY` of the materials like the atlas stay within.
     """
 
     light: Light
@@ -48,6 +47,7 @@ class Bounds:
     volumes: MismatchVolumes
     largest: LargestDifference
     covariance: Array | None
+    likely_radius: float | None
 
     @property
     def lab(self) -> Array:
@@ -92,13 +92,12 @@ class Bounds:
         ndarray, shape (M, 2), optional
             None without a covariance.
         """
-        if self.covariance is None:
+        if self.covariance is None or self.likely_radius is None:
             return None
-        radius = np.sqrt(-2 * np.log1p(-LIKELY))  # the quantile of two normal variables
         values, axes = np.linalg.eigh(self.covariance[row, 1:, 1:])
         turn = np.linspace(0, 2 * np.pi, 73)[:-1]
         circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        return np.asarray(self.lab[row, 1:] + radius * (circle * np.sqrt(np.maximum(values, 0))) @ axes.T)
+        return np.asarray(self.lab[row, 1:] + self.likely_radius * (circle * np.sqrt(np.maximum(values, 0))) @ axes.T)
 
 
 def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", divisions: int = DIVISIONS) -> Bounds:
@@ -136,5 +135,7 @@ def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", division
     if not inside.all():
         spectra[~inside] = reflectance_outside(data, rgb[~inside], data.sensor.wavelengths)
     xyz = spectra @ light.xyz.T
-    covariance = None if data.atlas.left_out is None else lab_covariance(data, light, np.clip(rgb, 0, 1))
-    return Bounds(light, spectra, xyz, volumes, largest_difference(volumes, xyz), covariance)
+    errors = None if data.atlas.left_out is None else lab_errors(data, light)
+    covariance = None if errors is None else errors.covariance(np.clip(rgb, 0, 1))
+    radius = None if errors is None else errors.likely_radius
+    return Bounds(light, spectra, xyz, volumes, largest_difference(volumes, xyz), covariance, radius)

@@ -17,6 +17,8 @@ from uplift.colorimetry.expected_error import (
     ExpectedError,
     expected_error,
     expected_products,
+    learn_radii,
+    mahalanobis,
     nearest_distances,
 )
 from uplift.colorimetry.sensor import Light
@@ -26,6 +28,11 @@ from uplift.cube import CubeData
 from uplift.cube.data import LeftOut
 from uplift.lookup.nodes import around
 from uplift.models import reflectance
+
+LIKELY = 0.95
+"""Share of the materials like the entries of the atlas whose a* and b* lie in the likely region."""
+NORMAL_RADIUS = float(np.sqrt(-2 * np.log1p(-LIKELY)))
+"""Mahalanobis distance that this share of pairs of normal variables stays within."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -90,8 +97,36 @@ def light_errors(data: CubeData, light: Light) -> LightErrors:
     return LightErrors(data, expected, entries)
 
 
-def lab_covariance(data: CubeData, light: Light, rgb: Array) -> Array:
-    """Expected covariance of the difference, in CIE L*a*b*, between measurements and answers under a light.
+@dataclass(frozen=True, eq=False, repr=False)
+class LabErrors:
+    """Differences in CIE L*a*b* between measurements and answers under a light.
+
+    Parameters
+    ----------
+    data : CubeData
+        The cube.
+    expected : ExpectedError
+        Products (9) of the components of the differences.
+    likely_radius : float
+        Mahalanobis distance in a* and b* that `LIKELY` of the materials like the atlas stay within. Normal
+        differences would have 2.45.
+    """
+
+    data: CubeData
+    expected: ExpectedError
+    likely_radius: float
+
+    def covariance(self, rgb: Array) -> Array:
+        """Expected covariances (n, 3, 3) around the answers at linear RGB (n, 3) in [0, 1].
+
+        Positive semidefinite; [:, 1:, 1:] is that of a* and b*.
+        """
+        products = self.expected(rgb_to_lab(self.data.sensor, rgb)) + self.expected.floor
+        return (self.expected.radii.scale**2 * products).reshape(-1, 3, 3)
+
+
+def lab_errors(data: CubeData, light: Light) -> LabErrors:
+    """Learn the differences in CIE L*a*b* under a light.
 
     Parameters
     ----------
@@ -99,13 +134,11 @@ def lab_covariance(data: CubeData, light: Light, rgb: Array) -> Array:
         A cube that has left-out entries.
     light : Light
         A light at the wavelengths of the sensor.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB in [0, 1].
 
     Returns
     -------
-    ndarray, shape (n, 3, 3)
-        Positive semidefinite. [:, 1:, 1:] is that of a* and b*.
+    LabErrors
+        Covariances by colour, and the radius of the likely region.
 
     Raises
     ------
@@ -116,10 +149,12 @@ def lab_covariance(data: CubeData, light: Light, rgb: Array) -> Array:
     coefficients = data.atlas.coefficients[: len(left_out.measured)]
     spectra = (left_out.answered, reflectance(data.model, coefficients, data.sensor.wavelengths))
     errors = [delta_e_spectra(light, each, left_out.measured) for each in spectra]
-    products = [_products(light, each, left_out.measured) for each in spectra]
-    learnt = expected_products(data.entry_lab, *errors, *products)
-    expected = learnt(rgb_to_lab(data.sensor, rgb)) + learnt.floor
-    return (learnt.radii.scale**2 * expected).reshape(-1, 3, 3)
+    differences = [_differences(light, each, left_out.measured) for each in spectra]
+    expected = expected_products(data.entry_lab, *errors, *map(_products, differences))
+    own = expected.radii.scale**2 * expected.left_out.reshape(-1, 3, 3)
+    distances = mahalanobis(own[:, 1:, 1:], differences[0][:, 1:])
+    (radius,) = learn_radii(distances, [(LIKELY, NORMAL_RADIUS)])
+    return LabErrors(data, expected, radius)
 
 
 def unlike_atlas(data: CubeData, rgb: Array) -> Mask:
@@ -151,8 +186,12 @@ def _left_out(data: CubeData) -> LeftOut:
     return data.atlas.left_out
 
 
-def _products(light: Light, answered: NDArray[Any], measured: NDArray[Any]) -> Array:
-    """Products (E, 9) of the components of the differences in L*a*b*."""
+def _differences(light: Light, answered: NDArray[Any], measured: NDArray[Any]) -> Array:
+    """Differences (E, 3) in L*a*b*."""
     answered_lab, measured_lab = (lab(spectra @ light.xyz.T, light.white) for spectra in (answered, measured))
-    difference = measured_lab - answered_lab
-    return (difference[:, :, None] * difference[:, None, :]).reshape(-1, 9)
+    return measured_lab - answered_lab
+
+
+def _products(differences: Array) -> Array:
+    """Products (E, 9) of the components."""
+    return (differences[:, :, None] * differences[:, None, :]).reshape(-1, 9)

@@ -8,14 +8,13 @@ import tomllib
 import numpy as np
 import pytest
 
+from benchmarks.browser import SETTLE
 from tests.browsing import check_page
 from tests.report.look_page.conftest import LIGHTS
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.srgb import hex_codes, to_display_codes
-
-SETTLE = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
 
 def drag(tab, light, dx, dy):
