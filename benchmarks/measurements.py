@@ -35,6 +35,7 @@ STEPS = (
         "accuracy",
         "study",
         "prior",
+        "held-out",
         "cameras",
         "display",
         "scenes",
