@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 import uplift
 from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
-from uplift.fit.emission import unit_xyz
-from uplift.lattice.chromaticity import DENOMINATOR
+from uplift.lattice.chromaticity import DENOMINATOR, unit_xyz
 from uplift.lookup.blocks import BLOCK
 
 TABLE = uplift.load_emission()

@@ -6,7 +6,7 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.fit.solve import solve
-from uplift.lattice.chromaticity import DENOMINATOR, ChromaticityLattice, chromaticity
+from uplift.lattice.chromaticity import DENOMINATOR, ChromaticityLattice, chromaticity, unit_xyz
 from uplift.models.exponential import Exponential
 from uplift.models.minimum_norm import forward_map
 
@@ -81,12 +81,6 @@ def mix_with_rim(
     following = (sector + 1) % len(rim)
     edge = (1 - along)[:, None] * rim[sector] + along[:, None] * rim[following]
     return np.asarray((1 - share)[:, None] * power + share[:, None] * edge)
-
-
-def unit_xyz(uv: Array) -> Array:
-    """Convert u′v′ (n, 2) to XYZ (n, 3) of unit X + 15 Y + 3 Z."""
-    x, y = uv[:, 0] / 4, uv[:, 1] / 9
-    return np.stack([x, y, (1 - x - 15 * y) / 3], axis=1)
 
 
 def _exits(start: Array, goal: Array, lattice: ChromaticityLattice) -> tuple[Array, Array, Array]:

@@ -43,6 +43,23 @@ def chromaticity(xyz: Array) -> Array:
     return xyz[..., :2] * (4.0, 9.0) / (xyz @ DENOMINATOR)[..., None]
 
 
+def unit_xyz(uv: Array) -> Array:
+    """Compute XYZ of chromaticities, the inverse of `chromaticity`.
+
+    Parameters
+    ----------
+    uv : ndarray, shape (..., 2)
+        CIE 1976 u′v′.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        XYZ of unit X + 15 Y + 3 Z.
+    """
+    x, y = uv[..., 0] / 4, uv[..., 1] / 9
+    return np.stack([x, y, (1 - x - 15 * y) / 3], axis=-1)
+
+
 @dataclass(frozen=True, eq=False)
 class Cells:
     """Cells of n colours and the weights of their corners.

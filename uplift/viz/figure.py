@@ -8,7 +8,9 @@ import os
 import re
 from typing import Any, Literal
 
+import numpy as np
 from markupsafe import Markup, escape
+from numpy.typing import NDArray
 
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write
@@ -26,6 +28,7 @@ __all__ = [
     "check_suffix",
     "figure_text",
     "new_figure",
+    "rendered",
     "style_axes",
     "style_spectrum_axes",
     "to_page_svg",
@@ -169,6 +172,26 @@ def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False)
     # Without this entry matplotlib writes its name and version, and files would differ between versions.
     with atomic_write(path, force=force) as temporary:
         FigureCanvasAgg(figure).print_png(temporary, metadata={"Software": "uplift"})
+
+
+def rendered(figure: Any) -> NDArray[np.uint8]:
+    """Return the pixels of a figure.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure, with an opaque background.
+
+    Returns
+    -------
+    ndarray of uint8, shape (height, width, 3)
+        Encoded sRGB.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
 
 def check_suffix(path: str | os.PathLike[str]) -> str:
