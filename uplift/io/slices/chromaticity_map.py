@@ -13,13 +13,30 @@ from uplift.lookup import EmissionTable
 
 @dataclass(frozen=True)
 class Window:
-    """A part of the diagram, from low to high u′ and v′."""
+    """A part of the diagram.
+
+    Parameters
+    ----------
+    u, v : tuple of float
+        Lowest and highest u′ and v′.
+    """
 
     u: tuple[float, float]
     v: tuple[float, float]
 
     def pixels(self, step: float) -> Array:
-        """u′v′ (height, width, 2) at the middles of pixels of size ``step``; the first row has the largest v′."""
+        """Return the middles of pixels.
+
+        Parameters
+        ----------
+        step : float
+            Size of a pixel in u′v′.
+
+        Returns
+        -------
+        ndarray, shape (H, W, 2)
+            u′v′; the first row has the largest v′.
+        """
         u, v = (low + step * (np.arange(round((high - low) / step)) + 0.5) for low, high in (self.u, self.v))
         return np.stack(np.meshgrid(u, v[::-1]), axis=-1)
 

@@ -58,7 +58,18 @@ def write_light_slices(table: EmissionTable, path: str | os.PathLike[str], *, fo
 
 
 def light_attributes(table: EmissionTable) -> dict[str, Any]:
-    """Return header attributes that identify the table; ``uplift.cube`` is the digest of its content."""
+    """Return header attributes that identify an emission table.
+
+    Parameters
+    ----------
+    table : EmissionTable
+        The table.
+
+    Returns
+    -------
+    dict
+        Attributes of OpenEXR by name; ``uplift.cube`` is the digest of the table's content.
+    """
     return {
         "chromaticities": exr.chromaticities(sensor(table.space)),
         "uplift.cube": emission_digest(table.data),
