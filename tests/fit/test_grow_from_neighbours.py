@@ -72,6 +72,19 @@ def test_whole_builds_end_at_the_threshold(repository, model, with_atlas):
 
 
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+def test_corners_start_from_the_entry_however_far_they_are(repository):
+    """Those of 8³ are: from the prior, their starts depend on whether this is forced."""
+    atlas = read_atlas(repository / "atlases" / "macbeth.txt")
+
+    def corners(start, seed_corners):
+        points = build(atlas, dim=8, start=start, seed_corners=seed_corners).data.points
+        return points.coefficients[points.status == Status.ATLAS_CORNER]
+
+    np.testing.assert_array_equal(corners("neighbours", False), corners("neighbours", True))
+    assert not np.allclose(corners("prior", False), corners("prior", True), atol=0.01)
+
+
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 def test_seeds_are_the_entries_with_the_coefficients_of_the_nodes(repository):
     """The zeroth and first moments of an entry do not depend on how many are kept."""
     cube = build(repository / "atlases" / "macbeth.txt", dim=16, coefficients=9, start="neighbours")

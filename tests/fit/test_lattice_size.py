@@ -11,6 +11,7 @@ import pytest
 import uplift
 from tests.conftest import MACBETH
 from uplift import fit
+from uplift.atlas import on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.fit.lattice_size import DIMS, choose_lattice, lattice_error
@@ -24,7 +25,7 @@ def stage(sensor):
     """Problem, prior, lights and the entries of the ColorChecker."""
     model = Moments(9)
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    spectra = uplift.atlas.on_grid(uplift.read_atlas(MACBETH), sensor.wavelengths)
+    spectra = on_grid(uplift.read_atlas(MACBETH), sensor.wavelengths)
     spectra = spectra[sensor.contains(sensor.rgb(spectra))]
     lights = [observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3")]
     entries = fit.fit_entries(model, forward, spectra, sensor.rgb(spectra), lights, lights[1], 1e-6)
@@ -36,12 +37,12 @@ def stage(sensor):
 @pytest.mark.parametrize("seed_corners", [True, False])
 def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, monkeypatch, seed_corners):
     """The lattice of the cube is evaluated at the entries without their boxes."""
-    monkeypatch.setattr(fit.Prior, "corner_share", 0.6)
+    monkeypatch.setattr(fit.Prior, "corner_share", fit.CornerShare(0.6))
     problem, prior, lights, entries = stage
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         data = uplift.build(MACBETH, dim=16, seed_corners=seed_corners).data
-    share = 1.0 if seed_corners else 0.6
+    share = fit.ENTRY_ALONE if seed_corners else prior.corner_share
     trial = lattice_error(replace(problem, lattice=data.lattice), prior, share, lights, entries)
     corners, weights = data.lattice.corners(entries.rgb)
     spectra = reflectance(data.model, data.points.coefficients[corners.ravel()], sensor.wavelengths)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from uplift.fit.corner_share import ENTRY_ALONE, CornerShare
 from uplift.fit.entries import FittedEntries, fit_entries
 from uplift.fit.improve import Improvement
 from uplift.fit.lattice import STRATEGIES, LatticeFit, fit_lattice
@@ -27,10 +28,12 @@ from uplift.fit.unrealisable import Unrealisable, unrealisable
 
 __all__ = [
     "DIMS",
+    "ENTRY_ALONE",
     "MET",
     "NO_LATTICE",
     "STRATEGIES",
     "Collision",
+    "CornerShare",
     "Family",
     "FittedEntries",
     "Improvement",

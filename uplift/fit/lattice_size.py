@@ -11,6 +11,7 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
+from uplift.fit.corner_share import CornerShare
 from uplift.fit.entries import FittedEntries
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
@@ -36,7 +37,7 @@ class LatticeChoice(NamedTuple):
 
 
 def lattice_error(
-    problem: Problem, prior: Prior, corner_share: float, lights: Sequence[Light], entries: FittedEntries
+    problem: Problem, prior: Prior, corner_share: CornerShare, lights: Sequence[Light], entries: FittedEntries
 ) -> Array:
     """Largest ΔE00 (E,) under ``lights`` between each entry's spectrum and the lattice at its colour.
 
@@ -60,7 +61,7 @@ def lattice_error(
 def choose_lattice(
     problem: Problem,
     prior: Prior,
-    corner_share: float,
+    corner_share: CornerShare,
     lights: Sequence[Light],
     entries: FittedEntries,
     axis_nodes: Callable[[str, int], Array],
@@ -75,7 +76,7 @@ def choose_lattice(
         Model and solver, with any lattice.
     prior : Prior
         Prior of the lattice points.
-    corner_share : float
+    corner_share : CornerShare
         See `Starts`.
     lights : sequence of Light
         Lights under which errors are computed.

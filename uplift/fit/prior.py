@@ -13,6 +13,7 @@ from uplift.colorimetry.expected_error import LENGTH, ExpectedError, expected_er
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.fit.base import Base
+from uplift.fit.corner_share import CornerShare
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import Kernel, Kriging, kernel_sums, krige
 from uplift.fit.learn_kernel import DEFAULT, MIN_ENTRIES, learn_kernel, visible_change
@@ -73,15 +74,16 @@ class Prior:
         return _bounded(self.model, coefficients, self.kriging(rgb_to_lab(self.sensor, rgb)))
 
     @property
-    def corner_share(self) -> float:
+    def corner_share(self) -> CornerShare:
         """Share of an entry in the start of the corners of its cell, the rest is the prior; see `Starts`.
 
         Entries of an atlas with a small nugget are predicted by others. Materials of such an atlas between its entries
-        are nearer to the prior, and only half of an entry's own deviation is expected at the corners.
+        are nearer to the prior, and only half of an entry's own deviation is expected at the corners. Corners of coarse
+        lattices whose colour is another one start from the prior alone.
         """
         if self.kriging is None:
-            return 1.0
-        return (1 + min(self.kriging.kernel.nugget / DEFAULT.nugget, 1)) / 2
+            return CornerShare(near=1.0)
+        return CornerShare(near=(1 + min(self.kriging.kernel.nugget / DEFAULT.nugget, 1)) / 2)
 
     def describe(self) -> dict[str, float]:
         """Return the learnt parameters of the kriging, for the provenance of cubes.

@@ -26,6 +26,8 @@ class Seeds:
 
     Parameters
     ----------
+    rgb : ndarray, shape (E, 3)
+        Linear RGB of the entries.
     points : ndarray of int, shape (S,)
         Point numbers.
     entry : ndarray of int, shape (S,)
@@ -36,6 +38,7 @@ class Seeds:
         Entries without a primary point.
     """
 
+    rgb: Array
     points: Indices
     entry: Indices
     primary: Mask
@@ -74,6 +77,7 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
             if free is not None:
                 owner[free] = int(entry)
     return Seeds(
+        rgb=rgb,
         points=np.array(list(owner), dtype=np.int64),
         entry=np.array(list(owner.values()), dtype=np.int64),
         primary=np.arange(len(owner)) < primaries,

@@ -144,7 +144,8 @@ def build(
     seed_corners : bool, default False
         Start all eight corners of the cell of each atlas entry from the entry, as Tódová 2020 does. By default, seven
         of them start between entry and prior, with a share of the entry from ½ to 1 that the nugget of the atlas
-        determines; see `uplift.fit.Prior.corner_share`. ``start="neighbours"`` always does.
+        determines, and less, down to 0, at colours unlike the entry's; see `uplift.fit.Prior.corner_share`.
+        ``start="neighbours"`` always does.
     start : {"prior", "neighbours"}, default "prior"
         What lattice points start from: the spectrum that the atlas lets expect at their colour, or the spectra of
         their fitted neighbours, outward from the seeds (Tódová 2020, section 3.1).
@@ -251,7 +252,8 @@ def build(
     colours = fit.Problem(spectrum_model, forward, fit.NO_LATTICE, options.threshold, method=method)
     learnt = fit.learn_base(colours, sensor, scene_lights, families, entries)
     fitted_prior = fit.fit_prior(colours, sensor, entries, scene_lights, error_light, learnt.base)
-    corner_share = 1.0 if seed_corners or options.start == "neighbours" else fitted_prior.corner_share
+    corners_alone = seed_corners or options.start == "neighbours"
+    corner_share = fit.ENTRY_ALONE if corners_alone else fitted_prior.corner_share
     left_out = _left_out(entries, fitted_prior)
 
     designed = design_looks(wished, fitted_prior, forward, tolerance)
@@ -404,7 +406,7 @@ def _with_dim(
     options: Options,
     problem: fit.Problem,
     prior: fit.Prior,
-    corner_share: float,
+    corner_share: fit.CornerShare,
     lights: Sequence[Light],
     entries: fit.FittedEntries,
 ) -> Options:
