@@ -33,7 +33,7 @@ from uplift.lookup import Cube
 from uplift.models import Moments
 from uplift.report.smoothness import compute_smoothness
 
-DIM = 32
+DIM, COARSE = 32, 16
 COUNTS = (9, 13, 17)
 SPLITS = 3
 
@@ -53,7 +53,7 @@ def measure() -> dict[str, Any]:
         "entries": [row for name in (*TESTED_ON, "rawtoaces") for row in at_entries(name)],
         "halves": [row for key in splits for row in halves(*key, splits[key])],
         "shares": [shares(*key, splits[key]) for key in splits],
-        "seed_starts": [row for name in large() for row in seed_starts(name)],
+        "seed_starts": [row for name in large() for dim in (DIM, COARSE) for row in seed_starts(name, dim)],
         "smoothness": [
             neighbour_steps(name, count)
             for name in (None, "macbeth", "rawtoaces", *large()[2:])
@@ -123,16 +123,17 @@ def shares(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> dict[str,
     }
 
 
-def seed_starts(name: str) -> Iterator[dict[str, Any]]:
+def seed_starts(name: str, dim: int) -> Iterator[dict[str, Any]]:
     """Yield the errors of cubes by their seeds, for the half of an atlas that they do not know and near entries."""
     some = materials(name)
     kept, queried = (some.take(rows) for rows in split(some, 0))
     tests = {"the other half": queried, "shades of entries": shades(kept), "colours near entries": near(kept)}
     for label, corners in {"entry and prior, the default": False, "the entry": True}.items():
-        cube = build_from(kept, seed_corners=corners, leave_out=shipped(name))
+        cube = build_from(kept, dim=dim, seed_corners=corners, leave_out=shipped(name))
         for test, requested in tests.items():
             yield {
                 "atlas": name,
+                "dim": dim,
                 "share": cube.data.provenance["prior"]["corner_share"],
                 "start": label,
                 "queried": test,
