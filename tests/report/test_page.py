@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 from xml.etree import ElementTree
@@ -9,7 +10,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from tests.browsing import check_page
+from benchmarks.browser import browser, chromium
+from tests.browsing import check_page, open_page
 from tests.helpers import with_points
 from tests.pages import Page
 from tests.report.conftest import HOSTILE
@@ -111,6 +113,24 @@ def test_page_without_an_atlas_states_so(small_sigmoid_cube):
     read = Page(render_report(assess(small_sigmoid_cube, "sigmoid.uplift", 1, None, ("D65",)), worst=24))
     assert "built without an atlas, and none was given" in read.text
     assert "Crowding" not in read.text
+
+
+def test_swatches_of_looks_have_the_wish_on_the_left(plain_cube, tmp_path):
+    if chromium() is None:
+        pytest.skip("no Chromium is installed")
+    row = {"light": "A", "wish": [0.2, 0.1, 0.1], "answer": [0.1, 0.1, 0.1], "delta_e": 9.0, "possible": 8.0}
+    look = {"name": "dusk", "rgb": [0.2, 0.1, 0.1], "weight": 1.0, "lights": [row]}
+    data = dataclasses.replace(plain_cube.data, provenance=plain_cube.data.provenance | {"looks": [look]})
+    with browser() as tab:
+        open_page(
+            tab, render_report(assess(Cube(data), "looks.uplift", 1, None, ("D65",)), worst=0), tmp_path
+        )
+        halves = tab.evaluate(
+            """[...document.querySelector(".swatch[title='#7c5959 | #595959']").children]
+            .map(half => half.getBoundingClientRect()).map(({ x, y, width }) => [x, y, width])"""
+        )
+    (left, top, width), (right, right_top, _) = halves
+    assert (right, right_top) == (pytest.approx(left + width), top)
 
 
 def test_close_entries_are_listed(crowded_cube, macbeth, hostile):
