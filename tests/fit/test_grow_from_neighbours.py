@@ -73,11 +73,11 @@ def test_whole_builds_end_at_the_threshold(repository, model, with_atlas):
 
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 def test_corners_start_from_the_entry_however_far_they_are(repository):
-    """Those of 8³ are: from the prior, their starts depend on whether this is forced."""
+    """Those of 5³ are: from the prior, their starts depend on whether this is forced."""
     atlas = read_atlas(repository / "atlases" / "macbeth.txt")
 
     def corners(start, seed_corners):
-        points = build(atlas, dim=8, start=start, seed_corners=seed_corners).data.points
+        points = build(atlas, dim=5, start=start, seed_corners=seed_corners).data.points
         return points.coefficients[points.status == Status.ATLAS_CORNER]
 
     np.testing.assert_array_equal(corners("neighbours", False), corners("neighbours", True))
