@@ -100,6 +100,16 @@ def test_cubes_are_not_lights(refuse, home):
     )
 
 
+def test_reports_of_tables(home):
+    uplift.load_emission().save(home / "lights.uplift")
+    assert "92 lamps" in run("report", "lights.uplift").stdout
+    assert "Chromaticity diagrams" in (home / "lights.html").read_text(encoding="utf-8")
+    found = json.loads(run("report", "emission", "--format", "json").stdout)
+    assert found["smallest_power"] >= 0
+    assert "--light" in run("report", "emission", "--light", "A", "-o", "other.html", code=2).stderr
+    assert not (home / "other.html").exists()
+
+
 def plain_image(path):
     from matplotlib.image import imsave
 
