@@ -8,7 +8,7 @@ INSTALLED := $(VENV)/.installed
 OUT := out
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: build environment lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files osl axe cameras examples showcase first-steps looks measurements
+.PHONY: build environment lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files osl axe cameras examples showcase first-steps looks emission environment measurements
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -125,6 +125,11 @@ demo-render: $(INSTALLED)
 	$(BIN)/python -m benchmarks.render
 	$(BIN)/python -m benchmarks.render.rates
 	$(BIN)/python -m tools.render_docs render
+
+# Emission tables: lamps left out, exactness, expected errors, cost: docs/emission.md and its picture.
+emission: $(INSTALLED)
+	$(BIN)/python -m benchmarks.emission
+	$(BIN)/python -m tools.render_docs emission
 
 # The ColorChecker under environments of measured lamps, rendered with Mitsuba: docs/emission.md.
 environment: $(INSTALLED)

@@ -44,6 +44,8 @@ STEPS = (
         "look-cubes",
         "wavelengths",
         "looks",
+        "emission",
+        "environment",
     ),
     *("representations", "atlas-files", "showcase", "determinism", "stability", "nightly"),
 )
