@@ -1,4 +1,4 @@
-"""Build the stored cubes of ``cubes/``, which ``uplift check`` compares, and the default cube of the package."""
+"""Build the stored cubes of ``cubes/``, which ``uplift check`` compares, and the cubes and lights of the package."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from itertools import product
 from pathlib import Path
 
 import uplift
+from uplift.lookup.emission import DEFAULT_EMISSION
 
 ROOT = Path(__file__).parents[1]
 DEFAULT = "moments-16"
@@ -27,6 +28,7 @@ def main() -> None:
         print(path.relative_to(ROOT))
     shutil.copyfile(ROOT / "cubes" / f"{DEFAULT}.uplift", LOOKUP / "default.uplift")
     store_wide()
+    store_emission()
 
 
 def store_wide() -> None:
@@ -34,6 +36,12 @@ def store_wide() -> None:
     for name, space in WIDE.items():
         uplift.build(dim=16, space=space).save(LOOKUP / f"{name}.uplift", force=True)
         print(f"uplift/lookup/{name}.uplift")
+
+
+def store_emission() -> None:
+    """Build the emission table that is installed with the package."""
+    uplift.build_emission().save(DEFAULT_EMISSION, force=True)
+    print(DEFAULT_EMISSION.relative_to(ROOT))
 
 
 if __name__ == "__main__":

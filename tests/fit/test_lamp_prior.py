@@ -14,6 +14,7 @@ from uplift.fit.emission import mix_with_rim, nearest_lights
 from uplift.fit.lamp_entries import lamp_entries
 from uplift.fit.lamp_prior import fit_lamp_prior, smoothest_lights
 from uplift.lattice.chromaticity import chromaticity
+from uplift.lattice.lamp_discs import MIN_RADIUS
 
 CMFS = observer.matching_functions()
 RADIOMETRY = CMFS / CMFS[:, 1].sum()
@@ -89,3 +90,14 @@ def test_discs_do_not_overlap_and_duplicates_are_left_out():
     assert entries.names[0] == "one"
     apart = np.linalg.norm(entries.uv[:, None] - entries.uv, axis=-1) + 9 * np.eye(len(entries.uv))
     assert (entries.radius[:, None] + entries.radius <= apart + 1e-12).all()
+
+
+def test_of_other_lamps_of_one_chromaticity_neither_is_exact():
+    constraint, others = Lamps(LAMPS.names[:1], LAMPS.power[:1]), LAMPS.without(LAMPS.names[:1])
+    entries, _ = lamp_entries(constraint, others, LATTICE, RADIOMETRY)
+    uv = chromaticity(LAMPS.power @ RADIOMETRY)
+    apart = np.linalg.norm(uv[:, None] - uv, axis=-1) + 9 * np.eye(len(uv))
+    twins = {LAMPS.names[row] for row in np.flatnonzero(apart.min(axis=1) < 2 * MIN_RADIUS)}
+    assert twins - {LAMPS.names[0]}
+    assert not (twins - {LAMPS.names[0]}) & set(entries.names)
+    assert entries.radius[1:].min() >= MIN_RADIUS

@@ -7,7 +7,7 @@ import numpy as np
 from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array
 from uplift.lattice.chromaticity import DENOMINATOR, ChromaticityLattice, chromaticity
-from uplift.lattice.lamp_discs import LampEntries
+from uplift.lattice.lamp_discs import MIN_RADIUS, LampEntries
 
 MAX_RADIUS = 0.01
 """Largest radius of a disc in u′v′."""
@@ -27,7 +27,8 @@ def lamp_entries(
     constraints : Lamps
         Lamps that must be exact.
     others : Lamps
-        Lamps that are exact unless they are close to a constraint.
+        Lamps that are exact unless they are close to a constraint, or have nearly the chromaticity of another lamp:
+        of two lamps of one RGB neither is exact, and the expected light averages them.
     lattice : ChromaticityLattice
         Lattice of the table.
     radiometry : ndarray, shape (N, 3)
@@ -48,8 +49,13 @@ def lamp_entries(
     uv = np.concatenate([uv[kept], more_uv[clear]])
     apart = _distances(uv, uv) + np.diag(np.full(len(uv), np.inf))
     radius = np.minimum(apart.min(axis=1) / 2, MAX_RADIUS)
+    radius = np.minimum(radius, _to_rim(uv, lattice))
     spectra = np.concatenate([power[kept], more[clear]])
-    return LampEntries(names, uv, spectra, np.minimum(radius, _to_rim(uv, lattice))), duplicates
+    resolved = np.flatnonzero((np.arange(len(names)) < len(kept)) | (radius >= MIN_RADIUS))
+    entries = LampEntries(
+        tuple(names[row] for row in resolved), uv[resolved], spectra[resolved], radius[resolved]
+    )
+    return entries, duplicates
 
 
 def _unit(power: Array, radiometry: Array) -> tuple[Array, Array]:

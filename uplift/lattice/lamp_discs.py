@@ -11,6 +11,8 @@ from uplift.common.arrays import Array, Indices
 
 BINS = 256
 """Bins along u′ and v′, which range from 0 to 1."""
+MIN_RADIUS = 1e-4
+"""Radius in u′v′ below which single precision does not resolve a disc."""
 
 
 @dataclass(frozen=True, eq=False)

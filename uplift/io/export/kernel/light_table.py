@@ -12,11 +12,10 @@ from uplift.common.arrays import Array
 from uplift.cube import EmissionData
 from uplift.io.export.kernel.table import TEXEL, as_image
 from uplift.lattice.chromaticity import DENOMINATOR, ChromaticityLattice
+from uplift.lattice.lamp_discs import MIN_RADIUS
 
 BIN_COUNT = 96
 """Bins of each axis of u′v′, from 0 to 1: most touch no lamp, or one."""
-MIN_RADIUS = 1e-4
-"""Radius in u′v′ below which the disc of a lamp is left out, as single precision cannot resolve it."""
 
 Floats = NDArray[np.float32]
 
