@@ -1,4 +1,4 @@
-"""Picture of the expected error over chromaticity, beside the errors of lamps that were left out."""
+"""Picture of the expected error over chromaticity, and of the errors of lamps that were left out."""
 
 from __future__ import annotations
 
