@@ -102,7 +102,7 @@ def test_cubes_are_not_lights(refuse, home):
 
 def test_reports_of_tables(home):
     uplift.load_emission().save(home / "lights.uplift")
-    assert "92 lamps" in run("report", "lights.uplift").stdout
+    assert "79 lamps" in run("report", "lights.uplift").stdout
     assert "Chromaticity diagrams" in (home / "lights.html").read_text(encoding="utf-8")
     found = json.loads(run("report", "emission", "--format", "json").stdout)
     assert found["smallest_power"] >= 0

@@ -199,7 +199,20 @@ class ChromaticityLattice:
         -------
         Cells
         """
-        sector, along, share = self.polar(uv - self.white)
+        return self.cells(*self.polar(uv - self.white))
+
+    def cells(self, sector: Indices, along: Array, share: Array) -> Cells:
+        """Find the cells of chromaticities whose sectors are known.
+
+        Parameters
+        ----------
+        sector, along, share : ndarray, shape (n,)
+            What `polar` returns.
+
+        Returns
+        -------
+        Cells
+        """
         share = np.minimum(share, 1.0)
         ring = np.clip(np.searchsorted(self.rings, share, side="right") - 1, 0, len(self.rings) - 2)
         across = (share - self.rings[ring]) / (self.rings[ring + 1] - self.rings[ring])

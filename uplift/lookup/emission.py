@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
@@ -12,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.colorimetry.gamut import as_rgb
-from uplift.common.arrays import Array, Mask, Values
+from uplift.common.arrays import Array, Indices, Mask, Values
 from uplift.common.errors import ColourError, OptionError
 from uplift.cube import EmissionData, is_emission_table, read_emission, write_emission
 from uplift.lattice.chromaticity import DENOMINATOR, SLACK
@@ -25,8 +26,6 @@ PACKAGED_NAME = "emission"
 """Name of that table on the command line."""
 MAX_VALUE = 1e30
 """Limit of the components of a colour."""
-OUTSIDE = ("error", "clip")
-"""What to do with colours that no light has."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -163,19 +162,17 @@ class EmissionTable:
         OptionError
             Invalid wavelengths, treatment, type or number of threads.
         """
-        if outside not in OUTSIDE:
+        if outside not in TREATMENTS:
             raise OptionError(
                 f"unknown treatment of colours outside '{outside}'",
                 code="unknown-treatment",
-                hint=f"use one of {', '.join(OUTSIDE)}",
+                hint=f"use one of {', '.join(TREATMENTS)}",
             )
         at = self.wavelengths if wavelengths is None else as_wavelengths(wavelengths)
         kind, count = as_float_type(dtype), as_thread_count(threads)
-        colours = _as_floats(xyz)
-        if outside == "error":
-            self._require_lights(colours)
-        samples = _resample(self.data, at)
-        return blockwise(partial(_spectra, self.data, samples), colours, len(at), kind, count)
+        find = partial(_find_lights, self.data, TREATMENTS[outside])
+        query = partial(_spectra, self.data, _resample(self.data, at), find, kind)
+        return blockwise(query, _as_floats(xyz), len(at), kind, count)
 
     def xyz(self, rgb: ArrayLike) -> Array:
         """Convert linear RGB to XYZ.
@@ -267,9 +264,7 @@ class EmissionTable:
         ColourError
             Values that are not finite, or a colour that no light has (``colour-not-a-light``).
         """
-        colours = self.xyz(rgb)
-        self._require_lights(colours)
-        return blockwise(partial(_errors, self.data), colours, 1)[..., 0]
+        return blockwise(partial(_errors, self.data), self.xyz(rgb), 1)[..., 0]
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Write the file of the table, atomically.
@@ -287,17 +282,6 @@ class EmissionTable:
             The file exists and ``force`` is false, or cannot be written.
         """
         write_emission(self.data, path, force=force)
-
-    def _require_lights(self, xyz: Array) -> None:
-        flat = xyz.reshape(-1, 3)
-        valid = is_light(self.data, flat)
-        if not valid.all():
-            first = flat[~valid][0]
-            raise ColourError(
-                f"no light has the colour XYZ ({', '.join(f'{value:.4g}' for value in first)})",
-                code="colour-not-a-light",
-                hint="use outside='clip' for the nearest colour towards white",
-            )
 
 
 def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
@@ -422,44 +406,90 @@ def _homogeneous(data: EmissionData, xyz: Array) -> tuple[Array, Array]:
     return xyz[:, :2] * (4.0, 9.0) - size[:, None] * data.lattice.white, size
 
 
-def _as_lights(data: EmissionData, xyz: Array) -> tuple[Array, Array]:
-    """Chromaticities (n, 2) and X + 15 Y + 3 Z (n,) of colours, of which those that no light has are clipped."""
+@dataclass(frozen=True, eq=False)
+class _Lights:
+    """Colours of lights: u′v′ (n, 2), X + 15 Y + 3 Z (n,), and what `ChromaticityLattice.polar` returns of u′v′."""
+
+    uv: Array
+    size: Array
+    sector: Indices
+    along: Array
+    share: Array
+
+
+Treatment = Callable[[EmissionData, Array, Array, Array, Array], None]
+"""What is done, in place, with XYZ (n, 3) that no light has: their offsets (n, 2) from white, sizes and shares (n,)."""
+
+
+def _refuse(data: EmissionData, xyz: Array, offset: Array, size: Array, share: Array) -> None:
+    """Raise `ColourError` unless all excesses are rounding."""
+    wrong = (size <= 0) & (xyz != 0).any(axis=1) | (share > size * (1 + SLACK))
+    if wrong.any():
+        first = ", ".join(f"{value:.4g}" for value in xyz[wrong][0])
+        raise ColourError(
+            f"no light has the colour XYZ ({first})",
+            code="colour-not-a-light",
+            hint="use outside='clip' for the nearest colour towards white",
+        )
+    _clip(data, xyz, offset, size, share)
+
+
+def _clip(data: EmissionData, xyz: Array, offset: Array, size: Array, share: Array) -> None:
+    """Move colours towards white of the same luminance, white + f (colour − white), up to a share of 1."""
+    white = np.maximum(xyz[:, 1], 0.0) * 9 / data.lattice.white[1]
+    reach = share + white - size
+    step = np.divide(white, reach, out=np.zeros_like(reach), where=reach > 0)
+    offset *= step[:, None]
+    share *= step
+    size[:] = share
+
+
+TREATMENTS: dict[str, Treatment] = {"error": _refuse, "clip": _clip}
+"""Treatments of colours that no light has, by name: an error, or the nearest colour towards white."""
+
+
+def _find_lights(data: EmissionData, treat: Treatment, xyz: Array) -> _Lights:
     offset, size = _homogeneous(data, xyz)
-    _, _, share = data.lattice.polar(offset)
-    outside = (size <= 0) | (share > size)
-    if outside.any():
-        # Towards white of the same luminance, white + f (colour − white), up to where the share reaches the size.
-        white = np.maximum(xyz[:, 1], 0.0)[outside] * 9 / data.lattice.white[1]
-        reach = share[outside] + white - size[outside]
-        step = np.divide(white, reach, out=np.zeros_like(reach), where=reach > 0)
-        offset[outside] *= step[:, None]
-        size[outside] = step * share[outside]
-    uv = np.divide(offset, size[:, None], out=np.zeros_like(offset), where=size[:, None] > 0)
-    return data.lattice.white + uv, size
+    sector, along, share = data.lattice.polar(offset)
+    rows = np.flatnonzero((size <= 0) | (share > size))
+    if rows.size:
+        moved = offset[rows], size[rows], share[rows]
+        treat(data, xyz[rows], *moved)
+        offset[rows], size[rows], share[rows] = moved
+    positive = size > 0
+    uv = np.divide(offset, size[:, None], out=np.zeros_like(offset), where=positive[:, None])
+    share = np.divide(share, size, out=np.zeros_like(share), where=positive)
+    return _Lights(data.lattice.white + uv, size, sector, along, share)
 
 
-def _spectra(data: EmissionData, samples: _Samples, xyz: Array) -> Array:
-    """Power (n, N) of colours (n, 3)."""
-    uv, size = _as_lights(data, xyz)
-    discs = data.entries.locate(uv)
-    uv[discs.rows] = discs.exit_uv
-    power = _mix(data, samples.nodes, uv)
-    share = discs.share[:, None]
+def _spectra(
+    data: EmissionData, samples: _Samples, find: Callable[[Array], _Lights], kind: DTypeLike, xyz: Array
+) -> NDArray[Any]:
+    """Power (n, N) of colours (n, 3), computed in a type."""
+    lights = find(xyz)
+    discs = data.entries.locate(lights.uv)
+    if discs.rows.size:
+        moved = data.lattice.polar(discs.exit_uv - data.lattice.white)
+        for values, changed in zip((lights.sector, lights.along, lights.share), moved, strict=True):
+            values[discs.rows] = changed
+    power = _mix(data, samples.nodes, lights, kind)
+    share = discs.share[:, None].astype(power.dtype)
     power[discs.rows] = (1 - share) * power[discs.rows] + share * samples.entries[discs.entry]
-    return np.asarray(power * size[:, None])
+    power *= lights.size[:, None].astype(power.dtype)
+    return power
 
 
-def _errors(data: EmissionData, xyz: Array) -> Array:
-    uv, _ = _as_lights(data, xyz)
-    return _mix(data, data.error.reshape(-1, 1), uv)
+def _errors(data: EmissionData, xyz: Array) -> NDArray[Any]:
+    return _mix(data, data.error.reshape(-1, 1), _find_lights(data, _refuse, xyz), float)
 
 
-def _mix(data: EmissionData, values: Values, uv: Array) -> Array:
-    """Weighted sums (n, M) of the values of the nodes (K · R, M)."""
-    cells = data.lattice.locate(uv)
+def _mix(data: EmissionData, values: Values, lights: _Lights, kind: DTypeLike) -> NDArray[Any]:
+    """Weighted sums (n, M) of the values of the nodes (K · R, M), computed in a type."""
+    cells = data.lattice.cells(lights.sector, lights.along, lights.share)
     knots, rings = data.lattice.shape
     first, second = cells.sector * rings + cells.ring, (cells.sector + 1) % knots * rings + cells.ring
-    total: Array = np.zeros((len(uv), values.shape[1]))
-    for corner, weight in zip((first, first + 1, second, second + 1), cells.weights.T, strict=True):
+    weights = cells.weights.astype(kind)
+    total = weights[:, :1] * values[first]
+    for corner, weight in zip((first + 1, second, second + 1), weights.T[1:], strict=True):
         total += weight[:, None] * values[corner]
-    return total
+    return np.asarray(total)
