@@ -80,7 +80,6 @@ def main() -> None:
         round_trips=list(exactness.round_trips(table, LEVELS, COLOURS // 10)),
         white=list(exactness.white_lights(table, lamps, STANDARD_ILLUMINANTS, checker)),
         sizes=sizes,
-        wavelengths=len(cost.WAVELENGTHS),
         lookups=list(cost.lookups(COLOURS, RUNS)),
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Iterator
 from functools import partial
@@ -18,7 +19,8 @@ from uplift.lab.timing import spread, time_calls
 
 REFERENCE = {"knots": 192, "rings": 64}
 """Table whose interpolation counts as exact."""
-WAVELENGTHS = np.linspace(400, 700, 16)
+WAVELENGTHS = (np.linspace(400, 700, 16), None)
+"""Wavelengths of lookups: few, and those of the tables."""
 
 
 def sizes(
@@ -60,16 +62,17 @@ def lookups(count: int, runs: int) -> Iterator[dict[str, Any]]:
     """Yield nanoseconds per colour of lights and of reflectances, in turn, and their ratio by type."""
     rgb = np.random.default_rng(1).random((count, 3))
     table, cube = uplift.load_emission(), uplift.load()
-    for dtype in ("float64", "float32"):
+    for at, dtype in itertools.product(WAVELENGTHS, ("float64", "float32")):
         queries = {
-            "light": partial(table.spectrum, rgb, WAVELENGTHS, dtype=dtype),
-            "reflectance": partial(cube.reflectance, rgb, WAVELENGTHS, dtype=dtype),
+            "light": partial(table.spectrum, rgb, at, dtype=dtype),
+            "reflectance": partial(cube.reflectance, rgb, at, dtype=dtype),
         }
         for query in queries.values():
             query()
         found = {what: time_calls(query, runs)[0].scaled(1e9 / count) for what, query in queries.items()}
         yield {
             "type": dtype,
+            "wavelengths": len(table.wavelengths if at is None else at),
             "colours": count,
             **found,
             "ratio": found["light"].median / found["reflectance"].median,
