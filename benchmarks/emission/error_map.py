@@ -11,13 +11,16 @@ from uplift.common.arrays import Array
 from uplift.fit.emission import unit_xyz
 from uplift.lattice.chromaticity import chromaticity
 from uplift.lookup import EmissionTable
-from uplift.viz.figure import GREY, INK, new_figure, write_png
+from uplift.viz.figure import GREY, INK, new_figure, rendered, write_png
+from uplift.viz.scatter import Label, draw_labels
 
 SIZE = 320
 """Points of the map along u′."""
 WIDTH, HEIGHT = 0.65, 0.62
 """Range of u′ and v′."""
-LABELLED = 5
+MARGIN = 0.03
+"""Distance in u′v′ around the lamps that the second panel shows."""
+LABELLED = 8
 """Lamps with the largest errors, which are named."""
 
 
@@ -39,8 +42,8 @@ def draw(table: EmissionTable, names: tuple[str, ...], power: Array, errors: Arr
     """
     expected, uv = expected_errors(table), chromaticity(power @ table.data.cmfs)
     limit = float(np.nanmax(expected))
-    figure = new_figure(11, 4.9)
-    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+    figure = new_figure(11, 5.4)
+    left, right = figure.subplots(1, 2)
     shown = left.imshow(
         expected, origin="lower", extent=(0, WIDTH, 0, HEIGHT), cmap="viridis", vmin=0, vmax=limit
     )
@@ -48,14 +51,18 @@ def draw(table: EmissionTable, names: tuple[str, ...], power: Array, errors: Arr
     left.set_title("expected by the table; points are its lamps")
     right.scatter(*uv.T, c=errors, s=16, cmap="viridis", vmin=0, vmax=limit, edgecolors=INK, linewidths=0.3)
     right.set_title("measured: each lamp left out")
-    for row in np.argsort(errors)[-LABELLED:]:
-        right.annotate(
-            names[row], uv[row], xytext=(7, -9), textcoords="offset points", fontsize=7.5, color=INK
-        )
     for axes in (left, right):
         _diagram(axes, table)
+    low, high = uv.min(axis=0) - MARGIN, uv.max(axis=0) + MARGIN
+    right.set_xlim(low[0], high[0])
+    right.set_ylim(low[1], high[1])
     bar = figure.colorbar(shown, ax=[left, right], shrink=0.85, extend="max")
     bar.set_label("mean ΔE00 of the ColorChecker")
+    rendered(figure)  # the layout decides where labels have room
+    figure.set_layout_engine("none")
+    largest = np.argsort(errors)[::-1][:LABELLED]
+    labels = [Label(names[row], (uv[row, 0], uv[row, 1]), INK, bold=False, gid="") for row in largest]
+    draw_labels(right, labels, uv, np.empty((0, 2)))
     write_png(figure, path, force=True)
 
 
