@@ -166,11 +166,13 @@ def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(small_task, colo
         compiled = prepared("mitsuba3-llvm", small_task)
     except NotInstalledError as error:
         pytest.skip(str(error))
-    at = small_task.sensor.wavelengths
+    at, drjit = small_task.sensor.wavelengths, pytest.importorskip("drjit")
+    threads = drjit.thread_count()
     for count in (1, len(colours)):
         found = compiled.uplift(colours[:count], at)
         expected = prepared("mitsuba3-table", small_task).uplift(colours[:count], at)
         np.testing.assert_allclose(found, expected, atol=1e-4)
+    assert drjit.thread_count() == threads
 
 
 def test_table_of_one_colour_has_an_axis_of_colours(small_task, colours):

@@ -56,20 +56,28 @@ def spectra(rgb: Array, wavelengths: Array) -> Array:
 
 
 def prepare_compiled(task: Task) -> PreparedMethod:
-    """Load Mitsuba's vectorised variant, on one thread, without the kernels of earlier calls."""
+    """Load Mitsuba's vectorised variant, without the kernels of earlier calls."""
     size = table_file().stat().st_size
     drjit = import_module("drjit")
     if not drjit.has_backend(drjit.JitBackend.LLVM):
         raise NotInstalledError("LLVM is not installed: apt install libllvm19, or DRJIT_LIBLLVM_PATH")
-    drjit.set_thread_count(1)
     drjit.flush_kernel_cache()
     _, seconds = stopwatch(lambda: compiled_spectra(task.rgb[:1], task.sensor.wavelengths))
     return PreparedMethod(compiled_spectra, size, None, seconds)
 
 
 def compiled_spectra(rgb: Array, wavelengths: Array) -> Array:
-    """Return the reflectances (n, N) of a bitmap texture with the texels ``rgb`` (n, 3)."""
+    """Return the reflectances (n, N) of a bitmap texture with the texels ``rgb`` (n, 3), computed on one thread."""
     mitsuba, drjit = _mitsuba(COMPILED), import_module("drjit")
+    threads = drjit.thread_count()
+    drjit.set_thread_count(1)
+    try:
+        return _evaluate(mitsuba, drjit, rgb, wavelengths)
+    finally:  # Mitsuba cannot write OpenEXR files with one thread
+        drjit.set_thread_count(threads)
+
+
+def _evaluate(mitsuba: Any, drjit: Any, rgb: Array, wavelengths: Array) -> Array:
     side = math.isqrt(len(rgb) - 1) + 1
     texels = np.zeros((side * side, 3), np.float32)
     texels[: len(rgb)] = rgb
