@@ -99,7 +99,7 @@ def command(
     options = {"res": res, "mode": mode, "form": table, "style": style if style in PROGRAMS else None}
     options = {key: value for key, value in options.items() if value is not None}
     if names_emission_table(cube):
-        refuse_for_lights("mode", "fill_missing")
+        refuse_for_lights("res", "mode", "fill_missing")
         say(f"{path}: {_light_program(cube, path, force=force, **{'style': style, **options})}")
         return
     loaded = load(cube).fill_missing() if fill_missing else load(cube)

@@ -110,3 +110,4 @@ def test_lights(run, refuse, home):
     assert refuse("export", "emission", "lights.wgsl").code == "unknown-language"
     assert refuse("export", "emission", "lights.csv").code == "unknown-language"
     assert refuse("export", "emission", "l.h", "--mode", "moments").code == "not-for-lights"
+    assert refuse("export", "emission", "l.coeff", "--res", "8").code == "not-for-lights"
