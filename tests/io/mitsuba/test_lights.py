@@ -112,6 +112,33 @@ def test_samples_are_radiance_over_density(mi, sky, radiance):
         np.testing.assert_allclose(emitter.eval_direction(it, ds)[0], expected, rtol=1e-4)
 
 
+def test_scalar_variants_sample_after_others_were_set(mi, sky, monkeypatch):
+    """Mitsuba keeps the names of a variant that was set earlier, which refuse emitters of scalar variants."""
+    import drjit
+
+    def refuse(emitter):
+        raise TypeError
+
+    monkeypatch.setattr(mi, "EmitterPtr", refuse, raising=False)
+    emitter = environment(mi, sky)
+    it = drjit.zeros(mi.SurfaceInteraction3f)
+    it.wavelengths = mi.Spectrum(550.0)
+    ds, _ = emitter.sample_direction(it, mi.Point2f(0.5, 0.5))
+    assert ds.emitter is emitter
+
+
+def test_sampled_wavelengths_are_radiance_over_density(mi, sky, radiance):
+    import drjit
+
+    emitter = environment(mi, sky)
+    si = drjit.zeros(mi.SurfaceInteraction3f)
+    si.wi = mi.Vector3f(0, 0, 1)
+    for sample in (0.05, 0.4, 0.85):
+        wavelengths, weight = emitter.sample_wavelengths(si, sample)
+        expected = radiance(emitter, [0, 0, -1], list(wavelengths))
+        np.testing.assert_allclose(weight * mi.pdf_rgb_spectrum(wavelengths), expected, rtol=1e-4)
+
+
 def test_a_white_wall_has_the_colour_of_the_sky(mi, table):
     """Rendered by light and by BSDF samples."""
     scene = mi.load_dict(

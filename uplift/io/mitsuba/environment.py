@@ -48,7 +48,7 @@ def _environment_class(variant: str) -> type:
             """Sample a direction in proportion to the mean power, and return it with radiance over density."""
             ds, _ = self.sampler.sample_direction(it, sample, active)
             radiance = self._radiance(ds.d, it.wavelengths, active)
-            ds.emitter = mi.EmitterPtr(self) if hasattr(mi, "EmitterPtr") else self  # scalar variants
+            ds.emitter = self if variant.startswith("scalar") else mi.EmitterPtr(self)
             return ds, dr.select(ds.pdf > 0, radiance / ds.pdf, 0)
 
         def pdf_direction(self, it: Any, ds: Any, active: Any = True) -> Any:
