@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import re
-import sys
-import warnings
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING
 
 import click
 
 from uplift.colorimetry.lights import RELIGHT_LIGHTS
-from uplift.common.errors import UpliftWarning
 
 from ..output.light_output import query_lights, treatment, write_lights
+from ..output.query_answers import Answers
 from ..output.query_output import WRITERS
 from ..params.number_types import NUMBER
 from ..params.options import (
@@ -31,18 +28,15 @@ from ..params.options import (
     wavelengths_option,
 )
 from ..params.plots import plot_option
+from ..params.query_colours import as_xyz, lights_xyz, read_colours
 from ..params.spaces import resolve_space
 from ..params.wavelengths import parse_wavelengths
 from ..startup import hide_drawing_notes
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.sensor import Light, Sensor
-    from uplift.colorimetry.spaces import ImageSpace
-    from uplift.common.arrays import Array
-    from uplift.lookup import Bounds, Cube, EmissionTable, QueryResult
+    from uplift.colorimetry.sensor import Light
+    from uplift.lookup import Cube, QueryResult
 
-DIVISIONS, SINGLE_DIVISIONS = 2, 3
-"""Density of the directions of bounds: 162 of each of many colours, 642 of a single one."""
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
 
 
@@ -162,7 +156,7 @@ def command(
 
     check_outputs((plot_path, html), inputs=(cube_path, input_path), force=force)
     space = resolve_space(input_space)
-    point = _as_xyz(xyz, xy, luminance)
+    point = as_xyz(xyz, xy, luminance)
     if point is not None and (colour or input_path is not None):
         raise click.UsageError(
             "Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'."
@@ -171,13 +165,13 @@ def command(
     if is_emission:
         refuse_for_lights("mode", "fill_missing", "lights", "with_bounds", "html")
         table = load_emission(cube_path)
-        lights_xyz = _lights_xyz(table, point, colour, input_path, encoded=encoded, space=space)
-        lit = query_lights(table, lights_xyz, parse_wavelengths(wavelengths), treatment(method))
+        found = lights_xyz(table, point, colour, input_path, encoded=encoded, space=space)
+        lit = query_lights(table, found, parse_wavelengths(wavelengths), treatment(method))
         write_lights(table, lit, style, plot_path, single=single, force=force)
         return
     cube = load(cube_path)
     bounded = method == "error" and input_space is None
-    answers = _Answers(
+    answers = Answers(
         cube,
         method,
         parse_wavelengths(wavelengths),
@@ -189,7 +183,7 @@ def command(
     if point is not None:
         results = answers.result_of_xyz(point)
     else:
-        blocks = _read_colours(
+        blocks = read_colours(
             colour, input_path, cube.data.sensor, encoded=encoded, bounded=bounded, space=space
         )
         results = answers.results(blocks)
@@ -211,105 +205,6 @@ def command(
     answers.warn()
 
 
-@dataclass
-class _Answers:
-    """Answers to blocks of linear RGB (n, 3), and the numbers of colours that were mapped or filled."""
-
-    cube: Cube
-    method: str
-    wavelengths: Array | None
-    mode: str
-    lights: Sequence[Light]
-    fill_missing: bool
-    count: int = 0
-    mapped: int = 0
-    filled: int = 0
-    max_change: float = 0.0
-
-    def results(self, blocks: Iterable[Array]) -> Iterator[list[QueryResult]]:
-        """Answer block by block, each before the next one is read."""
-        from uplift.colorimetry.gamut import map_to_gamut
-        from uplift.lookup import query
-
-        for block in blocks:
-            mapped = map_to_gamut(block, self.cube.data.sensor, self.method)
-            self.count += len(block)
-            self.mapped += mapped.count
-            self.max_change = max(self.max_change, mapped.max_change)
-            if self.fill_missing:
-                self.filled += int((~self.cube.covers(mapped.rgb)).sum())
-                self.cube = self.cube.fill_missing(mapped.rgb)
-            results = query(self.cube, mapped.rgb, self.wavelengths, self.mode, mapped.requested, self.lights)
-            yield list(results)
-            sys.stdout.flush()
-
-    def result_of_xyz(self, xyz: tuple[float, float, float]) -> list[list[QueryResult]]:
-        """Answer one colour by XYZ."""
-        from uplift.lookup import query_xyz
-
-        return [list(query_xyz(self.cube, [xyz], self.wavelengths, self.mode, self.lights))]
-
-    def bounds(self, block: Sequence[QueryResult], *, single: bool) -> list[Bounds]:
-        """Compute the bounds of a block under each light, from more directions for a single colour."""
-        import numpy as np
-
-        from uplift.lookup import bounds
-
-        rgb = np.stack([result.rgb for result in block])
-        divisions = SINGLE_DIVISIONS if single else DIVISIONS
-        return [bounds(self.cube, rgb, light, self.mode, divisions) for light in self.lights]
-
-    def warn(self) -> None:
-        """Warn of colours that were mapped or filled."""
-        if self.mapped:
-            problem = (
-                f"{self.mapped} of {self.count} colours lie outside [0, 1]: mapped into the gamut ({self.method}), "
-                f"a component by up to {self.max_change:.3g}"
-            )
-            warnings.warn(UpliftWarning(problem, code="colours-mapped"), stacklevel=1)
-        if self.filled:
-            count = f"{self.filled} of {self.count} colours"
-            problem = f"{count} are not in the cube's scene: filled from the packaged cube"
-            warnings.warn(UpliftWarning(problem, code="colours-filled"), stacklevel=1)
-
-
-def _as_xyz(
-    xyz: tuple[float, float, float] | None, xy: tuple[float, float] | None, luminance: float | None
-) -> tuple[float, float, float] | None:
-    """Return XYZ of --xyz, or of --xy and --luminance; None without them. Raises `ColourError` and click's error."""
-    if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
-        raise click.UsageError("--xy X Y and --luminance Y require each other, and --xyz is an alternative.")
-    if xy is None or luminance is None:
-        return xyz
-    from uplift.common.errors import ColourError
-
-    x, y = xy
-    if not y > 0:
-        problem = f"y of a chromaticity must be positive, got {y:g}"
-        raise ColourError(problem, code="invalid-chromaticity", hint="give CIE x and y")
-    return x * luminance / y, luminance, (1 - x - y) * luminance / y
-
-
-def _lights_xyz(
-    table: EmissionTable,
-    point: tuple[float, float, float] | None,
-    words: tuple[str, ...],
-    path: str | None,
-    *,
-    encoded: bool,
-    space: ImageSpace | None,
-) -> Iterable[Array]:
-    """Return blocks of XYZ (n, 3) of lights from arguments, a file or standard input."""
-    if point is not None:
-        import numpy as np
-
-        return [np.array([point])]
-    from uplift.colorimetry.observer import sensor
-
-    target = sensor(table.space)
-    return map(table.xyz, _read_colours(words, path, target, encoded=encoded, bounded=False, space=space))
-
-
 def _read_lights(names: Sequence[str], cube: Cube) -> list[Light]:
     if not names:
         return []
@@ -317,44 +212,3 @@ def _read_lights(names: Sequence[str], cube: Cube) -> list[Light]:
 
     lights = (light(name, cube.observer, *cube.data.sensor.range) for name in names)
     return list({each.name: each for each in lights}.values())
-
-
-def _read_colours(
-    words: tuple[str, ...],
-    path: str | None,
-    sensor: Sensor,
-    *,
-    encoded: bool,
-    bounded: bool,
-    space: ImageSpace | None,
-) -> Iterable[Array]:
-    """Return blocks of linear RGB (n, 3) from arguments, a file or standard input."""
-    from ..params.colours import from_arguments
-
-    if words == ("-",):
-        words, path = (), path or "-"
-    if bool(words) == (path is not None):
-        raise click.UsageError("Give one colour, or --input FILE, or '-'. See 'uplift query --help'.")
-    if path is None:
-        return [from_arguments(words, sensor, encoded=encoded, space=space)]
-    return _read_file(path, sensor, encoded=encoded, bounded=bounded, space=space)
-
-
-def _read_file(
-    path: str, sensor: Sensor, *, encoded: bool, bounded: bool, space: ImageSpace | None
-) -> Iterator[Array]:
-    from uplift.common.errors import ColourError
-
-    from ..params.colours import from_table
-
-    name = "standard input" if path == "-" else path
-    try:
-        with click.open_file(path, "rb") as file:
-            yield from from_table(file, name, sensor, encoded=encoded, bounded=bounded, space=space)
-    except OSError as error:
-        raise ColourError(
-            f"cannot be read: {error.strerror}",
-            code="file-unreadable",
-            path=path,
-            hint="give a CSV file of colours",
-        ) from error

@@ -105,6 +105,11 @@ def _print_table(result: Sensitivity) -> None:
         f"{steep['median_cell']:.2g}), {steep['largest_per_code']:.2g} per 8-bit code; steepest cell at {where}, "
         f"steepest wavelength {steep['steepest_wavelength']:g} nm"
     )
+    if steep["moved_cells"]:
+        say(
+            f"in {steep['moved_cells']} cells, which have corners without their own colours, answers are moved to "
+            "exact colours: there the constants are those of the mixtures before"
+        )
     if record["changes"]:
         _table(
             ("change",),

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
+from uplift.lookup.light_errors import LIKELY
+
 from ..startup import hide_drawing_notes
 from .console import csv_writer, emit, make_table, print_json, say, show, terminal_json
 from .query_output import format_rgb, hex_code, patch, print_fields, result_object
@@ -19,6 +21,8 @@ Block = tuple[Sequence["QueryResult"], Sequence["Bounds"]]
 Writer = Callable[["Cube", Iterable[Block], bool], None]
 """Prints blocks, each before the next one is computed."""
 UNKNOWN = "–"
+LIKELY_TITLE = f"likely {LIKELY:.0%}"
+"""Heading of the error bounds: ΔE00 that this share of the materials like the atlas stay within."""
 
 
 def write_bounds(
@@ -77,6 +81,7 @@ def _object(found: Bounds, row: int) -> dict[str, Any]:
         "outline": found.outline(row).tolist(),
         "covariance": None if found.covariance is None else found.covariance[row].tolist(),
         "likely": None if likely is None else likely.tolist(),
+        "likely_share": LIKELY,
     }
 
 
@@ -90,17 +95,21 @@ def as_csv(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
     """Print a row per colour and light."""
     writer = csv_writer()
     lab_range = [f"{name}_{end}" for end in ("min", "max") for name in ("L*", "a*", "b*")]
-    columns = ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error"]
+    columns = ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error", "error_bound"]
     writer.write([*columns, "largest", "outer", *lab_range, "share"])
     for results, found in blocks:
         for row, result in enumerate(results):
             for each in found:
-                error = result.standard_errors.get(each.light.name, "")
+                light = each.light.name
+                errors = (
+                    result.standard_errors.get(light, ""),
+                    result.error_bounds.get(light, ""),
+                )
                 largest = each.largest
                 differences = [float(values[row]) for values in (largest.delta_e_2000, largest.outer)]
                 lab_range = each.box[row].ravel().tolist()
-                answer: list[object] = [*result.rgb.tolist(), each.light.name, *each.lab[row].tolist(), error]
-                writer.write([*answer, *differences, *lab_range, float(each.share[row])])
+                answer: list[object] = [*result.rgb.tolist(), light, *each.lab[row].tolist()]
+                writer.write([*answer, *errors, *differences, *lab_range, float(each.share[row])])
 
 
 def as_table(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
@@ -113,19 +122,19 @@ def as_table(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
             emit("")
         table = make_table(
             ("hex",) * (not single) + ("light",),
-            ("L* a* b*", "likely", "largest", "a*", "b*", "share"),
+            ("L* a* b*", LIKELY_TITLE, "largest", "a*", "b*", "share"),
             box=None,
             show_header=number == 0,
         )
         for row, result in enumerate(results):
             for column, each in enumerate(found):
                 code = hex_code(cube, result.rgb) if column == 0 else ""
-                table.add_row(*(code,) * (not single), *_cells(result.standard_errors, each, row))
+                table.add_row(*(code,) * (not single), *_cells(result.error_bounds, each, row))
         show(table)
 
 
-def _cells(errors: Mapping[str, float], found: Bounds, row: int) -> Iterable[str]:
-    error = errors.get(found.light.name)
+def _cells(error_bounds: Mapping[str, float], found: Bounds, row: int) -> Iterable[str]:
+    error = error_bounds.get(found.light.name)
     (_, least_a, least_b), (_, most_a, most_b) = found.box[row].tolist()
     yield found.light.name
     yield " ".join(f"{value:.1f}" for value in found.lab[row])

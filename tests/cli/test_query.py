@@ -21,6 +21,7 @@ from uplift_cli.params.text_lines import line_blocks
 import uplift
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.srgb import hex_codes
+from uplift.lookup.light_errors import LIKELY
 
 from .conftest import warning_lines
 
@@ -560,8 +561,28 @@ def test_bounds_of_a_colour_in_json(ask):
         np.testing.assert_allclose(answer, lab, atol=1e-9)
         assert 0 < each["largest_delta_e_2000"] <= each["outer_delta_e_2000"]
         assert len(each["outline"]) == 120
-        assert each["likely"] is None  # the packaged cube has no atlas
+        assert (each["likely"], each["likely_share"]) == (None, LIKELY)  # the packaged cube has no atlas
     assert found["bounds"]["FL11"]["share"] > 10 * found["bounds"]["A"]["share"]
+
+
+def test_the_likely_difference_is_the_error_bound(run, ask, cubes):
+    """One share in all formats: that of the likely region."""
+    colour = (
+        "--cube",
+        cubes / "moments-16-macbeth.uplift",
+        "0.2",
+        "0.3",
+        "0.1",
+        "--bounds",
+        "--light",
+        "FL11",
+    )
+    found = ask(*colour)
+    bound = found["error_bounds"]["FL11"]
+    assert bound > found["standard_errors"]["FL11"]
+    assert float(run("query", *colour).stdout.splitlines()[-1].split()[4]) == pytest.approx(bound, abs=0.005)
+    (row,) = csv.DictReader(io.StringIO(run("query", *colour, "--format", "csv").stdout))
+    assert float(row["error_bound"]) == pytest.approx(bound)
 
 
 def test_bounds_of_many_colours(run, table):
@@ -575,7 +596,7 @@ def test_bounds_of_many_colours(run, table):
 def test_table_and_plot_of_bounds(run, home):
     text = run("query", "0.2,0.3,0.4", "--bounds", "--light", "D65", "--plot", "bounds.png").stdout
     heading, row = text.splitlines()[-2:]
-    assert heading.split() == ["light", "L*", "a*", "b*", "likely", "largest", "a*", "b*", "share"]
+    assert heading.split() == ["light", "L*", "a*", "b*", "likely", "95%", "largest", "a*", "b*", "share"]
     assert row.split()[0] == "D65"
     assert float(row.split()[5]) == 0  # metamers match under the build light
     assert max(map(len, text.splitlines())) <= 80

@@ -56,8 +56,14 @@ def test_sensitivity_of_a_stored_cube(run, home, cubes):
         assert matplotlib.image.imread(home / "out" / f"sensitivity-{name}.png").std() > 0.05
 
 
+def test_cells_whose_answers_are_moved_are_counted(run, home):
+    run("build", "--space", "ITU-R BT.2020", "--dim", 3, "-o", "wide.uplift")
+    assert re.search(r"in [1-8] cells, which have corners", run("study", "sensitivity", "wide.uplift").stdout)
+
+
 def test_sensitivity_of_the_packaged_cube_has_no_changes_of_an_atlas(run, home):
     result = run("study", "sensitivity", "-o", "out")
+    assert "cells, which" not in result.stdout
     assert "Lipschitz constant" in result.stdout
     assert "left out" not in result.stdout
     assert result.stderr == "out: sensitivity.json, sensitivity-steepness.png\n"

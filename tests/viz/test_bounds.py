@@ -25,7 +25,7 @@ def test_a_row_per_colour_and_a_column_per_light(small_cube, blocks, tmp_path):
     for found in blocks[0]:
         for largest in found.largest.delta_e_2000:
             assert f"{found.light.name}: ΔE00 up to {largest:.1f}" in text
-    assert {"all reflectances", "likely", "answer"} <= set(text.replace("<", ">").split(">"))
+    assert {"all reflectances", "likely 95%", "answer"} <= set(text.replace("<", ">").split(">"))
 
 
 def test_regions_have_their_colours(small_cube, blocks, tmp_path):

@@ -3,7 +3,7 @@
 ΔE00 is not convex, so the search starts in 20 parts of the volume: the triangles of directions within each triangle of
 the icosahedron. The metamer of a start is the extreme in the direction in which ΔE00 rises fastest at the outer corner
 that is most different. Each step goes to the extreme in the direction in which ΔE00 rises fastest at the current one,
-and ends where that is no more different. Last, directions around that of the most different metamer are tried.
+and ends where the new metamer differs no more. Finally, directions close to that of the best metamer are tried.
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.lookup import Bounds, Cube
+from uplift.lookup.light_errors import LIKELY
 from uplift.viz.figure import ACCENT, GREY, INK, new_figure, style_axes, write_figure
 
 MAX_COLOURS = 24
@@ -72,7 +73,7 @@ def _plot_region(axes: Any, screen: Sensor, bounds: Bounds, row: int) -> None:
     )
     image.set_clip_path(patch)
     if likely is not None:
-        axes.fill(*likely.T, facecolor="none", edgecolor=ACCENT, linewidth=1.4, label="likely")
+        axes.fill(*likely.T, facecolor="none", edgecolor=ACCENT, linewidth=1.4, label=f"likely {LIKELY:.0%}")
     axes.plot(*answer[1:], "o", color=INK, markersize=5, markeredgecolor="white", label="answer")
     axes.set(xlim=extent[0], ylim=extent[1], aspect="equal", xlabel="a*", ylabel="b*")
     largest = bounds.largest.delta_e_2000[row]

@@ -62,9 +62,11 @@ class Sensitivity:
         Returns
         -------
         dict
-            Keys ``moves``, ``lipschitz`` and ``changes``.
+            Keys ``moves``, ``lipschitz`` and ``changes``. ``moved_cells`` is the number of cells in which mode
+            ``spectra`` moves mixtures to exact colours; the constants are those of the mixtures.
         """
         constants, boxes = self.lipschitz, self.lipschitz.boxes
+        inexact = self.cube.data.inexact_cells
         steepest_wavelength = self.cube.data.sensor.wavelengths[constants.wavelengths.argmax()]
         return {
             "moves": [asdict(each) for each in self.perturbations],
@@ -76,6 +78,7 @@ class Sensitivity:
                 "steepest_cell": self.steepest,
                 "steepest_wavelength": float(steepest_wavelength),
                 "largest_box": float(boxes.max()) if boxes.size else None,
+                "moved_cells": 0 if inexact is None else int(inexact.sum()),
             },
             "changes": [change_record(each) for each in (*self.noise, *self.reversed, *self.removed)],
         }
