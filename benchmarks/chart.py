@@ -25,7 +25,7 @@ PICTURES = {"unseen": 1, "set-up": 2}
 @click.command()
 @click.option("--from", "source", metavar="CSV", help="Table of an earlier run; nothing is measured.")
 @click.option(
-    "--longest", type=float, help="CPU seconds of a call; slower ones take fewer colours.  [default: 4]"
+    "--longest", type=float, help="CPU seconds of a call; slower ones take fewer colours.  [default: 1]"
 )
 def main(source: str | None, longest: float | None) -> None:
     """Measure, draw and store."""

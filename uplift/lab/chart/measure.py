@@ -23,14 +23,14 @@ from uplift.lab.chart.method import (
 )
 from uplift.lab.chart.table import Chart, MethodResult, State
 from uplift.lab.chart.task import Task
-from uplift.lab.chart.timing import REFERENCE, call_times
+from uplift.lab.chart.timing import REFERENCE, affordable, call_times
 from uplift.lab.study.held_out import spectrum_errors
 from uplift.lab.timing import environment
 
 MAX_CLAIM_RATIO = 10
 """A method is broken if its mean round-trip error is larger than the claimed one by more than this factor."""
-TRIAL_COLOURS = 3
-"""Colours from which the duration of a slow method is estimated."""
+SLOW_STEP = 3
+"""Colours of slow methods between two looks at the time."""
 SAMPLE, SAMPLE_TOLERANCE = 50, 2e-5
 """Colours of a large batch that are computed again in a small one, and the reflectance that rounding may change."""
 
@@ -68,7 +68,8 @@ def measure_methods(
     summary = (
         f"CPU time of all threads, {', '.join(f'{size:,}' for size in effort.batches)} colours per call, spectra at "
         f"{len(task.sensor.wavelengths)} wavelengths; up to {effort.runs} runs; calls longer than {effort.longest:g} s "
-        f"take fewer colours; cubes are built {effort.builds}×, the last build counts; "
+        f"take fewer colours; errors of slow methods are of the colours of {effort.seconds_per_error:g} s; "
+        f"cubes are built {effort.builds}×, the last build counts; "
         f"{(time.perf_counter() - begin) / 60:.1f} minutes in all"
     )
     return Chart({**machine, **task.facts, "effort": summary}, tuple(results))
@@ -128,7 +129,9 @@ def _numbers(method: Method, task: Task) -> dict[str, float]:
     numbers["setup_s"] = numbers.get("build_s", 0.0) + numbers["load_s"]
     numbers |= _round_trips(method, prepared, uplift, task) | _errors(method, uplift, task)
     if method.batch:
-        _check_batch(uplift, min(task.effort.batches[-1], REFERENCE))
+        _check_batch(
+            uplift, affordable(uplift, method.dtype, min(task.effort.batches[-1], REFERENCE), task.effort)
+        )
     return numbers | call_times(uplift, method.dtype, task.effort, batch=method.batch)
 
 
@@ -201,11 +204,13 @@ def _errors(method: Method, uplift: UpliftRgb, task: Task) -> dict[str, float]:
 def _spectra(method: Method, uplift: UpliftRgb, task: Task, rgb: Array) -> tuple[Array, Array]:
     """As many of the colours as time allows, (k, 3), and their spectra (k, N) in float64."""
     uplift(rgb[:1])
-    first, seconds = stopwatch(lambda: uplift(rgb[:TRIAL_COLOURS]))
-    each = max(seconds, 1e-9) / TRIAL_COLOURS
-    count = len(rgb) if method.batch else min(len(rgb), int(task.effort.seconds_per_error / each))
-    rest = count > TRIAL_COLOURS
-    spectra = np.concatenate([first, uplift(rgb[TRIAL_COLOURS:count])]) if rest else first
+    step = len(rgb) if method.batch else SLOW_STEP
+    parts, begin = [], time.process_time()
+    for first in range(0, len(rgb), step):
+        parts.append(uplift(rgb[first : first + step]))
+        if time.process_time() - begin > task.effort.seconds_per_error:
+            break
+    spectra = np.concatenate(parts)
     _check_range(spectra, method.claims)
     return rgb[: len(spectra)], spectra.astype(float)
 

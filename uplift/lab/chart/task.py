@@ -42,11 +42,11 @@ class Effort:
         Number of builds of each cube; the last one is timed.
     """
 
-    seconds_per_error: float = 10.0
+    seconds_per_error: float = 6.0
     runs: int = 7
     lap: float = 0.1
     batches: tuple[int, ...] = (1, 1000, 65_536, 1_000_000)
-    longest: float = 4.0
+    longest: float = 1.0
     builds: int = 2
 
 

@@ -51,23 +51,27 @@ def call_times(uplift: Call, dtype: str, effort: Effort, *, batch: bool) -> dict
         if shortened and found is not None:  # as many colours per call as before
             numbers |= _numbers(size, *found)
             continue
-        seconds = _expected(uplift, dtype, found, size, batch=batch)
-        count = max(min(size, int(effort.longest / max(seconds, 1e-12))), 1)
+        if found is not None and (found[1] > 1 or not batch):
+            count = _count(size, found[0].median, effort)
+        else:
+            count = affordable(uplift, dtype, size, effort, batch=batch)
         found, shortened = (_timed(uplift, dtype, count, effort), count), count < size
         numbers |= _numbers(size, *found)
     reference = max((size for size in effort.batches if size <= REFERENCE), default=effort.batches[0])
     return numbers | {"time_ns": numbers[f"ns_{reference}"]}
 
 
-def _expected(uplift: Call, dtype: str, found: tuple[Spread, int] | None, size: int, *, batch: bool) -> float:
-    """CPU seconds per colour, from the calls before or from a trial."""
-    if found is not None and (found[1] > 1 or not batch):
-        return found[0].median
+def affordable(uplift: Call, dtype: str, size: int, effort: Effort, *, batch: bool = True) -> int:
+    """Return the number of colours, at most ``size``, that a call of `Effort.longest` has, from a call with few."""
     count = min(size, TRIAL) if batch else 1
     rgb = _colours(1, count, dtype)[0]
     uplift(rgb)
     _, cpu = time_calls(lambda: uplift(rgb), 1)
-    return cpu.median / count
+    return _count(size, cpu.median / count, effort)
+
+
+def _count(size: int, seconds: float, effort: Effort) -> int:
+    return max(min(size, int(effort.longest / max(seconds, 1e-12))), 1)
 
 
 def _timed(uplift: Call, dtype: str, count: int, effort: Effort) -> Spread:

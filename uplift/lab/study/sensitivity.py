@@ -56,17 +56,23 @@ class Sensitivity:
         )
         return red, green, blue
 
+    @property
+    def moved_cells(self) -> int:
+        """Number of cells in which mode ``spectra`` moves mixtures to exact colours; the constants are of mixtures."""
+        data = self.cube.data
+        if data.inexact_cells is None:
+            return 0
+        return int(data.inexact_cells.reshape((data.lattice.dim,) * 3)[:-1, :-1, :-1].sum())
+
     def record(self) -> dict[str, Any]:
         """Convert to JSON values.
 
         Returns
         -------
         dict
-            Keys ``moves``, ``lipschitz`` and ``changes``. ``moved_cells`` is the number of cells in which mode
-            ``spectra`` moves mixtures to exact colours; the constants are those of the mixtures.
+            Keys ``moves``, ``lipschitz`` and ``changes``.
         """
         constants, boxes = self.lipschitz, self.lipschitz.boxes
-        inexact = self.cube.data.inexact_cells
         steepest_wavelength = self.cube.data.sensor.wavelengths[constants.wavelengths.argmax()]
         return {
             "moves": [asdict(each) for each in self.perturbations],
@@ -78,7 +84,7 @@ class Sensitivity:
                 "steepest_cell": self.steepest,
                 "steepest_wavelength": float(steepest_wavelength),
                 "largest_box": float(boxes.max()) if boxes.size else None,
-                "moved_cells": 0 if inexact is None else int(inexact.sum()),
+                "moved_cells": self.moved_cells,
             },
             "changes": [change_record(each) for each in (*self.noise, *self.reversed, *self.removed)],
         }

@@ -8,7 +8,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -96,9 +96,9 @@ LOOKUPS = (
 )
 
 
-@lru_cache(maxsize=1)
+@cache
 def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
-    """Build a cube, store and load it.
+    """Build a cube, store and load it, once for all methods that need it.
 
     Parameters
     ----------
@@ -173,15 +173,21 @@ def _usual(options: CubeOptions, lookup: Lookup) -> bool:
     """Whether one option at most differs from the defaults, or the options are extreme."""
     nine, default_size = options.count == 9, options.dim == 32
     swept = nine or (options.model == Sigmoid.name and not options.atlas)
+    if lookup.mode == "bulk":
+        return nine or (options.model == Moments.name and options.atlas and _is_large(options))
+    if lookup.dtype == "float32":
+        return swept and default_size and lookup.mode != "nearest"
     if lookup.mode == "nearest":
-        return nine and options.dim == 64 and not options.atlas and lookup.dtype == "float64"
+        return nine and options.dim == 64 and not options.atlas
     if lookup.mode == "refined":
-        return swept and (lookup.dtype == "float64" or default_size)
+        return swept and options.dim in (8, 32)
     if lookup.mode == "moments":
         return swept
-    if lookup.mode == "bulk" and options.model == Sigmoid.name:
-        return False
-    return swept or (options.atlas and (default_size or (options.count, options.dim) == (17, 64)))
+    return swept or (options.atlas and _is_large(options))
+
+
+def _is_large(options: CubeOptions) -> bool:
+    return options.dim == 32 or (options.count, options.dim) == (17, 64)
 
 
 def _quick(options: CubeOptions, lookup: Lookup) -> bool:
