@@ -3,45 +3,38 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Sequence
-from dataclasses import asdict, replace
-from functools import partial
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from uplift import fit
-from uplift.atlas import Atlas, on_grid, read_atlas, resample
+from uplift.atlas import Atlas
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
-from uplift.colorimetry.sensor import Light, Sensor
-from uplift.colorimetry.spaces import holding_note
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import OptionError, UpliftWarning, unknown_name
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.common.quoting import format_value
 from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
-from uplift.cube import AtlasTable, CubeData, EntrySpectra, LeftOut
+from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes, Lattice, SceneLike
 from uplift.lattice.box_widths import half_widths
 from uplift.lookup import Cube
-from uplift.models import Model
-from uplift.models.minimum_norm import forward_map
 from uplift.models.moments import MAX_COUNT
+from uplift.pipeline.constraints import Constraints, fit_constraints
+from uplift.pipeline.entries import as_atlas, entries_in_gamut, warn
 from uplift.pipeline.libraries import AtlasLike, read_libraries
 from uplift.pipeline.libraries import describe as describe_libraries
 from uplift.pipeline.libraries import families as library_families
-from uplift.pipeline.looks import LooksLike, as_looks, design_looks, resolve_looks
+from uplift.pipeline.looks import LooksLike, as_looks, resolve_looks
 from uplift.pipeline.looks import describe as describe_looks
 from uplift.pipeline.options import (
     AUTO,
     AXES,
     CUSTOM,
-    SOLVERS,
     ModelName,
     Options,
     PriorName,
@@ -49,14 +42,13 @@ from uplift.pipeline.options import (
     check_memory,
 )
 from uplift.pipeline.provenance import describe_source
+from uplift.pipeline.setting import Setting, make_setting
 
 if TYPE_CHECKING:
     from uplift.fit.stock_solver import Solver
 
 MAX_NAMES = 6
 """Entries that a warning names."""
-STACK_LEVEL = 5
-"""Frames between a warning and the caller of `build`, whose decorator adds two."""
 
 
 @single_threaded_blas()
@@ -216,158 +208,84 @@ def build(
         debug=debug,
     )
     check_memory(options)
-    tolerance = fit.solver_tolerance(options.threshold)
-    chosen, method = _chosen_solver(solver, tolerance)
+    setting = make_setting(options, observer, solver)
+    options = setting.options
     scene = None if scene is None else _as_scene(scene)
-    sensor = observers.on_range(
-        observers.sensor(
-            options.space, options.illuminant, observer if isinstance(observer, Camera) else options.observer
-        ),
-        options.shortest,
-        options.longest,
-        options.step,
-    )
-    options = _with_names(options, sensor)
-    spectrum_model = options.spectrum_model()
-    forward = forward_map(spectrum_model, sensor.wavelengths, sensor.matrix)
-    scene_lights = [observers.light(name, sensor.observer, *sensor.range) for name in options.lights]
-    error_light = observers.light(ERROR_ILLUMINANT, sensor.observer, *sensor.range)
-
     libraries = read_libraries(library)
-    families = library_families(options, libraries, sensor)
-    atlas = _as_atlas(atlas)
-    names, rgb, measured = _entries_in_gamut(atlas, sensor)
-    wished = resolve_looks(as_looks(looks), options.entry_model(), sensor, atlas.names, names, rgb)
-    fit_entries = partial(
-        fit.fit_entries,
-        measured=measured,
-        rgb=rgb,
-        lights=scene_lights,
-        error_light=error_light,
-        tolerance=tolerance,
-        solver=chosen,
+    families = library_families(setting.options, libraries, setting.sensor)
+    atlas = as_atlas(atlas)
+    measured = entries_in_gamut(atlas, setting.sensor)
+    wished = resolve_looks(
+        as_looks(looks), setting.entry_model, setting.sensor, atlas.names, measured.names, measured.rgb
     )
-    entries = fit_entries(spectrum_model, forward)
 
-    colours = fit.Problem(spectrum_model, forward, fit.NO_LATTICE, options.threshold, method=method)
-    learnt = fit.learn_base(colours, sensor, scene_lights, families, entries)
-    fitted_prior = fit.fit_prior(colours, sensor, entries, scene_lights, error_light, learnt.base)
-    corners_alone = seed_corners or options.start == "neighbours"
-    corner_share = fit.ENTRY_ALONE if corners_alone else fitted_prior.corner_share
-    left_out = _left_out(entries, fitted_prior)
-
-    designed = design_looks(wished, fitted_prior, forward, tolerance)
-    fit_looks = partial(designed.fit, sensor=sensor, error_light=error_light, tolerance=tolerance)
-    look_errors = _standard_errors(fitted_prior, wished.rgb)
-    fitted_looks = fit_looks(spectrum_model)
-    fitted_prior = fit.prior_with_looks(fitted_prior, entries, fitted_looks)
-    entries = fit.join_entries(entries, fitted_looks)
-    names, rgb = (*names, *wished.names), entries.rgb
-
-    options = _with_dim(options, colours, fitted_prior, corner_share, scene_lights, entries)
-    lattice = Lattice(observers.axis_nodes(options.axis, int(options.dim)))
-    boxes = EntryBoxes(lattice, rgb, half_widths(lattice, rgb))
-    seeds = fit.seed(lattice, rgb)
-    _warn_of_crowding(names, boxes, seeds)
-
-    kept = None if scene is None else np.flatnonzero(scene.required_points(boxes, sensor, progress))
-    strategy = fit.STRATEGIES[options.start]
-    active = None if kept is None else strategy.supporting_points(lattice, kept)
-    outside = fit.unrealisable(lattice, sensor, options.threshold / 2, active)
-    problem = replace(colours, lattice=lattice, unrealisable=outside, active_points=active)
-
-    entry_model = options.entry_model()
-    error, spectra, seed_multipliers = entries.error, None, entries.multipliers
-    if names and entry_model != spectrum_model:
-        extended = fit.join_entries(
-            fit_entries(entry_model, forward_map(entry_model, sensor.wavelengths, sensor.matrix)),
-            fit_looks(entry_model),
-        )
-        error = extended.error
-        spectra = EntrySpectra(entry_model, entry_model.to_storage(extended.multipliers))
-        if options.start == "neighbours":
-            seed_multipliers = _recalculated(spectra, spectrum_model)
-    starts = fit.Starts(fitted_prior, seeds, seed_multipliers, corner_share)
-    fitted = fit.fit_lattice(problem, starts, progress, strategy)
-    points = fitted.points if kept is None else fitted.points.restricted_to(kept)
-    table = AtlasTable(
-        names,
-        rgb,
-        spectrum_model.to_storage(entries.multipliers),
-        boxes.half_width,
-        np.concatenate([error[: len(measured)], look_errors]),
-        spectra,
-        left_out,
-        len(wished),
+    constraints = fit_constraints(setting, measured, wished, families)
+    corner_share = _corner_share(options, constraints.prior)
+    options = _with_dim(setting, constraints, corner_share)
+    placed = _place(options, constraints.rgb)
+    _warn_of_crowding(constraints.names, placed)
+    starts = fit.Starts(
+        constraints.prior, placed.seeds, _seed_multipliers(options, constraints), corner_share
     )
+    fitted = _fit_nodes(setting, placed, starts, scene, progress)
+
+    table = constraints.table(placed.boxes)
+    recorded = _provenance(options, atlas, measured.names, scene, starts, fitted)
+    recorded |= describe_libraries(libraries, families, constraints.relevance)
+    recorded |= describe_looks(constraints.looks, table, setting.model, setting.sensor)
     return Cube(
         CubeData(
-            model=spectrum_model,
-            lattice=lattice,
-            sensor=sensor,
+            model=setting.model,
+            lattice=placed.lattice,
+            sensor=setting.sensor,
             threshold=options.threshold,
             atlas=table,
-            points=points if options.debug else replace(points, round=None),
+            points=fitted.points if options.debug else replace(fitted.points, round=None),
             error_illuminant=ERROR_ILLUMINANT,
-            provenance=_provenance(options, atlas, names, scene, starts, fitted)
-            | describe_libraries(libraries, families, learnt.relevance)
-            | describe_looks(designed, table, spectrum_model, sensor),
+            provenance=recorded,
         )
     )
 
 
-def _with_names(options: Options, sensor: Sensor) -> Options:
-    """Record the names of the space, not an alias, which $OCIO may define, and of a camera, not its file."""
-    if sensor.sensitivities is None:
-        return replace(options, space=sensor.space)
-    return replace(options, observer=sensor.space)
+def _corner_share(options: Options, prior: fit.Prior) -> fit.CornerShare:
+    alone = options.seed_corners or options.start == "neighbours"
+    return fit.ENTRY_ALONE if alone else prior.corner_share
 
 
-def _chosen_solver(solver: str | Solver, tolerance: float) -> tuple[Solver | None, fit.Method]:
-    """The solver of optimistix, None for the step of least change, and the method for lattices."""
-    if solver == SOLVERS[0]:
-        return None, fit.solve
-    from uplift.fit import stock_solver  # imports optimistix, which the default does not need
-
-    if isinstance(solver, stock_solver.SOLVER_TYPES):
-        return solver, stock_solver.StockSolver(solver)
-    if not isinstance(solver, str):
-        raise OptionError(
-            f"solver must be a name or a least-squares solver of optimistix, got {format_value(solver)}",
-            code="option-type",
-        )
-    if solver == CUSTOM:
-        raise unknown_name(solver, SOLVERS, "solver")
-    chosen = stock_solver.STOCK[solver](tolerance)
-    return chosen, stock_solver.StockSolver(chosen)
+def _seed_multipliers(options: Options, constraints: Constraints) -> Array:
+    """Multipliers (E, C) that seeds start from; growth from neighbours takes them as the thesis does."""
+    return constraints.recalculated() if options.start == "neighbours" else constraints.at_nodes.multipliers
 
 
-def _standard_errors(prior: fit.Prior, rgb: Array) -> Array:
-    """Standard errors (k,) of looks, which no measurement confirms; 0 if the cube has none."""
-    errors = prior.standard_error(rgb) if len(rgb) else None
-    return np.zeros(len(rgb)) if errors is None else errors
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """Constraints in a lattice: regions with their spectra, and the points that start from them."""
+
+    lattice: Lattice
+    boxes: EntryBoxes
+    seeds: fit.Seeds
 
 
-def _left_out(entries: fit.FittedEntries, prior: fit.Prior) -> LeftOut | None:
-    if prior.left_out is None:
-        return None
-    return LeftOut(entries.measured.astype(np.float32), prior.left_out.astype(np.float32))
+def _place(options: Options, rgb: Array) -> _Placed:
+    lattice = Lattice(observers.axis_nodes(options.axis, int(options.dim)))
+    return _Placed(lattice, EntryBoxes(lattice, rgb, half_widths(lattice, rgb)), fit.seed(lattice, rgb))
 
 
-def _recalculated(spectra: EntrySpectra, model: Model) -> Array:
-    """Multipliers (E, C) of the entries with the coefficients of the nodes (Tódová 2020, section 3.1.3).
-
-    Fewer moments of the same spectrum are the first of them.
-    """
-    return model.from_storage(spectra.coefficients[:, : model.count])
-
-
-def _as_atlas(atlas: AtlasLike) -> Atlas:
-    if atlas is None:
-        return Atlas()
-    if isinstance(atlas, Atlas):
-        return atlas
-    return read_atlas(atlas) if isinstance(atlas, str | os.PathLike) else read_atlas(*atlas)
+def _fit_nodes(
+    setting: Setting,
+    placed: _Placed,
+    starts: fit.Starts,
+    scene: SceneLike | None,
+    progress: ProgressCallback,
+) -> fit.LatticeFit:
+    """Fit all points of the lattice, or those that a scene needs."""
+    lattice, sensor, strategy = placed.lattice, setting.sensor, fit.STRATEGIES[setting.options.start]
+    kept = None if scene is None else np.flatnonzero(scene.required_points(placed.boxes, sensor, progress))
+    active = None if kept is None else strategy.supporting_points(lattice, kept)
+    outside = fit.unrealisable(lattice, sensor, setting.options.threshold / 2, active)
+    problem = replace(setting.problem, lattice=lattice, unrealisable=outside, active_points=active)
+    fitted = fit.fit_lattice(problem, starts, progress, strategy)
+    return fitted if kept is None else replace(fitted, points=fitted.points.restricted_to(kept))
 
 
 def _as_scene(scene: SceneLike | StrPath | Sequence[StrPath]) -> SceneLike:
@@ -380,53 +298,25 @@ def _as_scene(scene: SceneLike | StrPath | Sequence[StrPath]) -> SceneLike:
     return scene
 
 
-def _entries_in_gamut(atlas: Atlas, sensor: Sensor) -> tuple[tuple[str, ...], Array, Array]:
-    """Names, linear RGB (E, 3) and reflectances (E, N) of the entries in gamut, with a warning for each other."""
-    measured = on_grid(atlas, sensor.wavelengths)
-    rgb = sensor.rgb(measured)
-    inside = sensor.contains(rgb)
-    way_out = "" if inside.all() else f"; {_holding_note(atlas, sensor)}"
-    for row in np.flatnonzero(~inside):
-        values = ", ".join(f"{value:.4f}" for value in rgb[row])
-        _warn(
-            f"left out: its colour must lie within {sensor.space}, got linear RGB ({values}){way_out}",
-            "entry-out-of-gamut",
-            atlas.names[row],
-        )
-    names = tuple(name for name, kept in zip(atlas.names, inside, strict=True) if kept)
-    return names, np.clip(rgb[inside], 0, 1), measured[inside]
-
-
-def _holding_note(atlas: Atlas, sensor: Sensor) -> str:
-    spectra = resample(atlas, observers.grid()).values
-    return holding_note(spectra, sensor.illuminant, sensor.observer)
-
-
-def _with_dim(
-    options: Options,
-    problem: fit.Problem,
-    prior: fit.Prior,
-    corner_share: fit.CornerShare,
-    lights: Sequence[Light],
-    entries: fit.FittedEntries,
-) -> Options:
+def _with_dim(setting: Setting, constraints: Constraints, corner_share: fit.CornerShare) -> Options:
     """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits into memory."""
+    options = setting.options
     if options.dim != AUTO:
         return options
     choice = fit.choose_lattice(
-        problem,
-        prior,
+        setting.problem,
+        constraints.prior,
         corner_share,
-        lights,
-        entries,
+        setting.lights,
+        constraints.at_nodes,
         observers.axis_nodes,
         AXES,
         options.auto_tolerance,
     )
     if choice.lost:
-        _warn(
+        warn(
             f"no dim up to {fit.DIMS[-1]} keeps every entry within ΔE00 {options.auto_tolerance:g}: "
-            f"{choice.lost} of {len(entries.rgb)} are too close to others; dim {choice.dim} keeps the most",
+            f"{choice.lost} of {len(constraints.rgb)} are too close to others; dim {choice.dim} keeps the most",
             "no-dim-keeps-all-entries",
         )
     options = replace(options, axis=choice.axis, dim=choice.dim)
@@ -434,16 +324,17 @@ def _with_dim(
     return options
 
 
-def _warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: fit.Seeds) -> None:
-    duplicates = [names[row] for row in np.flatnonzero(boxes.half_width == 0).tolist()]
+def _warn_of_crowding(names: Sequence[str], placed: _Placed) -> None:
+    half_width, collisions = placed.boxes.half_width, placed.seeds.collisions
+    duplicates = [names[row] for row in np.flatnonzero(half_width == 0).tolist()]
+    crowded = [names[collision.lost] for collision in collisions if half_width[collision.lost]]
     if duplicates:
-        _warn(
+        warn(
             f"{_listed(duplicates)} left out: an earlier entry has the same colour, which has only one answer",
             "entry-duplicate",
         )
-    crowded = [names[collision.lost] for collision in seeds.collisions if boxes.half_width[collision.lost]]
     if crowded:
-        _warn(
+        warn(
             f"{_listed(crowded)} crowded: closer entries own the nearest lattice point. Queries at the entries' own "
             "colours stay exact, queries near them are less accurate",
             "entry-crowded",
@@ -456,10 +347,6 @@ def _listed(names: Sequence[str]) -> str:
     shown = ", ".join(f"'{name}'" for name in names[:MAX_NAMES])
     more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
     return f"entry {shown} is" if len(names) == 1 else f"entries {shown}{more} are"
-
-
-def _warn(problem: str, code: str, entry: str | None = None, hint: str = "") -> None:
-    warnings.warn(UpliftWarning(problem, code=code, entry=entry, hint=hint), stacklevel=STACK_LEVEL)
 
 
 def _provenance(
