@@ -109,11 +109,16 @@ stability: $(INSTALLED)
 	$(BIN)/python -m benchmarks.stability
 	$(BIN)/python -m tools.render_docs stability
 
-# Malformed input, a hundred thousand of each kind, commands in ten thousand odd settings of each class, and writers
-# killed at random: docs/stability.md.
-nightly: $(INSTALLED)
-	$(BIN)/python -m tests.fuzz
+# Malformed input, ten thousand of each kind, commands in a thousand odd settings of each class, and writers killed at
+# random: docs/stability.md.
+.PHONY: hostile
+hostile: $(INSTALLED)
+	$(BIN)/python -m tests.fuzz --inputs 10000 --commands 1000 --writers 24
 	$(BIN)/python -m tools.render_docs stability
+
+# The same with ten times as many inputs, for no page: takes over an hour.
+nightly: $(INSTALLED)
+	$(BIN)/python -m tests.fuzz -o $(OUT)/fuzz/nightly.json
 
 # Reproducibility across threads and instruction sets: docs/stability.md.
 determinism: $(INSTALLED)
@@ -222,8 +227,8 @@ first-steps: $(INSTALLED)
 	$(BIN)/python -m benchmarks.first_steps
 	$(BIN)/python -m tools.render_docs showcase README
 
-# All measured pages, one after the other, on a quiet machine: hours. Run again, it goes on where it stopped. Before it,
-# `make peers munsell` installs what some steps compare with.
+# All measured pages, one after the other, on a quiet machine: hours. Run again, it goes on where it stopped;
+# `python -m benchmarks.measurements --minutes 75` starts what can end in time. Before it, `make peers munsell` installs what some steps compare with.
 measurements: $(INSTALLED)
 	$(BIN)/python -m benchmarks.measurements
 

@@ -9,11 +9,14 @@ Examples
     python -m benchmarks.measurements            # what is not measured at this commit
     python -m benchmarks.measurements --list     # the steps, and when each was measured
     python -m benchmarks.measurements chart bench --again
+    python -m benchmarks.measurements --minutes 75
 """
 
 from __future__ import annotations
 
 import json
+import math
+import os
 import subprocess
 import sys
 import time
@@ -28,28 +31,28 @@ from uplift.common.files import write_text
 from uplift.lab.timing import commit
 
 STEPS = (
-    # Times of few milliseconds first, while the machine has nothing else to do.
-    *("bench", "chart", "first-steps", "dependencies", "growth", "mixing", "dial", "textures", "demo-render"),
-    # Accuracy, which other processes do not change.
+    # The most read pages; first those with times, while the machine has nothing else to do.
+    *("bench", "chart", "first-steps", "emission", "looks", "prior"),
+    *("study", "held-out", "accuracy", "cameras", "environment", "plan", "showcase"),
+    # The others, in the same order.
     *(
-        "accuracy",
-        "study",
-        "prior",
-        "held-out",
-        "cameras",
+        "textures",
+        "mixing",
+        "dial",
+        "growth",
+        "demo-render",
+        "dependencies",
         "display",
         "scenes",
-        "plan",
-        "palette",
         "look-cubes",
-        "wavelengths",
-        "looks",
-        "emission",
-        "environment",
     ),
-    *("representations", "atlas-files", "showcase", "determinism", "stability", "nightly"),
+    *("stability", "hostile", "determinism", "palette", "wavelengths", "representations", "atlas-files"),
 )
 """Make targets that measure and render pages, in the order of a run."""
+COMPILED_ONCE = frozenset(
+    ("study", "held-out", "accuracy", "cameras", "environment", "plan", "showcase", "stability", "palette")
+)
+"""Steps whose pages have no times of compilation: they share compiled code."""
 RENDER = ("docs",)
 """Make target that renders the pages that use figures of other pages."""
 FOLDER = ROOT / "out" / "measurements"
@@ -64,6 +67,14 @@ class Done:
     commit: str
     seconds: float
     end: str
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Steps of a run that failed, and those that the time did not suffice for."""
+
+    failed: tuple[str, ...] = ()
+    left: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -85,6 +96,7 @@ class Journal:
 
     def add(self, step: str, done: Done) -> None:
         """Store the success of a step; the file is replaced as a whole."""
+        self.folder.mkdir(parents=True, exist_ok=True)
         content = {name: asdict(each) for name, each in (self.read() | {step: done}).items()}
         write_text(json.dumps(content, indent=1) + "\n", self._file, force=True)
 
@@ -97,8 +109,14 @@ class Journal:
 @click.command()
 @click.argument("steps", nargs=-1, metavar="[STEP]...")
 @click.option("--again", is_flag=True, help="Repeat steps that were measured at this commit.")
+@click.option(
+    "--minutes",
+    type=click.FloatRange(min=0),
+    default=math.inf,
+    help="Start no step that would end later, by its last duration, than after so many minutes.",
+)
 @click.option("--list", "listed", is_flag=True, help="List the steps; measure nothing.")
-def main(steps: tuple[str, ...], again: bool, listed: bool) -> None:
+def main(steps: tuple[str, ...], again: bool, minutes: float, listed: bool) -> None:
     """Measure all pages, or those of the given steps."""
     unknown = [step for step in steps if step not in STEPS]
     if unknown:
@@ -114,13 +132,18 @@ def main(steps: tuple[str, ...], again: bool, listed: bool) -> None:
         )
     commands = {step: ("make", "--no-print-directory", step) for step in (*chosen, *RENDER)}
     due = [step for step in chosen if again or not is_current(journal.read().get(step), now)]
-    failed = run_steps({step: commands[step] for step in (*due, *RENDER)}, journal, now)
-    if failed:
-        logs = ", ".join(str(journal.log(step)) for step in failed)
+    outcome = run_steps({step: commands[step] for step in due}, journal, now, 60 * minutes)
+    outcome = Outcome(
+        outcome.failed + run_steps({s: commands[s] for s in RENDER}, journal, now).failed, outcome.left
+    )
+    if outcome.left:
+        click.echo(f"no time for {', '.join(outcome.left)}: run again")
+    if outcome.failed:
+        logs = ", ".join(str(journal.log(step)) for step in outcome.failed)
         raise click.ClickException(
-            f"failed: {', '.join(failed)}; output in {logs}. Run again to repeat only these."
+            f"failed: {', '.join(outcome.failed)}; output in {logs}. Run again to repeat only these."
         )
-    click.echo("all pages are measured at one commit" if not steps else "done")
+    click.echo("done" if steps or outcome.left else "all pages are measured at one commit")
 
 
 def is_current(done: Done | None, now: str) -> bool:
@@ -147,7 +170,9 @@ def duration(seconds: float) -> str:
     return f"{minutes // 60}:{minutes % 60:02}:{rest:02}"
 
 
-def run_steps(commands: Mapping[str, Sequence[str]], journal: Journal, now: str) -> list[str]:
+def run_steps(
+    commands: Mapping[str, Sequence[str]], journal: Journal, now: str, seconds: float = math.inf
+) -> Outcome:
     """Run each command, log its output and duration, and store its success.
 
     Parameters
@@ -158,28 +183,54 @@ def run_steps(commands: Mapping[str, Sequence[str]], journal: Journal, now: str)
         Where to store outputs and successes.
     now : str
         Commit of the code.
+    seconds : float, optional
+        Time after which all steps must have ended, if they take as long as they last did.
 
     Returns
     -------
-    list of str
-        Steps that failed; the others were run nonetheless.
+    Outcome
+        Steps that failed, and those that were not started. The others were run nonetheless.
     """
-    failed = []
+    failed, left, end = [], [], time.perf_counter() + seconds
     for number, (step, command) in enumerate(commands.items(), start=1):
-        click.echo(f"[{number}/{len(commands)}] {step}", err=True)
-        begin = time.perf_counter()
-        with journal.log(step).open("w", encoding="utf-8") as output:
-            code = subprocess.run(
-                command, cwd=ROOT, stdout=output, stderr=subprocess.STDOUT, check=False
-            ).returncode
-        seconds = time.perf_counter() - begin
-        if code:
-            failed.append(step)
-            click.echo(f"{step} failed with exit status {code} after {duration(seconds)}", err=True)
+        last = journal.read().get(step)
+        if time.perf_counter() + (last.seconds if last else 0.0) > end:
+            left.append(step)
             continue
-        journal.add(step, Done(now, seconds, time.strftime("%Y-%m-%d %H:%M")))
-        click.echo(f"{step}: {duration(seconds)}", err=True)
-    return failed
+        click.echo(f"[{number}/{len(commands)}] {step}", err=True)
+        if not run_step(step, command, journal, now):
+            failed.append(step)
+    return Outcome(tuple(failed), tuple(left))
+
+
+def run_step(step: str, command: Sequence[str], journal: Journal, now: str) -> bool:
+    """Run a command, log its output and duration, and store its success, which is returned."""
+    begin = time.perf_counter()
+    with journal.log(step).open("w", encoding="utf-8") as output:
+        code = subprocess.run(
+            command,
+            cwd=ROOT,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            check=False,
+            env=os.environ | (compiled_code(journal.folder) if step in COMPILED_ONCE else {}),
+        ).returncode
+    seconds = time.perf_counter() - begin
+    if code:
+        click.echo(f"{step} failed with exit status {code} after {duration(seconds)}", err=True)
+        return False
+    journal.add(step, Done(now, seconds, time.strftime("%Y-%m-%d %H:%M")))
+    click.echo(f"{step}: {duration(seconds)}", err=True)
+    return True
+
+
+def compiled_code(folder: Path) -> dict[str, str]:
+    """Return the variables by which JAX keeps compiled code in a folder, however small."""
+    return {
+        "JAX_COMPILATION_CACHE_DIR": str(folder / "compiled"),
+        "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0",
+        "JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES": "-1",
+    }
 
 
 if __name__ == "__main__":

@@ -53,7 +53,7 @@ class PythonRate:
 
 
 @click.command()
-@click.option("--runs", default=9, show_default=True, help="Number of runs; the fastest counts.")
+@click.option("--runs", default=5, show_default=True, help="Number of runs; the fastest counts.")
 def main(runs: int) -> None:
     """Time and check the C header in both modes and models, shaders, and lookups in Python on the same colours."""
     compiler = shutil.which("cc")

@@ -10,7 +10,16 @@ import pytest
 from click.testing import CliRunner
 
 from benchmarks import measurements
-from benchmarks.measurements import STEPS, Done, Journal, describe, is_current, run_steps
+from benchmarks.measurements import (
+    COMPILED_ONCE,
+    STEPS,
+    Done,
+    Journal,
+    Outcome,
+    describe,
+    is_current,
+    run_steps,
+)
 from tests.conftest import ROOT
 from tools.render_docs import pages, read_data
 
@@ -67,7 +76,7 @@ def test_each_measured_page_states_machine_and_commit():
 
 def test_a_failure_is_named_and_the_others_run(journal, capfd):
     commands = {"one": GOOD, "two": BAD, "three": GOOD}
-    assert run_steps(commands, journal, "abc") == ["two"]
+    assert run_steps(commands, journal, "abc") == Outcome(failed=("two",))
     assert set(journal.read()) == {"one", "three"}
     assert journal.log("two").read_text() == "no such atlas\n"
     assert "two failed with exit status 3" in capfd.readouterr().err
@@ -83,6 +92,35 @@ def test_a_run_goes_on_where_it_stopped(steps, tmp_path):
     assert (result.exit_code, ran) == (0, ["two", "docs"])
     assert steps()[1] == ["docs"]
     assert steps("three", "--again")[1] == ["three", "docs"]
+
+
+def test_no_step_starts_that_cannot_end_in_time(journal):
+    """A step that took 100 s is left; one without a duration starts unless the time is over."""
+    journal.add("long", Done("old", 100.0, ""))
+    journal.add("short", Done("old", 1.0, ""))
+    commands = dict.fromkeys(("long", "short", "new"), GOOD)
+    assert run_steps(commands, journal, "abc", 50.0) == Outcome(left=("long",))
+    assert {step for step, done in journal.read().items() if done.commit == "abc"} == {"short", "new"}
+    assert run_steps(commands, journal, "abc", 0.0) == Outcome(left=("long", "short", "new"))
+    assert run_steps(commands, journal, "abc") == Outcome()
+
+
+def test_what_the_time_does_not_suffice_for_is_named(steps, tmp_path):
+    (tmp_path / "repaired").touch()
+    result, ran = steps("--minutes", "0")
+    assert (result.exit_code, ran) == (0, ["docs"])
+    assert "no time for one, two, three" in result.output
+    assert "at one commit" not in result.output
+    assert "at one commit" in steps("--minutes", "10")[0].output
+
+
+def test_steps_share_compiled_code_unless_they_time_it(journal, monkeypatch):
+    monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
+    show = (sys.executable, "-c", "import os; print(os.environ.get('JAX_COMPILATION_CACHE_DIR'))")
+    assert run_steps({"study": show, "bench": show}, journal, "abc") == Outcome()
+    assert journal.log("study").read_text() == f"{journal.folder / 'compiled'}\n"
+    assert journal.log("bench").read_text() == "None\n"
+    assert set(STEPS) >= COMPILED_ONCE
 
 
 def test_another_commit_or_changed_files_repeat_all(steps, tmp_path, monkeypatch):

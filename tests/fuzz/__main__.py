@@ -1,4 +1,4 @@
-"""``make nightly``: run every target with many inputs → docs/data/stability-hostile.json."""
+"""``make hostile`` and ``make nightly``: run every target with many inputs → docs/data/stability-hostile.json."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _write(path: Path, tallies: list[Tally], seed: int) -> None:
         tally.target: _record(tally) | {"commit": commit} for tally in tallies
     }
     figures = {
-        "command": "make nightly",
+        "command": "make hostile",
         "environment": here,
         "seed": seed,
         "targets": [rows[name] for name in (*TARGETS, *COMMANDS, *WRITERS) if name in rows],
