@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import least_squares
 
+from benchmarks.choices import ALONE, OURS, mark
 from benchmarks.record import write
 from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.colorimetry import observer
@@ -32,6 +33,8 @@ ATLAS = "macbeth"
 LIGHTS = ("D65", "A")
 SPLITS = 5
 DIM = 32
+CHOSEN_AS = {"cube without an atlas": ALONE, "cube": OURS, "cube, refined": OURS}
+"""Methods that depend on choices of the design, by their names there."""
 ToXyz = Callable[[Array], Array]
 """From raw values (n, 3) to XYZ (n, 3)."""
 
@@ -145,6 +148,10 @@ def main() -> None:
         splits=SPLITS,
         dim=DIM,
         left_out=left_out,
+        marks={
+            method: mark([ATLAS], CHOSEN_AS[method]) if method in CHOSEN_AS else ""
+            for method in rows[0]["errors"]
+        },
         rows=rows,
     )
 

@@ -1,18 +1,19 @@
 """Held-out halves of atlases, by cubes and by plain baselines: ``make held-out`` writes docs/data/held-out.json.
 
-A figure is *optimistic* if a choice behind its method was made with the set that it is measured on.
+Figures are marked as optimistic by `benchmarks.choices`.
 """
 
 from __future__ import annotations
 
 import warnings
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks.fidelity.materials import CHOSEN_ON, SENSOR, errors, materials, spectra
+from benchmarks.choices import ALONE, ALONE_SMOOTH, CHOICES, OURS, OURS_SMOOTH, is_optimistic
+from benchmarks.fidelity.materials import SENSOR, errors, materials, spectra
 from benchmarks.record import write
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array
@@ -24,54 +25,11 @@ from uplift.lab.study.held_out import CENTROID, HALF, LOCAL_LINEAR, NO_ATLAS, SI
 SPLITS = 3
 SETS = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017")
 """Sets of at least 20 entries. The others are too small to split."""
-SHIPPED = (*SETS, "tcs", "vs")
-SMOOTH = "smooth prior"
-OURS, OURS_SMOOTH = HALF, f"{HALF}, {SMOOTH}"
-ALONE, ALONE_SMOOTH = NO_ATLAS, f"{NO_ATLAS}, {SMOOTH}"
 PUBLISHED = {
     "Otsu 2018": otsu2018.prepare,
     "Mallett 2019": mallett2019.prepare,
     "Smits 1999": smits1999.prepare,
 }
-
-
-@dataclass(frozen=True)
-class Choice:
-    """A choice of the design.
-
-    Parameters
-    ----------
-    choice : str
-        Its name.
-    sets : tuple of str
-        Sets whose errors it was made with.
-    methods : tuple of str
-        Methods that depend on it.
-    """
-
-    choice: str
-    sets: tuple[str, ...]
-    methods: tuple[str, ...]
-
-
-CUBES = (OURS, OURS_SMOOTH, ALONE, ALONE_SMOOTH)
-CHOICES = (
-    Choice("metric, phase and start of smooth spectra", ("rawtoaces",), CUBES),
-    Choice("weights of entries: lights, ends, curvature", CHOSEN_ON, (OURS, OURS_SMOOTH)),
-    Choice("weight of smooth multipliers of entries", SHIPPED, (OURS, OURS_SMOOTH)),
-    Choice("kriging: kinds, default length and nugget", CHOSEN_ON, (OURS, OURS_SMOOTH)),
-    Choice(
-        "share of an entry in the corners of its cell",
-        ("rawtoaces", "cie2017", "munsell"),
-        (OURS, OURS_SMOOTH),
-    ),
-    Choice("learnt prior: length, spreads, noise, bounds, relevance", (*SHIPPED, "munsell"), (OURS, ALONE)),
-    Choice(
-        "local-linear regression: regressors, criterion and ridge",
-        ("rawtoaces", "cie2017"),
-        (LOCAL_LINEAR, CENTROID),
-    ),
-)
 
 
 def main() -> None:
@@ -147,13 +105,8 @@ def row(name: str, method: str, values: Array, best: bool) -> dict[str, Any]:
         "mean": float(np.mean(delta_e)),
         "errors": dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True)),
         "best": best,
-        "optimistic": is_optimistic(name, method),
+        "optimistic": is_optimistic([name], method),
     }
-
-
-def is_optimistic(name: str, method: str) -> bool:
-    """Whether a choice behind a method was made with a set."""
-    return any(name in choice.sets and method in choice.methods for choice in CHOICES)
 
 
 if __name__ == "__main__":

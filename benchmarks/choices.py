@@ -1,0 +1,69 @@
+"""Choices of the design, and the sets of measured materials whose errors they were made with.
+
+A figure is *optimistic* if a choice behind its method was made with the set that it is measured on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from benchmarks.fidelity.materials import CHOSEN_ON
+from uplift.lab.study.held_out import CENTROID, HALF, LOCAL_LINEAR, NO_ATLAS
+
+SHIPPED = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017", "tcs", "vs")
+SMOOTH = "smooth prior"
+OURS, OURS_SMOOTH = HALF, f"{HALF}, {SMOOTH}"
+ALONE, ALONE_SMOOTH = NO_ATLAS, f"{NO_ATLAS}, {SMOOTH}"
+"""Methods: cubes of moments with and without an atlas."""
+MARK = " ○"
+"""Follows an optimistic figure on a page."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A choice of the design.
+
+    Parameters
+    ----------
+    choice : str
+        Its name.
+    sets : tuple of str
+        Sets whose errors it was made with.
+    methods : tuple of str
+        Methods that depend on it.
+    """
+
+    choice: str
+    sets: tuple[str, ...]
+    methods: tuple[str, ...]
+
+
+ALL_CUBES = (OURS, OURS_SMOOTH, ALONE, ALONE_SMOOTH)
+CHOICES = (
+    Choice("metric, phase and start of smooth spectra", ("rawtoaces",), ALL_CUBES),
+    Choice("weights of entries: lights, ends, curvature", CHOSEN_ON, (OURS, OURS_SMOOTH)),
+    Choice("weight of smooth multipliers of entries", SHIPPED, (OURS, OURS_SMOOTH)),
+    Choice("kriging: kinds, default length and nugget", CHOSEN_ON, (OURS, OURS_SMOOTH)),
+    Choice(
+        "share of an entry in the corners of its cell",
+        ("rawtoaces", "cie2017", "munsell"),
+        (OURS, OURS_SMOOTH),
+    ),
+    Choice("learnt prior: length, spreads, noise, bounds, relevance", (*SHIPPED, "munsell"), (OURS, ALONE)),
+    Choice(
+        "local-linear regression: regressors, criterion and ridge",
+        ("rawtoaces", "cie2017"),
+        (LOCAL_LINEAR, CENTROID),
+    ),
+)
+
+
+def is_optimistic(sets: Iterable[str], method: str) -> bool:
+    """Whether a choice behind a method was made with one of the sets."""
+    return any(name in choice.sets and method in choice.methods for name in sets for choice in CHOICES)
+
+
+def mark(sets: Iterable[str], method: str) -> str:
+    """Return the mark of a figure of a method on the sets, empty if it is not optimistic."""
+    return MARK if is_optimistic(sets, method) else ""
