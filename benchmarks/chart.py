@@ -143,7 +143,7 @@ def method_record(row: MethodResult, batches: tuple[int, ...]) -> dict[str, Any]
 def optimistic_mark(row: MethodResult) -> str:
     """Return the mark of the errors of unseen materials, which are of all shipped sets.
 
-    The choices are those of cubes of moments; sigmoids have no freedom left besides the colour.
+    The choices are those of cubes of moments; the colour alone determines a sigmoid.
     """
     if not row.build or "--model" in row.build:
         return ""
