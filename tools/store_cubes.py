@@ -8,7 +8,7 @@ from itertools import product
 from pathlib import Path
 
 import uplift
-from uplift.lookup.emission import DEFAULT_EMISSION
+from uplift.lookup.packaged import EMISSION
 
 ROOT = Path(__file__).parents[1]
 DEFAULT = "moments-16"
@@ -40,8 +40,8 @@ def store_wide() -> None:
 
 def store_emission() -> None:
     """Build the emission table that is installed with the package."""
-    uplift.build_emission().save(DEFAULT_EMISSION, force=True)
-    print(DEFAULT_EMISSION.relative_to(ROOT))
+    uplift.build_emission().save(EMISSION, force=True)
+    print(EMISSION.relative_to(ROOT))
 
 
 if __name__ == "__main__":

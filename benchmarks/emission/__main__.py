@@ -30,7 +30,7 @@ SURFACES = {"ColorChecker": "macbeth", "CIE 2017": "cie2017"}
 TABLE, ALONE = "emission table", "the prior alone"
 DIRECTIONS, STEPS = 720, 101
 LEVELS = (1e-3, 1.0, 1e3, 1e5)
-COLOURS, RUNS = 200_000, 3
+COLOURS, RUNS, LOOKUP_RUNS = 200_000, 3, 15
 SIZES = tuple({"knots": knots, "rings": rings} for knots, rings in ((64, 8), (64, 16), (96, 24), (128, 32)))
 THIRDS = 3
 PICTURE = ROOT / "docs" / "emission" / "errors.png"
@@ -77,10 +77,11 @@ def main() -> None:
         worst=worst(lamps, estimates["lamp"][TABLE], errors, table),
         calibration=list(calibration(np.split(found.expected, len(unknown))[0], errors)),
         exactness=list(exactness.exactness(table, exactness.spokes(table, DIRECTIONS, STEPS))),
+        mixtures=exactness.mixtures(table),
         round_trips=list(exactness.round_trips(table, LEVELS, COLOURS // 10)),
         white=list(exactness.white_lights(table, lamps, STANDARD_ILLUMINANTS, checker)),
         sizes=sizes,
-        lookups=list(cost.lookups(COLOURS, RUNS)),
+        lookups=list(cost.lookups(COLOURS, LOOKUP_RUNS)),
     )
 
 

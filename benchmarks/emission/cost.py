@@ -15,7 +15,7 @@ import uplift
 from benchmarks.emission.left_out import drop_discs
 from uplift.colorimetry.lamp_errors import relit_delta_e
 from uplift.common.arrays import Array
-from uplift.lab.timing import spread, time_calls
+from uplift.lab.timing import spread
 
 REFERENCE = {"knots": 192, "rings": 64}
 """Table whose interpolation counts as exact."""
@@ -59,7 +59,10 @@ def sizes(
 
 
 def lookups(count: int, runs: int) -> Iterator[dict[str, Any]]:
-    """Yield nanoseconds per colour of lights and of reflectances, in turn, and their ratio by type."""
+    """Yield nanoseconds per colour of lights and of reflectances, in turn, and their ratio, by type.
+
+    The order changes from run to run, and the ratio is that of the times of one run.
+    """
     rgb = np.random.default_rng(1).random((count, 3))
     table, cube = uplift.load_emission(), uplift.load()
     for at, dtype in itertools.product(WAVELENGTHS, ("float64", "float32")):
@@ -69,11 +72,16 @@ def lookups(count: int, runs: int) -> Iterator[dict[str, Any]]:
         }
         for query in queries.values():
             query()
-        found = {what: time_calls(query, runs)[0].scaled(1e9 / count) for what, query in queries.items()}
+        found: dict[str, list[float]] = {what: [] for what in queries}
+        for run in range(runs):
+            for what in sorted(queries, reverse=bool(run % 2)):
+                begin = time.perf_counter()
+                queries[what]()
+                found[what].append((time.perf_counter() - begin) * 1e9 / count)
         yield {
             "type": dtype,
             "wavelengths": len(table.wavelengths if at is None else at),
             "colours": count,
-            **found,
-            "ratio": found["light"].median / found["reflectance"].median,
+            **{what: spread(times) for what, times in found.items()},
+            "ratio": spread([light / other for light, other in zip(*found.values(), strict=True)]),
         }

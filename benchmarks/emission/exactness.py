@@ -12,7 +12,7 @@ from uplift.colorimetry.lamp_errors import relit_delta_e
 from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array
 from uplift.fit.emission import unit_xyz
-from uplift.lattice.chromaticity import chromaticity
+from uplift.lattice.chromaticity import DENOMINATOR, chromaticity
 from uplift.lookup import EmissionTable
 
 TYPES = ("float64", "float32")
@@ -41,6 +41,25 @@ def exactness(table: EmissionTable, uv: Array) -> Iterator[dict[str, Any]]:
             "uv_error": float(apart.max()),
             "min_power": float(power.min()),
         }
+
+
+def mixtures(table: EmissionTable) -> dict[str, Any]:
+    """Return how far answers are from mixtures of two wavelengths in equal parts: in u′v′, and ΔE00.
+
+    ΔE00 is relative to white of the luminance of the colour.
+    """
+    radiometry = _radiometry(table)
+    visible = radiometry[radiometry @ DENOMINATOR > 0]
+    single = visible / (visible @ DENOMINATOR)[:, None]
+    first, second = np.triu_indices(len(single))
+    xyz = (single[first] + single[second]) / 2
+    back = table.spectrum_of_xyz(xyz) @ radiometry
+    white = table.xyz(np.ones(3)) * xyz[:, 1:2]
+    return {
+        "colours": len(xyz),
+        "uv_error": float(np.linalg.norm(chromaticity(back) - chromaticity(xyz), axis=1).max()),
+        "delta_e": float(delta_e_2000(lab_of(xyz, white), lab_of(back, white)).max()),
+    }
 
 
 def round_trips(table: EmissionTable, levels: tuple[float, ...], count: int) -> Iterator[dict[str, Any]]:

@@ -93,7 +93,7 @@ def command(
     out = out or Path(cube).stem + SUFFIXES[style]
     from uplift.common.files import check_output
     from uplift.lookup import load
-    from uplift.lookup.emission import names_emission_table
+    from uplift.lookup.packaged import names_emission_table
 
     path = check_output(out, inputs=[cube], force=force)
     options = {"res": res, "mode": mode, "form": table, "style": style if style in PROGRAMS else None}

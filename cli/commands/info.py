@@ -27,7 +27,7 @@ def command(file: str | None, style: str) -> None:
       uplift info emission
     """
     from uplift.lookup import load, load_emission
-    from uplift.lookup.emission import names_emission_table
+    from uplift.lookup.packaged import names_emission_table
     from uplift.report.summary import summarise, summarise_emission
 
     if file is not None and names_emission_table(file):

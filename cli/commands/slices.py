@@ -39,7 +39,7 @@ def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
         raise click.UsageError("Nothing to write: give OUT.exr, --sheet FILE, or both.")
     from uplift.common.files import check_outputs
     from uplift.io.slices import check_slices
-    from uplift.lookup.emission import names_emission_table
+    from uplift.lookup.packaged import names_emission_table
     from uplift.viz.sheet import check_sheet
 
     check_outputs((out, sheet), inputs=[cube], force=force)

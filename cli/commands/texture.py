@@ -137,14 +137,14 @@ def command(
     """
     enable_jit_cache()
     from uplift.io import texture
-    from uplift.lookup.cube import find_cube_file
+    from uplift.lookup.packaged import find_file
 
     pairs = texture_paths(sources, target)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
     if len(cube_paths) > 1 and mask is None:
         raise click.UsageError("Several cubes need --mask, an image of which cube a pixel belongs to.")
-    named = [os.path.abspath(find_cube_file(path)) for path in cube_paths]
+    named = [os.path.abspath(find_file(path)) for path in cube_paths]
     cubes: list[str | None] = [*named] or [None]
     threads, at = max(cores // count, 1), parse_wavelengths(wavelengths)
     settings: texture.Settings

@@ -78,3 +78,10 @@ def test_chromaticity_of_equal_energy():
 def test_invalid_lattices_are_refused(knots, rings):
     with raises(OptionError, "invalid-chromaticity-lattice"):
         ChromaticityLattice(WHITE, knots, np.array(rings, dtype=float))
+
+
+def test_corners_are_numbers_of_nodes():
+    uv = WHITE + np.random.default_rng(0).random((50, 1)) * 0.9 * (np.resize(KNOTS, (50, 2)) - WHITE)
+    uv[::2] += [0.004, -0.003]
+    cells = LATTICE.locate(uv)
+    np.testing.assert_array_equal(LATTICE.nodes.reshape(-1, 2)[LATTICE.corners(cells)], corners(cells))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import uplift
 from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
-from uplift.lattice.chromaticity import DENOMINATOR, unit_xyz
+from uplift.lattice.chromaticity import DENOMINATOR, chromaticity, unit_xyz
 from uplift.lookup.blocks import BLOCK
 
 TABLE = uplift.load_emission()
@@ -92,6 +92,23 @@ def test_lamps_are_exact_at_their_colours():
     entries = TABLE.data.entries
     found = TABLE.spectrum_of_xyz(entries.spectra @ RADIOMETRY)
     np.testing.assert_allclose(found, entries.spectra, rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.parametrize("wavelength", [470, 530, 590, 600])
+def test_single_wavelengths_are_themselves(wavelength):
+    """At 590 nm, near the lamps of low pressure sodium, a mixture of yellow and red has nearly the same colour."""
+    row = (wavelength - 380) // 5
+    power = TABLE.spectrum_of_xyz(RADIOMETRY[row])
+    assert power[row] == pytest.approx(1, rel=1e-5)
+    assert np.delete(power, row).sum() < 1e-5
+
+
+def test_colours_beyond_the_bend_of_the_locus_are_lights_and_hardly_move():
+    mixture = RADIOMETRY[39] + RADIOMETRY[46]  # 575 and 610 nm
+    power = TABLE.spectrum_of_xyz(mixture)
+    assert TABLE.contains(TABLE.rgb_of_xyz(mixture))
+    assert power @ RADIOMETRY[:, 1] == pytest.approx(mixture[1])
+    assert 1e-6 < np.linalg.norm(chromaticity(power @ RADIOMETRY) - chromaticity(mixture)) < 1e-4
 
 
 def test_answers_are_continuous_at_the_circles_of_lamps():

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
-from uplift.common.arrays import Array
-from uplift.lattice.chromaticity import DENOMINATOR, ChromaticityLattice, chromaticity
+from uplift.common.arrays import Array, Indices
+from uplift.lattice.chromaticity import BEND, DENOMINATOR, ChromaticityLattice, chromaticity
+
+MIN_ANGLE = 1e-3
+"""Smallest angle in radians between a wavelength inside the convex polygon and its neighbours on the rim."""
 
 
 def locus_lattice(
     radiometry: Array, white: Array, knots: int, rings: Array
 ) -> tuple[ChromaticityLattice, Array]:
-    """Create a lattice whose rim is the polygon of the chromaticities of single wavelengths.
+    """Create a lattice whose rim is the spectral locus: the polygon of the chromaticities of single wavelengths.
 
-    Every corner of the polygon is a knot; the others divide its longest edges, as white views them.
+    Every corner of the polygon is a knot; the others divide its longest edges, as white views them. The locus is not
+    quite convex: from 575 to 700 nm, mixtures of wavelengths lie outside it by up to `BEND`. They have a place on the
+    rim nevertheless, next to the wavelengths between them. On the convex polygon, pure orange would be a mixture of
+    yellow and red.
 
     Parameters
     ----------
@@ -33,16 +39,29 @@ def locus_lattice(
     rim : ndarray, shape (K, N)
         Power of unit X + 15 Y + 3 Z at the knots.
     """
-    from scipy.spatial import ConvexHull
-
     size = radiometry @ DENOMINATOR
     visible = np.flatnonzero(size > 0)
     uv = chromaticity(radiometry[visible])
-    corners = ConvexHull(uv).vertices
+    corners = _corners(uv, white)
     single = np.zeros((len(corners), len(radiometry)))
     single[np.arange(len(corners)), visible[corners]] = 1 / size[visible[corners]]
     places, rim = _subdivide(uv[corners], single, white, knots)
     return ChromaticityLattice(white, places, rings), rim
+
+
+def _corners(uv: Array, white: Array) -> Indices:
+    """Corners of the convex polygon of chromaticities (n, 2), and others that lie on it but for `BEND`, in order."""
+    from scipy.spatial import ConvexHull
+
+    hull = ConvexHull(uv).vertices
+    _, _, share = ChromaticityLattice(white, uv[hull], np.array([0.0, 1.0])).polar(uv - white)
+    corners = list(hull)
+    for row in np.flatnonzero(share >= 1 - BEND):
+        apart = np.abs(_angles(uv[corners] - white, np.broadcast_to(uv[row] - white, (len(corners), 2))))
+        if apart.min() >= MIN_ANGLE:
+            corners.append(row)
+    turn = _angles(np.broadcast_to(uv[hull[0]] - white, (len(corners), 2)), uv[corners] - white) % (2 * np.pi)
+    return np.array(corners)[np.argsort(turn)]
 
 
 def _subdivide(places: Array, spectra: Array, white: Array, count: int) -> tuple[Array, Array]:

@@ -19,8 +19,9 @@ from uplift.common.errors import OptionError
 
 DENOMINATOR = np.array([1.0, 15.0, 3.0])
 """Weights of X, Y and Z in the denominator of u′ and v′."""
-SLACK = 1e-9
-"""Excess over the locus that counts as rounding, as a share of the distance of white from the locus."""
+BEND = 3e-4
+"""Share of the distance from white by which lights may lie beyond the polygon, as the spectral locus bends inward."""
+TINY = float(np.finfo(np.float64).tiny)
 
 
 def chromaticity(xyz: Array) -> Array:
@@ -93,7 +94,7 @@ class ChromaticityLattice:
     white : ndarray, shape (2,)
         u′v′ of the centre.
     knots : ndarray, shape (K, 2)
-        u′v′ of the knots, counterclockwise, the corners of a convex polygon around the centre.
+        u′v′ of the knots, counterclockwise, the corners of a polygon that the centre views whole.
     rings : ndarray, shape (R,)
         Shares of the way from the centre to the polygon, from 0 to 1, increasing.
 
@@ -141,8 +142,12 @@ class ChromaticityLattice:
     @cached_property
     def _angles(self) -> Array:
         """(K,) `_pseudo_angle` of the knots from the first one, increasing from 0."""
-        angles = _pseudo_angle(self._spokes)
-        return np.asarray((angles - angles[0]) % 4.0)
+        return np.asarray((_pseudo_angle(self._spokes) - self._first_angle) % 4.0)
+
+    @cached_property
+    def _first_angle(self) -> float:
+        """`_pseudo_angle` of the first knot."""
+        return float(_pseudo_angle(self._spokes[0]))
 
     @cached_property
     def _inverses(self) -> Array:
@@ -179,13 +184,15 @@ class ChromaticityLattice:
         share : ndarray, shape (n,)
             Length of the offset, where the polygon has 1.
         """
-        first = _pseudo_angle(self._spokes[:1])
-        angles = (_pseudo_angle(offset) - first) % 4.0
+        angles = _pseudo_angle(offset) - self._first_angle
+        angles += 4.0 * (angles < 0)
         sector = np.searchsorted(self._angles, angles, side="right") - 1
-        shares = np.maximum((self._inverses[sector] @ offset[:, :, None])[..., 0], 0.0)
-        share = shares.sum(axis=1)
-        along = np.divide(shares[:, 1], share, out=np.zeros(len(offset)), where=share > 0)
-        return sector, along, share
+        (a, b), (c, d) = self._inverses.transpose(1, 2, 0)
+        u, v = offset.T
+        first = np.maximum(a.take(sector) * u + b.take(sector) * v, 0.0)
+        second = np.maximum(c.take(sector) * u + d.take(sector) * v, 0.0)
+        share = first + second
+        return sector, second / np.maximum(share, TINY), share
 
     def locate(self, uv: Array) -> Cells:
         """Find the cells of chromaticities, of which those outside are moved to the polygon.
@@ -218,6 +225,25 @@ class ChromaticityLattice:
         across = (share - self.rings[ring]) / (self.rings[ring + 1] - self.rings[ring])
         return Cells(sector, ring, along, across)
 
+    def corners(self, cells: Cells) -> Indices:
+        """Return the numbers of the corners of cells, in the order of their weights.
+
+        Parameters
+        ----------
+        cells : Cells
+            Cells of n colours.
+
+        Returns
+        -------
+        ndarray of int, shape (n, 4)
+            Numbers of nodes; node (k, j) has the number k R + j.
+        """
+        knots, rings = self.shape
+        first = cells.sector * rings + cells.ring
+        second = first + rings
+        second[cells.sector == knots - 1] -= knots * rings
+        return np.stack([first, first + 1, second, second + 1], axis=1)
+
     def contains(self, uv: Array) -> Mask:
         """Test whether chromaticities are realisable.
 
@@ -231,7 +257,7 @@ class ChromaticityLattice:
         ndarray of bool, shape (n,)
             False for NaN.
         """
-        return np.asarray(self.polar(uv - self.white)[2] <= 1 + SLACK)
+        return np.asarray(self.polar(uv - self.white)[2] <= 1 + BEND)
 
 
 def _error(problem: str) -> OptionError:
@@ -245,6 +271,5 @@ def _cross(first: Array, second: Array) -> Array:
 def _pseudo_angle(offset: Array) -> Array:
     """Increase with the angle counterclockwise from the u′ axis, from 0 to 4, without transcendental functions."""
     u, v = offset[..., 0], offset[..., 1]
-    length = np.abs(u) + np.abs(v)
-    slope = np.divide(u, length, out=np.ones_like(length), where=length > 0)
-    return np.asarray(np.where(v < 0, 3 + slope, 1 - slope))
+    slope = u / np.maximum(np.abs(u) + np.abs(v), TINY)
+    return np.asarray(2.0 - np.copysign(1.0 + slope, v))

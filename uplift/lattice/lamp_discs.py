@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
@@ -72,10 +73,13 @@ class LampEntries:
         DiscHits
             Those in a disc.
         """
-        bins = _bins(uv)
-        near = self._candidates[bins[:, 0], bins[:, 1]]
-        rows, column = np.nonzero(near >= 0)
-        entry = near[rows, column]
+        places, lists = self._candidates
+        u, v = _bins(uv).T
+        listed = places.take(u * BINS + v)
+        near = np.flatnonzero(listed >= 0)
+        candidates = lists[listed[near]]
+        row, column = np.nonzero(candidates >= 0)
+        rows, entry = near[row], candidates[row, column]
         offset = uv[rows] - self.uv[entry]
         distance, radius = np.hypot(offset[:, 0], offset[:, 1]), self.radius[entry]
         inside = distance < radius
@@ -87,21 +91,24 @@ class LampEntries:
         return DiscHits(rows, entry, 1 - distance / radius, self.uv[entry] + direction * radius[:, None])
 
     @cached_property
-    def _candidates(self) -> Indices:
-        """(BINS, BINS, m) numbers of the lamps whose discs reach into each bin, the rest −1."""
+    def _candidates(self) -> tuple[Indices, Indices]:
+        """The lamps whose discs reach into each bin.
+
+        (BINS²,) rows of the bins in the second array, −1 for bins without lamps; (m, k) numbers of lamps, the rest −1.
+        """
         low, high = _bins(self.uv - self.radius[:, None]), _bins(self.uv + self.radius[:, None])
-        counts = np.zeros((BINS, BINS), dtype=np.int64)
-        for first, last in zip(low, high + 1, strict=True):
-            counts[first[0] : last[0], first[1] : last[1]] += 1
-        found = np.full((BINS, BINS, int(counts.max(initial=0))), -1)
-        counts[:] = 0
-        for number, (first, last) in enumerate(zip(low, high + 1, strict=True)):
-            for i in range(first[0], last[0]):
-                for j in range(first[1], last[1]):
-                    found[i, j, counts[i, j]] = number
-                    counts[i, j] += 1
-        return found
+        found: dict[int, list[int]] = {}
+        for number, (first, last) in enumerate(zip(low.tolist(), high.tolist(), strict=True)):
+            for u, v in product(*map(range, first, (last[0] + 1, last[1] + 1))):
+                found.setdefault(u * BINS + v, []).append(number)
+        places = np.full(BINS**2, -1)
+        lists = np.full((len(found), max(map(len, found.values()), default=0)), -1)
+        for row, (place, numbers) in enumerate(found.items()):
+            places[place] = row
+            lists[row, : len(numbers)] = numbers
+        return places, lists
 
 
 def _bins(uv: Array) -> Indices:
-    return np.asarray(np.clip(uv * BINS, 0, BINS - 1), dtype=np.int64)
+    """Bins (n, 2) along u′ and v′."""
+    return np.clip(uv * float(BINS), 0, BINS - 1).astype(np.int64)

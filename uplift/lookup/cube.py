@@ -6,7 +6,6 @@ import os
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,12 +15,12 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData, read, write
 from uplift.lookup.blocks import Function, blockwise
-from uplift.lookup.emission import find_emission_file
 from uplift.lookup.fill import fill_missing, missing_points
 from uplift.lookup.interpolate import MODES, coefficients, extended_coefficients, node_errors
 from uplift.lookup.light_errors import light_errors, unlike_atlas
 from uplift.lookup.node_table import TABULATED, tabulate, tabulate_coefficients
 from uplift.lookup.nodes import covers
+from uplift.lookup.packaged import DEFAULT, find_file
 from uplift.lookup.validation import (
     as_coefficient_count,
     as_colours,
@@ -36,10 +35,6 @@ if TYPE_CHECKING:
 
     from uplift.colorimetry.sensor import Light
 
-DEFAULT = Path(__file__).with_name("default.uplift")
-"""The cube that comes with the package."""
-PACKAGED = {"srgb": DEFAULT, "acescg": Path(__file__).with_name("acescg.uplift")}
-"""Cubes that come with the package, by the name of their space in lower case."""
 MAX_TABLE_BYTES = 1 << 28
 """Largest table of the spectra of all lattice points that a query computes."""
 OBSERVER = "uplift.colorimetry.observer"
@@ -479,8 +474,8 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
     Parameters
     ----------
     path : path-like, optional
-        Cube file, or the name of a space of `PACKAGED` if no file has this name. By default the sRGB cube of the
-        package. The packaged cubes have D65 and no atlas.
+        Cube file, or a name of `uplift.lookup.packaged` if no file has it. By default the sRGB cube of the package.
+        The packaged cubes have D65 and no atlas.
 
     Returns
     -------
@@ -498,28 +493,7 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
     >>> uplift.load().space
     'sRGB'
     """
-    if path is None:
-        return Cube(read(DEFAULT))
-    return Cube(read(find_cube_file(path)))
-
-
-def find_cube_file(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
-    """Return the file that a path or the name of a packaged cube stands for.
-
-    Parameters
-    ----------
-    path : path-like
-        A file, which takes precedence, or a name of `PACKAGED`, in any case.
-
-    Returns
-    -------
-    path-like
-        The file; it may be missing. The name of the packaged emission table gives its file, which is not a cube.
-    """
-    name = os.fspath(path)
-    if name.casefold() in PACKAGED and not os.path.lexists(name):
-        return PACKAGED[name.casefold()]
-    return find_emission_file(path)
+    return Cube(read(DEFAULT if path is None else find_file(path)))
 
 
 def _reflectance(data: CubeData, mode: str, wavelengths: Array, rgb: Array) -> Array:

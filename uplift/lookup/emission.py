@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.colorimetry.gamut import as_rgb
-from uplift.common.arrays import Array, Indices, Mask, Values
+from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError, OptionError
-from uplift.cube import EmissionData, is_emission_table, read_emission, write_emission
-from uplift.lattice.chromaticity import DENOMINATOR, SLACK
-from uplift.lookup.blocks import blockwise
+from uplift.cube import EmissionData, read_emission, write_emission
+from uplift.lookup.blocks import Function, blockwise
+from uplift.lookup.lights import TREATMENTS, errors, is_light, resample, spectra
+from uplift.lookup.packaged import EMISSION, find_file
 from uplift.lookup.validation import as_float_type, as_thread_count, as_wavelengths
+from uplift.models.matmul import matmul_rows
 
-DEFAULT_EMISSION = Path(__file__).with_name("emission.uplift")
-"""The emission table that comes with the package."""
-PACKAGED_NAME = "emission"
-"""Name of that table on the command line."""
 MAX_VALUE = 1e30
 """Limit of the components of a colour."""
 
@@ -124,7 +120,7 @@ class EmissionTable:
         OptionError
             Invalid wavelengths, treatment, type or number of threads.
         """
-        return self.spectrum_of_xyz(self.xyz(rgb), wavelengths, outside=outside, dtype=dtype, threads=threads)
+        return self._query(self._rows_to_xyz, rgb, wavelengths, outside, dtype, threads)
 
     def spectrum_of_xyz(
         self,
@@ -162,6 +158,18 @@ class EmissionTable:
         OptionError
             Invalid wavelengths, treatment, type or number of threads.
         """
+        return self._query(_checked, xyz, wavelengths, outside, dtype, threads)
+
+    def _query(
+        self,
+        convert: Function,
+        colours: ArrayLike,
+        wavelengths: ArrayLike | None,
+        outside: str,
+        dtype: DTypeLike,
+        threads: int,
+    ) -> NDArray[Any]:
+        """Spectral power (..., N) of colours (..., 3), whose rows are converted to XYZ block by block."""
         if outside not in TREATMENTS:
             raise OptionError(
                 f"unknown treatment of colours outside '{outside}'",
@@ -170,9 +178,18 @@ class EmissionTable:
             )
         at = self.wavelengths if wavelengths is None else as_wavelengths(wavelengths)
         kind, count = as_float_type(dtype), as_thread_count(threads)
-        find = partial(_find_lights, self.data, TREATMENTS[outside])
-        query = partial(_spectra, self.data, _resample(self.data, at), find, kind)
-        return blockwise(query, _as_floats(xyz), len(at), kind, count)
+        samples = resample(self.data, at, kind)
+        treat = TREATMENTS[outside]
+        return blockwise(
+            lambda rows: spectra(self.data, samples, treat, convert(rows)),
+            as_rgb(colours),
+            len(at),
+            kind,
+            count,
+        )
+
+    def _rows_to_xyz(self, rgb: NDArray[Any]) -> Array:
+        return np.asarray(matmul_rows(_checked(rgb), self.data.rgb_to_xyz.T))
 
     def xyz(self, rgb: ArrayLike) -> Array:
         """Convert linear RGB to XYZ.
@@ -192,7 +209,7 @@ class EmissionTable:
         ColourError
             Values that are not finite.
         """
-        return _as_floats(rgb) @ self.data.rgb_to_xyz.T
+        return blockwise(self._rows_to_xyz, as_rgb(rgb), 3)
 
     def rgb(self, power: ArrayLike) -> Array:
         """Compute the linear RGB of lights, the inverse of `spectrum`.
@@ -264,7 +281,7 @@ class EmissionTable:
         ColourError
             Values that are not finite, or a colour that no light has (``colour-not-a-light``).
         """
-        return blockwise(partial(_errors, self.data), self.xyz(rgb), 1)[..., 0]
+        return blockwise(partial(errors, self.data), self.xyz(rgb), 1)[..., 0]
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Write the file of the table, atomically.
@@ -290,8 +307,8 @@ def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
     Parameters
     ----------
     path : path-like, optional
-        File of the table, or ``emission`` if no file has this name. By default the table of the package, for linear
-        sRGB.
+        File of the table, or a name of `uplift.lookup.packaged` if no file has it. By default the table of the package,
+        for linear sRGB.
 
     Returns
     -------
@@ -309,187 +326,14 @@ def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
     >>> uplift.load_emission().space
     'sRGB'
     """
-    return EmissionTable(read_emission(DEFAULT_EMISSION if path is None else find_emission_file(path)))
+    return EmissionTable(read_emission(EMISSION if path is None else find_file(path)))
 
 
-def find_emission_file(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
-    """Return the file that a path, or the name of the packaged table, stands for.
-
-    Parameters
-    ----------
-    path : path-like
-        A file, which takes precedence, or the name ``emission``, in any case.
-
-    Returns
-    -------
-    path-like
-        The file; it may be missing.
-    """
-    name = os.fspath(path)
-    return DEFAULT_EMISSION if name.casefold() == PACKAGED_NAME and not os.path.lexists(name) else path
-
-
-def names_emission_table(path: str | os.PathLike[str]) -> bool:
-    """Whether a path, or the name of the packaged table, stands for an emission table.
-
-    Parameters
-    ----------
-    path : path-like
-        As of `find_emission_file`.
-
-    Returns
-    -------
-    bool
-        False for other files, and for those that cannot be read.
-    """
-    return is_emission_table(find_emission_file(path))
-
-
-def _as_floats(colours: ArrayLike) -> Array:
-    """Convert to float64 (…, 3); `ColourError` if a value is not finite or too large to be squared."""
-    array = np.asarray(as_rgb(colours), dtype=float)
+def _checked(colours: NDArray[Any]) -> Array:
+    """Convert to float64 (n, 3); `ColourError` if a value is not finite or too large to be squared."""
+    array = colours.astype(float, copy=False)
     if not (np.abs(array) <= MAX_VALUE).all():
         raise ColourError(
             f"colours of lights must be finite, and at most {MAX_VALUE:g}", code="rgb-not-finite"
         )
     return array
-
-
-def is_light(data: EmissionData, xyz: Array) -> Mask:
-    """Test whether (n,) XYZ (n, 3) are black or within the spectral locus.
-
-    Parameters
-    ----------
-    data : EmissionData
-        The table.
-    xyz : ndarray, shape (n, 3)
-        XYZ.
-
-    Returns
-    -------
-    ndarray of bool, shape (n,)
-    """
-    offset, size = _homogeneous(data, xyz)
-    _, _, share = data.lattice.polar(offset)
-    return np.asarray(((size > 0) & (share <= size * (1 + SLACK))) | (xyz == 0).all(axis=1))
-
-
-@dataclass(frozen=True, eq=False)
-class _Samples:
-    """Spectra at the wavelengths of a query."""
-
-    nodes: Values
-    """(K · R, N)"""
-    entries: Array
-    """(E, N)"""
-
-
-def _resample(data: EmissionData, wavelengths: Array) -> _Samples:
-    """Interpolate all spectra linearly, with constant extrapolation."""
-    nodes = data.spectra.reshape(-1, data.spectra.shape[-1])
-    if np.array_equal(wavelengths, data.wavelengths):
-        return _Samples(nodes, data.entries.spectra)
-    grid = data.wavelengths
-    place = np.clip(np.interp(wavelengths, grid, np.arange(len(grid))), 0, len(grid) - 1)
-    low = np.minimum(place.astype(int), len(grid) - 2)
-    share = place - low
-
-    def at(spectra: Values) -> Array:
-        return np.asarray(spectra[:, low] * (1 - share) + spectra[:, low + 1] * share)
-
-    return _Samples(at(nodes), at(data.entries.spectra))
-
-
-def _homogeneous(data: EmissionData, xyz: Array) -> tuple[Array, Array]:
-    """u′v′ from white (n, 2), times X + 15 Y + 3 Z, and X + 15 Y + 3 Z (n,)."""
-    size = xyz @ DENOMINATOR
-    return xyz[:, :2] * (4.0, 9.0) - size[:, None] * data.lattice.white, size
-
-
-@dataclass(frozen=True, eq=False)
-class _Lights:
-    """Colours of lights: u′v′ (n, 2), X + 15 Y + 3 Z (n,), and what `ChromaticityLattice.polar` returns of u′v′."""
-
-    uv: Array
-    size: Array
-    sector: Indices
-    along: Array
-    share: Array
-
-
-Treatment = Callable[[EmissionData, Array, Array, Array, Array], None]
-"""What is done, in place, with XYZ (n, 3) that no light has: their offsets (n, 2) from white, sizes and shares (n,)."""
-
-
-def _refuse(data: EmissionData, xyz: Array, offset: Array, size: Array, share: Array) -> None:
-    """Raise `ColourError` unless all excesses are rounding."""
-    wrong = (size <= 0) & (xyz != 0).any(axis=1) | (share > size * (1 + SLACK))
-    if wrong.any():
-        first = ", ".join(f"{value:.4g}" for value in xyz[wrong][0])
-        raise ColourError(
-            f"no light has the colour XYZ ({first})",
-            code="colour-not-a-light",
-            hint="use outside='clip' for the nearest colour towards white",
-        )
-    _clip(data, xyz, offset, size, share)
-
-
-def _clip(data: EmissionData, xyz: Array, offset: Array, size: Array, share: Array) -> None:
-    """Move colours towards white of the same luminance, white + f (colour − white), up to a share of 1."""
-    white = np.maximum(xyz[:, 1], 0.0) * 9 / data.lattice.white[1]
-    reach = share + white - size
-    step = np.divide(white, reach, out=np.zeros_like(reach), where=reach > 0)
-    offset *= step[:, None]
-    share *= step
-    size[:] = share
-
-
-TREATMENTS: dict[str, Treatment] = {"error": _refuse, "clip": _clip}
-"""Treatments of colours that no light has, by name: an error, or the nearest colour towards white."""
-
-
-def _find_lights(data: EmissionData, treat: Treatment, xyz: Array) -> _Lights:
-    offset, size = _homogeneous(data, xyz)
-    sector, along, share = data.lattice.polar(offset)
-    rows = np.flatnonzero((size <= 0) | (share > size))
-    if rows.size:
-        moved = offset[rows], size[rows], share[rows]
-        treat(data, xyz[rows], *moved)
-        offset[rows], size[rows], share[rows] = moved
-    positive = size > 0
-    uv = np.divide(offset, size[:, None], out=np.zeros_like(offset), where=positive[:, None])
-    share = np.divide(share, size, out=np.zeros_like(share), where=positive)
-    return _Lights(data.lattice.white + uv, size, sector, along, share)
-
-
-def _spectra(
-    data: EmissionData, samples: _Samples, find: Callable[[Array], _Lights], kind: DTypeLike, xyz: Array
-) -> NDArray[Any]:
-    """Power (n, N) of colours (n, 3), computed in a type."""
-    lights = find(xyz)
-    discs = data.entries.locate(lights.uv)
-    if discs.rows.size:
-        moved = data.lattice.polar(discs.exit_uv - data.lattice.white)
-        for values, changed in zip((lights.sector, lights.along, lights.share), moved, strict=True):
-            values[discs.rows] = changed
-    power = _mix(data, samples.nodes, lights, kind)
-    share = discs.share[:, None].astype(power.dtype)
-    power[discs.rows] = (1 - share) * power[discs.rows] + share * samples.entries[discs.entry]
-    power *= lights.size[:, None].astype(power.dtype)
-    return power
-
-
-def _errors(data: EmissionData, xyz: Array) -> NDArray[Any]:
-    return _mix(data, data.error.reshape(-1, 1), _find_lights(data, _refuse, xyz), float)
-
-
-def _mix(data: EmissionData, values: Values, lights: _Lights, kind: DTypeLike) -> NDArray[Any]:
-    """Weighted sums (n, M) of the values of the nodes (K · R, M), computed in a type."""
-    cells = data.lattice.cells(lights.sector, lights.along, lights.share)
-    knots, rings = data.lattice.shape
-    first, second = cells.sector * rings + cells.ring, (cells.sector + 1) % knots * rings + cells.ring
-    weights = cells.weights.astype(kind)
-    total = weights[:, :1] * values[first]
-    for corner, weight in zip((first + 1, second, second + 1), weights.T[1:], strict=True):
-        total += weight[:, None] * values[corner]
-    return np.asarray(total)
