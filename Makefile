@@ -113,7 +113,7 @@ stability: $(INSTALLED)
 # random: docs/stability.md.
 .PHONY: hostile
 hostile: $(INSTALLED)
-	$(BIN)/python -m tests.fuzz --inputs 10000 --commands 1000 --writers 24
+	$(BIN)/python -m tests.fuzz --inputs 10000 --commands 1000 --writers 12
 	$(BIN)/python -m tools.render_docs stability
 
 # The same with ten times as many inputs, for no page: takes over an hour.
