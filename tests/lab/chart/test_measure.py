@@ -12,7 +12,7 @@ from tests.pages import Page
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.progress import Progress
 from uplift.lab.chart.judge import ours
-from uplift.lab.chart.measure import MAX_CLAIM_RATIO, measure_method, measure_methods
+from uplift.lab.chart.measure import MAX_CLAIM_RATIO, SLOW_STEP, measure_method, measure_methods
 from uplift.lab.chart.method import Claims, Method, NotInstalledError, PreparedMethod
 from uplift.lab.chart.methods.mallett2019 import FAMILIES
 from uplift.lab.chart.page import render_chart
@@ -133,6 +133,22 @@ def test_method_without_batches_processes_fewer_colours(small_task, greys, metho
     assert numbers["ns_1_colours"] == 1
     assert 1 <= numbers["ns_64_colours"] < 64
     assert 3 <= numbers["round_trip_colours"] < len(small_task.rgb)
+
+
+def test_colours_that_are_slower_than_the_first_end_with_the_time(small_task, greys, method_of):
+    """The share of the time is not predicted from the first colours."""
+    count = 0
+
+    def slow(rgb, wavelengths):
+        nonlocal count
+        count += len(rgb)
+        end = time.process_time() + (0.02 * len(rgb) if count > 2 * SLOW_STEP else 0)
+        while time.process_time() < end:
+            pass
+        return grey(rgb, wavelengths)
+
+    numbers = measure_method(greys, method_of(slow, batch=False), small_task).numbers
+    assert SLOW_STEP < numbers["round_trip_colours"] <= 3 * SLOW_STEP
 
 
 def test_set_up_is_charged(small_task, greys):
