@@ -101,9 +101,9 @@ def _build(entries: Atlas | None, sensor: Sensor, left_out: tuple[str, ...]) -> 
     )
 
 
-def realisable_share(sensor: Sensor) -> float:
+def realisable_share(sensor: Sensor, dim: int = DIM) -> float:
     """Return the share of raw values in [0, 1]³ that a reflectance has, from the nodes of a lattice."""
-    nodes = Lattice(observer.axis_nodes("srgb", DIM)).points
+    nodes = Lattice(observer.axis_nodes("srgb", dim)).points
     return float(solid(sensor.matrix).contains(nodes).mean())
 
 

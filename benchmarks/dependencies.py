@@ -8,6 +8,7 @@ import sys
 import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
@@ -62,25 +63,33 @@ def requirements() -> dict[str, str]:
 def imports(module: str) -> dict[str, set[str]]:
     """Return the import statements of a module in the source, by package that contains them."""
     found: dict[str, set[str]] = {}
-    for folder, package in FOLDERS.items():
-        for path in (ROOT / folder).rglob("*.py"):
-            statements = set(import_statements(ast.parse(path.read_text(encoding="utf-8")), module))
-            if statements:
-                parts = path.parent.relative_to(ROOT / folder).parts
-                found.setdefault(".".join((package, *parts)), set()).update(statements)
+    for package, imported, statement in _source_imports():
+        if imported == module:
+            found.setdefault(package, set()).add(statement)
     return found
 
 
-def import_statements(node: ast.AST, module: str) -> Iterator[str]:
-    """Yield the imports of a module below a node, without those for type checkers."""
+@cache
+def _source_imports() -> list[tuple[str, str, str]]:
+    """Importing package, imported module and statement of every import in the source."""
+    return [
+        (".".join((package, *path.parent.relative_to(ROOT / folder).parts)), module, statement)
+        for folder, package in FOLDERS.items()
+        for path in (ROOT / folder).rglob("*.py")
+        for module, statement in import_statements(ast.parse(path.read_text(encoding="utf-8")))
+    ]
+
+
+def import_statements(node: ast.AST) -> Iterator[tuple[str, str]]:
+    """Yield the top-level module and the statement of imports below a node, without those for type checkers."""
     for child in ast.iter_child_nodes(node):
         if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
             continue
         names = [child.module or ""] if isinstance(child, ast.ImportFrom) and child.level == 0 else []
         names = [alias.name for alias in child.names] if isinstance(child, ast.Import) else names
-        if any(name.split(".")[0] == module for name in names):
-            yield ast.unparse(child)
-        yield from import_statements(child, module)
+        for module in dict.fromkeys(name.split(".")[0] for name in names):
+            yield module, ast.unparse(child)
+        yield from import_statements(child)
 
 
 def installed(names: Iterable[str]) -> set[str]:

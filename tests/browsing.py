@@ -1,4 +1,7 @@
-"""Pages in Chromium as readers see them: on a phone and on a desk, in the light and in the dark scheme."""
+"""Pages in Chromium as readers see them: on a phone in the light scheme, on a desk in the dark one.
+
+Widths change the layout and schemes the colours, never both: two states show what four would.
+"""
 
 from __future__ import annotations
 
@@ -55,12 +58,11 @@ def check_page(html, folder):
     if chromium() is None:
         pytest.skip("no Chromium is installed")
     with browser() as tab:
-        for width in WIDTHS:
-            for scheme in SCHEMES:
-                open_page(tab, html, folder, width, scheme)
-                assert overflow(tab) <= 0
-                assert tab.errors == []
-                if AXE.exists():
-                    assert findings(tab) == []
+        for width, scheme in zip(WIDTHS, SCHEMES, strict=True):
+            open_page(tab, html, folder, width, scheme)
+            assert overflow(tab) <= 0
+            assert tab.errors == []
+            if AXE.exists():
+                assert findings(tab) == []
     if not AXE.exists():
         pytest.skip(f"no axe-core at {AXE}: run make axe")

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import atexit
 import os
+import tempfile
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
 import uplift
+from tests.process_state import kept_process_state
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
 from uplift.lookup import Cube
@@ -22,8 +26,24 @@ settings.load_profile("uplift")
 # The command line must not hide internal errors.
 os.environ["UPLIFT_TRACEBACK"] = "1"
 
+# Compiled JAX code, shared by this process and by all that tests start: compilation takes most of the time.
+_compiled = tempfile.TemporaryDirectory(prefix="uplift-compiled-", ignore_cleanup_errors=True)
+atexit.register(_compiled.cleanup)
+os.environ |= {
+    "JAX_COMPILATION_CACHE_DIR": _compiled.name,
+    "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0",
+    "JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES": "-1",
+}
+
 ATLASES = ROOT / "atlases"
 MACBETH = ATLASES / "macbeth.txt"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _process_state() -> Iterator[None]:
+    """Commands set variables for their process: later modules start without them."""
+    with kept_process_state():
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -25,7 +25,6 @@ def quick(repository, tmp_path_factory):
         patch.chdir(folder)
         for name, value in ONE_THREAD.items():
             patch.setenv(name, value)
-        patch.setenv("JAX_COMPILATION_CACHE_DIR", str(folder / "compiled"))
         atlas = str(repository / "atlases" / "macbeth.txt")
         words = ["chart", "--quick", "--atlas", atlas, "--colours", "300", "-o", "out"]
         result = CliRunner().invoke(main, words, catch_exceptions=False)

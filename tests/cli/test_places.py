@@ -39,8 +39,8 @@ def test_deleted_working_folder(tmp_path, arguments):
 
 
 @pytest.mark.skipif(not can_change_user, reason="needs user namespaces")
-def test_user_without_home_and_name(tmp_path):
-    os.chdir(tmp_path)
+def test_user_without_home_and_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     assert not lines(
         shell(f"{AS_NOBODY} {UPLIFT} query 0 0 0 --plot {tmp_path}/x.png", JAX_COMPILATION_CACHE_DIR="")
     )

@@ -52,11 +52,7 @@ def unpack(wheel: Path, folder: Path) -> Path:
 def run_lines(lines: Sequence[str], package: Path, folder: Path) -> list[dict[str, Any]]:
     """Run command lines of the unpacked package in a folder, one after the other, and return their outcomes."""
     package = package.resolve()
-    environment = os.environ | {
-        "PYTHONPATH": str(package),
-        "UPLIFT_FROM": str(package),
-        "JAX_COMPILATION_CACHE_DIR": str(package / "compiled"),
-    }
+    environment = os.environ | {"PYTHONPATH": str(package), "UPLIFT_FROM": str(package)}
     done = subprocess.run(
         [sys.executable, RUNNER], input=json.dumps(lines), cwd=folder, env=environment, text=True,
         stdout=subprocess.PIPE, check=True,

@@ -14,6 +14,27 @@ TENS_OF_SECONDS = "takes tens of seconds"
 RUNS_ELSEWHERE = "takes minutes in every variant; tests/cli/test_study_stability.py runs it on a small grid"
 
 REDUCED: dict[str, tuple[str | None, str]] = {
+    "uplift build --atlas macbeth --observer 'Nikon 5100 (NPL)' --space camera --dim 16": (
+        "uplift build --atlas macbeth --observer 'Nikon 5100 (NPL)' --space camera --dim 6 "
+        "-o macbeth-16-camera.uplift",
+        TENS_OF_SECONDS,
+    ),
+    "uplift build --atlas paints.csv --range 360:830 --step 1 -o range.uplift": (
+        "uplift build --atlas paints.csv --range 360:830 --step 1 --dim 6 -o range.uplift",
+        TENS_OF_SECONDS,
+    ),
+    "uplift build --observer 'Sigma SDMerill (NPL)' --space camera --illuminant A --dim 16 -o tungsten.uplift": (
+        "uplift build --observer 'Sigma SDMerill (NPL)' --space camera --illuminant A --dim 6 -o tungsten.uplift",
+        TENS_OF_SECONDS,
+    ),
+    "uplift export macbeth-32.uplift srgb.coeff": (
+        "uplift export macbeth-32.uplift srgb.coeff --res 8",
+        TENS_OF_SECONDS,
+    ),
+    "uplift export paints.uplift data/srgb.coeff": (
+        "uplift export paints.uplift data/srgb.coeff --res 8",
+        TENS_OF_SECONDS,
+    ),
     "uplift chart --atlas paints.csv -o paints": (
         "uplift chart --quick --atlas paints.csv --methods mallett2019 -o paints",
         MINUTES,

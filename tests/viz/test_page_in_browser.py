@@ -67,3 +67,13 @@ def test_the_checks_can_fail(tab, tmp_path):
     assert overflow(tab) > 0
     if AXE.exists():
         assert any("image-alt" in finding for finding in findings(tab))
+
+
+def test_colours_of_the_dark_scheme_are_checked(tab, tmp_path):
+    if not AXE.exists():
+        pytest.skip("needs axe-core: run make axe")
+    html = page(chart=Markup('<p style="color: #222">legible in the light scheme</p>'))
+    open_page(tab, html, tmp_path, scheme="light")
+    assert findings(tab) == []
+    with pytest.raises(AssertionError):
+        check_page(html, tmp_path)
