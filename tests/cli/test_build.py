@@ -73,7 +73,7 @@ def test_all_options_are_passed_to_the_build(run, home):
     run("build", "--dim", "3", "--moments", "4", "--warp", "vision", "--axis", "linear", "--space", "Display P3",
         "--illuminant", "D50", "--observer", "CIE 1964 10 Degree Standard Observer", "--light", "A",
         "--light", "FL2", "--start", "neighbours",
-        "--solver", "gauss-newton", "--threshold", "1e-3", "--debug", "-o", "cube")  # fmt: skip
+        "--solver", "dogleg", "--threshold", "1e-3", "--debug", "-o", "cube")  # fmt: skip
     data = uplift.load(home / "cube").data
     assert data.model == uplift.models.Moments(5, uplift.models.Phase(warp="vision"))
     np.testing.assert_array_equal(data.lattice.nodes, [0, 0.5, 1])
@@ -83,7 +83,7 @@ def test_all_options_are_passed_to_the_build(run, home):
     assert data.points.round is not None
     assert data.provenance["options"]["lights"] == ["A", "FL2"]
     assert data.provenance["options"]["start"] == "neighbours"
-    assert data.provenance["options"]["solver"] == "gauss-newton"
+    assert data.provenance["options"]["solver"] == "dogleg"
 
 
 def test_range_and_step(run, home):
