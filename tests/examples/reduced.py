@@ -20,7 +20,7 @@ REDUCED: dict[str, tuple[str | None, str]] = {
         TENS_OF_SECONDS,
     ),
     "uplift build --atlas paints.csv --range 360:830 --step 1 -o range.uplift": (
-        "uplift build --atlas paints.csv --range 360:830 --step 1 --dim 6 -o range.uplift",
+        "uplift build --atlas paints.csv --range 360:830 --step 10 --dim 6 -o range.uplift",
         TENS_OF_SECONDS,
     ),
     "uplift build --observer 'Sigma SDMerill (NPL)' --space camera --illuminant A --dim 16 -o tungsten.uplift": (
@@ -41,8 +41,8 @@ REDUCED: dict[str, tuple[str | None, str]] = {
     ),
     "uplift chart --quick": ("uplift chart --quick --methods mallett2019", TENS_OF_SECONDS),
     "uplift chart --methods 'moments9-32-*' --methods mallett2019 -o few": (
-        "uplift chart --quick --methods mallett2019 -o few",
-        MINUTES,
+        None,
+        "takes minutes; reduced, it is the chart above in another folder",
     ),
     "uplift chart --recommend --from paints/chart.csv --delta-e 1 --light A": (
         None,
@@ -59,6 +59,7 @@ REDUCED: dict[str, tuple[str | None, str]] = {
         TENS_OF_SECONDS,
     ),
     "uplift compare --filters --output filters --force": (None, TENS_OF_SECONDS),
+    "uplift compare --quick": (None, "tests/cli/test_compare.py runs it in every variant"),
     "uplift plan kitchen.toml --format json --force": (None, "is the plan above with other output"),
     "uplift plan kitchen.toml -o other.plan.json": (None, "is the plan above with other output"),
     "uplift study held-out --atlas paints.csv": (
@@ -67,12 +68,12 @@ REDUCED: dict[str, tuple[str | None, str]] = {
     ),
     "uplift study held-out --atlas rawtoaces --coefficients 17 --splits 10": (None, MINUTES),
     "uplift study held-out --format json": (None, MINUTES),
-    "uplift study sensitivity": (None, "is the same with a larger cube below"),
+    "uplift study sensitivity": (None, "tests/cli/test_study_stability.py runs it"),
     "uplift study sensitivity macbeth-32.uplift": (None, TENS_OF_SECONDS),
     "uplift study sensitivity macbeth-32.uplift --output out --force": (None, TENS_OF_SECONDS),
     "uplift study sensitivity macbeth-32.uplift --entries 4 --output sensitivity": (
-        "uplift study sensitivity macbeth-32.uplift --entries 1 --output sensitivity",
-        TENS_OF_SECONDS,
+        None,
+        "takes tens of seconds; tests/cli/test_study_stability.py runs it on a small cube",
     ),
     "uplift study sensitivity --entries 4 --format json": (None, TENS_OF_SECONDS),
     "uplift study stability --quick": (None, RUNS_ELSEWHERE),
