@@ -152,7 +152,7 @@ def command(
     answers to earlier ones.
     """
     from uplift.common.files import check_outputs
-    from uplift.lookup import load, load_emission
+    from uplift.lookup import load
 
     check_outputs((plot_path, html), inputs=(cube_path, input_path), force=force)
     space = resolve_space(input_space)
@@ -164,6 +164,8 @@ def command(
     single = point is not None or (bool(colour) and colour != ("-",))
     if is_emission:
         refuse_for_lights("mode", "fill_missing", "lights", "with_bounds", "html")
+        from uplift.lookup import load_emission
+
         table = load_emission(cube_path)
         found = lights_xyz(table, point, colour, input_path, encoded=encoded, space=space)
         lit = query_lights(table, found, parse_wavelengths(wavelengths), treatment(method))

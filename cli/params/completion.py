@@ -22,12 +22,13 @@ def complete_atlas(ctx: click.Context, param: click.Parameter, text: str) -> lis
 
 
 def complete_cube(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:
-    """Complete names of cube files, and of folders."""
+    """Complete names of cubes and lights of the package, of cube files, and of folders."""
+    from uplift.lookup.packaged import PACKAGED
+
     paths = sorted(glob.glob(f"{glob.escape(text)}*"))
     folders = (f"{path}{os.sep}" for path in paths if os.path.isdir(path))
-    return [
-        CompletionItem(path) for path in (*folders, *(each for each in paths if each.endswith(".uplift")))
-    ]
+    files = (path for path in paths if path.endswith(".uplift"))
+    return [*_matching(map(CompletionItem, PACKAGED), text), *map(CompletionItem, (*folders, *files))]
 
 
 def complete_illuminant(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:

@@ -33,6 +33,32 @@ def test_a_lamp_without_power_is_refused(tmp_path):
         read_lamps(write(tmp_path / "lamps.csv", [0, 0, 0, 0]))
 
 
+TM27 = (
+    '<IESTM2714 xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>{}</SpectralQuantity>'
+    '<SpectralData wavelength="400">0.1</SpectralData><SpectralData wavelength="700">0.4</SpectralData>'
+    "</SpectralDistribution></IESTM2714>"
+)
+JCAMP = "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS={}\n##XYPOINTS=(XY..XY)\n400, 0.1\n700, 0.4\n##END=\n"
+
+
+@pytest.mark.parametrize("quantity", ["flux", "irradiance", "Relative"])
+def test_lamps_of_the_lighting_standard_state_power(tmp_path, quantity):
+    path = tmp_path / "lamp.spdx"
+    path.write_text(TM27.format(quantity))
+    assert read_lamps(path)[0].values == pytest.approx([0.25, 1])
+
+
+@pytest.mark.parametrize(
+    ("layout", "quantity"),
+    [(TM27, "reflectance"), (TM27, "R-Factor"), (TM27, "transmittance"), (JCAMP, "REFLECTANCE")],
+)
+def test_stated_quantities_of_materials_are_refused(tmp_path, layout, quantity):
+    path = tmp_path / "material.txt"
+    path.write_text(layout.format(quantity))
+    with raises(AtlasError, "not-a-lamp"):
+        read_lamps(path)
+
+
 def test_an_archive_of_reflectances_is_refused(repository):
     with raises(AtlasError, "not-a-lamp"):
         read_lamps(repository / "atlases" / "macbeth.txt")

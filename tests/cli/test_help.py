@@ -59,6 +59,8 @@ def test_unlike_words_have_none(misuse):
         ("uplift build --space acesc", "ACEScg"),
         ("uplift report CUBES/moments-8-", "CUBES/moments-8-macbeth.uplift"),
         ("uplift query --mode ref", "refined"),
+        ("uplift query --cube em", "emission"),
+        ("uplift info sr", "srgb"),
     ],
 )
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -13,7 +13,7 @@ from safetensors.numpy import load_file, save_file
 from tests.cube.cube_files import forge, header_length, with_header, with_header_length
 from tests.helpers import raises, with_points
 from uplift.common.errors import CubeFileError, OutputError
-from uplift.cube import digest, file, read, write
+from uplift.cube import container, digest, read, write
 from uplift.cube.container import KEY
 from uplift.cube.file import POINT_TYPES, SENSOR_ARRAYS, VERSION
 from uplift.lattice import Status
@@ -541,7 +541,9 @@ def test_a_cube_that_cannot_be_read_back_leaves_the_old_file(data, path, content
 
 
 def test_files_are_read_back_before_they_replace_another(data, path, content, monkeypatch):
-    monkeypatch.setattr(file, "save", lambda tensors, metadata, path: path.write_bytes(content[:-1] + b"x"))
+    monkeypatch.setattr(
+        container, "save", lambda tensors, metadata, path: path.write_bytes(content[:-1] + b"x")
+    )
     with raises(OutputError, "cube-unreadable"):
         write(data, path, force=True)
     assert path.read_bytes() == content

@@ -87,6 +87,12 @@ def test_files_of_lamps_are_recorded(tmp_path):
     assert table.lamp_names[0] == read_lamps(path).names[0] == "bands"
 
 
+def test_expected_errors_are_numbers_where_sodium_has_no_z():
+    """The 10° observer does not respond to 590 nm by Z, so the white of sodium light has none."""
+    found = build_emission(observer="CIE 1964 10 Degree Standard Observer", **SMALL)
+    assert np.isfinite(found.data.error).all()
+
+
 @pytest.mark.parametrize(
     ("code", "atlas"),
     [

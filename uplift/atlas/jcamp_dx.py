@@ -16,6 +16,7 @@ from uplift.atlas.measurements import (
     Spectrum,
     check_quantity,
     parsed_by,
+    refuse_as_lamp,
     refuse_quantity,
 )
 from uplift.common.arrays import Array
@@ -84,7 +85,9 @@ def _spectrum(block: dict[str, Any], document: Document, count: int) -> tuple[Sp
     name = " ".join(str(block.get("title", "")).split()) or document.stem
     location = SourceLocation(document.path, entry=name)
     unit = str(block.get("yunits", "")).strip().lower()
-    if "reflect" not in unit:
+    if "reflect" in unit:
+        refuse_as_lamp(unit, location)
+    else:
         check_quantity(unit + " " + str(block.get("data type", "")), location)
     if "reflect" not in unit and unit not in ("", "%r", "r", "arbitrary units"):
         refuse_quantity(

@@ -10,7 +10,7 @@ import numpy as np
 from uplift.atlas.atlas import Atlas, merge
 from uplift.atlas.document import Document, SourceLocation, read_document
 from uplift.atlas.formats import recognise
-from uplift.atlas.measurements import Measurements, accept_any_quantity, to_atlas
+from uplift.atlas.measurements import Measurements, accept_power, to_atlas
 from uplift.common.arrays import StrPath
 
 
@@ -47,7 +47,7 @@ def read_lamps(*paths: StrPath) -> Atlas:
 
 def _read(document: Document) -> Atlas:
     chosen = recognise(document)
-    with accept_any_quantity():
+    with accept_power():
         found = chosen.read(document)
     if isinstance(found, Atlas):
         raise SourceLocation(document.path).error(

@@ -31,7 +31,7 @@ NOT_REFLECTANCE = re.compile(
     r"transmi(?:ttance|ssion|ssive)|absorbance|absorptance|irradiance|radiance|emissi(?:on|ve)|t-factor", re.I
 )
 REFLECTANCE = re.compile(r"reflect|remission|\br-factor", re.I)
-_ANY_QUANTITY = ContextVar("any quantity", default=False)
+_POWER = ContextVar("power", default=False)
 MAX_LISTED = 8
 """Names of columns that a note lists."""
 
@@ -134,19 +134,29 @@ def not_used_note(labels: Iterable[str]) -> tuple[str, ...]:
 
 
 @contextlib.contextmanager
-def accept_any_quantity() -> Iterator[None]:
-    """Let readers accept files that state another quantity than reflectance, such as the power of lamps."""
-    token = _ANY_QUANTITY.set(True)
+def accept_power() -> Iterator[None]:
+    """Let readers accept files of the power of lamps, which state another quantity than reflectance."""
+    token = _POWER.set(True)
     try:
         yield
     finally:
-        _ANY_QUANTITY.reset(token)
+        _POWER.reset(token)
 
 
 def refuse_quantity(problem: str, hint: str, location: SourceLocation) -> None:
-    """Raise `AtlasError` (code ``not-a-reflectance``), except within `accept_any_quantity`."""
-    if not _ANY_QUANTITY.get():
+    """Raise `AtlasError` (code ``not-a-reflectance``), except within `accept_power`."""
+    if not _POWER.get():
         raise location.error(problem, hint, code="not-a-reflectance")
+
+
+def refuse_as_lamp(quantity: str, location: SourceLocation) -> None:
+    """Raise `AtlasError` (code ``not-a-lamp``) within `accept_power`: the file states a quantity of materials."""
+    if _POWER.get():
+        raise location.error(
+            f"the file states '{truncate(quantity)}', not the power of a lamp",
+            "give spectral powers, such as a CSV table",
+            code="not-a-lamp",
+        )
 
 
 def check_quantity(text: str, location: SourceLocation) -> None:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from uplift.atlas.document import Document, SourceLocation, truncate
-from uplift.atlas.measurements import Measurements, Spectrum, parsed_by, refuse_quantity
+from uplift.atlas.measurements import Measurements, Spectrum, parsed_by, refuse_as_lamp, refuse_quantity
 from uplift.atlas.xml_text import check_xml, root_name
 from uplift.common.colour_science import colour_science
 
 ROOT = "IESTM2714"
 REFLECTANCES = ("reflectance", "r-factor")
 """Spectral quantities of the standard that a cube can hold."""
+MATERIALS = (*REFLECTANCES, "transmittance", "t-factor", "absorptance")
+"""Spectral quantities of the standard that no lamp has."""
 
 
 def is_tm27(document: Document) -> bool:
@@ -23,7 +25,7 @@ def read(document: Document) -> Measurements:
     Raises
     ------
     AtlasError
-        The file is not valid, or holds another quantity than reflectance.
+        The file is not valid, or holds another quantity than reflectance, or than power within `accept_power`.
     """
     check_xml(document)
     colour = colour_science()
@@ -32,6 +34,8 @@ def read(document: Document) -> Measurements:
         quantity = (found.spectral_quantity or "").strip().lower()
         header = found.header
         nm, values = found.wavelengths.tolist(), found.values.tolist()
+    if quantity in MATERIALS:
+        refuse_as_lamp(quantity, SourceLocation(document.path))
     if quantity not in REFLECTANCES:
         refuse_quantity(
             f"the file states '{truncate(quantity)}', not reflectance",

@@ -30,7 +30,15 @@ def relit_delta_e(lamps: Array, estimates: Array, reflectances: Array, radiometr
 
 
 def _relit_lab(power: Array, reflectances: Array, radiometry: Array) -> Array:
-    """CIE L*a*b* (L, P, 3)."""
+    """CIE L*a*b* (L, P, 3).
+
+    For the 10° observer sodium light has no Z. Z relative to white is then the ratio of luminances, as it is for all
+    single wavelengths.
+    """
     weights = (reflectances[:, :, None] * radiometry).transpose(1, 0, 2).reshape(len(radiometry), -1)
     xyz = (power @ weights).reshape(len(power), -1, 3)
-    return np.asarray(lab_of(xyz, (power @ radiometry)[:, None]))
+    white = (power @ radiometry)[:, None]
+    missing = white <= 0
+    return np.asarray(
+        lab_of(np.where(missing, xyz[..., 1:2], xyz), np.where(missing, white[..., 1:2], white))
+    )

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.errors import CubeFileError, UpliftError
+from uplift.common.errors import CubeFileError, OutputError, UpliftError
+from uplift.common.files import atomic_write
 from uplift.common.json_text import parse_json
 from uplift.common.quoting import format_value
 
@@ -84,6 +85,47 @@ def save(tensors: Tensors, metadata: Mapping[str, Any], path: Path) -> None:
     complete = {**metadata, "digest": content_digest(tensors, metadata)}
     # safetensors' own save_file uses another temporary file, which would remain if this process were killed.
     path.write_bytes(encode(tensors, metadata={KEY: _json(complete)}))
+
+
+def replace_file(
+    content: tuple[Tensors, Mapping[str, Any]],
+    path: str | os.PathLike[str],
+    kind: Kind,
+    read: Callable[[Path], object],
+    *,
+    force: bool,
+) -> None:
+    """Write a file atomically. The new file is read back before it replaces an existing one.
+
+    Parameters
+    ----------
+    content : tuple
+        Arrays and metadata.
+    path : path-like
+        File to write.
+    kind : Kind
+        Kind of the file.
+    read : callable
+        Reads the file and checks it.
+    force : bool
+        Replace an existing file.
+
+    Raises
+    ------
+    OutputError
+        The file exists and ``force`` is false, cannot be written, or does not read back (``cube-unreadable``).
+    """
+    with atomic_write(path, force=force) as temporary:
+        try:
+            save(*content, temporary)
+            read(temporary)
+        except CubeFileError as error:
+            raise OutputError(
+                f"the {kind.noun} would not be readable: {error.problem}",
+                code="cube-unreadable",
+                path=path,
+                hint="an existing file is unchanged",
+            ) from error
 
 
 def load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
-from uplift.common.errors import CubeFileError, OutputError
-from uplift.common.files import atomic_write
+from uplift.common.errors import CubeFileError
 from uplift.cube.checks import MAX_CONDITION, MAX_VALUE, require
 from uplift.cube.container import (
     INVALID,
@@ -24,7 +23,7 @@ from uplift.cube.container import (
     format_of,
     invalid_file,
     load,
-    save,
+    replace_file,
 )
 from uplift.cube.metadata import check_emission_metadata
 from uplift.lattice.chromaticity import ChromaticityLattice, chromaticity
@@ -118,17 +117,7 @@ def write_emission(data: EmissionData, path: str | os.PathLike[str], *, force: b
     OutputError
         The file exists and ``force`` is false, cannot be written, or does not read back (``cube-unreadable``).
     """
-    with atomic_write(path, force=force) as temporary:
-        try:
-            save(_tensors(data), _metadata(data), temporary)
-            read_emission(temporary)
-        except CubeFileError as error:
-            raise OutputError(
-                f"the emission table would not be readable: {error.problem}",
-                code="cube-unreadable",
-                path=path,
-                hint="an existing file is unchanged",
-            ) from error
+    replace_file((_tensors(data), _metadata(data)), path, KIND, read_emission, force=force)
 
 
 def read_emission(path: str | os.PathLike[str]) -> EmissionData:

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.errors import CubeFileError, OutputError
-from uplift.common.files import atomic_write
+from uplift.common.errors import CubeFileError
 from uplift.cube import sparse
 from uplift.cube.checks import (
     ATLAS_ARRAYS,
@@ -33,7 +32,7 @@ from uplift.cube.container import (
     error_text,
     invalid_file,
     load,
-    save,
+    replace_file,
 )
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
 from uplift.cube.metadata import check_metadata
@@ -70,17 +69,7 @@ def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) 
     OutputError
         The file exists and ``force`` is false, cannot be written, or does not read back (``cube-unreadable``).
     """
-    with atomic_write(path, force=force) as temporary:
-        try:
-            save(*contents(data), temporary)
-            read(temporary)
-        except CubeFileError as error:
-            raise OutputError(
-                f"the cube would not be readable: {error.problem}",
-                code="cube-unreadable",
-                path=path,
-                hint="an existing file is unchanged",
-            ) from error
+    replace_file(contents(data), path, KIND, read, force=force)
 
 
 def read(path: str | os.PathLike[str]) -> CubeData:

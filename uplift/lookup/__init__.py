@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from uplift.lookup.cube import Cube, load
-from uplift.lookup.emission import EmissionTable, load_emission
 from uplift.lookup.interpolate import MODES
 from uplift.lookup.query import QueryResult, query, query_xyz
 
 if TYPE_CHECKING:
+    from uplift.lookup.emission import EmissionTable, load_emission
     from uplift.lookup.metamer_bounds import Bounds, bounds
 
 __all__ = [
@@ -26,10 +27,16 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """Import bounds when they are needed: plain queries start without them."""
-    if name not in ("Bounds", "bounds"):
-        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    from uplift.lookup import metamer_bounds
+_LATER = {
+    "Bounds": "metamer_bounds",
+    "EmissionTable": "emission",
+    "bounds": "metamer_bounds",
+    "load_emission": "emission",
+}
+"""Modules that are imported when they are needed: plain queries start without them."""
 
-    return getattr(metamer_bounds, name)
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    return getattr(import_module(f"{__name__}.{_LATER[name]}"), name)
