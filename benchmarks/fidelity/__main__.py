@@ -9,14 +9,14 @@ import sys
 import time
 from typing import Any
 
-from benchmarks.fidelity import between, crowding, cubes, light_errors, seeds, start
+from benchmarks.fidelity import between, crowding, cubes, light_errors, loss, seeds, start
 from benchmarks.record import write
 
 
 def main() -> None:
     """Measure and store."""
     figures: dict[str, Any] = {}
-    for part in (seeds, start, between, cubes, light_errors, crowding):
+    for part in (seeds, start, between, loss, cubes, light_errors, crowding):
         begin = time.perf_counter()
         figures |= part.measure()
         print(f"{part.__name__}: {time.perf_counter() - begin:.0f} s", file=sys.stderr)

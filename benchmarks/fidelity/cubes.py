@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks.fidelity.between import limit, split
+from benchmarks.fidelity.between import limit, limit_kernel, split
 from benchmarks.fidelity.materials import (
     SENSOR,
     TESTED_ON,
@@ -101,8 +101,9 @@ def halves(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> Iterator[
         rms = {"mean": mean["rms"], "std": std["rms"]}
         yield {"atlas": name, "coefficients": count, "cube": method, "rms": rms, "errors": both}
     if count == COUNTS[-1]:
-        label, errors = limit(name)
-        yield {"atlas": name, "coefficients": None, "cube": f"*limit:* {label}", **as_record(errors)}
+        length, nugget = limit_kernel(name)
+        label = f"*limit:* length {length:g}, nugget {nugget:g}"
+        yield {"atlas": name, "coefficients": None, "cube": label, **as_record(limit(name, length, nugget))}
 
 
 def shares(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> dict[str, Any]:

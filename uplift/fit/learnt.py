@@ -7,25 +7,23 @@ their table. With an atlas, the relevance of each family is learnt: how well its
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import lab_jacobian, rgb_to_lab
+from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.fit.base import Base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.family_kriging import FamilyKriging, FamilySamples, average_close, krige_families
-from uplift.fit.kriging import JITTER, Kernel
 from uplift.fit.library import Family
 from uplift.fit.match_spectra import match_spectra
-from uplift.fit.objective import BALANCED
 from uplift.fit.prior import MARGIN
 from uplift.fit.problem import Problem
 from uplift.fit.quadrature_jit import COMPILED
+from uplift.fit.relevance import learn_relevance
 from uplift.fit.smooth import MIN_LEVEL, NO_FREEDOM, TABLE, Smooth
 from uplift.fit.smooth import smooth as make_smooth
 from uplift.fit.unrealisable import unrealisable
@@ -34,11 +32,6 @@ from uplift.models.real_moments import dual
 
 SAME_COLOUR, SAME_SPECTRUM = 6.0, 0.03
 """ΔE*ab and rms within which a spectrum of a library is that of an atlas entry, which replaces it."""
-ASSUMED_ENTRIES = 40.0
-"""Entries that the assumption that all families are equally relevant counts as."""
-CORRELATED = Kernel(length=24.0, nugget=1.0)
-"""Covariance of the deviations of entries that no family explains: that of close colours is left to the kriging."""
-MAX_RELEVANCE = 4.0
 MAX_ENTRIES = 1000
 """Entries from which relevances are learnt."""
 BOUND = 0.1
@@ -96,7 +89,7 @@ def learn_base(
     if not families or smooth.nodes is None or not isinstance(model, Moments):
         return LearntBase(smooth, (1.0,) * len(families))
     kriging = krige_families([_samples(smooth, sensor, family, entries) for family in families])
-    relevance = _learn_relevance(smooth, sensor, lights, kriging, entries)
+    relevance = _relevance(smooth, sensor, lights, kriging, entries)
     plain = evaluate(model, model.from_storage(smooth.nodes), sensor.wavelengths)
     bright = smooth.table.points.copy()
     bright[outside.points] = outside.nearest
@@ -156,60 +149,15 @@ def _brightening(smooth: Smooth, rgb: Array) -> Array:
     return np.asarray(np.maximum(rgb.max(axis=1), MIN_LEVEL)[:, None] ** smooth.brightening)
 
 
-def _learn_relevance(
+def _relevance(
     smooth: Smooth, sensor: Sensor, lights: Sequence[Light], kriging: FamilyKriging, entries: FittedEntries
 ) -> Array:
-    """Relevance of each family (F,), by bounded generalised least squares.
-
-    The residuals are differences of spectra and of their colours. Those of entries of close colours are correlated.
-    """
-    from scipy.optimize import lsq_linear
-
-    assumed = np.ones(kriging.count)
-    if not len(entries):
-        return assumed
     order = np.lexsort(entries.rgb.T)
-    order = order[:: -(-len(order) // MAX_ENTRIES)]
+    order = order[:: max(-(-len(order) // MAX_ENTRIES), 1)]
     rgb = entries.rgb[order]
     locations = rgb_to_lab(sensor, rgb)
-    plain = _spectra(smooth, sensor, rgb)
     parts = kriging.contributions(locations) * _brightening(smooth, rgb)
-    features, independent = (
-        _features(lights, np.clip(plain + parts.sum(axis=0), 0, 1)),
-        _decorrelate(locations),
-    )
-    columns = np.stack([independent(features(part)).ravel() for part in parts], axis=1)
-    scale = np.sqrt(ASSUMED_ENTRIES * (columns**2).sum() / len(rgb) / kriging.count)
-    if not scale:
-        return assumed
-    rows = np.concatenate([columns, scale * np.eye(kriging.count)])
-    unexplained = independent(features(entries.measured[order] - plain))
-    goal = np.concatenate([unexplained.ravel(), scale * assumed])
-    return np.asarray(lsq_linear(rows, goal, bounds=(0, MAX_RELEVANCE), method="bvls").x)
-
-
-def _decorrelate(locations: Array) -> Callable[[Array], Array]:
-    """From residuals (n, K) of entries at L*a*b* (n, 3) to independent ones of unit variance."""
-    from scipy.linalg import solve_triangular
-    from scipy.spatial.distance import cdist
-
-    covariance = CORRELATED(cdist(locations, locations)) / CORRELATED(np.zeros(()))
-    root = np.linalg.cholesky(covariance + JITTER * np.eye(len(covariance)))
-    return partial(solve_triangular, root, lower=True)
-
-
-def _features(lights: Sequence[Light], spectra: Array) -> Callable[[Array], Array]:
-    """From changes (n, N) of spectra to their weighted differences (n, N + 3 L) in the objective of entries."""
-    matrices = np.stack([light.xyz for light in lights])
-    whites = np.stack([light.white for light in lights])
-    to_lab = BALANCED.lights * lab_jacobian((spectra @ matrices.mT).swapaxes(0, 1), whites)
-
-    def features(change: Array) -> Array:
-        xyz = (change @ matrices.mT).swapaxes(0, 1)
-        colours = (to_lab @ xyz[..., None])[..., 0].reshape(len(change), -1)
-        return np.concatenate([change / np.sqrt(change.shape[1]), colours], axis=1)
-
-    return features
+    return learn_relevance(lights, locations, _spectra(smooth, sensor, rgb), parts, entries.measured[order])
 
 
 def _match_nodes(
