@@ -7,8 +7,10 @@ import os
 import sys
 from collections.abc import Iterator
 
-LIBRARIES = ("KMP_DUPLICATE_LIB_OK", "KMP_INIT_AT_FORK")
-"""Variables that libraries set while they are imported, and need from then on."""
+from uplift.lab.timing import ONE_THREAD
+
+SET_BY_COMMANDS = (*ONE_THREAD, "MPLBACKEND")
+"""Variables that are removed if they are new. Libraries set others while they are imported, and need them later."""
 
 
 @contextlib.contextmanager
@@ -18,8 +20,8 @@ def kept_process_state() -> Iterator[None]:
     try:
         yield
     finally:
-        for name in os.environ.keys() - environment.keys() - set(LIBRARIES):
-            del os.environ[name]
+        for name in set(SET_BY_COMMANDS) - environment.keys():
+            os.environ.pop(name, None)
         os.environ.update(environment)
         os.chdir(folder)
         if variant is not None and variant != _variant():
