@@ -62,8 +62,8 @@ def lab_matrix(raw: Array, xyz: Array, white: Array) -> Array:
     return matrix(least_squares(residuals, start[:, :2].ravel()).x)
 
 
-def methods(atlas: Atlas, training: Array, sensor: Sensor) -> dict[str, ToXyz]:
-    """Return the methods, each trained on the entries of an atlas in rows ``training``."""
+def methods(atlas: Atlas, training: Array, sensor: Sensor, plain: Cube) -> dict[str, ToXyz]:
+    """Return the methods, each trained on the entries of an atlas in rows ``training``, ``plain`` on none."""
     measured = on_grid(atlas, sensor.wavelengths)
     left_out = families_with(measured)
     library = np.concatenate([family.measured for family in shipped_library(left_out)])
@@ -84,7 +84,7 @@ def methods(atlas: Atlas, training: Array, sensor: Sensor) -> dict[str, ToXyz]:
         "matrix, XYZ": by_matrix(xyz_matrix(*half)),
         "matrix, L*a*b*": by_matrix(lab_matrix(*half, white)),
         "matrix, L*a*b*, with the library": by_matrix(lab_matrix(*more, white)),
-        "cube without an atlas": by_cube(_build(None, sensor, left_out)),
+        "cube without an atlas": by_cube(plain),
         "cube": by_cube(cube),
         "cube, refined": by_cube(cube, "refined"),
     }
@@ -112,10 +112,11 @@ def compare(camera: str, illuminant: str) -> dict[str, Any]:
     atlas, sensor = read_atlas(ATLAS), observer.sensor(CAMERA, illuminant, camera)
     measured, white = on_grid(atlas, sensor.wavelengths), sensor.light.white
     raw, expected = sensor.rgb(measured), lab(measured @ sensor.light.xyz.T, white)
+    plain = _build(None, sensor, families_with(measured))
     errors: dict[str, list[Array]] = {}
     for seed in range(SPLITS):
         training, held_out = np.array_split(np.random.default_rng(seed).permutation(len(measured)), 2)
-        for name, to_xyz in methods(atlas, training, sensor).items():
+        for name, to_xyz in methods(atlas, training, sensor, plain).items():
             found = lab(to_xyz(raw[held_out]), white)
             errors.setdefault(name, []).append(delta_e_2000(found, expected[held_out]))
     figures = {name: _summary(np.concatenate(each)) for name, each in errors.items()}
