@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import os
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from string import Template
 
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write, check_output
-from uplift.common.version import VERSION
 from uplift.cube import EmissionData, emission_digest
 from uplift.io.export.kernel import language, lights
 from uplift.io.export.kernel.language import Language
 from uplift.io.export.kernel.light_table import LightTable, make_light_table
-from uplift.io.export.kernel.program import comment, declare, read_template, with_numbers
-from uplift.io.export.kernel.table import COLUMNS
+from uplift.io.export.kernel.program import comment, read_template, table_words, with_numbers
 from uplift.io.export.kernel.translate import functions, translate
 from uplift.io.export.programs import FORMATS, identifier, write_numbers
 
@@ -110,23 +107,14 @@ class _Program:
 
     def text(self) -> str:
         """Return the text, with the word ``${table}`` for the numbers of a header."""
-        constants, image = self.table.constants, self.table.image()
-        integers = {key: value for key, value in constants.items() if isinstance(value, int)}
+        integers = {key: value for key, value in self.table.constants.items() if isinstance(value, int)}
         words = {
-            "version": VERSION,
             "digest": emission_digest(self.data),
             "space": comment(self.data.space),
             "observer": comment(self.data.observer),
             "lamps": len(self.data.entries.names),
-            "size": image.size,
-            "checksum": zlib.crc32(image.astype("<f4").tobytes()),
-            "columns": COLUMNS,
-            "rows": len(image),
-            "stem": comment(self.stem),
-            "name": self.name,
-            "NAME": self.name.upper(),
-            "constants": declare(constants, self.language, self.name),
             "kernel": translate(functions(lights), self.language, self.name, integers),
+            **table_words(self.table, self.stem, self.name, self.language),
         }
         # Shaders share the part that reads numbers with programs of cubes; the part for rows is not needed.
         part = "numbers" if read_template(self.template, "numbers") else self.form

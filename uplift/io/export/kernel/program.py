@@ -29,6 +29,7 @@ from uplift.io.export.kernel import (
     spectra,
 )
 from uplift.io.export.kernel.language import Language
+from uplift.io.export.kernel.light_table import LightTable
 from uplift.io.export.kernel.table import COLUMNS, TEXEL, Table
 from uplift.io.export.kernel.translate import functions, literal, translate
 from uplift.models import Moments
@@ -82,9 +83,8 @@ class Program:
         yield from with_numbers(text, self.table.numbers, stride, self.language)
 
     def _words(self) -> dict[str, Any]:
-        sensor, constants, image = self.data.sensor, self.table.constants, self.table.image()
+        sensor, constants = self.data.sensor, self.table.constants
         words = {
-            "version": VERSION,
             "digest": digest(self.data),
             "space": comment(sensor.space),
             "illuminant": comment(sensor.illuminant),
@@ -95,14 +95,7 @@ class Program:
             "tag_texture": constants["COUNT"] // TEXEL,
             "tag_channel": constants["COUNT"] % TEXEL,
             "stride": constants["STRIDE"],
-            "size": image.size,
-            "checksum": zlib.crc32(image.astype("<f4").tobytes()),
-            "columns": COLUMNS,
-            "rows": len(image),
-            "stem": comment(self.stem),
-            "name": self.name,
-            "NAME": self.name.upper(),
-            "constants": declare(self.table.constants, self.language, self.name),
+            **table_words(self.table, self.stem, self.name, self.language),
         }
         parts = {"kernel": self._kernel()}
         for key, names in {"access": ("numbers", self.form), "wrappers": (self.mode,)}.items():
@@ -157,6 +150,39 @@ def read_template(template: str, part: str = "") -> str:
     name = f"{part}.{template}" if part else template
     path = files("uplift.io.export") / "templates" / name
     return path.read_text(encoding="ascii") if path.is_file() else ""
+
+
+def table_words(table: Table | LightTable, stem: str, name: str, language: Language) -> dict[str, Any]:
+    """Return the words of a program that describe its table.
+
+    Parameters
+    ----------
+    table : Table or LightTable
+        The table.
+    stem : str
+        Name of its files, without suffix.
+    name : str
+        Prefix of all names.
+    language : Language
+        The language.
+
+    Returns
+    -------
+    dict
+        Values of the words of templates.
+    """
+    image = table.image()
+    return {
+        "version": VERSION,
+        "size": image.size,
+        "checksum": zlib.crc32(image.astype("<f4").tobytes()),
+        "columns": COLUMNS,
+        "rows": len(image),
+        "stem": comment(stem),
+        "name": name,
+        "NAME": name.upper(),
+        "constants": declare(table.constants, language, name),
+    }
 
 
 def declare(constants: Mapping[str, int | float], language: Language, name: str) -> str:
