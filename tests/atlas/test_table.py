@@ -62,6 +62,15 @@ def test_percent(save, text):
     assert [entry.values.tolist() for entry in spectra.entries] == [[0.1, 0.9], [0.05, 0.015]]
 
 
+def test_the_largest_numbers_do_not_overflow(save):
+    with (
+        np.errstate(over="raise"),
+        warns("values-in-percent"),
+        raises(AtlasError, "reflectance-out-of-range"),
+    ):
+        read_atlas(save("name,400,550,700\nred,1e308,1e308,1e308\n"))
+
+
 @pytest.mark.parametrize(
     ("text", "line", "code"),
     [
@@ -93,6 +102,7 @@ def test_percent(save, text):
             "reflectance-out-of-range",
         ),
         (WIDE.replace("700", "1e308"), 2, "wavelength-out-of-range"),
+        (WIDE.replace("550", "1e999").replace("700", "1e999"), 2, "sample-not-finite"),
     ],
 )
 def test_faults_report_file_and_line(save, text, line, code):

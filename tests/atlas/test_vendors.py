@@ -197,6 +197,7 @@ def test_content_of_archives_is_limited(tmp_path, monkeypatch):
         (lambda text: text.replace("ENVI Spectral Library", "ENVI Standard"), "not-an-atlas"),
         (lambda text: text.replace("Micrometers", "Furlongs"), "unknown-wavelength-unit"),
         (lambda text: text.replace("factor = 100000000", "factor = -1"), "invalid-scale"),
+        (lambda text: text.replace("{0.38000", "{1e306"), "sample-not-finite"),
         (lambda text: text.replace("data type = 3", "data type = 77"), "unreadable-measurements"),
         (lambda text: text.replace("ENVI", "NVI"), "not-an-atlas"),
     ],
@@ -206,7 +207,7 @@ def test_damaged_libraries_raise(tmp_path, change, code):
     path = vendor.save(MACBETH, tmp_path)
     header = path.with_suffix(".hdr")
     header.write_text(change(header.read_text()))
-    with raises(AtlasError, code):
+    with np.errstate(over="raise"), raises(AtlasError, code):
         read_atlas(path)
 
 

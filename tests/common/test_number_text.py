@@ -35,3 +35,9 @@ def test_whole_numbers_of_thousands_of_digits_are_errors():
     with pytest.raises(ValueError, match="not a"):
         parse_whole("9" * 5000)
     assert parse_float("9" * 5000) == math.inf
+
+
+def test_long_texts_are_read_once():
+    """A pattern that tries every way to divide the digits takes minutes."""
+    with pytest.raises(ValueError, match="not a"):
+        parse_float("9" * 100_000 + ":")

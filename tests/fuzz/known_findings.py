@@ -225,4 +225,28 @@ KNOWN_FINDINGS = (
         "was": "ignored, or a crash",
         "now": "raised again after the callback or the import",
     },
+    {
+        "target": "numbers of options",
+        "input": "5,000 digits before another character",
+        "was": "13 s, as every way to divide the digits was tried",
+        "now": "rejected at once",
+    },
+    {
+        "target": "atlas table",
+        "input": "infinite wavelengths in a row, and reflectances of 1e308",
+        "was": "warnings of numpy before the error",
+        "now": "rejected without a warning of numpy",
+    },
+    {
+        "target": "cube, valid digest",
+        "input": "sigmoid coefficients whose spectra reach 0 or 1",
+        "was": "a warning of numpy",
+        "now": "finite multipliers",
+    },
+    {
+        "target": "chart table",
+        "input": "a table without the number of materials",
+        "was": "KeyError in pages",
+        "now": "rejected: every measured method has it",
+    },
 )

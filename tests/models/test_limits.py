@@ -37,6 +37,12 @@ def test_limits_are_black_and_white(model):
 
 
 @each
+def test_black_and_white_have_finite_multipliers(model):
+    limits = np.array([0.0, 1.0])
+    np.testing.assert_allclose(model.squash(model.unsquash(limits)), limits, atol=1e-12)
+
+
+@each
 @given(y=arrays(float, 5, elements=st.floats(1e-6, 1 - 1e-6)))
 def test_unsquash_is_the_inverse_of_squash(model, y):
     np.testing.assert_allclose(model.squash(model.unsquash(y)), y, rtol=1e-9)

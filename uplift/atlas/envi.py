@@ -56,7 +56,8 @@ def read(document: Document) -> Measurements:
             else f"unknown wavelength unit '{truncate(unit)}'"
         )
         raise location.error(problem, HINT, code="unknown-wavelength-unit")
-    nm = factor * np.asarray(centers, dtype=float)
+    with np.errstate(over="ignore"):  # infinite wavelengths are refused later
+        nm = factor * np.asarray(centers, dtype=float)
     spectra = tuple(Spectrum(name, nm, row) for name, row in zip(names, values, strict=True))
     return Measurements(spectra, scale=scale, notes=(f"layout: {Path(data).name} with its header",))
 

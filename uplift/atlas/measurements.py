@@ -206,7 +206,7 @@ def _entry(path: str, spectrum: Spectrum, scale: float) -> Entry:
 
 def _descends(spectrum: Spectrum) -> bool:
     wavelengths = np.asarray(spectrum.wavelengths, dtype=float)
-    return bool(len(wavelengths) > 1 and (np.diff(wavelengths) < 0).all())
+    return bool(len(wavelengths) > 1 and (wavelengths[1:] < wavelengths[:-1]).all())
 
 
 def _scale(path: str, spectra: Sequence[Spectrum], stated: float | None, measured: str) -> tuple[float, str]:
@@ -235,7 +235,7 @@ def _check_rows(
     """Raise `AtlasError` for a row in units of 1 among rows in percent, or the reverse, or within one row."""
     for spectrum, row in zip(spectra, values, strict=True):
         low, high = np.minimum(row[:-1], row[1:]), np.maximum(row[:-1], row[1:])
-        jump = np.flatnonzero((low <= DARKEST) & (high > HIGHEST) & (high > JUMP * np.maximum(low, FLOOR)))
+        jump = np.flatnonzero((low <= DARKEST) & (high > HIGHEST) & (high / JUMP > np.maximum(low, FLOOR)))
         if len(jump):
             place = int(jump[0])
             pair = f"{row[place]:g} and {row[place + 1]:g}"

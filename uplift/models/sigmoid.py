@@ -19,6 +19,8 @@ from uplift.models.model import Model
 
 MAX_SAFE_LINEAR = 1.0
 """Bound of the linear part up to which single precision keeps colours (tests/models/test_rounding.py)."""
+LEAST = 1e-30
+"""Least 1 - 4(ρ - ½)² of a reflectance ρ, for which 0 and 1 have finite multipliers."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class Sigmoid(Model):
 
     def unsquash(self, reflectance: Array) -> Array:
         half = reflectance - 0.5
-        return np.asarray(2 * half / np.sqrt(1 - 4 * half * half))
+        return np.asarray(2 * half / np.sqrt(np.maximum(1 - 4 * half * half, LEAST)))
 
     def constant(self) -> Array:
         return np.eye(self.count)[-1]

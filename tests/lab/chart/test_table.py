@@ -33,6 +33,7 @@ def test_csv_round_trip(row_of, chart_of, tmp_path):
         (lambda text: text.replace("measured", "excellent"), "invalid-chart"),
         (lambda text: text.replace("12.5", "fast"), "invalid-chart"),
         (lambda text: text.replace("12.5", "nan"), "invalid-chart"),
+        (lambda text: text.replace("unseen_spectra", "seen_spectra"), "invalid-chart"),
         (lambda text: text.rstrip()[:-30], "invalid-chart"),
         (lambda text: text.rstrip() + ",one,more\n", "invalid-chart"),
     ],

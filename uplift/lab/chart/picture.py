@@ -22,7 +22,7 @@ PANEL_SIZE = (5.6, 4.0)
 MARGINS = {"left": 0.045, "right": 0.99, "bottom": 0.03, "top": 0.975, "wspace": 0.13, "hspace": 0.28}
 PAGE_PANEL_SIZE = (4.1, 3.0)
 """Inches of a panel of a page, where it is about as wide on a desk as on a phone."""
-PAGE_MARGINS = {"left": 0.115, "right": 0.97, "bottom": 0.165, "top": 0.99}
+PAGE_MARGINS = {"left": 0.115, "right": 0.955, "bottom": 0.165, "top": 0.99}
 KEY_SIZE = (4.1, 2.15)
 """Inches of the legend of a page."""
 

@@ -21,7 +21,15 @@ FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 MAX_BYTES = 16 << 20
 """Largest file that is read."""
 MAX_NUMBER = 1e30
-REQUIRED = ("bytes", "time_ns", "setup_s", "round_trip_mean", "coarse_round_trip_mean", "round_trip_colours")
+REQUIRED = (
+    "bytes",
+    "time_ns",
+    "setup_s",
+    "round_trip_mean",
+    "coarse_round_trip_mean",
+    "round_trip_colours",
+    "unseen_spectra",
+)
 """Numbers of every method that was measured."""
 BATCH = re.compile(r"ns_([1-9]\d{0,8})")
 """Name of a time by the number of colours per call."""
