@@ -28,7 +28,7 @@ from uplift.colorimetry.delta_e import lab_jacobian
 from uplift.common.arrays import Array
 from uplift.cube import contents
 from uplift.fit import families_with
-from uplift.lab.study.held_out import HoldoutSplit, holdout
+from uplift.lab.study.held_out import HALF, NO_ATLAS, SIGMOID, HoldoutSplit, holdout
 from uplift.lookup import Cube
 from uplift.models import Moments
 from uplift.report.smoothness import compute_smoothness
@@ -36,6 +36,8 @@ from uplift.report.smoothness import compute_smoothness
 DIM, COARSE = 32, 16
 COUNTS = (9, 13, 17)
 SPLITS = 3
+CUBES = (HALF, NO_ATLAS, SIGMOID)
+"""Methods of `holdout` on this page; the page of held-out materials has the others."""
 
 
 Splits = dict[tuple[str, int], tuple[HoldoutSplit, ...]]
@@ -93,8 +95,8 @@ def at_entries(name: str) -> Iterator[dict[str, Any]]:
 
 
 def halves(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> Iterator[dict[str, Any]]:
-    """Yield the errors of every method at the held-out half, and the limits once per atlas."""
-    for method in splits[0].errors:
+    """Yield the errors of every cube at the held-out half, and the limits once per atlas."""
+    for method in CUBES:
         means = np.array([split.errors[method].means() for split in splits])
         mean, std = as_record(means.mean(axis=0)), as_record(means.std(axis=0))
         both = {key: {"mean": mean["errors"][key], "std": std["errors"][key]} for key in mean["errors"]}
@@ -110,7 +112,7 @@ def shares(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> dict[str,
     """Return the errors relative to the sigmoid, and the light under which the atlas helps least."""
     ours, sigmoid, plain = (
         np.array([split.errors[method].means() for split in splits]).mean(axis=0)
-        for method in ("half the atlas", "sigmoid", "without an atlas")
+        for method in (HALF, SIGMOID, NO_ATLAS)
     )
     share, against = as_record(ours / sigmoid), as_record(ours / plain)["errors"]
     worst = max(against, key=against.__getitem__)
