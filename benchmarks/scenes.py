@@ -80,8 +80,11 @@ def _row(name: str, sparse: Build, complete: Build, difference: float | None = N
 
 
 def _difference(sparse: Cube, complete: Cube, picture: Picture) -> float:
-    """Return the largest difference of reflectances at colours of an image."""
-    colours = np.clip(picture.linear(), 0, 1).reshape(-1, 3)
+    """Return the largest difference of reflectances at colours of an image, as scenes read it.
+
+    Decoders of JPEG differ by a code value.
+    """
+    colours = np.concatenate(list(Images((picture.path,)).colours(picture.path, sparse.data.sensor)))
     sample = np.random.default_rng(0).permutation(colours)[:SAMPLE]
     return float(np.abs(sparse.reflectance(sample) - complete.reflectance(sample)).max())
 
