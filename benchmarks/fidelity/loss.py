@@ -59,11 +59,11 @@ def _predictions(kept: Materials, queried: Materials, kernel: Kernel) -> Iterato
     deviations = MODEL.to_storage(known.multipliers) - smooth.coefficients(kept.rgb)
     kriging, _ = krige(rgb_to_lab(SENSOR, kept.rgb), deviations, kernel)
     families = fit.shipped_library(fit.families_with(materials(kept.name).measured))
-    nobody = fit.FittedEntries(*(value[:0] for value in vars(known).values()))
+    no_entries = fit.FittedEntries(*(value[:0] for value in vars(known).values()))
     priors = {
         "coefficients kriged, nugget near entries": Prior(MODEL, SENSOR, smooth, kriging),
         "kernel learnt": _prior(known, smooth),
-        "library, all relevances 1": _prior(known, _base(families, nobody)),
+        "library, all relevances 1": _prior(known, _base(families, no_entries)),
         "relevances learnt: the prior": _prior(known, _base(families, known)),
     }
     for label, prior in priors.items():
