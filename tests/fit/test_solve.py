@@ -64,15 +64,20 @@ def test_no_distance_increases(sensor):
     assert (found.distance > 1e-6).any()
 
 
-def test_solutions_do_not_depend_on_the_batch(sensor):
-    """A problem has the same solution alone, among others, and in batches of another size."""
+@pytest.mark.parametrize("max_passes", [1, 12])
+def test_solutions_do_not_depend_on_the_batch(sensor, max_passes):
+    """A problem has the same solution alone and among many, also if it is hard or abandoned."""
     model = Moments(9)
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    many = np.resize(TARGETS, (CPU_BATCH_ROWS[0] + 5, 3))
-    crowd = solve(model, forward, np.zeros((len(many), 9)), many, tolerance=1e-8, max_passes=8)
-    alone = solve(model, forward, np.zeros((1, 9)), TARGETS[3:4], tolerance=1e-8, max_passes=8)
-    np.testing.assert_allclose(crowd.multipliers[3], alone.multipliers[0], rtol=1e-9)
-    np.testing.assert_allclose(crowd.multipliers[len(TARGETS) + 3], crowd.multipliers[3], rtol=1e-9)
+    dark, wild = [[2e-4, 1e-3, 1e-5]], [[0.9, 0.0, 0.9], [1.2, -0.3, 0.5]]
+    few = np.concatenate([TARGETS[:5], dark, wild])
+    many = np.resize(few, (CPU_BATCH_ROWS[0] + len(few), 3))
+    crowd = solve(model, forward, np.zeros((len(many), 9)), many, tolerance=1e-8, max_passes=max_passes)
+    for row, target in enumerate(few):
+        alone = solve(model, forward, np.zeros((1, 9)), target[None], tolerance=1e-8, max_passes=max_passes)
+        for found in (row, row + len(many) - len(few)):
+            np.testing.assert_allclose(crowd.multipliers[found], alone.multipliers[0], rtol=1e-9)
+            assert crowd.steps[found] == alone.steps[0]
 
 
 def test_no_problems_have_no_solutions():

@@ -82,6 +82,18 @@ def test_points_are_those_of_the_complete_cube(scene_cube, macbeth_cube):
         assert (array[~there] == absent).all(), name
 
 
+def test_dark_saturated_colours_have_the_answers_of_the_complete_cube(macbeth_cube, tmp_path):
+    """Their spectra are steep: they show any difference in the steps of the solver."""
+    codes = np.random.default_rng(4).integers(0, 40, (24, 24, 3)).astype(np.uint8)
+    Image.fromarray(codes).save(tmp_path / "dark.png")
+    with warns("entry-out-of-gamut"):
+        sparse = uplift.build(MACBETH, dim=32, scene=tmp_path / "dark.png")
+    colours = sparse.decode(codes.reshape(-1, 3))
+    np.testing.assert_allclose(
+        sparse.reflectance(colours), macbeth_cube.reflectance(colours), rtol=0, atol=1e-9
+    )
+
+
 @pytest.mark.parametrize("mode", MODES)
 def test_answers_to_the_scene_are_those_of_the_complete_cube(scene_cube, macbeth_cube, photo_colours, mode):
     assert scene_cube.covers(photo_colours).all()

@@ -1,7 +1,7 @@
 """Solve many small least-squares problems: multipliers whose spectra have given colours (docs/mathematics.md, 5).
 
-Problems are solved in batches of fixed shapes, a few steps of least change per pass. Converged problems leave the
-batch.
+Problems are solved in batches of fixed shapes, one or a few steps of least change per pass. Converged problems leave
+the batch. The steps of a problem do not depend on the others.
 """
 
 from __future__ import annotations
@@ -20,10 +20,8 @@ from uplift.fit.least_change import FIRST_DAMPING, begin, step
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, residual
 
-STEPS, MORE_STEPS = 1, 8
-"""Steps per pass. Of many problems most converge within one; with few, the overhead of a pass dominates."""
-FEW = 1024
-"""Number of problems up to which a pass takes `MORE_STEPS`."""
+SINGLE_STEPS, MORE_STEPS = 2, 8
+"""Passes that take one step, in which most problems converge, and the steps of each later pass."""
 MAX_SMALL_BATCHES = 12
 """Small batches that are cheaper than a large one, which runs until its last problem converges."""
 MIN_GAIN, PATIENCE = 1e-3, 8
@@ -92,8 +90,9 @@ def solve(
     given = _Given(start, anchor, np.full(count, FIRST_DAMPING), pull, target)
     with jax.enable_x64(True):
         constants = replicate(forward)
-        for _ in range(max_passes if count else 0):
-            after = _pass(model, constants, tolerance, given)
+        for number in range(max_passes if count else 0):
+            steps = 1 if number < SINGLE_STEPS else MORE_STEPS
+            after = _pass(model, constants, tolerance, given, steps)
             before = found.distance[rows]
             found.multipliers[rows], found.residual[rows] = after.multipliers, after.residual
             found.distance[rows] = after.distance
@@ -129,8 +128,8 @@ class _After(NamedTuple):
     steps: Any
 
 
-def _pass(model: Model, forward: ForwardMap, tolerance: float, given: _Given) -> _After:
-    """Take some steps in every problem, batch by batch."""
+def _pass(model: Model, forward: ForwardMap, tolerance: float, given: _Given, steps: int) -> _After:
+    """Take up to ``steps`` steps in every problem, batch by batch."""
     count, columns = given.multipliers.shape
     after = _After(
         multipliers=np.empty((count, columns)),
@@ -140,7 +139,6 @@ def _pass(model: Model, forward: ForwardMap, tolerance: float, given: _Given) ->
         pull=np.empty(count),
         steps=np.empty(count, dtype=np.int64),
     )
-    steps = MORE_STEPS if count <= FEW else STEPS
     for rows, width in batches(count, MAX_SMALL_BATCHES):
         part = _Given(*(shard(array[rows], width) for array in given))
         result = _advance(model, forward, tolerance, part, steps)
