@@ -1,7 +1,8 @@
 """Signals that end a command: Ctrl-C, SIGTERM and SIGHUP raise `KeyboardInterrupt`, so that files are cleaned up.
 
 An exception that a signal raises inside a callback of the interpreter, such as that of JAX for garbage collection, is
-dropped by the interpreter. It is raised again a moment later, and at the next report of progress.
+dropped by the interpreter. It is raised again a moment later, and at the next report of progress. For this the signal
+is sent again until its exception is raised: one that arrives just before a system call does not end the call.
 """
 
 from __future__ import annotations
@@ -11,8 +12,10 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from queue import SimpleQueue
 from types import FrameType
 from typing import NoReturn
 
@@ -21,11 +24,16 @@ ENDING = tuple(
 )
 """Signals that end a command."""
 RETRY_SECONDS = 0.02
+"""Time until a signal is sent again."""
 IMPORT_SYSTEM = "<frozen importlib._bootstrap>"
 """File name of the code of the interpreter that imports modules."""
 
 _received: list[int] = []
 """Signals that arrived since the command started."""
+_unraised: list[int] = []
+"""Signals whose exceptions were dropped or put off."""
+_to_send: SimpleQueue[int | None] = SimpleQueue()
+"""Signals to send again; None ends the thread that sends them. May be interrupted anywhere, as by a signal."""
 
 
 class Interrupt(KeyboardInterrupt):
@@ -39,20 +47,24 @@ def ending_signals() -> Iterator[None]:
         yield
         return
     _received.clear()
+    _unraised.clear()
     handled = [number for number in ENDING if signal.getsignal(number) is not signal.SIG_IGN]  # nohup
     before = {number: signal.signal(number, _raise) for number in handled}
     hook = sys.unraisablehook
 
     def again(dropped: sys.UnraisableHookArgs) -> None:
         if _received and issubclass(dropped.exc_type, KeyboardInterrupt):
-            threading.Timer(RETRY_SECONDS, _send_again, (_received[0],)).start()
+            _later(_received[0])
         else:
             hook(dropped)
 
     sys.unraisablehook = again
+    threading.Thread(target=_send_again, daemon=True).start()
     try:
         yield
     finally:
+        _unraised.clear()
+        _to_send.put(None)
         sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)
@@ -80,7 +92,22 @@ def end(code: int) -> NoReturn:
     sys.exit(code)  # also process 1 of a container, which signals do not end
 
 
-def _send_again(number: int) -> None:
+def _later(number: int) -> None:
+    """Put a signal off for a moment."""
+    _unraised.append(number)
+    _to_send.put(number)
+
+
+def _send_again() -> None:
+    """Send each signal that was put off until its exception is raised."""
+    while (number := _to_send.get()) is not None:
+        while _unraised:
+            time.sleep(RETRY_SECONDS)
+            if _unraised:
+                _send(number)
+
+
+def _send(number: int) -> None:
     """Send a signal to the main thread, out of waiting for the system if that is possible."""
     if hasattr(signal, "pthread_kill"):
         signal.pthread_kill(threading.main_thread().ident or 0, number)
@@ -89,17 +116,22 @@ def _send_again(number: int) -> None:
 
 
 def _raise(number: int, frame: FrameType | None) -> None:
-    """Raise `Interrupt`, but only after an import: an exception while JAX loads its libraries crashes them."""
+    """Raise `Interrupt`, at once or after a part of the program that must not be left."""
     _received.append(number)
-    if _is_importing(frame):
-        threading.Timer(RETRY_SECONDS, _send_again, (number,)).start()
+    if _must_end(frame):
+        _later(number)
         return
+    _unraised.clear()
     raise Interrupt
 
 
-def _is_importing(frame: FrameType | None) -> bool:
+def _must_end(frame: FrameType | None) -> bool:
+    """Whether a frame is of an import, as an exception while JAX loads its libraries crashes them, or of this module.
+
+    An exception in the hook for dropped exceptions is dropped as well.
+    """
     while frame is not None:
-        if frame.f_code.co_filename == IMPORT_SYSTEM:
+        if frame.f_code.co_filename in (IMPORT_SYSTEM, _raise.__code__.co_filename):
             return True
         frame = frame.f_back
     return False

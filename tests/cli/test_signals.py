@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -130,10 +131,44 @@ def test_an_interrupt_in_a_callback_is_raised_again():
     assert time.monotonic() - begin < SECONDS / 2
 
 
+def test_an_interrupt_is_sent_until_it_is_raised(monkeypatch):
+    """One that arrives just before a system call does not end it."""
+    send, lost = signals._send, []
+
+    def lose_two(number):
+        if len(lost) < 2:
+            lost.append(number)
+        else:
+            send(number)
+
+    monkeypatch.setattr(signals, "_send", lose_two)
+    test_an_interrupt_in_a_callback_is_raised_again()
+    assert lost == [signal.SIGTERM] * 2
+
+
+def test_an_interrupt_while_another_is_put_off_is_not_lost(monkeypatch):
+    later, calls = signals._later, []
+
+    def interrupted(number):
+        calls.append(number)
+        if len(calls) == 1:
+            signal.raise_signal(signal.SIGTERM)
+        later(number)
+
+    monkeypatch.setattr(signals, "_later", interrupted)
+    test_an_interrupt_in_a_callback_is_raised_again()
+    assert len(calls) >= 2
+
+
+def test_the_thread_that_sends_signals_ends_with_the_command():
+    run(lambda: None)
+    wait_until(lambda: not any(thread._target is signals._send_again for thread in threading.enumerate()))
+
+
 def test_progress_raises_a_dropped_interrupt(monkeypatch):
     from uplift_cli.output.progress import build_progress
 
-    monkeypatch.setattr(signals, "_send_again", lambda number: None)
+    monkeypatch.setattr(signals, "_send", lambda number: None)
 
     def report():
         gc.callbacks.append(dropped)
