@@ -15,8 +15,9 @@ from benchmarks.textures.pictures import Picture, colour, pictures
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.io import texture
+from uplift.io.mitsuba.texture_file import multipliers_of_rounded
 from uplift.lookup import Cube
-from uplift.models import evaluate, reflectance
+from uplift.models import Moments, evaluate
 
 FORMS: tuple[tuple[str, texture.PixelEncoding, str], ...] = (
     ("spectrum_half", texture.Spectrum(), "half"),
@@ -64,6 +65,7 @@ def round_trips(cube: Cube, images: list[Picture], target: Path) -> Iterator[dic
 
 
 def _rgb(cube: Cube, form: texture.PixelEncoding, names: tuple[str, ...], path: Path) -> Array:
+    """Return the linear RGB (h, w, 3) of a texture, read as Mitsuba reads it."""
     sensor, model = cube.data.sensor, cube.data.model
     channels = OpenEXR.File(str(path), separate_channels=True).channels()
     shape = channels["R"].pixels.shape
@@ -71,9 +73,11 @@ def _rgb(cube: Cube, form: texture.PixelEncoding, names: tuple[str, ...], path: 
     blocks = []
     for block in np.array_split(values, max(len(values) // 50_000, 1)):
         numbers = block.astype(float)
-        if isinstance(form, texture.Moments):
-            numbers = reflectance(model, numbers, sensor.wavelengths)
-        elif isinstance(form, texture.Multipliers):
+        if isinstance(model, Moments) and isinstance(form, texture.Moments):
+            numbers, valid = multipliers_of_rounded(model, numbers)
+            if not valid.all():
+                raise ValueError(f"{path}: {(~valid).sum()} pixels hold no moments of a reflectance")
+        if not isinstance(form, texture.Spectrum):
             numbers = evaluate(model, numbers, sensor.wavelengths)
         blocks.append(sensor.rgb(numbers))
     return np.concatenate(blocks).reshape(*shape, 3)
