@@ -54,7 +54,13 @@ def test_commit_states_changed_code_but_not_the_measurements_of_the_package(tmp_
     git("commit", "-q", "-m", "first")
     monkeypatch.setattr(timing, "SOURCES", tmp_path / "uplift")
     monkeypatch.setattr(timing, "__file__", str(code))
+    first = timing.commit()
+    assert len(first) == 12
     chart.write_text("measured again")
-    assert len(timing.commit()) == 12
+    assert timing.commit() == first
+    git("commit", "-q", "-a", "-m", "measurements only")
+    assert timing.commit() == first
     code.write_text("changed")
-    assert timing.commit().endswith(" with changes")
+    assert timing.commit() == first + " with changes"
+    git("commit", "-q", "-a", "-m", "code")
+    assert timing.commit() != first

@@ -20,7 +20,7 @@ ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OMP_NUM_THRE
 """Environment variables, read when numpy is imported. Matrices here are small: with more threads colour-science took
 twice as long."""
 CODE = (":/uplift", ":/cli", ":/benchmarks", ":(top,exclude)uplift/lab/chart/measured.csv")
-"""Files whose changes a commit states: the code, without the measurements that are part of the package."""
+"""Files that measurements depend on: the code, without the measurements that are part of the package."""
 SOURCES = Path(__file__).parents[1]
 
 
@@ -128,7 +128,7 @@ def environment() -> dict[str, str]:
 
 
 def commit() -> str:
-    """Return the commit of this code.
+    """Return the last commit that changed this code. Commits of pages and tests alone do not count.
 
     Returns
     -------
@@ -138,7 +138,7 @@ def commit() -> str:
     if not _git("ls-files", "--", __file__):
         return "unknown"
     changed = _git("status", "--porcelain", "--", *CODE)
-    return _git("rev-parse", "--short=12", "HEAD") + (" with changes" if changed else "")
+    return _git("log", "-1", "--format=%h", "--abbrev=12", "--", *CODE) + (" with changes" if changed else "")
 
 
 def _git(*arguments: str) -> str:
