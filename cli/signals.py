@@ -25,6 +25,8 @@ ENDING = tuple(
 """Signals that end a command."""
 RETRY_SECONDS = 0.02
 """Time until a signal is sent again."""
+SENDER = "signals"
+"""Name of the thread that sends signals again."""
 IMPORT_SYSTEM = "<frozen importlib._bootstrap>"
 """File name of the code of the interpreter that imports modules."""
 
@@ -59,15 +61,15 @@ def ending_signals() -> Iterator[None]:
             hook(dropped)
 
     sys.unraisablehook = again
-    threading.Thread(target=_send_again, daemon=True).start()
+    threading.Thread(target=_send_again, name=SENDER, daemon=True).start()
     try:
         yield
     finally:
-        _unraised.clear()
-        _to_send.put(None)
         sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)
+        _unraised.clear()  # a signal that was put off since the block ended has nothing left to end
+        _to_send.put(None)
 
 
 def received() -> int | None:

@@ -161,8 +161,11 @@ def test_an_interrupt_while_another_is_put_off_is_not_lost(monkeypatch):
 
 
 def test_the_thread_that_sends_signals_ends_with_the_command():
-    run(lambda: None)
-    wait_until(lambda: not any(thread._target is signals._send_again for thread in threading.enumerate()))
+    def names():
+        return [thread.name for thread in threading.enumerate()]
+
+    run(lambda: names().index(signals.SENDER))
+    wait_until(lambda: signals.SENDER not in names())
 
 
 def test_progress_raises_a_dropped_interrupt(monkeypatch):

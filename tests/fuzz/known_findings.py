@@ -249,4 +249,10 @@ KNOWN_FINDINGS = (
         "was": "KeyError in pages",
         "now": "rejected: every measured method has it",
     },
+    {
+        "target": "signals to 'texture' on two processes",
+        "input": "on a busy machine, a signal while another is put off, or just before a system call",
+        "was": "lost: the command ran on",
+        "now": "sent until its exception is raised",
+    },
 )
