@@ -6,6 +6,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 OUT := out
+PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
 .PHONY: build environment lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files osl axe cameras examples showcase first-steps looks emission environment measurements
@@ -22,26 +23,28 @@ lint: $(INSTALLED)
 	$(BIN)/codespell
 	$(BIN)/python tools/lint.py
 	$(BIN)/mypy
-	$(BIN)/lint-imports --no-logo
+	$(BIN)/lint-imports --no-logo --cache-dir $(OUT)/cache/import_linter
 
+# Two at a time on two cores. A worker that crashes ends the run.
 test: lint axe
-	$(BIN)/pytest
+	$(BIN)/pytest --numprocesses auto --dist loadfile --max-worker-restart 0 --durations 10
 
 # Render the pages from the stored measurements in docs/data; nothing is measured.
 docs: $(INSTALLED)
 	$(BIN)/python -m tools.error_codes
 	$(BIN)/python -m tools.render_docs
 
-# The documentation site, out/site/index.html; it runs the notebooks.
+# The documentation site, out/site/index.html; it runs the notebooks. The tests then look at the pages.
 site: $(INSTALLED)
-	$(BIN)/python -m sphinx -W --keep-going -q -b html docs $(OUT)/site
+	IPYTHONDIR=$(abspath $(OUT))/cache/ipython $(BIN)/python -m sphinx -W --keep-going -q -b html docs $(OUT)/site
+	$(BIN)/pytest -m site tests/test_site.py
 
 # axe-core, the rules of accessibility by which the tests check pages, from a package that contains it. Where it cannot be
 # fetched, these tests are skipped.
 axe: $(AXE)
 
 $(AXE): $(INSTALLED)
-	-$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/axe axe-playwright-python==0.1.8 && touch $(AXE)
+	-$(PIP) --no-deps --upgrade --target $(OUT)/axe axe-playwright-python==0.1.8 && touch $(AXE)
 
 # Blender as a Python module, with which the tests run exported OSL programs: 0.9 GB, Python 3.11.
 osl:
@@ -60,7 +63,7 @@ chart: $(INSTALLED)
 
 # Tools for comparison in `make bench` and `make chart`. Ceres comes from the system: libceres-dev, cmake, g++.
 peers: $(INSTALLED)
-	$(BIN)/pip install --quiet -c constraints.txt --no-build-isolation -e '.[peers]'
+	$(PIP) -c constraints.txt --no-build-isolation -e '.[peers]'
 
 # Orders of growth, starts and solvers: docs/growth.md.
 growth: $(INSTALLED)
@@ -206,11 +209,11 @@ dependencies: $(INSTALLED)
 
 # Packages whose example images the benchmarks use.
 pictures: $(INSTALLED)
-	$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/pictures scikit-image==0.26.0 scikit-learn==1.9.1
+	$(PIP) --no-deps --upgrade --target $(OUT)/pictures scikit-image==0.26.0 scikit-learn==1.9.1
 
 # 1,269 chips of the Munsell book, for `make study`: they cannot be redistributed.
 munsell: $(INSTALLED)
-	$(BIN)/pip install --quiet --no-deps --upgrade --target $(OUT)/luxpy luxpy==1.12.5
+	$(PIP) --no-deps --upgrade --target $(OUT)/luxpy luxpy==1.12.5
 	$(BIN)/python tools/munsell.py $(OUT)/luxpy $(OUT)/munsell.csv
 
 # Shipped data; commit the result.
@@ -232,7 +235,7 @@ first-steps: $(INSTALLED)
 measurements: $(INSTALLED)
 	$(BIN)/python -m benchmarks.measurements
 
-# Every example of the README, the documentation and the help, in full, from a wheel: takes about half an hour.
+# Every example of the README, the documentation and the help, from a wheel: takes about half an hour.
 examples: $(INSTALLED)
 	$(BIN)/python -m tests.examples
 
@@ -245,17 +248,17 @@ cubes: $(INSTALLED)
 
 # Update all pinned versions in constraints.txt.
 lock:
-	$(BIN)/pip install --quiet uv
+	$(PIP) uv
 	$(BIN)/uv pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 --upgrade \
 	  --all-extras --no-header --no-annotate pyproject.toml -o constraints.txt
 
 $(INSTALLED): pyproject.toml constraints.txt Makefile
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "uplift needs Python 3.11 or later: make PYTHON=python3.12")'
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check pip==26.3
-	$(BIN)/pip install --quiet -c constraints.txt setuptools wheel
-	PYTHONWARNINGS=ignore $(BIN)/pip install --quiet -c constraints.txt --no-build-isolation -e '.[dev]'
+	$(PIP) pip==26.3
+	$(PIP) -c constraints.txt setuptools wheel
+	PYTHONWARNINGS=ignore $(PIP) -c constraints.txt --no-build-isolation -e '.[dev]'
 	touch $(INSTALLED)
 
 clean:
-	rm -rf $(VENV) $(OUT) build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) $(OUT) build dist *.egg-info

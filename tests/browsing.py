@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.browser import browser, chromium
+from benchmarks.browser import browser
+from tests.parts import CHROMIUM, need
 
 WIDTHS, HEIGHT = (390, 1440), 900
 SCHEMES = ("light", "dark")
@@ -55,8 +56,7 @@ def findings(tab):
 
 def check_page(html, folder):
     """Fail if a page is too wide, has errors or violates rules; skip what the machine lacks."""
-    if chromium() is None:
-        pytest.skip("no Chromium is installed")
+    need(CHROMIUM)
     with browser() as tab:
         for width, scheme in zip(WIDTHS, SCHEMES, strict=True):
             open_page(tab, html, folder, width, scheme)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import atexit
 import os
-import tempfile
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from uplift_cli import jit_cache
 
 import uplift
 from tests.process_state import kept_process_state
@@ -26,11 +25,14 @@ settings.load_profile("uplift")
 # The command line must not hide internal errors.
 os.environ["UPLIFT_TRACEBACK"] = "1"
 
-# Compiled JAX code, shared by this process and by all that tests start: compilation takes most of the time.
-_compiled = tempfile.TemporaryDirectory(prefix="uplift-compiled-", ignore_cleanup_errors=True)
-atexit.register(_compiled.cleanup)
+# Compiled JAX code of this worker and the processes that it starts, kept between runs. JAX does not write entries at
+# once, so workers that share a folder may read half of one.
+CACHE = ROOT / "out" / "cache"
+COMPILED = CACHE / "compiled" / os.environ.get("PYTEST_XDIST_WORKER", "main")
+jit_cache.prepare(COMPILED)
 os.environ |= {
-    "JAX_COMPILATION_CACHE_DIR": _compiled.name,
+    "HYPOTHESIS_STORAGE_DIRECTORY": str(CACHE / "hypothesis"),
+    "JAX_COMPILATION_CACHE_DIR": str(COMPILED),
     "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0",
     "JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES": "-1",
 }

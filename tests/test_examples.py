@@ -1,29 +1,43 @@
-"""Every example runs as written, in an empty folder outside the clone, from an installed wheel."""
+"""A few examples run as written, in an empty folder outside the clone, from a wheel; `make examples` runs all."""
 
 from __future__ import annotations
 
 import shutil
 
 import pytest
+from uplift_cli.main import COMMANDS
 
 from tests.conftest import ROOT
-from tests.examples.collect import Example, examples, page_examples
+from tests.examples.collect import ELSEWHERE, Example, examples, page_examples
 from tests.examples.installed import build_wheel, run_lines, unpack
-from tests.examples.reduced import ELSEWHERE, REDUCED, SMALL_SCENE
 
-EXAMPLES = examples()
+EXAMPLES = [example.line for example in examples()]
 BEGIN = "uplift samples"
+FEW = (
+    BEGIN,
+    "uplift relight wood.png -o wood.html",
+    "uplift build --atlas macbeth --dim 32",
+    "uplift query --cube macbeth-32.uplift --input colours.csv --format csv --mode refined > spectra.csv",
+    "uplift texture wood.png wood.exr",
+    "uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5",
+    "uplift export macbeth-32.uplift cube.h",
+    "uplift info macbeth-32.uplift --format json | jq .status",
+    "uplift slices macbeth-32.uplift macbeth-32.exr --sheet macbeth-32.png",
+    "uplift report macbeth-32.uplift --format json | jq .failures",
+    "uplift check macbeth-32.uplift",
+    "uplift atlas paints.csv --convert paints.txt",
+    "uplift wavelengths --count 8",
+    "uplift palette metamers.toml",
+    "uplift chart --recommend --time-ns 500",
+    "uplift study moments",
+    "uplift help modes",
+)
+"""Quick ones, in reading order: later lines use files of earlier ones."""
+SLOW = {"plan": "tests/scene/plan/test_command.py", "compare": "tests/cli/test_compare.py"}
+"""Commands whose examples take tens of seconds, and the tests that run them on small input."""
 
 
-def reduced(line):
-    """The line that the tests run in place of an example; None for one that they only parse."""
-    return None if line in ELSEWHERE else REDUCED.get(line, (line, ""))[0]
-
-
-RUN = {each.line: reduced(each.line) for each in EXAMPLES if reduced(each.line) is not None}
-
-
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def package(tmp_path_factory):
     """The unpacked wheel."""
     if shutil.which("git") is None or not (ROOT / ".git").exists():
@@ -32,38 +46,38 @@ def package(tmp_path_factory):
     return unpack(build_wheel(folder), folder / "package")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def outcomes(package, tmp_path_factory):
-    """Outcomes of all examples, run one after the other in one folder, by their lines."""
-    folder = tmp_path_factory.mktemp("empty")
-    lines = [line for line in RUN.values() if line != BEGIN]
-    begin = run_lines([BEGIN], package, folder)
-    (folder / "kitchen.toml").write_text(SMALL_SCENE)
-    found = [*begin, *run_lines(lines, package, folder)]
+    """Outcomes of a few examples, run one after the other in one folder, by their lines."""
+    found = run_lines(FEW, package, tmp_path_factory.mktemp("empty"))
     return {outcome["line"]: outcome for outcome in found}
 
 
-@pytest.mark.parametrize("line", [line for line in RUN if line.startswith("uplift ")])
+@pytest.mark.parametrize("line", FEW)
 def test_example_runs(outcomes, line):
-    outcome = outcomes[RUN[line]]
+    outcome = outcomes[line]
     assert outcome["code"] == 0, outcome["stderr"]
     assert "error: " not in outcome["stderr"]
 
 
+def test_every_command_has_an_example_that_runs():
+    assert {line.split()[1] for line in FEW} >= set(COMMANDS) - SLOW.keys()
+    assert set(FEW) <= set(EXAMPLES)
+    assert all((ROOT / path).is_file() for path in SLOW.values())
+
+
 def test_the_samples_are_copied_first():
-    assert EXAMPLES[0].source == "README.md"
-    assert BEGIN in [example.line for example in EXAMPLES[:3]]
+    assert examples()[0].source == "README.md"
+    assert BEGIN in EXAMPLES[:3]
 
 
-def test_reduced_examples_are_written_somewhere():
-    lines = {example.line for example in EXAMPLES}
-    assert REDUCED.keys() <= lines
-    assert ELSEWHERE.keys() <= lines
-    assert len(REDUCED) < len(lines) / 3
+def test_lines_that_no_single_machine_runs_are_written_somewhere():
+    assert set(EXAMPLES) >= ELSEWHERE
+    assert all("--scheduler tcp://" in line for line in ELSEWHERE)
 
 
 def test_examples_come_from_all_places():
-    sources = {example.source for example in EXAMPLES}
+    sources = {example.source for example in examples()}
     assert {"README.md", "docs/commands.md", "uplift query --help", "uplift study moments --help"} <= sources
     assert len(EXAMPLES) > 100
 
@@ -79,16 +93,10 @@ def test_failures_are_noticed(package, tmp_path):
         "uplift query 1 1 1 > data/white.txt",
         "uplift query 2 2 2",
         "uplift info none.uplift",
+        "uplift atlas --format json macbeth | jq .entries",
+        "uplift atlas --format json macbeth | jq .no",
     ]
-    good, bad, missing = run_lines(lines, package, tmp_path)
-    assert (good["code"], bad["code"], missing["code"]) == (0, 2, 2)
+    good, bad, missing, found, lost = run_lines(lines, package, tmp_path)
+    assert [each["code"] for each in (good, bad, missing, found, lost)] == [0, 2, 2, 0, 1]
     assert (tmp_path / "data" / "white.txt").read_text() == good["stdout"]
     assert "error: none.uplift" in missing["stderr"]
-
-
-def test_missing_keys_of_json_are_noticed(package, tmp_path):
-    found, lost = run_lines(
-        ["uplift atlas --format json macbeth | jq .entries", "uplift atlas --format json macbeth | jq .no"],
-        package, tmp_path,
-    )  # fmt: skip
-    assert (found["code"], lost["code"]) == (0, 1)

@@ -9,6 +9,7 @@ import sys
 import pytest
 
 from tests.conftest import ROOT
+from tests.parts import MITSUBA, need
 from tests.process_state import kept_process_state
 
 LEAVES = """
@@ -56,7 +57,9 @@ def test_modules_leave_nothing_to_later_ones(tmp_path, fixture, failed):
 
 
 def test_the_variant_of_mitsuba_is_restored():
-    mitsuba = pytest.importorskip("mitsuba")
+    need(MITSUBA)
+    import mitsuba
+
     mitsuba.set_variant("scalar_spectral")
     with kept_process_state():
         mitsuba.set_variant("scalar_rgb")

@@ -10,13 +10,14 @@ from uplift_cli.main import main
 
 import uplift
 from tests.conftest import ROOT
+from tests.parts import MITSUBA, need
 
 TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 def test_the_tutorial_runs(tmp_path, monkeypatch):
-    pytest.importorskip("mitsuba")
+    need(MITSUBA)
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     blocks = re.findall(r"```(\w*)\n(.*?)```", TUTORIAL, re.DOTALL)

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 
 from benchmarks.peers.row import Peer
+from uplift.common.processes import ChildError, call_in_child
 from uplift.lab.timing import ONE_THREAD
 
+LIMIT = 3600
+"""Seconds after which a tool counts as hung."""
 
-def alone(tool: Callable[[int], list[Peer]], runs: int) -> list[Peer]:
-    """Return the rows of ``tool``, timed ``runs`` times in a fresh process."""
+
+def alone(tool: Callable[[int], list[Peer]], runs: int, seconds: float = LIMIT) -> list[Peer]:
+    """Return the rows of ``tool``, timed ``runs`` times in a fresh process, or one that states how it failed."""
     before = dict(os.environ)
     os.environ.update(ONE_THREAD)
     try:
-        with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
-            return pool.submit(tool, runs).result()
+        return call_in_child(tool, runs, seconds=seconds)
+    except ChildError as error:
+        return [Peer(tool.__name__, "", 0, 0, None, None, str(error))]
     finally:
         os.environ.clear()
         os.environ.update(before)

@@ -1,11 +1,14 @@
 """The rendered ColorChecker, small and noisy: layout, reference, errors."""
 
+# ruff: noqa: E402  (what follows imports Mitsuba)
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-pytest.importorskip("mitsuba")
+from tests.parts import MITSUBA, need
+
+need(MITSUBA)
 
 from benchmarks.render import __main__ as demo
 from benchmarks.render import scene

@@ -4,25 +4,31 @@ from __future__ import annotations
 
 import csv
 import re
+from dataclasses import replace
 
 import matplotlib.image
 import pytest
 from click.testing import CliRunner
 from uplift_cli.main import main
 
+from tests.lab.chart import faulty
+from uplift.lab.chart import methods, task
 from uplift.lab.chart.recommend import MEASURED, shipped_chart
 from uplift.lab.chart.table import chart_csv, read_chart
 from uplift.lab.timing import ONE_THREAD
 
 FILES = ["chart.csv", "chart.html", "chart.png", "chart.svg"]
+FOREIGN = {method.name for _, method in methods.select_methods(quick=True) if method.needs}
+"""Methods that a machine may lack."""
 
 
 @pytest.fixture(scope="module")
 def quick(repository, tmp_path_factory):
-    """A quick chart of the ColorChecker: its folder and the result of the command."""
+    """A quick chart of the ColorChecker with short timings: its folder and the result of the command."""
     folder = tmp_path_factory.mktemp("quick")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
+        patch.setattr(task, "QUICK", replace(task.QUICK, seconds_per_error=0.1, lap=0.002, longest=0.02))
         for name, value in ONE_THREAD.items():
             patch.setenv(name, value)
         atlas = str(repository / "atlases" / "macbeth.txt")
@@ -34,8 +40,8 @@ def quick(repository, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def numbers(quick):
-    """Numbers by method."""
-    return {row.method: row.numbers for row in read_chart(quick[0] / "chart.csv").results}
+    """Numbers of the measured methods by name."""
+    return {row.method: row.numbers for row in read_chart(quick[0] / "chart.csv").measured}
 
 
 def test_all_files_are_written_and_fronts_printed(quick, numbers):
@@ -54,7 +60,10 @@ def test_all_files_are_written_and_fronts_printed(quick, numbers):
 def test_table_records_the_environment(quick):
     with (quick[0] / "chart.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert {row["state"] for row in rows} == {"measured"}
+    reasons = {row["method"]: row["why"] for row in rows if row["state"] != "measured"}
+    assert all("it needs " in why or why.startswith("needs ") for why in reasons.values())
+    assert reasons.keys() <= FOREIGN
+    rows = [row for row in rows if row["method"] not in reasons]
     for fact in ("machine", "versions", "commit"):
         assert len({row[fact] for row in rows}) == 1
         assert rows[0][fact]
@@ -91,6 +100,32 @@ def test_box_spectra_have_the_largest_errors_under_other_lights(numbers):
     for name, found in numbers.items():
         if name != "macadam1935":
             assert found["FL11_mean"] < numbers["macadam1935"]["FL11_mean"]
+
+
+@pytest.mark.parametrize(
+    ("limit", "reasons"),
+    [
+        (
+            task.QUICK.limit,
+            {
+                "abort": ("broken", f"crashed: signal 6; it needs {faulty.NEEDS}"),
+                "lack": ("not installed", f"needs {faulty.NEEDS}"),
+                "leave": ("broken", f"crashed: exit code 3; it needs {faulty.NEEDS}"),
+            },
+        ),
+        (1.0, {"hang": ("broken", f"no answer within 1 s; it needs {faulty.NEEDS}")}),
+    ],
+)
+def test_methods_that_crash_hang_or_are_missing_have_rows(run, macbeth, monkeypatch, limit, reasons):
+    monkeypatch.setattr(task, "QUICK", replace(task.QUICK, limit=limit))
+    monkeypatch.setattr(methods, "FAMILIES", (*methods.FAMILIES, faulty.FAMILY))
+    names = [f"--methods=faulty-{name}" for name in reasons]
+    result = run("chart", "--quick", "--atlas", macbeth, "--methods", "mallett2019", *names, "-o", "out")
+    rows = {row.method: (row.state, row.why) for row in read_chart("out/chart.csv").results}
+    assert rows.pop("mallett2019") == ("measured", "")
+    assert rows == {f"faulty-{name}": reason for name, reason in reasons.items()}
+    for name, (state, why) in rows.items():
+        assert f"{name}: {state}, not drawn: {why}" in result.stdout
 
 
 def test_chart_can_be_redrawn_from_its_table(quick, run, refuse):

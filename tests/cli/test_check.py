@@ -46,7 +46,7 @@ def test_unchanged_cube_passes(run, stored):
 
 def test_modified_cube_fails_with_exit_code_1_and_stays(run, modified):
     before = modified.read_bytes()
-    result = run("check", modified, code=1)
+    result = run("check", modified.name, code=1)
     assert "FAILED" in result.stdout
     assert "modified[red].uplift" in result.stdout
     assert result.stderr == ""

@@ -6,9 +6,9 @@ import json
 import tomllib
 
 import numpy as np
-import pytest
 
-from benchmarks.browser import SETTLE, SHIFT, browser, chromium
+from benchmarks.browser import SETTLE, SHIFT, browser
+from tests.parts import CHROMIUM, need
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, display_sensors
 from uplift.colorimetry.srgb import decode
@@ -37,8 +37,7 @@ def choose(page):
 
 
 def test_a_cube_answers_what_was_chosen_on_the_page(run, home):
-    if chromium() is None:
-        pytest.skip("no Chromium is installed")
+    need(CHROMIUM)
     before = json.loads(
         run("query", "#8a2a20", *LIGHTS, "--html", "page.html", "--format", "json").stdout.split("\n")[0]
     )

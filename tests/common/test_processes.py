@@ -1,11 +1,17 @@
-"""Workers of a killed process leave nothing behind, and no warning."""
+"""Workers of a killed process leave nothing behind, and no warning. A child may crash or hang."""
 
 from __future__ import annotations
 
+import os
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
+
+from uplift.common.errors import OptionError
+from uplift.common.processes import ChildError, call_in_child
 
 KILLED = """
 import os, signal
@@ -28,3 +34,43 @@ def test_a_killed_process_leaves_no_warning(tmp_path, tracker, silent):
     run = subprocess.run([sys.executable, script], stderr=subprocess.PIPE, check=False)
     assert run.returncode < 0
     assert (not run.stderr) == silent
+
+
+def raise_error(text):
+    raise OptionError(text, code="a-code")
+
+
+def print_and_warn():
+    print("to standard output")
+    os.write(2, b"to standard error")
+    return os.getpid()
+
+
+def test_a_result_comes_from_another_process_which_is_silent(capfd):
+    assert call_in_child(print_and_warn, seconds=60) != os.getpid()
+    assert capfd.readouterr() == ("", "")
+
+
+def test_an_error_of_the_function_is_raised():
+    with pytest.raises(OptionError) as caught:
+        call_in_child(raise_error, "wrong", seconds=60)
+    assert (caught.value.code, caught.value.problem) == ("a-code", "wrong")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+@pytest.mark.parametrize("number", [signal.SIGABRT, signal.SIGSEGV, signal.SIGKILL])
+def test_a_crash_is_an_error(number):
+    with pytest.raises(ChildError, match=f"crashed: signal {number:d}"):
+        call_in_child(signal.raise_signal, number, seconds=60)
+
+
+def test_an_exit_is_an_error():
+    with pytest.raises(ChildError, match="crashed: exit code 3"):
+        call_in_child(os._exit, 3, seconds=60)
+
+
+def test_a_hang_ends():
+    begin = time.monotonic()
+    with pytest.raises(ChildError, match=r"no answer within 0\.2 s"):
+        call_in_child(time.sleep, 600, seconds=0.2)
+    assert time.monotonic() - begin < 300

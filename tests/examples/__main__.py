@@ -5,9 +5,8 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from tests.examples.collect import examples
+from tests.examples.collect import ELSEWHERE, examples
 from tests.examples.installed import build_wheel, run_lines, unpack
-from tests.examples.reduced import ELSEWHERE
 
 
 def main() -> None:

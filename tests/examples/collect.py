@@ -15,10 +15,14 @@ BLOCKS = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 SHELLS = ("", "console", "bash", "sh")
 FIRST = ("README.md", "docs/commands.md")
 """Pages that are read first. The others are in alphabetical order, after the help texts."""
-
-
 TUTORIAL = "docs/tutorial.md"
 """The page whose commands and Python tests/test_tutorial.py runs together, in a separate folder."""
+ELSEWHERE = {
+    "uplift texture 'shot.*.exr' sequence --cube macbeth-32.uplift --scheduler tcp://10.0.0.5:8786",
+    "uplift texture 'shot.*.exr' uplifted --scheduler tcp://10.0.0.5:8786",
+    "uplift texture shot.*.exr uplifted --scheduler tcp://10.0.0.5:8786",
+}
+"""Examples that need a Dask cluster at that address."""
 
 
 @dataclass(frozen=True)

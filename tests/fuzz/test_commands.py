@@ -11,7 +11,7 @@ from tests.fuzz.run import COMMANDS
 from uplift.common.errors import UpliftError
 
 INPUTS = {
-    "streams and places": 60,
+    "streams and places": 30,
     "hostile text": 200,
     "outputs that are inputs": 100,
     "unforeseen exceptions": 100,

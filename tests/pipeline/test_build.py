@@ -63,7 +63,6 @@ def test_every_point_of_the_macbeth_cube_is_fitted(macbeth_cube):
         {"atlas": None, "dim": 64},
         {"atlas": MACBETH, "dim": 16, "model": "sigmoid"},
         {"atlas": MACBETH, "dim": 32, "model": "sigmoid"},
-        {"atlas": MACBETH, "dim": 64, "model": "sigmoid"},
         {"atlas": None, "dim": 32, "model": "sigmoid"},
         {"atlas": MACBETH, "dim": 16, "coefficients": 3},
         {"atlas": MACBETH, "dim": 16, "coefficients": 17},

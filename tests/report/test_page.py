@@ -10,10 +10,11 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from benchmarks.browser import browser, chromium
+from benchmarks.browser import browser
 from tests.browsing import check_page, open_page
 from tests.helpers import with_points
 from tests.pages import Page
+from tests.parts import CHROMIUM, need
 from tests.report.conftest import HOSTILE
 from uplift.atlas import read_atlas
 from uplift.lookup import MODES, Cube
@@ -116,8 +117,7 @@ def test_page_without_an_atlas_states_so(small_sigmoid_cube):
 
 
 def test_swatches_of_looks_have_the_wish_on_the_left(plain_cube, tmp_path):
-    if chromium() is None:
-        pytest.skip("no Chromium is installed")
+    need(CHROMIUM)
     row = {"light": "A", "wish": [0.2, 0.1, 0.1], "answer": [0.1, 0.1, 0.1], "delta_e": 9.0, "possible": 8.0}
     look = {"name": "dusk", "rgb": [0.2, 0.1, 0.1], "weight": 1.0, "lights": [row]}
     data = dataclasses.replace(plain_cube.data, provenance=plain_cube.data.provenance | {"looks": [look]})

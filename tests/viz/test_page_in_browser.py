@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.browser import browser, chromium
+from benchmarks.browser import browser
 from tests.browsing import AXE, check_page, findings, open_page, overflow
+from tests.parts import CHROMIUM, need
 from uplift.viz.figure import new_figure, to_page_svg
 from uplift.viz.html import Markup, _environment
 
@@ -29,8 +30,7 @@ def page(**values):
 
 @pytest.fixture(scope="module")
 def tab():
-    if chromium() is None:
-        pytest.skip("no Chromium is installed")
+    need(CHROMIUM)
     with browser() as opened:
         yield opened
 

@@ -6,7 +6,8 @@ import time
 
 import pytest
 
-from benchmarks.browser import browser, chromium
+from benchmarks.browser import browser
+from tests.parts import CHROMIUM, need
 from uplift.viz.html import Markup, content_security_policy, render
 
 INTERACTIVE = "viz/templates/interactive.html.j2"
@@ -17,8 +18,7 @@ ATTACK = Markup(
 
 @pytest.fixture(scope="module")
 def tab():
-    if chromium() is None:
-        pytest.skip("no Chromium is installed")
+    need(CHROMIUM)
     with browser() as opened:
         yield opened
 

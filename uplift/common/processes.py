@@ -1,4 +1,4 @@
-"""Worker processes that end with their parent."""
+"""Child processes that end with their parent: pools of workers, and single calls that may crash or hang."""
 
 from __future__ import annotations
 
@@ -8,19 +8,92 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing.connection import Connection
 from types import FrameType
+from typing import Any, TypeVar
 
 from uplift.common.files import remove_temporaries
 
-__all__ = ["tied_processes"]
+__all__ = ["ChildError", "call_in_child", "tied_processes"]
 
+Result = TypeVar("Result")
+GRACE = 5.0
+"""Seconds that a child may take to exit after its answer."""
 ENDED = 1
 """Exit code of a worker whose parent ended."""
 SILENT = "ignore:resource_tracker:UserWarning"
 """Warnings of the process that frees what killed processes leave behind."""
+
+
+class ChildError(Exception):
+    """A child process crashed, or did not answer in time; the text states which."""
+
+
+def call_in_child(function: Callable[..., Result], *arguments: Any, seconds: float) -> Result:
+    """Call a function in a separate process, whose crash or hang leaves this process unharmed.
+
+    Parameters
+    ----------
+    function : callable
+        Function of a module, which the child imports.
+    *arguments
+        Its arguments, as far as they can be pickled.
+    seconds : float
+        Time limit; the child is killed after it.
+
+    Returns
+    -------
+    object
+        The result.
+
+    Raises
+    ------
+    ChildError
+        If the child ends without an answer, or has none in time.
+    Exception
+        What the function raises.
+    """
+    spawn = multiprocessing.get_context("spawn")  # JAX cannot be forked
+    _start_silent_tracker()
+    ours, theirs = spawn.Pipe()
+    child = spawn.Process(target=_answer, args=(theirs, function, arguments), daemon=True)
+    try:
+        child.start()
+        theirs.close()
+        if not ours.poll(seconds):
+            raise ChildError(f"no answer within {seconds:g} s")
+        try:
+            result, error = ours.recv()
+        except (EOFError, OSError) as lost:
+            child.join(GRACE)
+            raise ChildError(_crash(child.exitcode)) from lost
+        child.join(GRACE)
+    finally:
+        ours.close()
+        if child.is_alive():
+            child.kill()
+            child.join()
+    if error is not None:
+        raise error
+    return result
+
+
+def _answer(pipe: Connection, function: Callable[..., object], arguments: tuple[object, ...]) -> None:
+    """Send the result of a function, or what it raises. What is printed by libraries is not for the user."""
+    _tie(pipe)
+    silence = os.open(os.devnull, os.O_WRONLY)
+    for stream in (1, 2):
+        os.dup2(silence, stream)
+    try:
+        pipe.send((function(*arguments), None))
+    except Exception as error:
+        pipe.send((None, error))
+
+
+def _crash(code: int | None) -> str:
+    return f"crashed: signal {-code}" if code is not None and code < 0 else f"crashed: exit code {code}"
 
 
 @contextlib.contextmanager

@@ -5,7 +5,6 @@ It returns reflectances (n, 4), and skips the test if the compiler, the browser 
 
 from __future__ import annotations
 
-import shutil
 import struct
 import subprocess
 from pathlib import Path
@@ -14,11 +13,11 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from benchmarks.browser import chromium
 from benchmarks.programs import shaders
 from benchmarks.programs.shaders import listed, padded, textures
+from tests.parts import BLENDER, BLENDER_PYTHON, CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need
+from uplift.common.processes import call_in_child
 
-BLENDER = Path(__file__).parents[3] / ".osl" / "bin" / "python"
 HOST = r"""
 #include <stdio.h>
 #include <stdlib.h>
@@ -90,8 +89,7 @@ def cuda(path, rgb, wavelengths, form="file"):
 
 def ptx(path):
     """Compile to PTX, the assembly language of graphics processors. Returns it."""
-    if shutil.which("nvcc") is None:
-        pytest.skip("needs nvcc, of the CUDA toolkit")
+    need(NVCC)
     path.with_suffix(".cu").write_text(KERNEL.format(header=path.name))
     command = [
         "nvcc",
@@ -108,8 +106,7 @@ def ptx(path):
 
 def osl(path, rgb, wavelengths, form="file"):
     """In Blender, three wavelengths at a time."""
-    if not BLENDER.exists():
-        pytest.skip("needs Blender: make osl")
+    need(BLENDER)
     side = int(np.ceil(np.sqrt(len(rgb))))
     pixels = np.ascontiguousarray(padded(rgb, side * side)[:, :3].reshape(side, side, 3))
     colours, shader, out = (path.with_name(name) for name in ("colours.exr", "lookup.osl", "found.exr"))
@@ -120,7 +117,7 @@ def osl(path, rgb, wavelengths, form="file"):
     for three in (wavelengths[:3], wavelengths[1:]):
         words = {"wavelengths": listed(three), "colours": colours, "table": table}
         shader.write_text(SHADER.format(code=code, **words))
-        command = [BLENDER, Path(__file__).with_name("render_osl.py"), shader, str(side), out]
+        command = [BLENDER_PYTHON, Path(__file__).with_name("render_osl.py"), shader, str(side), out]
         subprocess.run(command, check=True, capture_output=True)
         found.append(OpenEXR.File(str(out)).channels()["RGBA"].pixels.reshape(-1, 4)[: len(rgb), :3])
     return np.concatenate([found[0], found[1][:, 2:]], axis=1)
@@ -132,8 +129,7 @@ def _exr(path, pixels):
 
 
 def _compiled(path, rgb, wavelengths, compiler, call, load):
-    if shutil.which(compiler[0]) is None:
-        pytest.skip(f"needs a compiler, {compiler[0]}")
+    need({"cc": CC, "c++": CXX}[compiler[0]])
     folder = path.parent
     text = HOST.format(header=path.name, wavelengths=listed(wavelengths), call=call, load=load)
     (folder / "main.c").write_text(text)
@@ -155,8 +151,7 @@ def wgsl(path, rgb, wavelengths, form="file"):
 
 
 def _in_browser(run, *arguments):
-    if chromium() is None:
-        pytest.skip("needs Chromium")
+    need(CHROMIUM)
     found = run(*arguments)
     if found is None:
         pytest.skip("the browser has no such graphics interface")
@@ -165,19 +160,21 @@ def _in_browser(run, *arguments):
 
 def hlsl(path, rgb, wavelengths, form="file"):
     """Compiled to SPIR-V, and by Vulkan: needs glslangValidator and wgpu."""
-    if shutil.which("glslangValidator") is None:
-        pytest.skip("needs glslangValidator")
+    need(GLSLANG, VULKAN)
     folder, count = path.parent, -(-len(rgb) // 64) * 64
     binding = 1 if form == "file" else len(textures(path, ".dds"))
     places = {"wavelengths": listed(wavelengths), "binding": binding, "after": binding + 1}
     (folder / "main.hlsl").write_text(PIXEL.format(code=path.read_text(), **places))
     command = ["glslangValidator", "-D", "-V", "-S", "comp", "-e", "main", "main.hlsl", "-o", "main.spv"]
     subprocess.run(command, cwd=folder, check=True, capture_output=True)
-    wgpu = pytest.importorskip("wgpu", reason="needs wgpu: pip install uplift[gpu]")
-    try:
-        device = wgpu.gpu.request_adapter_sync().request_device_sync()
-    except (RuntimeError, AttributeError, OSError) as error:
-        pytest.skip(f"needs a Vulkan driver: {error}")
+    return call_in_child(_by_vulkan, path, rgb, form, count, seconds=60)
+
+
+def _by_vulkan(path, rgb, form, count):
+    """Run in a child process: drivers may crash."""
+    import wgpu
+
+    device = wgpu.gpu.request_adapter_sync().request_device_sync()
     storage, source = wgpu.BufferUsage.STORAGE, wgpu.BufferUsage.COPY_SRC
     colours = padded(rgb, count)
     if form == "file":
@@ -187,7 +184,7 @@ def hlsl(path, rgb, wavelengths, form="file"):
         held = [_dds(wgpu, device, each.read_bytes()) for each in textures(path, ".dds")]
     given = device.create_buffer_with_data(data=colours.tobytes(), usage=storage)
     found = device.create_buffer(size=colours.nbytes, usage=storage | source)
-    module = device.create_shader_module(code=(folder / "main.spv").read_bytes())
+    module = device.create_shader_module(code=path.with_name("main.spv").read_bytes())
     compute = {"module": module, "entry_point": "main"}
     pipeline = device.create_compute_pipeline(layout="auto", compute=compute)
     resources = [*held, _whole(given), _whole(found)]

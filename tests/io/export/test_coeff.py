@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from tests.helpers import raises
+from tests.parts import MITSUBA, need
 from uplift.common.errors import OptionError
 from uplift.io.export import write_coeff
 
@@ -71,7 +72,7 @@ def test_colour_science_reads_it(table, sensor):
     np.testing.assert_allclose(found, rgb, rtol=0, atol=1e-4)
 
 
-MITSUBA = """
+FETCH = """
 import sys
 import mitsuba as mi
 mi.set_variant("scalar_spectral")
@@ -84,11 +85,11 @@ for rgb in ([1, 0.25, 0.5], [0.75, 1, 0]):
 
 def test_mitsuba_reads_it(table, sensor):
     """Mitsuba finds data/srgb.coeff by its file resolver, in the folder prepended here first."""
-    pytest.importorskip("mitsuba")
+    need(MITSUBA)
     level = struct.unpack_from(f"<{RES}f", table.read_bytes(), 8)[3]
 
     def fetch(folder):
-        args = [sys.executable, "-c", MITSUBA, str(folder), str(level)]
+        args = [sys.executable, "-c", FETCH, str(folder), str(level)]
         done = subprocess.run(args, capture_output=True, text=True, check=True)
         return np.array([line.split() for line in done.stdout.splitlines()], dtype=float)
 

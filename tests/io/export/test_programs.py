@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import struct
 import subprocess
 from dataclasses import replace
@@ -12,6 +11,7 @@ import pytest
 
 from tests.helpers import raises, warns
 from tests.io.export import run_program
+from tests.parts import CC, need
 from uplift.common.errors import OptionError
 from uplift.cube import digest
 from uplift.io.export import programs, write_program
@@ -154,8 +154,7 @@ ROW = (np.arange(63, dtype=np.float32) * 7 % 33 / 32).reshape(21, 3)
 
 
 def run_c(code, folder):
-    if shutil.which("cc") is None:
-        pytest.skip("needs a compiler, cc")
+    need(CC)
     (folder / "main.c").write_text(code)
     subprocess.run(["cc", *run_program.STRICT, "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
     return subprocess.run([folder / "main"], cwd=folder, capture_output=True, check=True).stdout

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 import subprocess
@@ -12,6 +11,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
+from tests.parts import BLENDER, BLENDER_PYTHON, CC, CXX, MITSUBA, OSLC, need
 from uplift.io.export import write_program
 from uplift.lookup.interpolate import refined_multipliers
 
@@ -42,10 +42,9 @@ def test_python(folder, small_cube):
     np.testing.assert_allclose(names["reflectance"], expected, atol=1e-12)
 
 
-@pytest.mark.parametrize(("compiler", "language"), [("cc", "c"), ("c++", "c++")])
-def test_c_and_cpp(folder, small_cube, compiler, language):
-    if shutil.which(compiler) is None:
-        pytest.skip(f"needs a compiler, {compiler}")
+@pytest.mark.parametrize(("compiler", "language", "part"), [("cc", "c", CC), ("c++", "c++", CXX)])
+def test_c_and_cpp(folder, small_cube, compiler, language, part):
+    need(part)
     write_program(small_cube.data, folder / "paints.h")
     (folder / "main.c").write_text(code("C and C\\+\\+", "c"))
     subprocess.run([compiler, "-x", language, "-O1", "main.c", "-o", "main", "-lm"], check=True)
@@ -57,7 +56,9 @@ def test_c_and_cpp(folder, small_cube, compiler, language):
 
 
 def test_mitsuba(folder, small_cube):
-    mi = pytest.importorskip("mitsuba")
+    need(MITSUBA)
+    import mitsuba as mi
+
     names = {}
     exec(compile(code("Mitsuba", "python"), "integrate.md", "exec"), names)
     image = np.array(names["image"])
@@ -75,16 +76,13 @@ def shader(folder):
 
 
 def test_osl_compiles(shader):
-    if shutil.which("oslc") is None:
-        pytest.skip("needs oslc")
+    need(OSLC)
     subprocess.run(["oslc", "-q", shader], check=True)
 
 
 def test_cycles_renders_the_shader(shader, folder, small_cube):
-    """Four texels at three wavelengths, rendered by a Python that has Blender's module bpy."""
-    python = os.environ.get("BLENDER_PYTHON")
-    if python is None:
-        pytest.skip("needs BLENDER_PYTHON, a Python that has Blender's module bpy")
+    """Four texels at three wavelengths, rendered by Blender."""
+    need(BLENDER)
     rgb = np.array([[[0.8, 0.2, 0.1], [0.1, 0.1, 0.1]], [[0.9, 0.95, 0.9], [0.05, 0.3, 0.6]]])
     multipliers = refined_multipliers(small_cube.data, rgb.reshape(-1, 3)).reshape(2, 2, -1)
     channels = {
@@ -94,7 +92,9 @@ def test_cycles_renders_the_shader(shader, folder, small_cube):
     channels["A"] = np.ones((2, 2), dtype=np.float32)
     OpenEXR.File({"type": OpenEXR.scanlineimage}, channels).write("texture.exr")
     script = Path(__file__).with_name("in_blender.py")
-    subprocess.run([python, script, shader, "texture.exr", "image.exr"], check=True, capture_output=True)
+    subprocess.run(
+        [BLENDER_PYTHON, script, shader, "texture.exr", "image.exr"], check=True, capture_output=True
+    )
     image = OpenEXR.File("image.exr").channels()["RGBA"].pixels[..., :3]
     expected = small_cube.reflectance(rgb, [610, 550, 460], mode="refined")
     np.testing.assert_allclose(image[::7, ::7], expected, atol=1e-5)

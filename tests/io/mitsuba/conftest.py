@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from uplift.common.errors import OptionError
+from tests.parts import CXX, MITSUBA, need
 from uplift.io.mitsuba import compile_plugin, plugin
 
 STORED = "moments-8-macbeth.uplift"
@@ -13,7 +13,9 @@ STORED = "moments-8-macbeth.uplift"
 @pytest.fixture(scope="session")
 def mi():
     """Mitsuba with the texture plugin ``uplift``."""
-    mitsuba = pytest.importorskip("mitsuba")
+    need(MITSUBA)
+    import mitsuba
+
     from uplift.io.mitsuba import register
 
     mitsuba.set_variant("scalar_spectral")
@@ -24,14 +26,10 @@ def mi():
 @pytest.fixture(scope="session")
 def compiled(mi, tmp_path_factory):
     """Folder of the texture in C++, compiled into a temporary folder. Skipped without a compiler."""
+    need(CXX)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        try:
-            return compile_plugin()
-        except OptionError as error:
-            if error.code not in ("compiler-not-found", "headers-not-installed"):
-                raise
-            pytest.skip(str(error))
+        return compile_plugin()
 
 
 @pytest.fixture

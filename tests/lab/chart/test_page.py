@@ -8,9 +8,10 @@ import re
 import matplotlib.image
 import pytest
 
-from benchmarks.browser import browser, chromium
+from benchmarks.browser import browser
 from tests.browsing import check_page, open_page
 from tests.pages import Page, external_links
+from tests.parts import CHROMIUM, need
 from uplift.lab.chart.draw_panel import drawn_results
 from uplift.lab.chart.page import render_chart
 from uplift.lab.chart.panels import all_panels, panels_of
@@ -73,8 +74,7 @@ def test_a_panel_without_a_front_is_empty(row_of, chart_of, tmp_path):
 
 
 def test_the_reader_chooses_the_number_of_colours(row_of, chart_of, tmp_path):
-    if chromium() is None:
-        pytest.skip("no Chromium is installed")
+    need(CHROMIUM)
     visible = (
         """[...document.querySelectorAll(".picture svg")].filter(each => each.checkVisibility()).length"""
     )

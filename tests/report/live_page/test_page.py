@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.browser import browser, chromium
+from benchmarks.browser import browser
 from tests.browsing import check_page
 from tests.helpers import raises
 from tests.pages import external_links
+from tests.parts import CHROMIUM, need
 from uplift.colorimetry.observer import light
 from uplift.common.errors import OptionError
 from uplift.report.live_page import write_page
@@ -48,8 +49,7 @@ def encoded(rgb):
 
 
 def test_pixels_equal_those_of_python_under_a_mix_of_lights(page, small_cube):
-    if chromium() is None:
-        pytest.skip("needs Chromium")
+    need(CHROMIUM)
     with browser() as opened:
         opened.open(page)
         states = [
@@ -74,8 +74,7 @@ def test_pixels_equal_those_of_python_under_a_mix_of_lights(page, small_cube):
 
 
 def test_arrow_keys_move_to_another_pixel_and_mark_it(page):
-    if chromium() is None:
-        pytest.skip("needs Chromium")
+    need(CHROMIUM)
     with browser() as opened:
         opened.open(page)
         before, label = opened.canvas("view"), "document.getElementById('pixel').textContent"

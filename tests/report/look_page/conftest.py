@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.browser import browser, chromium
+from benchmarks.browser import browser
+from tests.parts import CHROMIUM, need
 from uplift.colorimetry import observer
 from uplift.lookup import bounds
 from uplift.report.look_page.page import page
@@ -31,8 +32,7 @@ def html(small_cube, found):
 
 @pytest.fixture(scope="package")
 def tab():
-    if chromium() is None:
-        pytest.skip("no Chromium is installed")
+    need(CHROMIUM)
     with browser() as opened:
         opened.window(1440, 900)
         yield opened

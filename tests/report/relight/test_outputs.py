@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from benchmarks.browser import browser, chromium
+from benchmarks.browser import browser
 from tests.browsing import check_page
 from tests.helpers import raises
 from tests.pages import Page
+from tests.parts import CHROMIUM, need
 from uplift.common.errors import OutputError
 from uplift.report.relight import RGB_PRODUCT, relight, write_relit_page, write_relit_sheet
 
@@ -93,8 +94,7 @@ def test_the_table_has_every_light_and_pair(page, relit):
 
 @pytest.fixture(scope="module")
 def tab(page):
-    if chromium() is None:
-        pytest.skip("needs Chromium")
+    need(CHROMIUM)
     with browser() as opened:
         opened.open(page)
         yield opened

@@ -10,6 +10,7 @@ import numpy as np
 
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.arrays import Array
+from uplift.common.processes import ChildError, call_in_child
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.chart.judge import round_trip
 from uplift.lab.chart.method import (
@@ -94,14 +95,16 @@ def measure_method(family: Family, method: Method, task: Task) -> MethodResult:
     """
     state, why, numbers = State.MEASURED, "", {}
     try:
-        with warnings.catch_warnings():
-            # Other packages warn, and so do cubes about the entries that all of them leave out.
-            warnings.simplefilter("ignore")
+        if method.needs:
+            numbers = call_in_child(_numbers, method, task, seconds=task.effort.limit)
+        else:
             numbers = _numbers(method, task)
     except NotInstalledError as error:
         state, why = State.MISSING, str(error)
     except BrokenError as error:
         state, why = State.BROKEN, str(error)
+    except ChildError as error:
+        state, why = State.BROKEN, f"{error}{_advice(method)}"
     return MethodResult(
         method=method.name,
         title=method.title,
@@ -120,6 +123,13 @@ def measure_method(family: Family, method: Method, task: Task) -> MethodResult:
 
 
 def _numbers(method: Method, task: Task) -> dict[str, float]:
+    with warnings.catch_warnings():
+        # Other packages warn, and so do cubes about the entries that all of them leave out.
+        warnings.simplefilter("ignore")
+        return _checked_and_timed(method, task)
+
+
+def _checked_and_timed(method: Method, task: Task) -> dict[str, float]:
     prepared = _prepared(method, task)
     uplift = _guarded(prepared.uplift, task.sensor.wavelengths, method.dtype)
     numbers: dict[str, float] = {"bytes": prepared.bytes}
@@ -141,7 +151,11 @@ def _prepared(method: Method, task: Task) -> PreparedMethod:
     except NotInstalledError:
         raise
     except Exception as error:  # code of other packages may raise anything
-        raise BrokenError(f"cannot be prepared: {_text(error)}") from error
+        raise BrokenError(f"cannot be prepared: {_text(error)}{_advice(method)}") from error
+
+
+def _advice(method: Method) -> str:
+    return f"; it needs {method.needs}" if method.needs else ""
 
 
 def _first_call(uplift: UpliftRgb, rgb: Array) -> float:

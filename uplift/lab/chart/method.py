@@ -91,6 +91,9 @@ class Method:
         Command and call that give a user of this package the same; empty for other methods.
     note : str
         Remark for the reader.
+    needs : str
+        Native code beyond this package and how to install it; empty if there is none. A method that needs some is
+        measured in a child process, as it may crash or hang.
     """
 
     name: str
@@ -107,6 +110,7 @@ class Method:
     build: str = ""
     call: str = ""
     note: str = ""
+    needs: str = ""
 
 
 @dataclass(frozen=True)

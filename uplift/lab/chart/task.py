@@ -40,6 +40,8 @@ class Effort:
         CPU seconds of a call; slower ones take fewer colours than the batch has.
     builds : int
         Number of builds of each cube; the last one is timed.
+    limit : float
+        Wall seconds after which a method in a child process counts as hung.
     """
 
     seconds_per_error: float = 6.0
@@ -48,9 +50,12 @@ class Effort:
     batches: tuple[int, ...] = (1, 1000, 65_536, 1_000_000)
     longest: float = 1.0
     builds: int = 2
+    limit: float = 900.0
 
 
-QUICK = Effort(seconds_per_error=0.3, runs=3, lap=0.01, batches=(1, 1000, 65_536), longest=0.1, builds=1)
+QUICK = Effort(
+    seconds_per_error=0.3, runs=3, lap=0.01, batches=(1, 1000, 65_536), longest=0.1, builds=1, limit=120.0
+)
 
 
 @dataclass(frozen=True, eq=False)

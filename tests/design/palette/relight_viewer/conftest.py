@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.browser import browser, chromium
+from benchmarks.browser import browser
+from tests.parts import CHROMIUM, need
 from uplift.design.palette.relight_viewer.page import page
 from uplift.design.palette.relight_viewer.relighting import Lights, Materials, Relighting
 
@@ -42,8 +43,7 @@ def view():
 
 @pytest.fixture(scope="package")
 def tab():
-    if chromium() is None:
-        pytest.skip("no Chromium is installed")
+    need(CHROMIUM)
     with browser() as opened:
         opened.window(1200, 1100)
         yield opened

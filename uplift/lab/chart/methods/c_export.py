@@ -33,6 +33,9 @@ from uplift.lab.chart.method import (
 from uplift.lab.chart.methods.uplift_cubes import EXACT, CubeOptions, built_cube
 from uplift.lab.chart.task import Task
 
+COMPILER = "a C compiler, cc: apt install gcc"
+SECONDS = 60
+"""Time limit of the compiler."""
 FLAGS = ("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC")
 SOURCE = """#include "cube.h"
 void uplift_colours(const float *rgb, const float *wavelengths, int width, long colours, float *reflectances)
@@ -58,7 +61,7 @@ def prepare(task: Task, options: CubeOptions, mode: str) -> PreparedMethod:
     """Build the cube, export and compile it, and load the library."""
     compiler = shutil.which("cc")
     if compiler is None:
-        raise NotInstalledError("a C compiler, cc, is not installed")
+        raise NotInstalledError(f"needs {COMPILER}")
     cube, seconds, _ = built_cube(task, options)
     with tempfile.TemporaryDirectory() as folder:
         library, compilation = stopwatch(lambda: compile_cube(cube.data, mode, compiler, Path(folder)))
@@ -73,7 +76,7 @@ def compile_cube(data: CubeData, mode: str, compiler: str, folder: Path) -> Path
     write_program(data, folder / "cube.h", mode=mode)
     (folder / "cube.c").write_text(SOURCE)
     command = [compiler, *FLAGS, "cube.c", "-o", "cube.so", "-lm"]
-    subprocess.run(command, cwd=folder, check=True, capture_output=True)
+    subprocess.run(command, cwd=folder, check=True, capture_output=True, timeout=SECONDS)
     return folder / "cube.so"
 
 
@@ -107,6 +110,7 @@ def _method(options: CubeOptions, mode: str) -> Method:
         build=options.command,
         call=f"uplift export CUBE cube.h --mode {mode}; cube_reflectances(rgb, wavelengths, count, out)",
         note=f"cc {' '.join(FLAGS[:5])}, called by ctypes",
+        needs=COMPILER,
     )
 
 

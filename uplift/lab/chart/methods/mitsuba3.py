@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,11 @@ XYZ_TO_RGB = np.array(
 """From XYZ to linear sRGB, in rgb2spec, the program that fitted the table."""
 AT_ONCE = 4
 """Wavelengths of an evaluation."""
+MITSUBA = "Mitsuba 3: pip install 'spectral-uplift[mitsuba]'"
+LLVM = (
+    "LLVM 19, with which Mitsuba 3.9 works: apt install libllvm19, or name its library by DRJIT_LIBLLVM_PATH"
+)
+"""What the methods need."""
 
 
 def prepare(task: Task) -> PreparedMethod:
@@ -44,8 +50,11 @@ def prepare(task: Task) -> PreparedMethod:
 
 
 def table_file() -> Path:
-    """Return the file of the table; raise `NotInstalledError` without Mitsuba."""
-    return Path(_mitsuba().__file__).parent / TABLE
+    """Return the file of the table, without loading Mitsuba; raise `NotInstalledError` if it is not installed."""
+    found = find_spec("mitsuba")
+    if found is None or found.origin is None:
+        raise NotInstalledError(f"needs {MITSUBA}")
+    return Path(found.origin).parent / TABLE
 
 
 def spectra(rgb: Array, wavelengths: Array) -> Array:
@@ -59,8 +68,8 @@ def prepare_compiled(task: Task) -> PreparedMethod:
     """Load Mitsuba's vectorised variant, without the kernels of earlier calls."""
     size = table_file().stat().st_size
     drjit = import_module("drjit")
-    if not drjit.has_backend(drjit.JitBackend.LLVM):
-        raise NotInstalledError("LLVM is not installed: apt install libllvm19, or DRJIT_LIBLLVM_PATH")
+    if not drjit.has_backend(drjit.JitBackend.LLVM):  # true does not mean that LLVM works
+        raise NotInstalledError(f"needs {LLVM}")
     drjit.flush_kernel_cache()
     _, seconds = stopwatch(lambda: compiled_spectra(task.rgb[:1], task.sensor.wavelengths))
     return PreparedMethod(compiled_spectra, size, None, seconds)
@@ -107,7 +116,7 @@ def _mitsuba(variant: str = VARIANT) -> Any:
     try:
         mitsuba = import_module("mitsuba")
     except ImportError as error:
-        raise NotInstalledError("Mitsuba is not installed: pip install 'spectral-uplift[peers]'") from error
+        raise NotInstalledError(f"needs {MITSUBA}") from error
     mitsuba.set_variant(variant)
     return mitsuba
 
@@ -126,6 +135,7 @@ FAMILIES = (
                 judge=judge,
                 batch=False,
                 note="coefficients from Python, one colour per call; spectra by numpy",
+                needs=MITSUBA,
             ),
             Method(
                 "mitsuba3-llvm",
@@ -136,6 +146,7 @@ FAMILIES = (
                 judge=judge,
                 quick=True,
                 note="a bitmap texture with a texel for each colour, loaded and evaluated, on one thread",
+                needs=LLVM,
             ),
         ),
     ),

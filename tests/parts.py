@@ -1,0 +1,109 @@
+"""Parts that a machine may lack or have broken. Each is used in a child process before a test relies on it.
+
+A part that is there need not work: Dr.Jit finds any LLVM and aborts with an old one.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.browser import browser
+from uplift.common.processes import call_in_child
+
+ROOT = Path(__file__).parents[1]
+PATIENCE = 60.0
+"""Seconds that a trial may take."""
+BLENDER_PYTHON = ROOT / ".osl" / "bin" / "python"
+EMPTY_KERNEL = "__global__ void nothing() {}\n"
+EMPTY_PROGRAM = "int main(void) { return 0; }\n"
+EMPTY_OSL = "shader nothing(output color found = 0) {}\n"
+EMPTY_SHADER = "#version 430\nlayout(local_size_x = 1) in;\nvoid main() {}\n"
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a machine, how to install it, and a trial that raises an error or crashes unless it works."""
+
+    name: str
+    installation: str
+    trial: Callable[[], object]
+
+
+def need(*parts: Part) -> None:
+    """Skip the test, or the module that is being imported, unless these parts work."""
+    for part in parts:
+        if problem := _problem(part):
+            pytest.skip(f"needs {part.name}, {part.installation}: {problem}", allow_module_level=True)
+
+
+@cache
+def _problem(part: Part) -> str:
+    try:
+        call_in_child(part.trial, seconds=PATIENCE)
+    except Exception as error:
+        return (str(error).splitlines() or [type(error).__name__])[0][:100]
+    return ""
+
+
+def _evaluate_texture(variant: str) -> None:
+    import drjit
+    import mitsuba
+
+    mitsuba.set_variant(variant)
+    bitmap = mitsuba.Bitmap(np.full((2, 2, 3), 0.5, np.float32))
+    texture = mitsuba.load_dict({"type": "bitmap", "bitmap": bitmap})
+    at = drjit.zeros(mitsuba.SurfaceInteraction3f)
+    at.wavelengths = mitsuba.Spectrum(400, 500, 600, 700)
+    assert np.isfinite(np.array(texture.eval(at))).all()
+
+
+def _compile(name: str, text: str, *command: str) -> None:
+    """Write a source to a folder, and run a command there."""
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, name).write_text(text)
+        subprocess.run(command, cwd=folder, check=True, capture_output=True)
+
+
+def _run_compiled(compiler: str) -> None:
+    _compile("main.c", EMPTY_PROGRAM, "sh", "-c", f"{compiler} -x c main.c -o main && ./main")
+
+
+def _open_tab() -> None:
+    with browser() as tab:
+        assert tab.evaluate("1 + 1") == 2
+
+
+def _open_device() -> None:
+    import wgpu
+
+    wgpu.gpu.request_adapter_sync().request_device_sync()
+
+
+MITSUBA = Part("Mitsuba 3", "pip install '.[mitsuba]'", partial(_evaluate_texture, "scalar_spectral"))
+LLVM = Part(
+    "LLVM that Mitsuba works with", "apt install libllvm19", partial(_evaluate_texture, "llvm_ad_spectral")
+)
+CC = Part("a C compiler, cc", "apt install gcc", partial(_run_compiled, "cc"))
+CXX = Part("a C++ compiler, c++", "apt install g++", partial(_run_compiled, "c++"))
+CHROMIUM = Part("Chromium", "apt install chromium", _open_tab)
+VULKAN = Part("a Vulkan driver", "pip install '.[gpu]' and apt install mesa-vulkan-drivers", _open_device)
+NVCC = Part("nvcc", "the CUDA toolkit", partial(_compile, "a.cu", EMPTY_KERNEL, "nvcc", "-ptx", "a.cu"))
+GLSLANG = Part(
+    "glslangValidator",
+    "apt install glslang-tools",
+    partial(_compile, "a.comp", EMPTY_SHADER, "glslangValidator", "a.comp"),
+)
+OSLC = Part("oslc", "Open Shading Language", partial(_compile, "a.osl", EMPTY_OSL, "oslc", "-q", "a.osl"))
+BLENDER = Part(
+    "Blender as a Python module",
+    "make osl",
+    partial(subprocess.run, [BLENDER_PYTHON, "-c", "import bpy"], check=True, capture_output=True),
+)
