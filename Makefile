@@ -9,7 +9,7 @@ OUT := out
 PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: build environment lint test site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files osl axe cameras examples showcase first-steps looks emission environment measurements
+.PHONY: build environment lint test bare basic site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files osl axe cameras examples showcase first-steps looks emission environment measurements
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -28,6 +28,18 @@ lint: $(INSTALLED)
 # Two at a time on two cores. A worker that crashes ends the run.
 test: lint axe
 	$(BIN)/pytest --numprocesses auto --dist loadfile --max-worker-restart 0 --durations 10
+
+# The tests as a machine runs them that has no compiler, browser, node or LLVM and an empty home folder.
+bare: $(INSTALLED)
+	rm -rf $(OUT)/bare
+	mkdir -p $(OUT)/bare/bin $(OUT)/bare/home
+	-IFS=:; for folder in $$PATH; do ln -s $$folder/* $(OUT)/bare/bin 2> /dev/null; done
+	cd $(OUT)/bare/bin && rm -f *cc *++ *gcc-* *g++-* c89* c99* clang* chrom* google-chrome* node* np[mx] cmake glslang*
+	PATH=$(abspath $(OUT))/bare/bin HOME=$(abspath $(OUT))/bare/home DRJIT_LIBLLVM_PATH=/nonexistent $(MAKE) test
+
+# The tests as a processor without AVX-512 runs them.
+basic: $(INSTALLED)
+	NPY_DISABLE_CPU_FEATURES='X86_V4 AVX512_ICL AVX512_SPR' $(MAKE) test
 
 # Render the pages from the stored measurements in docs/data; nothing is measured.
 docs: $(INSTALLED)
