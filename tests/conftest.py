@@ -31,6 +31,8 @@ CACHE = ROOT / "out" / "cache"
 COMPILED = CACHE / "compiled" / os.environ.get("PYTEST_XDIST_WORKER", "main")
 jit_cache.prepare(COMPILED)
 os.environ |= {
+    "DASK_TEMPORARY_DIRECTORY": str(CACHE / "dask"),
+    "DRJIT_CACHE_DIR": str(CACHE / "drjit"),
     "HYPOTHESIS_STORAGE_DIRECTORY": str(CACHE / "hypothesis"),
     "JAX_COMPILATION_CACHE_DIR": str(COMPILED),
     "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0",

@@ -32,7 +32,7 @@ def shell(tmp_path_factory):
         (folder / name).touch()
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     terminal = pexpect.spawn(
-        "bash", ["--norc", "--noprofile"], cwd=folder, env=os.environ | {"PATH": path, "TERM": "dumb"},
+        "bash", ["--norc", "--noprofile"], cwd=folder, env=os.environ | {"PATH": path, "TERM": "dumb", "HISTFILE": ""},
         encoding="utf-8", dimensions=(24, 200), timeout=60,
     )  # fmt: skip
     terminal.sendline(SET_UP)

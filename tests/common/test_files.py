@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import pathlib
 import signal
 import stat
 import subprocess
@@ -179,6 +180,15 @@ def test_folder_without_permission_raises(tmp_path):
     with raises(OutputError, "no-permission"):
         check_output(tmp_path / "new")
     tmp_path.chmod(0o700)
+
+
+def test_folder_that_cannot_be_entered_raises(tmp_path, monkeypatch):
+    def refuse(path, **options):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(pathlib.Path, "stat", refuse)
+    with raises(OutputError, "no-permission"):
+        check_output(tmp_path / "closed" / "new")
 
 
 @pytest.mark.parametrize("name", ["a\0b", "x" * 300])

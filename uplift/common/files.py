@@ -142,13 +142,17 @@ def _check(path: StrPath, inputs: set[Identity], *, force: bool) -> Path:
             f"the folder {folder} does not exist", code="folder-missing", path=path, hint="create it first"
         )
     if not os.access(folder, os.W_OK):
-        raise OutputError(
-            f"no permission to write in {folder}",
-            code="no-permission",
-            path=path,
-            hint="choose another folder",
-        )
+        raise _no_permission(path)
     return path
+
+
+def _no_permission(path: Path) -> OutputError:
+    return OutputError(
+        f"no permission to write in {path.parent}",
+        code="no-permission",
+        path=path,
+        hint="choose another folder",
+    )
 
 
 def check_folder(
@@ -304,6 +308,8 @@ def _status(path: Path) -> os.stat_result | None:
         return path.stat()
     except (FileNotFoundError, NotADirectoryError):
         return None
+    except PermissionError as error:
+        raise _no_permission(path) from error
     except (OSError, ValueError) as error:  # too long, with NUL, or a loop of links
         raise OutputError(
             f"cannot be written: {getattr(error, 'strerror', None) or error}",

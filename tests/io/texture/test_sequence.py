@@ -66,10 +66,9 @@ def test_processes(count, jobs, small_cube, colours):
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_a_dask_cluster(jobs, small_cube, colours, tmp_path):
+def test_a_dask_cluster(jobs, small_cube, colours):
     distributed = pytest.importorskip("distributed")
     options = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
-    options["local_directory"] = str(tmp_path)
     with (
         distributed.LocalCluster(**options) as local,
         texture.dask_executor(local.scheduler_address) as executor,
