@@ -58,6 +58,7 @@ def _evaluate_texture(variant: str) -> None:
     import mitsuba
 
     mitsuba.set_variant(variant)
+    drjit.flush_kernel_cache()  # compiled by an LLVM that may be gone
     bitmap = mitsuba.Bitmap(np.full((2, 2, 3), 0.5, np.float32))
     texture = mitsuba.load_dict({"type": "bitmap", "bitmap": bitmap})
     at = drjit.zeros(mitsuba.SurfaceInteraction3f)
@@ -65,15 +66,12 @@ def _evaluate_texture(variant: str) -> None:
     assert np.isfinite(np.array(texture.eval(at))).all()
 
 
-def _compile(name: str, text: str, *command: str) -> None:
-    """Write a source to a folder, and run a command there."""
+def _compile(name: str, text: str, *commands: str) -> None:
+    """Write a source to a folder, and run commands there."""
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, name).write_text(text)
-        subprocess.run(command, cwd=folder, check=True, capture_output=True)
-
-
-def _run_compiled(compiler: str) -> None:
-    _compile("main.c", EMPTY_PROGRAM, "sh", "-c", f"{compiler} -x c main.c -o main && ./main")
+        for command in commands:
+            subprocess.run(command.split(), cwd=folder, check=True, capture_output=True)
 
 
 def _open_tab() -> None:
@@ -91,19 +89,27 @@ MITSUBA = Part("Mitsuba 3", "pip install '.[mitsuba]'", partial(_evaluate_textur
 LLVM = Part(
     "LLVM that Mitsuba works with", "apt install libllvm19", partial(_evaluate_texture, "llvm_ad_spectral")
 )
-CC = Part("a C compiler, cc", "apt install gcc", partial(_run_compiled, "cc"))
-CXX = Part("a C++ compiler, c++", "apt install g++", partial(_run_compiled, "c++"))
+CC = Part(
+    "a C compiler, cc",
+    "apt install gcc",
+    partial(_compile, "main.c", EMPTY_PROGRAM, "cc main.c -o main", "./main"),
+)
+CXX = Part(
+    "a C++ compiler, c++",
+    "apt install g++",
+    partial(_compile, "main.cpp", EMPTY_PROGRAM, "c++ main.cpp -o main", "./main"),
+)
 CHROMIUM = Part("Chromium", "apt install chromium", _open_tab)
 VULKAN = Part("a Vulkan driver", "pip install '.[gpu]' and apt install mesa-vulkan-drivers", _open_device)
-NVCC = Part("nvcc", "the CUDA toolkit", partial(_compile, "a.cu", EMPTY_KERNEL, "nvcc", "-ptx", "a.cu"))
+NVCC = Part("nvcc", "the CUDA toolkit", partial(_compile, "a.cu", EMPTY_KERNEL, "nvcc -ptx a.cu"))
 GLSLANG = Part(
     "glslangValidator",
     "apt install glslang-tools",
-    partial(_compile, "a.comp", EMPTY_SHADER, "glslangValidator", "a.comp"),
+    partial(_compile, "a.comp", EMPTY_SHADER, "glslangValidator a.comp"),
 )
-OSLC = Part("oslc", "Open Shading Language", partial(_compile, "a.osl", EMPTY_OSL, "oslc", "-q", "a.osl"))
+OSLC = Part("oslc", "Open Shading Language", partial(_compile, "a.osl", EMPTY_OSL, "oslc -q a.osl"))
 BLENDER = Part(
     "Blender as a Python module",
     "make osl",
-    partial(subprocess.run, [BLENDER_PYTHON, "-c", "import bpy"], check=True, capture_output=True),
+    partial(subprocess.run, [str(BLENDER_PYTHON), "-c", "import bpy"], check=True, capture_output=True),
 )
