@@ -1,13 +1,11 @@
 """Rates of textures in Mitsuba: evaluation, and rendering of a scene → docs/data/render-rates.json.
 
-Every variant is measured in its own process, as an LLVM too old for Mitsuba ends it. All textures take turns in every
+Every variant is measured in a child process, as an LLVM too old for Mitsuba ends it. All textures take turns in every
 round; a ratio is that of the CPU times of one round.
 """
 
 from __future__ import annotations
 
-import json
-import subprocess
 import sys
 import tempfile
 import time
@@ -20,7 +18,8 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks.record import ROOT, to_json, write
+from benchmarks.record import ROOT, write
+from uplift.common.processes import call_in_child
 
 VARIANTS = ("llvm_ad_spectral", "scalar_spectral", "cuda_ad_spectral")
 REFERENCE = "Mitsuba's bitmap"
@@ -28,6 +27,8 @@ SIZE = 512
 """Rows and columns of the texture and of the LLVM variant's image."""
 SAMPLES = 1 << 22
 ROUNDS = 5
+LIMIT = 3600
+"""Seconds after which a variant counts as hung."""
 DEPTHS = (2, 5)
 PLAIN, ATLAS = (str(ROOT / "cubes" / f"moments-16{suffix}.uplift") for suffix in ("", "-macbeth"))
 
@@ -45,12 +46,11 @@ def main() -> None:
     """Measure all variants and write."""
     rows: list[dict[str, Any]] = []
     for variant in VARIANTS:
-        done = subprocess.run(
-            [sys.executable, "-m", __spec__.name, variant], capture_output=True, text=True, cwd=ROOT
-        )
-        print(f"{variant}: exit status {done.returncode}", file=sys.stderr)
-        measured = json.loads(done.stdout) if done.returncode == 0 else []
-        rows += measured or [{"variant": variant, "work": None}]
+        try:
+            rows += call_in_child(measure, variant, seconds=LIMIT)
+        except Exception as error:  # code of other packages may raise anything
+            print(f"{variant}: {error}", file=sys.stderr)
+            rows.append({"variant": variant, "work": None})
     import mitsuba
 
     figures = {"size": SIZE, "samples": SAMPLES, "rounds": ROUNDS, "reference": REFERENCE}
@@ -192,7 +192,4 @@ def _scene(texture: Any, size: int, depth: int) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1:
-        print(json.dumps(measure(sys.argv[1]), default=to_json))
-    else:
-        main()
+    main()
