@@ -30,9 +30,10 @@ def shell(tmp_path):
     for name in ("my cubes/red paint.uplift", "blue paint.uplift", "babel fish.txt"):
         (tmp_path / name).touch()
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = os.environ | {"PATH": path, "TERM": "dumb", "HISTFILE": ""}
     terminal = pexpect.spawn(
-        "bash", ["--norc", "--noprofile"], cwd=tmp_path, env=os.environ | {"PATH": path, "TERM": "dumb", "HISTFILE": ""},
-        encoding="utf-8", dimensions=(24, 200), timeout=60,
+        "bash", ["--norc", "--noprofile"], cwd=tmp_path, env=environment, encoding="utf-8", dimensions=(24, 200),
+        timeout=60,
     )  # fmt: skip
     terminal.sendline(SET_UP)
     terminal.expect_exact(PROMPT)
