@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -79,6 +80,24 @@ def test_a_tool_runs_in_a_single_threaded_process_and_the_environment_is_restore
     (row,) = alone(thread_limit, 3)
     assert (row.tool, row.count) == (ONE_THREAD["OPENBLAS_NUM_THREADS"], 3)
     assert os.environ["OPENBLAS_NUM_THREADS"] == "7"
+
+
+def abort(runs: int) -> list[Peer]:
+    os.abort()
+
+
+def hang(runs: int) -> list[Peer]:
+    time.sleep(600)
+    return []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+@pytest.mark.parametrize(
+    ("tool", "seconds", "why"), [(abort, 60, "crashed: signal 6"), (hang, 0.5, "no answer within 0.5 s")]
+)
+def test_a_tool_that_crashes_or_hangs_has_a_row(tool, seconds, why):
+    (row,) = alone(tool, 1, seconds)
+    assert (row.tool, row.cpu, row.notes) == (tool.__name__, None, why)
 
 
 def test_rows_of_the_page_hold_the_figures_or_none():
