@@ -142,13 +142,13 @@ def _check(path: StrPath, inputs: set[Identity], *, force: bool) -> Path:
             f"the folder {folder} does not exist", code="folder-missing", path=path, hint="create it first"
         )
     if not os.access(folder, os.W_OK):
-        raise _no_permission(path)
+        raise _no_permission(path, folder)
     return path
 
 
-def _no_permission(path: Path) -> OutputError:
+def _no_permission(path: Path, folder: Path) -> OutputError:
     return OutputError(
-        f"no permission to write in {path.parent}",
+        f"no permission to write in {folder}",
         code="no-permission",
         path=path,
         hint="choose another folder",
@@ -309,7 +309,7 @@ def _status(path: Path) -> os.stat_result | None:
     except (FileNotFoundError, NotADirectoryError):
         return None
     except PermissionError as error:
-        raise _no_permission(path) from error
+        raise _no_permission(path, path.parent) from error
     except (OSError, ValueError) as error:  # too long, with NUL, or a loop of links
         raise OutputError(
             f"cannot be written: {getattr(error, 'strerror', None) or error}",
