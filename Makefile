@@ -247,7 +247,7 @@ first-steps: $(INSTALLED)
 measurements: $(INSTALLED)
 	$(BIN)/python -m benchmarks.measurements
 
-# Every example of the README, the documentation and the help, from a wheel: takes about half an hour.
+# Every example of the README, the documentation and the help, from a wheel: takes about 20 minutes.
 examples: $(INSTALLED)
 	$(BIN)/python -m tests.examples
 
