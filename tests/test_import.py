@@ -86,15 +86,15 @@ def test_check_of_loaded_modules_detects_the_observer():
 )
 def test_settings_of_jax_numpy_and_warnings_are_unchanged(use):
     code = (
-        "import jax, jax.numpy as jnp, numpy, warnings\n"
+        "import numpy, warnings\n"
         "def settings():\n"
-        "    yield from jax.config.values.items()\n"
-        "    yield from numpy.geterr().items()\n"
-        "    yield from numpy.get_printoptions().items()\n"
-        "    yield from (('filters', list(warnings.filters)), ('showwarning', warnings.showwarning))\n"
-        "before = dict(settings())\n"
+        "    return numpy.geterr(), numpy.get_printoptions(), list(warnings.filters), warnings.showwarning\n"
+        "before = settings()\n"
+        "import jax, jax.numpy as jnp\n"
+        "of_jax = dict(jax.config.values)\n"
         f"import uplift\n{use}\n"
-        "print({name for name, value in settings() if before.get(name) != value})\n"
+        "assert settings() == before\n"
+        "print({name for name, value in jax.config.values.items() if of_jax.get(name) != value})\n"
         "print(jnp.zeros(1).dtype)"
     )
     assert run_python(code) == "set()\nfloat32"

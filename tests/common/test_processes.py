@@ -70,7 +70,5 @@ def test_an_exit_is_an_error():
 
 
 def test_a_hang_ends():
-    begin = time.monotonic()
     with pytest.raises(ChildError, match=r"no answer within 0\.2 s"):
         call_in_child(time.sleep, 600, seconds=0.2)
-    assert time.monotonic() - begin < 300

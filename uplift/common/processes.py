@@ -8,9 +8,11 @@ import os
 import signal
 import sys
 import threading
+import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnContext
 from types import FrameType
 from typing import Any, TypeVar
 
@@ -53,23 +55,21 @@ def call_in_child(function: Callable[..., Result], *arguments: Any, seconds: flo
     ChildError
         If the child ends without an answer, or has none in time.
     Exception
-        What the function raises.
+        Any exception of the function.
     """
-    spawn = multiprocessing.get_context("spawn")  # JAX cannot be forked
-    _start_silent_tracker()
+    spawn = _spawn_context()
     ours, theirs = spawn.Pipe()
     child = spawn.Process(target=_answer, args=(theirs, function, arguments), daemon=True)
+    child.start()
+    theirs.close()
     try:
-        child.start()
-        theirs.close()
         if not ours.poll(seconds):
             raise ChildError(f"no answer within {seconds:g} s")
-        try:
-            result, error = ours.recv()
-        except (EOFError, OSError) as lost:
-            child.join(GRACE)
-            raise ChildError(_crash(child.exitcode)) from lost
+        result, error = ours.recv()
         child.join(GRACE)
+    except (EOFError, OSError) as lost:
+        child.join(GRACE)
+        raise ChildError(_crash(child.exitcode)) from lost
     finally:
         ours.close()
         if child.is_alive():
@@ -81,8 +81,9 @@ def call_in_child(function: Callable[..., Result], *arguments: Any, seconds: flo
 
 
 def _answer(pipe: Connection, function: Callable[..., object], arguments: tuple[object, ...]) -> None:
-    """Send the result of a function, or what it raises. What is printed by libraries is not for the user."""
+    """Send the result of a function, or its exception. Output and warnings of the child are dropped."""
     _tie(pipe)
+    warnings.simplefilter("ignore")
     silence = os.open(os.devnull, os.O_WRONLY)
     for stream in (1, 2):
         os.dup2(silence, stream)
@@ -112,8 +113,7 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
     ProcessPoolExecutor
         The processes, started as they are needed.
     """
-    spawn = multiprocessing.get_context("spawn")  # JAX cannot be forked
-    _start_silent_tracker()
+    spawn = _spawn_context()
     reader, writer = spawn.Pipe(duplex=False)
     pool = ProcessPoolExecutor(count, mp_context=spawn, initializer=_tie, initargs=(reader,))
     try:
@@ -127,17 +127,17 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
         reader.close()
 
 
-def _start_silent_tracker() -> None:
-    """Start multiprocessing's resource tracker, which takes its filter of warnings from this process."""
-    if os.name != "posix":
-        return
-    from multiprocessing import resource_tracker
+def _spawn_context() -> SpawnContext:
+    """Return the context that spawns children, as JAX cannot be forked; its resource tracker prints no warnings."""
+    if os.name == "posix":
+        from multiprocessing import resource_tracker
 
-    sys.warnoptions.append(SILENT)
-    try:
-        resource_tracker.ensure_running()
-    finally:
-        sys.warnoptions.remove(SILENT)
+        sys.warnoptions.append(SILENT)
+        try:
+            resource_tracker.ensure_running()
+        finally:
+            sys.warnoptions.remove(SILENT)
+    return multiprocessing.get_context("spawn")
 
 
 def _tie(reader: Connection) -> None:

@@ -95,10 +95,13 @@ def measure_method(family: Family, method: Method, task: Task) -> MethodResult:
     """
     state, why, numbers = State.MEASURED, "", {}
     try:
-        if method.needs:
-            numbers = call_in_child(_numbers, method, task, seconds=task.effort.limit)
-        else:
-            numbers = _numbers(method, task)
+        with warnings.catch_warnings():
+            # Other packages warn, and so do cubes about the entries that all of them leave out.
+            warnings.simplefilter("ignore")
+            if method.needs:
+                numbers = call_in_child(_numbers, method, task, seconds=task.effort.limit)
+            else:
+                numbers = _numbers(method, task)
     except NotInstalledError as error:
         state, why = State.MISSING, str(error)
     except BrokenError as error:
@@ -123,13 +126,6 @@ def measure_method(family: Family, method: Method, task: Task) -> MethodResult:
 
 
 def _numbers(method: Method, task: Task) -> dict[str, float]:
-    with warnings.catch_warnings():
-        # Other packages warn, and so do cubes about the entries that all of them leave out.
-        warnings.simplefilter("ignore")
-        return _checked_and_timed(method, task)
-
-
-def _checked_and_timed(method: Method, task: Task) -> dict[str, float]:
     prepared = _prepared(method, task)
     uplift = _guarded(prepared.uplift, task.sensor.wavelengths, method.dtype)
     numbers: dict[str, float] = {"bytes": prepared.bytes}
