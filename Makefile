@@ -25,11 +25,11 @@ lint: $(INSTALLED)
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo --cache-dir $(OUT)/cache/import_linter
 
-# Two at a time on two cores. A worker that crashes ends the run.
+# One worker per core, at most four as each takes over 1 GB. A worker that crashes ends the run.
 test: lint axe
-	$(BIN)/pytest --numprocesses auto --dist loadfile --max-worker-restart 0 --durations 10
+	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile --max-worker-restart 0 --durations 10
 
-# The tests as a machine runs them that has no compiler, browser, node or LLVM and an empty home folder.
+# The tests without compilers, browser, node and LLVM, in an empty home folder.
 bare: $(INSTALLED)
 	rm -rf $(OUT)/bare
 	mkdir -p $(OUT)/bare/bin $(OUT)/bare/home
@@ -37,7 +37,7 @@ bare: $(INSTALLED)
 	cd $(OUT)/bare/bin && rm -f *cc *++ *gcc-* *g++-* c89* c99* clang* chrom* google-chrome* node* np[mx] cmake glslang*
 	PATH=$(abspath $(OUT))/bare/bin HOME=$(abspath $(OUT))/bare/home DRJIT_LIBLLVM_PATH=/nonexistent $(MAKE) test
 
-# The tests as a processor without AVX-512 runs them.
+# The tests with numpy's code for processors without AVX-512.
 basic: $(INSTALLED)
 	NPY_DISABLE_CPU_FEATURES='X86_V4 AVX512_ICL AVX512_SPR' $(MAKE) test
 
