@@ -24,6 +24,13 @@ SECONDS = 60
 """Limit of waiting for what takes a second or two."""
 
 
+@pytest.fixture(autouse=True)
+def _no_signals_left():
+    """Forget received signals: the next report of progress in this process would raise them."""
+    yield
+    signals._received.clear()
+
+
 @pytest.fixture
 def texture(tmp_path):
     """A process that converts two large images on two workers, and has begun with both."""
