@@ -9,7 +9,7 @@ OUT := out
 PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: build environment lint test bare basic site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files osl axe cameras examples showcase first-steps looks emission environment measurements
+.PHONY: golden golden-before build environment lint test bare basic site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files osl axe cameras examples showcase first-steps looks emission environment measurements
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -40,6 +40,13 @@ bare: $(INSTALLED)
 # The tests with numpy's code for processors without AVX-512.
 basic: $(INSTALLED)
 	NPY_DISABLE_CPU_FEATURES='X86_V4 AVX512_ICL AVX512_SPR' $(MAKE) test
+
+# What commands answer and write, bit by bit: `make golden-before` on the code before a change, `make golden` after it.
+golden: $(INSTALLED)
+	$(BIN)/python -m tools.golden $(NAMES)
+
+golden-before: $(INSTALLED)
+	$(BIN)/python -m tools.golden record
 
 # Render the pages from the stored measurements in docs/data; nothing is measured.
 docs: $(INSTALLED)
