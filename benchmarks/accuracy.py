@@ -58,9 +58,7 @@ def cubes() -> Iterator[tuple[str, Cube]]:
 def at_range(shortest: int, longest: int, step: int) -> dict[str, object]:
     """Build the ColorChecker at a range; return errors at 1 nm, and those of the spectra of its entries."""
     cube = uplift.build(MACBETH, shortest=shortest, longest=longest, step=step)
-    measured = dict(
-        zip(uplift.read_atlas(MACBETH).names, on_grid(uplift.read_atlas(MACBETH), VISIBLE), strict=True)
-    )
+    measured = dict(zip(uplift.read_atlas(MACBETH).names, on_grid(uplift.read_atlas(MACBETH), VISIBLE), strict=True))
     answers = cube.reflectance(cube.data.atlas.rgb, VISIBLE)
     off = answers - [measured[name] for name in cube.data.atlas.names]
     names = {"range": f"{shortest}–{longest} nm", "step": step}

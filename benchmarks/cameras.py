@@ -149,10 +149,7 @@ def main() -> None:
         splits=SPLITS,
         dim=DIM,
         left_out=left_out,
-        marks={
-            method: mark([ATLAS], CHOSEN_AS[method]) if method in CHOSEN_AS else ""
-            for method in rows[0]["errors"]
-        },
+        marks={method: mark([ATLAS], CHOSEN_AS[method]) if method in CHOSEN_AS else "" for method in rows[0]["errors"]},
         rows=rows,
     )
 

@@ -27,9 +27,7 @@ PICTURES = {"unseen": 1, "set-up": 2}
 
 @click.command()
 @click.option("--from", "source", metavar="CSV", help="Table of an earlier run; nothing is measured.")
-@click.option(
-    "--longest", type=float, help="CPU seconds of a call; slower ones take fewer colours.  [default: 1]"
-)
+@click.option("--longest", type=float, help="CPU seconds of a call; slower ones take fewer colours.  [default: 1]")
 def main(source: str | None, longest: float | None) -> None:
     """Measure, draw and store."""
     enable_jit_cache()
@@ -124,9 +122,7 @@ def method_record(row: MethodResult, batches: tuple[int, ...]) -> dict[str, Any]
         "mark": optimistic_mark(row),
         "dtype": row.dtype,
         "times": {str(batch): _time(row, batch) for batch in batches},
-        "totals": {
-            str(batch): 1e9 * numbers["setup_s"] + batch * numbers[f"ns_{batch}"] for batch in batches
-        },
+        "totals": {str(batch): 1e9 * numbers["setup_s"] + batch * numbers[f"ns_{batch}"] for batch in batches},
         "spread": max((numbers[f"ns_{batch}_most"] / numbers[f"ns_{batch}_least"] - 1) for batch in batches),
         "bytes": numbers["bytes"],
         "build_s": numbers.get("build_s"),

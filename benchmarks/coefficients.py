@@ -63,9 +63,7 @@ def measure(name: str, data: CubeData) -> dict[str, Any]:
         "coefficients": model.count,
         "tolerances": [saving(worst, counts, tolerance, model.count) for tolerance in TOLERANCES],
         "uniform": [
-            _one_count(int(count), column)
-            for count, column in zip(counts, worst.T, strict=True)
-            if count < model.count
+            _one_count(int(count), column) for count, column in zip(counts, worst.T, strict=True) if count < model.count
         ],
     }
 

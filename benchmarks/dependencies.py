@@ -54,9 +54,7 @@ class Dependency:
 def requirements() -> dict[str, str]:
     """Return the extra of each run-time dependency of pyproject.toml, empty for required ones."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    groups = {"": project["dependencies"]} | {
-        extra: project["optional-dependencies"][extra] for extra in EXTRAS
-    }
+    groups = {"": project["dependencies"]} | {extra: project["optional-dependencies"][extra] for extra in EXTRAS}
     return {Requirement(text).name: extra for extra, texts in groups.items() for text in texts}
 
 

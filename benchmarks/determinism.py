@@ -118,9 +118,7 @@ def main(into: str | None, batch: tuple[int, int] | None) -> None:
         ],
         limits=dict(LIMITS),
     )
-    different = [row for row in same if not row["same_bytes"]] + [
-        row for row in apart if not row["nodes_same"]
-    ]
+    different = [row for row in same if not row["same_bytes"]] + [row for row in apart if not row["nodes_same"]]
     click.echo(
         f"{len(same)} builds must have the same bytes, {len(apart)} others the same nodes; failures: {different}"
     )

@@ -101,9 +101,7 @@ def _fit_once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float]
 
     wall = time.perf_counter()
     mark("begin")
-    entries = fit.fit_entries(
-        model, problem.forward, measured, rgb, lights, observer.light("A"), problem.tolerance
-    )
+    entries = fit.fit_entries(model, problem.forward, measured, rgb, lights, observer.light("A"), problem.tolerance)
     seeds = fit.seed(lattice, rgb)
     mark("entries")
     families = library_families(Options(), (), sensor)

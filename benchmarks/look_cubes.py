@@ -133,15 +133,12 @@ def realisable(names: Sequence[str]) -> dict[str, Any]:
     """Return how well looks that state the colours of measured materials are met."""
     lights, cube = [light(name) for name in names], uplift.load()
     here = cube.data.sensor
-    measured = np.concatenate(
-        [on_grid(read_atlas(each.path), here.wavelengths) for each in shipped_atlases()]
-    )
+    measured = np.concatenate([on_grid(read_atlas(each.path), here.wavelengths) for each in shipped_atlases()])
     measured = measured[here.contains(here.rgb(measured))]
     measured = measured[np.random.default_rng(0).choice(len(measured), MATERIALS, replace=False)]
     expected = cube.reflectance(np.clip(here.rgb(measured), 0, 1))
     goals = [
-        fit.LookGoal(here.rgb(each), tuple(lights), np.stack([one.xyz @ each for one in lights]))
-        for each in measured
+        fit.LookGoal(here.rgb(each), tuple(lights), np.stack([one.xyz @ each for one in lights])) for each in measured
     ]
     designs, seconds = timed(
         lambda: np.array([fit.design_reflectance(here, *each) for each in zip(goals, expected, strict=True)])
@@ -193,9 +190,7 @@ def masked(plain: Cube, looked: Cube) -> dict[str, Any]:
         }
         for turn in range(ROUNDS + 1):
             for kind, converter in converters.items():
-                done = texture.convert(
-                    converter, folder / "image.exr", folder / f"{kind}-out.exr", force=True
-                )
+                done = texture.convert(converter, folder / "image.exr", folder / f"{kind}-out.exr", force=True)
                 times.setdefault(kind, []).append(done.seconds if turn else np.inf)
     every = [texture.prepare(cube, depth="float") for cube in (plain, looked)]
     block, weights = rgb[:64], ramp[:64, :, None].astype(np.float32)

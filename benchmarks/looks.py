@@ -111,8 +111,7 @@ def likely(name: str) -> list[dict[str, Any]]:
         for cube, some in pairs:
             errors = lab_errors(cube.data, each)
             measured, answered = (
-                lab(spectra @ each.xyz.T, each.white)[:, 1:]
-                for spectra in (some.measured, cube.reflectance(some.rgb))
+                lab(spectra @ each.xyz.T, each.white)[:, 1:] for spectra in (some.measured, cube.reflectance(some.rgb))
             )
             distances.append(mahalanobis(errors.covariance(some.rgb)[:, 1:, 1:], measured - answered))
             radii.append(np.full(len(measured), errors.likely_radius))

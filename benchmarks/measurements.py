@@ -127,15 +127,11 @@ def main(steps: tuple[str, ...], again: bool, minutes: float, listed: bool) -> N
             click.echo(describe(step, journal.read().get(step)))
         return
     if now.endswith(CHANGED):
-        click.echo(
-            "files differ from the commit: pages will state it, and no step is skipped later", err=True
-        )
+        click.echo("files differ from the commit: pages will state it, and no step is skipped later", err=True)
     commands = {step: ("make", "--no-print-directory", step) for step in (*chosen, *RENDER)}
     due = [step for step in chosen if again or not is_current(journal.read().get(step), now)]
     outcome = run_steps({step: commands[step] for step in due}, journal, now, 60 * minutes)
-    outcome = Outcome(
-        outcome.failed + run_steps({s: commands[s] for s in RENDER}, journal, now).failed, outcome.left
-    )
+    outcome = Outcome(outcome.failed + run_steps({s: commands[s] for s in RENDER}, journal, now).failed, outcome.left)
     if outcome.left:
         click.echo(f"no time for {', '.join(outcome.left)}: run again")
     if outcome.failed:
@@ -170,9 +166,7 @@ def duration(seconds: float) -> str:
     return f"{minutes // 60}:{minutes % 60:02}:{rest:02}"
 
 
-def run_steps(
-    commands: Mapping[str, Sequence[str]], journal: Journal, now: str, seconds: float = math.inf
-) -> Outcome:
+def run_steps(commands: Mapping[str, Sequence[str]], journal: Journal, now: str, seconds: float = math.inf) -> Outcome:
     """Run each command, log its output and duration, and store its success.
 
     Parameters

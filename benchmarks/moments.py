@@ -58,10 +58,7 @@ def read_thesis() -> Thesis:
     by_short = {technique.short: technique for technique in TECHNIQUES}
     with THESIS.open(encoding="utf-8") as file:
         rows = csv.DictReader(line for line in file if not line.startswith("#"))
-        return {
-            (by_short[row["method"]], int(row["moments"])): [float(row["mean"]), float(row["max"])]
-            for row in rows
-        }
+        return {(by_short[row["method"]], int(row["moments"])): [float(row["mean"]), float(row["max"])] for row in rows}
 
 
 def thesis_curves(thesis: Thesis) -> dict[Technique, Curve]:
@@ -115,9 +112,7 @@ def by_warp(atlases: dict[str, uplift.Atlas], study: MomentsStudy, thesis: Thesi
     for name, warp in warps.candidates(study.measured).items():
         with warps.replaced_warp(warp):
             other = study_moments(atlases, max(WARP_MOMENTS))
-        rows.append(
-            {"warp": name, "errors": {str(n + 1): pair(other.result(WARPED, n)) for n in WARP_MOMENTS}}
-        )
+        rows.append({"warp": name, "errors": {str(n + 1): pair(other.result(WARPED, n)) for n in WARP_MOMENTS}})
     printed = {str(n + 1): thesis[WARPED, n] for n in WARP_MOMENTS}
     return [*rows, {"warp": "thesis", "errors": printed}]
 
@@ -131,9 +126,7 @@ def under_lights(study: MomentsStudy, floats: int, technique: Technique) -> dict
 
 def by_atlas(study: MomentsStudy, group: str) -> dict[str, Any]:
     """Return the errors of an atlas with the default number of floats."""
-    errors = {
-        one.short: pair(study.result(one, max_moments(one, DEFAULT_FLOATS), group)) for one in TECHNIQUES
-    }
+    errors = {one.short: pair(study.result(one, max_moments(one, DEFAULT_FLOATS), group)) for one in TECHNIQUES}
     return {"atlas": group, "entries": len(study.rows(group)), "errors": errors}
 
 

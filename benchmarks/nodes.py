@@ -26,9 +26,7 @@ def quadrature_errors() -> list[dict[str, Any]]:
     data = load(ROOT / "cubes" / "moments-16.uplift").data
     sensor = data.sensor
     chosen = np.random.default_rng(0).permutation(data.lattice.size)[:SPECTRA]
-    learn, held_out = np.array_split(
-        reflectance(data.model, data.points.coefficients[chosen], sensor.wavelengths), 2
-    )
+    learn, held_out = np.array_split(reflectance(data.model, data.points.coefficients[chosen], sensor.wavelengths), 2)
     importance = np.sqrt(sensor.light.xyz.sum(axis=0))
     _, _, order = qr(learn * importance, mode="economic", pivoting=True)
     rows = []

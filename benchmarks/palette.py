@@ -78,9 +78,7 @@ def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[dict[str
     for name, product in products.items():
         errors = {k: np.concatenate([paths.errors(product, light, k) for light in LIGHTS]) for k in BOUNCES}
         pairs = {str(k): [float(one.mean()), float(np.percentile(one, 95))] for k, one in errors.items()}
-        rows.append(
-            {"product": name, "errors": pairs, "all": float(np.mean([one[0] for one in pairs.values()]))}
-        )
+        rows.append({"product": name, "errors": pairs, "all": float(np.mean([one[0] for one in pairs.values()]))})
     return [row | {"gain": rows[0]["all"] / row["all"]} for row in rows]
 
 

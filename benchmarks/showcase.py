@@ -113,9 +113,7 @@ def colours(lamps: list[Light]) -> tuple[list[dict[str, Array]], Array]:
     return found, ~painted.outside
 
 
-def draw_charts(
-    lamps: list[Light], methods: list[dict[str, Array]], errors: dict[tuple[str, str], Array]
-) -> None:
+def draw_charts(lamps: list[Light], methods: list[dict[str, Array]], errors: dict[tuple[str, str], Array]) -> None:
     """Draw the charts; the squares inside the patches are the measured colours."""
     width, height = LAYOUT.size
     images = {}

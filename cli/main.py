@@ -88,11 +88,7 @@ class LazyGroup(click.Group):
         width = max(map(len, COMMANDS))
         for title, names in GROUPS.items():
             commands = ((name, self.get_command(ctx, name)) for name in names)
-            rows = [
-                (f"{name:<{width}}", each.get_short_help_str(SUMMARY_LENGTH))
-                for name, each in commands
-                if each
-            ]
+            rows = [(f"{name:<{width}}", each.get_short_help_str(SUMMARY_LENGTH)) for name, each in commands if each]
             with formatter.section(title):
                 formatter.write_dl(rows)
 
@@ -216,9 +212,7 @@ def _memory_error() -> UpliftError:
 
 @click.command(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(version=VERSION, message="uplift %(version)s")
-@click.option(
-    "--traceback", is_flag=True, envvar="UPLIFT_TRACEBACK", help="Show the traceback of an internal error."
-)
+@click.option("--traceback", is_flag=True, envvar="UPLIFT_TRACEBACK", help="Show the traceback of an internal error.")
 def main(traceback: bool) -> None:
     """Convert RGB colours to reflectance spectra that agree with measured ones.
 

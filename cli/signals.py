@@ -19,9 +19,7 @@ from queue import SimpleQueue
 from types import FrameType
 from typing import NoReturn
 
-ENDING = tuple(
-    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK") if hasattr(signal, name)
-)
+ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK") if hasattr(signal, name))
 """Signals that end a command."""
 RETRY_SECONDS = 0.02
 """Time until a signal is sent again."""

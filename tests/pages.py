@@ -73,9 +73,7 @@ class Page(HTMLParser):
 
     def table(self, *headings):
         """The body rows of the only table that begins with these headings."""
-        (found,) = [
-            rows for rows in self.tables if [cell.text for cell in rows[0]][: len(headings)] == list(headings)
-        ]
+        (found,) = [rows for rows in self.tables if [cell.text for cell in rows[0]][: len(headings)] == list(headings)]
         return found[1:]
 
 

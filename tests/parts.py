@@ -86,9 +86,7 @@ def _open_device() -> None:
 
 
 MITSUBA = Part("Mitsuba 3", "pip install '.[mitsuba]'", partial(_evaluate_texture, "scalar_spectral"))
-LLVM = Part(
-    "LLVM that Mitsuba works with", "apt install libllvm19", partial(_evaluate_texture, "llvm_ad_spectral")
-)
+LLVM = Part("LLVM that Mitsuba works with", "apt install libllvm19", partial(_evaluate_texture, "llvm_ad_spectral"))
 CC = Part(
     "a C compiler, cc",
     "apt install gcc",

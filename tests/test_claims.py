@@ -62,8 +62,7 @@ def spans(text, claims):
     for claim in claims:
         before, number, after = re.split("[«»]", claim["text"])
         found += [
-            (match.start() + len(before), number)
-            for match in re.finditer(re.escape(before + number + after), text)
+            (match.start() + len(before), number) for match in re.finditer(re.escape(before + number + after), text)
         ]
     return found
 
@@ -82,9 +81,7 @@ def as_number(text):
     """Value of a number as written: 2e−7, 10⁻⁸, 0.95."""
     plain = text.replace("−", "-").replace(",", "")
     power = re.fullmatch(r"10⁻([⁰¹²³⁴-⁹]+)", plain)
-    return (
-        10.0 ** -int(power[1].translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789"))) if power else float(plain)
-    )
+    return 10.0 ** -int(power[1].translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789"))) if power else float(plain)
 
 
 def digits(text):
@@ -143,9 +140,7 @@ def test_number_agrees_with_its_source(claim):
         assert abs(actual - stated) <= digits(number) + 1e-15, (number, actual)
 
 
-@pytest.mark.parametrize(
-    "claim", [claim for claim in CLAIMS if "test" in claim], ids=lambda claim: claim["text"][:40]
-)
+@pytest.mark.parametrize("claim", [claim for claim in CLAIMS if "test" in claim], ids=lambda claim: claim["text"][:40])
 def test_named_file_has_the_number(claim):
     value = as_number(re.split("[«»]", claim["text"])[1])
     text = (ROOT / claim["test"]).read_text(encoding="utf-8")

@@ -50,9 +50,7 @@ def test_commands_and_options_exist():
     assert unknown_options(PAGE) == []
 
 
-@pytest.mark.parametrize(
-    "code", ["`uplift invent`", "`uplift build --dimension 3`", "`uplift study nothing`"]
-)
+@pytest.mark.parametrize("code", ["`uplift invent`", "`uplift build --dimension 3`", "`uplift study nothing`"])
 def test_unknown_names_are_noticed(code):
     assert unknown_options(code)
 

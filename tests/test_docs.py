@@ -68,8 +68,6 @@ def test_make_targets_exist():
 
 def test_files_that_the_pages_name_exist():
     for page in [*PAGES, ROOT / "CONTRIBUTING.md"]:
-        named = re.findall(
-            r"`((?:uplift|cli|tests|benchmarks|tools|docs|atlases)/[\w./-]+)`", page.read_text("utf-8")
-        )
+        named = re.findall(r"`((?:uplift|cli|tests|benchmarks|tools|docs|atlases)/[\w./-]+)`", page.read_text("utf-8"))
         missing = [name for name in named if "NAME" not in name and not (ROOT / name).exists()]
         assert missing == [], page.name

@@ -38,9 +38,7 @@ def test_a_missing_code_is_found():
 
 def test_codes_are_kebab_case():
     for row in collect():
-        assert all(
-            (part.isalnum() and part.islower()) or part.isdigit() for part in row["code"].split("-")
-        ), row
+        assert all((part.isalnum() and part.islower()) or part.isdigit() for part in row["code"].split("-")), row
 
 
 def test_listed_codes_are_those_of_the_source():

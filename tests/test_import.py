@@ -70,9 +70,7 @@ def test_check_of_loaded_subpackages_detects_an_added_import(subpackage):
 
 
 def test_check_of_loaded_modules_detects_the_observer():
-    assert (
-        "uplift.colorimetry.observer" in loaded_subpackages(f"{QUERY}import uplift.colorimetry.observer")[1]
-    )
+    assert "uplift.colorimetry.observer" in loaded_subpackages(f"{QUERY}import uplift.colorimetry.observer")[1]
 
 
 @pytest.mark.parametrize(

@@ -36,9 +36,7 @@ def info(wheel, name):
 
 def test_every_module_is_in_it(wheel, repository):
     for here, there in FOLDERS.items():
-        modules = [
-            path.relative_to(repository / here).as_posix() for path in (repository / here).rglob("*.py")
-        ]
+        modules = [path.relative_to(repository / here).as_posix() for path in (repository / here).rglob("*.py")]
         assert len(modules) > 10 or here == "atlases"
         assert {f"{there}/{module}" for module in modules} <= set(wheel.namelist())
 
@@ -122,7 +120,5 @@ def test_it_works_from_where_it_is_installed(wheel, tmp_path):
         "assert len(uplift.read_atlas('macbeth')) == 24\n"
         "cli.main(['query', '#ffffff', '--format', 'csv', '--wavelengths', '550'])"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
-    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert done.stdout.startswith("r,g,b,delta_e_2000,standard_error,error_bound,entry,550\n1.0,1.0,1.0,")

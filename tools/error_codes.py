@@ -54,8 +54,7 @@ def collect(root: Path = ROOT) -> list[dict[str, Any]]:
             kind = "warning" if name.endswith(("Warning", "warn", "_warn")) else "error"
             found.setdefault((code, kind), set()).add(package)
     return [
-        {"code": code, "kind": kind, "packages": sorted(packages)}
-        for (code, kind), packages in sorted(found.items())
+        {"code": code, "kind": kind, "packages": sorted(packages)} for (code, kind), packages in sorted(found.items())
     ]
 
 

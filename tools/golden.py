@@ -60,7 +60,7 @@ LINES = {
     "texture-float": "texture painting.exr wood.exr --depth float --cube ../macbeth/macbeth.uplift",
     "texture-moments": "texture wood.png moments.exr --store moments",
     "texture-multipliers": "texture wood.png multipliers.exr --store multipliers",
-    "texture-looks": "texture wood.png masked.exr --mask mask.png --cube ../smooth/smooth.uplift --cube ../looks/looks.uplift",
+    "texture-looks": "texture wood.png o.exr --mask mask.png --cube ../smooth/smooth.uplift --cube ../looks/looks.uplift",
     "texture-space": "texture painting.exr aces.exr --cube ../acescg/acescg.uplift --space ACEScg",
     "texture-sequence": "texture 'shot.*.exr' uplifted --store moments",
     "texture-lights": "texture sky.exr lit.exr --emission --wavelengths 400:700:20",
@@ -164,9 +164,7 @@ def difference(old: Path, new: Path) -> str:
     except UnicodeDecodeError:
         return f"{old.stat().st_size} and {new.stat().st_size} bytes"
     changed = [
-        line
-        for line in difflib.unified_diff(*lines, lineterm="", n=0)
-        if not line.startswith(("---", "+++", "@@"))
+        line for line in difflib.unified_diff(*lines, lineterm="", n=0) if not line.startswith(("---", "+++", "@@"))
     ]
     return f"{len(changed)} lines\n" + "\n".join("      " + line[:160] for line in changed[:8])
 
@@ -175,27 +173,19 @@ def exr_difference(old: Path, new: Path) -> str:
     import OpenEXR
 
     texts = []
-    for part, (a, b) in enumerate(
-        zip(OpenEXR.File(str(old)).parts, OpenEXR.File(str(new)).parts, strict=False)
-    ):
+    for part, (a, b) in enumerate(zip(OpenEXR.File(str(old)).parts, OpenEXR.File(str(new)).parts, strict=False)):
         if sorted(a.channels) != sorted(b.channels):
             texts.append(f"part {part} has other channels")
             continue
         worst = max(
             (
-                float(
-                    np.max(
-                        np.abs(a.channels[name].pixels.astype(float) - b.channels[name].pixels.astype(float))
-                    )
-                )
+                float(np.max(np.abs(a.channels[name].pixels.astype(float) - b.channels[name].pixels.astype(float))))
                 for name in a.channels
                 if a.channels[name].pixels.shape == b.channels[name].pixels.shape
             ),
             default=np.inf,
         )
-        headers = [
-            key for key in sorted({*a.header, *b.header}) if str(a.header.get(key)) != str(b.header.get(key))
-        ]
+        headers = [key for key in sorted({*a.header, *b.header}) if str(a.header.get(key)) != str(b.header.get(key))]
         headers = [key for key in headers if key not in ("capDate", "uplift.checksum")]
         if worst or headers:
             texts.append(f"part {part}: pixels by {worst:.2g}, header {', '.join(headers) or 'same'}")

@@ -67,11 +67,7 @@ def number(value: Any, spec: str = "") -> str:
         return " / ".join(number(item, spec) for item in value)
     if isinstance(value, Mapping):
         parts = {key: number(item, spec) for key, item in value.items()}
-        return (
-            "{mean} ± {std}".format_map(parts)
-            if "std" in parts
-            else "{median} ({min}–{max})".format_map(parts)
-        )
+        return "{mean} ± {std}".format_map(parts) if "std" in parts else "{median} ({min}–{max})".format_map(parts)
     return NAMED[spec](value) if spec in NAMED else format(value, spec)
 
 
@@ -143,10 +139,7 @@ def render(name: str, docs: Path = DOCS, data: Mapping[str, Any] | None = None) 
         return read_data(part, docs)
 
     def rows(path: str) -> list[Row]:
-        return [
-            {key: _value(cell) for key, cell in row.items()}
-            for row in csv.DictReader(io.StringIO(text(path)))
-        ]
+        return [{key: _value(cell) for key, cell in row.items()} for row in csv.DictReader(io.StringIO(text(path)))]
 
     def text(path: str) -> str:
         return (docs / path).read_text(encoding="utf-8")
@@ -181,11 +174,7 @@ def _value(cell: str) -> Any:
 
 def stale(docs: Path = DOCS) -> list[str]:
     """Return the names of the pages that differ from their rendering."""
-    return [
-        name
-        for name in pages(docs)
-        if page_file(name, docs).read_text(encoding="utf-8") != render(name, docs)
-    ]
+    return [name for name in pages(docs) if page_file(name, docs).read_text(encoding="utf-8") != render(name, docs)]
 
 
 def main() -> None:

@@ -94,12 +94,8 @@ ATLASES = (
         "30 patches of the preferred memory colour chart, Luo (2024)",
         lambda: checker("PMC", "PMC ", '"{}" patch of the preferred memory colour chart'),
     ),
-    AtlasFile(
-        "tcs.txt", "14 test colour samples of the CIE colour rendering index (CIE 13.3-1995)", test_colours
-    ),
-    AtlasFile(
-        "vs.txt", "15 saturated samples of the NIST Colour Quality Scale 9.0, Ohno (2013)", vivid_samples
-    ),
+    AtlasFile("tcs.txt", "14 test colour samples of the CIE colour rendering index (CIE 13.3-1995)", test_colours),
+    AtlasFile("vs.txt", "15 saturated samples of the NIST Colour Quality Scale 9.0, Ohno (2013)", vivid_samples),
     AtlasFile(
         "cie2017.txt",
         "99 samples of the CIE 2017 colour fidelity index (CIE 224:2017)",

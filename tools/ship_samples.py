@@ -69,9 +69,7 @@ def instrument_files() -> dict[str, bytes]:
     """Return measurements of the reader as his instruments write them, and samples that reflect less than 2 %."""
     paints, fabrics = (tuple(read_atlas(name)) for name in MEASUREMENTS.values())
     chart = Atlas(tuple(replace(entry, name=f"chart {entry.name}") for entry in paints[:6]))
-    dark = Atlas(
-        tuple(replace(entry, values=entry.values * (1.5 / entry.values.max())) for entry in fabrics[:4])
-    )
+    dark = Atlas(tuple(replace(entry, values=entry.values * (1.5 / entry.values.max())) for entry in fabrics[:4]))
     ((_, ti3),) = argyll_ti3(chart).items()
     ((_, csv),) = plain_csv(dark).items()
     return {"chart.ti3": ti3, **cxf3(Atlas(paints[:12])), **xlsx(Atlas(paints[:12])), "dark.csv": csv}

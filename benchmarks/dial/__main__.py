@@ -106,9 +106,7 @@ def _take_pictures(tab: Browser, path: Path) -> None:
 
 
 def _press(tab: Browser, key: str) -> None:
-    tab.evaluate(
-        f"document.getElementById('dial').dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'}}))"
-    )
+    tab.evaluate(f"document.getElementById('dial').dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'}}))")
 
 
 def _measure(tab: Browser, path: Path, coefficients: int, side: int) -> Row:

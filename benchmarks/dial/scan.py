@@ -54,9 +54,7 @@ def main() -> None:
         return
     palette = read_palette(sample_path("engine.toml"))
     order = [list(DENSITIES).index(material.name) for material in palette.materials]
-    view = relighting(
-        "engine", design(palette, standard_model(palette.sensor, palette.count)), weights[..., order]
-    )
+    view = relighting("engine", design(palette, standard_model(palette.sensor, palette.count)), weights[..., order])
     lights = np.eye(len(view.lights.names))
     row = np.concatenate([encode(np.clip(EXPOSURE * view.rgb(one), 0, 1)) for one in lights], axis=1)
     imsave(ROOT / "docs" / "palette-dial" / "scan.jpg", row, pil_kwargs={"quality": 88})
@@ -107,10 +105,7 @@ def cast(density: Array, side: int = SIDE) -> Array:
 def _opacities(layer: Array) -> Array:
     """Transfer function: opacity (side, side, 4) per voxel of each material, of densities (side, side)."""
     return np.stack(
-        [
-            OPACITIES[name] * np.sqrt(np.maximum(1 - abs(layer - level) / WIDTH, 0))
-            for name, level in DENSITIES.items()
-        ],
+        [OPACITIES[name] * np.sqrt(np.maximum(1 - abs(layer - level) / WIDTH, 0)) for name, level in DENSITIES.items()],
         axis=-1,
     )
 

@@ -64,9 +64,7 @@ def chips() -> Chips:
         for row, name in enumerate(names)
         if name in real and DARKEST <= name[1] <= BRIGHTEST and ((rgb[row] < 0) | (rgb[row] > 1)).any()
     ]
-    return Chips(
-        rgb[outside], tuple(names[row][0] for row in outside), _lines(names, rgb @ SRGB.rgb_to_xyz.T)
-    )
+    return Chips(rgb[outside], tuple(names[row][0] for row in outside), _lines(names, rgb @ SRGB.rgb_to_xyz.T))
 
 
 def _lines(names: list[tuple[str, float, float]], xyz: Array) -> dict[tuple[str, float], Array]:

@@ -34,9 +34,7 @@ SPACES = (
     Space("CIELAB", lambda xyz: colour.XYZ_to_Lab(xyz, WHITE), lambda lab: colour.Lab_to_XYZ(lab, WHITE)),
     Space("CIELUV", lambda xyz: colour.XYZ_to_Luv(xyz, WHITE), lambda luv: colour.Luv_to_XYZ(luv, WHITE)),
     Space("IPT", colour.XYZ_to_IPT, colour.IPT_to_XYZ),
-    Space(
-        "ICtCp", lambda xyz: colour.XYZ_to_ICtCp(100 * xyz), lambda ictcp: colour.ICtCp_to_XYZ(ictcp) / 100
-    ),
+    Space("ICtCp", lambda xyz: colour.XYZ_to_ICtCp(100 * xyz), lambda ictcp: colour.ICtCp_to_XYZ(ictcp) / 100),
     Space("CAM16-UCS", colour.XYZ_to_CAM16UCS, colour.CAM16UCS_to_XYZ),
 )
 

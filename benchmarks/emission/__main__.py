@@ -128,9 +128,7 @@ def rows(
             yield row
 
 
-def worst(
-    lamps: Lamps, power: Array, errors: Array, table: EmissionTable, count: int = 8
-) -> list[dict[str, Any]]:
+def worst(lamps: Lamps, power: Array, errors: Array, table: EmissionTable, count: int = 8) -> list[dict[str, Any]]:
     """Return the lamps with the largest errors, and how far answers are from their chromaticity."""
     radiometry = table.data.cmfs
     missed = chromaticity(power @ radiometry) - chromaticity(lamps.power @ radiometry)

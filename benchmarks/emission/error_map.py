@@ -44,9 +44,7 @@ def draw(table: EmissionTable, names: tuple[str, ...], power: Array, errors: Arr
     limit = float(np.nanmax(expected))
     figure = new_figure(11, 5.4)
     left, right = figure.subplots(1, 2)
-    shown = left.imshow(
-        expected, origin="lower", extent=(0, WIDTH, 0, HEIGHT), cmap="viridis", vmin=0, vmax=limit
-    )
+    shown = left.imshow(expected, origin="lower", extent=(0, WIDTH, 0, HEIGHT), cmap="viridis", vmin=0, vmax=limit)
     left.plot(*uv.T, ".", color="white", markersize=2.5)
     left.set_title("expected by the table; points are its lamps")
     right.scatter(*uv.T, c=errors, s=16, cmap="viridis", vmin=0, vmax=limit, edgecolors=INK, linewidths=0.3)

@@ -73,15 +73,12 @@ def render(skies: tuple[Sky, ...], folder: Path, layout: Layout, spp: int) -> Re
     images, whites, delta_e = {}, {}, {}
     for sky in skies:
         begin, emitters = time.perf_counter(), methods(sky, folder)
-        whites[sky.name] = layout.means(
-            scene.render_under(emitters[TRUE], perfect, layout, spp, seed=2)
-        ).mean(axis=0)
+        whites[sky.name] = layout.means(scene.render_under(emitters[TRUE], perfect, layout, spp, seed=2)).mean(axis=0)
         for method, emitter in emitters.items():
             images[sky.name, method] = scene.render_under(emitter, reflectances, layout, spp, seed=0)
         images[sky.name, OTHER_SEED] = scene.render_under(emitters[TRUE], reflectances, layout, spp, seed=1)
         found = {
-            method: lab(layout.means(images[sky.name, method]), whites[sky.name])
-            for method in (*emitters, OTHER_SEED)
+            method: lab(layout.means(images[sky.name, method]), whites[sky.name]) for method in (*emitters, OTHER_SEED)
         }
         delta_e |= {(sky.name, method): delta_e_2000(found[TRUE], values) for method, values in found.items()}
         print(f"{sky.name}: {time.perf_counter() - begin:.0f} s", file=sys.stderr)
@@ -121,9 +118,7 @@ def rows(renders: Renders) -> Iterator[dict[str, Any]]:
 
 
 def _write(path: Path, names: tuple[str, ...], planes: Array, **header: Any) -> Path:
-    channels = {
-        name: np.ascontiguousarray(planes[..., place], dtype=np.float32) for place, name in enumerate(names)
-    }
+    channels = {name: np.ascontiguousarray(planes[..., place], dtype=np.float32) for place, name in enumerate(names)}
     OpenEXR.File({"type": OpenEXR.scanlineimage, **header}, channels).write(str(path))
     return path
 

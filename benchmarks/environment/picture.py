@@ -40,9 +40,7 @@ def draw(
             axes, image = grid[row, column], images[sky, method].copy()
             for place in layout.patches(round(INSET * layout.patch)):
                 image[place] = images[sky, methods[0]][place]
-            axes.imshow(
-                to_display_codes(binned(image) @ to_screen.T, SRGB).astype(np.uint8), interpolation="nearest"
-            )
+            axes.imshow(to_display_codes(binned(image) @ to_screen.T, SRGB).astype(np.uint8), interpolation="nearest")
             axes.set_xticks([])
             axes.set_yticks([])
             axes.spines[:].set_visible(False)

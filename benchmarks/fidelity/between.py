@@ -38,8 +38,7 @@ def measure() -> dict[str, Any]:
     return {
         "splits": SPLITS,
         "kernels": [
-            kernel(name, count)
-            for name, count in product((*large(), "macbeth", "babelcolor", "pmc"), (9, 17))
+            kernel(name, count) for name, count in product((*large(), "macbeth", "babelcolor", "pmc"), (9, 17))
         ],
         "kriging": [kriging(name, label) for name in large() for label in DESIGNS],
     }
@@ -100,9 +99,7 @@ def _coefficients(chosen: Kernel, known: Materials, queried: Materials, model: M
     """Deviations of coefficients, kriged with a given kernel."""
     prior = _prior(known, model)
     own = model.to_storage(entries(model, known).multipliers)
-    return replace(prior, kriging=_deviations(known, own - prior.base.coefficients(known.rgb), chosen))(
-        queried.rgb
-    )
+    return replace(prior, kriging=_deviations(known, own - prior.base.coefficients(known.rgb), chosen))(queried.rgb)
 
 
 def _deviations(known: Materials, deviations: Array, chosen: Kernel) -> Kriging:

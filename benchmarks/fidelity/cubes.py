@@ -57,9 +57,7 @@ def measure() -> dict[str, Any]:
         "shares": [shares(*key, splits[key]) for key in splits],
         "seed_starts": [row for name in large() for dim in (DIM, COARSE) for row in seed_starts(name, dim)],
         "smoothness": [
-            neighbour_steps(name, count)
-            for name in (None, "macbeth", "rawtoaces", *large()[2:])
-            for count in (9, 17)
+            neighbour_steps(name, count) for name in (None, "macbeth", "rawtoaces", *large()[2:]) for count in (9, 17)
         ],
     }
 

@@ -48,8 +48,7 @@ def measure() -> dict[str, Any]:
         "light_splits": SPLITS,
         "standard_errors": own_light,
         "light_errors": [
-            {"atlas": name, "coefficients": count, "covered": covered(pairs)}
-            for (name, count), pairs in halves.items()
+            {"atlas": name, "coefficients": count, "covered": covered(pairs)} for (name, count), pairs in halves.items()
         ],
         "other_families": [row for key, pairs in others.items() for row in across(*key, pairs)],
     }
@@ -98,9 +97,7 @@ def covered(pairs: list[Pair], rows: Mask | None = None) -> dict[str, list[float
     """Return, by light, the shares of errors within the standard error and within the error bound."""
     chosen = slice(None) if rows is None else rows
     return {
-        name: np.concatenate([_within(cube, some, name) for cube, some in pairs])[chosen]
-        .mean(axis=0)
-        .tolist()
+        name: np.concatenate([_within(cube, some, name) for cube, some in pairs])[chosen].mean(axis=0).tolist()
         for name in HELD_OUT_LIGHTS
     }
 

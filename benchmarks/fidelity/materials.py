@@ -74,9 +74,7 @@ def entries(
     weights: fit.Weights = fit.objective.BALANCED,
 ) -> fit.FittedEntries:
     illuminants = [observer.light(name) for name in lights]
-    return fit.fit_entries(
-        model, forward(model), some.measured, some.rgb, illuminants, illuminants[1], 1e-6, weights
-    )
+    return fit.fit_entries(model, forward(model), some.measured, some.rgb, illuminants, illuminants[1], 1e-6, weights)
 
 
 def spectra_of(model: Model, multipliers: Array) -> Array:

@@ -73,9 +73,7 @@ def _tools(cube: Cube) -> list[Strip]:
         "mean of sRGB codes": encoded,
         "uplift mix --scattering root, the default before": by_name["pigments, S = √R"].mix(ends, parts),
         "uplift mix, the default now": by_name["pigments"].mix(ends, parts),
-        "coloraide's spectral, after spectral.js (published)": np.concatenate(
-            [ends[:1], steps.expected, ends[1:]]
-        ),
+        "coloraide's spectral, after spectral.js (published)": np.concatenate([ends[:1], steps.expected, ends[1:]]),
         "Mixbox 1:1 (published)": np.concatenate([ends[:1], mixbox, ends[1:]]),
     }
     return [_strip(cube, title, rgb) for title, rgb in ramps.items()]
@@ -93,9 +91,7 @@ def _coats(cube: Cube) -> list[Strip]:
             title = f"{name} paint on {on}, {', '.join(f'{x:.3g}' for x in thickness)} units thick"
             strips.append(_strip(cube, title, cube.data.sensor.rgb(layers)))
         layers = [coats.from_dyes(spectrum[None], [1], x).over(1.0) for x in thickness]
-        strips.append(
-            _strip(cube, f"{name} dye on white, the same thicknesses", cube.data.sensor.rgb(layers))
-        )
+        strips.append(_strip(cube, f"{name} dye on white, the same thicknesses", cube.data.sensor.rgb(layers)))
     return strips
 
 

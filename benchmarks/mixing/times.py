@@ -45,9 +45,7 @@ def mixtures(cube: Cube) -> list[dict[str, Any]]:
         _check(mixer.mix, rgb, parts)
         between = spectral_mixers.get(mixer.name)
         spectral = _ns(partial(between[1], spectra, parts), MIXTURES) if between else None
-        rows.append(
-            {"mixer": mixer.title, "rgb": _ns(partial(mixer.mix, rgb, parts), MIXTURES), "spectra": spectral}
-        )
+        rows.append({"mixer": mixer.title, "rgb": _ns(partial(mixer.mix, rgb, parts), MIXTURES), "spectra": spectral})
     return rows
 
 

@@ -32,9 +32,7 @@ def colour_science(runs: int) -> list[Peer]:
 
     target = _points(SIZE)
     coefficients, cpu = task.measured(generate, len(target), runs)
-    answer = judge(
-        sensor.rgb(evaluate_unscaled(coefficients, sensor.wavelengths)), target, least=LEAST, within=WITHIN
-    )
+    answer = judge(sensor.rgb(evaluate_unscaled(coefficients, sensor.wavelengths)), target, least=LEAST, within=WITHIN)
     tool = f"colour-science {version('colour-science')} `LUT3D_Jakob2019`"
     notes = f"a table of size {SIZE}, 3 × {SIZE}³ points; it stops at a ΔE"
     return [Peer(tool, "sigmoid", 3, len(target), cpu, answer, notes)]

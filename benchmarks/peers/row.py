@@ -74,8 +74,6 @@ def judge(rgb: ArrayLike, target: ArrayLike, *, least: float, within: float = TH
     return Answer(float((residual <= THRESHOLD).mean()), float(residual.max()))
 
 
-def judge_multipliers(
-    model: Model, multipliers: Array, sensor: Sensor, target: Array, *, least: float
-) -> Answer:
+def judge_multipliers(model: Model, multipliers: Array, sensor: Sensor, target: Array, *, least: float) -> Answer:
     """`judge` the spectra with multipliers (n, C)."""
     return judge(sensor.rgb(evaluate(model, multipliers, sensor.wavelengths)), target, least=least)

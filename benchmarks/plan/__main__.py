@@ -53,8 +53,7 @@ def summary(checked: CheckedPlan) -> dict[str, Any]:
     case, plan = checked.case, checked.plan
     error, quantile = plan["error"], plan["scene"]["quantile"]
     independent = {
-        key: float(np.quantile(values, quantile, method="inverted_cdf"))
-        for key, values in checked.delta_e.items()
+        key: float(np.quantile(values, quantile, method="inverted_cdf")) for key, values in checked.delta_e.items()
     }
     group, light = max(independent, key=lambda key: independent[key])
     predicted, largest = error["predicted"]["quantile"], max(independent.values())

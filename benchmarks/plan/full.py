@@ -111,9 +111,7 @@ def _reference(folder: Path, case: Case) -> Path:
     return path
 
 
-def _pixels(
-    folder: Path, case: Case, plan: dict[str, Any], reference: Path
-) -> Iterator[tuple[tuple[str, str], Array]]:
+def _pixels(folder: Path, case: Case, plan: dict[str, Any], reference: Path) -> Iterator[tuple[tuple[str, str], Array]]:
     stem = Path(case.picture).stem
     planned, expected = _pixel_values(folder / f"{stem}-uplifted.exr"), _pixel_values(reference)
     cube = uplift.load(folder / f"{case.stem}.uplift")

@@ -95,9 +95,7 @@ def accuracy(cube: Cube, mode: str, flags: tuple[str, ...]) -> Accuracy:
     )
 
 
-def _run(
-    cube: Cube, mode: str, flags: tuple[str, ...], rgb: Floats, runs: int
-) -> tuple[list[float], NDArray[Any]]:
+def _run(cube: Cube, mode: str, flags: tuple[str, ...], rgb: Floats, runs: int) -> tuple[list[float], NDArray[Any]]:
     """Return the fewest CPU seconds by task, and reflectances of the first colours."""
     source = Path(__file__).with_name("rates.c")
     with tempfile.TemporaryDirectory() as name:

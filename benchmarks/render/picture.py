@@ -41,9 +41,7 @@ def draw(
             axes, image = grid[row, column], images[light, method].copy()
             for place in layout.patches(round(INSET * layout.patch)):
                 image[place] = images[light, reference][place]
-            axes.imshow(
-                to_display_codes(binned(image) @ to_screen, SRGB).astype(np.uint8), interpolation="nearest"
-            )
+            axes.imshow(to_display_codes(binned(image) @ to_screen, SRGB).astype(np.uint8), interpolation="nearest")
             axes.set_xticks([])
             axes.set_yticks([])
             axes.spines[:].set_visible(False)

@@ -68,9 +68,7 @@ def _scene(
     width, height = layout.size
     half = layout.patch / 2
     patches = {
-        f"patch_{number}": _square(
-            reflectance, [x + half - width / 2, height / 2 - y - half, 0], [half, half, 1]
-        )
+        f"patch_{number}": _square(reflectance, [x + half - width / 2, height / 2 - y - half, 0], [half, half, 1])
         for number, (reflectance, (x, y)) in enumerate(zip(reflectances, layout.corners(), strict=True))
     }
     behind = _square({"type": "uniform", "value": BACKGROUND}, [0, 0, -1e-3], [width, height, 1])

@@ -51,9 +51,7 @@ def enhanced(count: int) -> Composite:
     """Return enhanced sums over the same cells; a spike on a border is multiplied by the mean of both."""
     inside = _cells(count)
     family = "enhanced Riemann sums, closed cells"
-    return Composite(
-        f"RE{count}", family, closed(count), inside / inside.sum(axis=0), enhanced_riemann.THRESHOLD
-    )
+    return Composite(f"RE{count}", family, closed(count), inside / inside.sum(axis=0), enhanced_riemann.THRESHOLD)
 
 
 def _cells(count: int) -> Array:

@@ -108,8 +108,7 @@ def atlas_changes(changes: list[dict[str, Any]]) -> list[dict[str, Any]]:
         kind = [one for one in changes if belongs(one["change"])]
         worst = max(kind, key=lambda one: one["moved"])
         radii = {
-            key: None if worst[key] is None else max(one[key] for one in kind)
-            for key in ("rgb_radius", "lab_radius")
+            key: None if worst[key] is None else max(one[key] for one in kind) for key in ("rgb_radius", "lab_radius")
         }
         rows.append(
             {

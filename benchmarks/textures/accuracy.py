@@ -107,8 +107,7 @@ def fewer_wavelengths(
         means.append(float(errors.mean()))
         worst = max(worst, float(errors.max()))
     return {
-        "wavelengths": f"{first}:{last}:{step}"
-        + (", the default" if (first, last, step) == GRIDS[0] else ""),
+        "wavelengths": f"{first}:{last}:{step}" + (", the default" if (first, last, step) == GRIDS[0] else ""),
         "channels": len(wavelengths),
         "bytes": 2 * (len(wavelengths) + 3),
         "lowest_mean": min(means),

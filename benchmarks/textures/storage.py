@@ -144,18 +144,14 @@ def _lines(unit: Texture, bits: int) -> Texture:
         found = start + share * direction
         ends = _refit(texels, share, start, end)
     return np.asarray(
-        found.reshape(height // BLOCK, width // BLOCK, BLOCK, BLOCK, count)
-        .swapaxes(1, 2)
-        .reshape(height, width, count)
+        found.reshape(height // BLOCK, width // BLOCK, BLOCK, BLOCK, count).swapaxes(1, 2).reshape(height, width, count)
     )
 
 
 def _refit(texels: Array, share: Array, start: Array, end: Array) -> list[Array]:
     """Return the end points that suit the chosen shares best, by least squares; as they are where all are equal."""
     other = 1 - share
-    aa, ab, bb = (
-        (x * y).sum(axis=1, keepdims=True) for x, y in ((other, other), (other, share), (share, share))
-    )
+    aa, ab, bb = ((x * y).sum(axis=1, keepdims=True) for x, y in ((other, other), (other, share), (share, share)))
     first, second = ((weight * texels).sum(axis=1, keepdims=True) for weight in (other, share))
     determinant = aa * bb - ab * ab
     solvable = determinant > 1e-6
@@ -192,9 +188,7 @@ def mip(values: Texture, step: int = 2) -> Texture:
     """Return the means of 2 × 2 texels, ``step`` apart."""
     rows, columns = (slice(None, size - 1, step) for size in values.shape[:2])
     lower, right = (slice(1, None, step) for _ in range(2))
-    return np.asarray(
-        (values[rows, columns] + values[lower, columns] + values[rows, right] + values[lower, right]) / 4
-    )
+    return np.asarray((values[rows, columns] + values[lower, columns] + values[rows, right] + values[lower, right]) / 4)
 
 
 FILTERS: dict[str, Callable[[Texture], Texture]] = {"texel": texel, "bilinear": bilinear, "mip": mip}
@@ -260,9 +254,7 @@ def _spectra(cube: Cube, moments: Texture) -> tuple[Texture, Array]:
     outside = ~model.try_from_storage(rows)[1]
     multipliers, _ = texture_file.multipliers_of_rounded(model, rows, GREY_SHARES)
     shape = moments.shape[:2]
-    return evaluate(model, multipliers, cube.data.sensor.wavelengths).reshape(*shape, -1), outside.reshape(
-        shape
-    )
+    return evaluate(model, multipliers, cube.data.sensor.wavelengths).reshape(*shape, -1), outside.reshape(shape)
 
 
 def _flat(values: Texture) -> Array:

@@ -86,7 +86,5 @@ def methods(comparisons: Sequence[Comparison], path: Path) -> None:
             axes.set_title(", ".join(comparison.lights), loc="left", fontsize=9, color=INK)
             style_axes(axes)
         panels[0].set_ylabel("mean ΔE00, unseen materials")
-        figure.legend(
-            *panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=5, frameon=False
-        )
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=5, frameon=False)
         write_png(figure, path, force=True)

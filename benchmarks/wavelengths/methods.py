@@ -54,10 +54,7 @@ def _held_out(setup: RenderSetup, odd: Array, method: str, count: int) -> Colour
 def gains(errors: Errors) -> Array:
     """Return the ratio of the best other method's mean to the optimised one's, for every number of wavelengths."""
     return np.array(
-        [
-            min(errors[other, count].mean for other in OTHERS) / errors[OPTIMISED, count].mean
-            for count in COUNTS
-        ]
+        [min(errors[other, count].mean for other in OTHERS) / errors[OPTIMISED, count].mean for count in COUNTS]
     )
 
 
@@ -70,9 +67,7 @@ def rows(comparison: Comparison) -> Iterator[dict[str, Any]]:
                 "lights": ", ".join(comparison.lights),
                 "materials": materials,
                 "count": count,
-                "errors": {
-                    name: [float(one.mean), float(one.p95), float(one.max)] for name, one in cells.items()
-                },
+                "errors": {name: [float(one.mean), float(one.p95), float(one.max)] for name, one in cells.items()},
                 "gain": gain,
             }
 

@@ -103,9 +103,7 @@ def summation(setup: RenderSetup, space: ChannelSpace, points: Array) -> float:
     return max(differences)
 
 
-def four_wavelengths(
-    setup: RenderSetup, space: ChannelSpace, rules: ChannelRules, factor: float
-) -> list[Row]:
+def four_wavelengths(setup: RenderSetup, space: ChannelSpace, rules: ChannelRules, factor: float) -> list[Row]:
     """Return table 2."""
     separate = tuple(orders[order] for orders, order in zip(rules, (3, 2, 1), strict=True))
     shared = four_wavelength_rule(rules, channel_functions(space, setup.wavelengths, setup.cmfs))
@@ -114,9 +112,7 @@ def four_wavelengths(
         expected, expected_error = printed.table_2(number)
         for channel, pair, rule in zip(printed.CHANNELS, expected, allocation, strict=True):
             first = channel == printed.CHANNELS[0]
-            errors = (
-                (expected_error, float(allocation_error(setup, space, allocation))) if first else (None, None)
-            )
+            errors = (expected_error, float(allocation_error(setup, space, allocation))) if first else (None, None)
             rows.append(
                 {
                     "row": number if first else "",

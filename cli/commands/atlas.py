@@ -25,9 +25,7 @@ if TYPE_CHECKING:
 @measured_option()
 @sensor_options
 @format_option("table", "json", "csv")
-@click.option(
-    "--convert", metavar="OUT", type=click.Path(), help="Write all entries to OUT instead of a list."
-)
+@click.option("--convert", metavar="OUT", type=click.Path(), help="Write all entries to OUT instead of a list.")
 @force_option()
 def command(
     files: tuple[str, ...],

@@ -87,9 +87,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
     show_default=True,
     help="First and last wavelength of the spectra in nm, from 300 to 1000.",
 )
-@click.option(
-    "--step", type=NUMBER, default=5, show_default=True, help="Distance of wavelengths in nm: 1, 5 or 10."
-)
+@click.option("--step", type=NUMBER, default=5, show_default=True, help="Distance of wavelengths in nm: 1, 5 or 10.")
 @light_option("Illuminant under which entries must keep their colour", "D65 A FL2 FL11 LED-B3")
 @click.option(
     "--prior",
@@ -287,9 +285,7 @@ def _scene(images: tuple[str, ...], encoding: str, method: str, space: str | Non
     return None
 
 
-def _planned_build(
-    path: str, context: click.Context
-) -> tuple[Callable[..., Cube], str, tuple[str | Path, ...]]:
+def _planned_build(path: str, context: click.Context) -> tuple[Callable[..., Cube], str, tuple[str | Path, ...]]:
     """Return the build of a plan, the cube's name and the files to read.
 
     Raises click's error for options that contradict the plan.
@@ -298,9 +294,7 @@ def _planned_build(
     from uplift.scene.plan.commands import cube_name
 
     source = click.core.ParameterSource.COMMANDLINE
-    given = [
-        each for each in context.command.params if context.get_parameter_source(each.name or "") == source
-    ]
+    given = [each for each in context.command.params if context.get_parameter_source(each.name or "") == source]
     if others := [each.opts[-1] for each in given if each.name not in ALLOWED_WITH_PLAN]:
         raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
     plan = read_plan(path)

@@ -41,15 +41,9 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
     show_default=True,
     help="Number of random colours for the round trip.",
 )
-@click.option(
-    "--quick", is_flag=True, help="Few methods and repeats: about a minute instead of half an hour."
-)
-@click.option(
-    "--from", "source", metavar="CSV", help="Table of an earlier chart to draw or to recommend from."
-)
-@click.option(
-    "--recommend", is_flag=True, help="Recommend a cube to build, from the packaged chart or --from."
-)
+@click.option("--quick", is_flag=True, help="Few methods and repeats: about a minute instead of half an hour.")
+@click.option("--from", "source", metavar="CSV", help="Table of an earlier chart to draw or to recommend from.")
+@click.option("--recommend", is_flag=True, help="Recommend a cube to build, from the packaged chart or --from.")
 @click.option("--time-ns", type=NUMBER, help="With --recommend: largest CPU time per RGB, in ns.")
 @click.option("--delta-e", type=NUMBER, help="With --recommend: largest mean ΔE00.")
 @click.option(
@@ -165,9 +159,7 @@ def _print_fronts(chart: Chart) -> None:
     for panel in all_panels(chart):
         if panel.error not in PRINTED:
             continue
-        table = make_table(
-            ("method",), ("time", panel.unit, "bytes"), title=f"{panel.title}: {panel.colours}"
-        )
+        table = make_table(("method",), ("time", panel.unit, "bytes"), title=f"{panel.title}: {panel.colours}")
         for row in panel.front(chart):
             table.add_row(row.method, *panel.labels(row), format_size(row.numbers["bytes"]))
         tables.append(table)

@@ -120,9 +120,7 @@ def _object(result: _Result) -> dict[str, object]:
         "passed": result.passed,
         "failures": list(result.failures),
         "measures": comparison.measures if comparison else {},
-        "status": {"stored": comparison.stored_counts, "rebuilt": comparison.rebuilt_counts}
-        if comparison
-        else {},
+        "status": {"stored": comparison.stored_counts, "rebuilt": comparison.rebuilt_counts} if comparison else {},
         "error": error_object(error) if error else None,
     }
 

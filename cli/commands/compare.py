@@ -38,9 +38,7 @@ FILTERS = "compare-filters.csv"
     is_flag=True,
     help="Also search the best low-pass filters for point sampling, which takes minutes.",
 )
-@click.option(
-    "--quick", is_flag=True, help="At most forty surfaces, few repeats and a coarse search: seconds."
-)
+@click.option("--quick", is_flag=True, help="At most forty surfaces, few repeats and a coarse search: seconds.")
 @output_folder_option()
 @format_option("table", "json", "csv")
 @force_option()

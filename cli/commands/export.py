@@ -83,9 +83,7 @@ def command(
     """
     style = style or _format_of(out)
     if res is not None and style != "coeff":
-        raise click.UsageError(
-            "--res applies to --format coeff only: other formats keep the nodes of the cube."
-        )
+        raise click.UsageError("--res applies to --format coeff only: other formats keep the nodes of the cube.")
     if mode is not None and style not in PROGRAMS:
         raise click.UsageError("--mode applies to programs only: other formats do not interpolate.")
     if table is not None and style not in PROGRAMS:

@@ -47,9 +47,7 @@ def _table(name: str, fields: dict[str, Any]) -> None:
     table.add_column(overflow="fold")
     provenance = fields.pop("provenance")
     options = provenance.pop("options", {})
-    looks = {
-        f"look {each['name'].removeprefix('look ')}": _look(each) for each in provenance.pop("looks", ())
-    }
+    looks = {f"look {each['name'].removeprefix('look ')}": _look(each) for each in provenance.pop("looks", ())}
     for section in (fields, looks, provenance, {f"option {key}": value for key, value in options.items()}):
         for key, value in section.items():
             table.add_row(key.replace("_", " "), _text(value))

@@ -40,9 +40,7 @@ WRITERS = {"table": as_table, "json": as_json}
 @click.option("--dye", "kind", flag_value="dye", help="Mix dyes, which absorb.")
 @click.option("--filter", "kind", flag_value="filter", help="Stack filters; PARTS is the thickness.")
 @click.option("--light", "kind", flag_value="light", help="Add lights; PARTS is the intensity.")
-@click.option(
-    "--thickness", type=NUMBER, metavar="X", help="Thickness of the coat. [default: opaque; dyes: 1]"
-)
+@click.option("--thickness", type=NUMBER, metavar="X", help="Thickness of the coat. [default: opaque; dyes: 1]")
 @click.option("--ground", metavar="COLOUR", help="Substrate of the coat. [default: white]")
 @click.option(
     "--refractive-index",
@@ -135,9 +133,7 @@ def command(
 
     _check_usage(kind, ground, over, output, swatches)
     if theories and any(option is not None for option in (thickness, ground, over, swatches)):
-        raise click.UsageError(
-            "--theories mixes opaque colours, without --thickness, --ground, --over and --swatches."
-        )
+        raise click.UsageError("--theories mixes opaque colours, without --thickness, --ground, --over and --swatches.")
     check_outputs((swatches, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
     surface = INCIDENCES[incidence](refractive_index)
@@ -161,9 +157,7 @@ def command(
     WRITERS[style](cube, mixture)
 
 
-def _check_usage(
-    kind: str, ground: str | None, over: str | None, output: str | None, swatches: str | None
-) -> None:
+def _check_usage(kind: str, ground: str | None, over: str | None, output: str | None, swatches: str | None) -> None:
     from uplift.common.errors import OutputError
     from uplift.design.mixing.recipes import COATS
 

@@ -18,14 +18,10 @@ if TYPE_CHECKING:
 
 @click.command("palette")
 @click.argument("spec", metavar="SPEC.toml", type=click.Path())
-@click.option(
-    "--atlas", metavar="OUT", help="Write the designed materials as an atlas; CSV if OUT ends in .csv."
-)
+@click.option("--atlas", metavar="OUT", help="Write the designed materials as an atlas; CSV if OUT ends in .csv.")
 @plot_option("--matrix", "matrix_path", "Plot the matrix of colours")
 @plot_option("--spectra", "spectra_path", "Plot the spectra of lights and materials")
-@click.option(
-    "--html", metavar="HTML", help="Write a page that shows the materials under any mixture of the lights."
-)
+@click.option("--html", metavar="HTML", help="Write a page that shows the materials under any mixture of the lights.")
 @click.option(
     "--image",
     metavar="FILE",

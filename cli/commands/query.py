@@ -52,9 +52,7 @@ class ColourCommand(click.Command):
 @click.argument("colour", nargs=-1)
 @cube_option()
 @emission_option("The colour is that of a light, of any brightness")
-@click.option(
-    "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
-)
+@click.option("--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input.")
 @click.option(
     "--xyz",
     type=NUMBER,
@@ -158,9 +156,7 @@ def command(
     space = resolve_space(input_space)
     point = as_xyz(xyz, xy, luminance)
     if point is not None and (colour or input_path is not None):
-        raise click.UsageError(
-            "Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'."
-        )
+        raise click.UsageError("Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'.")
     single = point is not None or (bool(colour) and colour != ("-",))
     if is_emission:
         refuse_for_lights("mode", "fill_missing", "lights", "with_bounds", "html")
@@ -185,9 +181,7 @@ def command(
     if point is not None:
         results = answers.result_of_xyz(point)
     else:
-        blocks = read_colours(
-            colour, input_path, cube.data.sensor, encoded=encoded, bounded=bounded, space=space
-        )
+        blocks = read_colours(colour, input_path, cube.data.sensor, encoded=encoded, bounded=bounded, space=space)
         results = answers.results(blocks)
     if html is not None and not single:
         raise click.UsageError("--html shows one colour: give it on the command line.")

@@ -148,14 +148,10 @@ def _relight(
     from uplift.report.relight import relight
 
     sensor = next(iter(cubes.values())).data.sensor
-    picture = read_picture(
-        path, sensor, max_side=MAX_SIDE, encoding=encoding, out_of_gamut=method, space=space
-    )
+    picture = read_picture(path, sensor, max_side=MAX_SIDE, encoding=encoding, out_of_gamut=method, space=space)
     for warning in picture.warnings:
         warnings.warn(warning, stacklevel=1)
-    return relight(
-        Path(path).name, picture.rgb, cubes, lights, opacity=picture.opacity, reduction=picture.reduction
-    )
+    return relight(Path(path).name, picture.rgb, cubes, lights, opacity=picture.opacity, reduction=picture.reduction)
 
 
 def _as_table(relit: list[Relit], output: str) -> None:

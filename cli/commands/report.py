@@ -164,14 +164,10 @@ def _summary(assessment: Assessment) -> str:
     if assessment.entries is not None:
         entries = assessment.entries
         parts.append(pluralise(len(entries.names), "entry", "entries"))
-        parts.append(
-            f"ΔE00 mean {entries.delta_e.mean():.2f}, worst {entries.worst[0]:.2f} ('{entries.names[0]}')"
-        )
+        parts.append(f"ΔE00 mean {entries.delta_e.mean():.2f}, worst {entries.worst[0]:.2f} ('{entries.names[0]}')")
     if assessment.calibration is not None:
         calibration, light = assessment.calibration, assessment.data.error_illuminant
-        parts.append(
-            f"68 % within {calibration.actual:.2f} under {light}, predicted {calibration.predicted:.2f}"
-        )
+        parts.append(f"68 % within {calibration.actual:.2f} under {light}, predicted {calibration.predicted:.2f}")
     if assessment.crowding is not None:
         parts.append(pluralise(len(assessment.crowding.entries.names), "crowded entry", "crowded entries"))
     return ", ".join(parts)

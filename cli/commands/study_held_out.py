@@ -22,9 +22,7 @@ Results = dict[str, "tuple[HoldoutSplit, ...]"]
 
 @click.command("held-out")
 @atlas_option("Atlas", DEFAULT_ATLASES)
-@click.option(
-    "--splits", type=Whole(1, 1000), default=3, show_default=True, help="Number of splits of each atlas."
-)
+@click.option("--splits", type=Whole(1, 1000), default=3, show_default=True, help="Number of splits of each atlas.")
 @click.option("--dim", type=Whole(), default=32, show_default=True, help="Lattice nodes along each axis.")
 @coefficients_options
 @format_option("table", "json", "csv")

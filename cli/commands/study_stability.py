@@ -34,9 +34,7 @@ def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
         try:
             return None if text is None else tuple(kind(word.strip()) for word in text.split(","))
         except ValueError as error:
-            raise click.BadParameter(
-                f"{format_value(text)} is not a list of such values, as 4,8,16"
-            ) from error
+            raise click.BadParameter(f"{format_value(text)} is not a list of such values, as 4,8,16") from error
 
     return parse
 
@@ -52,13 +50,9 @@ def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
 )
 @click.option("--spaces", callback=_list_of(str), metavar="NAME,…", help="RGB spaces of colour-science.")
 @click.option("--models", callback=_list_of(str), metavar="NAME,…", help="moments, sigmoid.")
-@click.option(
-    "--thresholds", callback=_list_of(parse_float), metavar="X,…", help="Largest residuals, |linear RGB|."
-)
+@click.option("--thresholds", callback=_list_of(parse_float), metavar="X,…", help="Largest residuals, |linear RGB|.")
 @atlas_option("Atlas in addition to the synthetic ones", MACBETH)
-@click.option(
-    "--atlases", callback=_list_of(str), metavar="NAME,…", help="Atlases to use by name, or 'none'."
-)
+@click.option("--atlases", callback=_list_of(str), metavar="NAME,…", help="Atlases to use by name, or 'none'.")
 @click.option("--samples", type=Whole(0, 100_000), help="Number of random settings in addition to the grids.")
 @click.option(
     "--peer-dims",
@@ -70,9 +64,7 @@ def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
 @output_folder_option()
 @format_option("table", "json", "csv")
 @force_option()
-def stability(
-    quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool, **options: Any
-) -> None:
+def stability(quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool, **options: Any) -> None:
     """Build cubes over dims, coefficients, models, spaces, thresholds and atlases, and count unfitted nodes.
 
     Reports for each build the realisable and the unfitted nodes, rounds, improvement attempts, the largest residual and

@@ -210,9 +210,7 @@ def _convert_here(job: Job, *, quiet: bool) -> Conversion:
         )
 
 
-def _collect(
-    results: Iterable[Conversion | Failure], total: int, *, quiet: bool
-) -> list[Conversion | Failure]:
+def _collect(results: Iterable[Conversion | Failure], total: int, *, quiet: bool) -> list[Conversion | Failure]:
     """Collect results as images finish, with a progress bar over the images."""
     collected = []
     try:

@@ -107,9 +107,7 @@ def command(
     observer = observer or DEFAULT_OBSERVER
     camera = sensor(space, illuminant, observer)
     atlas: Atlas = merge(read_atlases(files).values())
-    setting = wavelengths.make_setup(
-        on_grid(atlas, wavelengths.grid()), lights or ("D65",), observer_name=observer
-    )
+    setting = wavelengths.make_setup(on_grid(atlas, wavelengths.grid()), lights or ("D65",), observer_name=observer)
     with spinner("fitting wavelengths"):
         if orders is not None:
             choice = wavelengths.choose_orders(setting, orders, channels or "opponent")

@@ -64,9 +64,7 @@ def as_json(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
 
 def _objects(cube: Cube, results: Sequence[QueryResult], found: Sequence[Bounds]) -> Iterable[dict[str, Any]]:
     for row, result in enumerate(results):
-        yield result_object(cube, result) | {
-            "bounds": {each.light.name: _object(each, row) for each in found}
-        }
+        yield result_object(cube, result) | {"bounds": {each.light.name: _object(each, row) for each in found}}
 
 
 def _object(found: Bounds, row: int) -> dict[str, Any]:

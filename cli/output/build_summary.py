@@ -24,11 +24,7 @@ def print_summary(cube: Cube, path: Path, seconds: float) -> None:
 
     data, counts = cube.data, cube.data.points.counts()
     unfitted, unrealisable = counts["unfitted"], counts["unrealisable"]
-    accuracy = (
-        f"{unfitted} EXCEED the threshold {data.threshold:g}"
-        if unfitted
-        else f"all within {data.threshold:g}"
-    )
+    accuracy = f"{unfitted} EXCEED the threshold {data.threshold:g}" if unfitted else f"all within {data.threshold:g}"
     if unrealisable:
         accuracy += f" except {unrealisable} unrealisable ones, stored with less chroma"
     worst = data.points.distance[data.points.status != Status.UNREALISABLE].max(initial=0)

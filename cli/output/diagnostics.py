@@ -57,9 +57,7 @@ class InternalFailure(UsageFailure):
         place = traceback.extract_tb(error.__traceback__)[-1:]
         where = "".join(f" in {Path(frame.filename).name}:{frame.lineno}" for frame in place)
         detail = " ".join(str(error).split())[:MAX_DETAIL]
-        problem = f"internal error, please report it: {type(error).__name__}{where}" + (
-            f": {detail}" if detail else ""
-        )
+        problem = f"internal error, please report it: {type(error).__name__}{where}" + (f": {detail}" if detail else "")
         report = UpliftError(problem, code="internal-error", hint="'uplift --traceback COMMAND …' shows more")
         super().__init__(report, as_json=as_json)
 
@@ -112,7 +110,5 @@ def _print_error(text: str) -> None:
 
 
 def _print(text: str) -> None:
-    with contextlib.suppress(
-        OSError
-    ):  # nowhere else is left to report it; the exit code shows that it failed
+    with contextlib.suppress(OSError):  # nowhere else is left to report it; the exit code shows that it failed
         emit(text, err=True)

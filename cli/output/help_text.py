@@ -19,9 +19,7 @@ class HelpFormatter(click.HelpFormatter):
     def write_text(self, text: str) -> None:
         """Write paragraphs, examples folded as a shell reads them."""
         width = self.width - self.current_indent
-        super().write_text(
-            "\n".join(line for each in text.splitlines() for line in fold_example(each, width))
-        )
+        super().write_text("\n".join(line for each in text.splitlines() for line in fold_example(each, width)))
 
     def write_dl(self, rows: Iterable[tuple[str, str]], col_max: int = 30, col_spacing: int = 2) -> None:
         """Write terms and their descriptions."""

@@ -82,9 +82,7 @@ def write_lights(
         hide_drawing_notes()
         blocks = list(blocks)
         found = list(chain.from_iterable(blocks))
-        plot_lights(
-            [(each.rgb, each.wavelengths, each.power) for each in found], table, plot_path, force=force
-        )
+        plot_lights([(each.rgb, each.wavelengths, each.power) for each in found], table, plot_path, force=force)
     results = chain.from_iterable(blocks)
     if style == "json":
         _print_json(results, single=single)

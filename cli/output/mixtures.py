@@ -64,17 +64,13 @@ def make_mixture(
     sensor = resolver.cube.data.sensor
     parts = np.array([one.parts for one in ingredients])
     amounts = np.concatenate([parts[None], ramp(parts, steps)])
-    spectra = mix(
-        kind, library_ingredients(ingredients), amounts, medium, resolver.spectrum(ground or "white")
-    )
+    spectra = mix(kind, library_ingredients(ingredients), amounts, medium, resolver.spectrum(ground or "white"))
     count = len(sensor.wavelengths)
     mapped = map_to_gamut(sensor.rgb(spectra[:, :count]), sensor, method)
     if mapped.outside[0]:
         problem = f"the mixture lies outside [0, 1]: mapped into the gamut ({method})"
         warnings.warn(UpliftWarning(problem, code="mixture-mapped"), stacklevel=1)
-    return Mixture(
-        kind, tuple(ingredients), amounts, resolver.wavelengths[count:], spectra[0, count:], mapped.rgb
-    )
+    return Mixture(kind, tuple(ingredients), amounts, resolver.wavelengths[count:], spectra[0, count:], mapped.rgb)
 
 
 def as_json(cube: Cube, mixture: Mixture) -> None:

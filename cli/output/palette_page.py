@@ -41,9 +41,7 @@ def _parse_labels(labels: tuple[str, ...]) -> dict[str, str] | None:
     for label in labels:
         name, sign, colour = label.partition("=")
         if not sign:
-            raise OptionError(
-                f"label must be NAME=#rrggbb, got '{label}'", code="invalid-label", hint="add a colour"
-            )
+            raise OptionError(f"label must be NAME=#rrggbb, got '{label}'", code="invalid-label", hint="add a colour")
         if name in colours:
             raise OptionError(
                 f"label '{name}' has two colours", code="repeated-label", hint="give one colour per material"
@@ -52,9 +50,7 @@ def _parse_labels(labels: tuple[str, ...]) -> dict[str, str] | None:
     return colours or None
 
 
-def write_page(
-    design: Design, spec: str, picture: NDArray[np.float32] | None, path: str, *, force: bool
-) -> None:
+def write_page(design: Design, spec: str, picture: NDArray[np.float32] | None, path: str, *, force: bool) -> None:
     """Write the page, titled with the stem of the spec's file name."""
     from uplift.common.files import write_text
     from uplift.design.palette.relight_viewer.cutaway import cutaway

@@ -209,10 +209,7 @@ def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
 
 def print_columns(wavelengths: Array, reflectance: Array) -> None:
     """Print wavelengths and reflectances in columns, ordered downwards."""
-    cells = [
-        f"{wavelength:>6g} nm {value:8.5f}"
-        for wavelength, value in zip(wavelengths, reflectance, strict=True)
-    ]
+    cells = [f"{wavelength:>6g} nm {value:8.5f}" for wavelength, value in zip(wavelengths, reflectance, strict=True)]
     height = -(-len(cells) // max(1, (columns() + 2) // CELL_WIDTH))
     for line in range(height):
         say("  ".join(cells[line::height]))

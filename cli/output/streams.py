@@ -87,9 +87,7 @@ def _find_ascii(name: str) -> codecs.CodecInfo | None:
     if name.replace("_", "-") != ASCII:
         return None
     ascii_codec = codecs.lookup("ascii")
-    return codecs.CodecInfo(
-        *ascii_codec, ascii_codec.incrementalencoder, ascii_codec.incrementaldecoder, name=ASCII
-    )
+    return codecs.CodecInfo(*ascii_codec, ascii_codec.incrementalencoder, ascii_codec.incrementaldecoder, name=ASCII)
 
 
 def _ascii(character: str) -> str:

@@ -78,9 +78,7 @@ class SafeTable(Table):
         table = SafeTable(box=self.box, show_header=self.show_header)
         table.title, table.caption = self.title, self.caption
         for column in columns:
-            table.add_column(
-                column.header, justify=column.justify, no_wrap=column.no_wrap, overflow=column.overflow
-            )
+            table.add_column(column.header, justify=column.justify, no_wrap=column.no_wrap, overflow=column.overflow)
         cells = [list(column.cells) for column in columns]
         for number, row in enumerate(self.rows):
             end = row.end_section or (spaced and number < len(self.rows) - 1)

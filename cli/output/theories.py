@@ -41,7 +41,4 @@ def _mixtures(cube: Cube, ingredients: list[Ingredient], method: str) -> dict[st
     sensor = cube.data.sensor
     spectra = np.stack([one.spectrum[: len(sensor.wavelengths)] for one in ingredients])
     rgb, parts = np.clip(sensor.rgb(spectra), 0, 1), np.array([one.parts for one in ingredients])
-    return {
-        mixer.title: map_to_gamut(mixer.mix(rgb, parts)[None], sensor, method).rgb[0]
-        for mixer in mixers(cube)
-    }
+    return {mixer.title: map_to_gamut(mixer.mix(rgb, parts)[None], sensor, method).rgb[0] for mixer in mixers(cube)}

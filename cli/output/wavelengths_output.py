@@ -79,17 +79,13 @@ def _rows(result: Result) -> Iterator[list[float]]:
 
 def _print_table(result: Result) -> None:
     sampling = result.choice.sampling
-    weights = make_table(
-        (), ("nm", *"XYZRGB"), title=f"{len(sampling)} wavelengths, {result.choice.method}: weights"
-    )
+    weights = make_table((), ("nm", *"XYZRGB"), title=f"{len(sampling)} wavelengths, {result.choice.method}: weights")
     powers = make_table((), ("nm", *sampling.lights), title="power of the lights")
     for nm, *others in _rows(result):
         cells = [f"{other:.4f}" for other in others]
         weights.add_row(f"{nm:.1f}", *cells[:6])
         powers.add_row(f"{nm:.1f}", *cells[6:])
-    errors_table = make_table(
-        ("light",), ("mean", "95 %", "max"), title=f"ΔE00 of {len(result.materials)} materials"
-    )
+    errors_table = make_table(("light",), ("mean", "95 %", "max"), title=f"ΔE00 of {len(result.materials)} materials")
     errors_table.add_column("worst material")
     for name, errors in result.errors():
         numbers = (errors.mean, errors.p95, errors.max)

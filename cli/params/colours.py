@@ -33,9 +33,7 @@ class Colour:
     encoded: bool
 
 
-def from_arguments(
-    words: Sequence[str], sensor: Sensor, *, encoded: bool, space: ImageSpace | None = None
-) -> Array:
+def from_arguments(words: Sequence[str], sensor: Sensor, *, encoded: bool, space: ImageSpace | None = None) -> Array:
     """Parse one colour, 'R G B', 'R,G,B' or '#rrggbb', into linear RGB (1, 3) of the sensor. Raises `ColourError`."""
     parts = [part for word in words for part in re.split(r"[,\s]+", word) if part]
     colour = _parse(parts)
@@ -67,9 +65,7 @@ def from_table(
             empty = False
             yield _linear(list(colours.values()), sensor, encoded=encoded, space=space)
     if empty:
-        raise ColourError(
-            "has no colours", code="no-colours", path=name, hint="give lines of r,g,b or of hex colours"
-        )
+        raise ColourError("has no colours", code="no-colours", path=name, hint="give lines of r,g,b or of hex colours")
 
 
 def _check_range(colour: Colour, name: str, line: int, *, encoded: bool, bounded: bool) -> None:

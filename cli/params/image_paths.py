@@ -74,9 +74,7 @@ def _expand(source: str) -> list[str]:
         return [source]
     paths = sorted(glob.glob(source.replace(UDIM, UDIM_DIGITS)))
     if not paths:
-        raise TextureError(
-            f"no file matches the pattern '{source}'", code="no-match", hint="check the pattern"
-        )
+        raise TextureError(f"no file matches the pattern '{source}'", code="no-match", hint="check the pattern")
     return paths
 
 

@@ -32,9 +32,7 @@ class LatticeDim(click.ParamType):  # type: ignore[type-arg]
 
     name = "dim"
 
-    def convert(
-        self, value: str | int, param: click.Parameter | None, ctx: click.Context | None
-    ) -> int | str:
+    def convert(self, value: str | int, param: click.Parameter | None, ctx: click.Context | None) -> int | str:
         """Return a whole number or 'auto'."""
         if value == "auto" or isinstance(value, int):
             return value
@@ -101,9 +99,7 @@ def output_folder_option() -> Decorator:
 
 def emission_option(meaning: str) -> Decorator:
     """``--emission`` as ``is_emission``."""
-    return click.option(
-        "--emission", "is_emission", is_flag=True, help=f"{meaning}; --cube is an emission table."
-    )
+    return click.option("--emission", "is_emission", is_flag=True, help=f"{meaning}; --cube is an emission table.")
 
 
 def refuse_for_lights(*names: str) -> None:
@@ -264,9 +260,7 @@ def entry_coefficients_options(function: Callable[..., Any]) -> Callable[..., An
 def entry_coefficient_count(coefficients: int | None, moments: int | None) -> int:
     """Return the number of coefficients that ``--entry-coefficients`` or ``--entry-moments`` gives."""
     if coefficients is not None and moments is not None:
-        raise click.UsageError(
-            "--entry-moments N is the same as --entry-coefficients N+1: give one of the two."
-        )
+        raise click.UsageError("--entry-moments N is the same as --entry-coefficients N+1: give one of the two.")
     if moments is not None:
         return moments + 1
     return MAX_COEFFICIENTS if coefficients is None else coefficients
@@ -284,6 +278,4 @@ def quiet_option() -> Decorator:
 
 def verbose_option() -> Decorator:
     """``--verbose``."""
-    return click.option(
-        "-v", "--verbose", is_flag=True, help="Print a line for every round and improvement step."
-    )
+    return click.option("-v", "--verbose", is_flag=True, help="Print a line for every round and improvement step.")

@@ -52,9 +52,7 @@ def read_colours(
     return _read_file(path, sensor, encoded=encoded, bounded=bounded, space=space)
 
 
-def _read_file(
-    path: str, sensor: Sensor, *, encoded: bool, bounded: bool, space: ImageSpace | None
-) -> Iterator[Array]:
+def _read_file(path: str, sensor: Sensor, *, encoded: bool, bounded: bool, space: ImageSpace | None) -> Iterator[Array]:
     from uplift.common.errors import ColourError
 
     from .colours import from_table

@@ -58,9 +58,7 @@ def test_headers(save, header):
     assert spectra.names == ("grey",)
     stated = spectra.sources[0].header
     assert stated.content == ("greys" if header else "")
-    assert (stated.copyright, stated.licence) == (
-        ("(c) A. Person: 2020", "CC0") if "copyright" in header else ("", "")
-    )
+    assert (stated.copyright, stated.licence) == (("(c) A. Person: 2020", "CC0") if "copyright" in header else ("", ""))
 
 
 def test_metadata(save):
@@ -127,9 +125,7 @@ def test_latin_1_is_the_fallback_of_utf_8(save):
     assert read_atlas(save(text.encode())).entries[0].measured_by == "Anezka Tódová"
 
 
-@pytest.mark.parametrize(
-    "samples", ["{{400, 50}, {555.5, 25}, {700, 12.5}}", "{ {400,50}{555.5,25}\n,{700,12.5} }"]
-)
+@pytest.mark.parametrize("samples", ["{{400, 50}, {555.5, 25}, {700, 12.5}}", "{ {400,50}{555.5,25}\n,{700,12.5} }"])
 def test_point_samples(save, samples):
     text = PLAIN.replace("regular", "point sampled").replace("value  :  1.0", "value  :  100.0")
     text = text.replace("{0.5, 0.25, 0.125, 0.0625}", samples)
@@ -140,9 +136,7 @@ def test_point_samples(save, samples):
     assert entry.step is None
 
 
-@pytest.mark.parametrize(
-    "kind", ["emission spectrum", "colourimetric matching function", "colour matching function"]
-)
+@pytest.mark.parametrize("kind", ["emission spectrum", "colourimetric matching function", "colour matching function"])
 def test_other_types_are_skipped_with_a_warning(save, kind):
     other = PLAIN.replace("grey", "lamp").replace("reflectance spectrum", kind)
     other = other.replace("Fluorescence data     :  no\n", "").replace("Maximum sample value  :  1.0\n", "")

@@ -64,9 +64,7 @@ def test_unreadable_files_raise(tmp_path):
         assert reason in caught.value.problem
 
 
-@pytest.mark.skipif(
-    os.name == "nt" or not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root reads all"
-)
+@pytest.mark.skipif(os.name == "nt" or not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root reads all")
 def test_file_without_permission_raises(save):
     path = save(PLAIN)
     path.chmod(0)

@@ -54,9 +54,7 @@ def test_one_warning_for_all_clipped_entries():
     rows = ([0.5] * 6 + [1.25], [0.5] * 7, [1.5, 1.0, 0.5, -0.04, 0.5, 0.5, 0.5], [0.5, -0.04] + [0.5] * 5)
     with warns("entry-clipped") as caught:
         found = on_grid(spectra(*rows), GRID)
-    assert str(caught[0]) == (
-        "3 entries clipped to [0, 1]: 'e0', 'e2', 'e3'; 'e2' has 1.5 at 380 nm clipped to 1"
-    )
+    assert str(caught[0]) == ("3 entries clipped to [0, 1]: 'e0', 'e2', 'e3'; 'e2' has 1.5 at 380 nm clipped to 1")
     with warns("entry-clipped") as caught:
         on_grid(spectra(*rows[:2]), GRID)
     assert str(caught[0]) == "entry 'e0': 1.25 at 700 nm clipped to 1"

@@ -61,9 +61,7 @@ def test_all_files_form_one_atlas():
 
 def test_measured_values_are_unchanged():
     spectra = read_atlas(ATLASES / "macbeth.txt")
-    for entry, sd in zip(
-        spectra.entries, colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"].values(), strict=True
-    ):
+    for entry, sd in zip(spectra.entries, colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"].values(), strict=True):
         np.testing.assert_array_equal(entry.values, sd.values)
 
 

@@ -51,9 +51,7 @@ def test_numbers_as_names(save):
         assert spectra.entries[0].values.tolist() == [0.1, 0.2, 0.9]
 
 
-@pytest.mark.parametrize(
-    "text", ["name,400,700\nred,10,90\nblue,5,1.5\n", "nm,red,blue\n400,10,5\n700,90,1.5\n"]
-)
+@pytest.mark.parametrize("text", ["name,400,700\nred,10,90\nblue,5,1.5\n", "nm,red,blue\n400,10,5\n700,90,1.5\n"])
 def test_percent(save, text):
     with warns("values-in-percent") as caught:
         spectra = read_atlas(save(text))

@@ -31,14 +31,10 @@ def test_spectra_are_those_that_were_written(tmp_path, vendor):
 
 
 def test_every_format_but_the_archive_has_a_layout():
-    assert {vendor.format for vendor in VENDORS} == {each.name for each in FORMATS} - {
-        "ART measurement archive"
-    }
+    assert {vendor.format for vendor in VENDORS} == {each.name for each in FORMATS} - {"ART measurement archive"}
 
 
-@pytest.mark.parametrize(
-    "label", ["nm{}", "R{}", "{}nm", "{} nm", "SPECTRAL_NM{}", "R_{}", "Refl ({} nm)", "λ{}"]
-)
+@pytest.mark.parametrize("label", ["nm{}", "R{}", "{}nm", "{} nm", "SPECTRAL_NM{}", "R_{}", "Refl ({} nm)", "λ{}"])
 def test_labels_of_wavelengths(save, label):
     heads = ",".join(label.format(nm) for nm in (400, 550, 700))
     (entry,) = read_atlas(save(f"id,L*,a*,b*,{heads}\ngrey,50,0,0,0.1,0.2,0.3\n"))
@@ -108,10 +104,7 @@ def test_other_quantities_are_refused(save, text):
 
 
 def test_reflectance_next_to_transmittance_is_read(save):
-    assert (
-        len(read_atlas(save("# Reflectance and transmittance of leaves\n" + ROW + "a,0.2,0.3,0.4,0.5\n")))
-        == 1
-    )
+    assert len(read_atlas(save("# Reflectance and transmittance of leaves\n" + ROW + "a,0.2,0.3,0.4,0.5\n"))) == 1
 
 
 def test_transmittances_of_cxf_are_skipped(tmp_path):

@@ -40,16 +40,11 @@ def _rows(
     step = -1 if reverse else 1
     nm = atlas[0].wavelengths[::step]
     lines = [separator.join(["Name", *(label.format(each) for each in nm)])]
-    lines += [
-        f"{entry.name}{separator}" + _numbers(entry.values[::step], separator, scale, comma)
-        for entry in atlas
-    ]
+    lines += [f"{entry.name}{separator}" + _numbers(entry.values[::step], separator, scale, comma) for entry in atlas]
     return "\n".join(lines) + "\n"
 
 
-def _columns(
-    atlas: Atlas, separator: str, corner: str = "Wavelength", scale: float = 1.0, comma: bool = False
-) -> str:
+def _columns(atlas: Atlas, separator: str, corner: str = "Wavelength", scale: float = 1.0, comma: bool = False) -> str:
     lines = [separator.join([corner, *atlas.names])]
     for index, nm in enumerate(atlas[0].wavelengths):
         values = _numbers([entry.values[index] for entry in atlas], separator, scale, comma)
@@ -84,11 +79,7 @@ def konica_minolta(atlas: Atlas) -> Files:
     head = "Instrument Name;CM-700d\nIlluminant;D65\nObserver;10 Degree\n\n"
     nm = atlas[0].wavelengths
     labels = ["Data Name", "Date", "Group", "L*(D65)", "a*(D65)", "b*(D65)"]
-    lines = [
-        ";".join(
-            ["Name", *labels[1:], *(f"SCI {each:g}nm" for each in nm), *(f"SCE {each:g}nm" for each in nm)]
-        )
-    ]
+    lines = [";".join(["Name", *labels[1:], *(f"SCI {each:g}nm" for each in nm), *(f"SCE {each:g}nm" for each in nm)])]
     for entry in atlas:
         numbers = _numbers(entry.values, ";", 100, comma=True)
         gloss = _numbers(entry.values * 0.96, ";", 100, comma=True)
@@ -146,11 +137,7 @@ def xrite(atlas: Atlas) -> Files:
     """Export of ProfileMaker: names without quotes, labels such as nm380."""
     labels = [f"nm{each:g}" for each in atlas[0].wavelengths]
     keywords = 'LGOROWLENGTH\t10\nCREATED\t"1/31/2026"  # Time: 16:45\nINSTRUMENTATION\t"Spectrolino"\n'
-    text = (
-        _cgats(atlas, labels, 1, keywords)
-        .replace('"dark skin"', "dark skin")
-        .replace("SAMPLE_ID", "SampleID")
-    )
+    text = _cgats(atlas, labels, 1, keywords).replace('"dark skin"', "dark skin").replace("SAMPLE_ID", "SampleID")
     return {"xrite.txt": text.replace("\n", "\r\n").encode("latin-1")}
 
 
@@ -171,9 +158,7 @@ def argyll_sp(atlas: Atlas) -> Files:
     head += f'SPECTRAL_END_NM "{nm[-1]}"\nSPECTRAL_NORM "100.0"\n\nNUMBER_OF_FIELDS {len(nm)}\nBEGIN_DATA_FORMAT\n'
     fields = " ".join(f"SPEC_{round(each)}" for each in nm)
     data = _numbers(atlas[0].values, " ", 100)
-    return {
-        "one.sp": f"{head}{fields}\nEND_DATA_FORMAT\n\nNUMBER_OF_SETS 1\nBEGIN_DATA\n{data}\nEND_DATA\n".encode()
-    }
+    return {"one.sp": f"{head}{fields}\nEND_DATA_FORMAT\n\nNUMBER_OF_SETS 1\nBEGIN_DATA\n{data}\nEND_DATA\n".encode()}
 
 
 def cxf3(atlas: Atlas) -> Files:
@@ -222,9 +207,7 @@ def spd(atlas: Atlas) -> Files:
 
 def jcamp_points(atlas: Atlas) -> Files:
     entry = atlas[0]
-    pairs = "\n".join(
-        f"{nm:g}, {100 * value:.8f}" for nm, value in zip(entry.wavelengths, entry.values, strict=True)
-    )
+    pairs = "\n".join(f"{nm:g}, {100 * value:.8f}" for nm, value in zip(entry.wavelengths, entry.values, strict=True))
     text = (
         f"##TITLE={entry.name}\n##JCAMP-DX=4.24\n##DATA TYPE=UV-VIS SPECTRUM\n##XUNITS=NANOMETERS\n"
         f"##YUNITS=% REFLECTANCE\n##NPOINTS={len(entry.values)}\n##XYPOINTS=(XY..XY)\n{pairs}\n##END=\n"
@@ -237,8 +220,7 @@ def jcamp_table(atlas: Atlas) -> Files:
     entry = atlas[0]
     nm, values = entry.wavelengths[::-1], entry.values[::-1]
     lines = [
-        f"{1e-3 * nm[first]:.4f} "
-        + " ".join(f"{round(1e8 * value):d}" for value in values[first : first + 6])
+        f"{1e-3 * nm[first]:.4f} " + " ".join(f"{round(1e8 * value):d}" for value in values[first : first + 6])
         for first in range(0, len(nm), 6)
     ]
     text = (
@@ -333,9 +315,7 @@ def ods(atlas: Atlas) -> Files:
         f'<manifest:manifest xmlns:manifest="{name}:manifest:1.0"><manifest:file-entry manifest:full-path="/" '
         f'manifest:media-type="{kind}"/></manifest:manifest>'
     )
-    return {
-        "paints.ods": _archive({"mimetype": kind, "META-INF/manifest.xml": manifest, "content.xml": content})
-    }
+    return {"paints.ods": _archive({"mimetype": kind, "META-INF/manifest.xml": manifest, "content.xml": content})}
 
 
 def _ods_cell(value: str | float) -> str:

@@ -32,7 +32,5 @@ def test_the_matrix_by_lab_keeps_white(known):
 
 
 def test_overlapping_channels_leave_few_raw_values():
-    shares = [
-        realisable_share(observer.sensor("camera", "D65", name), 12) for name in observer.camera_names()
-    ]
+    shares = [realisable_share(observer.sensor("camera", "D65", name), 12) for name in observer.camera_names()]
     assert 0 < shares[1] < shares[0] < 1

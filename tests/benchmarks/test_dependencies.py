@@ -16,9 +16,7 @@ STORED = json.loads((ROOT / "docs" / "data" / "dependencies.json").read_text(enc
 
 def test_page_has_exactly_the_dependencies_of_pyproject():
     rows = STORED["required"] + STORED["optional"]
-    assert {row["name"]: row["extra"] for row in rows} == dependencies.requirements(), (
-        "run 'make dependencies'"
-    )
+    assert {row["name"]: row["extra"] for row in rows} == dependencies.requirements(), "run 'make dependencies'"
 
 
 @pytest.mark.parametrize("name", dependencies.requirements())

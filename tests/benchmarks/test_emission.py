@@ -64,9 +64,7 @@ def test_a_table_without_a_lamp_has_its_colour_and_not_its_spectrum():
     unknown = np.arange(len(LAMPS))[None] == row("FL11")
     found = predict(LAMPS.names, unknown, lamp, **SMALL)
     for power in (found.table, found.without_discs):
-        np.testing.assert_allclose(
-            chromaticity(power @ RADIOMETRY), chromaticity(lamp @ RADIOMETRY), atol=1e-7
-        )
+        np.testing.assert_allclose(chromaticity(power @ RADIOMETRY), chromaticity(lamp @ RADIOMETRY), atol=1e-7)
         assert np.abs(power - lamp).max() > 0.1
     assert found.expected[0] > 0
 
@@ -77,9 +75,7 @@ def test_sigmoids_times_d65_have_the_rgb():
     d65 = LAMPS.power[row("D65")]
     found = sigmoid_times_d65(some, RADIOMETRY, matrix, d65)
     assert found.missed.max() < 1e-6
-    np.testing.assert_allclose(
-        chromaticity(found.power @ RADIOMETRY), chromaticity(some @ RADIOMETRY), atol=1e-5
-    )
+    np.testing.assert_allclose(chromaticity(found.power @ RADIOMETRY), chromaticity(some @ RADIOMETRY), atol=1e-5)
     np.testing.assert_allclose(np.ptp(found.power[0] / d65), 0, atol=1e-3)
 
 

@@ -56,9 +56,7 @@ def test_each_page_has_a_step_and_each_step_a_page():
     text = (ROOT / "Makefile").read_text(encoding="utf-8")
     recipes = re.findall(r"^([\w-]+):.*\n((?:\t.*\n)+)", text, re.MULTILINE)
     rendered = {
-        name: match[1].split()
-        for name, recipe in recipes
-        if (match := re.search(r"tools\.render_docs (.+)", recipe))
+        name: match[1].split() for name, recipe in recipes if (match := re.search(r"tools\.render_docs (.+)", recipe))
     }
     assert set(STEPS) == set(rendered)
     assert len(set(STEPS)) == len(STEPS)

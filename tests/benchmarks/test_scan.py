@@ -42,6 +42,4 @@ def test_the_viewer_reads_the_weights(weights, tmp_path):
     scan.write_weights(weights, path)
     order = ["block", "haze", "piston", "valve"]
     found = read_weights(path, order, {})
-    np.testing.assert_allclose(
-        found, weights[..., [list(scan.DENSITIES).index(name) for name in order]], atol=1e-6
-    )
+    np.testing.assert_allclose(found, weights[..., [list(scan.DENSITIES).index(name) for name in order]], atol=1e-6)

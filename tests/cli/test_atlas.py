@@ -31,18 +31,14 @@ def test_table_lists_entries_and_counts_those_out_of_gamut(invoke):
     result = invoke(MACBETH)
     for name in read_atlas(MACBETH).names:
         assert name in result.stdout
-    assert result.stdout.endswith(
-        "24 entries, 1 out of the sRGB gamut (cyan), 0 skipped; Display P3 holds all 24\n"
-    )
+    assert result.stdout.endswith("24 entries, 1 out of the sRGB gamut (cyan), 0 skipped; Display P3 holds all 24\n")
     (line,) = [line for line in result.stdout.split("\n") if line.startswith("cyan")]
     assert line.split() == ["cyan", "380:780:5", "-0.0334", "0.2488", "0.3855"]
     assert "\x1b" not in result.stdout
 
 
 def test_json_has_the_colours_under_the_sensor(invoke):
-    answer = json.loads(
-        invoke(MACBETH, "--format", "json", "--illuminant", "A", "--space", "Display P3").stdout
-    )
+    answer = json.loads(invoke(MACBETH, "--format", "json", "--illuminant", "A", "--space", "Display P3").stdout)
     sensor = observer.sensor("Display P3", "A")
     expected = sensor.rgb(on_grid(read_atlas(MACBETH), sensor.wavelengths))
     np.testing.assert_allclose([entry["rgb"] for entry in answer["entries"]], expected, rtol=0, atol=1e-15)

@@ -270,9 +270,7 @@ def test_looks_are_built_summarised_and_shown(run, home):
     result = run("build", *SMALL, "--prior", "smooth", "--look", "looks.toml", "-o", "looks.uplift")
     assert ", 1 look, " in result.stdout
     assert result.stderr == ""
-    line = next(
-        line for line in run("info", "looks.uplift").stdout.splitlines() if line.startswith("look brick")
-    )
+    line = next(line for line in run("info", "looks.uplift").stdout.splitlines() if line.startswith("look brick"))
     assert line.split()[2:] == ["HP1", "#70392a", "(ΔE00", "0.00)"]
     assert run("check", "looks.uplift", "--format", "json").exit_code == 0
 

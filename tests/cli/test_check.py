@@ -128,9 +128,7 @@ def test_json_has_the_errors_of_failed_cubes(run, stored, other_lattice):
 
 
 def test_update_replaces_cubes_with_another_lattice(run, stored, other_lattice):
-    assert not np.array_equal(
-        uplift.load(other_lattice).data.lattice.nodes, uplift.load(stored).data.lattice.nodes
-    )
+    assert not np.array_equal(uplift.load(other_lattice).data.lattice.nodes, uplift.load(stored).data.lattice.nodes)
     result = run("check", "--update", other_lattice)
     assert result.stderr == f"{other_lattice}: replaced\n"
     assert other_lattice.read_bytes() == stored.read_bytes()

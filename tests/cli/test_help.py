@@ -67,9 +67,7 @@ def test_unlike_words_have_none(misuse):
 def test_shells_complete_names(run, cubes, monkeypatch, shell, words, expected):
     words, expected = (text.replace("CUBES", str(cubes)) for text in (words, expected))
     monkeypatch.setenv("COMP_WORDS", words)
-    monkeypatch.setenv(
-        "COMP_CWORD", words.rsplit(" ", 1)[-1] if shell == "fish" else str(len(words.split()) - 1)
-    )
+    monkeypatch.setenv("COMP_CWORD", words.rsplit(" ", 1)[-1] if shell == "fish" else str(len(words.split()) - 1))
     result = run(env={"_MAIN_COMPLETE": f"{shell}_complete"}, prog_name="main")
     assert expected in result.stdout.replace(",", "\n").replace("\t", "\n").splitlines()
 

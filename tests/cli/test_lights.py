@@ -95,9 +95,7 @@ def test_check_names_the_option(home):
 
 def test_cubes_are_not_lights(refuse, home):
     uplift.load().save(home / "cube.uplift")
-    assert (
-        refuse("query", "1", "1", "1", "--cube", "cube.uplift", "--emission").code == "not-an-emission-table"
-    )
+    assert refuse("query", "1", "1", "1", "--cube", "cube.uplift", "--emission").code == "not-an-emission-table"
 
 
 def test_reports_of_tables(home):

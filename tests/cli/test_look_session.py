@@ -44,9 +44,7 @@ def test_a_cube_answers_what_was_chosen_on_the_page(run, home):
     (home / "looks.toml").write_text(choose(home / "page.html"), encoding="utf-8")
     (look,) = tomllib.loads((home / "looks.toml").read_text(encoding="utf-8"))["look"]
     run("build", "--dim", 4, "--look", "looks.toml", "-o", "looks.uplift")
-    answer = json.loads(
-        run("query", look["rgb"], "--cube", "looks.uplift", *LIGHTS, "--format", "json").stdout
-    )
+    answer = json.loads(run("query", look["rgb"], "--cube", "looks.uplift", *LIGHTS, "--format", "json").stdout)
     assert answer["round_trip"]["delta_e_2000"] < 1e-3
     for screen in display_sensors(("A", "FL11"), DEFAULT_OBSERVER):
         name = screen.illuminant

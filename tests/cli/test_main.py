@@ -138,9 +138,7 @@ def test_internal_errors_are_one_line_with_exit_code_70(failing, run, bug):
     failing(bug)
     result = run("info", "x", code=70)
     assert result.stdout == ""
-    assert result.stderr.startswith(
-        f"error: internal error, please report it: {type(bug).__name__} in test_main.py:"
-    )
+    assert result.stderr.startswith(f"error: internal error, please report it: {type(bug).__name__} in test_main.py:")
     assert "uplift --traceback" in result.stderr
     assert result.stderr.count("\n") == 1
     assert printable(result.stderr[:-1]) == result.stderr[:-1]
@@ -241,8 +239,6 @@ def test_hints_are_for_codes_that_exist(repository):
 
 def test_command_line_is_importable_only_by_its_installed_name(repository):
     importlib.import_module("uplift_cli")
-    done = subprocess.run(
-        [sys.executable, "-c", "import cli"], cwd=repository, capture_output=True, text=True
-    )
+    done = subprocess.run([sys.executable, "-c", "import cli"], cwd=repository, capture_output=True, text=True)
     assert done.returncode == 1
     assert "ImportError: the command line is installed as 'uplift_cli'" in done.stderr

@@ -20,9 +20,7 @@ def numeric_options():
     commands += [each for group in groups for each in group.commands.values()]
     for command in commands:
         for option in command.params:
-            if isinstance(
-                option.type, Number | LatticeDim | click.types.IntParamType | click.types.FloatParamType
-            ):
+            if isinstance(option.type, Number | LatticeDim | click.types.IntParamType | click.types.FloatParamType):
                 yield command, option
 
 
@@ -30,9 +28,7 @@ OPTIONS = list(numeric_options())
 
 
 def test_all_numeric_options_are_found():
-    assert {"--dim", "--threshold", "--processes", "--count", "--res"} <= {
-        option.opts[-1] for _, option in OPTIONS
-    }
+    assert {"--dim", "--threshold", "--processes", "--count", "--res"} <= {option.opts[-1] for _, option in OPTIONS}
 
 
 @pytest.mark.parametrize("number", NUMBERS)

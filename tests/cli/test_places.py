@@ -16,9 +16,7 @@ NAMES = {"not UTF-8": os.fsdecode(b"\xff\xfe"), "255 bytes": "x" * 248, "a newli
 USER = 12345
 """A user without an entry in the table of users."""
 AS_NOBODY = f"unshare -U --map-user={USER} --map-group={USER} env -u HOME -u XDG_CACHE_HOME"
-can_change_user = (
-    not os.getuid() and not subprocess.run([*AS_NOBODY.split(), "true"], capture_output=True).returncode
-)
+can_change_user = not os.getuid() and not subprocess.run([*AS_NOBODY.split(), "true"], capture_output=True).returncode
 
 
 def lines(done):
@@ -41,9 +39,7 @@ def test_deleted_working_folder(tmp_path, arguments):
 @pytest.mark.skipif(not can_change_user, reason="needs user namespaces")
 def test_user_without_home_and_name(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert not lines(
-        shell(f"{AS_NOBODY} {UPLIFT} query 0 0 0 --plot {tmp_path}/x.png", JAX_COMPILATION_CACHE_DIR="")
-    )
+    assert not lines(shell(f"{AS_NOBODY} {UPLIFT} query 0 0 0 --plot {tmp_path}/x.png", JAX_COMPILATION_CACHE_DIR=""))
     assert os.listdir(tmp_path) == ["x.png"]
 
 

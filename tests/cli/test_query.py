@@ -150,9 +150,7 @@ def test_out_of_gamut_colours_in_files_are_mapped_with_a_warning(run, ask, table
     (warning,) = warning_lines(run("query", *words))
     assert "1 of 3" in warning
     answers = ask(*words)
-    np.testing.assert_allclose(
-        [answer["rgb"] for answer in answers], [[0.8, 0.2, 0.1], [1, 1 / 3, 1 / 6], RED]
-    )
+    np.testing.assert_allclose([answer["rgb"] for answer in answers], [[0.8, 0.2, 0.1], [1, 1 / 3, 1 / 6], RED])
     np.testing.assert_allclose(
         [answer["requested_rgb"] for answer in answers], [[0.8, 0.2, 0.1], [1.5, 0.5, 0.25], RED]
     )
@@ -340,9 +338,7 @@ def test_standard_errors_under_other_lights(ask, run, table, cubes):
     answer = ask("--cube", path, *rgb, *words)
     assert (answer["standard_errors"], answer["error_bounds"]) == (expected, bounds)
     file = table("0.8,0.2,0.1\n0,1,0\n")
-    lines = run(
-        "query", "--cube", path, "--input", file, "--format", "csv", "--wavelengths", "500", *words
-    ).stdout
+    lines = run("query", "--cube", path, "--input", file, "--format", "csv", "--wavelengths", "500", *words).stdout
     rows = list(csv.DictReader(io.StringIO(lines)))
     assert {light: float(rows[0][f"standard_error_{light}"]) for light in lights} == expected
     assert {light: float(rows[0][f"error_bound_{light}"]) for light in lights} == bounds
@@ -359,9 +355,7 @@ def test_lights_of_standard_errors_must_be_known(refuse, ask):
 
 
 def test_modes_differ_and_spectra_is_the_default(ask):
-    found = {
-        mode: ask(*map(str, RED), "--mode", mode)["reflectance"] for mode in ("spectra", "moments", "refined")
-    }
+    found = {mode: ask(*map(str, RED), "--mode", mode)["reflectance"] for mode in ("spectra", "moments", "refined")}
     assert found["spectra"] == ask(*map(str, RED))["reflectance"]
     assert len({tuple(values) for values in found.values()}) == 3
 
@@ -480,9 +474,7 @@ def test_queries_import_no_slow_packages(style):
         "atexit.register(lambda: print(sorted(slow & set(sys.modules)), file=sys.stderr))\n"
         f"main(['query', '#cc3319', '--format', {style!r}])"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, encoding="utf-8"
-    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, encoding="utf-8")
     assert done.stdout
     assert done.stderr == "[]\n"
 

@@ -110,9 +110,7 @@ def test_wrong_usage(misuse, cube):
 
 
 def test_a_broken_write_leaves_nothing(run, home, cube, monkeypatch):
-    monkeypatch.setattr(
-        "pathlib.Path.write_text", lambda *_, **__: (_ for _ in ()).throw(OSError("disk full"))
-    )
+    monkeypatch.setattr("pathlib.Path.write_text", lambda *_, **__: (_ for _ in ()).throw(OSError("disk full")))
     result = run("report", cube, *SMALL, code=2)
     assert "cannot be written: disk full" in result.stderr
     assert not (home / "macbeth-8.html").exists()

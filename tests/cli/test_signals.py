@@ -192,9 +192,7 @@ def test_progress_raises_a_dropped_interrupt(monkeypatch):
 
 
 def test_an_interrupt_during_an_import_is_raised_after_it(tmp_path, monkeypatch):
-    (tmp_path / "slow_module.py").write_text(
-        "import signal\nsignal.raise_signal(signal.SIGTERM)\ndone = True\n"
-    )
+    (tmp_path / "slow_module.py").write_text("import signal\nsignal.raise_signal(signal.SIGTERM)\ndone = True\n")
     monkeypatch.syspath_prepend(tmp_path)
     imported = []
 

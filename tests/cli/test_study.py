@@ -79,9 +79,7 @@ def test_default_atlases_are_those_of_the_working_folder(run, home, tcs):
 
 def test_shipped_atlases_are_the_default_in_other_folders(run, home, repository):
     rows = csv.DictReader(io.StringIO(run("study", "moments", "--max-moments", 0, "--format", "csv").stdout))
-    assert {row["atlas"] for row in rows} == {"all"} | {
-        path.stem for path in (repository / "atlases").glob("*.txt")
-    }
+    assert {row["atlas"] for row in rows} == {"all"} | {path.stem for path in (repository / "atlases").glob("*.txt")}
 
 
 def test_few_entries_and_few_moments_are_drawn_too(run, home):

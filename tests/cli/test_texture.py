@@ -110,9 +110,7 @@ def test_options_that_lights_do_not_have(refuse, home, words):
 def test_a_cube_is_no_emission_table(refuse, home, cubes):
     write_exr(home / "sky.exr", planes(np.ones((2, 3, 3), np.float32)))
     path = cubes / "moments-8.uplift"
-    assert (
-        refuse("texture", "sky.exr", "out.exr", "--emission", "--cube", path).code == "not-an-emission-table"
-    )
+    assert refuse("texture", "sky.exr", "out.exr", "--emission", "--cube", path).code == "not-an-emission-table"
 
 
 def test_masks_choose_among_cubes(run, refuse, frames, cubes):

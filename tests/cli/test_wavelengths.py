@@ -45,9 +45,7 @@ def test_errors_follow_from_the_printed_wavelengths_and_weights(choose, macbeth)
 
 
 def test_weights_to_rgb_map_the_illuminant_to_white(choose):
-    answer = json.loads(
-        choose("--count", 10, "--light", "D65", "--space", "ITU-R BT.2020", "--format", "json")
-    )
+    answer = json.loads(choose("--count", 10, "--light", "D65", "--space", "ITU-R BT.2020", "--format", "json"))
     white = np.array(answer["powers"]["D65"]) @ answer["to_rgb"]
     np.testing.assert_allclose(white, 1, atol=5e-3)
 
@@ -107,9 +105,7 @@ def test_given_wavelengths(choose):
     assert answer["errors"]["D65"]["mean"] < plain["errors"]["D65"]["mean"] / 2
 
 
-@pytest.mark.parametrize(
-    "options", [[], ["--count", "4", "--target", "1"], ["--wavelengths", "500", "--count", "1"]]
-)
+@pytest.mark.parametrize("options", [[], ["--count", "4", "--target", "1"], ["--wavelengths", "500", "--count", "1"]])
 def test_one_of_count_target_and_wavelengths_is_required(misuse, options):
     assert "--count" in misuse("wavelengths", *options)
 

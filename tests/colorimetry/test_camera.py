@@ -44,15 +44,11 @@ def test_raw_values_are_sums_of_sensitivities_balanced_to_white(camera, illumina
 
 def test_the_matrix_of_a_camera_that_sees_as_the_observer_is_known():
     mixed = np.array([[0.9, 0.1, 0.02], [0.05, 0.8, 0.1], [0.01, 0.05, 0.95]])
-    sensor = observer.sensor(
-        CAMERA, "A", Camera("luther", observer.grid(), observer.matching_functions() @ mixed.T)
-    )
+    sensor = observer.sensor(CAMERA, "A", Camera("luther", observer.grid(), observer.matching_functions() @ mixed.T))
     expected = mixed / (mixed @ sensor.light.white)[:, None]
     np.testing.assert_allclose(sensor.xyz_to_rgb, expected, rtol=1e-9, atol=1e-12)
     reflectance = np.random.default_rng(2).random((5, 81))
-    np.testing.assert_allclose(
-        sensor.xyz(sensor.rgb(reflectance)), reflectance @ sensor.light.xyz.T, rtol=1e-9
-    )
+    np.testing.assert_allclose(sensor.xyz(sensor.rgb(reflectance)), reflectance @ sensor.light.xyz.T, rtol=1e-9)
 
 
 def test_a_file_is_read(tmp_path):
@@ -95,9 +91,7 @@ def test_bad_sensitivities(tmp_path, rows, code, header):
         observer.sensor(CAMERA, observer=str(write(tmp_path, header + rows)))
 
 
-@pytest.mark.parametrize(
-    ("name", "code"), [("missing.csv", "file-not-found"), (".csv", "not-a-regular-file")]
-)
+@pytest.mark.parametrize(("name", "code"), [("missing.csv", "file-not-found"), (".csv", "not-a-regular-file")])
 def test_unreadable_files(tmp_path, name, code):
     (tmp_path / ".csv").mkdir()
     with raises(OptionError, code):

@@ -113,10 +113,7 @@ def test_distances_are_those_of_the_inverse_covariance():
     rng = np.random.default_rng(3)
     covariance = np.stack([np.cov(rng.normal(size=(2, 9))) for _ in range(20)])
     difference = rng.normal(size=(20, 2))
-    plain = [
-        np.sqrt(each @ np.linalg.inv(matrix) @ each)
-        for each, matrix in zip(difference, covariance, strict=True)
-    ]
+    plain = [np.sqrt(each @ np.linalg.inv(matrix) @ each) for each, matrix in zip(difference, covariance, strict=True)]
     np.testing.assert_allclose(mahalanobis(covariance, difference), plain, rtol=1e-9)
 
 

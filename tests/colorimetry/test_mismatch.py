@@ -65,8 +65,7 @@ def test_the_volume_of_grey_is_symmetric(sensor):
     light = observer.light("HP1")
     volumes = mismatch_volumes(sensor, light, np.full((1, 3), 0.5), divisions=2)
     opposite = [
-        np.abs(volumes.directions.directions + each).sum(axis=1).argmin()
-        for each in volumes.directions.directions
+        np.abs(volumes.directions.directions + each).sum(axis=1).argmin() for each in volumes.directions.directions
     ]
     np.testing.assert_allclose(volumes.xyz[0, opposite], light.white - volumes.xyz[0], atol=1e-8)
 
@@ -77,8 +76,7 @@ def test_the_volume_is_that_of_the_hull_of_linear_programs(sensor):
     rgb = np.array([0.2, 0.4, 0.1])
     directions = np.random.default_rng(3).normal(size=(250, 3))
     found = [
-        linprog(-each @ light.xyz, A_eq=sensor.matrix, b_eq=rgb, bounds=(0, 1), method="highs").x
-        for each in directions
+        linprog(-each @ light.xyz, A_eq=sensor.matrix, b_eq=rgb, bounds=(0, 1), method="highs").x for each in directions
     ]
     hull = ConvexHull(np.array(found) @ light.xyz.T)
     volumes = mismatch_volumes(sensor, light, rgb[None], divisions=3)

@@ -35,9 +35,7 @@ def test_colours_agree_with_colour_science(sensor):
 
 def test_xyz_of_rgb_equals_xyz_of_reflectance(sensor):
     reflectance = np.random.default_rng(1).random((10, 81))
-    np.testing.assert_allclose(
-        sensor.xyz(sensor.rgb(reflectance)), reflectance @ sensor.light.xyz.T, atol=1e-14
-    )
+    np.testing.assert_allclose(sensor.xyz(sensor.rgb(reflectance)), reflectance @ sensor.light.xyz.T, atol=1e-14)
 
 
 def test_rounding_errors_are_in_gamut(sensor):

@@ -34,15 +34,11 @@ def test_spaces_convert_as_colour_science_does(name):
     codes = np.array([[0.2, 0.5, 0.8], [1, 1, 1]])
     is_encoded = name in ("sRGB - Texture", "srgb_texture", "adobergb")
     linear = found.decode(codes) if is_encoded else codes
-    decoded = (
-        {"adobergb": codes ** (563 / 256)}.get(name, colour.models.eotf_sRGB(codes)) if is_encoded else codes
-    )
+    decoded = {"adobergb": codes ** (563 / 256)}.get(name, colour.models.eotf_sRGB(codes)) if is_encoded else codes
     expected = decoded @ conversion(observer.primaries(NAMES[name]), SRGB).T
     np.testing.assert_allclose(linear @ conversion(found.gamut, SRGB).T, expected, rtol=0, atol=1e-3)
     assert found.floats_are_codes == is_encoded
-    assert found.agrees_with(sensor, encoded=False) == (
-        NAMES[name] in ("sRGB", "ITU-R BT.709") and not is_encoded
-    )
+    assert found.agrees_with(sensor, encoded=False) == (NAMES[name] in ("sRGB", "ITU-R BT.709") and not is_encoded)
 
 
 @pytest.mark.parametrize("name", ["lin_ap9", "raw", "", "a\0b", "a\n"])

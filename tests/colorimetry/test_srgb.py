@@ -20,9 +20,7 @@ def test_transfer_curve_agrees_with_the_standard_and_is_invertible():
 def test_srgb_codes_are_unchanged(small_cube):
     codes = np.random.default_rng(0).integers(0, 256, (500, 3))
     np.testing.assert_array_equal(to_display_codes(decode(codes / 255), SRGB), codes)
-    of_cube = to_display_codes(
-        small_cube.decode(codes), small_cube.data.sensor
-    )  # its white is that of D65 at 5 nm
+    of_cube = to_display_codes(small_cube.decode(codes), small_cube.data.sensor)  # its white is that of D65 at 5 nm
     assert np.abs(of_cube - codes).max() <= 1
     assert (of_cube == codes).mean() > 0.98
 

@@ -28,9 +28,7 @@ def test_text_can_be_quoted():
     assert csv_text(["name", 400.0], [["1", 0.5]], quote_text=True) == '"name",400.0\n"1",0.5\n'
 
 
-@pytest.mark.parametrize(
-    "name", ["=1+2", "+cmd|' /C calc'!A0", "-x", "@SUM(A1)", "\t=1", "'=1", "''-x", "＝1"]
-)
+@pytest.mark.parametrize("name", ["=1+2", "+cmd|' /C calc'!A0", "-x", "@SUM(A1)", "\t=1", "'=1", "''-x", "＝1"])
 def test_formulas_are_neutralised_and_come_back(name):
     (cell,) = next(csv.reader(io.StringIO(csv_text([name], []), newline="")))
     assert cell == f"'{name}"

@@ -115,9 +115,7 @@ def test_an_existing_file_is_replaced_with_force_only(data, path, content):
     assert path.read_bytes() == content
 
 
-@pytest.mark.parametrize(
-    "name", [*POINT_TYPES, "nodes", "atlas", "spectra", "sensor", "threshold", "provenance"]
-)
+@pytest.mark.parametrize("name", [*POINT_TYPES, "nodes", "atlas", "spectra", "sensor", "threshold", "provenance"])
 def test_the_digest_changes_with_any_content(data, name):
     assert digest(changed(data, name)) != digest(data)
 
@@ -125,20 +123,14 @@ def test_the_digest_changes_with_any_content(data, name):
 def changed(data, name):
     """The cube with one number of the field ``name`` changed by the smallest amount."""
     if name == "nodes":
-        return dataclasses.replace(
-            data, lattice=dataclasses.replace(data.lattice, nodes=nudged(data.lattice.nodes))
-        )
+        return dataclasses.replace(data, lattice=dataclasses.replace(data.lattice, nodes=nudged(data.lattice.nodes)))
     if name == "atlas":
         return dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, rgb=nudged(data.atlas.rgb)))
     if name == "spectra":
-        spectra = dataclasses.replace(
-            data.atlas.spectra, coefficients=nudged(data.atlas.spectra.coefficients)
-        )
+        spectra = dataclasses.replace(data.atlas.spectra, coefficients=nudged(data.atlas.spectra.coefficients))
         return dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, spectra=spectra))
     if name == "sensor":
-        return dataclasses.replace(
-            data, sensor=dataclasses.replace(data.sensor, cmfs=nudged(data.sensor.cmfs))
-        )
+        return dataclasses.replace(data, sensor=dataclasses.replace(data.sensor, cmfs=nudged(data.sensor.cmfs)))
     if name == "threshold":
         return dataclasses.replace(data, threshold=float(np.nextafter(data.threshold, 1)))
     if name == "provenance":
@@ -149,9 +141,7 @@ def changed(data, name):
 def nudged(array):
     array = array.copy()
     place = tuple(np.array(array.shape) // 2)
-    array[place] = (
-        array[place] + 1 if array.dtype.kind in "iu" else np.nextafter(array[place], array.dtype.type(9))
-    )
+    array[place] = array[place] + 1 if array.dtype.kind in "iu" else np.nextafter(array[place], array.dtype.type(9))
     return array
 
 
@@ -263,9 +253,7 @@ def test_a_deeply_nested_header_is_refused(path, content):
     refused(path)
 
 
-@pytest.mark.parametrize(
-    "metadata", [None, {}, {"other": "1"}, {KEY: "{}"}, {KEY: "[]"}, {KEY: "3"}, {KEY: "null"}]
-)
+@pytest.mark.parametrize("metadata", [None, {}, {"other": "1"}, {KEY: "{}"}, {KEY: "[]"}, {KEY: "3"}, {KEY: "null"}])
 def test_other_safetensors_files_are_refused(tmp_path, metadata):
     path = tmp_path / "other.safetensors"
     save_file({"weights": np.zeros((2, 2))}, path, metadata=metadata)
@@ -290,18 +278,14 @@ def test_an_unchanged_forgery_is_read(data, tmp_path):
     assert_same(read(forge(data, tmp_path / "cube", lambda tensors, metadata: None)), data)
 
 
-@pytest.mark.parametrize(
-    "name", ["nodes", "atlas.rgb", "atlas.entry_coefficients", "sensor.power", *POINT_TYPES]
-)
+@pytest.mark.parametrize("name", ["nodes", "atlas.rgb", "atlas.entry_coefficients", "sensor.power", *POINT_TYPES])
 def test_a_missing_array_is_named(data, tmp_path, name):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: tensors.pop(name))
     error = refused(path, "cube-invalid")
     assert repr(name) in error.problem
 
 
-@pytest.mark.parametrize(
-    "key", ["features", "model", "entry_model", "space", "threshold", "entries", "provenance"]
-)
+@pytest.mark.parametrize("key", ["features", "model", "entry_model", "space", "threshold", "entries", "provenance"])
 def test_missing_metadata_is_named(data, tmp_path, key):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.pop(key))
     error = refused(path, "invalid-metadata")
@@ -329,9 +313,7 @@ def test_metadata_of_wrong_types_is_refused(data, tmp_path, key, values):
         refused(path)
 
 
-@pytest.mark.parametrize(
-    "name", [*POINT_TYPES, "atlas.rgb", "atlas.coefficients", "atlas.entry_coefficients", "nodes"]
-)
+@pytest.mark.parametrize("name", [*POINT_TYPES, "atlas.rgb", "atlas.coefficients", "atlas.entry_coefficients", "nodes"])
 def test_wrong_shapes_are_refused(data, tmp_path, name):
     def change(tensors, metadata):
         tensors[name] = tensors[name][:-1]
@@ -541,9 +523,7 @@ def test_a_cube_that_cannot_be_read_back_leaves_the_old_file(data, path, content
 
 
 def test_files_are_read_back_before_they_replace_another(data, path, content, monkeypatch):
-    monkeypatch.setattr(
-        container, "save", lambda tensors, metadata, path: path.write_bytes(content[:-1] + b"x")
-    )
+    monkeypatch.setattr(container, "save", lambda tensors, metadata, path: path.write_bytes(content[:-1] + b"x"))
     with raises(OutputError, "cube-unreadable"):
         write(data, path, force=True)
     assert path.read_bytes() == content

@@ -95,9 +95,7 @@ def test_unknown_provenance_of_later_versions_is_kept(small_cube, tmp_path):
     def change(tensors, metadata):
         metadata["provenance"]["later"] = {"a": [1, None, True]}
 
-    assert read(forge(small_cube.data, tmp_path / "cube", change)).provenance["later"] == {
-        "a": [1, None, True]
-    }
+    assert read(forge(small_cube.data, tmp_path / "cube", change)).provenance["later"] == {"a": [1, None, True]}
 
 
 @pytest.mark.parametrize(
@@ -143,9 +141,7 @@ def test_left_out_entries_are_checked(small_cube, tmp_path, name, change, code):
         ("points", lambda array: array[::-1], "invalid-points"),
     ],
 )
-def test_sparse_cubes_are_checked_before_they_are_expanded(
-    small_cube, tmp_path, monkeypatch, name, change, code
-):
+def test_sparse_cubes_are_checked_before_they_are_expanded(small_cube, tmp_path, monkeypatch, name, change, code):
     def forged(tensors, metadata):
         metadata["features"].append("sparse")
         tensors["points"] = np.arange(511, dtype=np.uint32)

@@ -52,9 +52,7 @@ def test_several_devices_build_the_same_cube(repository, tmp_path):
     """Three simulated devices distribute the rows unevenly."""
     macbeth, path = repository / "atlases" / "macbeth.txt", tmp_path / "several.uplift"
     flags = {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"}
-    subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", SEVERAL, macbeth, path], env=os.environ | flags, check=True
-    )
+    subprocess.run([sys.executable, "-W", "ignore", "-c", SEVERAL, macbeth, path], env=os.environ | flags, check=True)
     one, several = build(macbeth, dim=9).data, load(path).data
     np.testing.assert_allclose(several.points.coefficients, one.points.coefficients, rtol=0, atol=1e-9)
     np.testing.assert_allclose(several.points.standard_error, one.points.standard_error, rtol=1e-6)

@@ -38,8 +38,6 @@ def test_all_mixtures_of_wavelengths_lie_within_the_bend(found):
     visible = np.flatnonzero(RADIOMETRY.sum(axis=1) > 1e-6)
     first, second = np.meshgrid(visible, visible)
     xyz = RADIOMETRY / RADIOMETRY.sum(axis=1, keepdims=True).clip(1e-12)
-    uv = np.concatenate(
-        [chromaticity(xyz[first] * part + xyz[second]).reshape(-1, 2) for part in (0.3, 1, 3)]
-    )
+    uv = np.concatenate([chromaticity(xyz[first] * part + xyz[second]).reshape(-1, 2) for part in (0.3, 1, 3)])
     share = found[0].polar(uv - WHITE)[2]
     assert 1 + 1e-4 < share.max() <= 1 + BEND

@@ -48,9 +48,7 @@ def test_colour_spectrum_and_lights_of_the_macbeth_entries(sensor, measured):
 def test_colours_are_kept_under_the_lights_of_the_objective(sensor, measured):
     """Without FL11 in the objective, errors under FL11 grow."""
     without = fitted(sensor, measured, ("D65",))
-    assert mean_delta_e("FL11", fitted(sensor, measured), measured) < 0.8 * mean_delta_e(
-        "FL11", without, measured
-    )
+    assert mean_delta_e("FL11", fitted(sensor, measured), measured) < 0.8 * mean_delta_e("FL11", without, measured)
 
 
 def test_the_ends_of_the_spectrum_follow_the_measurement(sensor, measured):
@@ -68,10 +66,7 @@ def steps_along_noise(sensor, spectrum, weights):
     """Steps of fitted spectra while a measurement gains noise evenly, in units of the steps of the measurement."""
     noise = np.random.default_rng(2).normal(0, 0.002, (23, len(spectrum)))[22]
     path = np.clip(spectrum + np.linspace(0, 1, 41)[:, None] * noise, 1e-4, 1)
-    changes = [
-        np.linalg.norm(np.diff(each, axis=0), axis=1)
-        for each in (path, fitted(sensor, path, weights=weights))
-    ]
+    changes = [np.linalg.norm(np.diff(each, axis=0), axis=1) for each in (path, fitted(sensor, path, weights=weights))]
     return changes[1] / changes[0]
 
 
@@ -94,16 +89,13 @@ def test_smoothness_leaves_the_level_to_the_measurement():
 @pytest.mark.parametrize("model", [Moments(5), Sigmoid()], ids=lambda m: m.name)
 def test_jacobian_equals_central_differences(sensor, measured, model):
     """Of a dark spectrum too, where L*a*b* is linear."""
-    goal = objective(
-        model, model.basis(sensor.wavelengths), [observer.light(name) for name in LIGHTS], BALANCED
-    )
+    goal = objective(model, model.basis(sensor.wavelengths), [observer.light(name) for name in LIGHTS], BALANCED)
     rng = np.random.default_rng(6)
     for level in (-80, -1, 0.5):
         at = rng.normal(size=model.count) + level * model.constant()
         steps = 1e-5 * np.eye(model.count)
         numeric = [
-            (goal.residuals(at + step, measured[0]) - goal.residuals(at - step, measured[0])) / 2e-5
-            for step in steps
+            (goal.residuals(at + step, measured[0]) - goal.residuals(at - step, measured[0])) / 2e-5 for step in steps
         ]
         np.testing.assert_allclose(goal.jacobian(at), np.transpose(numeric), rtol=1e-5, atol=1e-8)
 

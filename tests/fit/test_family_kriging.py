@@ -46,8 +46,7 @@ def conditional_mean(families, lab):
 @pytest.mark.parametrize("sizes", [(12, 30), (1, 7, 0), (25,)])
 def test_it_is_the_conditional_mean(sizes):
     families = [
-        samples(size, spread, related)
-        for size, spread, related in zip(sizes, (5, 1, 2), (0, 0.5, 1), strict=False)
+        samples(size, spread, related) for size, spread, related in zip(sizes, (5, 1, 2), (0, 0.5, 1), strict=False)
     ]
     lab = RNG.uniform([0, -60, -60], [100, 60, 60], (50, 3))
     kriging = krige_families(families)

@@ -52,9 +52,7 @@ def test_any_set_of_seeds_fits_the_lattice(sensor, rgb):
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize(
-    "model", [Moments(3), MODEL, Moments(17), Sigmoid()], ids=lambda m: f"{m.name}{m.count}"
-)
+@pytest.mark.parametrize("model", [Moments(3), MODEL, Moments(17), Sigmoid()], ids=lambda m: f"{m.name}{m.count}")
 def test_tiny_lattices_are_fitted_to_their_corners(model, dim, sensor):
     lattice = Lattice(observer.axis_nodes("srgb", dim))
     fit = fitted(model, sensor, lattice)

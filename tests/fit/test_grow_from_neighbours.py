@@ -19,9 +19,7 @@ NOBODY = np.zeros(0, dtype=np.int64)
 
 
 def problem_of(model, sensor, active=None):
-    return Problem(
-        model, forward_map(model, sensor.wavelengths, sensor.matrix), LATTICE, active_points=active
-    )
+    return Problem(model, forward_map(model, sensor.wavelengths, sensor.matrix), LATTICE, active_points=active)
 
 
 def grey(points):

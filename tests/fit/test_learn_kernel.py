@@ -36,9 +36,7 @@ def test_a_large_atlas_tells_its_kernel(truth):
 
 
 def test_families_and_mixtures_differ():
-    family, mixture = (
-        learn_kernel(PLACES, drawn_from(Kernel(30.0, nugget)), ALL_VISIBLE) for nugget in (0.01, 2)
-    )
+    family, mixture = (learn_kernel(PLACES, drawn_from(Kernel(30.0, nugget)), ALL_VISIBLE) for nugget in (0.01, 2))
     assert family.nugget < mixture.nugget
 
 
@@ -66,9 +64,7 @@ def test_visible_change_ranks_metameric_changes_by_delta_e(sensor):
     change = 1e-3 * RNG.normal(size=moments.shape) / (1 + np.arange(9))
     moved = coloured(start=model.from_storage(moments + change)).multipliers
     before, after = (model.squash(each @ forward.basis.T) for each in (plain, moved))
-    linear = np.linalg.norm(
-        np.einsum("elkc,ec->elk", visible_change(model, forward, lights, before), change), axis=-1
-    )
+    linear = np.linalg.norm(np.einsum("elkc,ec->elk", visible_change(model, forward, lights, before), change), axis=-1)
     actual = np.stack([delta_e_spectra(light, before, after) for light in lights], axis=1)
     assert 0.4 < np.sqrt((linear**2).mean() / (actual**2).mean()) < 1.2  # it neglects the roughest parts
     assert np.corrcoef(linear.ravel(), actual.ravel())[0, 1] > 0.7

@@ -126,7 +126,5 @@ def test_models_of_three_coefficients_have_no_freedom(model, sensor):
     learnt = fit.learn_base(problem, sensor, LIGHTS, shipped_library(), NOBODY)
     assert not fit.has_freedom(model)
     rgb = np.random.default_rng(0).random((5, 3))
-    np.testing.assert_array_equal(
-        learnt.base.coefficients(rgb), smooth_base(problem, sensor).coefficients(rgb)
-    )
+    np.testing.assert_array_equal(learnt.base.coefficients(rgb), smooth_base(problem, sensor).coefficients(rgb))
     assert fit.has_freedom(Moments(4))

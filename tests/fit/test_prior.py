@@ -24,9 +24,7 @@ SPLITS = 6
 @pytest.fixture(scope="module")
 def problem(sensor):
     model = Moments(9)
-    return fit.Problem(
-        model, forward_map(model, sensor.wavelengths, sensor.matrix), Lattice(np.array([0.0, 1.0]))
-    )
+    return fit.Problem(model, forward_map(model, sensor.wavelengths, sensor.matrix), Lattice(np.array([0.0, 1.0])))
 
 
 def entries_of(problem, sensor, measured):
@@ -35,9 +33,7 @@ def entries_of(problem, sensor, measured):
 
 
 def some(entries, rows):
-    return fit.FittedEntries(
-        *(getattr(entries, name)[rows] for name in ("rgb", "measured", "multipliers", "error"))
-    )
+    return fit.FittedEntries(*(getattr(entries, name)[rows] for name in ("rgb", "measured", "multipliers", "error")))
 
 
 @pytest.fixture(scope="module")

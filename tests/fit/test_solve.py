@@ -83,10 +83,7 @@ def test_solutions_do_not_depend_on_the_batch(sensor, max_passes):
 def test_no_problems_have_no_solutions():
     model = Sigmoid()
     forward = forward_map(model, np.arange(380.0, 781, 5), np.ones((3, 81)) / 81)
-    assert (
-        len(solve(model, forward, np.zeros((0, 3)), np.zeros((0, 3)), tolerance=1e-6, max_passes=1).distance)
-        == 0
-    )
+    assert len(solve(model, forward, np.zeros((0, 3)), np.zeros((0, 3)), tolerance=1e-6, max_passes=1).distance) == 0
 
 
 def test_the_start_is_not_modified(sensor):

@@ -32,9 +32,7 @@ def prior(sensor):
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_corners_start_between_the_entry_and_the_prior(prior, share):
     seeds = seed(LATTICE, RGB)
-    start = Starts(prior, seeds, ENTRIES, CornerShare(share, share))(
-        seeds.points, LATTICE.points[seeds.points]
-    )
+    start = Starts(prior, seeds, ENTRIES, CornerShare(share, share))(seeds.points, LATTICE.points[seeds.points])
     own = ENTRIES[seeds.entry]
     expected = prior(LATTICE.points[seeds.points])
     mixed = share * MODEL.to_storage(own) + (1 - share) * MODEL.to_storage(expected)

@@ -28,8 +28,7 @@ def test_stock_solvers_give_the_same_cube():
     assert [cube.data.provenance["options"]["solver"] for cube in cubes[1:]] == ["gauss-newton", CUSTOM]
     sensor, nodes = cubes[0].data.sensor, cubes[0].data.lattice.points
     default, *stock = (
-        evaluate(MODEL, MODEL.from_storage(cube.data.points.coefficients), sensor.wavelengths)
-        for cube in cubes
+        evaluate(MODEL, MODEL.from_storage(cube.data.points.coefficients), sensor.wavelengths) for cube in cubes
     )
     inner = ~np.isin(nodes, (0, 1)).any(axis=1)
     for spectra in stock:

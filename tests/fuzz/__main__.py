@@ -22,9 +22,7 @@ BLOCK = 5000
 @click.option("--inputs", default=100_000, show_default=True, help="Inputs of each reader.")
 @click.option("--commands", default=10_000, show_default=True, help="Runs of the command line of each class.")
 @click.option("--writers", "runs", default=120, show_default=True, help="Runs of the tests of writers.")
-@click.option(
-    "--target", "chosen", multiple=True, help="Class to run, and to replace in the output; all by default."
-)
+@click.option("--target", "chosen", multiple=True, help="Class to run, and to replace in the output; all by default.")
 @click.option("--seed", default=0, show_default=True, help="Seed of the inputs.")
 @click.option("--processes", default=os.cpu_count(), show_default=True)
 @click.option("-o", "--output", default="docs/data/stability-hostile.json", show_default=True)

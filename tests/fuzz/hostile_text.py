@@ -76,9 +76,7 @@ def _generate(random: Random, path: Path) -> None:
         TABLE: f"name,400,500,600,700\n{_cell(name)},0.1,0.2,0.3,0.4\n{_cell(other)},0.2,0.3,0.4,0.5\n",
         CHART: CHART_TEXT.replace("Mallett", name).replace("uplift", other),
         SPEC: PALETTE.format(name=quoted),
-        COLOURS: choose(
-            random, ("0.2,0.3,0.4\n0.1,0.1,0.1\n", f"{name}\n", f"0.1,0.2,0.3,{name}\n#ffffff {other}\n")
-        ),
+        COLOURS: choose(random, ("0.2,0.3,0.4\n0.1,0.1,0.1\n", f"{name}\n", f"0.1,0.2,0.3,{name}\n#ffffff {other}\n")),
     }
     write_case(path, args, {file: text for file, text in files.items() if file in args})
 

@@ -56,9 +56,7 @@ def _seeds() -> tuple[bytes, ...]:
         buffer = BytesIO()
         Image.fromarray(codes[..., :depth]).save(buffer, kind, **options)
         images.append(buffer.getvalue())
-    text = attribute(b"owner", b"string", b"someone") + attribute(
-        b"chromaticities", b"chromaticities", bytes(32)
-    )
+    text = attribute(b"owner", b"string", b"someone") + attribute(b"chromaticities", b"chromaticities", bytes(32))
     return (*images, exr_bytes(), exr_bytes([b"R", b"G", b"B", b"A", b"Z"], text))
 
 
@@ -82,8 +80,7 @@ def _valid_chunks(content: bytes, random: Random) -> bytes:
     name, data = chunks[place]
     chunks[place] = name, mutate(data, random, TOKENS)
     parts = [
-        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-        for name, data in chunks
+        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in chunks
     ]
     return content[:8] + b"".join(parts)
 

@@ -179,9 +179,7 @@ def _child(case: dict[str, Any], folder: Path, place: Path) -> int:
     if case["user"]:
         os.setuid(case["user"])
     sys.stdin, sys.stdout, sys.stderr = (
-        None
-        if descriptor is None
-        else open(number, mode, encoding=case["encoding"], errors=errors, closefd=False)  # noqa: SIM115
+        None if descriptor is None else open(number, mode, encoding=case["encoding"], errors=errors, closefd=False)  # noqa: SIM115
         for number, (descriptor, mode, errors) in enumerate(
             zip(descriptors, "rww", ("strict", "strict", "backslashreplace"), strict=True)
         )
@@ -218,11 +216,7 @@ def _open_output(case: dict[str, Any], folder: Path, name: str) -> int | None:
 
 
 def _text(path: Path, encoding: str) -> str:
-    return (
-        io.TextIOWrapper(io.BytesIO(path.read_bytes()), encoding=encoding, newline="")
-        .read()
-        .replace("\ufeff", "")
-    )
+    return io.TextIOWrapper(io.BytesIO(path.read_bytes()), encoding=encoding, newline="").read().replace("\ufeff", "")
 
 
 TARGET = Target("streams and places", _generate, _use)

@@ -51,9 +51,7 @@ def _generate(random: Random, path: Path) -> None:
     command = choose(random, COMMANDS)
     inputs = [word for word in command if word in (*INPUTS, COLOURS, IMAGE, SCENE)]
     target = choose(random, inputs)
-    way = choose(
-        random, ("name", "path", "folder", "link", "hard link", *(["copy"] if command in QUICK else []))
-    )
+    way = choose(random, ("name", "path", "folder", "link", "hard link", *(["copy"] if command in QUICK else [])))
     args = [word.replace("{}", _spelling(random, target, way)) for word in command]
     force = ["--force"] if random.random() < 0.8 else []
     path.write_text(json.dumps({"args": args + force, "target": target, "way": way}), encoding="ascii")

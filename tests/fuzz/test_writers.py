@@ -40,8 +40,6 @@ def test_signals_that_are_ignored_are_counted(tmp_path, monkeypatch):
 
 
 def test_broken_files_are_counted(tmp_path, monkeypatch):
-    monkeypatch.setattr(
-        writers, "SAVE_IN_TURN", "import sys\nopen(sys.argv[1], 'w').write('half')\nprint()\ninput()"
-    )
+    monkeypatch.setattr(writers, "SAVE_IN_TURN", "import sys\nopen(sys.argv[1], 'w').write('half')\nprint()\ninput()")
     tally = writers.kill_saves(2, np.random.default_rng(3), tmp_path)
     assert tally.failures == {"a broken file": 2}

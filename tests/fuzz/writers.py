@@ -64,9 +64,7 @@ def kill_saves(count: int, random: np.random.Generator, folder: Path) -> Tally:
         intact = path.read_bytes() in complete if path.exists() else not number % 2
         uplift.load(NEW).save(path, force=True)
         clean = os.listdir(folder) == [path.name]
-        tally.count(
-            intact and clean, "temporary files that the next writer leaves" if intact else "a broken file"
-        )
+        tally.count(intact and clean, "temporary files that the next writer leaves" if intact else "a broken file")
     return tally
 
 

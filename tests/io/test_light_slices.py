@@ -31,9 +31,7 @@ def image(table, tmp_path_factory):
 def place(header, shape, row, column):
     """u′v′ of a pixel, by the attributes of the file."""
     step = header["uplift.step"]
-    return np.array(
-        [header["uplift.u"] + step * (column + 0.5), header["uplift.v"] + step * (shape[0] - row - 0.5)]
-    )
+    return np.array([header["uplift.u"] + step * (column + 0.5), header["uplift.v"] + step * (shape[0] - row - 0.5)])
 
 
 def test_pixels_are_the_answers_at_their_chromaticities(table, image):

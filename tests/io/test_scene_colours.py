@@ -42,9 +42,7 @@ def photo_colours(scene_cube):
 
 def points_of(cube, *paths, encoding="auto", out_of_gamut="clip"):
     data = cube.data
-    return Images(paths, encoding, out_of_gamut).required_points(
-        data.entry_boxes, data.sensor, lambda done: None
-    )
+    return Images(paths, encoding, out_of_gamut).required_points(data.entry_boxes, data.sensor, lambda done: None)
 
 
 def test_images_in_another_space_are_converted(small_cube, tmp_path):
@@ -75,9 +73,7 @@ def test_points_are_those_of_the_complete_cube(scene_cube, macbeth_cube):
     assert 0 < there.sum() < 0.3 * len(there)
     for name in ("coefficients", "rgb", "distance", "status", "entry", "round", "standard_error"):
         array = getattr(part.points, name)
-        np.testing.assert_allclose(
-            array[there], getattr(whole.points, name)[there], rtol=0, atol=1e-9, err_msg=name
-        )
+        np.testing.assert_allclose(array[there], getattr(whole.points, name)[there], rtol=0, atol=1e-9, err_msg=name)
         absent = {"status": Status.ABSENT, "entry": -1, "round": -1}.get(name, 0)
         assert (array[~there] == absent).all(), name
 
@@ -89,9 +85,7 @@ def test_dark_saturated_colours_have_the_answers_of_the_complete_cube(macbeth_cu
     with warns("entry-out-of-gamut"):
         sparse = uplift.build(MACBETH, dim=32, scene=tmp_path / "dark.png")
     colours = sparse.decode(codes.reshape(-1, 3))
-    np.testing.assert_allclose(
-        sparse.reflectance(colours), macbeth_cube.reflectance(colours), rtol=0, atol=1e-9
-    )
+    np.testing.assert_allclose(sparse.reflectance(colours), macbeth_cube.reflectance(colours), rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -102,9 +96,7 @@ def test_answers_to_the_scene_are_those_of_the_complete_cube(scene_cube, macbeth
     np.testing.assert_allclose(*answers, rtol=0, atol=1e-9)
 
 
-def test_errors_coefficients_and_bulk_answers_are_those_of_the_complete_cube(
-    scene_cube, macbeth_cube, photo_colours
-):
+def test_errors_coefficients_and_bulk_answers_are_those_of_the_complete_cube(scene_cube, macbeth_cube, photo_colours):
     for answer in (
         lambda cube: cube.standard_error(photo_colours),
         lambda cube: cube.coefficients(photo_colours),
@@ -186,9 +178,7 @@ def test_required_points_answer_every_colour_of_a_cell(request, name):
 @pytest.mark.parametrize("node", [0, 3, 7])
 def test_required_points_allow_for_rounding_across_faces_on_nodes(plain_cube, node):
     data = plain_cube.data
-    one = AtlasTable(
-        ("one",), np.full((1, 3), data.lattice.nodes[node]), np.zeros((1, 9)), np.ones(1), np.ones(1)
-    )
+    one = AtlasTable(("one",), np.full((1, 3), data.lattice.nodes[node]), np.zeros((1, 9)), np.ones(1), np.ones(1))
     data = replace(data, atlas=one)
     assert data.entry_boxes.cells[0].size
     assert missing(data, data.entry_boxes.required_points) == 0

@@ -114,9 +114,7 @@ def test_more_coefficients_are_the_moments_of_the_exact_spectra(small_cube, data
 def test_a_table_of_coefficients_changes_nothing(small_cube, data):
     rgb = np.concatenate([in_boxes(data), np.random.default_rng(2).random((600, 3))])
     assert len(rgb) >= data.lattice.size
-    few = np.concatenate(
-        [small_cube.coefficients(rgb[row : row + 100], 17) for row in range(0, len(rgb), 100)]
-    )
+    few = np.concatenate([small_cube.coefficients(rgb[row : row + 100], 17) for row in range(0, len(rgb), 100)])
     np.testing.assert_allclose(small_cube.coefficients(rgb, 17), few, rtol=0, atol=1e-12)
 
 

@@ -17,9 +17,7 @@ def random_colours(count=1000, seed=3):
 
 def stored_spectra(data, wavelengths):
     """(n, N) spectra of all lattice points."""
-    return data.model.squash(
-        data.model.from_storage(data.points.coefficients) @ data.model.basis(wavelengths).T
-    )
+    return data.model.squash(data.model.from_storage(data.points.coefficients) @ data.model.basis(wavelengths).T)
 
 
 def miss(cube, rgb, mode):
@@ -120,8 +118,7 @@ def test_answers_are_continuous_across_the_faces_of_cells(small_cube, mode):
     nodes = small_cube.data.lattice.nodes
     on = np.array([[nodes[3], 0.4, 0.2], [0.3, nodes[5], 0.7], [0.1, 0.6, nodes[1]]])
     before, after = (
-        small_cube.reflectance(np.where(on == nodes[[3, 5, 1]], on + by, on), mode=mode)
-        for by in (-1e-9, 1e-9)
+        small_cube.reflectance(np.where(on == nodes[[3, 5, 1]], on + by, on), mode=mode) for by in (-1e-9, 1e-9)
     )
     np.testing.assert_allclose(before, after, rtol=0, atol=1e-4)
 
@@ -186,9 +183,7 @@ def test_spectra_are_continuous_through_entry_boxes(macbeth_cube):
 
 def test_colours_near_an_entry_are_exact(small_cube):
     data = small_cube.data
-    near = np.clip(
-        np.repeat(data.atlas.rgb, 20, axis=0) + np.random.default_rng(1).normal(0, 0.02, (460, 3)), 0, 1
-    )
+    near = np.clip(np.repeat(data.atlas.rgb, 20, axis=0) + np.random.default_rng(1).normal(0, 0.02, (460, 3)), 0, 1)
     assert miss(small_cube, near, "spectra").max() <= 2e-6
     found = small_cube.reflectance(near)
     assert found.min() >= 0

@@ -19,9 +19,7 @@ def numeric_jacobian(forward, multipliers, target):
     columns = []
     for j in range(len(multipliers)):
         nudge = 1e-6 * np.eye(len(multipliers))[j]
-        residuals = [
-            residual(MODEL, forward, (multipliers + s * nudge)[None], target[None])[0] for s in (-1, 1)
-        ]
+        residuals = [residual(MODEL, forward, (multipliers + s * nudge)[None], target[None])[0] for s in (-1, 1)]
         columns.append((residuals[0] - residuals[1]) / 2e-6)
     return np.stack(columns, axis=1)
 
@@ -53,9 +51,7 @@ def test_step_has_no_component_in_the_null_space(sensor):
 def test_damping_shortens_the_step(sensor):
     forward = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
     residuals = residual(MODEL, forward, POINTS, TARGETS)
-    free, damped = (
-        minimum_norm_step(MODEL, forward, POINTS, residuals, np.full(len(POINTS), mu)) for mu in (0.0, 1.0)
-    )
+    free, damped = (minimum_norm_step(MODEL, forward, POINTS, residuals, np.full(len(POINTS), mu)) for mu in (0.0, 1.0))
     assert (np.linalg.norm(damped, axis=1) < np.linalg.norm(free, axis=1)).all()
 
 

@@ -104,8 +104,7 @@ def test_the_atlas_improves_colours_under_other_lights(macbeth_cube):
     measured = on_grid(spectra, GRID)[[spectra.names.index(name) for name in atlas.names]]
     light = observer.light("A")
     with_atlas, without = (
-        delta_e_spectra(light, cube.reflectance(atlas.rgb), measured).mean()
-        for cube in (macbeth_cube, uplift.load())
+        delta_e_spectra(light, cube.reflectance(atlas.rgb), measured).mean() for cube in (macbeth_cube, uplift.load())
     )
     assert with_atlas < 0.2 * without
 
@@ -180,9 +179,7 @@ def test_dim_auto_records_the_chosen_lattice():
     cube = uplift.build(greys(one=0.2, other=0.24), dim="auto")
     options = cube.data.provenance["options"]
     assert options["dim"] == cube.data.lattice.dim
-    np.testing.assert_array_equal(
-        observer.axis_nodes(options["axis"], options["dim"]), cube.data.lattice.nodes
-    )
+    np.testing.assert_array_equal(observer.axis_nodes(options["axis"], options["dim"]), cube.data.lattice.nodes)
 
 
 def test_the_perfect_reflector_can_be_an_entry():
@@ -228,9 +225,7 @@ def test_builds_do_not_depend_on_threads():
     for threads in (1, 4):
         with threadpool_limits(threads, user_api="blas"):
             digests.add(digest(quietly(spectra, dim=3).data))
-            assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {
-                threads
-            }
+            assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {threads}
     assert len(digests) == 1
 
 

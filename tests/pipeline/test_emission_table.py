@@ -105,9 +105,7 @@ def test_atlases_without_light_are_refused(code, atlas):
         build_emission(atlas, **SMALL)
 
 
-@pytest.mark.parametrize(
-    "options", [{"knots": 2}, {"rings": 2}, {"knots": True}, {"rings": 4.0}, {"knots": 10**6}]
-)
+@pytest.mark.parametrize("options", [{"knots": 2}, {"rings": 2}, {"knots": True}, {"rings": 4.0}, {"knots": 10**6}])
 def test_bad_numbers_of_nodes_are_refused(options):
     with raises(OptionError, "nodes-out-of-range"):
         build_emission(**options)

@@ -39,10 +39,7 @@ def test_a_library_moves_answers_towards_its_spectra(cubes):
     grid = cubes["smooth"].data.sensor.wavelengths
     measured = np.stack([np.interp(grid, wavelengths, row) for row in measured])
     rgb = np.clip(cubes["smooth"].data.sensor.rgb(measured), 0, 1)
-    errors = {
-        name: delta_e_spectra(light("A"), cube.reflectance(rgb), measured).mean()
-        for name, cube in cubes.items()
-    }
+    errors = {name: delta_e_spectra(light("A"), cube.reflectance(rgb), measured).mean() for name, cube in cubes.items()}
     assert errors["library"] < 0.95 * errors["learnt"] < 0.95 * errors["smooth"]
     assert not cubes["library"].data.atlas.names
 

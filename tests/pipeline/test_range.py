@@ -62,8 +62,7 @@ def test_spectra_are_constant_outside_the_range_of_the_cube(infrared):
 def test_steps_change_spectra_little_and_all_meet_the_colour(step, model):
     atlas = read_atlas("macbeth")
     usual, other = (
-        quietly(atlas, dim=3, model=model, prior="smooth", shortest=360, longest=830, step=each)
-        for each in (5, step)
+        quietly(atlas, dim=3, model=model, prior="smooth", shortest=360, longest=830, step=each) for each in (5, step)
     )
     assert len(other.wavelengths) == 470 / step + 1
     assert other.data.points.distance.max() <= 1e-4

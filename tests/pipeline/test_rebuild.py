@@ -84,12 +84,8 @@ def test_atlases_are_found_next_to_the_cube_and_in_the_folder_atlases(tiny_cube,
     assert digest(rebuild(tiny_cube, folder / "cube.uplift").data) == digest(tiny_cube.data)
 
 
-@pytest.mark.parametrize(
-    "name", ["{}/macbeth.txt", "../elsewhere/macbeth.txt", "macbeth.txt", "..", "", "a\0b"]
-)
-def test_a_recorded_name_opens_no_file_outside_the_folder_of_the_cube(
-    tiny_cube, repository, home, monkeypatch, name
-):
+@pytest.mark.parametrize("name", ["{}/macbeth.txt", "../elsewhere/macbeth.txt", "macbeth.txt", "..", "", "a\0b"])
+def test_a_recorded_name_opens_no_file_outside_the_folder_of_the_cube(tiny_cube, repository, home, monkeypatch, name):
     elsewhere = home.parent / "elsewhere"
     elsewhere.mkdir()
     shutil.copy(repository / "atlases" / "macbeth.txt", elsewhere)

@@ -31,9 +31,7 @@ from uplift.report.smoothness import compute_smoothness
 def delta_e(first, second, name):
     """ΔE00 of two spectra (N,) under a light, as colour-science has it."""
     lit = light(name)
-    labs = [
-        colour.XYZ_to_Lab(lit.xyz @ spectrum, colour.XYZ_to_xy(lit.white)) for spectrum in (first, second)
-    ]
+    labs = [colour.XYZ_to_Lab(lit.xyz @ spectrum, colour.XYZ_to_xy(lit.white)) for spectrum in (first, second)]
     return colour.delta_E(*labs, method="CIE 2000")
 
 
@@ -73,9 +71,7 @@ def mixture(data, rgb):
             share = (value - first) / (second - first)
             weight *= share if up else 1 - share
             point = point * data.lattice.dim + place + up
-        total += (
-            weight * reflectance(data.model, data.points.coefficients[[point]], data.sensor.wavelengths)[0]
-        )
+        total += weight * reflectance(data.model, data.points.coefficients[[point]], data.sensor.wavelengths)[0]
     return total
 
 
@@ -118,9 +114,7 @@ def test_entries_of_another_atlas_have_no_lattice_errors(small_cube, repository)
     name = found.entries.names[0]
     (measured,) = on_grid(uplift.Atlas((other.entries[other.names.index(name)],)), small_cube.wavelengths)
     assert found.entries.rgb[0] == pytest.approx(small_cube.data.sensor.rgb(measured), abs=1e-12)
-    assert found.entries.delta_e[0, 1] == pytest.approx(
-        delta_e(found.entries.answer[0], measured, "A"), abs=1e-6
-    )
+    assert found.entries.delta_e[0, 1] == pytest.approx(delta_e(found.entries.answer[0], measured, "A"), abs=1e-6)
 
 
 def test_own_atlas_is_recognised_by_its_content(judged, small_cube, macbeth):
@@ -276,9 +270,7 @@ def test_verdict_tolerates_small_differences(actual, predicted, verdict):
 def test_without_measurements_entries_are_compared_with_stored_spectra(crowded_cube, hostile):
     found = assess(crowded_cube, "small.uplift", 1, hostile, ("D65", "A"))
     assert not found.own
-    assert found.crowding.entries.worst == pytest.approx(
-        np.zeros(len(found.crowding.entries.names)), abs=1e-4
-    )
+    assert found.crowding.entries.worst == pytest.approx(np.zeros(len(found.crowding.entries.names)), abs=1e-4)
     assert found.crowding.entries.worst_lattice[0] > 1
 
 
@@ -288,9 +280,7 @@ def test_failures_list_the_worst_points_first(spoilt, small_cube):
     assert (found.over_threshold, found.worst_points.tolist()) == (2, [300, 100])
     assert found.counts["unfitted"] == 2
     assert found.left_out == ("cyan",)
-    nothing = dataclasses.replace(
-        with_points(spoilt.data, distance=np.full(512, np.nan, np.float32)), provenance={}
-    )
+    nothing = dataclasses.replace(with_points(spoilt.data, distance=np.full(512, np.nan, np.float32)), provenance={})
     assert (collect_failures(nothing).over_threshold, len(collect_failures(nothing).worst_points)) == (
         512,
         MAX_LISTED,

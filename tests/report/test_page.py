@@ -122,9 +122,7 @@ def test_swatches_of_looks_have_the_wish_on_the_left(plain_cube, tmp_path):
     look = {"name": "dusk", "rgb": [0.2, 0.1, 0.1], "weight": 1.0, "lights": [row]}
     data = dataclasses.replace(plain_cube.data, provenance=plain_cube.data.provenance | {"looks": [look]})
     with browser() as tab:
-        open_page(
-            tab, render_report(assess(Cube(data), "looks.uplift", 1, None, ("D65",)), worst=0), tmp_path
-        )
+        open_page(tab, render_report(assess(Cube(data), "looks.uplift", 1, None, ("D65",)), worst=0), tmp_path)
         halves = tab.evaluate(
             """[...document.querySelector(".swatch[title='#7c5959 | #595959']").children]
             .map(half => half.getBoundingClientRect()).map(({ x, y, width }) => [x, y, width])"""
@@ -165,9 +163,7 @@ def test_predicted_and_actual_errors_are_shown(small_cube, repository):
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11"))
     read, measured = Page(render_report(found, worst=0)), found.calibration
     under = found.light_calibrations["FL11"]
-    assert f"FL11 {under.predicted:.2f} {under.actual:.2f} {under.within_error:.0%}" in " ".join(
-        read.text.split()
-    )
+    assert f"FL11 {under.predicted:.2f} {under.actual:.2f} {under.within_error:.0%}" in " ".join(read.text.split())
     assert f"{found.unlike:.0%} of these colours are unlike" in read.text
     assert f"predicted that 68 % lie within ΔE00 {measured.predicted:.2f} under A" in read.text
     assert f"they lie within {measured.actual:.2f}" in read.text

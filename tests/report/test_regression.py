@@ -112,9 +112,7 @@ def test_measures_are_the_largest_and_the_rms(plain_cube):
     assert measures["spectra_rms"] == pytest.approx(np.sqrt(np.mean((first - second) ** 2)), rel=1e-12)
     for name in REGRESSION_LIGHTS:
         lit = light(name)
-        labs = [
-            colour.XYZ_to_Lab(spectra @ lit.xyz.T, colour.XYZ_to_xy(lit.white)) for spectra in (first, second)
-        ]
+        labs = [colour.XYZ_to_Lab(spectra @ lit.xyz.T, colour.XYZ_to_xy(lit.white)) for spectra in (first, second)]
         expected = colour.delta_E(*labs, method="CIE 2000").max()
         assert measures[f"delta_e_{name}"] == pytest.approx(expected, abs=1e-9)
 

@@ -62,9 +62,7 @@ def test_rule_for_masses_of_both_signs_is_exact(order: int) -> None:
 
 def _exact_nodes(points: list[int], masses: list[int], order: int) -> np.ndarray:
     """Roots of the orthogonal polynomial from its moments, by elimination in fractions."""
-    moments = [
-        sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True)) for k in range(2 * order)
-    ]
+    moments = [sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True)) for k in range(2 * order)]
     rows = [[moments[i + j] for j in range(order)] + [-moments[i + order]] for i in range(order)]
     for i in range(order):
         pivot = next(k for k in range(i, order) if rows[k][i])
@@ -138,9 +136,7 @@ def test_rule_is_equivariant_to_scale_and_shift() -> None:
         ([1, 2, 3], [1, 0, 1], 3, "order-out-of-range"),
     ],
 )
-def test_invalid_measures_and_orders_raise(
-    points: list[float], masses: list[float], order: int, code: str
-) -> None:
+def test_invalid_measures_and_orders_raise(points: list[float], masses: list[float], order: int, code: str) -> None:
     with raises(OptionError, code):
         gauss_rule(points, masses, order)
 

@@ -54,9 +54,7 @@ def test_the_sheet_as_exr_is_linear(table, tmp_path, monkeypatch):
         write_light_sheet(table, tmp_path / name)
     (part,) = OpenEXR.File(str(tmp_path / "lights.exr"), separate_channels=True).parts
     found = np.stack([part.channels[letter].pixels for letter in "RGB"], axis=-1)
-    np.testing.assert_allclose(
-        found, decode(imread(tmp_path / "lights.png")[..., :3].astype(float)), atol=1e-5
-    )
+    np.testing.assert_allclose(found, decode(imread(tmp_path / "lights.png")[..., :3].astype(float)), atol=1e-5)
 
 
 def test_the_map_has_the_expected_errors(table):
@@ -75,9 +73,7 @@ def test_the_map_has_the_expected_errors(table):
 @pytest.mark.parametrize("count", [0, 1, 92])
 def test_the_window_of_lamps_has_all_of_them(table, count):
     entries = table.data.entries
-    some = LampEntries(
-        entries.names[:count], *(each[:count] for each in (entries.uv, entries.spectra, entries.radius))
-    )
+    some = LampEntries(entries.names[:count], *(each[:count] for each in (entries.uv, entries.spectra, entries.radius)))
     window = lamp_window(EmissionTable(replace(table.data, entries=some)))
     low, high = np.array([window.u, window.v]).T
     assert (some.uv >= low + 0.999 * MARGIN).all()

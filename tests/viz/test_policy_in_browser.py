@@ -11,9 +11,7 @@ from tests.parts import CHROMIUM, need
 from uplift.viz.html import Markup, content_security_policy, render
 
 INTERACTIVE = "viz/templates/interactive.html.j2"
-ATTACK = Markup(
-    "<script>document.title = 'attacked'</script><b onclick='document.title = \"attacked\"'>x</b>"
-)
+ATTACK = Markup("<script>document.title = 'attacked'</script><b onclick='document.title = \"attacked\"'>x</b>")
 
 
 @pytest.fixture(scope="module")

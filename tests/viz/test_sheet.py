@@ -39,9 +39,7 @@ def test_every_node_is_at_its_position():
     for position in product(range(4), repeat=3):
         point = data.lattice.index(np.array(position))
         for number, panel in enumerate(shown):
-            np.testing.assert_array_equal(
-                pixel(data, image, number, position), panel.colours[point].astype(np.float32)
-            )
+            np.testing.assert_array_equal(pixel(data, image, number, position), panel.colours[point].astype(np.float32))
 
 
 def test_colours_agree_with_the_legend():

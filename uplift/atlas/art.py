@@ -116,9 +116,7 @@ def _why_skipped(block: Block) -> str:
         return f"its type is '{kind}', not '{REFLECTANCE}'"
     if fold(kind) != REFLECTANCE:
         known = ", ".join(f"'{name}'" for name in (REFLECTANCE, *OTHER_TYPES[:4]))
-        raise location.error(
-            f"unknown type '{truncate(kind)}'", f"the types are {known}", code="unknown-entry-type"
-        )
+        raise location.error(f"unknown type '{truncate(kind)}'", f"the types are {known}", code="unknown-entry-type")
     return "it is fluorescent (bispectral), not a plain reflectance" if _is_fluorescent(block) else ""
 
 

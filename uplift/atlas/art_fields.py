@@ -42,9 +42,7 @@ class Fields:
         for key, (line, _) in self.values.items():
             if key not in map(fold, known):
                 hint = "the fields are " + ", ".join(f"'{name}'" for name in known)
-                raise self.location.at(line).error(
-                    f"unknown field '{truncate(key)}'", hint, code="unknown-field"
-                )
+                raise self.location.at(line).error(f"unknown field '{truncate(key)}'", hint, code="unknown-field")
 
 
 @dataclass(frozen=True)

@@ -24,9 +24,7 @@ def extract_samples(lines: list[Line], location: SourceLocation) -> SampleText:
     """Extract the text between the braces that open on the first line with content. Raise `AtlasError`."""
     opening = content_lines(lines)[:1]
     if not opening or not opening[0][1].startswith("{"):
-        raise location.error(
-            "the sample list, opened by '{', is missing", COMPLETE_ENTRY, code="samples-missing"
-        )
+        raise location.error("the sample list, opened by '{', is missing", COMPLETE_ENTRY, code="samples-missing")
     start = opening[0][0]
     first = start - lines[0][0]
     end = _closing(lines, first, location.at(start))
@@ -43,9 +41,7 @@ def extract_samples(lines: list[Line], location: SourceLocation) -> SampleText:
 def parse_values(samples: SampleText) -> list[float]:
     """Parse ``a, b, …``. Raise `AtlasError`."""
     if "{" in samples.text or "}" in samples.text:
-        raise samples.location.error(
-            "braces within a regular sample list", WRITE_VALUES, code="unexpected-braces"
-        )
+        raise samples.location.error("braces within a regular sample list", WRITE_VALUES, code="unexpected-braces")
     return _numbers(samples.text, samples.location)
 
 

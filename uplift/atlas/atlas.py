@@ -295,6 +295,4 @@ def _read_only(samples: ArrayLike, key: str, location: SourceLocation) -> Array:
 def _duplicate_error(first: Entry, second: Entry) -> AtlasError:
     where = "" if first.path is None else f": first used at {first.path}:{first.line}"
     location = SourceLocation(second.path, second.line, second.name)
-    return location.error(
-        f"the name is taken{where}", "rename or remove one of the two", code="duplicate-name"
-    )
+    return location.error(f"the name is taken{where}", "rename or remove one of the two", code="duplicate-name")

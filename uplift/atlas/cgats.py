@@ -96,13 +96,9 @@ def _tokens(text: str, count: int | None) -> list[str]:
     by_tabs = [token.strip().strip('"') for token in text.strip("\n").strip(" ").split("\t")]
     while by_tabs and not by_tabs[-1]:
         by_tabs.pop()
-    by_blanks = [
-        match[1].replace('""', '"') if match[2] is None else match[2] for match in TOKEN.finditer(text)
-    ]
+    by_blanks = [match[1].replace('""', '"') if match[2] is None else match[2] for match in TOKEN.finditer(text)]
     tokens = (
-        by_tabs
-        if "\t" in text and count in (None, len(by_tabs)) and _is_single_words(by_tabs, count)
-        else by_blanks
+        by_tabs if "\t" in text and count in (None, len(by_tabs)) and _is_single_words(by_tabs, count) else by_blanks
     )
     return [token.replace(",", ".") if DECIMAL_COMMA.fullmatch(token) else token for token in tokens]
 

@@ -65,9 +65,7 @@ def _check_finite(wavelengths: Array, values: Array, location: SourceLocation) -
     if len(bad):
         i = bad[0]
         problem = f"sample {i + 1} is not finite: {values[i]:g} at {wavelengths[i]:g} nm"
-        raise location.error(
-            problem, "replace it by the measured value or remove the entry", code="sample-not-finite"
-        )
+        raise location.error(problem, "replace it by the measured value or remove the entry", code="sample-not-finite")
 
 
 def _check_ascending(wavelengths: Array, location: SourceLocation) -> None:
@@ -97,8 +95,6 @@ def _check_scale(wavelengths: Array, values: Array, location: SourceLocation) ->
     bad = np.flatnonzero((values > HIGHEST) | (values < LOWEST))
     if len(bad):
         i = bad[0]
-        problem = (
-            f"reflectance must be in [{LOWEST:g}, {HIGHEST:g}], got {values[i]:g} at {wavelengths[i]:g} nm"
-        )
+        problem = f"reflectance must be in [{LOWEST:g}, {HIGHEST:g}], got {values[i]:g} at {wavelengths[i]:g} nm"
         hint = "the scale (in atlas text 'Maximum sample value') is probably missing or wrong"
         raise location.error(problem, hint, code="reflectance-out-of-range")

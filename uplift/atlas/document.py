@@ -71,9 +71,7 @@ class Document:
         location = SourceLocation(self.path)
         text = _decode(self.data, location)
         if not text.strip():
-            raise location.error(
-                "the file is empty", "name a file that contains atlas entries", code="empty-file"
-            )
+            raise location.error("the file is empty", "name a file that contains atlas entries", code="empty-file")
         return text
 
     @cached_property

@@ -50,11 +50,7 @@ def read(document: Document) -> Measurements:
     unit = str(fields.get("wavelength units", "")).strip().lower()
     factor = TO_NANOMETRES.get(unit if unit != "<unspecified>" else "")
     if centers is None or factor is None:
-        problem = (
-            "the header has no wavelengths"
-            if centers is None
-            else f"unknown wavelength unit '{truncate(unit)}'"
-        )
+        problem = "the header has no wavelengths" if centers is None else f"unknown wavelength unit '{truncate(unit)}'"
         raise location.error(problem, HINT, code="unknown-wavelength-unit")
     with np.errstate(over="ignore"):  # infinite wavelengths are refused later
         nm = factor * np.asarray(centers, dtype=float)

@@ -117,9 +117,7 @@ def find_table(rows: Sequence[Row], path: str) -> Table:
     header = table.rows[0]
     is_plain = all(_is_number(cell.text) for cell in header[table.first : table.last])
     if not table.others and is_plain:
-        raise SourceLocation(path, header[0].line).error(
-            "the header row is missing", LAYOUT, code="header-row-missing"
-        )
+        raise SourceLocation(path, header[0].line).error("the header row is missing", LAYOUT, code="header-row-missing")
     if len(table.rows) < 2:
         raise _not_a_table(rows, path)
     return table

@@ -96,9 +96,7 @@ def check_measured(measured: str) -> None:
         )
 
 
-def to_atlas(
-    document: Document, measurements: Measurements, format_name: str, measured: str = "auto"
-) -> Atlas:
+def to_atlas(document: Document, measurements: Measurements, format_name: str, measured: str = "auto") -> Atlas:
     """Validate the spectra of a file: turn descending ones round, and scale all of them by one number.
 
     Raises
@@ -118,9 +116,7 @@ def to_atlas(
     order = (f"{descending} of {len(spectra)} spectra descended in wavelength and were reversed",)
     notes = (*measurements.notes, *order[: bool(descending)], scale_note)
     safe = tuple(map(printable, notes))
-    source = Source(
-        document.name, document.digest, measurements.header, format_name, measured, safe if spectra else ()
-    )
+    source = Source(document.name, document.digest, measurements.header, format_name, measured, safe if spectra else ())
     return Atlas(tuple(entries), measurements.skipped, (source,))
 
 
@@ -229,9 +225,7 @@ def _scale(path: str, spectra: Sequence[Spectrum], stated: float | None, measure
     return PERCENT, f"scale: percent, by values up to {highest[top]:g}"
 
 
-def _check_rows(
-    path: str, spectra: Sequence[Spectrum], values: Sequence[Array], highest: Sequence[float]
-) -> None:
+def _check_rows(path: str, spectra: Sequence[Spectrum], values: Sequence[Array], highest: Sequence[float]) -> None:
     """Raise `AtlasError` for a row in units of 1 among rows in percent, or the reverse, or within one row."""
     for spectrum, row in zip(spectra, values, strict=True):
         low, high = np.minimum(row[:-1], row[1:]), np.maximum(row[:-1], row[1:])

@@ -99,9 +99,7 @@ def _check_content(document: Document) -> None:
         for size in _sizes(archive):
             total += size
             if total > MAX_CONTENT:
-                raise location.error(
-                    f"its content must not exceed {MAX_CONTENT:,} bytes", HINT, code="file-too-large"
-                )
+                raise location.error(f"its content must not exceed {MAX_CONTENT:,} bytes", HINT, code="file-too-large")
 
 
 def _sizes(archive: zipfile.ZipFile) -> Iterator[int]:

@@ -97,9 +97,7 @@ class Camera:
         ndarray, shape (M, 3)
         """
         at = np.asarray(wavelengths, dtype=float)
-        channels = (
-            np.interp(at, self.wavelengths, channel, left=0, right=0) for channel in self.sensitivities.T
-        )
+        channels = (np.interp(at, self.wavelengths, channel, left=0, right=0) for channel in self.sensitivities.T)
         return np.stack(list(channels), axis=1)
 
 

@@ -165,9 +165,7 @@ def nearest_distances(lab: Array, locations: Array) -> Array:
     if not len(locations):
         return np.full(len(lab), np.inf)
     rows = max(BLOCK_NUMBERS // len(locations), 1)
-    parts = [
-        _distances(lab[first : first + rows], locations).min(axis=1) for first in range(0, len(lab), rows)
-    ]
+    parts = [_distances(lab[first : first + rows], locations).min(axis=1) for first in range(0, len(lab), rows)]
     return np.concatenate(parts) if parts else np.zeros(0)
 
 

@@ -42,9 +42,7 @@ class ExtremeSpectra(NamedTuple):
     """(n,) True unless no reflectance has the colour, or rounding prevents a decision."""
 
 
-def extreme_spectra(
-    matrix: Array, rgb: Array, response: Array, basis: Indices | None = None
-) -> ExtremeSpectra:
+def extreme_spectra(matrix: Array, rgb: Array, response: Array, basis: Indices | None = None) -> ExtremeSpectra:
     """Find the reflectances of given colours with the largest responses.
 
     Parameters

@@ -39,6 +39,4 @@ def _relit_lab(power: Array, reflectances: Array, radiometry: Array) -> Array:
     xyz = (power @ weights).reshape(len(power), -1, 3)
     white = (power @ radiometry)[:, None]
     missing = white <= 0
-    return np.asarray(
-        lab_of(np.where(missing, xyz[..., 1:2], xyz), np.where(missing, white[..., 1:2], white))
-    )
+    return np.asarray(lab_of(np.where(missing, xyz[..., 1:2], xyz), np.where(missing, white[..., 1:2], white)))

@@ -118,9 +118,7 @@ class _Search:
     def extremes(self, row: Indices, direction: Array, basis: Indices) -> _Metamers:
         """Metamers (m,) of colours (m,) in directions (m, 3) of XYZ."""
         light = self.volumes.light
-        extreme = extreme_spectra(
-            self.volumes.sensor.matrix, self.volumes.rgb[row], direction @ light.xyz, basis
-        )
+        extreme = extreme_spectra(self.volumes.sensor.matrix, self.volumes.rgb[row], direction @ light.xyz, basis)
         xyz = extreme.reflectance @ light.xyz.T
         return _Metamers(delta_e_2000(self._lab(xyz), self.reference[row]), xyz, direction, extreme.basis)
 

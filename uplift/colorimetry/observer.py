@@ -104,9 +104,7 @@ def sensor(
     rgb_space = look_up_space(space)
     build_light = light(illuminant, observer)
     white = colour.xy_to_XYZ(rgb_space.whitepoint)
-    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
-        build_light.white, white, transform="Bradford"
-    )
+    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(build_light.white, white, transform="Bradford")
     matrix = rgb_space.matrix_XYZ_to_RGB @ adapt
     return Sensor(
         space=rgb_space.name,
@@ -399,9 +397,7 @@ def illuminant_spd(illuminant: str, start: float = START, end: float = END, step
     return _samples("SDS_ILLUMINANTS", illuminant, "illuminant", start, end, step)
 
 
-def lamps(
-    observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
-) -> Lamps:
+def lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP) -> Lamps:
     """Return the lights of colour-science: CIE illuminants and measured lamps.
 
     Lights that are measured on less than 400–700 nm, and lights with the spectrum of an earlier one, are left out.
@@ -439,9 +435,7 @@ def lamps(
     return Lamps(tuple(names), np.array(powers))
 
 
-def display_primaries(
-    display: str = CRT, start: float = START, end: float = END, step: float = STEP
-) -> Array:
+def display_primaries(display: str = CRT, start: float = START, end: float = END, step: float = STEP) -> Array:
     """Return the relative spectral power of the primaries of a display.
 
     Parameters

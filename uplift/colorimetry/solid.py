@@ -48,9 +48,7 @@ class Solid:
             Positive outside the solid, not positive inside.
         """
         blocks = [rgb[first : first + BLOCK] for first in range(0, len(rgb), BLOCK)]
-        return np.concatenate(
-            [np.zeros(0), *((block @ self.normals.T - self.offsets).max(axis=1) for block in blocks)]
-        )
+        return np.concatenate([np.zeros(0), *((block @ self.normals.T - self.offsets).max(axis=1) for block in blocks)])
 
     def contains(self, rgb: Array) -> Mask:
         """Test whether a reflectance with each colour exists.
@@ -86,9 +84,7 @@ class Solid:
             start, end = origin[first : first + BLOCK], target[first : first + BLOCK]
             margin = np.maximum(self.offsets - start @ self.normals.T, 0)
             speed = (end - start) @ self.normals.T
-            fractions.append(
-                np.divide(margin, speed, out=np.ones_like(margin), where=speed > margin).min(axis=1)
-            )
+            fractions.append(np.divide(margin, speed, out=np.ones_like(margin), where=speed > margin).min(axis=1))
         return np.concatenate(fractions)
 
 

@@ -138,9 +138,7 @@ def find_space(text: str) -> ImageSpace:
             known = (*colour_science().RGB_COLOURSPACES, *ocio_names())
             raise unknown_name(text, known, "RGB space") from None
         return from_ocio(found)
-    return ImageSpace(
-        space.name, Primaries.of([*space.primaries.ravel(), *space.whitepoint]), space.cctf_decoding
-    )
+    return ImageSpace(space.name, Primaries.of([*space.primaries.ravel(), *space.whitepoint]), space.cctf_decoding)
 
 
 def from_ocio(space: OcioSpace) -> ImageSpace:

@@ -69,9 +69,5 @@ def _divided(coarse: Sphere) -> Sphere:
     middles = coarse.directions[edges].sum(axis=1)
     middles /= np.linalg.norm(middles, axis=1)[:, None]
     (a, b, c), (ab, bc, ca) = coarse.faces.T, (which.reshape(-1, 3) + len(coarse.directions)).T
-    faces = np.concatenate(
-        [np.stack(each, axis=1) for each in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))]
-    )
-    return Sphere(
-        np.concatenate([coarse.directions, middles]), faces, np.concatenate([coarse.parents, edges[:, 0]])
-    )
+    faces = np.concatenate([np.stack(each, axis=1) for each in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))])
+    return Sphere(np.concatenate([coarse.directions, middles]), faces, np.concatenate([coarse.parents, edges[:, 0]]))

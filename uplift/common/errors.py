@@ -213,6 +213,4 @@ def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError
     near = difflib.get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.4) or list(by_folded)[:6]
     choices = ", ".join(f"'{by_folded[entry]}'" for entry in near)
     code = "unknown-" + "-".join(kind.casefold().split())
-    return UnknownNameError(
-        f"unknown {kind} '{name}'", code=code, hint=f"did you mean {choices}?" if near else ""
-    )
+    return UnknownNameError(f"unknown {kind} '{name}'", code=code, hint=f"did you mean {choices}?" if near else "")

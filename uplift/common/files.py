@@ -126,9 +126,7 @@ def _check(path: StrPath, inputs: set[Identity], *, force: bool) -> Path:
             hint="choose another name",
         )
     if status is not None and not stat.S_ISREG(status.st_mode):
-        raise OutputError(
-            "is not a regular file", code="not-a-regular-file", path=path, hint="name a file to write to"
-        )
+        raise OutputError("is not a regular file", code="not-a-regular-file", path=path, hint="name a file to write to")
     if status is not None and not force:
         raise OutputError(
             "exists already",

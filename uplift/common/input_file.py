@@ -66,9 +66,7 @@ def read_bytes(path: StrPath, error: type[UpliftError], *, limit: int, hint: str
     check_regular(path, error, hint=hint)
     try:
         with open(os.open(path, FLAGS), "rb") as file:
-            _check_mode(
-                os.fstat(file.fileno()).st_mode, path, error, hint
-            )  # another file may have this name now
+            _check_mode(os.fstat(file.fileno()).st_mode, path, error, hint)  # another file may have this name now
             data = file.read(limit + 1)
     except UpliftError:
         raise

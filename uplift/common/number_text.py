@@ -6,9 +6,7 @@ import re
 
 __all__ = ["parse_float", "parse_whole"]
 
-FLOAT = re.compile(
-    r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?(?:inf|infinity|nan)", re.IGNORECASE
-)
+FLOAT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?(?:inf|infinity|nan)", re.IGNORECASE)
 WHOLE = re.compile(r"[+-]?[0-9]{1,18}")
 """Longer numbers do not fit into 64 bits, and Python takes long to convert thousands of digits."""
 

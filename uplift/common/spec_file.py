@@ -284,9 +284,7 @@ def read_toml(path: StrPath, error: type[UpliftError]) -> SpecFile:
         line = int(at[1]) if at else max(len(text.splitlines()), 1)
         reason = re.sub(r" \(at .*\)$", "", str(cause)).rstrip(".")
         hint = 'write lines such as key = "value"'
-        raise error(
-            f"not a valid TOML file: {reason}", code="invalid-toml", path=path, line=line, hint=hint
-        ) from cause
+        raise error(f"not a valid TOML file: {reason}", code="invalid-toml", path=path, line=line, hint=hint) from cause
     return SpecFile(Path(path), text, values, error)
 
 

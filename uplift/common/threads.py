@@ -48,8 +48,6 @@ def single_threaded_blas() -> Iterator[None]:
     import scipy.linalg  # noqa: F401  loads its own BLAS, and only loaded libraries can be limited
     from threadpoolctl import ThreadpoolController
 
-    per_thread = ThreadpoolController().select(
-        threading_layer="openmp"
-    )  # its limits hold for the calling thread
+    per_thread = ThreadpoolController().select(threading_layer="openmp")  # its limits hold for the calling thread
     with per_thread.limit(limits=1, user_api="blas"), _LIMIT:
         yield

@@ -72,9 +72,7 @@ def check_tensors(
     CubeFileError
         The first condition that is not met, by its code.
     """
-    for name, array, shape, types in _arrays(
-        tensors, points, coefficients, entries, entry_coefficients, looks
-    ):
+    for name, array, shape, types in _arrays(tensors, points, coefficients, entries, entry_coefficients, looks):
         fits = array.shape == shape and array.dtype.name in types
         require(fits, "invalid-array", f"{name} must be {' or '.join(types)} of shape {shape}")
         low = 0 if name in NOT_NEGATIVE else -MAX_VALUE

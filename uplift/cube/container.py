@@ -304,15 +304,11 @@ def _not_a_file(path: Path, kind: Kind) -> CubeFileError:
         return CubeFileError(problem, code="file-unreadable", path=path, hint="check its permissions")
     except (OSError, ValueError):
         pass
-    return CubeFileError(
-        "no such file", code="cube-not-found", path=path, hint=f"build the {kind.noun} first"
-    )
+    return CubeFileError("no such file", code="cube-not-found", path=path, hint=f"build the {kind.noun} first")
 
 
 def _json(metadata: Mapping[str, Any]) -> str:
     try:
-        return json.dumps(
-            metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":"), allow_nan=False
-        )
+        return json.dumps(metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     except (TypeError, ValueError, RecursionError) as error:
         raise CubeFileError(f"the metadata are not JSON values ({error})", code="invalid-metadata") from error

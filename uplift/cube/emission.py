@@ -147,9 +147,7 @@ def read_emission(path: str | os.PathLike[str]) -> EmissionData:
         data = _data(tensors, metadata)
         _check(data)
     except CubeFileError as error:
-        raise invalid_file(
-            path, KIND, f"is not a valid emission table: {error.problem}", error.code
-        ) from error
+        raise invalid_file(path, KIND, f"is not a valid emission table: {error.problem}", error.code) from error
     except INVALID as error:
         problem = f"is not a valid emission table ({type(error).__name__}: {error_text(error)})"
         raise invalid_file(path, KIND, problem, "cube-invalid") from error

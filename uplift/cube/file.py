@@ -161,9 +161,7 @@ def _tensors(data: CubeData) -> Tensors:
         if array is not None:
             kind = array.dtype if array.dtype.name in kinds else kinds[-1]
             tensors[name] = np.ascontiguousarray(array, dtype=kind)
-    return (
-        tensors if data.complete_cells is None else sparse.gather(tensors, POINT_TYPES, data.points.present)
-    )
+    return tensors if data.complete_cells is None else sparse.gather(tensors, POINT_TYPES, data.points.present)
 
 
 def _metadata(data: CubeData) -> dict[str, Any]:
@@ -196,13 +194,9 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
     model, entry_model = (from_description(metadata[key]) for key in ("model", "entry_model"))
     features = metadata["features"]
     looks = len(metadata["provenance"].get("looks", ()))
-    check_tensors(
-        tensors, len(tensors["status"]), model.count, len(metadata["entries"]), entry_model.count, looks
-    )
+    check_tensors(tensors, len(tensors["status"]), model.count, len(metadata["entries"]), entry_model.count, looks)
     lattice = Lattice(tensors["nodes"])
-    require(
-        metadata["dim"] == lattice.dim, "invalid-metadata", f"dim must be {lattice.dim}, the number of nodes"
-    )
+    require(metadata["dim"] == lattice.dim, "invalid-metadata", f"dim must be {lattice.dim}, the number of nodes")
     absent = {array for feature, array in FEATURES.items() if feature not in features}
     arrays: dict[str, Any] = {name: None if name in absent else tensors[name] for name in POINT_TYPES}
     sensor: dict[str, Any] = {name: tensors[f"sensor.{name}"] for name in SENSOR_ARRAYS}
@@ -221,9 +215,7 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
         atlas=AtlasTable(
             tuple(metadata["entries"]),
             **{attribute: tensors[f"atlas.{name}"] for name, attribute in ATLAS_ARRAYS.items()},
-            spectra=(
-                None if entry_model == model else EntrySpectra(entry_model, tensors[ENTRY_COEFFICIENTS])
-            ),
+            spectra=(None if entry_model == model else EntrySpectra(entry_model, tensors[ENTRY_COEFFICIENTS])),
             left_out=(
                 LeftOut(**{key: tensors[name] for key, name in LEFT_OUT_ARRAYS.items()})
                 if LEFT_OUT in features

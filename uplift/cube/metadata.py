@@ -151,9 +151,7 @@ LOOK = _table(
         "rgb": RGB,
         "weight": _number(0, 1),
         "lights": _list(
-            _table(
-                {"light": _text, "wish": RGB, "answer": RGB, "delta_e": _number(0), "possible": _number(0)}
-            ),
+            _table({"light": _text, "wish": RGB, "answer": RGB, "delta_e": _number(0), "possible": _number(0)}),
             MAX_LIGHTS,
         ),
     }
@@ -169,9 +167,7 @@ PROVENANCE = _table(
         "looks": _list(LOOK, MAX_FILES),
         "left_out": _list(_text, MAX_ENTRIES),
         "skipped": _list(_text, MAX_ENTRIES),
-        "prior": _table(
-            {}, {"length": _number(0), "nugget": _number(0), "error_bound": _number(0)}, others=True
-        ),
+        "prior": _table({}, {"length": _number(0), "nugget": _number(0), "error_bound": _number(0)}, others=True),
         "improvements": _list(_table({"step": _text, "tried": _count, "mended": _count}), MAX_FILES),
         "scene": _list(_table({}, others=True), MAX_FILES),
         "filled": _table({"points": _count, "cube": _text}),

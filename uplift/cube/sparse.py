@@ -36,8 +36,7 @@ def expand(points: PointTable, numbers: NDArray[Any], lattice: Lattice) -> Point
     _check_numbers(numbers, len(points), lattice)
     rows = {field.name: getattr(points, field.name) for field in fields(points)}
     arrays: dict[str, Any] = {
-        name: None if array is None else _expand(name, array, numbers, lattice.size)
-        for name, array in rows.items()
+        name: None if array is None else _expand(name, array, numbers, lattice.size) for name, array in rows.items()
     }
     return PointTable(**arrays)
 
@@ -62,10 +61,6 @@ def _has_complete_cell(numbers: Indices, lattice: Lattice) -> bool:
 def _expand(name: str, rows: NDArray[Any], points: NDArray[np.uint32], size: int) -> NDArray[Any]:
     shape = (size, *rows.shape[1:])
     # Pages of zeros take no memory before they are written.
-    array = (
-        np.full(shape, ABSENT_VALUES[name], rows.dtype)
-        if name in ABSENT_VALUES
-        else np.zeros(shape, rows.dtype)
-    )
+    array = np.full(shape, ABSENT_VALUES[name], rows.dtype) if name in ABSENT_VALUES else np.zeros(shape, rows.dtype)
     array[points] = rows
     return array

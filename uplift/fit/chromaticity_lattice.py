@@ -11,9 +11,7 @@ MIN_ANGLE = 1e-3
 """Smallest angle in radians between a wavelength inside the convex polygon and its neighbours on the rim."""
 
 
-def locus_lattice(
-    radiometry: Array, white: Array, knots: int, rings: Array
-) -> tuple[ChromaticityLattice, Array]:
+def locus_lattice(radiometry: Array, white: Array, knots: int, rings: Array) -> tuple[ChromaticityLattice, Array]:
     """Create a lattice whose rim is the spectral locus: the polygon of the chromaticities of single wavelengths.
 
     Every corner of the polygon is a knot; the others divide its longest edges, as white views them. The locus is not

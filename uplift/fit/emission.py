@@ -53,9 +53,7 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
     return np.asarray(power / (power @ radiometry @ DENOMINATOR)[:, None])
 
 
-def mix_with_rim(
-    power: Array, uv: Array, lattice: ChromaticityLattice, rim: Array, radiometry: Array
-) -> Array:
+def mix_with_rim(power: Array, uv: Array, lattice: ChromaticityLattice, rim: Array, radiometry: Array) -> Array:
     """Remove the last differences in chromaticity by adding a little light of the rim.
 
     Parameters

@@ -111,8 +111,7 @@ def krige_families(families: Sequence[FamilySamples]) -> FamilyKriging:
     sizes = [len(family.locations) for family in families]
     number = np.repeat(np.arange(len(families)), sizes)
     locations, deviations, counts = (
-        np.concatenate([getattr(family, name) for family in families])
-        for name in ("locations", "deviations", "counts")
+        np.concatenate([getattr(family, name) for family in families]) for name in ("locations", "deviations", "counts")
     )
     spread = np.array([family.spread for family in families])
     related = np.array([family.related for family in families])
@@ -148,9 +147,7 @@ def average_close(locations: Array, deviations: Array) -> tuple[Array, Array, Ar
     if len(locations) <= MAX_POINTS:
         return locations, deviations, np.ones(len(locations))
     for edge in CELLS:
-        _, cell, counts = np.unique(
-            np.floor(locations / edge), axis=0, return_inverse=True, return_counts=True
-        )
+        _, cell, counts = np.unique(np.floor(locations / edge), axis=0, return_inverse=True, return_counts=True)
         if len(counts) <= MAX_POINTS:
             break
     order = np.argsort(cell.ravel(), kind="stable")

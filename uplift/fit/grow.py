@@ -30,9 +30,7 @@ ALL = 1 - 1e-9
 """Sum of the weights of known corners above which all corners are known."""
 
 
-def grow_from_prior(
-    problem: Problem, prior: PointPrior, seeds: Indices, progress: ProgressCallback
-) -> Growth:
+def grow_from_prior(problem: Problem, prior: PointPrior, seeds: Indices, progress: ProgressCallback) -> Growth:
     """Fit all active points of a problem.
 
     Parameters

@@ -18,9 +18,7 @@ NUDGES = (0.5, -0.5)
 """Changes of the linear part that are tried, in turn, where the solver fails."""
 
 
-def grow_from_neighbours(
-    problem: Problem, prior: PointPrior, seeds: Indices, progress: ProgressCallback
-) -> Growth:
+def grow_from_neighbours(problem: Problem, prior: PointPrior, seeds: Indices, progress: ProgressCallback) -> Growth:
     """Fit all active points of a problem that can be reached from its seeds.
 
     Parameters

@@ -52,9 +52,7 @@ def lamp_entries(
     radius = np.minimum(radius, _to_rim(uv, lattice))
     spectra = np.concatenate([power[kept], more[clear]])
     resolved = np.flatnonzero((np.arange(len(names)) < len(kept)) | (radius >= MIN_RADIUS))
-    entries = LampEntries(
-        tuple(names[row] for row in resolved), uv[resolved], spectra[resolved], radius[resolved]
-    )
+    entries = LampEntries(tuple(names[row] for row in resolved), uv[resolved], spectra[resolved], radius[resolved])
     return entries, duplicates
 
 

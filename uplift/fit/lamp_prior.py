@@ -87,9 +87,7 @@ class LampPrior:
         return np.asarray(np.sqrt(1 / np.diag(self.precision) / (1 + self.kernel.nugget)))
 
 
-def fit_lamp_prior(
-    power: Array, surfaces: Array, radiometry: Array, exact: int = 0
-) -> tuple[LampPrior, Array]:
+def fit_lamp_prior(power: Array, surfaces: Array, radiometry: Array, exact: int = 0) -> tuple[LampPrior, Array]:
     """Fit the prior to lamps, with the kernel that predicts left-out lamps best.
 
     Parameters

@@ -50,8 +50,7 @@ def lattice_error(
     start = Starts(prior, seeds, entries.multipliers, corner_share)(points, target)
     found = problem.solve(target, start, MAX_PASSES, prior=start).multipliers
     spectra, own = (
-        np.asarray(model.squash(matmul_rows(each, problem.forward.basis.T)))
-        for each in (found, entries.multipliers)
+        np.asarray(model.squash(matmul_rows(each, problem.forward.basis.T))) for each in (found, entries.multipliers)
     )
     corners, weights = lattice.corners(entries.rgb)
     answers = weighted_sum(spectra, np.searchsorted(points, corners), weights)

@@ -160,9 +160,7 @@ def _relevance(
     return learn_relevance(lights, locations, _spectra(smooth, sensor, rgb), parts, entries.measured[order])
 
 
-def _match_nodes(
-    model: Moments, sensor: Sensor, lights: Sequence[Light], goal: Array, factor: Array
-) -> Array:
+def _match_nodes(model: Moments, sensor: Sensor, lights: Sequence[Light], goal: Array, factor: Array) -> Array:
     """Coefficients (n, C) of brightened spectra, close to ``goal`` (n, N).
 
     They are matched at the actual brightness, ``factor`` (n, 1) of the brightened one. Where the result cannot be
@@ -179,9 +177,7 @@ def _match_nodes(
     return nodes
 
 
-def _deviations(
-    smooth: Smooth, sensor: Sensor, kriging: FamilyKriging, relevance: Array, bright: Array
-) -> Array:
+def _deviations(smooth: Smooth, sensor: Sensor, kriging: FamilyKriging, relevance: Array, bright: Array) -> Array:
     """Deviations (n, N) of brightened spectra at brightened colours (n, 3)."""
     deviations = kriging(rgb_to_lab(sensor, _darkened(smooth, bright)), relevance)
     return np.asarray(deviations * np.minimum(bright.max(axis=1, keepdims=True) / DIMMEST, 1))

@@ -43,9 +43,7 @@ class LeastChangeState(NamedTuple):
         return abs(self.residual).max(axis=1)
 
 
-def begin(
-    forward: ForwardMap, off: Residual, y: Any, prior: Any, damping: Any, pull: Any
-) -> LeastChangeState:
+def begin(forward: ForwardMap, off: Residual, y: Any, prior: Any, damping: Any, pull: Any) -> LeastChangeState:
     """Evaluate the residuals at multipliers ``y`` (n, C)."""
     return LeastChangeState(off(y), matmul_rows(y - prior, forward.inverse_root.T), damping, pull)
 
@@ -62,14 +60,10 @@ def step(
     Nocedal & Wright 2006, "Numerical optimization", 18.1: the step solves the linearised problem.
     """
     where = y.__array_namespace__().where
-    change = least_change_step(
-        model, forward, y, state.residual, state.damping, state.moved * state.pull[:, None]
-    )
+    change = least_change_step(model, forward, y, state.residual, state.damping, state.moved * state.pull[:, None])
     trial = y + matmul_rows(change, forward.root.T)
     residual = off(trial)
-    better = ((residual**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (
-        abs(trial).max(axis=1) <= MAX_MULTIPLIER
-    )
+    better = ((residual**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (abs(trial).max(axis=1) <= MAX_MULTIPLIER)
     accept = (better & (state.distance > tolerance))[:, None]
     after = LeastChangeState(
         residual=where(accept, residual, state.residual),

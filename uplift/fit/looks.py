@@ -89,9 +89,7 @@ class LookGoal:
             ΔE00 between its colours and the wished ones.
         """
         found = zip(self.lights, self.colours(reflectance), self.xyz, strict=True)
-        return np.array(
-            [delta_e_2000(lab(xyz, light.white), lab(wish, light.white)) for light, xyz, wish in found]
-        )
+        return np.array([delta_e_2000(lab(xyz, light.white), lab(wish, light.white)) for light, xyz, wish in found])
 
     def softened(self, expected: Array, weight: float) -> LookGoal:
         """Move the wish towards the colours of an expected reflectance.

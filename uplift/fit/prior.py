@@ -207,9 +207,7 @@ def fit_prior(
     return Prior(model, sensor, base, kriging, expected_errors, spectra[np.argsort(order)])
 
 
-def _kernel(
-    problem: Problem, lights: Sequence[Light], measured: Array, locations: Array, deviations: Array
-) -> Kernel:
+def _kernel(problem: Problem, lights: Sequence[Light], measured: Array, locations: Array, deviations: Array) -> Kernel:
     """Learn the kernel, unless the colour alone determines the spectrum."""
     if problem.model.count == NO_FREEDOM:
         return DETERMINED

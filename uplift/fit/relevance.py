@@ -24,9 +24,7 @@ CORRELATED = Kernel(length=24.0, nugget=1.0)
 MAX_RELEVANCE = 4.0
 
 
-def learn_relevance(
-    lights: Sequence[Light], locations: Array, plain: Array, parts: Array, measured: Array
-) -> Array:
+def learn_relevance(lights: Sequence[Light], locations: Array, plain: Array, parts: Array, measured: Array) -> Array:
     """Learn relevances by bounded generalised least squares, which shrinks them towards 1.
 
     The residuals are differences of spectra and of their colours. Those of entries of close colours are correlated.

@@ -82,9 +82,7 @@ def solve(
         Multipliers, residuals and numbers of steps.
     """
     count = len(start)
-    found = Solution(
-        start.copy(), np.empty((count, 3)), np.full(count, np.inf), np.zeros(count, dtype=np.int64)
-    )
+    found = Solution(start.copy(), np.empty((count, 3)), np.full(count, np.inf), np.zeros(count, dtype=np.int64))
     rows, stale = np.arange(count), np.zeros(count, dtype=np.int64)
     anchor, pull = (start, np.zeros(count)) if prior is None else (prior, np.ones(count))
     given = _Given(start, anchor, np.full(count, FIRST_DAMPING), pull, target)
@@ -165,7 +163,5 @@ def _advance(model: Model, forward: ForwardMap, tolerance: float, given: _Given,
 
     state = begin(forward, off, given.multipliers, given.prior, given.damping, given.pull)
     taken = jnp.zeros(len(given.multipliers), dtype=jnp.int64)
-    _, taken, y, state = jax.lax.while_loop(
-        unfinished, advance, (jnp.asarray(0), taken, given.multipliers, state)
-    )
+    _, taken, y, state = jax.lax.while_loop(unfinished, advance, (jnp.asarray(0), taken, given.multipliers, state))
     return _After(y, state.residual, state.distance, state.damping, state.pull, taken)

@@ -44,9 +44,7 @@ Solver: TypeAlias = "optimistix.AbstractLeastSquaresSolver | optimistix.Abstract
 
 def _with_cholesky(kind: Any) -> Callable[[float], Any]:
     linear_solver = lineax.Normal(lineax.Cholesky())
-    return lambda tolerance: kind(
-        rtol=tolerance * SMALL_STEP, atol=tolerance * SMALL_STEP, linear_solver=linear_solver
-    )
+    return lambda tolerance: kind(rtol=tolerance * SMALL_STEP, atol=tolerance * SMALL_STEP, linear_solver=linear_solver)
 
 
 STOCK: dict[str, Callable[[float], Any]] = {
@@ -82,9 +80,7 @@ class StockSolver:
     ) -> Solution:
         """Solve for multipliers that have given colours; see `uplift.fit.solve.solve`."""
         count = len(start)
-        found = Solution(
-            start.copy(), np.empty((count, 3)), np.full(count, np.inf), np.zeros(count, dtype=np.int64)
-        )
+        found = Solution(start.copy(), np.empty((count, 3)), np.full(count, np.inf), np.zeros(count, dtype=np.int64))
         rows, prior = np.arange(count), start if prior is None else prior
         with jax.enable_x64(True):
             map_ = replicate(forward)
@@ -93,9 +89,7 @@ class StockSolver:
                 for part, width in batches(len(rows)):
                     own = rows[part]
                     given = (found.multipliers[own], prior[part], target[own])
-                    result = _solve(
-                        self.solver, model, map_, closeness, *(shard(array, width) for array in given)
-                    )
+                    result = _solve(self.solver, model, map_, closeness, *(shard(array, width) for array in given))
                     multipliers, off, steps = (np.asarray(array)[: len(own)] for array in result)
                     distance = np.abs(off).max(axis=1)
                     closer = distance < found.distance[own]

@@ -35,9 +35,7 @@ class Unrealisable:
 NONE = Unrealisable(np.zeros(0, dtype=np.int64), np.zeros((0, 3)))
 
 
-def unrealisable(
-    lattice: Lattice, sensor: Sensor, margin: float, active_points: Indices | None = None
-) -> Unrealisable:
+def unrealisable(lattice: Lattice, sensor: Sensor, margin: float, active_points: Indices | None = None) -> Unrealisable:
     """Find the unrealisable points of a lattice.
 
     Parameters

@@ -110,9 +110,7 @@ class ChromaticityLattice:
     rings: Array
 
     def __post_init__(self) -> None:
-        shapes = (
-            self.white.shape == (2,) and self.knots.shape == (len(self.knots), 2) and self.rings.ndim == 1
-        )
+        shapes = self.white.shape == (2,) and self.knots.shape == (len(self.knots), 2) and self.rings.ndim == 1
         if not shapes or len(self.knots) < 3 or len(self.rings) < 2:
             raise _error(f"must have 3 knots and 2 rings or more, got {self.knots.shape}, {self.rings.shape}")
         if not (self.rings[0] == 0 and self.rings[-1] == 1 and (np.diff(self.rings) > 0).all()):

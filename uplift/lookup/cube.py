@@ -206,9 +206,7 @@ class Cube:
         [[1.0, 1.0], [0.0, 0.0]]
         """
         if mode not in MODES:
-            raise OptionError(
-                f"unknown mode '{mode}'", code="unknown-mode", hint=f"use one of {', '.join(MODES)}"
-            )
+            raise OptionError(f"unknown mode '{mode}'", code="unknown-mode", hint=f"use one of {', '.join(MODES)}")
         at, kind, count = (
             self.resolve_wavelengths(wavelengths),
             as_float_type(dtype),
@@ -248,9 +246,7 @@ class Cube:
         colours = as_colours(rgb, self.data.sensor)
         return covers(self.data, colours.reshape(-1, 3)).reshape(colours.shape[:-1])
 
-    def fill_missing(
-        self, rgb: ArrayLike | None = None, other: Cube | None = None, *, threads: int = 1
-    ) -> Cube:
+    def fill_missing(self, rgb: ArrayLike | None = None, other: Cube | None = None, *, threads: int = 1) -> Cube:
         """Add missing lattice points of a sparse cube, with the spectra of another cube.
 
         The spectra are fitted by the model of this cube, and have exact colours.

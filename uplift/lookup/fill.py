@@ -72,9 +72,7 @@ def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int 
         "coefficients": _put(table.coefficients.astype(kind), points, coefficients),
         "rgb": _put(table.rgb, points, rgb),
         "distance": _put(table.distance, points, distance),
-        "status": _put(
-            table.status, points, np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)
-        ),
+        "status": _put(table.status, points, np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)),
     }
     if table.standard_error is not None:
         arrays["standard_error"] = _put(table.standard_error, points, table.standard_error.max())

@@ -54,9 +54,7 @@ def resample(data: EmissionData, wavelengths: Array, kind: DTypeLike) -> Samples
         place = np.clip(np.interp(wavelengths, grid, np.arange(len(grid))), 0, len(grid) - 1)
         low = np.minimum(place.astype(int), len(grid) - 2)
         share = place - low
-        nodes, entries = (
-            spectra[:, low] * (1 - share) + spectra[:, low + 1] * share for spectra in (nodes, entries)
-        )
+        nodes, entries = (spectra[:, low] * (1 - share) + spectra[:, low + 1] * share for spectra in (nodes, entries))
     return Samples(nodes.astype(kind, copy=False), entries.astype(kind, copy=False))
 
 
@@ -106,9 +104,7 @@ def errors(data: EmissionData, xyz: Array) -> NDArray[Any]:
     """Interpolate the expected errors (n, 1) of lights of XYZ (n, 3). Raise `ColourError` as `spectra` does."""
     uv, size = _chromaticities(data, xyz)
     cells, _ = _cells(data, refuse, xyz, uv, size)
-    return np.asarray(
-        weighted_sum(data.error.reshape(-1, 1).astype(float), data.lattice.corners(cells), cells.weights)
-    )
+    return np.asarray(weighted_sum(data.error.reshape(-1, 1).astype(float), data.lattice.corners(cells), cells.weights))
 
 
 def is_light(data: EmissionData, xyz: Array) -> Mask:

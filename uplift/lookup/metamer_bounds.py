@@ -97,9 +97,7 @@ class Bounds:
         values, axes = np.linalg.eigh(self.covariance[row, 1:, 1:])
         turn = np.linspace(0, 2 * np.pi, 73)[:-1]
         circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        return np.asarray(
-            self.lab[row, 1:] + self.likely_radius * (circle * np.sqrt(np.maximum(values, 0))) @ axes.T
-        )
+        return np.asarray(self.lab[row, 1:] + self.likely_radius * (circle * np.sqrt(np.maximum(values, 0))) @ axes.T)
 
 
 def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", divisions: int = DIVISIONS) -> Bounds:

@@ -41,9 +41,7 @@ class NodeTable:
     wavelengths: Array = field(default_factory=lambda: NONE)
 
     @classmethod
-    def of_present_points(
-        cls, data: CubeData, points: Values, atlas: Values, wavelengths: Array = NONE
-    ) -> NodeTable:
+    def of_present_points(cls, data: CubeData, points: Values, atlas: Values, wavelengths: Array = NONE) -> NodeTable:
         """Make a table from values (m, K) of the present points."""
         if data.complete_cells is None:
             return cls(data, points, atlas, wavelengths)
@@ -71,9 +69,7 @@ class NodeTable:
         return around(self.data, rgb).weighted_sum(self.lattice, self.atlas)
 
 
-def tabulate(
-    data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1
-) -> NodeTable:
+def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1) -> NodeTable:
     """Compute the reflectances of all nodes at wavelengths (N,) in nm: dim³ × N numbers."""
 
     present = blockwise(
@@ -88,18 +84,14 @@ def tabulate(
     return NodeTable.of_present_points(data, present, own, wavelengths)
 
 
-def tabulate_coefficients(
-    data: CubeData, count: int, dtype: DTypeLike = np.float64, threads: int = 1
-) -> NodeTable:
+def tabulate_coefficients(data: CubeData, count: int, dtype: DTypeLike = np.float64, threads: int = 1) -> NodeTable:
     """Tabulate the coefficients of all nodes, ``count`` each: as many as the nodes or the entries have."""
     present = data.points.coefficients[data.points.present]
     entries = data.atlas.coefficients
     if count != data.model.count:
         present = blockwise(partial(extend_coefficients, data), present, count, dtype, threads)
         entries = data.entry_spectra.coefficients
-    return NodeTable.of_present_points(
-        data, present.astype(dtype, copy=False), entries.astype(dtype, copy=False)
-    )
+    return NodeTable.of_present_points(data, present.astype(dtype, copy=False), entries.astype(dtype, copy=False))
 
 
 TABULATED = {"spectra": NodeTable.spectra, "nearest": NodeTable.nearest}

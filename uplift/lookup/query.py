@@ -81,9 +81,7 @@ class QueryResult:
 
     def __repr__(self) -> str:
         values = ", ".join(f"{value:.4g}" for value in self.rgb)
-        return (
-            f"QueryResult(rgb ({values}), {len(self.wavelengths)} wavelengths, ΔE00 {self.delta_e_2000:.2g})"
-        )
+        return f"QueryResult(rgb ({values}), {len(self.wavelengths)} wavelengths, ΔE00 {self.delta_e_2000:.2g})"
 
 
 def query(

@@ -51,9 +51,7 @@ def change_to_rgb(data: CubeData, reflectances: Array, rgb: Array) -> Array:
     """
     forward = forward_map(data.model, data.sensor.wavelengths, data.sensor.matrix)
     linear = data.model.unsquash(np.array(reflectances.T, order="C"))
-    return _reach(
-        data, data.model, forward, np.zeros((data.model.count, len(rgb))), rgb, linear
-    ).multipliers.T
+    return _reach(data, data.model, forward, np.zeros((data.model.count, len(rgb))), rgb, linear).multipliers.T
 
 
 class _Reached(NamedTuple):
@@ -92,9 +90,7 @@ def within_solid(data: CubeData, rgb: Array) -> Array:
     return toward_grey(solid(sensor.matrix), sensor.grey(rgb), rgb, data.threshold / 2)
 
 
-def _descend(
-    model: Model, forward: ForwardMap, multipliers: Array, target: Array, fixed: Array | None = None
-) -> Array:
+def _descend(model: Model, forward: ForwardMap, multipliers: Array, target: Array, fixed: Array | None = None) -> Array:
     """Move multipliers (C, n) in place towards linear RGB (3, n) and return the final distances (n,).
 
     A fixed linear part (N, n) may be added to that of the multipliers.
@@ -132,9 +128,7 @@ class _DescentState(NamedTuple):
         return np.asarray(np.abs(self.off).max(axis=0))
 
 
-def _move(
-    model: Model, forward: ForwardMap, state: _DescentState, columns: slice | Indices, linear: Array
-) -> None:
+def _move(model: Model, forward: ForwardMap, state: _DescentState, columns: slice | Indices, linear: Array) -> None:
     """Take one step of some columns with linear part (N, k); steps that do not reduce the residual are rejected."""
     current, off, damping = state.multipliers[:, columns], state.off[:, columns], state.damping[columns]
     with np.errstate(over="ignore", invalid="ignore"):  # overflowing steps are rejected

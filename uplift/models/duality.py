@@ -106,9 +106,7 @@ def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = PRECIS
         nodes *= 2
         if not pending.size or nodes >= _MAX_NODES:
             break
-        change = (
-            quadrature.integrate(multipliers[pending], *_midpoints(nodes, count)) - moments[pending]
-        ) / 2
+        change = (quadrature.integrate(multipliers[pending], *_midpoints(nodes, count)) - moments[pending]) / 2
     if pending.size:
         moments[pending] = moments_by_roots(multipliers[pending])
     return moments

@@ -43,9 +43,7 @@ def _slice_columns(matrix: Array, columns: Array) -> Array:
     product = np.empty((len(matrix), columns.shape[1]))
     size = max(SINGLE_THREAD_SIZE // matrix.size, 1)
     full = columns.shape[1] // size * size
-    slices, targets = (
-        array[:, :full].reshape(len(array), -1, size).swapaxes(0, 1) for array in (columns, product)
-    )
+    slices, targets = (array[:, :full].reshape(len(array), -1, size).swapaxes(0, 1) for array in (columns, product))
     np.matmul(matrix, slices, out=targets)
     np.matmul(matrix, columns[:, full:], out=product[:, full:])
     return product

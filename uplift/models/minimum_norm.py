@@ -34,9 +34,7 @@ class ForwardMap(NamedTuple):
     """Sensor times basis times R, shape (N, 3·C): the constant part of the Jacobian with respect to R⁻¹ p."""
 
 
-def forward_map(
-    model: Model, wavelengths: ArrayLike, sensor: Array, inverse_metric: Array | None = None
-) -> ForwardMap:
+def forward_map(model: Model, wavelengths: ArrayLike, sensor: Array, inverse_metric: Array | None = None) -> ForwardMap:
     """Create the forward map; the metric defaults to the roughness of the model."""
     basis = model.basis(wavelengths)
     root = np.linalg.cholesky(np.diag(1 / model.roughness()) if inverse_metric is None else inverse_metric)
@@ -54,9 +52,7 @@ def residual(model: Model, forward_map: ForwardMap, multipliers: Any, target: An
     return target - forward_rgb(model, forward_map, multipliers)
 
 
-def minimum_norm_step(
-    model: Model, forward_map: ForwardMap, multipliers: Any, residual: Any, damping: Any
-) -> Any:
+def minimum_norm_step(model: Model, forward_map: ForwardMap, multipliers: Any, residual: Any, damping: Any) -> Any:
     """Compute the change of multipliers (n, C) that cancels residual (n, 3) to first order; damping (n,) is μ."""
     step = least_change_step(model, forward_map, multipliers, residual, damping, 0 * multipliers)
     return matmul_rows(step, forward_map.root.T)

@@ -51,9 +51,7 @@ class Phase:
 
     def __post_init__(self) -> None:
         if self.warp not in WARPS:
-            raise OptionError(
-                f"unknown warp '{self.warp}'", code="unknown-warp", hint=f"use one of {', '.join(WARPS)}"
-            )
+            raise OptionError(f"unknown warp '{self.warp}'", code="unknown-warp", hint=f"use one of {', '.join(WARPS)}")
         if not 0 < self.start < self.end < np.inf:
             raise OptionError(
                 f"a phase needs 0 < start < end < inf, got start {self.start} and end {self.end}",

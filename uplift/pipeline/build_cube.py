@@ -224,9 +224,7 @@ def build(
     options = _with_dim(setting, constraints, corner_share)
     placed = _place(options, constraints.rgb)
     _warn_of_crowding(constraints.names, placed)
-    starts = fit.Starts(
-        constraints.prior, placed.seeds, _seed_multipliers(options, constraints), corner_share
-    )
+    starts = fit.Starts(constraints.prior, placed.seeds, _seed_multipliers(options, constraints), corner_share)
     fitted = _fit_nodes(setting, placed, starts, scene, progress)
 
     table = constraints.table(placed.boxes)

@@ -157,9 +157,7 @@ class _Lamps:
         return Lamps(names, np.concatenate([self.exact.power, self.others.power]))
 
 
-def _read(
-    atlas: AtlasLike, wavelengths: Array, radiometry: Array
-) -> tuple[Lamps | None, list[dict[str, str]]]:
+def _read(atlas: AtlasLike, wavelengths: Array, radiometry: Array) -> tuple[Lamps | None, list[dict[str, str]]]:
     """Return the lamps of an atlas at luminance 1, and what the table records of their files."""
     if atlas is None:
         return None, []

@@ -95,9 +95,7 @@ def _family(library: Library, sensor: Sensor) -> fit.Family:
         problem = f"clipped to [0, 1]: {len(resampled.clips)} spectra, first '{resampled.clips[0].name}'"
         _warn(library, problem, "library-clipped")
     if outside:
-        problem = (
-            f"{outside} of {len(resampled.values)} spectra not used: their colours lie outside {sensor.space}"
-        )
+        problem = f"{outside} of {len(resampled.values)} spectra not used: their colours lie outside {sensor.space}"
         _warn(library, problem, "library-out-of-gamut")
     return fit.Family(library.name, resampled.values, SPREAD, RELATED)
 
@@ -106,13 +104,9 @@ def _warn(library: Library, problem: str, code: str) -> None:
     warnings.warn(UpliftWarning(f"library '{library.name}': {problem}", code=code), stacklevel=STACK_LEVEL)
 
 
-def describe(
-    libraries: Sequence[Library], used: Sequence[fit.Family], relevance: Sequence[float]
-) -> dict[str, Any]:
+def describe(libraries: Sequence[Library], used: Sequence[fit.Family], relevance: Sequence[float]) -> dict[str, Any]:
     """Return the libraries and the relevance of the families, in JSON values."""
     return {
         "libraries": [{"name": library.name, "digest": library.digest} for library in libraries],
-        "families": [
-            {"name": family.name, "relevance": value} for family, value in zip(used, relevance, strict=True)
-        ],
+        "families": [{"name": family.name, "relevance": value} for family, value in zip(used, relevance, strict=True)],
     }

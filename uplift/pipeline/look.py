@@ -58,9 +58,7 @@ class Look:
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", self.name or f"look {format_rgb(self.rgb)}")
         if not self.lights:
-            raise self.error(
-                "must name at least one light", code="look-without-lights", hint="add FL11 = '#70392a'"
-            )
+            raise self.error("must name at least one light", code="look-without-lights", hint="add FL11 = '#70392a'")
         if not is_number(self.weight) or not 0 < self.weight <= 1:
             problem = f"weight must be above 0 and at most 1, got {format_value(self.weight)}"
             raise self.error(problem, code="look-weight-out-of-range", hint="leave it out for 1")
@@ -94,9 +92,7 @@ class Look:
         except UpliftError as error:
             raise self.error(f"{key} {error.problem}", code=error.code, hint=error.hint) from error
         if any(not low <= number <= high for number in colour.linear):
-            problem = (
-                f"{key} must be linear RGB in [{low:g}, {high:g}], got {format_value(list(colour.linear))}"
-            )
+            problem = f"{key} must be linear RGB in [{low:g}, {high:g}], got {format_value(list(colour.linear))}"
             raise self.error(problem, code="look-out-of-range", hint="write '#rrggbb' for encoded values")
         return colour
 

@@ -152,9 +152,7 @@ def resolve_looks(
     known = list(zip(entry_names, (_codes(sensor, each) for each in rgb), strict=True))
     for look, goal in zip(looks, goals, strict=True):
         if look.name in taken:
-            raise look.error(
-                f"its name is that of {taken[look.name]}", code="look-name-taken", hint="rename the look"
-            )
+            raise look.error(f"its name is that of {taken[look.name]}", code="look-name-taken", hint="rename the look")
         codes = _codes(sensor, goal.rgb)
         for name, others in known:
             if np.abs(codes - others).max() <= SAME_CODE:

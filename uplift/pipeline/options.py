@@ -154,9 +154,7 @@ class Options:
                 hint="use 5",
             )
         if self.step not in STEPS:
-            raise OptionError(
-                f"step must be 1, 5 or 10 nm, got {self.step:g}", code="unsupported-step", hint="use 5"
-            )
+            raise OptionError(f"step must be 1, 5 or 10 nm, got {self.step:g}", code="unsupported-step", hint="use 5")
         if (self.longest - self.shortest) % self.step:
             raise OptionError(
                 f"the range must be a multiple of the step of {self.step:g} nm, "
@@ -188,9 +186,7 @@ def _dim(name: str, value: object) -> int | Literal["auto"]:
     if isinstance(value, str) and value == AUTO:
         return AUTO
     if isinstance(value, bool) or not isinstance(value, Integral):
-        raise OptionError(
-            f"dim must be a whole number or 'auto', got {format_value(value)}", code="dim-not-a-number"
-        )
+        raise OptionError(f"dim must be a whole number or 'auto', got {format_value(value)}", code="dim-not-a-number")
     if value < 2:
         raise OptionError(
             f"dim must be at least 2, got {format_value(int(value))}",

@@ -112,9 +112,7 @@ def missing_provenance(path: StrPath) -> CubeFileError:
     CubeFileError
         The error to raise.
     """
-    return CubeFileError(
-        "does not record how it was built", code="missing-provenance", path=path, hint=REBUILD
-    )
+    return CubeFileError("does not record how it was built", code="missing-provenance", path=path, hint=REBUILD)
 
 
 def _search_path(path: StrPath, folders: Iterable[StrPath]) -> list[Path]:

@@ -69,9 +69,7 @@ class Setting:
     @cached_property
     def problem(self) -> fit.Problem:
         """The problem of fitting colours, without a lattice."""
-        return fit.Problem(
-            self.model, self.forward, fit.NO_LATTICE, self.options.threshold, method=self.method
-        )
+        return fit.Problem(self.model, self.forward, fit.NO_LATTICE, self.options.threshold, method=self.method)
 
 
 def make_setting(options: Options, observer: str | Camera, solver: str | Solver) -> Setting:

@@ -63,9 +63,7 @@ class Alternative:
         return function(known, axis=0) if len(known) else np.full(self.delta_e.shape[1], np.nan)
 
 
-def find_alternatives(
-    data: CubeData, errors: EntryErrors, lights: tuple[Sensor, ...]
-) -> tuple[Alternative, ...]:
+def find_alternatives(data: CubeData, errors: EntryErrors, lights: tuple[Sensor, ...]) -> tuple[Alternative, ...]:
     """Compute the answers of other methods at the colours of entries.
 
     Parameters
@@ -86,9 +84,7 @@ def find_alternatives(
         WITHOUT_ATLAS: _without_atlas(errors.target, data.sensor),
         JAKOB_HANIKA: _sigmoid(data, errors.rgb),
     }
-    return tuple(
-        Alternative(name, answer, _delta_e(lights, answer, errors.target)) for name, answer in answers.items()
-    )
+    return tuple(Alternative(name, answer, _delta_e(lights, answer, errors.target)) for name, answer in answers.items())
 
 
 def _without_atlas(target: Array, assessed: Sensor) -> Array:

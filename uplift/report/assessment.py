@@ -116,9 +116,7 @@ class Assessment:
     crowding: Crowding | None
 
 
-def assess(
-    cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequence[str] = REPORT_LIGHTS
-) -> Assessment:
+def assess(cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequence[str] = REPORT_LIGHTS) -> Assessment:
     """Assess a cube by its own lattice and, if given, by measured spectra.
 
     Parameters
@@ -180,17 +178,13 @@ def assess(
         out_of_gamut=() if query is None else query.out_of_gamut,
         not_covered=() if query is None else query.not_covered,
         calibration=calibration,
-        light_calibrations={}
-        if calibration is None or errors is None
-        else _light_calibrations(cube, errors, sensors),
+        light_calibrations={} if calibration is None or errors is None else _light_calibrations(cube, errors, sensors),
         unlike=0.0 if calibration is None or errors is None else float(cube.unlike_atlas(errors.rgb).mean()),
         crowding=_crowding(cube, errors if own else None, sensors),
     )
 
 
-def _light_calibrations(
-    cube: Cube, errors: EntryErrors, lights: tuple[Sensor, ...]
-) -> dict[str, Calibration]:
+def _light_calibrations(cube: Cube, errors: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Calibration]:
     """Calibrations under lights other than that of `Assessment.calibration`, and that of the build."""
     data = cube.data
     if data.atlas.left_out is None:

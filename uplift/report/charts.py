@@ -19,9 +19,7 @@ REFLECTANCE_LIMITS = (0.1, 0.25, 0.5, 1.0)
 """Upper ends of reflectance axes: few enough to compare charts, and dark colours remain visible."""
 
 
-def histogram_chart(
-    values: Histogram, label: str, *, top: int | None = None, threshold: float | None = None
-) -> Markup:
+def histogram_chart(values: Histogram, label: str, *, top: int | None = None, threshold: float | None = None) -> Markup:
     """Draw counts over ``label``; the axis holds counts up to ``top``, a dashed line marks the threshold."""
     import matplotlib
 

@@ -61,9 +61,7 @@ class EntryQuery:
         covered = cube.covers(self.rgb)
         names, not_covered = _partition(self.names, covered)
         rows = None if self.rows is None else self.rows[covered]
-        return EntryQuery(
-            names, self.rgb[covered], self.target[covered], rows, self.out_of_gamut, not_covered
-        )
+        return EntryQuery(names, self.rgb[covered], self.target[covered], rows, self.out_of_gamut, not_covered)
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,9 +237,7 @@ def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> E
         answer=answer,
         delta_e=_delta_e(lights, answer, target),
         rms=_rms(answer, target),
-        actual=delta_e_spectra(
-            light(data.error_illuminant, data.sensor.observer, *data.sensor.range), answer, target
-        ),
+        actual=delta_e_spectra(light(data.error_illuminant, data.sensor.observer, *data.sensor.range), answer, target),
         predicted=cube.standard_error(query.rgb),
         cells=data.lattice.cell(query.rgb)[0],
     )
@@ -250,9 +246,7 @@ def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> E
     return errors.take(np.lexsort((-errors.rms, -errors.worst)))
 
 
-def _with_lattice_errors(
-    cube: Cube, errors: EntryErrors, rows: Indices, lights: tuple[Sensor, ...]
-) -> EntryErrors:
+def _with_lattice_errors(cube: Cube, errors: EntryErrors, rows: Indices, lights: tuple[Sensor, ...]) -> EntryErrors:
     """Add the fields that only the cube's own entries have; ``rows`` (E,) are those of its atlas table."""
     data = cube.data
     lattice = lattice_spectra(data, errors.rgb, data.sensor.wavelengths)

@@ -51,9 +51,7 @@ def render_light_report(assessment: LightAssessment) -> str:
         provenance=assessment.table.data.provenance,
         count=COLOURS,
         diagrams=[(title, _diagram(draw, label, assessment)) for title, (draw, label) in DIAGRAMS.items()],
-        lamps=list(
-            zip(entries.names, codes, entries.uv, entries.radius, assessment.lamp_errors, strict=True)
-        ),
+        lamps=list(zip(entries.names, codes, entries.uv, entries.radius, assessment.lamp_errors, strict=True)),
         histogram_chart=histogram_chart,
     )
 

@@ -108,9 +108,7 @@ def lights_to_json(assessment: LightAssessment) -> dict[str, Any]:
         JSON values.
     """
     entries = assessment.table.data.entries
-    rows = zip(
-        entries.names, entries.uv.tolist(), entries.radius.tolist(), assessment.lamp_errors, strict=True
-    )
+    rows = zip(entries.names, entries.uv.tolist(), entries.radius.tolist(), assessment.lamp_errors, strict=True)
     return {
         "table": assessment.name,
         "bytes": assessment.size,
@@ -120,8 +118,7 @@ def lights_to_json(assessment: LightAssessment) -> dict[str, Any]:
         "smallest_power": assessment.smallest_power,
         "expected_error": _statistics(assessment.expected_error),
         "lamps": [
-            {"name": name, "uv": uv, "disc": radius, "expected_error": float(error)}
-            for name, uv, radius, error in rows
+            {"name": name, "uv": uv, "disc": radius, "expected_error": float(error)} for name, uv, radius, error in rows
         ],
     }
 

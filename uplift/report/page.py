@@ -70,9 +70,7 @@ def _severity(delta_e: float) -> str | None:
 def _looks(assessment: Assessment) -> Iterator[dict[str, Any]]:
     """Name, colour and weight of each look, and a row for each of its lights."""
     for look in assessment.data.provenance.get("looks", ()):
-        rows = [
-            {**each, "codes": hex_codes(np.array([each["wish"], each["answer"]]))} for each in look["lights"]
-        ]
+        rows = [{**each, "codes": hex_codes(np.array([each["wish"], each["answer"]]))} for each in look["lights"]]
         (code,) = hex_codes(np.array([look["rgb"]]), assessment.data.sensor)
         yield {"name": look["name"], "code": code, "weight": look["weight"], "rows": rows}
 
@@ -94,9 +92,7 @@ def _errors_by_light(assessment: Assessment) -> Iterator[dict[str, Any]]:
             "light": light,
             "distribution": values,
             "worst": entries.names[int(entries.delta_e[:, column].argmax())],
-            "alternatives": [
-                (other.mean[column], other.largest[column]) for other in assessment.alternatives
-            ],
+            "alternatives": [(other.mean[column], other.largest[column]) for other in assessment.alternatives],
             "lattice": None if entries.delta_e_lattice is None else entries.delta_e_lattice[:, column],
         }
 

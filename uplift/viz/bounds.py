@@ -68,9 +68,7 @@ def _plot_region(axes: Any, screen: Sensor, bounds: Bounds, row: int) -> None:
     likely = bounds.likely(row)
     extent = _extent(np.concatenate([region, answer[None, 1:], *([] if likely is None else [likely])]))
     (patch,) = axes.fill(*region.T, facecolor="none", edgecolor=INK, linewidth=1.0, label="all reflectances")
-    image = axes.imshow(
-        _colours(screen, extent, answer[0]), extent=extent.ravel(), origin="lower", zorder=0.5
-    )
+    image = axes.imshow(_colours(screen, extent, answer[0]), extent=extent.ravel(), origin="lower", zorder=0.5)
     image.set_clip_path(patch)
     if likely is not None:
         axes.fill(*likely.T, facecolor="none", edgecolor=ACCENT, linewidth=1.4, label=f"likely {LIKELY:.0%}")

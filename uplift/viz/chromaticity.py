@@ -192,9 +192,7 @@ def _draw_wavelengths(axes: Any, table: EmissionTable) -> None:
         uv = places[wavelength]
         outward = (uv - white) / np.linalg.norm(uv - white)
         axes.plot(*uv, marker="o", markersize=2, color=GREY)
-        axes.annotate(
-            f"{wavelength}", uv, 9 * outward, textcoords="offset points", ha="center", va="center", color=INK
-        )
+        axes.annotate(f"{wavelength}", uv, 9 * outward, textcoords="offset points", ha="center", va="center", color=INK)
 
 
 def _locus(table: EmissionTable) -> Array:

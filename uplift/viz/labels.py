@@ -38,9 +38,7 @@ def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> 
     for row, (anchor, size) in enumerate(zip(anchors, sizes, strict=True)):
         options = np.concatenate([_corners_around(anchor, size, distance) for distance in DISTANCES])
         boxes = np.concatenate([options, options + size], axis=1)
-        over_label, over_marker = (
-            each.any(axis=1) for each in (_overlaps(boxes, placed), _contains(boxes, markers))
-        )
+        over_label, over_marker = (each.any(axis=1) for each in (_overlaps(boxes, placed), _contains(boxes, markers)))
         taken = np.asarray(_outside(boxes, panel) | over_label | over_marker)
         if not taken.all():
             first = int(taken.argmin())

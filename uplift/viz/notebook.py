@@ -74,8 +74,7 @@ def cube_html(cube: Cube) -> Markup:
         An HTML element; all text is escaped.
     """
     rows = Markup().join(
-        Markup("<tr><th style='text-align:left'>{}</th><td>{}</td></tr>").format(*fact)
-        for fact in _facts(cube).items()
+        Markup("<tr><th style='text-align:left'>{}</th><td>{}</td></tr>").format(*fact) for fact in _facts(cube).items()
     )
     colours = cube.data.atlas.rgb if cube.atlas_names else PRIMARIES
     shown = colours[cube.covers(colours)][:MAX_SPECTRA]

@@ -143,8 +143,7 @@ def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array)
     scale = _POINTS_PER_INCH / axes.figure.dpi
     line = np.concatenate([np.empty((0, 2)), *(np.geomspace(*pair, 40) for pair in pairwise(line))])
     anchors, markers, line = (
-        scale * axes.transData.transform(points)
-        for points in ([label.point for label in labels], markers, line)
+        scale * axes.transData.transform(points) for points in ([label.point for label in labels], markers, line)
     )
     texts = [
         axes.annotate(

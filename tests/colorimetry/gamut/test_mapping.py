@@ -34,9 +34,7 @@ def distance_from_line(before, after, gamut):
     far, near = chromaticity(before, gamut) - white, chromaticity(after, gamut) - white
     length = np.linalg.norm(far, axis=1)
     along = (near * far).sum(axis=1) / length**2
-    return np.abs(near[:, 0] * far[:, 1] - near[:, 1] * far[:, 0]) / length, (along >= -1e-9) & (
-        along <= 1 + 1e-9
-    )
+    return np.abs(near[:, 0] * far[:, 1] - near[:, 1] * far[:, 0]) / length, (along >= -1e-9) & (along <= 1 + 1e-9)
 
 
 def chromatic(rgb, gamut):
@@ -145,9 +143,7 @@ def test_constant_dominant_wavelength_changes_the_hue_of_oklab(outside):
 @pytest.mark.parametrize("method", ["desaturate", "desaturate-oklab"])
 def test_extreme_luminances_give_white_and_black(method, gamut):
     grey = np.array([[1.0001] * 3, [7.0] * 3, [-0.0001] * 3, [-7.0] * 3])
-    np.testing.assert_allclose(
-        map_to_gamut(grey, gamut, method).rgb, [[1] * 3] * 2 + [[0] * 3] * 2, atol=1e-6
-    )
+    np.testing.assert_allclose(map_to_gamut(grey, gamut, method).rgb, [[1] * 3] * 2 + [[0] * 3] * 2, atol=1e-6)
     bright = np.array([[9.0, 8.0, 2.0]])
     np.testing.assert_allclose(map_to_gamut(bright, gamut, method).rgb, 1, rtol=0, atol=2e-3)
 
@@ -155,9 +151,7 @@ def test_extreme_luminances_give_white_and_black(method, gamut):
 def surface(count):
     """(6 count², 3) colours on the surface of [0, 1]³."""
     u, v = (part.ravel() for part in np.meshgrid(*[np.linspace(0, 1, count)] * 2))
-    sides = (
-        np.insert(np.stack([u, v], axis=1), axis, end, axis=1) for axis in range(3) for end in (0.0, 1.0)
-    )
+    sides = (np.insert(np.stack([u, v], axis=1), axis, end, axis=1) for axis in range(3) for end in (0.0, 1.0))
     return np.concatenate(list(sides))
 
 

@@ -66,9 +66,7 @@ def test_blue_and_yellow_of_an_atlas_are_green(small_cube, paints):
     pair = np.stack([paints["blue"], paints["yellow"]])
     spectra = small_cube.reflectance(pair)
     red, green, blue = small_cube.data.sensor.rgb(
-        kubelka_munk.opaque_reflectance(
-            pigments.from_opaque(spectra, dispersive(small_cube.data.sensor)).mix([1, 1])
-        )
+        kubelka_munk.opaque_reflectance(pigments.from_opaque(spectra, dispersive(small_cube.data.sensor)).mix([1, 1]))
     )
     assert green > 1.05 * max(red, blue)
     average = pair.mean(axis=0)

@@ -23,14 +23,10 @@ def integrated(beam, diffuse, X):
     def slopes(x, flux):
         t, s = flux
         left = np.exp(-mu * x)
-        return np.stack(
-            [beam.forward * left - (K + B) * t + B * s, (K + B) * s - B * t - beam.backward * left]
-        )
+        return np.stack([beam.forward * left - (K + B) * t + B * s, (K + B) * s - B * t - beam.backward * left])
 
     x = np.linspace(0, X, 80)
-    solved = solve_bvp(
-        slopes, lambda top, bottom: np.array([top[0], bottom[1]]), x, np.zeros((2, 80)), tol=1e-9
-    )
+    solved = solve_bvp(slopes, lambda top, bottom: np.array([top[0], bottom[1]]), x, np.zeros((2, 80)), tol=1e-9)
     return solved.y[1, 0], solved.y[0, -1] + np.exp(-mu * X)
 
 

@@ -35,9 +35,7 @@ def rays_in_a_plate(transmittance, rho):
 
 
 @pytest.mark.parametrize("ground", [0.0, 0.3, 1.0])
-@pytest.mark.parametrize(
-    "of", [OIL, surface.diffuse_incidence(1.66), surface.Surface(0.04, 0.04), surface.NO_SURFACE]
-)
+@pytest.mark.parametrize("of", [OIL, surface.diffuse_incidence(1.66), surface.Surface(0.04, 0.04), surface.NO_SURFACE])
 def test_reflectance_on_a_ground_is_the_sum_over_passes(of, ground):
     expected = rays_in_contact(T, ground, of.outside, of.inside)
     np.testing.assert_allclose(dyes.reflectance_on_ground(T, ground, of), expected, atol=1e-12)
@@ -74,9 +72,7 @@ def test_concentration_and_thickness_are_equivalent():
     K = np.array([0.2, 3])
     np.testing.assert_allclose(dyes.transmittance(K, 2, 3), dyes.transmittance(K, 6, 1))
     np.testing.assert_allclose(dyes.transmittance(K, 0), 1)
-    np.testing.assert_allclose(
-        dyes.transmittance(K, 1, 5), dyes.transmittance(K, 1, 2) * dyes.transmittance(K, 1, 3)
-    )
+    np.testing.assert_allclose(dyes.transmittance(K, 1, 5), dyes.transmittance(K, 1, 2) * dyes.transmittance(K, 1, 3))
 
 
 def test_absorption_round_trip():

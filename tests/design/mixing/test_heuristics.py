@@ -32,9 +32,7 @@ def test_shades_keep_their_chromaticity_and_tints_their_hue():
 
 @pytest.mark.parametrize("hue", [0, 0.1, 1 / 6, 0.4, 2 / 3, 0.9])
 def test_opposite_hues_mix_to_grey(hue):
-    opposite = np.interp(
-        (np.interp(hue, ryb.RGB_WHEEL, ryb.RYB_WHEEL) + 0.5) % 1, ryb.RYB_WHEEL, ryb.RGB_WHEEL
-    )
+    opposite = np.interp((np.interp(hue, ryb.RGB_WHEEL, ryb.RYB_WHEEL) + 0.5) % 1, ryb.RYB_WHEEL, ryb.RGB_WHEEL)
     full = hsl.to_rgb([[hue, 1, 0.5], [opposite, 1, 0.5]])
     np.testing.assert_allclose(ryb.mix(full, [1, 1]), 0.5, atol=1e-12)
 

@@ -45,9 +45,7 @@ def test_round_trip(rng):
 
 
 def test_hues_repeat():
-    np.testing.assert_allclose(
-        hsl.to_rgb([[-1 / 3, 1, 0.5], [5 / 3, 1, 0.5]]), [[0, 0, 1], [0, 0, 1]], atol=1e-12
-    )
+    np.testing.assert_allclose(hsl.to_rgb([[-1 / 3, 1, 0.5], [5 / 3, 1, 0.5]]), [[0, 0, 1], [0, 0, 1]], atol=1e-12)
     np.testing.assert_allclose(hsl.to_rgb([-1e-18, 1, 0.5]), [1, 0, 0], atol=1e-12)
 
 

@@ -60,9 +60,7 @@ def test_two_layers_equal_one_of_their_total_thickness(paint):
     one = km.layer(paint, 2.3)
     np.testing.assert_allclose(both.reflectance, one.reflectance, rtol=1e-10)
     np.testing.assert_allclose(both.transmittance, one.transmittance, rtol=1e-10)
-    np.testing.assert_allclose(
-        km.layer(paint, 0.7).over(km.layer(paint, 1.6).over(0.3)), one.over(0.3), rtol=1e-10
-    )
+    np.testing.assert_allclose(km.layer(paint, 0.7).over(km.layer(paint, 1.6).over(0.3)), one.over(0.3), rtol=1e-10)
 
 
 @pytest.mark.parametrize("X", [0.0, 1e-9, 1.0, 1e3, 1e9, 1e300])

@@ -24,9 +24,7 @@ def glaze(small_cube):
     atlas = small_cube.data.atlas
     red = small_cube.reflectance(atlas.rgb[atlas.names.index("red")])
     oil = surface.normal_incidence(1.5)
-    return coats.from_pigments(
-        coats.stack([coats.pigment_from_reflectance(red, SQUARE_ROOT, oil)]), [1], 0.5, oil
-    )
+    return coats.from_pigments(coats.stack([coats.pigment_from_reflectance(red, SQUARE_ROOT, oil)]), [1], 0.5, oil)
 
 
 @pytest.fixture(scope="module")
@@ -101,10 +99,7 @@ def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, im
     assert before.code == "pixels-out-of-gamut"
     assert f"{result.counts.outside} of 30 pixels lie outside [0, 1]: scaled" in before.problem
     assert after.code == "painted-pixels-out-of-gamut"
-    assert (
-        f"{result.counts.painted_outside} of 30 pixels lie outside [0, 1] after painting: scaled"
-        in after.problem
-    )
+    assert f"{result.counts.painted_outside} of 30 pixels lie outside [0, 1] after painting: scaled" in after.problem
     found = read_channels(tmp_path / "out.exr", "RGB")
     assert ((found >= 0) & (found <= 1)).all()
     strict = overpaint.prepare(small_cube, dye, out_of_gamut="error", threads=1)

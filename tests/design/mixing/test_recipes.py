@@ -68,9 +68,7 @@ def test_many_proportions_at_once(two):
     parts = ramp([2, 1], 4)
     found = mix("pigment", two, parts, Medium(0.5, scattering=SQUARE_ROOT), WHITE)
     assert found.shape == (4, 5)
-    np.testing.assert_allclose(
-        found[1], mix("pigment", two, parts[1], Medium(0.5, scattering=SQUARE_ROOT), WHITE)
-    )
+    np.testing.assert_allclose(found[1], mix("pigment", two, parts[1], Medium(0.5, scattering=SQUARE_ROOT), WHITE))
 
 
 def test_ramps():

@@ -122,9 +122,7 @@ def test_blues_and_yellows_are_nearer_to_measured_greens(by_name, sensor):
 )
 def test_common_blues_and_yellows_are_green(by_name, smooth_cube, blue, yellow):
     rgb = np.array([smooth_cube.decode([int(c[i : i + 2], 16) for i in (1, 3, 5)]) for c in (blue, yellow)])
-    codes = smooth_cube.encode(
-        np.clip(by_name["pigments"].mix(rgb, np.array([[1, 1], [1, 3], [3, 1]])), 0, 1)
-    )
+    codes = smooth_cube.encode(np.clip(by_name["pigments"].mix(rgb, np.array([[1, 1], [1, 3], [3, 1]])), 0, 1))
     assert (codes[:, 1] - np.maximum(codes[:, 0], codes[:, 2])).max() > 25
 
 

@@ -28,9 +28,7 @@ def test_duntley_s_formula_is_the_integral_of_fresnel_s(n):
 
 def test_the_formula_as_printed_is_wrong():
     n = 1.5
-    printed = surface.diffuse_reflectance(n) + (n - 1) * (3 * n + 1) * (
-        1 / (8 * n + 1) - 1 / (6 * (n + 1) ** 2)
-    )
+    printed = surface.diffuse_reflectance(n) + (n - 1) * (3 * n + 1) * (1 / (8 * n + 1) - 1 / (6 * (n + 1) ** 2))
     assert printed != pytest.approx(integrated(n), abs=0.1)
 
 

@@ -34,9 +34,7 @@ def found(metamers, model):
 def test_metamers_match_by_day_and_differ_under_the_lamp(found, metamers):
     colours = matrix(found)
     targets = metamers.goals[2].rgb, metamers.goals[3].rgb
-    day, lamp = (
-        difference(found, colours, MinDifference(("fox", "moss"), light, 0)) for light in ("day", "lamp")
-    )
+    day, lamp = (difference(found, colours, MinDifference(("fox", "moss"), light, 0)) for light in ("day", "lamp"))
     assert day <= 0.1
     assert lamp >= delta_e_rgb(metamers.sensor, *targets) - 0.01 > 15
     assert colours.model_error.max() < 0.5
@@ -71,9 +69,7 @@ def at_random(sensor, draw):
     lights = tuple(SpectrumSpec(str(name), illuminant(sensor, str(name))) for name in names)
     materials = tuple(SpectrumSpec(f"m{row}", None) for row in range(draw.integers(1, 4)))
     goals = [
-        ColourGoal(
-            material.name, light.name, **({"free": "x"} if draw.random() < 0.3 else {"rgb": draw.random(3)})
-        )
+        ColourGoal(material.name, light.name, **({"free": "x"} if draw.random() < 0.3 else {"rgb": draw.random(3)}))
         for material in materials
         for light in lights
     ]
@@ -195,9 +191,7 @@ def test_obtained_colours_are_those_of_full_spectra(found):
     screen = screen_matrix(found.palette.sensor)
     for row, reflectance in enumerate(found.reflectances):
         for column, power in enumerate(found.powers):
-            np.testing.assert_allclose(
-                matrix(found).obtained[row, column], screen @ (power * reflectance), atol=1e-12
-            )
+            np.testing.assert_allclose(matrix(found).obtained[row, column], screen @ (power * reflectance), atol=1e-12)
 
 
 def test_colours_of_the_factor_model_can_be_fitted(metamers, model):
@@ -211,9 +205,7 @@ def test_colours_of_the_factor_model_can_be_fitted(metamers, model):
 
 
 def test_a_light_can_be_fitted_in_the_factor_model(metamers, model):
-    materials = tuple(
-        dataclasses.replace(each, samples=np.linspace(0.2, 0.7, 81)) for each in metamers.materials[:1]
-    )
+    materials = tuple(dataclasses.replace(each, samples=np.linspace(0.2, 0.7, 81)) for each in metamers.materials[:1])
     lights = (SpectrumSpec("veil", None, 0.0, np.inf),)
     goals = (ColourGoal(materials[0].name, "veil", np.array([0.3, 0.2, 0.1])),)
     palette = dataclasses.replace(

@@ -41,9 +41,7 @@ def test_multiplication_by_white_is_the_identity(model):
 
 def test_colours_of_spectra_in_the_span_are_exact(model, sensor):
     spectrum = model.spectra([0.1, 0.9, 0.3, 0.5, 0.2, 0.8, 0.4])
-    np.testing.assert_allclose(
-        model.rgb(model.reflectance(spectrum)), screen_matrix(sensor) @ spectrum, atol=1e-9
-    )
+    np.testing.assert_allclose(model.rgb(model.reflectance(spectrum)), screen_matrix(sensor) @ spectrum, atol=1e-9)
 
 
 def test_mixed_lights_have_mixed_coefficients(model, sensor):
@@ -57,9 +55,7 @@ def test_two_reflections_are_five_times_more_accurate_than_in_rgb(model, sensor,
     power, screen = illuminant(sensor, light), screen_matrix(sensor)
     first, second = measured[:-1], measured[1:]
     full = (power * first * second) @ screen.T
-    modelled = model.rgb(
-        model.product(model.light(power), model.reflectance(first), model.reflectance(second))
-    )
+    modelled = model.rgb(model.product(model.light(power), model.reflectance(first), model.reflectance(second)))
     rgb = (screen @ power) * sensor.rgb(first) * sensor.rgb(second)
     gain = exposure(sensor, full)[:, None]
     errors = [delta_e.delta_e_rgb(sensor, gain * found, gain * full).mean() for found in (modelled, rgb)]

@@ -96,9 +96,7 @@ def test_given_spectra_are_those_of_their_sources(read, sensor):
 
 def test_lights_have_their_luminance(read, sensor):
     palette = read(COMPLETE)
-    luminances = [
-        sensor.xyz(screen_matrix(sensor) @ palette.light(name).samples)[1] for name in ("day", "glow")
-    ]
+    luminances = [sensor.xyz(screen_matrix(sensor) @ palette.light(name).samples)[1] for name in ("day", "glow")]
     np.testing.assert_allclose(luminances, [1, 0.5], atol=1e-12)
 
 

@@ -15,18 +15,14 @@ from uplift.design.palette.palette import ColourGoal, MinDifference, SpectrumSpe
 def black(metamers):
     """A paint that reflects at least 10 %, with the goals of grey by day and black under the lamp."""
     goals = (ColourGoal("soot", "day", rgb=np.full(3, 0.2)), ColourGoal("soot", "lamp", rgb=np.zeros(3)))
-    return dataclasses.replace(
-        metamers, materials=(SpectrumSpec("soot", None, 0.1, 1),), goals=goals, free={}
-    )
+    return dataclasses.replace(metamers, materials=(SpectrumSpec("soot", None, 0.1, 1),), goals=goals, free={})
 
 
 def test_an_infeasible_goal_is_missed(black, model):
     missed = unmet_goals(design(black, model))
     (lamp,) = (each for each in missed if each.goal is black.goals[1])
     assert lamp.delta_e > 10
-    assert str(lamp).startswith(
-        f"soot under lamp: missed by ΔE00 {lamp.delta_e:.2f}; relax the bounds of soot"
-    )
+    assert str(lamp).startswith(f"soot under lamp: missed by ΔE00 {lamp.delta_e:.2f}; relax the bounds of soot")
 
 
 def test_the_suggested_relaxation_meets_the_goal(black, model):

@@ -20,6 +20,4 @@ def warped_cube(small_cube) -> Cube:
     data = small_cube.data
     atlas = replace(data.atlas, coefficients=data.atlas.coefficients[:, :5], spectra=None)
     model = Moments(5, Phase(400, 700, "vision"))
-    return Cube(
-        with_points(replace(data, model=model, atlas=atlas), coefficients=data.points.coefficients[:, :5])
-    )
+    return Cube(with_points(replace(data, model=model, atlas=atlas), coefficients=data.points.coefficients[:, :5]))

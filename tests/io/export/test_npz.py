@@ -28,9 +28,7 @@ def test_multipliers_evaluate_to_the_spectra(small_cube, tmp_path):
     with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
         lattice = evaluate(data.model, arrays["multipliers"], [450, 650])
         atlas = evaluate(data.entry_spectra.model, arrays["atlas.multipliers"], [450, 650])
-    np.testing.assert_allclose(
-        lattice, reflectance(data.model, data.points.coefficients, [450, 650]), atol=1e-9
-    )
+    np.testing.assert_allclose(lattice, reflectance(data.model, data.points.coefficients, [450, 650]), atol=1e-9)
     np.testing.assert_allclose(atlas, small_cube.reflectance(data.atlas.rgb, [450, 650]), atol=1e-9)
 
 

@@ -61,9 +61,7 @@ def worst(tmp_path):
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments"])
-@pytest.mark.parametrize(
-    ("style", "form"), [(style, form) for style in RUN for form in FORMATS[style].tables]
-)
+@pytest.mark.parametrize(("style", "form"), [(style, form) for style in RUN for form in FORMATS[style].tables])
 def test_ten_thousand_colours_equal_those_of_python(small_cube, worst, style, form, mode):
     assert worst(small_cube, style, mode, colours(small_cube.data), form=form) < WITHIN
 
@@ -164,9 +162,7 @@ def run_c(code, folder):
 def test_many_colours_at_any_number_of_wavelengths(small_cube, tmp_path, mode):
     write_program(small_cube.data, tmp_path / "cube.h", mode=mode)
     found = np.frombuffer(run_c(MANY, tmp_path), np.float32).reshape(2, 21, 21)
-    expected = [
-        small_cube.reflectance(rgb, 400 + k + 15.0 * np.arange(21), mode=mode) for k, rgb in enumerate(ROW)
-    ]
+    expected = [small_cube.reflectance(rgb, 400 + k + 15.0 * np.arange(21), mode=mode) for k, rgb in enumerate(ROW)]
     np.testing.assert_allclose(found, [expected, expected], rtol=0, atol=WITHIN)
 
 

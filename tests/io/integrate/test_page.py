@@ -92,9 +92,7 @@ def test_cycles_renders_the_shader(shader, folder, small_cube):
     channels["A"] = np.ones((2, 2), dtype=np.float32)
     OpenEXR.File({"type": OpenEXR.scanlineimage}, channels).write("texture.exr")
     script = Path(__file__).with_name("in_blender.py")
-    subprocess.run(
-        [BLENDER_PYTHON, script, shader, "texture.exr", "image.exr"], check=True, capture_output=True
-    )
+    subprocess.run([BLENDER_PYTHON, script, shader, "texture.exr", "image.exr"], check=True, capture_output=True)
     image = OpenEXR.File("image.exr").channels()["RGBA"].pixels[..., :3]
     expected = small_cube.reflectance(rgb, [610, 550, 460], mode="refined")
     np.testing.assert_allclose(image[::7, ::7], expected, atol=1e-5)

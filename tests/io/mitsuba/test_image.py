@@ -60,9 +60,7 @@ def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, o
 def test_uv_are_transformed(mi, texture, spectrum, matrix):
     scale = [2, 3] if matrix == "ScalarTransform3f" else [2, 3, 1]
     moved = texture(to_uv=getattr(mi, matrix)().scale(scale))
-    assert spectrum(moved, (0.1, 0.2), [500]) == pytest.approx(
-        spectrum(texture(), (0.2, 0.6), [500]), abs=1e-6
-    )
+    assert spectrum(moved, (0.1, 0.2), [500]) == pytest.approx(spectrum(texture(), (0.2, 0.6), [500]), abs=1e-6)
 
 
 def test_filtering_blends_spectra_not_multipliers(texture, spectrum, small_cube):
@@ -135,9 +133,7 @@ def test_colours_outside_are_mapped_with_a_warning(texture, spectrum, language, 
     assert rgb[1] < 0.2
 
 
-def test_layers_and_other_channels_of_openexr_are_accepted(
-    mi, language, spectrum, small_cube, tmp_path, cube_path
-):
+def test_layers_and_other_channels_of_openexr_are_accepted(mi, language, spectrum, small_cube, tmp_path, cube_path):
     rgb = np.array([0.2, 0.4, 1.5])
     channels = {f"paint.{name}": np.full((2, 3), value) for name, value in zip("RGB", rgb, strict=True)}
     write_channels(tmp_path / "layers.exr", {**channels, "Z": np.ones((2, 3))})

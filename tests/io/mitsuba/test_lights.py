@@ -70,9 +70,7 @@ def test_images_and_spectral_images_agree(mi, table, sky, spectrum, tmp_path):
     source = write_exr(tmp_path / "sky.exr", planes(sky))
     texture.convert(texture.prepare_lights(table, threads=1), source, tmp_path / "spectral.exr")
     found = [
-        spectrum(
-            mi.load_dict({"type": "uplift", "emission": True, "filename": str(path)}), (0.2, 0.3), WAVELENGTHS
-        )
+        spectrum(mi.load_dict({"type": "uplift", "emission": True, "filename": str(path)}), (0.2, 0.3), WAVELENGTHS)
         for path in (source, tmp_path / "spectral.exr")
     ]
     np.testing.assert_allclose(*found, rtol=1e-5)
@@ -88,9 +86,7 @@ def test_an_environment_lies_as_mitsubas_does(mi, radiance, degrees):
     rng = np.random.default_rng(0)
     directions = rng.normal(size=(12, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    levels = np.array(
-        [[radiance(each, list(way), [560.0])[0] for each in (ours, theirs)] for way in directions]
-    )
+    levels = np.array([[radiance(each, list(way), [560.0])[0] for each in (ours, theirs)] for way in directions])
     ratios = levels[:, 0] / levels[:, 1]
     np.testing.assert_allclose(ratios, ratios.mean(), rtol=1e-3)
     assert levels[:, 0].max() > 2 * levels[:, 0].min()

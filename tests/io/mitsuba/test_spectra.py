@@ -17,9 +17,7 @@ def test_basis_and_squash(mi, model):
     found = np.array([np.array(part) for part in basis(model, mi.Spectrum(*WAVELENGTHS))]).T
     np.testing.assert_allclose(found, model.basis(WAVELENGTHS), atol=3e-5)
     linear = np.array([-300, -0.5, 0.2, 20.0])
-    np.testing.assert_allclose(
-        np.array(squash(model, mi.Spectrum(*linear))), model.squash(linear), rtol=0, atol=1e-6
-    )
+    np.testing.assert_allclose(np.array(squash(model, mi.Spectrum(*linear))), model.squash(linear), rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("model", MODELS, ids=str)

@@ -30,15 +30,11 @@ WAVELENGTHS = np.array([362.5, 402.5, 555, 650, 823])
     ],
     ids=["spectrum", "moments", "multipliers"],
 )
-def test_a_texture_has_the_spectra_of_the_cube(
-    mi, language, spectrum, small_cube, tmp_path, encoding, mode, within
-):
+def test_a_texture_has_the_spectra_of_the_cube(mi, language, spectrum, small_cube, tmp_path, encoding, mode, within):
     write_image(tmp_path / "image.exr", IMAGE)
     uplifter = texture.prepare(small_cube, encoding, depth="float")
     texture.convert(uplifter, tmp_path / "image.exr", tmp_path / "texture.exr")
-    found = mi.load_dict(
-        {"type": "uplift", "filename": str(tmp_path / "texture.exr"), "filter_type": "nearest"}
-    )
+    found = mi.load_dict({"type": "uplift", "filename": str(tmp_path / "texture.exr"), "filter_type": "nearest"})
     expected = small_cube.reflectance(IMAGE[2, 1], WAVELENGTHS, mode=mode)
     np.testing.assert_allclose(spectrum(found, (0.4, 0.9), WAVELENGTHS), expected, rtol=0, atol=within)
 

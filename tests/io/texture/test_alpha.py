@@ -57,9 +57,7 @@ def test_moments_are_multiplied_and_multipliers_are_not(multiplied, colours, alp
             texture.convert(uplifter, source, tmp_path / "out.exr", force=True)
             numbers.append(read_channels(tmp_path / "out.exr", uplifter.channels))
         visible = alpha > 1e-3
-        np.testing.assert_allclose(
-            numbers[1][visible], by_opacity(numbers[0], weight)[visible], rtol=1e-3, atol=2e-3
-        )
+        np.testing.assert_allclose(numbers[1][visible], by_opacity(numbers[0], weight)[visible], rtol=1e-3, atol=2e-3)
 
 
 def test_bands_do_not_change_the_result(multiplied, spectral, tmp_path, monkeypatch):

@@ -39,9 +39,7 @@ def d50(space):
     """Return the matrix from linear RGB of a colour-science space to XYZ, adapted to D50."""
     found = colour.RGB_COLOURSPACES[space]
     white = colour.xy_to_XYZ(found.whitepoint)
-    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
-        white, [0.9642, 1, 0.8249], transform="Bradford"
-    )
+    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(white, [0.9642, 1, 0.8249], transform="Bradford")
     return adapt @ colour.normalised_primary_matrix(found.primaries, found.whitepoint)
 
 

@@ -56,9 +56,7 @@ def test_a_jpeg_is_what_pillow_reads(codes, convert_image, small_cube, tmp_path)
     smooth.save(tmp_path / "a.jpg", quality=95)
     _, found = convert_image(tmp_path / "a.jpg")
     expected = np.asarray(Image.open(tmp_path / "a.jpg"), dtype=float)
-    assert (
-        np.abs(small_cube.encode(rgb_of(found)) - expected).max() <= 1
-    )  # of 255: decoders round differently
+    assert np.abs(small_cube.encode(rgb_of(found)) - expected).max() <= 1  # of 255: decoders round differently
 
 
 def test_grey_and_alpha(codes, convert_image, small_cube, tmp_path):
@@ -98,9 +96,7 @@ def test_16_bits_stay_16_bits(suffix, convert_image, tmp_path):
     np.testing.assert_array_equal(np.rint(found["A"] * 65535.0), rgba[..., 3])
 
 
-def test_floats_are_linear_unless_the_encoding_is_given(
-    colours, convert_image, small_cube, spectral, tmp_path
-):
+def test_floats_are_linear_unless_the_encoding_is_given(colours, convert_image, small_cube, spectral, tmp_path):
     Image.fromarray(colours[..., 0]).save(tmp_path / "float.tif")
     _, found = convert_image(tmp_path / "float.tif")
     np.testing.assert_array_equal(found["R"], colours[..., 0])
@@ -144,9 +140,7 @@ def test_only_invalid_pixels_are_clamped_and_counted(colours, convert_image, spe
         ("desaturate-oklab", "desaturated in Oklab"),
     ],
 )
-def test_pixels_outside_are_mapped_by_the_method(
-    method, past_tense, colours, convert_image, spectral, tmp_path
-):
+def test_pixels_outside_are_mapped_by_the_method(method, past_tense, colours, convert_image, spectral, tmp_path):
     bad = colours.copy()
     bad[3, :5] = np.array([[-0.25, 0.5, 2], [8, 4, 1], [0.2, 0.6, -0.1], [-1, -1, -1], [7, 7, 7]])
     bad[4, 4] = (np.inf, 5, np.nan)
@@ -214,9 +208,7 @@ def test_several_parts_tiles_windows_and_other_channels(kind, band, spectral, tm
     parts = [
         OpenEXR.Part({**header}, {**planes(rgb), **others}, "left"),
         OpenEXR.Part({**header}, {"deep.Z": others["Z"]}, "depth"),
-        OpenEXR.Part(
-            {**header}, {f"view.{name}": plane for name, plane in planes(rgb[::-1]).items()}, "right"
-        ),
+        OpenEXR.Part({**header}, {f"view.{name}": plane for name, plane in planes(rgb[::-1]).items()}, "right"),
     ]
     OpenEXR.File(parts).write(str(tmp_path / "in.exr"))
     result = texture.convert(spectral, tmp_path / "in.exr", tmp_path / "out.exr")

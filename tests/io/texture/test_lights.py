@@ -77,9 +77,7 @@ def test_colour_science_reads_emission(table, lights, sky, tmp_path, sensor):
 
 def test_pixels_of_tiles_equal_those_of_rows(lights, sky, tmp_path):
     rows = write_exr(tmp_path / "rows.exr", planes(sky))
-    OpenEXR.File({"type": OpenEXR.tiledimage, "tiles": small_tiles()}, planes(sky)).write(
-        str(tmp_path / "tiles.exr")
-    )
+    OpenEXR.File({"type": OpenEXR.tiledimage, "tiles": small_tiles()}, planes(sky)).write(str(tmp_path / "tiles.exr"))
     for path in (rows, tmp_path / "tiles.exr"):
         texture.convert(lights, path, tmp_path / f"out-{path.name}")
     np.testing.assert_array_equal(
@@ -144,9 +142,7 @@ def test_half_floats_end_at_their_largest(table, tmp_path):
     rgb = np.array([[[1e5, 1e5, 1e5], [1, 1, 1]]], np.float32)
     converter = texture.prepare_lights(table, depth="half", threads=1)
     conversion = texture.convert(converter, write_exr(tmp_path / "a.exr", planes(rgb)), tmp_path / "out.exr")
-    assert [(each.code, conversion.counts.too_bright) for each in conversion.warnings] == [
-        ("pixels-too-bright", 1)
-    ]
+    assert [(each.code, conversion.counts.too_bright) for each in conversion.warnings] == [("pixels-too-bright", 1)]
     assert spectral_channels(tmp_path / "out.exr")[0, 0].max() == 65504
 
 

@@ -99,9 +99,7 @@ def test_moments_mix_as_reflectances_do(converted, cubes, colours, tmp_path):
     found = converted(cubes[:2], mask, texture.Moments())
     parts = [cube.coefficients(colours.reshape(-1, 3)).reshape(*SHAPE, -1) for cube in cubes[:2]]
     share = 128 / 255
-    np.testing.assert_allclose(
-        found[:, 1::3], (1 - share) * parts[0][:, 1::3] + share * parts[1][:, 1::3], atol=1e-5
-    )
+    np.testing.assert_allclose(found[:, 1::3], (1 - share) * parts[0][:, 1::3] + share * parts[1][:, 1::3], atol=1e-5)
     values = reflectance(cubes[0].data.model, found[:, 1::3].reshape(-1, 9).astype(float), WAVELENGTHS)
     assert values.min() >= 0
     assert values.max() <= 1
@@ -147,9 +145,7 @@ def test_bands_read_the_rows_of_the_mask(converted, cubes, colours, tmp_path, mo
 )
 def test_masks_that_do_not_fit_are_refused(image, cubes, tmp_path, values, count, code):
     with raises(TextureError, code) as caught:
-        texture.convert(
-            prepared(cubes[:count], png(tmp_path / "mask.png", values)), image, tmp_path / "out.exr"
-        )
+        texture.convert(prepared(cubes[:count], png(tmp_path / "mask.png", values)), image, tmp_path / "out.exr")
     assert caught.value.path == tmp_path / "mask.png"
     assert not (tmp_path / "out.exr").exists()
 

@@ -35,9 +35,7 @@ def photo(tmp_path_factory, small_cube):
 
 @pytest.mark.filterwarnings("ignore::colour.utilities.ColourRuntimeWarning")
 @pytest.mark.parametrize(("depth", "max_error"), [("float", 0.02), ("half", 0.1)])
-def test_colour_science_reads_the_photograph_from_a_spectral_image(
-    photo, small_cube, tmp_path, depth, max_error
-):
+def test_colour_science_reads_the_photograph_from_a_spectral_image(photo, small_cube, tmp_path, depth, max_error):
     path, linear = photo
     uplifter = texture.prepare(small_cube, depth=depth)
     texture.convert(uplifter, path, tmp_path / "out.exr")

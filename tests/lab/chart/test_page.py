@@ -48,9 +48,7 @@ def test_page_has_every_panel_fits_and_is_accessible(row_of, chart_of, tmp_path)
     chart = chart_of(row_of("one", 80, 0.4), row_of("two", 800, 0.2))
     text = render_chart(chart)
     markers = re.findall(r'id="marker-(\d+)-(\d+)"', text)
-    assert sorted(markers) == sorted(
-        (str(number), row) for number in range(len(all_panels(chart))) for row in "01"
-    )
+    assert sorted(markers) == sorted((str(number), row) for number in range(len(all_panels(chart))) for row in "01")
     check_page(text, tmp_path)
 
 
@@ -75,9 +73,7 @@ def test_a_panel_without_a_front_is_empty(row_of, chart_of, tmp_path):
 
 def test_the_reader_chooses_the_number_of_colours(row_of, chart_of, tmp_path):
     need(CHROMIUM)
-    visible = (
-        """[...document.querySelectorAll(".picture svg")].filter(each => each.checkVisibility()).length"""
-    )
+    visible = """[...document.querySelectorAll(".picture svg")].filter(each => each.checkVisibility()).length"""
     with browser() as tab:
         open_page(tab, render_chart(chart_of(row_of("one", 80, 0.4))), tmp_path)
         shown = len(panels_of(64)) + 1

@@ -26,9 +26,7 @@ def test_front_is_clearly_more_accurate_than_all_faster_methods(row_of, chart_of
         assert points_of[other][1] < CLEAR_RATIO * points_of[one][1]
     for row in set(rows) - set(front):
         time, error = points_of[row]
-        assert any(
-            points_of[other][0] <= time and CLEAR_RATIO * points_of[other][1] <= error for other in front
-        )
+        assert any(points_of[other][0] <= time and CLEAR_RATIO * points_of[other][1] <= error for other in front)
 
 
 def test_ties_go_to_the_more_accurate_and_1_percent_is_noise(row_of, chart_of):

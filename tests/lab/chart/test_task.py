@@ -35,9 +35,7 @@ def test_task_is_reproducible(small_task, repository):
 def test_edges_contain_every_corner_and_grey_once():
     found = edges()
     assert len(np.unique(found, axis=0)) == len(found)
-    assert (
-        ((found == 0) | (found == 1) | (found == found[:, :1]).all(axis=1, keepdims=True)).any(axis=1).all()
-    )
+    assert ((found == 0) | (found == 1) | (found == found[:, :1]).all(axis=1, keepdims=True)).any(axis=1).all()
     corners = found[((found == 0) | (found == 1)).all(axis=1)]
     assert len(corners) == 8
     assert (np.ptp(found, axis=1) == 0).sum() == 9

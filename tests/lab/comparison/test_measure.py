@@ -32,14 +32,10 @@ def test_errors_match_explicit_loops(checker):
     for power in part.powers:
         white = power @ xyz_weights()
         for surface in checker.surfaces:
-            product = samples.multiply(
-                samples.encode_light(power[None]), samples.encode_surface(surface[None])
-            )
+            product = samples.multiply(samples.encode_light(power[None]), samples.encode_surface(surface[None]))
             pair = (lab(samples.xyz(product)[0], white), lab((power * surface) @ xyz_weights(), white))
             apart.append(float(delta_e_2000(*pair)))
-    assert tuple(error_statistics(samples, checker, part)) == pytest.approx(
-        tuple(compute_statistics(apart)), rel=1e-9
-    )
+    assert tuple(error_statistics(samples, checker, part)) == pytest.approx(tuple(compute_statistics(apart)), rel=1e-9)
 
 
 def test_result_that_is_not_finite_is_an_error(checker):
@@ -71,9 +67,7 @@ def test_storage_includes_spikes(found):
 
 
 def test_findings_of_the_thesis_hold_for_the_colorchecker(found):
-    smooth, spiky = (
-        {row.name: row.statistics.mean for row in found.of(name)} for name in ("smooth", "spiky")
-    )
+    smooth, spiky = ({row.name: row.statistics.mean for row in found.of(name)} for name in ("smooth", "spiky"))
     assert all(smooth[f"{family}32"] < 1 for family in ("PS", "RS", "RE"))
     assert spiky["PS16"] > 10 * smooth["PS16"]
     assert max(spiky["CS15"], spiky["RE16"]) < spiky["RS16"] < spiky["PS32"] < spiky["PS16"]

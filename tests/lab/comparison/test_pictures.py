@@ -67,9 +67,7 @@ def test_nothing_is_cheaper_and_more_accurate_than_the_front(found, cost):
         rows = found.of(name)
         for ahead in front(rows, cost):
             beaten_by = [
-                row
-                for row in rows
-                if cost.of(row) <= cost.of(ahead) and row.statistics.q97_5 < ahead.statistics.q97_5
+                row for row in rows if cost.of(row) <= cost.of(ahead) and row.statistics.q97_5 < ahead.statistics.q97_5
             ]
             assert not beaten_by
 
@@ -99,7 +97,5 @@ def test_families_have_fixed_colours_and_order(found):
 
 def test_records_contain_every_result(found):
     made = records(found)
-    assert [(one["lights"], one["representation"]) for one in made] == [
-        (row.lights, row.name) for row in found.results
-    ]
+    assert [(one["lights"], one["representation"]) for one in made] == [(row.lights, row.name) for row in found.results]
     assert all(np.isfinite([one["mean"], one["q97_5"], one["ns"], one["floats"]]).all() for one in made)

@@ -70,9 +70,7 @@ def test_mixtures_have_the_colour_and_their_centroid_too(sensor, known):
     rgb = colours.mean(axis=0)
     corners, weights = baselines._mixtures(colours, rgb)
     assert len(corners) >= 4
-    np.testing.assert_allclose(
-        np.einsum("vk,vkc->vc", weights, colours[corners]), rgb + 0 * corners[:, :3], atol=1e-9
-    )
+    np.testing.assert_allclose(np.einsum("vk,vkc->vc", weights, colours[corners]), rgb + 0 * corners[:, :3], atol=1e-9)
     own = mismatch_centroids(sensor, known[:10], rgb[None], [sensor.light])
     np.testing.assert_allclose(own[0, 0], sensor.xyz(rgb), atol=1e-6)
 

@@ -100,9 +100,7 @@ def test_answers_agree_on_the_face_between_two_cells(small_cube, axis):
 
     below, above = fraction.copy(), fraction.copy()
     below[:, axis], above[:, axis] = 1, 0
-    np.testing.assert_allclose(
-        answer(low, below), answer(low + np.eye(3, dtype=int)[axis], above), atol=1e-15
-    )
+    np.testing.assert_allclose(answer(low, below), answer(low + np.eye(3, dtype=int)[axis], above), atol=1e-15)
 
 
 def test_answers_agree_on_both_sides_of_the_face_of_a_box(small_cube, steep):

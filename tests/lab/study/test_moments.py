@@ -24,18 +24,14 @@ def full_study(repository):
     """Study of all shipped atlases."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
-        return study_moments(
-            {path.stem: read_atlas(path) for path in sorted((repository / "atlases").glob("*.txt"))}
-        )
+        return study_moments({path.stem: read_atlas(path) for path in sorted((repository / "atlases").glob("*.txt"))})
 
 
 @pytest.fixture(params=["macbeth", ALL_ATLASES])
 def errors(request, macbeth_study, full_study):
     """Function from technique, floats and measure to the mean error, for the ColorChecker and for all atlases."""
     study = full_study if request.param == ALL_ATLASES else macbeth_study
-    return lambda technique, floats, measure=0: study.result(technique, max_moments(technique, floats)).mean[
-        measure
-    ]
+    return lambda technique, floats, measure=0: study.result(technique, max_moments(technique, floats)).mean[measure]
 
 
 @pytest.mark.parametrize("technique", TECHNIQUES, ids=lambda technique: technique.short)
@@ -76,9 +72,7 @@ def test_warping_has_the_least_error_with_few_floats(errors):
 
 def test_statements_of_the_page_on_warp_and_shape(full_study):
     warped, unwarped = (
-        np.array(
-            [[full_study.result(one, count).mean, full_study.result(one, count).max] for count in range(16)]
-        )
+        np.array([[full_study.result(one, count).mean, full_study.result(one, count).max] for count in range(16)])
         for one in (MW, MNW)
     )
     better = warped < unwarped
@@ -86,10 +80,7 @@ def test_statements_of_the_page_on_warp_and_shape(full_study):
     assert floats[better[:, 0, 0]].tolist() == [1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12]
     assert set(range(2, 15)) == set(floats[better[:, 1, 0]])
     assert better[8, 0, 1:-1].all()
-    rms = [
-        [full_study.result(one, max_moments(one, floats)).mean[-1] for one in TECHNIQUES]
-        for floats in (9, 13, 16)
-    ]
+    rms = [[full_study.result(one, max_moments(one, floats)).mean[-1] for one in TECHNIQUES] for floats in (9, 13, 16)]
     assert all(min(row[2:]) > 3 * min(row[:2]) for row in rms)
     assert not better[[floats - 1 for floats in FLOATS], 0, -1].any()
 

@@ -46,9 +46,7 @@ def test_failed_points_are_counted_and_the_worst_is_reported():
     points = np.array([[0.0, 0, 0], [0.5, 0.5, 0.5], [1, 1, 1], [0, 1, 0]])
     realisable = np.array([True, True, True, False])
     distance = np.array([2e-4, 1e-5, 3e-3, 0.5])
-    result = stability._evaluate(
-        RunConfig(), points, realisable, distance, stand_ins=1, rounds=2, calls=3, seconds=4.0
-    )
+    result = stability._evaluate(RunConfig(), points, realisable, distance, stand_ins=1, rounds=2, calls=3, seconds=4.0)
     assert (result.points, result.realisable, result.unfitted, result.stand_ins) == (4, 3, 2, 1)
     assert (result.worst, result.r, result.g, result.b) == (3e-3, 1, 1, 1)
     assert result.success == pytest.approx(1 / 3)
@@ -90,9 +88,7 @@ def test_design_contains_grids_sample_and_solver_runs_once():
 
 
 def test_design_uses_only_the_given_values():
-    axes = DesignSpace(
-        dims=(6,), spaces=("ACEScg",), models=("sigmoid",), thresholds=(1e-3,), atlases=(NO_ATLAS,)
-    )
+    axes = DesignSpace(dims=(6,), spaces=("ACEScg",), models=("sigmoid",), thresholds=(1e-3,), atlases=(NO_ATLAS,))
     assert design(axes) == (RunConfig("sigmoid", 3, 6, "ACEScg", 1e-3),)
     assert len(design(QUICK_DESIGN)) < len(design(DesignSpace())) / 3
     with raises(OptionError, "empty-axis"):

@@ -56,9 +56,7 @@ def test_coefficients_are_those_of_numpy(cube):
     rgb = colours(cube.data)
     expected = cube.coefficients(rgb)
     # A sigmoid's coefficients run into hundreds, and are steep in the colour.
-    np.testing.assert_allclose(
-        bulk.coefficients(cube)(rgb), expected, rtol=0, atol=2e-6 * np.abs(expected).max()
-    )
+    np.testing.assert_allclose(bulk.coefficients(cube)(rgb), expected, rtol=0, atol=2e-6 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("count", [9, 17])

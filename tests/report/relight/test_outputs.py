@@ -54,9 +54,7 @@ def test_other_suffixes_are_refused(relit, tmp_path):
         write_relit_sheet([relit], tmp_path / "relit.gif")
 
 
-@pytest.mark.parametrize(
-    ("write", "name"), [(write_relit_sheet, "relit.png"), (write_relit_page, "relit.html")]
-)
+@pytest.mark.parametrize(("write", "name"), [(write_relit_sheet, "relit.png"), (write_relit_page, "relit.html")])
 def test_existing_files_stay_without_force(relit, tmp_path, write, name):
     path = tmp_path / name
     path.write_text("mine")

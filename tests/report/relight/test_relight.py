@@ -87,10 +87,7 @@ def test_differences_are_delta_e(relit):
 def test_maps_start_at_the_limit_of_perception_and_hold_most_differences(relit):
     assert relit.renderings[0].map_limit == 2
     rendering = relit.renderings[3]
-    shares = [
-        (rendering.difference(RGB_PRODUCT, name).delta_e <= rendering.map_limit).mean()
-        for name in relit.methods
-    ]
+    shares = [(rendering.difference(RGB_PRODUCT, name).delta_e <= rendering.map_limit).mean() for name in relit.methods]
     assert min(shares) >= 0.95
 
 

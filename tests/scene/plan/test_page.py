@@ -70,9 +70,7 @@ def test_bars_are_proportional_to_errors_and_stay_on_the_axis(planned):
     assert [bar["title"] for bar in bars] == [*(each.title for each in plan.chain), "Confirmed"]
     ratio = bars[0]["error"] / bars[-1]["error"]
     assert ratio == pytest.approx(plan.chain[0].trial.error.quantile / plan.confirmed.quantile)
-    assert bars[-1]["limit"] / bars[-1]["error"] == pytest.approx(
-        plan.scene.tolerance / plan.confirmed.quantile
-    )
+    assert bars[-1]["limit"] / bars[-1]["error"] == pytest.approx(plan.scene.tolerance / plan.confirmed.quantile)
     assert all(0 <= bar[key] < 100 for bar in bars for key in ("error", "limit"))
 
 

@@ -103,9 +103,7 @@ def test_the_plan_file_builds_the_same_cube(planned, kitchen, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         cube = plan.read_plan(path).build()
-    np.testing.assert_array_equal(
-        cube.data.points.coefficients, found.final_build.cube.data.points.coefficients
-    )
+    np.testing.assert_array_equal(cube.data.points.coefficients, found.final_build.cube.data.points.coefficients)
     assert (cube.data.complete_cells is not None) == found.final_build.is_sparse
 
 

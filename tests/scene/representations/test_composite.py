@@ -43,9 +43,7 @@ def test_smooth_part_is_the_largest_with_limited_gradient(table, threshold):
 
 
 def test_mercury_lines_are_spikes_and_daylight_has_none():
-    lines, none = (
-        split_spikes(observer.illuminant_spd(name, step=1.0)[None], 0.3)[1] for name in ("FL2", "C")
-    )
+    lines, none = (split_spikes(observer.illuminant_spd(name, step=1.0)[None], 0.3)[1] for name in ("FL2", "C"))
     assert observer.grid()[lines.positions].tolist() == [405, 435, 545]
     assert none.positions.size == 0
 
@@ -59,9 +57,7 @@ def test_fourier_coefficients_equal_equation_4_7(count):
     np.testing.assert_allclose(actual[:, 0], table[:, 1:].mean(axis=1))  # ã_0 / 2 of eq. 4.7
     for order in range(1, count // 2 + 1):
         for place, wave in ((2 * order - 1, np.cos), (2 * order, np.sin)):
-            np.testing.assert_allclose(
-                actual[:, place], (table[:, 1:] @ wave(order * phase)) * 2 / 80, atol=1e-12
-            )
+            np.testing.assert_allclose(actual[:, place], (table[:, 1:] @ wave(order * phase)) * 2 / 80, atol=1e-12)
 
 
 @pytest.mark.parametrize("count", [3, 7])

@@ -45,9 +45,7 @@ def test_linear_model_of_all_components_is_exact(checker, light_powers):
 def test_linear_model_has_errors_outside_its_scene(checker, light_powers):
     model = linear_model(6, checker.powers[:1], checker.surfaces[:5])
     surfaces = checker.surfaces[5:10]
-    actual = model.xyz(
-        model.multiply(model.encode_light(light_powers("A")[:5]), model.encode_surface(surfaces))
-    )
+    actual = model.xyz(model.multiply(model.encode_light(light_powers("A")[:5]), model.encode_surface(surfaces)))
     assert np.abs(actual - (light_powers("A")[:5] * surfaces) @ xyz_weights()).max() > 1e-3
 
 

@@ -37,9 +37,7 @@ def test_grey_under_constant_light_is_exact(every, name):
 @pytest.mark.parametrize("name", NAMES)
 def test_colour_is_linear_in_the_light(every, checker, light_powers, name):
     one, surfaces = every[name], every[name].encode_surface(checker.surfaces)
-    once, twice = (
-        one.xyz(one.multiply(one.encode_light(k * light_powers("FL11")), surfaces)) for k in (1, 2)
-    )
+    once, twice = (one.xyz(one.multiply(one.encode_light(k * light_powers("FL11")), surfaces)) for k in (1, 2))
     np.testing.assert_allclose(twice, 2 * once, rtol=1e-9)
 
 
@@ -48,9 +46,7 @@ def test_rows_are_independent(every, checker, light_powers, name):
     """Hero wavelengths are omitted: a row is a pixel with its own random numbers."""
     one = every[name]
     whole = one.xyz(one.multiply(one.encode_light(light_powers("FL2")), one.encode_surface(checker.surfaces)))
-    part = one.xyz(
-        one.multiply(one.encode_light(light_powers("FL2")[5:7]), one.encode_surface(checker.surfaces[5:7]))
-    )
+    part = one.xyz(one.multiply(one.encode_light(light_powers("FL2")[5:7]), one.encode_surface(checker.surfaces[5:7])))
     np.testing.assert_allclose(part, whole[5:7], rtol=1e-9)
 
 
@@ -79,9 +75,7 @@ def test_error_falls_with_size_under_smooth_light(every, checker, light_powers, 
     worst = []
     for count in SIZES:
         one = every[f"{family}{count}"]
-        actual = one.xyz(
-            one.multiply(one.encode_light(light_powers("A")), one.encode_surface(checker.surfaces))
-        )
+        actual = one.xyz(one.multiply(one.encode_light(light_powers("A")), one.encode_surface(checker.surfaces)))
         worst.append(np.abs(actual - dense).max())
     assert worst == sorted(worst, reverse=True)
     assert worst[0] > 30 * worst[3]

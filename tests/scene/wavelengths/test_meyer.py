@@ -87,9 +87,7 @@ def test_rules_equal_tables_1a_and_1b(cmfs: Array, opponent: OpponentSpace) -> N
     np.testing.assert_allclose(factor * weights, as_printed, atol=4e-4)
 
 
-def test_four_wavelength_rule_equals_table_2(
-    cmfs: Array, opponent: OpponentSpace, setting_c: RenderSetup
-) -> None:
+def test_four_wavelength_rule_equals_table_2(cmfs: Array, opponent: OpponentSpace, setting_c: RenderSetup) -> None:
     rules = quadrature_rules(opponent.space, grid(), cmfs)
     shared = four_wavelength_rule(rules, channel_functions(opponent.space, grid(), cmfs))
     printed_rows = [row for row in rows("table2") if row["row"] == "2"]
@@ -141,16 +139,12 @@ def test_printed_weights_of_every_order_have_the_same_sum() -> None:
     printed = rows("table1")
     for channel, total in zip(CHANNELS, (1.05638, -0.14184, 0.54640), strict=True):
         for order in {row["order"] for row in printed if row["channel"] == channel}:
-            own = [
-                float(row["weight"]) for row in printed if (row["channel"], row["order"]) == (channel, order)
-            ]
+            own = [float(row["weight"]) for row in printed if (row["channel"], row["order"]) == (channel, order)]
             assert sum(own) == pytest.approx(total, abs=2.1e-5), (channel, order)
 
 
 @pytest.mark.parametrize("count", [4, 5, 12])
-def test_meyer_takes_the_best_allocation(
-    smooth: RenderSetup, count: int, opponent: OpponentSpace, cmfs: Array
-) -> None:
+def test_meyer_takes_the_best_allocation(smooth: RenderSetup, count: int, opponent: OpponentSpace, cmfs: Array) -> None:
     chosen = meyer(smooth, count)
     assert len(chosen) == count
     np.testing.assert_allclose((chosen.powers @ chosen.to_xyz)[:, 1], 1, rtol=1e-12)
@@ -176,9 +170,7 @@ def test_given_orders_have_the_wavelengths_of_the_paper(setting_c: RenderSetup) 
 
 def test_opponent_channels_are_better_than_cones_and_xyz(setting_c: RenderSetup) -> None:
     """Figure 6, at two wavelengths per channel."""
-    means = {
-        name: choose_orders(setting_c, (2, 2, 2), name).errors.mean for name in ("opponent", "cones", "xyz")
-    }
+    means = {name: choose_orders(setting_c, (2, 2, 2), name).errors.mean for name in ("opponent", "cones", "xyz")}
     assert min(means, key=means.__getitem__) == "opponent"
 
 

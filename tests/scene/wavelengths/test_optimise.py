@@ -74,9 +74,7 @@ def test_uniform_wavelengths_are_point_sampled_and_balanced(spiky: RenderSetup) 
 
 
 @pytest.mark.parametrize("count", [1, 4, 9])
-def test_fit_is_not_negative_and_powers_are_proportional_to_the_lights(
-    spiky: RenderSetup, count: int
-) -> None:
+def test_fit_is_not_negative_and_powers_are_proportional_to_the_lights(spiky: RenderSetup, count: int) -> None:
     result = optimise(spiky, count)
     assert len(result) == count
     assert result.to_xyz.min() >= 0
@@ -88,9 +86,7 @@ def test_fit_is_not_negative_and_powers_are_proportional_to_the_lights(
 
 
 @pytest.mark.parametrize("count", [4, 8])
-def test_fit_beats_other_methods_on_unseen_materials(
-    smooth: RenderSetup, spiky: RenderSetup, count: int
-) -> None:
+def test_fit_beats_other_methods_on_unseen_materials(smooth: RenderSetup, spiky: RenderSetup, count: int) -> None:
     odd = np.arange(24) % 2 == 1
     for setup, factor in ((smooth, 1.5), (spiky, 3.0)):
         unseen = setup.only(odd)
@@ -121,11 +117,7 @@ def test_weights_for_given_wavelengths_beat_prefiltering(spiky: RenderSetup) -> 
     np.testing.assert_array_equal(result.wavelengths, nm)
     assert min(result.to_xyz.min(), result.powers.min()) >= 0
     error = evaluate(spiky, result).mean
-    assert (
-        evaluate(spiky, optimise(spiky, 7)).mean
-        < error
-        < evaluate(spiky, prefiltered_uniform(spiky, 7)).mean / 1.5
-    )
+    assert evaluate(spiky, optimise(spiky, 7)).mean < error < evaluate(spiky, prefiltered_uniform(spiky, 7)).mean / 1.5
 
 
 @pytest.mark.parametrize("nm", [[], [500, 500], [300, 500], [500, 800], [[500]], [np.nan]])

@@ -145,9 +145,7 @@ def as_rgb(rgb: ArrayLike) -> Values:
     except (TypeError, ValueError) as error:
         raise ColourError("a colour is three numbers", code="rgb-not-numeric") from error
     if array.ndim == 0 or array.shape[-1] != 3:
-        raise ColourError(
-            f"a colour is three numbers, got an array of shape {array.shape}", code="rgb-wrong-shape"
-        )
+        raise ColourError(f"a colour is three numbers, got an array of shape {array.shape}", code="rgb-wrong-shape")
     return array
 
 

@@ -52,9 +52,7 @@ class Coat:
         return self.surface.apply(self.layer.over(_internal(self.surface, ground)))
 
 
-def from_dyes(
-    spectra: ArrayLike, parts: ArrayLike, thickness: float = 1.0, surface: Surface = NO_SURFACE
-) -> Coat:
+def from_dyes(spectra: ArrayLike, parts: ArrayLike, thickness: float = 1.0, surface: Surface = NO_SURFACE) -> Coat:
     """Make a coat of dyes.
 
     Parameters
@@ -106,9 +104,7 @@ def from_pigments(
     return Coat(kubelka_munk.layer(mixture, as_length(thickness)), surface)
 
 
-def pigment_from_reflectance(
-    reflectance: ArrayLike, scattering: Scattering, surface: Surface = NO_SURFACE
-) -> Pigment:
+def pigment_from_reflectance(reflectance: ArrayLike, scattering: Scattering, surface: Surface = NO_SURFACE) -> Pigment:
     """Derive absorption and scattering of an opaque paint from its reflectance, surface included.
 
     Parameters
@@ -128,9 +124,7 @@ def pigment_from_reflectance(
     return from_opaque(_internal(surface, reflectance), scattering)
 
 
-def pigment_from_two_grounds(
-    on_white: ArrayLike, on_black: ArrayLike, surface: Surface = NO_SURFACE
-) -> Pigment:
+def pigment_from_two_grounds(on_white: ArrayLike, on_black: ArrayLike, surface: Surface = NO_SURFACE) -> Pigment:
     """Derive absorption and scattering of a paint, one unit thick, from its reflectances, surface included.
 
     Parameters

@@ -122,9 +122,7 @@ def _mix_equally(mixer: Mixer, first: tuple[float, ...], second: tuple[float, ..
 
 def _uv(sensor: Sensor, rgb: Array) -> Array:
     """Return CIE 1976 u', v' (…, 2). Black, which has none, gets those of white."""
-    X, Y, Z = np.moveaxis(
-        np.where((rgb > 0).any(axis=-1, keepdims=True), sensor.xyz(rgb), sensor.light.white), -1, 0
-    )
+    X, Y, Z = np.moveaxis(np.where((rgb > 0).any(axis=-1, keepdims=True), sensor.xyz(rgb), sensor.light.white), -1, 0)
     return np.stack([4 * X, 9 * Y], axis=-1) / (X + 15 * Y + 3 * Z)[..., None]
 
 

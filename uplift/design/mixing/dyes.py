@@ -98,9 +98,7 @@ def plate(transmittance: ArrayLike, rho: float) -> Layer:
     return Layer(rho + rho * ((1 - rho) * once) ** 2 / denominator, (1 - rho) ** 2 * once / denominator)
 
 
-def reflectance_on_ground(
-    transmittance: ArrayLike, ground: ArrayLike, surface: Surface = NO_SURFACE
-) -> Array:
+def reflectance_on_ground(transmittance: ArrayLike, ground: ArrayLike, surface: Surface = NO_SURFACE) -> Array:
     """Return the reflectance of a dye in optical contact with a ground (eq. 9.7, as derived above).
 
     Parameters

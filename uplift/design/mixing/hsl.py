@@ -35,9 +35,7 @@ def to_rgb(hsl: ArrayLike) -> Array:
         RGB.
     """
     hue, saturation, lightness = np.moveaxis(np.asarray(hsl, dtype=float), -1, 0)
-    largest = np.where(
-        lightness <= 0.5, lightness * (1 + saturation), lightness + saturation - lightness * saturation
-    )
+    largest = np.where(lightness <= 0.5, lightness * (1 + saturation), lightness + saturation - lightness * saturation)
     smallest = 2 * lightness - largest
     position = 6 * (hue % 1)
     sextant = np.minimum(position.astype(int), 5)  # −1e-17 % 1 is 1

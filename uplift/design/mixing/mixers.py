@@ -110,8 +110,7 @@ def mixers(cube: Cube) -> tuple[Mixer, ...]:
         Spectral models, RGB heuristics, and phosphor curves.
     """
     spectral = [
-        Mixer(name, title, _uplifted(cube, mix))
-        for name, (title, mix) in spectral_models(cube.data.sensor).items()
+        Mixer(name, title, _uplifted(cube, mix)) for name, (title, mix) in spectral_models(cube.data.sensor).items()
     ]
     heuristics = [Mixer(name, title, mix) for name, (title, mix) in RGB.items()]
     return (*spectral, *heuristics, Mixer("phosphors", "phosphor curves", phosphors.make_monitor().mix))

@@ -142,9 +142,7 @@ def from_black_and_white(
             "K and S need two different grounds", code="equal-grounds", hint="measure on black and on white"
         )
     if not as_length(thickness):
-        raise OptionError(
-            "thickness must be greater than 0, got 0", code="invalid-thickness", hint="1 is the unit"
-        )
+        raise OptionError("thickness must be greater than 0, got 0", code="invalid-thickness", hint="1 is the unit")
     determinant = g2 - g1 + g1 * g2 * (R1 - R2)
     R0 = (R1 * g2 - R2 * g1) / determinant
     squared = ((1 + R1 * g1) * R2 - (1 + R2 * g2) * R1) / determinant + R0**2

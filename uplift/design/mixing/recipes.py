@@ -91,9 +91,7 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
         Colours are darker than the surface alone (code ``darker-than-surface``).
     """
     if kind not in COATS:
-        raise OptionError(
-            f"a coat cannot be of kind '{kind}'", code="unknown-coat", hint=f"use {' or '.join(COATS)}"
-        )
+        raise OptionError(f"a coat cannot be of kind '{kind}'", code="unknown-coat", hint=f"use {' or '.join(COATS)}")
     _warn_of_dark(ingredients, medium.surface)
     if kind == "dye":
         if any(one is not None for one in ingredients.on_black):
@@ -167,9 +165,7 @@ def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, g
         raise OptionError(
             f"unknown kind of mixture '{kind}'", code="unknown-mixture", hint=f"use one of {', '.join(KINDS)}"
         )
-    if (medium.thickness, medium.surface) != (None, NO_SURFACE) or any(
-        one is not None for one in ingredients.on_black
-    ):
+    if (medium.thickness, medium.surface) != (None, NO_SURFACE) or any(one is not None for one in ingredients.on_black):
         raise OptionError(
             f"{kind}s must not have a thickness, a surface or a colour on black",
             code="medium-not-applicable",
@@ -205,9 +201,7 @@ def ramp(parts: ArrayLike, steps: int) -> Array:
     [[2.0, 0.0], [1.0, 0.5], [0.0, 1.0]]
     """
     if steps < 2:
-        raise OptionError(
-            f"a ramp must have at least 2 steps, got {steps}", code="too-few-steps", hint="use 2 or more"
-        )
+        raise OptionError(f"a ramp must have at least 2 steps, got {steps}", code="too-few-steps", hint="use 2 or more")
     ends = np.diag(as_amounts(parts))
     if len(ends) < 2:
         return np.empty((0, len(ends)))

@@ -39,9 +39,7 @@ def as_shares(parts: ArrayLike) -> Array:
 def as_length(value: float, name: str = "thickness", code: str = "invalid-thickness") -> float:
     """Return a number from 0 to `MAX_LENGTH`. Raises `OptionError` with ``code``."""
     if not 0 <= value <= MAX_LENGTH:
-        raise OptionError(
-            f"{name} must be in [0, {MAX_LENGTH:g}], got {value}", code=code, hint="1 is the unit"
-        )
+        raise OptionError(f"{name} must be in [0, {MAX_LENGTH:g}], got {value}", code=code, hint="1 is the unit")
     return float(value)
 
 

@@ -43,9 +43,7 @@ def designed_atlas(design: Design) -> Atlas:
             warnings.warn(UpliftWarning(text, code="entry-left-out"), stacklevel=2)
             continue
         wavelengths = design.palette.sensor.wavelengths
-        entries.append(
-            Entry(material.name, wavelengths, values, description=_description(design, material.name))
-        )
+        entries.append(Entry(material.name, wavelengths, values, description=_description(design, material.name)))
     return Atlas(tuple(entries))
 
 

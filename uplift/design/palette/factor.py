@@ -169,9 +169,7 @@ def factor_model(sensor: Sensor, reflectances: Array, lights: Array, count: int 
         If ``count`` is not supported.
     """
     if count not in COUNTS:
-        raise OptionError(
-            f"count must be in [{COUNTS[0]}, {COUNTS[-1]}], got {count}", code="count-out-of-range"
-        )
+        raise OptionError(f"count must be in [{COUNTS[0]}, {COUNTS[-1]}], got {count}", code="count-out-of-range")
     paths = make_light_paths(reflectances, lights)
     principal, projection = _principal_basis(sensor, paths, count)
     transform = sharpen(sensor, principal, projection, paths)

@@ -88,7 +88,5 @@ def cell_index(design: Design, goal: ColourGoal) -> tuple[int, int]:
 def difference(design: Design, colours: Matrix, pair: MinDifference) -> float:
     """ΔE00 between two materials under a light."""
     fitted = colours.factor if design.palette.fit == "factor-model" else colours.obtained
-    first, second = (
-        fitted[cell_index(design, ColourGoal(material, pair.light))] for material in pair.materials
-    )
+    first, second = (fitted[cell_index(design, ColourGoal(material, pair.light))] for material in pair.materials)
     return float(delta_e_rgb(design.palette.sensor, first, second))

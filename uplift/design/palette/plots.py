@@ -122,9 +122,7 @@ def _frame(axes: Any, corner: tuple[float, float], size: tuple[float, float]) ->
 
 def _name(axes: Any, at: tuple[float, float], spec: SpectrumSpec, ha: str) -> None:
     weight = "bold" if spec.designed else "normal"
-    axes.text(
-        *at, figure_text(_short(spec.name)), fontsize=9, fontweight=weight, color=INK, ha=ha, va="center"
-    )
+    axes.text(*at, figure_text(_short(spec.name)), fontsize=9, fontweight=weight, color=INK, ha=ha, va="center")
 
 
 def _lines(axes: Any, wavelengths: Array, specs: tuple[SpectrumSpec, ...], samples: Array) -> None:

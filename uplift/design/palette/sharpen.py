@@ -114,9 +114,7 @@ class _SharpeningProblem:
         inverse = np.linalg.inv(transform)
         sharp = self.factors @ transform.T
         principal = sharp.prod(axis=0) @ inverse.T
-        by_transform = -principal[:, None, :] + np.einsum(
-            "kna,knb->nab", _products_of_others(sharp), self.factors
-        )
+        by_transform = -principal[:, None, :] + np.einsum("kna,knb->nab", _products_of_others(sharp), self.factors)
         lab = self.weights @ (self.to_rgb @ inverse)
         jacobian = np.einsum("nia,nac->niac", lab, by_transform @ self.free)
         return jacobian.reshape(3 * len(principal), self.free.size)

@@ -83,8 +83,7 @@ def read_palette(path: StrPath) -> Palette:
         goals=goals,
         free={name: _free_range(file, name, colours, sensor) for name, colours in free.items()},
         min_differences=tuple(
-            MinDifference((each.materials[0], each.materials[1]), each.light, each.delta_e)
-            for each in table.apart
+            MinDifference((each.materials[0], each.materials[1]), each.light, each.delta_e) for each in table.apart
         ),
         smoothness=table.smoothness,
         model_error=table.model_error,
@@ -119,16 +118,12 @@ def _goals(file: SpecFile, table: _PaletteTable, sensor: Sensor) -> Iterator[Col
 def _free_range(file: SpecFile, name: str, colours: FreeRange, sensor: Sensor) -> tuple[Array, Array]:
     low, high = colours.low.rgb(sensor), colours.high.rgb(sensor)
     if not (low < high).all():
-        text = (
-            f"must have low < high in every channel, got {low.round(4).tolist()} and {high.round(4).tolist()}"
-        )
+        text = f"must have low < high in every channel, got {low.round(4).tolist()} and {high.round(4).tolist()}"
         file.fail(("free", name), text, code="empty-range", hint="widen the range")
     return low, high
 
 
-def _check_known(
-    file: SpecFile, keys: tuple[Key, ...], name: str, known: Mapping[str, object], kind: str
-) -> None:
+def _check_known(file: SpecFile, keys: tuple[Key, ...], name: str, known: Mapping[str, object], kind: str) -> None:
     if name not in known:
         error = unknown_name(name, known, kind)
         file.fail(keys, error.problem, code=error.code, hint=error.hint)

@@ -81,20 +81,12 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
         Missed colours, then differences that are too small; empty if all goals are met.
     """
     colours, palette = matrix(found), found.palette
-    missed = [
-        goal for goal in palette.goals if goal.weight and colours.delta_e[cell_index(found, goal)] > VISIBLE
-    ]
-    relaxed = (
-        [(name, matrix(design(each, found.model)).delta_e) for name, each in _relaxed(palette)]
-        if missed
-        else []
-    )
+    missed = [goal for goal in palette.goals if goal.weight and colours.delta_e[cell_index(found, goal)] > VISIBLE]
+    relaxed = [(name, matrix(design(each, found.model)).delta_e) for name, each in _relaxed(palette)] if missed else []
     unmet = []
     for goal in missed:
         cell = cell_index(found, goal)
-        others = [
-            Relaxation(name, float(errors[cell])) for name, errors in relaxed if name != _weight_of(goal)
-        ]
+        others = [Relaxation(name, float(errors[cell])) for name, errors in relaxed if name != _weight_of(goal)]
         delta_e = float(colours.delta_e[cell])
         unmet.append(UnmetGoal(goal, delta_e, _most_effective(others, delta_e)))
     differences = [(pair, difference(found, colours, pair)) for pair in palette.min_differences]
@@ -124,9 +116,7 @@ def _relaxed(palette: Palette) -> Iterator[tuple[str, Palette]]:
             yield f"the bounds of {spec.name}", _without_bounds(palette, spec)
     for goal in palette.goals:
         if goal.weight:
-            others = (
-                dataclasses.replace(each, weight=0.0) if each is goal else each for each in palette.goals
-            )
+            others = (dataclasses.replace(each, weight=0.0) if each is goal else each for each in palette.goals)
             yield _weight_of(goal), dataclasses.replace(palette, goals=tuple(others))
 
 

@@ -40,9 +40,7 @@ START, END = 360.0, 830.0
 """Wavelength range of rgb2spec in nm."""
 
 
-def write_coeff(
-    data: CubeData, path: str | os.PathLike[str], *, res: int = RES, force: bool = False
-) -> float:
+def write_coeff(data: CubeData, path: str | os.PathLike[str], *, res: int = RES, force: bool = False) -> float:
     """Write a cube as an rgb2spec table.
 
     Readers interpret RGB in the cube's space under its illuminant. Mitsuba assumes sRGB under D65.
@@ -164,9 +162,7 @@ def _per_nanometre(model: Sigmoid, multipliers: Array) -> Array:
     )
 
 
-def _colours(
-    model: Sigmoid, forward: ForwardMap, wavelengths: Array, coefficients: NDArray[np.float32]
-) -> Array:
+def _colours(model: Sigmoid, forward: ForwardMap, wavelengths: Array, coefficients: NDArray[np.float32]) -> Array:
     """Return linear RGB (n, 3) of stored coefficients (n, 3)."""
     powers = np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
     return np.asarray(model.squash(coefficients.astype(float) @ powers) @ forward.sensor.T)

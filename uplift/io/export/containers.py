@@ -48,9 +48,7 @@ def ktx2(texels: NDArray[Any], notes: dict[str, str]) -> bytes:
     end = start + len(descriptor) + len(values)
     first = -(-end // 16) * 16
     header = struct.pack("<12s9I", b"\xabKTX 20\xbb\r\n\x1a\n", RGBA32F, 4, width, height, depth, 0, 1, 1, 0)
-    index = struct.pack(
-        "<4I2Q", start, len(descriptor), start + len(descriptor) if values else 0, len(values), 0, 0
-    )
+    index = struct.pack("<4I2Q", start, len(descriptor), start + len(descriptor) if values else 0, len(values), 0, 0)
     level = struct.pack("<3Q", first, len(pixels), len(pixels))
     return _padded(header + index + level + descriptor + values, 16) + pixels
 

@@ -68,9 +68,7 @@ def _column_names(data: CubeData) -> list[str]:
 def _rows(data: CubeData, block: Indices) -> Iterator[list[object]]:
     entries = [*data.atlas.names, ""]
     optional = [
-        array[block, None].tolist()
-        for array in (data.points.round, data.points.standard_error)
-        if array is not None
+        array[block, None].tolist() for array in (data.points.round, data.points.standard_error) if array is not None
     ]
     columns = zip(
         data.lattice.points[block].tolist(),

@@ -122,9 +122,7 @@ def write_program(
             f"unknown language '{style}'", code="unknown-language", hint=f"use one of {', '.join(FORMATS)}"
         )
     if mode not in MODES:
-        raise OptionError(
-            f"unknown mode '{mode}'", code="unknown-mode", hint=f"use one of {', '.join(MODES)}"
-        )
+        raise OptionError(f"unknown mode '{mode}'", code="unknown-mode", hint=f"use one of {', '.join(MODES)}")
     if data.complete_cells is not None:
         raise OptionError(
             "a program needs all nodes, but the cube was built for the colours of a scene",
@@ -143,9 +141,7 @@ def write_program(
     tables = _tables(data, table, path, output, form)
     for each in tables:
         check_output(each, force=force)
-    program = Program(
-        data, table, mode, identifier(path.stem), output.language, output.template, form, path.stem
-    )
+    program = Program(data, table, mode, identifier(path.stem), output.language, output.template, form, path.stem)
     with atomic_write(path, force=force) as temporary:
         with temporary.open("w", encoding="ascii", newline="\n") as opened:
             opened.writelines(program.parts())

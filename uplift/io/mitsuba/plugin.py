@@ -130,9 +130,7 @@ def _texture(props: Any, texels: Texels) -> Any:
         return make_texture(props, texels, placement)
     folder = find_plugin()
     if folder is None:
-        _warn_of_python(
-            "texture", "run 'python -m uplift.io.mitsuba' once to compile it, or set llvm_ad_spectral"
-        )
+        _warn_of_python("texture", "run 'python -m uplift.io.mitsuba' once to compile it, or set llvm_ad_spectral")
         return make_texture(props, texels, placement)
     if str(folder) not in map(str, mitsuba.file_resolver()):
         mitsuba.file_resolver().append(str(folder))
@@ -211,9 +209,7 @@ def _constant(values: Array) -> Any:
     import mitsuba
 
     text = ", ".join(f"{value:.9g}" for value in values)
-    return mitsuba.load_dict(
-        {"type": "regular", "wavelength_min": START, "wavelength_max": END, "values": text}
-    )
+    return mitsuba.load_dict({"type": "regular", "wavelength_min": START, "wavelength_max": END, "values": text})
 
 
 def _bitmap(props: Any, path: Path | None) -> Any:

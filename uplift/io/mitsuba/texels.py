@@ -74,9 +74,7 @@ def uplift_texels(cube: Cube, rgb: Array) -> Texels:
 
 def model_texels(model: Model, multipliers: NDArray[Any]) -> Texels:
     """Return texels of multipliers (h, w, C)."""
-    means = blockwise(
-        lambda rows: evaluate(model, rows, MEAN_WAVELENGTHS).mean(axis=1, keepdims=True), multipliers, 1
-    )
+    means = blockwise(lambda rows: evaluate(model, rows, MEAN_WAVELENGTHS).mean(axis=1, keepdims=True), multipliers, 1)
     return Texels(model, multipliers, float(means.mean()))
 
 

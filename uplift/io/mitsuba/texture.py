@@ -78,9 +78,7 @@ def _texture_class(variant: str) -> type:
             uv = place * mi.Vector2f(1 / width, 1 / height)
             steps = (model.count - 1) / (model.end - model.start)
             samples = (dr.clip(wavelengths, model.start, model.end) - model.start) * steps + 0.5
-            return type(wavelengths)(
-                *(self.numbers.eval(mi.Point3f(each / depth, uv.x, uv.y))[0] for each in samples)
-            )
+            return type(wavelengths)(*(self.numbers.eval(mi.Point3f(each / depth, uv.x, uv.y))[0] for each in samples))
 
         def mean(self) -> Any:
             """Return the mean reflectance."""

@@ -105,9 +105,7 @@ def _first_colours(image: Image) -> tuple[Part, ColourChannels]:
     return next((part, channels) for part, channels in parts if channels is not None)
 
 
-def _decoded(
-    image: Image, part: Part, channels: ColourChannels, decode: ReadColours
-) -> tuple[Floats, Counts]:
+def _decoded(image: Image, part: Part, channels: ColourChannels, decode: ReadColours) -> tuple[Floats, Counts]:
     bands, counts = [], Counts()
     for _, rows in image.bands(part):
         rgb, changed = decode(channels.straight(rows))
@@ -134,9 +132,7 @@ def _read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
 def _spectral_channels(channels: Iterable[str], quantity: str) -> dict[float, str]:
     """Return the names of the channels of a quantity by wavelength in nm."""
     ends = {name: WAVELENGTH.fullmatch(name.removeprefix(f"{quantity}.")) for name in channels}
-    return {
-        float(f"{end[1]}.{end[2] or 0}"): name for name, end in ends.items() if end and name[0] == quantity[0]
-    }
+    return {float(f"{end[1]}.{end[2] or 0}"): name for name, end in ends.items() if end and name[0] == quantity[0]}
 
 
 def _stack(path: Path, channels: dict[str, Any], names: list[str]) -> NDArray[Any]:
@@ -182,9 +178,7 @@ def _missing_model(path: Path) -> TextureError:
     )
 
 
-def multipliers_of_rounded(
-    model: Moments, moments: Array, shares: Sequence[float] = GREY_SHARES
-) -> tuple[Array, Mask]:
+def multipliers_of_rounded(model: Moments, moments: Array, shares: Sequence[float] = GREY_SHARES) -> tuple[Array, Mask]:
     """Return multipliers (n, C) of moments (n, C) that were rounded or filtered, and their validity (n,).
 
     Rounding can move moments of saturated colours out of the moment space. They are mixed with the least of

@@ -51,9 +51,7 @@ def write_light_slices(table: EmissionTable, path: str | os.PathLike[str], *, fo
         false.
     """
     check_slices(path, force=force)
-    part = exr.make_part(
-        "chromaticities", {**light_attributes(table), "comments": COMMENTS}, _channels(table)
-    )
+    part = exr.make_part("chromaticities", {**light_attributes(table), "comments": COMMENTS}, _channels(table))
     exr.write_parts([part], path, force=force)
 
 

@@ -71,9 +71,7 @@ class Counts:
         sums = {each.name: getattr(self, each.name) + getattr(other, each.name) for each in fields(self)}
         return Counts(**sums | {"max_change": max(self.max_change, other.max_change)})
 
-    def warnings(
-        self, method: str = "clip", path: str | os.PathLike[str] | None = None
-    ) -> tuple[UpliftWarning, ...]:
+    def warnings(self, method: str = "clip", path: str | os.PathLike[str] | None = None) -> tuple[UpliftWarning, ...]:
         """Return a warning for every count of changed pixels above 0.
 
         Parameters
@@ -101,9 +99,7 @@ class Counts:
             f"{count:,} of {self.pixels:,} pixels" for count in counts
         )
         warnings = (
-            UpliftWarning(
-                f"{outside} lie outside [0, 1]: {past}, {change}", code="pixels-out-of-gamut", path=path
-            ),
+            UpliftWarning(f"{outside} lie outside [0, 1]: {past}, {change}", code="pixels-out-of-gamut", path=path),
             UpliftWarning(
                 f"{not_finite} are not finite: NaN is replaced by 0, infinity is clamped",
                 code="pixels-not-finite",
@@ -304,9 +300,7 @@ def make_decoder(
             hint="name its linear counterpart, or leave the encoding to the space",
         )
     if part.max_code:
-        return Decoder(
-            integer_reader(sensor, part.max_code, encoding, source), True, False, matrix, sensor, method
-        )
+        return Decoder(integer_reader(sensor, part.max_code, encoding, source), True, False, matrix, sensor, method)
     if source is not None and source.floats_are_codes and source.decode is not None:
         return Decoder(source.decode, False, False, matrix, sensor, method)
     if encoding == "encoded":

@@ -14,7 +14,5 @@ def utf8_name(path: Path, error: type[UpliftError]) -> str:
     try:
         name.encode()
     except UnicodeEncodeError as cause:
-        raise error(
-            "the file name is not UTF-8", code="name-not-utf8", path=path, hint="rename the file"
-        ) from cause
+        raise error("the file name is not UTF-8", code="name-not-utf8", path=path, hint="rename the file") from cause
     return name

@@ -49,9 +49,7 @@ def read_curves(profile: bytes) -> ToneCurves | None:
 
 def _tags(profile: bytes) -> dict[bytes, bytes]:
     (count,) = struct.unpack_from(">I", profile, 128)
-    entries = (
-        struct.unpack_from(">4sII", profile, 132 + 12 * index) for index in range(min(count, MAX_TAGS))
-    )
+    entries = (struct.unpack_from(">4sII", profile, 132 + 12 * index) for index in range(min(count, MAX_TAGS)))
     return {name: profile[start : start + size] for name, start, size in entries}
 
 

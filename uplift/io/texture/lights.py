@@ -122,9 +122,7 @@ class LightUplifter(Converter):
         lights, limit = rgb.astype(float), np.finfo(np.float16 if self.depth == "half" else np.float32).max
         wrong = ~self.table.contains(lights)
         lights[wrong] = self.table.rgb(self.table.spectrum(lights[wrong], outside="clip"))
-        power = self.table.spectrum(
-            lights, self.wavelengths, outside="clip", dtype=np.float32, threads=self.threads
-        )
+        power = self.table.spectrum(lights, self.wavelengths, outside="clip", dtype=np.float32, threads=self.threads)
         values = lights.astype(np.float32), power
         bright = (np.abs(values[0]) > limit).any(axis=-1) | (power > limit).any(axis=-1)
         counts = Counts(not_lights=int(wrong.sum()), too_bright=int(bright.sum()))
@@ -217,6 +215,4 @@ def prepare_lights(
         "emissiveUnits": UNITS,
     }
     chosen = None if space is None else find_space(space)
-    return LightUplifter(
-        colour_space, depth, encoding, "clip", channels, header, table, at, threads, space=chosen
-    )
+    return LightUplifter(colour_space, depth, encoding, "clip", channels, header, table, at, threads, space=chosen)

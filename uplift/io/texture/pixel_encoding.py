@@ -280,9 +280,7 @@ class Multipliers(PixelEncoding):
         return lambda rgb: blockwise(refined, rgb.astype(float), width, np.float32, threads)
 
 
-PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {
-    each.name: each for each in (Spectrum, Moments, Multipliers)
-}
+PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {each.name: each for each in (Spectrum, Moments, Multipliers)}
 """Pixel encodings with their defaults, by name."""
 
 

@@ -238,9 +238,7 @@ def converter_for(settings: Settings) -> Converter:
 def run(job: Job, progress: ProgressCallback = ignore_progress) -> Conversion | Failure:
     """Convert the image of a job. Errors are returned, so that one bad image does not stop the others."""
     try:
-        return convert(
-            converter_for(job.settings), job.source, job.target, force=job.force, progress=progress
-        )
+        return convert(converter_for(job.settings), job.source, job.target, force=job.force, progress=progress)
     except UpliftError as error:
         return Failure(job.source, error)
     except MemoryError:

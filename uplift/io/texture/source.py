@@ -200,9 +200,7 @@ def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
     config["oiio:UnassociatedAlpha"] = 1  # keep colours as stored, not multiplied by alpha
     if not path.is_file():
         raise TextureError("no such file", code="file-not-found", path=path, hint=FORMAT_HINT)
-    OpenImageIO.attribute(
-        "limits:imagesize_MB", 0
-    )  # bands are read, which `_check_memory` compares with memory
+    OpenImageIO.attribute("limits:imagesize_MB", 0)  # bands are read, which `_check_memory` compares with memory
     with _with_path(path):
         start = _read_start(path)
         if start.startswith(exr_file.MAGIC):

@@ -35,9 +35,7 @@ def source_space(part: Part, sensor: Sensor, chosen: ImageSpace | None = None) -
     return None if space is None or space.agrees_with(sensor, encoded=bool(part.max_code)) else space
 
 
-def space_warnings(
-    image: Image, sensor: Sensor, chosen: ImageSpace | None = None
-) -> tuple[UpliftWarning, ...]:
+def space_warnings(image: Image, sensor: Sensor, chosen: ImageSpace | None = None) -> tuple[UpliftWarning, ...]:
     """Return warnings about parts whose space is not known: unusable statements, and assumptions."""
     if chosen is not None:
         return ()

@@ -154,9 +154,7 @@ def _compression_threads(chunks: int) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def open_writer(
-    path: str | os.PathLike[str], parts: Sequence[OutputPart], *, force: bool = False
-) -> Iterator[Writer]:
+def open_writer(path: str | os.PathLike[str], parts: Sequence[OutputPart], *, force: bool = False) -> Iterator[Writer]:
     """Open a writer. The file appears under its name once all rows are written. Raises `OutputError`."""
     with atomic_write(path, force=force) as temporary:
         writer = Writer(temporary, parts)

@@ -50,9 +50,7 @@ def _colours(chart: Chart) -> dict[str, str]:
 def drawn_results(panel: Panel, chart: Chart) -> list[tuple[int, MethodResult]]:
     """Drawn results with their rows; cubes of this package first, so that all others are drawn above them."""
     found = [
-        (row, result)
-        for row, result in enumerate(chart.results)
-        if result in chart.measured and panel.point(result)
+        (row, result) for row, result in enumerate(chart.results) if result in chart.measured and panel.point(result)
     ]
     groups: dict[tuple[str, str], list[tuple[int, MethodResult]]] = {}
     for row, result in found:

@@ -135,9 +135,7 @@ def _numbers(method: Method, task: Task) -> dict[str, float]:
     numbers["setup_s"] = numbers.get("build_s", 0.0) + numbers["load_s"]
     numbers |= _round_trips(method, prepared, uplift, task) | _errors(method, uplift, task)
     if method.batch:
-        _check_batch(
-            uplift, affordable(uplift, method.dtype, min(task.effort.batches[-1], REFERENCE), task.effort)
-        )
+        _check_batch(uplift, affordable(uplift, method.dtype, min(task.effort.batches[-1], REFERENCE), task.effort))
     return numbers | call_times(uplift, method.dtype, task.effort, batch=method.batch)
 
 
@@ -185,17 +183,11 @@ def _text(error: Exception) -> str:
 def _round_trips(method: Method, prepared: PreparedMethod, uplift: UpliftRgb, task: Task) -> dict[str, float]:
     """Judge at 1 nm with the stated white and matrix, and with the tables that cubes are fitted to."""
     sensor = method.judge()
-    rgb, spectra = _spectra(
-        method, _guarded(prepared.uplift, sensor.wavelengths, method.dtype), task, task.rgb
-    )
+    rgb, spectra = _spectra(method, _guarded(prepared.uplift, sensor.wavelengths, method.dtype), task, task.rgb)
     errors = round_trip(sensor, rgb, spectra)
     _check_round_trip(errors, method.claims)
     fitted = round_trip(task.sensor, rgb, uplift(rgb))
-    return (
-        _summary("round_trip", errors)
-        | _summary("coarse_round_trip", fitted)
-        | {"round_trip_colours": len(rgb)}
-    )
+    return _summary("round_trip", errors) | _summary("coarse_round_trip", fitted) | {"round_trip_colours": len(rgb)}
 
 
 def _errors(method: Method, uplift: UpliftRgb, task: Task) -> dict[str, float]:
@@ -231,9 +223,7 @@ def _check_batch(uplift: UpliftRgb, count: int) -> None:
     rows = np.linspace(0, count - 1, SAMPLE, dtype=int)
     difference = np.abs(uplift(rgb)[rows] - uplift(rgb[rows])).max()
     if not difference <= SAMPLE_TOLERANCE:
-        raise BrokenError(
-            f"{count:,} colours per call give other reflectances than {SAMPLE}, by {difference:.2g}"
-        )
+        raise BrokenError(f"{count:,} colours per call give other reflectances than {SAMPLE}, by {difference:.2g}")
 
 
 def _check_range(spectra: Array, claims: Claims) -> None:

@@ -129,11 +129,7 @@ def draw(chart: Chart) -> Any:
     """Return the matplotlib figure; its artists are named ``marker-<panel>-<row>``, ``whisker-…`` and ``label-…``."""
     rows = [panels_of(batch)[:SHOWN] for batch in chart.batches]
     figure, cells = new_panels(len(rows) + 1, SHOWN, PANEL_SIZE, MARGINS)
-    drawn = [
-        (axes, panel)
-        for row, panels in enumerate(rows)
-        for axes, panel in zip(cells[row], panels, strict=True)
-    ]
+    drawn = [(axes, panel) for row, panels in enumerate(rows) for axes, panel in zip(cells[row], panels, strict=True)]
     for number, (axes, panel) in enumerate(drawn):
         draw_panel(axes, panel, chart, number)
         style_title(axes, f"{_title(panel)}\n{panel.colours}")

@@ -61,14 +61,10 @@ class Requirement:
     def __post_init__(self) -> None:
         limits = {"time_ns": self.time_ns, "delta_e": self.delta_e}
         if all(limit is None for limit in limits.values()):
-            raise OptionError(
-                "time_ns or delta_e is required", code="no-requirements", hint="give one or both"
-            )
+            raise OptionError("time_ns or delta_e is required", code="no-requirements", hint="give one or both")
         for name, limit in limits.items():
             if limit is not None and not 0 < limit < float("inf"):
-                raise OptionError(
-                    f"{name} must be a positive number, got {limit:g}", code="limit-not-positive"
-                )
+                raise OptionError(f"{name} must be a positive number, got {limit:g}", code="limit-not-positive")
         if self.light not in (None, DEFAULT_ILLUMINANT, *CHART_LIGHTS):
             raise unknown_name(str(self.light), (DEFAULT_ILLUMINANT, *CHART_LIGHTS), "light")
 
@@ -109,9 +105,7 @@ def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
         If no measured cube meets the requirement; the hint names the closest one.
     """
     cubes = [
-        result
-        for result in chart.measured
-        if result.build and {"time_ns", requirement.error} <= result.numbers.keys()
+        result for result in chart.measured if result.build and {"time_ns", requirement.error} <= result.numbers.keys()
     ]
     if not cubes:
         raise OptionError(

@@ -198,9 +198,7 @@ def _result(line: dict[str, str]) -> MethodResult:
     if None in line or None in line.values():
         raise ValueError("lines differ in length")
     texts = {name: line[name] for name in TEXTS if name != "state"}
-    numbers = {
-        name: _number(line, name) for name in line if name not in (*TEXTS, *FACTS) and line[name].strip()
-    }
+    numbers = {name: _number(line, name) for name in line if name not in (*TEXTS, *FACTS) and line[name].strip()}
     state = State(line["state"])
     if state == State.MEASURED:
         for name in _required(numbers):

@@ -53,9 +53,7 @@ class Effort:
     limit: float = 900.0
 
 
-QUICK = Effort(
-    seconds_per_error=0.3, runs=3, lap=0.01, batches=(1, 1000, 65_536), longest=0.1, builds=1, limit=120.0
-)
+QUICK = Effort(seconds_per_error=0.3, runs=3, lap=0.01, batches=(1, 1000, 65_536), longest=0.1, builds=1, limit=120.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,9 +147,7 @@ def edges() -> Array:
     """Return linear RGB (n, 3) along the edges and the grey diagonal of the RGB cube, each once."""
     along = np.linspace(0, 1, EDGE_STEPS)
     ends = product((0.0, 1.0), repeat=2)
-    lines = [
-        np.insert(np.tile(end, (EDGE_STEPS, 1)), axis, along, axis=1) for end in ends for axis in range(3)
-    ]
+    lines = [np.insert(np.tile(end, (EDGE_STEPS, 1)), axis, along, axis=1) for end in ends for axis in range(3)]
     return np.unique(np.concatenate([*lines, np.repeat(along[:, None], 3, axis=1)]), axis=0)
 
 

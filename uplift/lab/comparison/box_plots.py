@@ -70,9 +70,7 @@ def _transparent(figure: Any) -> Any:
     return figure
 
 
-def _draw_panel(
-    axes: Any, title: str, results: Sequence[RepresentationResult], *, upright: bool = True
-) -> None:
+def _draw_panel(axes: Any, title: str, results: Sequence[RepresentationResult], *, upright: bool = True) -> None:
     boxes = [_box(result) for result in results]
     orientation = "vertical" if upright else "horizontal"
     artists = axes.bxp(boxes, showfliers=False, patch_artist=True, widths=0.62, orientation=orientation)

@@ -116,9 +116,7 @@ def page_panels(comparison: Comparison) -> list[tuple[str, Markup]]:
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        return [
-            (f"{panel.title}, over {panel.cost.short}", _page_panel(panel)) for panel in _panels(comparison)
-        ]
+        return [(f"{panel.title}, over {panel.cost.short}", _page_panel(panel)) for panel in _panels(comparison)]
 
 
 def _page_panel(panel: _Panel) -> Markup:

@@ -92,9 +92,7 @@ def tune_filters(
         Unfiltered samples first, then the filters.
     """
     results = [
-        TunedFilter(
-            NONE, count, light_set.name, None, error_statistics(point_samples(count), scene, light_set)
-        )
+        TunedFilter(NONE, count, light_set.name, None, error_statistics(point_samples(count), scene, light_set))
         for count in counts
         for light_set in scene.sets
     ]

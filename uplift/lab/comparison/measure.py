@@ -216,9 +216,7 @@ def _times(representation: Representation, scene: Scene, effort: TimingOptions) 
     return [_time(representation, encoded, light_set, effort) for light_set in scene.sets]
 
 
-def _time(
-    representation: Representation, surfaces: Any, light_set: LightSet, effort: TimingOptions
-) -> Spread:
+def _time(representation: Representation, surfaces: Any, light_set: LightSet, effort: TimingOptions) -> Spread:
     lights = [_repeat_light(representation, power, effort.rows) for power in light_set.powers]
 
     def multiply(laps: int) -> None:

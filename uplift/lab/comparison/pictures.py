@@ -12,9 +12,7 @@ KINDS = {"boxes": box_plots.draw, "cost": cost.draw}
 """Functions that draw a comparison, by kind."""
 
 
-def write_picture(
-    comparison: Comparison, kind: str, path: str | os.PathLike[str], *, force: bool = False
-) -> None:
+def write_picture(comparison: Comparison, kind: str, path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Write a figure of a comparison as PNG.
 
     Parameters

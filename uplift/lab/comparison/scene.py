@@ -145,9 +145,7 @@ def make_scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scen
     """
     merged = merge(atlases.values())
     if not merged.entries:
-        raise AtlasError(
-            "the atlases have no entries", code="no-entries", hint="give an atlas of reflectances"
-        )
+        raise AtlasError("the atlases have no entries", code="no-entries", hint="give an atlas of reflectances")
     named = {NAMED_SET: tuple(dict.fromkeys(lights))} if lights else KMENT_LIGHTS
     sets = tuple(LightSet(name, members, _powers(members)) for name, members in named.items())
     return Scene(merged.names, on_grid(merged, wavelengths()), sets)

@@ -149,9 +149,7 @@ def _mixtures(colours: Array, rgb: Array) -> tuple[Indices, Array]:
     corners = np.array(list(combinations(range(len(colours)), 4)))
     matrix = np.pad(colours[corners].mT, ((0, 0), (0, 1), (0, 0)), constant_values=1.0)
     corners, matrix = (array[np.abs(np.linalg.det(matrix)) > FLAT] for array in (corners, matrix))
-    weights = np.linalg.solve(matrix, np.broadcast_to(np.append(rgb, 1.0)[:, None], (len(matrix), 4, 1)))[
-        ..., 0
-    ]
+    weights = np.linalg.solve(matrix, np.broadcast_to(np.append(rgb, 1.0)[:, None], (len(matrix), 4, 1)))[..., 0]
     possible = (weights >= 0).all(axis=1)
     return corners[possible], weights[possible]
 

@@ -88,9 +88,7 @@ class HoldoutSplit:
     bound: Array | None
 
 
-def spectrum_errors(
-    predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS
-) -> SpectrumErrors:
+def spectrum_errors(predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS) -> SpectrumErrors:
     """Compare predicted with measured reflectances.
 
     Parameters

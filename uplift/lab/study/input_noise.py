@@ -65,9 +65,7 @@ def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Perturbation
     moved = {name: cube.decode(codes + step * signs) for name, step in CODE_STEPS.items()}
     moved[ROUNDING] = np.clip(rgb + ROUNDING_STEP * signs, 0, 1)
     return [
-        _compare(cube, light, mode, name, rgb, nearby)
-        for mode in CONTINUOUS_MODES
-        for name, nearby in moved.items()
+        _compare(cube, light, mode, name, rgb, nearby) for mode in CONTINUOUS_MODES for name, nearby in moved.items()
     ]
 
 

@@ -143,9 +143,7 @@ def _patch_jacobians(offsets: Array, changes: Array, axis: int) -> Array:
     ``offsets`` (2, 2, 3) and ``changes`` (2, 2, N) are colours and spectra of the corners minus those of the entry.
     """
     first, second = (other for other in range(3) if other != axis)
-    along_first = np.broadcast_to(
-        (changes[1] - changes[0]) / (offsets[1, 0] - offsets[0, 0])[first], changes.shape
-    )
+    along_first = np.broadcast_to((changes[1] - changes[0]) / (offsets[1, 0] - offsets[0, 0])[first], changes.shape)
     steps = (changes[:, 1] - changes[:, 0]) / (offsets[0, 1] - offsets[0, 0])[second]
     along_second = np.broadcast_to(steps[:, None], changes.shape)
     radial = changes - offsets[..., [first]] * along_first - offsets[..., [second]] * along_second

@@ -100,9 +100,7 @@ def remove_entry(base: Baseline, name: str) -> Change:
 
 def reverse_entry(base: Baseline, name: str) -> Change:
     """Rebuild with the wavelengths of an entry in reverse order, as an example of a wrong measurement."""
-    entries = [
-        replace(entry, values=entry.values[::-1]) if entry.name == name else entry for entry in base.entries
-    ]
+    entries = [replace(entry, values=entry.values[::-1]) if entry.name == name else entry for entry in base.entries]
     return _compare(base, f"{name} wrong", entries, name)
 
 
@@ -121,9 +119,7 @@ def _compare(base: Baseline, description: str, entries: Sequence[Entry], name: s
     data = _build(entries, base.options)
     after = _lattice_spectra(data)
     rms = np.sqrt(((after - base.spectra) ** 2).mean(axis=1))
-    colours = [
-        each.atlas.rgb[each.atlas.names.index(name)] for each in (base.data, data) if name in each.atlas.names
-    ]
+    colours = [each.atlas.rgb[each.atlas.names.index(name)] for each in (base.data, data) if name in each.atlas.names]
     points, sensor = base.data.lattice.points, base.data.sensor
     return Change(
         description,

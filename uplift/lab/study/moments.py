@@ -193,9 +193,7 @@ def study_moments(
         )
     atlas = merge(atlases.values())
     if not atlas.entries:
-        raise AtlasError(
-            "the atlases have no entries", code="empty-atlas", hint="name an atlas with reflectances"
-        )
+        raise AtlasError("the atlases have no entries", code="empty-atlas", hint="name an atlas with reflectances")
     measured = on_grid(atlas, fine_grid())
     errors_of = _error_function(measured)
     counts = max_moments + 1

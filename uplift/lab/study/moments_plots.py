@@ -53,9 +53,7 @@ def plot_errors(rows: Mapping[str, Mapping[Technique, Curve]], path: StrPath, *,
         axes.set_ylabel("ΔE76 under D65")
     for axes in panels[-1]:
         axes.set_xlabel("numbers stored per spectrum")
-    figure.legend(
-        *panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False
-    )
+    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False)
     write_png(figure, path, force=force)
 
 

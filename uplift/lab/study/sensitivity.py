@@ -51,9 +51,7 @@ class Sensitivity:
     def steepest(self) -> tuple[float, float, float]:
         """Linear RGB of the lowest corner of the cell with the largest Lipschitz constant."""
         cells, nodes = self.lipschitz.cells, self.cube.data.lattice.nodes
-        red, green, blue = (
-            float(nodes[index]) for index in np.unravel_index(int(cells.argmax()), cells.shape)
-        )
+        red, green, blue = (float(nodes[index]) for index in np.unravel_index(int(cells.argmax()), cells.shape))
         return red, green, blue
 
     @property

@@ -23,9 +23,7 @@ BINS = 40
 """Bins of distance for maximum and median."""
 
 
-def plot_steepness(
-    data: CubeData, constants: LipschitzConstants, path: StrPath, *, force: bool = False
-) -> None:
+def plot_steepness(data: CubeData, constants: LipschitzConstants, path: StrPath, *, force: bool = False) -> None:
     """Write the largest constants along each channel, and at each wavelength, as PNG. Raises `OutputError`."""
     from matplotlib.colors import LogNorm
 

@@ -57,9 +57,7 @@ class DesignSpace:
     def __post_init__(self) -> None:
         for name in ("dims", "coefficients", "spaces", "models", "thresholds", "atlases"):
             if not getattr(self, name):
-                raise OptionError(
-                    f"{name} must not be empty", code="empty-axis", hint="give at least one value"
-                )
+                raise OptionError(f"{name} must not be empty", code="empty-axis", hint="give at least one value")
 
     @property
     def variants(self) -> tuple[RunConfig, ...]:

@@ -78,8 +78,7 @@ def _candidates(boxes: EntryBoxes) -> Places:
 def _boxes(boxes: EntryBoxes) -> Array:
     low, high = boxes.faces
     below, above = (
-        np.divide(1, room, out=np.zeros_like(room), where=room > 0)
-        for room in (boxes.rgb - low, high - boxes.rgb)
+        np.divide(1, room, out=np.zeros_like(room), where=room > 0) for room in (boxes.rgb - low, high - boxes.rgb)
     )
     none = np.array([[[-1.0] * 3, [1.0] * 3, [1.0] * 3]])
     return np.concatenate([np.stack([boxes.rgb, below, above], axis=1), none])

@@ -104,8 +104,6 @@ def _weights(data: CubeData) -> tuple[Array, dict[str, Array]]:
     sensor, at = data.sensor, data.sensor.wavelengths
     missing = -len(at) % GROUP
     return np.pad(at, (0, missing), mode="edge"), {
-        name: np.pad(
-            sensor.xyz_to_rgb @ light(name, sensor.observer, *sensor.range).xyz, ((0, 0), (0, missing))
-        )
+        name: np.pad(sensor.xyz_to_rgb @ light(name, sensor.observer, *sensor.range).xyz, ((0, 0), (0, missing)))
         for name in dict.fromkeys((sensor.illuminant, *LIGHTS))
     }

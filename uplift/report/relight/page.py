@@ -88,9 +88,7 @@ def page(relit: Sequence[Relit]) -> str:
         start=int(np.argmax(changes)),
         limits=[_limit(relit, number) for number in range(len(lights))],
         ramp=RAMP,
-        sections=[
-            _section(image, [_limit(relit, number) for number in range(len(lights))]) for image in relit
-        ],
+        sections=[_section(image, [_limit(relit, number) for number in range(len(lights))]) for image in relit],
         script=resource(f"{FOLDER}/page.js"),
     )
 

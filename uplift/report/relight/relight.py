@@ -114,9 +114,7 @@ class Rendering:
     def map_limit(self) -> float:
         """ΔE00 at the dark end of maps: nearly all differences from `RGB_PRODUCT` are below."""
         methods = (method for method in self.colours if method != RGB_PRODUCT)
-        return max(
-            MIN_MAP_LIMIT, math.ceil(max(self.difference(RGB_PRODUCT, method).p95 for method in methods))
-        )
+        return max(MIN_MAP_LIMIT, math.ceil(max(self.difference(RGB_PRODUCT, method).p95 for method in methods)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -65,9 +65,7 @@ def build_final(context: PlanContext, options: Mapping[str, Any]) -> FinalBuild:
     return FinalBuild(cube, size, seconds, size, sparse_size)
 
 
-def _timed_build(
-    context: PlanContext, options: Mapping[str, Any], scene: Images | None = None
-) -> tuple[Cube, float]:
+def _timed_build(context: PlanContext, options: Mapping[str, Any], scene: Images | None = None) -> tuple[Cube, float]:
     begin = time.process_time()
     cube = build(context.atlas, scene=scene, **options)
     return cube, time.process_time() - begin

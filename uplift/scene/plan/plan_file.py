@@ -88,8 +88,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
 
 def _sources(paths: Iterable[Path], plan: Path) -> list[dict[str, str]]:
     return [
-        {"path": Path(os.path.relpath(path, plan.parent)).as_posix(), "digest": file_digest(path)}
-        for path in paths
+        {"path": Path(os.path.relpath(path, plan.parent)).as_posix(), "digest": file_digest(path)} for path in paths
     ]
 
 
@@ -225,9 +224,7 @@ def read_plan(path: StrPath) -> PlanFile:
     """
     file = read_json(path, PlanFileError)
     table = file.validate(_PlanTable, hint=HINT)
-    textures, atlases = (
-        _check_sources(file, key, getattr(table.scene, key)) for key in ("textures", "atlases")
-    )
+    textures, atlases = (_check_sources(file, key, getattr(table.scene, key)) for key in ("textures", "atlases"))
     return PlanFile(
         file.path,
         textures,

@@ -83,9 +83,7 @@ class Plan:
         return self.confirmed.quantile <= self.scene.tolerance
 
 
-def plan(
-    scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCallback = ignore_progress
-) -> Plan:
+def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCallback = ignore_progress) -> Plan:
     """Find the smallest sufficient cube, wavelengths and texture format for a scene.
 
     Parameters

@@ -80,8 +80,7 @@ def _dense_tests(context: PlanContext, tests: EvaluationSet, cube: Cube) -> _Den
         for group in few.groups
     )
     lights = tuple(
-        Light(light.name, (power[:, None] * xyz_weights()).T)
-        for light, power in zip(few.lights, powers, strict=True)
+        Light(light.name, (power[:, None] * xyz_weights()).T) for light, power in zip(few.lights, powers, strict=True)
     )
     return _DenseTests(EvaluationSet(groups, lights, few.quantile), powers, cube.reflectance(few.rgb, nm))
 

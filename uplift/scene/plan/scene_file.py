@@ -97,9 +97,7 @@ def _canonical_light(name: str) -> str:
     return observer.light(name).name
 
 
-Paths = Annotated[
-    list[Annotated[str, AfterValidator(_check_path)]], BeforeValidator(_as_list), Field(min_length=1)
-]
+Paths = Annotated[list[Annotated[str, AfterValidator(_check_path)]], BeforeValidator(_as_list), Field(min_length=1)]
 Lights = Annotated[
     list[Annotated[str, resolves(observer.light), AfterValidator(_canonical_light)]],
     BeforeValidator(_as_list),
@@ -161,11 +159,7 @@ def _expand(file: SpecFile, key: str, names: list[str]) -> tuple[Path, ...]:
 def _matches(file: SpecFile, keys: tuple[str, int], name: str) -> list[Path]:
     folder = file.path.parent
     is_pattern = glob.has_magic(name) and not os.path.exists(folder / name)
-    paths = (
-        [folder / each for each in sorted(glob.glob(name, root_dir=folder))]
-        if is_pattern
-        else [folder / name]
-    )
+    paths = [folder / each for each in sorted(glob.glob(name, root_dir=folder))] if is_pattern else [folder / name]
     if not paths or not all(map(os.path.isfile, paths)):
         text = f"no file named {format_value(name)}"
         file.fail(keys, text, code="file-not-found", hint="paths start in the folder of the scene file")

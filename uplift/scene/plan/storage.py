@@ -63,9 +63,7 @@ class Storage:
             return np.full((len(rgb), len(wavelengths)), np.nan)
 
 
-STORAGES = tuple(
-    Storage(name, depth) for name, form in texture.PIXEL_ENCODINGS.items() for depth in form().depths
-)
+STORAGES = tuple(Storage(name, depth) for name, form in texture.PIXEL_ENCODINGS.items() for depth in form().depths)
 
 
 def choose_storage(

@@ -94,9 +94,7 @@ def choose(
         return _with_count(setup, method, count)
     if target is not None and count is None:
         return _with_target(setup, method, target, measure)
-    raise OptionError(
-        "exactly one of count and target is required", code="count-or-target", hint="give one of them"
-    )
+    raise OptionError("exactly one of count and target is required", code="count-or-target", hint="give one of them")
 
 
 def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:

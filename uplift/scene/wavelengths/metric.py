@@ -16,9 +16,7 @@ MIN_EIGENVALUE = 1e-3
 
 def delta_e_factors(setup: RenderSetup) -> Array:
     """Factors T (K, M, 3, 3) of the form at every material and light: |T (XYZ' − XYZ)| ≈ ΔE00 of close colours."""
-    jacobian = np.stack(
-        [lab_jacobian(xyz, white) for xyz, white in zip(setup.xyz, setup.whites, strict=True)]
-    )
+    jacobian = np.stack([lab_jacobian(xyz, white) for xyz, white in zip(setup.xyz, setup.whites, strict=True)])
     values, vectors = np.linalg.eigh(_quadratic_form(setup.lab))
     root = np.sqrt(np.maximum(values, MIN_EIGENVALUE))[..., None] * np.swapaxes(vectors, -1, -2)
     return np.asarray(root @ jacobian)

@@ -91,10 +91,7 @@ def _distance_panel(data: CubeData) -> Panel:
 
 def _status_panel(data: CubeData) -> Panel:
     counts = data.points.counts().items()
-    keys = (
-        Key(colour[None], f"{label}: {count:,}")
-        for colour, (label, count) in zip(STATUS, counts, strict=False)
-    )
+    keys = (Key(colour[None], f"{label}: {count:,}") for colour, (label, count) in zip(STATUS, counts, strict=False))
     return Panel("Status", np.append(STATUS, STATUS[:1], axis=0)[data.points.status], tuple(keys))
 
 

@@ -134,9 +134,7 @@ def test_patches_are_colours_by_full_spectra_and_by_the_factor_model(opened, vie
     tab = opened(view)
     drag(tab, (20, -35))
     mix = shares(position(tab), 3)
-    texts = tab.evaluate(
-        "[...document.querySelectorAll('[id^=mixed-][id$=text]')].map(found => found.textContent)"
-    )
+    texts = tab.evaluate("[...document.querySelectorAll('[id^=mixed-][id$=text]')].map(found => found.textContent)")
     light = mix @ view.lights.coefficients
     factor = codes(view.materials.coefficients * light @ view.to_rgb.T)
     full = codes(np.einsum("j,njk->nk", mix, view.materials.colours))
@@ -193,9 +191,7 @@ def test_the_comparison_detects_a_wrong_matrix(opened, view):
 
 def test_console_errors_are_recorded(tab, view, tmp_path):
     html = page(view)
-    script = (
-        "<script>console.error('broken', 1); setTimeout(() => { throw new Error('torn'); })</script></body>"
-    )
+    script = "<script>console.error('broken', 1); setTimeout(() => { throw new Error('torn'); })</script></body>"
     html = re.sub('<meta http-equiv="Content-Security-Policy".*?>', "", html)
     (tmp_path / "page.html").write_text(html.replace("</body>", script), encoding="utf-8")
     tab.open(tmp_path / "page.html")

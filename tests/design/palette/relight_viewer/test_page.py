@@ -98,9 +98,7 @@ def test_a_page_has_no_numbers_that_are_not_finite(view):
 def test_the_picture_agrees_with_full_spectra(model, sensor, small_cube):
     """Under smooth lights they differ by the small error of the factor model."""
     colours = {"red": (0.5, 0.1, 0.1), "leaf": (0.1, 0.3, 0.05), "sky": (0.2, 0.4, 0.7)}
-    materials = [
-        SpectrumSpec(name, small_cube.reflectance(rgb, sensor.wavelengths)) for name, rgb in colours.items()
-    ]
+    materials = [SpectrumSpec(name, small_cube.reflectance(rgb, sensor.wavelengths)) for name, rgb in colours.items()]
     lights = [SpectrumSpec(name, illuminant(sensor, name)) for name in ("D65", "A")]
     palette = Palette(sensor, tuple(lights), tuple(materials), (), {})
     found = relighting("three", design(palette, model), cutaway(3, size=64))

@@ -142,8 +142,7 @@ def _axes() -> Array:
 def _shade(normals: Array) -> Array:
     """Brightness of a matt surface, at most 1."""
     key, fill = (
-        power * np.maximum(normals @ (direction / np.linalg.norm(direction)), 0)
-        for direction, power in (KEY, FILL)
+        power * np.maximum(normals @ (direction / np.linalg.norm(direction)), 0) for direction, power in (KEY, FILL)
     )
     return np.minimum(AMBIENT + key + fill, 1)
 

@@ -87,9 +87,7 @@ def _parse_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, 
     return codes
 
 
-def _weights_of_labels(
-    path: StrPath, part: Part, values: Values, codes: Mapping[int, int], count: int
-) -> Weights:
+def _weights_of_labels(path: StrPath, part: Part, values: Values, codes: Mapping[int, int], count: int) -> Weights:
     channels = colour_channels(part)
     if channels is None or part.max_code != 255:
         text = "an image of labels must have 8-bit colours"

@@ -28,9 +28,7 @@ def add_entry(lattice_weight: Float, entry: Int, wavelengths: Block, total: Bloc
         total[w] = 0.5 + lattice_weight * (total[w] - 0.5) + deviation(1.0 - lattice_weight, x)
 
 
-def mix(
-    multipliers: Coefficients, lattice_weight: Float, entry: Int, wavelengths: Block, total: Block
-) -> None:
+def mix(multipliers: Coefficients, lattice_weight: Float, entry: Int, wavelengths: Block, total: Block) -> None:
     """Evaluate the spectrum of multipliers, mixed with that of an entry unless ``entry`` is negative."""
     basis: Basis = empty(COUNT * WIDTH)
     tabulate(wavelengths, basis)

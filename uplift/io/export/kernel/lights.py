@@ -56,9 +56,7 @@ def sector(u: Float, v: Float) -> Int:
 
 def along(knot: Int, u: Float, v: Float, which: Int) -> Float:
     """Share of an offset from white that the first or the second spoke of a sector has."""
-    share: Float = (
-        number(INVERSES + 4 * knot + 2 * which) * u + number(INVERSES + 4 * knot + 2 * which + 1) * v
-    )
+    share: Float = number(INVERSES + 4 * knot + 2 * which) * u + number(INVERSES + 4 * knot + 2 * which + 1) * v
     return share if share > 0.0 else 0.0
 
 
@@ -153,9 +151,7 @@ def answer(spot: Spot, corner: Int, wavelengths: Block, total: Block) -> None:
         at: Int = corner + low
         turned: Int = at + RINGS * SAMPLES
         before: Float = sample(at, share) + spot[1] * (sample(at + SAMPLES, share) - sample(at, share))
-        after: Float = sample(turned, share) + spot[1] * (
-            sample(turned + SAMPLES, share) - sample(turned, share)
-        )
+        after: Float = sample(turned, share) + spot[1] * (sample(turned + SAMPLES, share) - sample(turned, share))
         power: Float = before + spot[0] * (after - before)
         if lamp >= 0:
             power += spot[3] * (sample(LAMP_SPECTRA + lamp * SAMPLES + low, share) - power)

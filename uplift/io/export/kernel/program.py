@@ -100,9 +100,7 @@ class Program:
         parts = {"kernel": self._kernel()}
         for key, names in {"access": ("numbers", self.form), "wrappers": (self.mode,)}.items():
             texts = (
-                read_template(self.template, part)
-                for part in names
-                if (part, self.form) != ("numbers", "textures")
+                read_template(self.template, part) for part in names if (part, self.form) != ("numbers", "textures")
             )
             parts[key] = Template(repeat("".join(texts), words["texels"])).safe_substitute(words)
         return words | parts
@@ -215,6 +213,4 @@ def comment(text: str) -> str:
 def repeat(text: str, count: int) -> str:
     """Repeat each line that has ``${t}`` for t = 0, 1, ..."""
     lines = text.splitlines(keepends=True)
-    return "".join(
-        line.replace("${t}", str(t)) for line in lines for t in range(count if "${t}" in line else 1)
-    )
+    return "".join(line.replace("${t}", str(t)) for line in lines for t in range(count if "${t}" in line else 1))

@@ -142,8 +142,7 @@ def _boxes(boxes: EntryBoxes) -> Floats:
     """Return centres and reciprocals of the distances to the faces, (E, 9); 0 for no distance."""
     low, high = boxes.faces
     below, above = (
-        np.divide(1, room, out=np.zeros_like(room), where=room > 0)
-        for room in (boxes.rgb - low, high - boxes.rgb)
+        np.divide(1, room, out=np.zeros_like(room), where=room > 0) for room in (boxes.rgb - low, high - boxes.rgb)
     )
     return np.concatenate([boxes.rgb, below, above], axis=1).astype(np.float32)
 

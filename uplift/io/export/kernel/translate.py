@@ -48,9 +48,7 @@ def functions(*modules: ModuleType) -> list[ast.FunctionDef]:
     ]
 
 
-def translate(
-    kernel: list[ast.FunctionDef], language: Language, name: str, constants: Mapping[str, int]
-) -> str:
+def translate(kernel: list[ast.FunctionDef], language: Language, name: str, constants: Mapping[str, int]) -> str:
     """Print functions in a language.
 
     Parameters
@@ -73,10 +71,7 @@ def translate(
     for function in kernel:
         facts[function.name] = _facts(function, facts)
     unrolled = [_Unroll(constants).visit(function) for function in kernel]
-    return (
-        "\n\n".join(_Printer(function, language, name, facts, constants).text() for function in unrolled)
-        + "\n"
-    )
+    return "\n\n".join(_Printer(function, language, name, facts, constants).text() for function in unrolled) + "\n"
 
 
 @dataclass(frozen=True)
@@ -330,9 +325,7 @@ class _Printer:
                     return f"select({', '.join(parts)})", CALL
                 parts = (self._expression(each, CONDITIONAL + 1) for each in (test, body, other))
                 return "{} ? {} : {}".format(*parts), CONDITIONAL
-            case ast.Call(func=ast.Name(id="copysign"), args=[size, sign]) if (
-                "copysign" not in self.language.functions
-            ):
+            case ast.Call(func=ast.Name(id="copysign"), args=[size, sign]) if "copysign" not in self.language.functions:
                 return self._operation(_with_sign(size, sign))
             case ast.Call(func=ast.Name(id=name), args=args):
                 return self._call(name, args), CALL

@@ -77,9 +77,7 @@ def compile_plugin() -> Path:
 def _run(command: list[str], code: str) -> None:
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
-        lines = [line for line in done.stderr.splitlines() if "error" in line.lower()] or [
-            str(done.returncode)
-        ]
+        lines = [line for line in done.stderr.splitlines() if "error" in line.lower()] or [str(done.returncode)]
         raise OptionError(
             f"the texture for scalar variants cannot be compiled: {lines[0]}",
             code=code,

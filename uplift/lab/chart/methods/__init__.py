@@ -64,7 +64,5 @@ def select_methods(patterns: tuple[str, ...] = (), *, quick: bool = False) -> li
                 hint=f"names are {examples} and others; '*' matches any characters",
             )
     return [
-        (family, method)
-        for family, method in methods
-        if any(fnmatchcase(method.name, pattern) for pattern in patterns)
+        (family, method) for family, method in methods if any(fnmatchcase(method.name, pattern) for pattern in patterns)
     ]

@@ -45,9 +45,7 @@ def prepare_table(task: Task) -> PreparedMethod:
     colour = colour_science()
     table = colour.recovery.LUT3D_Jakob2019()
     space = colour.RGB_COLOURSPACES[task.sensor.space]
-    _, seconds = stopwatch(
-        lambda: table.generate(space, *aligned(task.sensor), SIZE, print_callable=lambda *_: None)
-    )
+    _, seconds = stopwatch(lambda: table.generate(space, *aligned(task.sensor), SIZE, print_callable=lambda *_: None))
 
     return PreparedMethod(partial(look_up, table), table.coefficients.nbytes, seconds)
 

@@ -98,9 +98,7 @@ class Boxes:
         xyz = self.xyz(edges)
         total, current = xyz.sum(axis=1)[:, None, None], chromaticity(xyz)
         slope = self.weights[np.floor(edges).astype(int) % len(self.weights)] * [[-1], [1]]
-        jacobian = ((slope[..., :2] - current[:, None] * slope.sum(axis=-1, keepdims=True)) / total).swapaxes(
-            1, 2
-        )
+        jacobian = ((slope[..., :2] - current[:, None] * slope.sum(axis=-1, keepdims=True)) / total).swapaxes(1, 2)
         return np.asarray((np.linalg.pinv(jacobian) @ (xy - current)[..., None])[..., 0])
 
     def __call__(self, rgb: Array, wavelengths: Array) -> Array:
@@ -127,9 +125,7 @@ def _xyz(weights: Array, below: Array, edges: Array) -> Array:
     turns, position = np.divmod(edges, len(weights))
     low = position.astype(int)
     total = below[-1] + weights[-1]
-    rise, fall = np.moveaxis(
-        turns[..., None] * total + below[low] + (position - low)[..., None] * weights[low], 1, 0
-    )
+    rise, fall = np.moveaxis(turns[..., None] * total + below[low] + (position - low)[..., None] * weights[low], 1, 0)
     return np.asarray(fall - rise)
 
 

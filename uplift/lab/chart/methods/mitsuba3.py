@@ -38,9 +38,7 @@ XYZ_TO_RGB = np.array(
 AT_ONCE = 4
 """Wavelengths of an evaluation."""
 MITSUBA = "Mitsuba 3: pip install 'spectral-uplift[mitsuba]'"
-LLVM = (
-    "LLVM 19, with which Mitsuba 3.9 works: apt install libllvm19, or name its library by DRJIT_LIBLLVM_PATH"
-)
+LLVM = "LLVM 19, with which Mitsuba 3.9 works: apt install libllvm19, or name its library by DRJIT_LIBLLVM_PATH"
 """What the methods need."""
 
 

@@ -34,9 +34,7 @@ def prepare(task: Task, dtype: str = "float64") -> PreparedMethod:
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         order = rgb.argsort(axis=1)
         low, middle, high = np.take_along_axis(rgb, order, axis=1).T[..., None]
-        bins = (
-            low * white + (middle - low) * secondaries[order[:, 0]] + (high - middle) * primaries[order[:, 2]]
-        )
+        bins = low * white + (middle - low) * secondaries[order[:, 0]] + (high - middle) * primaries[order[:, 2]]
         return bins @ _linear(wavelengths, centres).astype(dtype, copy=False)
 
     return PreparedMethod(uplift, nbytes((white, secondaries, primaries)), load_s=seconds)
@@ -46,8 +44,7 @@ def _spectra(dtype: str) -> tuple[Array, Array, Array]:
     """Spectra of white (1, 10), of the secondary and of the primary colours (3, 10)."""
     table = colour_science().recovery.SDS_SMITS1999
     white, secondaries, primaries = (
-        np.stack([table[name].values for name in names]).astype(dtype)
-        for names in (("white",), SECONDARIES, PRIMARIES)
+        np.stack([table[name].values for name in names]).astype(dtype) for names in (("white",), SECONDARIES, PRIMARIES)
     )
     return white, secondaries, primaries
 
