@@ -60,7 +60,7 @@ LINES = {
     "texture-float": "texture painting.exr wood.exr --depth float --cube ../macbeth/macbeth.uplift",
     "texture-moments": "texture wood.png moments.exr --store moments",
     "texture-multipliers": "texture wood.png multipliers.exr --store multipliers",
-    "texture-looks": "texture wood.png o.exr --mask mask.png --cube ../smooth/smooth.uplift --cube ../looks/looks.uplift",
+    "texture-looks": "texture wood.png o.exr --mask mask.png --cube ../auto/auto.uplift --cube ../looks/looks.uplift",
     "texture-space": "texture painting.exr aces.exr --cube ../acescg/acescg.uplift --space ACEScg",
     "texture-sequence": "texture 'shot.*.exr' uplifted --store moments",
     "texture-lights": "texture sky.exr lit.exr --emission --wavelengths 400:700:20",
