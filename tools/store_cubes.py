@@ -8,7 +8,7 @@ from itertools import product
 from pathlib import Path
 
 import uplift
-from uplift.lookup.packaged import EMISSION
+from uplift.lights.lookup import EMISSION
 
 ROOT = Path(__file__).parents[1]
 DEFAULT = "moments-16"

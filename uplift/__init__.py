@@ -35,8 +35,10 @@ if TYPE_CHECKING:
         UpliftError,
         UpliftWarning,
     )
-    from uplift.lookup import Cube, EmissionTable, bulk, load, load_emission
-    from uplift.pipeline import Look, build, build_emission
+    from uplift.lights.build import build_emission
+    from uplift.lights.lookup import EmissionTable, load_emission
+    from uplift.lookup import Cube, bulk, load
+    from uplift.pipeline import Look, build
     from uplift.pipeline.look_file import read_looks
 
 __all__ = [
@@ -70,8 +72,10 @@ __all__ = [
 
 _EXPORTS = {
     "uplift.atlas": ("Atlas", "Entry", "read_atlas", "write_atlas"),
-    "uplift.lookup": ("Cube", "EmissionTable", "load", "load_emission"),
-    "uplift.pipeline": ("Look", "build", "build_emission"),
+    "uplift.lights.build": ("build_emission",),
+    "uplift.lights.lookup": ("EmissionTable", "load_emission"),
+    "uplift.lookup": ("Cube", "load"),
+    "uplift.pipeline": ("Look", "build"),
     "uplift.pipeline.look_file": ("read_looks",),
 }
 _MODULES = {"bulk": "uplift.lookup.bulk"}

@@ -13,9 +13,9 @@ import numpy as np
 
 import uplift
 from benchmarks.emission.left_out import drop_discs
-from uplift.colorimetry.lamp_errors import relit_delta_e
 from uplift.common.arrays import Array
 from uplift.lab.timing import spread
+from uplift.lights.relit import relit_delta_e
 
 REFERENCE = {"knots": 192, "rings": 64}
 """Table whose interpolation counts as exact."""

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.fit.emission import unit_xyz
-from uplift.lattice.chromaticity import chromaticity
-from uplift.lookup import EmissionTable
+from uplift.lights.fit import unit_xyz
+from uplift.lights.lattice import chromaticity
+from uplift.lights.lookup import EmissionTable
 from uplift.viz.figure import GREY, INK, new_figure, rendered, write_png
 from uplift.viz.scatter import Label, draw_labels
 

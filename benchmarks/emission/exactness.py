@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_of
-from uplift.colorimetry.lamp_errors import relit_delta_e
 from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array
-from uplift.fit.emission import unit_xyz
-from uplift.lattice.chromaticity import DENOMINATOR, chromaticity
-from uplift.lookup import EmissionTable
+from uplift.lights.fit import unit_xyz
+from uplift.lights.lattice import DENOMINATOR, chromaticity
+from uplift.lights.lookup import EmissionTable
+from uplift.lights.relit import relit_delta_e
 
 TYPES = ("float64", "float32")
 GREY = 0.18

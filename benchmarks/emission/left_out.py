@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import uplift
-from uplift.colorimetry.lamp_errors import relit_delta_e
 from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array
-from uplift.lattice.lamp_discs import LampEntries
-from uplift.lookup import EmissionTable
+from uplift.lights.discs import LampEntries
+from uplift.lights.lookup import EmissionTable
+from uplift.lights.relit import relit_delta_e
 
 FAMILIES = {
     "daylight": r"[BC]|I?D\d\d",

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array
-from uplift.fit.emission import nearest_lights
 from uplift.fit.solve import solve
-from uplift.lattice.chromaticity import chromaticity
+from uplift.lights.fit import nearest_lights
+from uplift.lights.lattice import chromaticity
 from uplift.models.minimum_norm import forward_map
 from uplift.models.sigmoid import Sigmoid
 

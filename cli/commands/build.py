@@ -246,7 +246,7 @@ def _build_emission(
 ) -> None:
     """Build and write an emission table. Raises `OptionError` for options that lights do not have."""
     from uplift.common.files import check_output
-    from uplift.pipeline import build_emission
+    from uplift.lights.build import build_emission
 
     names = [each.name or "" for each in click.get_current_context().command.params]
     refuse_for_lights(*(name for name in names if name not in ALLOWED_WITH_EMISSION))

@@ -90,8 +90,8 @@ def command(
         raise click.UsageError("--table applies to programs only.")
     out = out or Path(cube).stem + SUFFIXES[style]
     from uplift.common.files import check_output
+    from uplift.lights.lookup import names_emission_table
     from uplift.lookup import load
-    from uplift.lookup.packaged import names_emission_table
 
     path = check_output(out, inputs=[cube], force=force)
     options = {"res": res, "mode": mode, "form": table, "style": style if style in PROGRAMS else None}
@@ -132,7 +132,7 @@ def _program(data: CubeData, path: Path, **options: Any) -> str:
 
 def _light_program(cube: str, path: Path, **options: Any) -> str:
     from uplift.io.export import write_light_program
-    from uplift.lookup import load_emission
+    from uplift.lights.lookup import load_emission
 
     data = load_emission(cube).data
     written = write_light_program(data, path, **options)

@@ -26,8 +26,8 @@ def command(file: str | None, style: str) -> None:
       uplift info macbeth-32.uplift --format json | jq .status
       uplift info emission
     """
-    from uplift.lookup import load, load_emission
-    from uplift.lookup.packaged import names_emission_table
+    from uplift.lights.lookup import load_emission, names_emission_table
+    from uplift.lookup import load
     from uplift.report.summary import summarise, summarise_emission
 
     if file is not None and names_emission_table(file):

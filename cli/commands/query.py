@@ -160,7 +160,7 @@ def command(
     single = point is not None or (bool(colour) and colour != ("-",))
     if is_emission:
         refuse_for_lights("mode", "fill_missing", "lights", "with_bounds", "html")
-        from uplift.lookup import load_emission
+        from uplift.lights.lookup import load_emission
 
         table = load_emission(cube_path)
         found = lights_xyz(table, point, colour, input_path, encoded=encoded, space=space)

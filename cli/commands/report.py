@@ -76,8 +76,8 @@ def command(
     materials, and whether its standard errors are calibrated.
     """
     from uplift.common.files import check_output, write_text
+    from uplift.lights.lookup import names_emission_table
     from uplift.lookup import load
-    from uplift.lookup.packaged import names_emission_table
 
     from ..output.progress import spinner
 
@@ -102,12 +102,11 @@ def command(
 def _report_lights(table_path: str, path: Path | None, style: str, *, force: bool) -> None:
     """Assess an emission table, and write the page or the numbers."""
     from uplift.common.files import write_text
-    from uplift.lookup import load_emission
-    from uplift.lookup.packaged import find_file
+    from uplift.lights.lookup import find_table, load_emission
     from uplift.report.light_page import render_light_report
     from uplift.report.lights import assess_lights, lights_to_json
 
-    file = Path(find_file(table_path))
+    file = Path(find_table(table_path))
     assessment = assess_lights(load_emission(file), file.name, file.stat().st_size)
     is_json = style == "json"
     text = json_text(lights_to_json(assessment)) + "\n" if is_json else render_light_report(assessment)

@@ -39,7 +39,7 @@ def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
         raise click.UsageError("Nothing to write: give OUT.exr, --sheet FILE, or both.")
     from uplift.common.files import check_outputs
     from uplift.io.slices import check_slices
-    from uplift.lookup.packaged import names_emission_table
+    from uplift.lights.lookup import names_emission_table
     from uplift.viz.sheet import check_sheet
 
     check_outputs((out, sheet), inputs=[cube], force=force)
@@ -67,7 +67,7 @@ def _write_cube(cube: str, out: str | None, sheet: str | None, *, force: bool) -
 
 def _write_lights(cube: str, out: str | None, sheet: str | None, *, force: bool) -> None:
     from uplift.io.slices import write_light_slices
-    from uplift.lookup import load_emission
+    from uplift.lights.lookup import load_emission
     from uplift.viz.sheet import write_light_sheet
 
     table = load_emission(cube)

@@ -9,7 +9,8 @@ from .console import say
 
 if TYPE_CHECKING:
     from uplift.cube import CubeData
-    from uplift.lookup import Cube, EmissionTable
+    from uplift.lights.lookup import EmissionTable
+    from uplift.lookup import Cube
 
 
 def print_improvements(cube: Cube) -> None:

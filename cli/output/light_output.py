@@ -15,7 +15,7 @@ from .query_output import format_rgb, print_columns, print_fields, sparkline
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.lookup import EmissionTable
+    from uplift.lights.lookup import EmissionTable
 
 TREATMENTS = ("error", "clip")
 """Values of --out-of-gamut that lights have."""

@@ -28,7 +28,7 @@ def complete_cube(ctx: click.Context, param: click.Parameter, text: str) -> list
     paths = sorted(glob.glob(f"{glob.escape(text)}*"))
     folders = (f"{path}{os.sep}" for path in paths if os.path.isdir(path))
     files = (path for path in paths if path.endswith(".uplift"))
-    return [*_matching(map(CompletionItem, PACKAGED), text), *map(CompletionItem, (*folders, *files))]
+    return [*_matching(map(CompletionItem, (*PACKAGED, "emission")), text), *map(CompletionItem, (*folders, *files))]
 
 
 def complete_illuminant(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
     from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
-    from uplift.lookup import EmissionTable
+    from uplift.lights.lookup import EmissionTable
 
 
 def as_xyz(

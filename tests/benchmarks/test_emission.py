@@ -16,8 +16,8 @@ from benchmarks.emission.left_out import FAMILIES, drop_discs, family, groups, p
 from benchmarks.emission.methods import nearest, planck, sigmoid_times_d65
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
-from uplift.lattice.chromaticity import chromaticity
-from uplift.lookup import EmissionTable
+from uplift.lights.lattice import chromaticity
+from uplift.lights.lookup import EmissionTable
 
 SMALL = {"knots": 64, "rings": 4}
 LAMPS = observer.lamps()

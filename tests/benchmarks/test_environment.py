@@ -7,7 +7,7 @@ import numpy as np
 from benchmarks.environment.__main__ import KNOWN, MITSUBA, OTHER_SEED, UNKNOWN, Renders, rows
 from benchmarks.environment.skies import HEIGHT, SKIES, WIDTH
 from uplift.colorimetry.observer import lamps
-from uplift.lookup import load_emission
+from uplift.lights.lookup import load_emission
 
 
 def test_skies_are_mixtures_of_their_lights():

@@ -9,7 +9,8 @@ from uplift_cli.output.hints import hint_for
 
 import uplift
 from tests.helpers import with_points
-from uplift.cube import digest, emission_digest, write
+from uplift.cube import digest, write
+from uplift.lights.table import emission_digest
 
 
 def test_json_has_all_fields(run, cubes):

@@ -9,9 +9,10 @@ import pytest
 import uplift
 from tests.helpers import raises
 from uplift.common.errors import ColourError, OutputError
-from uplift.cube import emission_digest
-from uplift.io.slices import Window, map_chromaticities, write_light_slices
-from uplift.lattice.chromaticity import chromaticity, unit_xyz
+from uplift.io.slices import write_light_slices
+from uplift.lights.chromaticity_map import Window, map_chromaticities
+from uplift.lights.lattice import chromaticity, unit_xyz
+from uplift.lights.table import emission_digest
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""Names of the files of the package: files take precedence, and the kind of a file is recognised."""
+"""Names of the cubes of the package: files take precedence."""
 
 from __future__ import annotations
 
@@ -6,10 +6,7 @@ import os
 
 import pytest
 
-import uplift
-from tests.helpers import raises
-from uplift.common.errors import CubeFileError
-from uplift.lookup.packaged import DEFAULT, EMISSION, PACKAGED, find_file, names_emission_table
+from uplift.lookup.packaged import DEFAULT, PACKAGED, find_file
 
 
 @pytest.mark.parametrize("name", PACKAGED)
@@ -25,15 +22,6 @@ def test_other_paths_stay_what_they_are(name):
 
 def test_files_take_precedence(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "srgb").write_bytes(EMISSION.read_bytes())
+    (tmp_path / "srgb").write_bytes(PACKAGED["acescg"].read_bytes())
     assert find_file("srgb") == "srgb"
-    assert names_emission_table("srgb")
     assert find_file("sRGB") == DEFAULT
-
-
-def test_kinds_of_files_are_distinguished():
-    assert [names_emission_table(name) for name in ("emission", "srgb", "missing")] == [True, False, False]
-    with raises(CubeFileError, "not-an-emission-table"):
-        uplift.load_emission("srgb")
-    with raises(CubeFileError, "not-a-cube"):
-        uplift.load("emission")

@@ -13,7 +13,7 @@ import uplift
 from tests.browsing import check_page
 from tests.pages import Page
 from tests.report.conftest import HOSTILE
-from uplift.lookup import EmissionTable
+from uplift.lights.lookup import EmissionTable
 from uplift.report.light_page import render_light_report
 from uplift.report.lights import assess_lights, lights_to_json
 

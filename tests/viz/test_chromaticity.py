@@ -14,9 +14,9 @@ import uplift
 from tests.helpers import raises
 from uplift.colorimetry.srgb import decode
 from uplift.common.errors import OutputError
-from uplift.io.slices import ALL
-from uplift.lattice.lamp_discs import LampEntries
-from uplift.lookup import EmissionTable
+from uplift.lights.chromaticity_map import ALL
+from uplift.lights.discs import LampEntries
+from uplift.lights.lookup import EmissionTable
 from uplift.viz.chromaticity import MARGIN, draw_errors, lamp_window
 from uplift.viz.figure import new_figure
 from uplift.viz.scatter import new_panels

@@ -10,7 +10,6 @@ from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source, merge
 from uplift.atlas.distributions import from_distributions
 from uplift.atlas.document import read_document
 from uplift.atlas.formats import FORMATS, Format, read_any
-from uplift.atlas.lamps import read_lamps
 from uplift.atlas.measurements import MEASURED, Measured, check_measured
 from uplift.atlas.resample import Clip, Resampled, on_grid, resample
 from uplift.atlas.shipped import ShippedAtlas, find_atlas_file, shipped_atlases
@@ -35,7 +34,6 @@ __all__ = [
     "merge",
     "on_grid",
     "read_atlas",
-    "read_lamps",
     "resample",
     "shipped_atlases",
     "write_atlas",

@@ -1,4 +1,4 @@
-"""Queries of a cube or an emission table with numpy alone: neither the fit, JAX nor colour-science is imported."""
+"""Queries of a cube with numpy alone: neither the fit, JAX nor colour-science is imported."""
 
 from __future__ import annotations
 
@@ -10,18 +10,15 @@ from uplift.lookup.interpolate import MODES
 from uplift.lookup.query import QueryResult, query, query_xyz
 
 if TYPE_CHECKING:
-    from uplift.lookup.emission import EmissionTable, load_emission
     from uplift.lookup.metamer_bounds import Bounds, bounds
 
 __all__ = [
     "MODES",
     "Bounds",
     "Cube",
-    "EmissionTable",
     "QueryResult",
     "bounds",
     "load",
-    "load_emission",
     "query",
     "query_xyz",
 ]
@@ -29,9 +26,7 @@ __all__ = [
 
 _LATER = {
     "Bounds": "metamer_bounds",
-    "EmissionTable": "emission",
     "bounds": "metamer_bounds",
-    "load_emission": "emission",
 }
 """Modules that are imported when they are needed: plain queries start without them."""
 

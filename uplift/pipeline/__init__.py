@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from uplift.pipeline.build_cube import build
-from uplift.pipeline.emission_table import build_emission
 from uplift.pipeline.look import Look
 from uplift.pipeline.provenance import recorded_atlas
 from uplift.pipeline.rebuild import rebuild
 
-__all__ = ["Look", "build", "build_emission", "rebuild", "recorded_atlas"]
+__all__ = ["Look", "build", "rebuild", "recorded_atlas"]

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.lattice.chromaticity import chromaticity
-from uplift.lookup import EmissionTable
+from uplift.lights.lattice import chromaticity
+from uplift.lights.lookup import EmissionTable
 from uplift.report.round_trip import COLOURS, SEED
 from uplift.report.summary import summarise_emission
 from uplift.viz.histogram import Histogram, linear_edges, log_edges, make_histogram

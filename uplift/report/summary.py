@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.cube import CubeData, EmissionData, digest, emission_digest
-from uplift.cube.emission import KIND
+from uplift.cube import CubeData, digest
+from uplift.lights.table import KIND, EmissionData, emission_digest
 
 
 def summarise(data: CubeData) -> dict[str, Any]:

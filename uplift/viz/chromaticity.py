@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from uplift.colorimetry.lights import STANDARD_ILLUMINANTS
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.io.slices import ALL, Window, map_chromaticities
-from uplift.lattice.chromaticity import chromaticity
-from uplift.lookup import EmissionTable
+from uplift.lights.chromaticity_map import ALL, Window, map_chromaticities
+from uplift.lights.lattice import chromaticity
+from uplift.lights.lookup import EmissionTable
 from uplift.viz.figure import GREY, INK, STYLE
 from uplift.viz.ramp import colour_map
 from uplift.viz.scatter import LEGEND, Label, draw_labels, new_panels, style_title

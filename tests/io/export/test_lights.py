@@ -9,8 +9,8 @@ from tests.helpers import raises
 from tests.io.export import run_program
 from uplift.common.errors import OptionError
 from uplift.io.export import write_light_program
-from uplift.lattice.lamp_discs import MIN_RADIUS
-from uplift.lookup import load_emission
+from uplift.lights.discs import MIN_RADIUS
+from uplift.lights.lookup import load_emission
 
 WAVELENGTHS = [300.0, 455.0, 551.5, 790.0]
 WITHIN = 3e-4

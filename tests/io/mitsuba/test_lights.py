@@ -7,7 +7,7 @@ import pytest
 
 from tests.io.texture.conftest import planes, write_exr
 from uplift.io import texture
-from uplift.lookup import load_emission
+from uplift.lights.lookup import load_emission
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*calls Python for every ray")
 SUNSET = (3.0, 1.0, 0.2)

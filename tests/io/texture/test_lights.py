@@ -14,7 +14,7 @@ from tests.io.texture.conftest import channels, planes, small_tiles, write_exr
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import OptionError
 from uplift.io import texture
-from uplift.lookup import EmissionTable, load_emission
+from uplift.lights.lookup import EmissionTable, load_emission
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")

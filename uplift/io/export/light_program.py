@@ -9,13 +9,13 @@ from string import Template
 
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write, check_output
-from uplift.cube import EmissionData, emission_digest
 from uplift.io.export.kernel import language, lights
 from uplift.io.export.kernel.language import Language
 from uplift.io.export.kernel.light_table import LightTable, make_light_table
 from uplift.io.export.kernel.program import comment, read_template, table_words, with_numbers
 from uplift.io.export.kernel.translate import functions, translate
 from uplift.io.export.programs import FORMATS, identifier, write_numbers
+from uplift.lights.table import EmissionData, emission_digest
 
 LANGUAGES = {"c": language.C, "glsl": language.GLSL}
 """Languages of `write_light_program`."""

@@ -21,7 +21,8 @@ from uplift.io.mitsuba.texture import make_texture
 from uplift.io.mitsuba.texture_file import read_colours, read_lights, read_texels
 from uplift.io.texture.colours import Decoder
 from uplift.io.texture.exr_file import is_exr
-from uplift.lookup import Cube, EmissionTable, load, load_emission
+from uplift.lights.lookup import EmissionTable, load_emission
+from uplift.lookup import Cube, load
 
 START, END = 360, 830
 """Wavelength range of Mitsuba in nm."""

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.lookup import Cube, EmissionTable
+from uplift.lights.lookup import EmissionTable
+from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import extended_multipliers, refined_multipliers
 from uplift.lookup.validation import as_colours

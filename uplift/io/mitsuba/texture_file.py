@@ -24,7 +24,7 @@ from uplift.io.texture.lights import prepare_lights
 from uplift.io.texture.part_layout import colour_channels_by_part
 from uplift.io.texture.source import Image, Part, open_image
 from uplift.io.texture.source_space import space_warnings
-from uplift.lookup import EmissionTable
+from uplift.lights.lookup import EmissionTable
 from uplift.lookup.blocks import blockwise
 from uplift.models import Model, Moments, from_description
 

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from uplift.io.slices.chromaticity_map import ALL, ChromaticityMap, Window, map_chromaticities
 from uplift.io.slices.lights import light_attributes, write_light_slices
 from uplift.io.slices.slices import check_slices, write_slices
 
 __all__ = [
-    "ALL",
-    "ChromaticityMap",
-    "Window",
     "check_slices",
     "light_attributes",
-    "map_chromaticities",
     "write_light_slices",
     "write_slices",
 ]

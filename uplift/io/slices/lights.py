@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.observer import sensor
-from uplift.cube import emission_digest
 from uplift.io.slices import exr
-from uplift.io.slices.chromaticity_map import ALL, map_chromaticities
 from uplift.io.slices.slices import check_slices
-from uplift.lookup import EmissionTable
+from uplift.lights.chromaticity_map import ALL, map_chromaticities
+from uplift.lights.lookup import EmissionTable
+from uplift.lights.table import emission_digest
 
 STEP = 0.002
 """Size of a pixel in u′v′."""

@@ -13,7 +13,6 @@ from uplift.colorimetry.observer import sensor
 from uplift.colorimetry.spaces import ImageSpace, find_space
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.cube import emission_digest
 from uplift.io.slices import exr
 from uplift.io.texture.alpha import ColourChannels
 from uplift.io.texture.colours import Counts, Floats, check_encoding, code_decoder, integer_reader
@@ -21,8 +20,8 @@ from uplift.io.texture.converter import Converter, ReadColours
 from uplift.io.texture.pixel_encoding import SPECTRAL_LAYOUT, spectral_channels
 from uplift.io.texture.source import Part, Values
 from uplift.io.texture.source_space import source_space
-from uplift.lookup import EmissionTable
-from uplift.lookup.emission import MAX_VALUE
+from uplift.lights.lookup import MAX_VALUE, EmissionTable
+from uplift.lights.table import emission_digest
 from uplift.lookup.validation import as_wavelengths
 
 DEPTHS = ("float", "half")

@@ -34,7 +34,8 @@ from uplift.io.texture.masked import prepare_masked
 from uplift.io.texture.pixel_encoding import PixelEncoding
 from uplift.io.texture.source import open_image
 from uplift.io.texture.uplifter import Uplifter, prepare
-from uplift.lookup import load, load_emission
+from uplift.lights.lookup import load_emission
+from uplift.lookup import load
 
 MAX_NAMES = 4
 """Finished textures that an error names."""

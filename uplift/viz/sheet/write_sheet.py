@@ -15,7 +15,7 @@ from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write, check_output
 from uplift.cube.data import CubeData
 from uplift.io.slices import exr, light_attributes
-from uplift.lookup import EmissionTable
+from uplift.lights.lookup import EmissionTable
 from uplift.viz.chromaticity import light_figure
 from uplift.viz.figure import figure_text, rendered
 from uplift.viz.sheet.sheet import Label, compose

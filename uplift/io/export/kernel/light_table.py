@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
-from uplift.cube import EmissionData
 from uplift.io.export.kernel.table import TEXEL, as_image
-from uplift.lattice.chromaticity import DENOMINATOR, ChromaticityLattice
-from uplift.lattice.lamp_discs import MIN_RADIUS
+from uplift.lights.discs import MIN_RADIUS
+from uplift.lights.lattice import DENOMINATOR, ChromaticityLattice
+from uplift.lights.table import EmissionData
 
 BIN_COUNT = 96
 """Bins of each axis of u′v′, from 0 to 1: most touch no lamp, or one."""

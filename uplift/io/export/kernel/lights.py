@@ -1,4 +1,4 @@
-"""The lookup of lights: the cell of a chromaticity, the lamps around it, and power, as in `uplift.lookup.emission`."""
+"""The lookup of lights: the cell of a chromaticity, the lamps around it, and power, as in `uplift.lights.lookup`."""
 
 from __future__ import annotations
 

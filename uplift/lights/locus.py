@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from uplift.common.arrays import Array, Indices
-from uplift.lattice.chromaticity import BEND, DENOMINATOR, ChromaticityLattice, chromaticity
+from uplift.lights.lattice import BEND, DENOMINATOR, ChromaticityLattice, chromaticity
 
 MIN_ANGLE = 1e-3
 """Smallest angle in radians between a wavelength inside the convex polygon and its neighbours on the rim."""

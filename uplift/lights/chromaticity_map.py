@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.common.arrays import Array, Indices, Mask
-from uplift.lattice.chromaticity import unit_xyz
-from uplift.lookup import EmissionTable
+from uplift.lights.lattice import unit_xyz
+from uplift.lights.lookup import EmissionTable
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from tests.helpers import raises
-from uplift.atlas import read_atlas, read_lamps
+from uplift.atlas import read_atlas
 from uplift.common.errors import AtlasError
+from uplift.lights.lamps import read_lamps
 
 
 def write(path, values, comment="# spectral irradiance"):

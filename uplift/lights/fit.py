@@ -6,7 +6,7 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.fit.solve import solve
-from uplift.lattice.chromaticity import DENOMINATOR, ChromaticityLattice, chromaticity, unit_xyz
+from uplift.lights.lattice import DENOMINATOR, ChromaticityLattice, chromaticity, unit_xyz
 from uplift.models.exponential import Exponential
 from uplift.models.minimum_norm import forward_map
 

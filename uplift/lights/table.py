@@ -26,8 +26,8 @@ from uplift.cube.container import (
     replace_file,
 )
 from uplift.cube.metadata import check_emission_metadata
-from uplift.lattice.chromaticity import ChromaticityLattice, chromaticity
-from uplift.lattice.lamp_discs import LampEntries
+from uplift.lights.discs import LampEntries
+from uplift.lights.lattice import ChromaticityLattice, chromaticity
 
 VERSION = 1
 KIND = Kind("uplift emission table", (VERSION,), "emission table", "not-an-emission-table")

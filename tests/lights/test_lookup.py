@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,9 +11,11 @@ from hypothesis import strategies as st
 
 import uplift
 from tests.helpers import raises
-from uplift.common.errors import ColourError, OptionError
-from uplift.lattice.chromaticity import DENOMINATOR, chromaticity, unit_xyz
+from uplift.common.errors import ColourError, CubeFileError, OptionError
+from uplift.lights.lattice import DENOMINATOR, chromaticity, unit_xyz
+from uplift.lights.lookup import EMISSION, find_table, names_emission_table
 from uplift.lookup.blocks import BLOCK
+from uplift.lookup.packaged import DEFAULT
 
 TABLE = uplift.load_emission()
 RADIOMETRY = TABLE.data.cmfs / TABLE.data.cmfs[:, 1].sum()
@@ -215,3 +219,15 @@ def test_rgb_is_the_inverse():
 def test_bad_input_is_refused(code, kind, rgb, options):
     with raises(kind, code):
         TABLE.spectrum(rgb, **options)
+
+
+def test_packaged_table_has_a_name_which_files_take_over(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert find_table("Emission") == EMISSION
+    assert [names_emission_table(name) for name in ("emission", DEFAULT, "missing")] == [True, False, False]
+    Path("emission").write_bytes(DEFAULT.read_bytes())
+    assert not names_emission_table("emission")
+    with raises(CubeFileError, "not-an-emission-table"):
+        uplift.load_emission("emission")
+    with raises(CubeFileError, "not-a-cube"):
+        uplift.load(EMISSION)

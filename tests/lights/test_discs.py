@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.lattice.lamp_discs import LampEntries
+from uplift.lights.discs import LampEntries
 
 
 def entries(uv, radius):

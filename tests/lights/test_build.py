@@ -7,10 +7,11 @@ import pytest
 
 import uplift
 from tests.helpers import raises, warns
-from uplift.atlas import Atlas, Entry, read_lamps
+from uplift.atlas import Atlas, Entry
 from uplift.common.errors import OptionError
-from uplift.lattice.chromaticity import chromaticity
-from uplift.pipeline import build_emission
+from uplift.lights.build import build_emission
+from uplift.lights.lamps import read_lamps
+from uplift.lights.lattice import chromaticity
 
 AT = np.arange(380.0, 781.0, 5.0)
 SMALL = {"knots": 64, "rings": 4}

@@ -11,9 +11,9 @@ from numpy.typing import DTypeLike, NDArray
 
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError
-from uplift.cube import EmissionData
 from uplift.lattice import weighted_sum
-from uplift.lattice.chromaticity import BEND, DENOMINATOR, Cells
+from uplift.lights.lattice import BEND, DENOMINATOR, Cells
+from uplift.lights.table import EmissionData
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
-from uplift.lattice.chromaticity import ChromaticityLattice, chromaticity
+from uplift.lights.lattice import ChromaticityLattice, chromaticity
 
 WHITE = np.array([0.2, 0.4])
 KNOTS = np.array([[0.6, 0.5], [0.3, 0.6], [0.0, 0.55], [0.05, 0.2], [0.25, 0.0]])

@@ -10,7 +10,9 @@ import pytest
 import uplift
 from tests.helpers import raises
 from uplift.common.errors import CubeFileError, OutputError
-from uplift.cube import container, emission, emission_digest, read_emission, write_emission
+from uplift.cube import container
+from uplift.lights import table
+from uplift.lights.table import emission_digest, read_emission, write_emission
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +22,7 @@ def data():
 
 def forge(data, path, change):
     """Write ``data`` after ``change(tensors, metadata)``, with the digest of the changed content."""
-    tensors, metadata = emission._tensors(data), emission._metadata(data)
+    tensors, metadata = table._tensors(data), table._metadata(data)
     change(tensors, metadata)
     container.save(tensors, metadata, path)
     return path

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from functools import cached_property, partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,13 +14,14 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from uplift.colorimetry.gamut import as_rgb
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError, OptionError
-from uplift.cube import EmissionData, read_emission, write_emission
+from uplift.lights.spectra import TREATMENTS, errors, is_light, resample, spectra
+from uplift.lights.table import EmissionData, is_emission_table, read_emission, write_emission
 from uplift.lookup.blocks import Function, blockwise
-from uplift.lookup.lights import TREATMENTS, errors, is_light, resample, spectra
-from uplift.lookup.packaged import EMISSION, find_file
 from uplift.lookup.validation import as_float_type, as_thread_count, as_wavelengths
 from uplift.models.matmul import matmul_rows
 
+EMISSION = Path(__file__).with_name("emission.uplift")
+"""The packaged table of linear sRGB."""
 MAX_VALUE = 1e30
 """Limit of the components of a colour."""
 
@@ -307,8 +309,7 @@ def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
     Parameters
     ----------
     path : path-like, optional
-        File of the table, or a name of `uplift.lookup.packaged` if no file has it. By default the table of the package,
-        for linear sRGB.
+        File of the table, or ``emission`` for the table of the package, for linear sRGB, which is also the default.
 
     Returns
     -------
@@ -326,7 +327,18 @@ def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
     >>> uplift.load_emission().space
     'sRGB'
     """
-    return EmissionTable(read_emission(EMISSION if path is None else find_file(path)))
+    return EmissionTable(read_emission(EMISSION if path is None else find_table(path)))
+
+
+def names_emission_table(path: str | os.PathLike[str]) -> bool:
+    """Whether a path or the name of the packaged table stands for an emission table; False for unreadable files."""
+    return is_emission_table(find_table(path))
+
+
+def find_table(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
+    """Return the packaged table for its name in any case, unless a file has it, or else the path."""
+    is_packaged = os.fsdecode(path).casefold() == EMISSION.stem and not os.path.lexists(path)
+    return EMISSION if is_packaged else path
 
 
 def _checked(colours: NDArray[Any]) -> Array:

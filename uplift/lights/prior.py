@@ -11,10 +11,10 @@ from itertools import product
 
 import numpy as np
 
-from uplift.colorimetry.lamp_errors import relit_delta_e
 from uplift.common.arrays import Array
-from uplift.fit.emission import nearest_lights
-from uplift.lattice.chromaticity import DENOMINATOR, chromaticity
+from uplift.lights.fit import nearest_lights
+from uplift.lights.lattice import DENOMINATOR, chromaticity
+from uplift.lights.relit import relit_delta_e
 
 LENGTHS = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 NUGGETS = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)

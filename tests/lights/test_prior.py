@@ -7,14 +7,14 @@ import pytest
 
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
-from uplift.colorimetry.lamp_errors import relit_delta_e
 from uplift.colorimetry.lights import Lamps
-from uplift.fit.chromaticity_lattice import locus_lattice
-from uplift.fit.emission import mix_with_rim, nearest_lights
-from uplift.fit.lamp_entries import lamp_entries
-from uplift.fit.lamp_prior import fit_lamp_prior, smoothest_lights
-from uplift.lattice.chromaticity import chromaticity
-from uplift.lattice.lamp_discs import MIN_RADIUS
+from uplift.lights.discs import MIN_RADIUS
+from uplift.lights.entries import lamp_entries
+from uplift.lights.fit import mix_with_rim, nearest_lights
+from uplift.lights.lattice import chromaticity
+from uplift.lights.locus import locus_lattice
+from uplift.lights.prior import fit_lamp_prior, smoothest_lights
+from uplift.lights.relit import relit_delta_e
 
 CMFS = observer.matching_functions()
 RADIOMETRY = CMFS / CMFS[:, 1].sum()

@@ -4,32 +4,33 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.atlas import Atlas, on_grid, read_atlas, read_lamps
+from uplift.atlas import Atlas, Source, on_grid, read_atlas
 from uplift.colorimetry import observer as observers
-from uplift.colorimetry.lamp_errors import relit_delta_e
 from uplift.colorimetry.lights import STANDARD_ILLUMINANTS, Lamps
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.quoting import format_value
 from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
-from uplift.cube import EmissionData
-from uplift.fit.chromaticity_lattice import locus_lattice
-from uplift.fit.emission import mix_with_rim, nearest_lights
-from uplift.fit.lamp_entries import lamp_entries
-from uplift.fit.lamp_prior import LampKernel, LampPrior, fit_lamp_prior
-from uplift.lattice.chromaticity import ChromaticityLattice, chromaticity
-from uplift.lookup import EmissionTable
-from uplift.pipeline.libraries import AtlasLike
-from uplift.pipeline.provenance import describe_source
+from uplift.lights.entries import lamp_entries
+from uplift.lights.fit import mix_with_rim, nearest_lights
+from uplift.lights.lamps import read_lamps
+from uplift.lights.lattice import ChromaticityLattice, chromaticity
+from uplift.lights.locus import locus_lattice
+from uplift.lights.lookup import EmissionTable
+from uplift.lights.prior import LampKernel, LampPrior, fit_lamp_prior
+from uplift.lights.relit import relit_delta_e
+from uplift.lights.table import EmissionData
+
+LampFiles = Atlas | StrPath | Sequence[StrPath] | None
 
 ERROR_LENGTH = 0.02
 """Distance in u′v′ over which errors of left-out lamps are averaged."""
@@ -44,7 +45,7 @@ STACK_LEVEL = 4
 
 @single_threaded_blas()
 def build_emission(
-    atlas: AtlasLike = None,
+    atlas: LampFiles = None,
     *,
     knots: int = 96,
     rings: int = 24,
@@ -157,7 +158,7 @@ class _Lamps:
         return Lamps(names, np.concatenate([self.exact.power, self.others.power]))
 
 
-def _read(atlas: AtlasLike, wavelengths: Array, radiometry: Array) -> tuple[Lamps | None, list[dict[str, str]]]:
+def _read(atlas: LampFiles, wavelengths: Array, radiometry: Array) -> tuple[Lamps | None, list[dict[str, str]]]:
     """Return the lamps of an atlas at luminance 1, and what the table records of their files."""
     if atlas is None:
         return None, []
@@ -170,7 +171,13 @@ def _read(atlas: AtlasLike, wavelengths: Array, radiometry: Array) -> tuple[Lamp
     if not (luminance > 0).all():
         dark = atlas.names[int(luminance.argmin())]
         raise OptionError(f"a lamp must have visible power, got none of '{dark}'", code="lamp-without-power")
-    return Lamps(atlas.names, power / luminance[:, None]), [describe_source(each) for each in atlas.sources]
+    return Lamps(atlas.names, power / luminance[:, None]), [_record(source) for source in atlas.sources]
+
+
+def _record(source: Source) -> dict[str, str]:
+    """Name and digest of a file of lamps, and the scale of its values unless that was found by itself."""
+    scale = {} if source.measured == "auto" else {"measured": source.measured}
+    return {"name": source.name, "digest": source.digest, **scale}
 
 
 def _choose(constraints: Lamps | None, known: Lamps) -> _Lamps:

@@ -6,8 +6,8 @@ import numpy as np
 
 from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array
-from uplift.lattice.chromaticity import DENOMINATOR, ChromaticityLattice, chromaticity
-from uplift.lattice.lamp_discs import MIN_RADIUS, LampEntries
+from uplift.lights.discs import MIN_RADIUS, LampEntries
+from uplift.lights.lattice import DENOMINATOR, ChromaticityLattice, chromaticity
 
 MAX_RADIUS = 0.01
 """Largest radius of a disc in u′v′."""

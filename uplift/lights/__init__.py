@@ -1,0 +1,1 @@
+"""Emission tables: lights as colours, measured lamps, and a lattice over the chromaticities u′v′."""
