@@ -175,7 +175,7 @@ def _read(atlas: LampFiles, wavelengths: Array, radiometry: Array) -> tuple[Lamp
 
 
 def _record(source: Source) -> dict[str, str]:
-    """Name and digest of a file of lamps, and the scale of its values unless that was found by itself."""
+    """Name and digest of a file of lamps, and the scale of its values if the caller gave it."""
     scale = {} if source.measured == "auto" else {"measured": source.measured}
     return {"name": source.name, "digest": source.digest, **scale}
 
