@@ -29,7 +29,6 @@ from .output.diagnostics import (
 from .output.help_text import HelpFormatter
 from .output.streams import finish_stdout, prepare_streams
 from .params.options import OUTPUT_FORMAT
-from .params.renamed import renamed_option
 from .signals import check, end, ending_signals, received
 from .startup import draw_without_window, hide_drawing_notes
 
@@ -155,7 +154,7 @@ def _report(failure: UsageFailure) -> int:
 
 @contextmanager
 def _failures(ctx: click.Context) -> Iterator[None]:
-    """Turn errors of the library and of the system, renamed options and internal errors into `UsageFailure`."""
+    """Turn errors of the library and of the system, and internal errors into `UsageFailure`."""
     as_json = partial(_is_json, ctx)
     try:
         yield
@@ -172,11 +171,6 @@ def _failures(ctx: click.Context) -> Iterator[None]:
         raise UsageFailure(_system_error(error), as_json=as_json()) from error
     except MemoryError as error:
         raise UsageFailure(_memory_error(), as_json=as_json()) from error
-    except click.NoSuchOption as error:
-        renamed = renamed_option(error)
-        if renamed is None:
-            raise
-        raise UsageFailure(renamed, as_json=as_json()) from error
     except (click.ClickException, click.exceptions.Exit, click.Abort):
         raise
     except Exception as error:

@@ -107,7 +107,7 @@ def _reference(folder: Path, case: Case) -> Path:
         lights = " ".join(f"--light {name}" for name in dict.fromkeys(("D65", *case.lights)))
         words = f"--atlas {case.atlas} {lights} --scene {case.picture} {' '.join(REFERENCE)} -o {stem}.uplift"
         _run(folder, f"uplift build {words}")
-        _run(folder, f"uplift texture {case.picture} {path.name} --cube {stem}.uplift --depth float")
+        _run(folder, f"uplift texture {case.picture} -o {path.name} --cube {stem}.uplift --depth float")
     return path
 
 

@@ -32,7 +32,7 @@ def _measure(width: int, rows: int) -> dict[str, Any]:
         source, target = Path(folder) / "in.png", Path(folder) / "out.exr"
         codes = np.random.default_rng(0).integers(0, 256, (rows, width, 3), dtype=np.uint8)
         Image.fromarray(codes).save(source, compress_level=1)
-        _, megabytes = process([UPLIFT, "texture", str(source), str(target)], 1)
+        _, megabytes = process([UPLIFT, "texture", str(source), "-o", str(target)], 1)
         return {"width": width, "rows": rows, "peak_mb": megabytes}
 
 

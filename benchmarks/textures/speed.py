@@ -15,11 +15,11 @@ from benchmarks.timing import process
 FEW = ("--wavelengths", "400:700:10")
 JOBS: tuple[tuple[int, tuple[str, ...], int], ...] = (
     (2048, (), 3),
-    (2048, ("--store", "moments"), 3),
-    (2048, ("--store", "multipliers"), 1),
+    (2048, ("--representation", "moments"), 3),
+    (2048, ("--representation", "multipliers"), 1),
     (4096, FEW, 1),
     (8192, FEW, 1),
-    (8192, ("--store", "moments"), 1),
+    (8192, ("--representation", "moments"), 1),
 )
 """Size, options, runs."""
 
@@ -33,7 +33,7 @@ def _time(cube: str, size: int, options: tuple[str, ...], runs: int) -> dict[str
     with tempfile.TemporaryDirectory() as folder:
         source, target = Path(folder) / "in.png", Path(folder) / "out.exr"
         _write(source, size)
-        command = [UPLIFT, "texture", str(source), str(target), "--cube", cube, "--force", *options]
+        command = [UPLIFT, "texture", str(source), "-o", str(target), "--cube", cube, "--force", *options]
         wall, megabytes = process(command, runs)
         return {
             "options": " ".join(options) or "none: spectra at 81 wavelengths",

@@ -12,7 +12,7 @@ from ..output.atlas_listing import Listing, Row, list_entries
 from ..output.console import has_colours, make_table, paragraph, print_csv, print_json, say, show
 from ..output.shipped_listing import print_shipped
 from ..params.completion import complete_atlas
-from ..params.options import force_option, format_option, measured_option, sensor_options
+from ..params.options import force_option, format_option, scale_option, sensor_options
 
 if TYPE_CHECKING:
     from uplift.atlas import Source
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 
 @click.command("atlas")
 @click.argument("files", metavar="[FILE]...", nargs=-1, shell_complete=complete_atlas)
-@measured_option()
+@scale_option()
 @sensor_options
 @format_option("table", "json", "csv")
-@click.option("--convert", metavar="OUT", type=click.Path(), help="Write all entries to OUT instead of a list.")
+@click.option("-o", "--output", metavar="FILE", type=click.Path(), help="Write all entries to FILE instead of a list.")
 @force_option()
 def command(
     files: tuple[str, ...],
-    measured: Any,
+    scale: Any,
     space: str,
     illuminant: str,
     observer: str | None,
     style: str,
-    convert: str | None,
+    output: str | None,
     force: bool,
 ) -> None:
     """List the entries of atlas files, and how the files were understood.
@@ -44,7 +44,7 @@ def command(
 
     An atlas contains measured reflectances: a table with a row or a column per sample (CSV, text, spreadsheets), an
     ART measurement archive, CGATS and Argyll .ti3, CxF3, IES TM-27, JCAMP-DX, or an ENVI library. Several files are
-    read as one atlas. --convert writes CSV if OUT ends in .csv, and an ART measurement archive otherwise.
+    read as one atlas. --output writes CSV if its name ends in .csv, and an ART measurement archive otherwise.
 
     \b
     Examples:
@@ -52,20 +52,20 @@ def command(
       uplift atlas --space "Display P3" --illuminant A macbeth
       uplift atlas --format json paints.csv fabrics.csv
       uplift atlas chart.ti3 paints.cxf
-      uplift atlas dark.csv --measured percent
-      uplift atlas paints.csv --convert paints.txt
+      uplift atlas dark.csv --scale percent
+      uplift atlas paints.csv -o paints.txt
     """
     if not files:
-        if convert is not None:
-            raise click.UsageError("--convert needs a FILE to convert.")
+        if output is not None:
+            raise click.UsageError("--output needs an atlas to write.")
         print_shipped(style)
         return
     from uplift.atlas import read_atlas
 
-    if convert is not None:
-        _convert(files, measured, convert, force)
+    if output is not None:
+        _convert(files, scale, output, force)
         return
-    atlas = read_atlas(*files, measured=measured)
+    atlas = read_atlas(*files, measured=scale)
     from uplift.colorimetry.observer import DEFAULT_OBSERVER, sensor
 
     PRINTERS[style](list_entries(atlas, sensor(space, illuminant, observer or DEFAULT_OBSERVER)))

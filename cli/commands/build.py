@@ -13,22 +13,19 @@ import click
 
 from ..output.build_summary import print_emission_summary, print_improvements, print_summary
 from ..params.image_paths import expand_patterns
-from ..params.number_types import NUMBER
+from ..params.number_types import NUMBER, Whole
 from ..params.options import (
     LatticeDim,
     atlas_option,
-    coefficient_count,
-    coefficients_options,
+    coefficients_option,
     encoding_option,
-    entry_coefficient_count,
-    entry_coefficients_options,
     force_option,
     input_space_option,
     light_option,
-    measured_option,
     out_of_gamut_option,
     quiet_option,
     refuse_for_lights,
+    scale_option,
     sensor_options,
     verbose_option,
 )
@@ -53,7 +50,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
     help="Build an emission table, of lights; --atlas files contain the spectral powers of lamps.",
 )
 @atlas_option("Measured spectra")
-@measured_option()
+@scale_option()
 @click.option(
     "-o",
     "--output",
@@ -68,15 +65,23 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
     help="Lattice nodes along each axis. 'auto' chooses the smallest dim, and its axis, that resolves every entry.",
 )
 @click.option(
-    "--auto-tolerance",
+    "--tolerance",
+    "auto_tolerance",
     type=NUMBER,
     default=0.5,
     show_default=True,
     help="ΔE00 within which the lattice of --dim auto must reproduce the entries.",
 )
 @click.option("--model", default="moments", show_default=True, help="Spectrum model: moments or sigmoid.")
-@coefficients_options
-@entry_coefficients_options
+@coefficients_option()
+@click.option(
+    "--entry-coefficients",
+    type=Whole(),
+    default=17,
+    show_default=True,
+    metavar="N",
+    help="Coefficients per spectrum of an atlas entry, from --coefficients to 17.",
+)
 @click.option("--warp", default="none", show_default=True, help="Phase warp of the moments: none or vision.")
 @click.option("--axis", default="srgb", show_default=True, help="Spacing of the nodes: srgb or linear.")
 @sensor_options
@@ -108,7 +113,8 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
     help="File of looks: colours, and what they are to be under other lights.",
 )
 @click.option(
-    "--leave-out",
+    "--exclude-family",
+    "leave_out",
     multiple=True,
     metavar="FAMILY",
     help="Family of the shipped library that the learnt prior must not know, for tests on it; repeatable.",
@@ -156,7 +162,7 @@ def command(
     is_emission: bool,
     plan_path: str | None,
     files: tuple[str, ...],
-    measured: str,
+    scale: str,
     output: str | None,
     images: tuple[str, ...],
     encoding: str,
@@ -165,10 +171,6 @@ def command(
     force: bool,
     quiet: bool,
     verbose: bool,
-    coefficients: int | None,
-    moments: int | None,
-    entry_coefficients: int | None,
-    entry_moments: int | None,
     limits: str,
     **options: Any,
 ) -> None:
@@ -178,7 +180,7 @@ def command(
     Examples:
       uplift build --atlas macbeth --dim 32
       uplift build --atlas paints.csv --atlas fabrics.csv --coefficients 17 -o book.uplift
-      uplift build --atlas paints.csv --dim auto --auto-tolerance 1
+      uplift build --atlas paints.csv --dim auto --tolerance 1
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
       uplift build --atlas macbeth --look looks.toml -o looks.uplift
@@ -224,9 +226,7 @@ def command(
         )
         given = {name: value for name, value in options.items() if value not in (None, ())}
         given["shortest"], given["longest"] = parse_range(limits)
-        given["coefficients"] = coefficient_count(coefficients, moments)
-        given["entry_coefficients"] = entry_coefficient_count(entry_coefficients, entry_moments)
-        build = partial(_build, files, measured, scene=scene, **given)
+        build = partial(_build, files, scale, scene=scene, **given)
         name = _default_name(files, images, options)
     else:
         build, name, inputs = _planned_build(plan_path, click.get_current_context())
@@ -261,11 +261,11 @@ def _build_emission(
         print_emission_summary(table, path, time.perf_counter() - begin)
 
 
-def _build(files: tuple[str, ...], measured: Any, **options: Any) -> Cube:
+def _build(files: tuple[str, ...], scale: Any, **options: Any) -> Cube:
     from uplift.atlas import read_atlas
     from uplift.pipeline import build
 
-    return build(read_atlas(*files, measured=measured) if files else None, **options)
+    return build(read_atlas(*files, measured=scale) if files else None, **options)
 
 
 def _scene(images: tuple[str, ...], encoding: str, method: str, space: str | None) -> Images | None:

@@ -45,7 +45,7 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
 @click.option("--from", "source", metavar="CSV", help="Table of an earlier chart to draw or to recommend from.")
 @click.option("--recommend", is_flag=True, help="Recommend a cube to build, from the packaged chart or --from.")
 @click.option("--time-ns", type=NUMBER, help="With --recommend: largest CPU time per RGB, in ns.")
-@click.option("--delta-e", type=NUMBER, help="With --recommend: largest mean ΔE00.")
+@click.option("--tolerance", "delta_e", metavar="ΔE00", type=NUMBER, help="With --recommend: largest mean ΔE00.")
 @click.option(
     "--light", help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: mean of five]"
 )
@@ -85,8 +85,8 @@ def command(
       uplift chart --atlas paints.csv -o paints
       uplift chart --methods 'moments9-32-*' --methods mallett2019 -o few
       uplift chart --recommend --time-ns 500
-      uplift chart --recommend --delta-e 0.5 --light FL11 --atlas-materials
-      uplift chart --recommend --from paints/chart.csv --delta-e 1
+      uplift chart --recommend --tolerance 0.5 --light FL11 --atlas-materials
+      uplift chart --recommend --from paints/chart.csv --tolerance 1
     """
     enable_jit_cache()
     use_one_blas_thread()
@@ -96,7 +96,7 @@ def command(
         _recommend(source, Requirement(time_ns, delta_e, light, atlas_materials))
         return
     if atlas_materials or any(value is not None for value in (time_ns, delta_e, light)):
-        raise click.UsageError("--time-ns, --delta-e, --light and --atlas-materials require --recommend.")
+        raise click.UsageError("--time-ns, --tolerance, --light and --atlas-materials require --recommend.")
     from uplift.common.files import check_folder
 
     folder = check_folder(output, FILES, inputs=files, force=force)

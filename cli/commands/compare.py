@@ -28,7 +28,8 @@ FILTERS = "compare-filters.csv"
 @atlas_option("Surfaces", DEFAULT_ATLASES)
 @light_option("Illuminant", "A, B, C, and FL2, FL7, FL11")
 @click.option(
-    "--target",
+    "--tolerance",
+    "target",
     metavar="ΔE00",
     type=NUMBER,
     help="Print the cheapest representation with 97.5 % of errors below this value.",
@@ -61,15 +62,15 @@ def command(
     Representations: point samples (PS, filtered PF), Riemann sums (RS, enhanced RE), Sun's composite model (CS),
     Gaussian quadrature (GQ), trigonometric moments (TM), the sigmoid (SG), linear models (LM), hero wavelengths (HW).
 
-    --target prints the cheapest sufficient representation for each set of lights. The cheapest stores the fewest floats
-    per surface, then per light. --output writes compare.csv, box plots, a plot of error over cost, a page, and with
-    --filters compare-filters.csv.
+    --tolerance prints the cheapest sufficient representation for each set of lights. The cheapest stores the fewest
+    floats per surface, then per light. --output writes compare.csv, box plots, a plot of error over cost, a page, and
+    with --filters compare-filters.csv.
 
     \b
     Examples:
       uplift compare --quick
-      uplift compare --target 1.0
-      uplift compare --atlas paints.csv --light LED-B3 --light HP1 --target 0.5
+      uplift compare --tolerance 1.0
+      uplift compare --atlas paints.csv --light LED-B3 --light HP1 --tolerance 0.5
       uplift compare --filters --output filters --force
     """
     use_one_blas_thread()

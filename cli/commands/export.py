@@ -24,12 +24,19 @@ SUFFIXES = {"coeff": ".coeff", **PROGRAMS, "npz": ".npz", "csv": ".csv", "html":
 
 @click.command("export")
 @click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
-@click.argument("out", metavar="[OUT]", required=False, type=click.Path())
+@click.option(
+    "-o",
+    "--output",
+    "out",
+    metavar="FILE",
+    type=click.Path(),
+    help="File to write. [default: CUBE's name in the current folder]",
+)
 @click.option(
     "--format",
     "style",
     type=click.Choice(tuple(SUFFIXES)),
-    help="Format to write. [default: by the suffix of OUT]",
+    help="Format to write. [default: by the suffix of --output]",
 )
 @click.option("--res", type=Whole(), help="Resolution of a coeff table along each axis. [default: 64]")
 @click.option(
@@ -67,19 +74,19 @@ def command(
     Names in a program start with the file's. A C header, also valid C++, contains the table, or loads it from a file
     of numbers. Programs in other languages come with a second file, which they explain. GLSL, HLSL and WGSL can have
     3-D textures instead. A coeff table stores sigmoid spectra of the cube's colours:
-    three coefficients cannot represent the atlas. OUT defaults to the cube's name in the current folder.
+    three coefficients cannot represent the atlas.
 
     CUBE can also be an emission table, or the packaged one, named emission. Lights are written in C or GLSL.
 
     \b
     Examples:
-      uplift export macbeth-32.uplift macbeth-32.npz
-      uplift export macbeth-32.uplift srgb.coeff
-      uplift export macbeth-32.uplift cube.h
-      uplift export macbeth-32.uplift filed.h --table file
-      uplift export macbeth-32.uplift moments.wgsl --mode moments --table textures
+      uplift export macbeth-32.uplift -o macbeth-32.npz
+      uplift export macbeth-32.uplift -o srgb.coeff
+      uplift export macbeth-32.uplift -o cube.h
+      uplift export macbeth-32.uplift -o filed.h --table file
+      uplift export macbeth-32.uplift -o moments.wgsl --mode moments --table textures
       uplift export macbeth-32.uplift --format csv
-      uplift export emission lights.h
+      uplift export emission -o lights.h
     """
     style = style or _format_of(out)
     if res is not None and style != "coeff":
@@ -105,11 +112,11 @@ def command(
 
 
 def _format_of(out: str | None) -> str:
-    """Return the format that the suffix of OUT stands for."""
+    """Return the format that the suffix of the output stands for."""
     for name, suffix in SUFFIXES.items():
         if out is not None and Path(out).suffix.lower() == suffix:
             return name
-    raise click.UsageError(f"Give --format, or OUT ending in {', '.join(SUFFIXES.values())}.")
+    raise click.UsageError(f"Give --format, or --output ending in {', '.join(SUFFIXES.values())}.")
 
 
 def _coeff(data: CubeData, path: Path, **options: Any) -> str:

@@ -147,6 +147,6 @@ TOPICS: dict[str, tuple[str, Callable[[], None]]] = {
     "lights": ("names of illuminants: --light, --illuminant", _print_lights),
     "modes": ("ways to interpolate a cube: query --mode", _print_modes),
     "observers": ("names of standard observers: --observer", _print_observers),
-    "spaces": ("names of RGB spaces: --space, --primaries", _print_spaces),
+    "spaces": ("names of RGB spaces: --space, --input-space", _print_spaces),
 }
 """Summary and printer by topic."""

@@ -39,7 +39,7 @@ WRITERS = {"table": as_table, "json": as_json}
 )
 @click.option("--dye", "kind", flag_value="dye", help="Mix dyes, which absorb.")
 @click.option("--filter", "kind", flag_value="filter", help="Stack filters; PARTS is the thickness.")
-@click.option("--light", "kind", flag_value="light", help="Add lights; PARTS is the intensity.")
+@click.option("--additive", "kind", flag_value="light", help="Add lights; PARTS is the intensity.")
 @click.option("--thickness", type=NUMBER, metavar="X", help="Thickness of the coat. [default: opaque; dyes: 1]")
 @click.option("--ground", metavar="COLOUR", help="Substrate of the coat. [default: white]")
 @click.option(
@@ -74,7 +74,7 @@ WRITERS = {"table": as_table, "json": as_json}
 @wavelengths_option()
 @out_of_gamut_option("scale", "mixtures and pixels")
 @format_option(*WRITERS)
-@plot_option("--swatches", "swatches", "Plot the ramp from the first ingredient to the last")
+@plot_option("--plot", "swatches", "Plot the ramp from the first ingredient to the last")
 @click.option(
     "--steps",
     type=Whole(2, 1000),
@@ -85,7 +85,7 @@ WRITERS = {"table": as_table, "json": as_json}
 @click.option("--over", metavar="IMAGE", help="Image to paint over (EXR, PNG, JPEG, TIFF).")
 @click.option("-o", "--output", metavar="EXR", help="With --over: image to write.")
 @encoding_option("the image of --over")
-@input_space_option("the colours and of the image of --over", "--space", default="that of the cube")
+@input_space_option("the colours and of the image of --over", default="that of the cube")
 @force_option()
 def command(
     words: tuple[str, ...],
@@ -118,11 +118,11 @@ def command(
     \b
     Examples:
       uplift mix --pigment 2:'#005fa0' 1:'#ffd200'
-      uplift mix blue yellow --cube macbeth-32.uplift --swatches ramp.png
+      uplift mix blue yellow --cube macbeth-32.uplift --plot ramp.png
       uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
       uplift mix --dye 1:'#d03060' 3:'#f0c000' --refractive-index 1.5 --thickness 2
       uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
-      uplift mix --light '#ff0000' 0.5:'#00ff00'
+      uplift mix --additive '#ff0000' 0.5:'#00ff00'
       uplift mix '#c8342a/#601810' --thickness 0.4 --over painting.exr -o glazed.exr
       uplift mix --theories '#005fa0' '#ffd200'
     """
@@ -133,7 +133,7 @@ def command(
 
     _check_usage(kind, ground, over, output, swatches)
     if theories and any(option is not None for option in (thickness, ground, over, swatches)):
-        raise click.UsageError("--theories mixes opaque colours, without --thickness, --ground, --over and --swatches.")
+        raise click.UsageError("--theories mixes opaque colours, without --thickness, --ground, --over and --plot.")
     check_outputs((swatches, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
     surface = INCIDENCES[incidence](refractive_index)
@@ -166,7 +166,7 @@ def _check_usage(kind: str, ground: str | None, over: str | None, output: str | 
     if ground is not None and (kind not in COATS or over is not None):
         raise click.UsageError("--ground applies to coats of --pigment or --dye, without --over.")
     if over is not None and swatches is not None:
-        raise click.UsageError("--swatches plots a mixture and does not apply to --over.")
+        raise click.UsageError("--plot shows a mixture and does not apply to --over.")
     if output is not None and not output.lower().endswith(".exr"):
         raise OutputError(
             "painted images are OpenEXR files",

@@ -18,9 +18,11 @@ if TYPE_CHECKING:
 
 @click.command("palette")
 @click.argument("spec", metavar="SPEC.toml", type=click.Path())
-@click.option("--atlas", metavar="OUT", help="Write the designed materials as an atlas; CSV if OUT ends in .csv.")
-@plot_option("--matrix", "matrix_path", "Plot the matrix of colours")
-@plot_option("--spectra", "spectra_path", "Plot the spectra of lights and materials")
+@click.option(
+    "-o", "--output", metavar="FILE", help="Write the designed materials as an atlas; CSV if FILE ends in .csv."
+)
+@plot_option("--plot", "matrix_path", "Plot the matrix of colours")
+@plot_option("--plot-spectra", "spectra_path", "Plot the spectra of lights and materials")
 @click.option("--html", metavar="HTML", help="Write a page that shows the materials under any mixture of the lights.")
 @click.option(
     "--image",
@@ -38,7 +40,7 @@ if TYPE_CHECKING:
 @force_option()
 def command(
     spec: str,
-    atlas: str | None,
+    output: str | None,
     matrix_path: str | None,
     spectra_path: str | None,
     html: str | None,
@@ -59,8 +61,8 @@ def command(
     \b
     Examples:
       uplift palette metamers.toml
-      uplift palette metamers.toml --matrix matrix.png --spectra spectra.png
-      uplift palette metamers.toml --atlas designed.txt
+      uplift palette metamers.toml --plot matrix.png --plot-spectra spectra.png
+      uplift palette metamers.toml -o designed.txt
       uplift palette engine.toml --html engine.html
       uplift palette vanish.toml --format json > vanish.json
     """
@@ -68,12 +70,12 @@ def command(
     from uplift.design.palette import design, matrix, read_palette, standard_model, unmet_goals
 
     palette = read_palette(spec)
-    outputs = (atlas, matrix_path, spectra_path, html)
+    outputs = (output, matrix_path, spectra_path, html)
     check_outputs(outputs, inputs=(*palette.sources, image), force=force)
     picture = read_picture(palette, html, image, labels)
     solution = design(palette, standard_model(palette.sensor, palette.count))
     PRINTERS[style](solution, matrix(solution), unmet_goals(solution))
-    _write(solution, atlas, matrix_path, spectra_path, force=force)
+    _write(solution, output, matrix_path, spectra_path, force=force)
     if html is not None:
         write_page(solution, spec, picture, html, force=force)
 

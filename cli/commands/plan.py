@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     metavar="PLAN",
     help="Plan to write, with an HTML page of the same name. [default: SCENE.plan.json in the current folder]",
 )
-@format_option("text", "json")
+@format_option("table", "json")
 @force_option()
 def command(scene: str, output: str | None, style: str, force: bool) -> None:
     """Choose the smallest cube, texture format and wavelengths that keep a scene's colours within a tolerance.

@@ -77,7 +77,7 @@ class ColourCommand(click.Command):
     show_default=True,
     help="Interpolate spectra (exact), coefficients (fast), coefficients with refinement, or use the nearest node.",
 )
-@input_space_option("the colours", "--space", default="that of the cube")
+@input_space_option("the colours", default="that of the cube")
 @out_of_gamut_option()
 @fill_option()
 @light_option("Illuminant under which colour, standard error or --bounds are shown", "none")
@@ -118,7 +118,7 @@ def command(
 ) -> None:
     """Query the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
 
-    Numbers are linear RGB from 0 to 1 in the cube's space, or in that of --space. Hex colours, and numbers with
+    Numbers are linear RGB from 0 to 1 in the cube's space, or in that of --input-space. Hex colours, and numbers with
     --encoded, are encoded by the transfer function of the space.
 
     \b
@@ -128,7 +128,7 @@ def command(
       uplift query --encoded 204 51 25 --wavelengths 400:700:10 --format json
       uplift query --input colours.csv --format csv > spectra.csv
       uplift query 1.4 0.3 -0.1 --out-of-gamut desaturate
-      uplift query --space P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
+      uplift query --input-space P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
       uplift query --xyz 0.05 0.2 0.1
       uplift query --xy 0.17 0.7 --luminance 0.15 --format json
       echo 0.5,0.5,0.5 | uplift query - --format json

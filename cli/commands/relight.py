@@ -44,7 +44,7 @@ MAX_SIDE = 960
 @click.option("--cube", "cube_path", metavar="FILE", help="Cube whose spectra are shown as well.")
 @atlas_option("Measured spectra; a cube is built from them and shown as well")
 @encoding_option("the images")
-@input_space_option("the images", "--space")
+@input_space_option("the images")
 @out_of_gamut_option("clip", "pixels")
 @click.option(
     "-o",

@@ -11,32 +11,32 @@ from ..params.options import force_option
 
 @click.command("slices")
 @click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
-@click.argument("out", metavar="[OUT.exr]", required=False, type=click.Path())
-@click.option("--sheet", metavar="FILE", type=click.Path(), help="Contact sheet to write, as .exr or .png.")
+@click.option("-o", "--output", "out", metavar="FILE", type=click.Path(), help="Slices to write, as .exr.")
+@click.option("--plot", "sheet", metavar="FILE", type=click.Path(), help="Contact sheet to write, as .exr or .png.")
 @force_option()
 def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
     """Write the blue slices of a cube as images.
 
-    OUT.exr has one part per blue slice and one pixel per node. Red increases to the right, green upwards. Channels
-    are lattice RGB, target RGB, fitting distance, ΔE00, status, atlas entry, round (with debug information) and every
-    coefficient. -1 stands for no entry or no round.
+    The file of --output has one part per blue slice and one pixel per node. Red increases to the right, green upwards.
+    Channels are lattice RGB, target RGB, fitting distance, ΔE00, status, atlas entry, round (with debug information)
+    and every coefficient. -1 stands for no entry or no round.
 
-    --sheet tiles all slices into one image for any viewer: lattice RGB, fitting distance, status and round, with
+    --plot tiles all slices into one image for any viewer: lattice RGB, fitting distance, status and round, with
     legends.
 
-    CUBE can also be an emission table, or the packaged one, named emission. OUT.exr is then one image over the CIE 1976
-    chromaticity diagram, at luminance 1: linear RGB, expected error, lamp, and power at wavelengths. The sheet has
+    CUBE can also be an emission table, or the packaged one, named emission. The file is then one image over the CIE
+    1976 chromaticity diagram, at luminance 1: linear RGB, expected error, lamp, and power at wavelengths. The sheet has
     diagrams of colours, expected errors and lamps.
 
     \b
     Examples:
-      uplift slices macbeth-32.uplift macbeth-32.exr --sheet macbeth-32.png
-      uplift slices macbeth-32.uplift --sheet sheet.png
-      uplift slices macbeth-32.uplift macbeth-32.exr --sheet sheet.exr --force
-      uplift slices emission emission.exr --sheet emission.png
+      uplift slices macbeth-32.uplift -o macbeth-32.exr --plot macbeth-32.png
+      uplift slices macbeth-32.uplift --plot sheet.png
+      uplift slices macbeth-32.uplift -o macbeth-32.exr --plot sheet.exr --force
+      uplift slices emission -o emission.exr --plot emission.png
     """
     if out is None and sheet is None:
-        raise click.UsageError("Nothing to write: give OUT.exr, --sheet FILE, or both.")
+        raise click.UsageError("Nothing to write: give --output FILE, --plot FILE, or both.")
     from uplift.common.files import check_outputs
     from uplift.io.slices import check_slices
     from uplift.lights.lookup import names_emission_table

@@ -11,7 +11,7 @@ from ..output.console import make_table, print_csv, print_json, say, show
 from ..output.progress import progress_bar
 from ..params.atlases import DEFAULT_ATLASES, read_atlases
 from ..params.number_types import Whole
-from ..params.options import atlas_option, coefficient_count, coefficients_options, format_option
+from ..params.options import atlas_option, coefficients_option, format_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -24,11 +24,9 @@ Results = dict[str, "tuple[HoldoutSplit, ...]"]
 @atlas_option("Atlas", DEFAULT_ATLASES)
 @click.option("--splits", type=Whole(1, 1000), default=3, show_default=True, help="Number of splits of each atlas.")
 @click.option("--dim", type=Whole(), default=32, show_default=True, help="Lattice nodes along each axis.")
-@coefficients_options
+@coefficients_option()
 @format_option("table", "json", "csv")
-def held_out(
-    files: tuple[str, ...], splits: int, dim: int, coefficients: int | None, moments: int | None, style: str
-) -> None:
+def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, style: str) -> None:
     """Build cubes from half of an atlas, query the colours of the other half, and compare with the measurements.
 
     Reports the rms difference of the spectra and mean ΔE00 under A, FL2, FL7, FL11, LED-B3, LED-RGB1 and HP1, compared
@@ -47,11 +45,10 @@ def held_out(
     enable_jit_cache()
     from uplift.lab.study.held_out import holdout
 
-    count = coefficient_count(coefficients, moments)
     results: Results = {}
     for name, atlas in read_atlases(files).items():
         with progress_bar(name) as progress:
-            results[name] = holdout(atlas, splits, progress, dim=dim, coefficients=count)
+            results[name] = holdout(atlas, splits, progress, dim=dim, coefficients=coefficients)
     PRINTERS[style](results)
 
 

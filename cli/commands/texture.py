@@ -39,7 +39,9 @@ if TYPE_CHECKING:
 
 @click.command("texture")
 @click.argument("sources", metavar="IN...", nargs=-1, required=True)
-@click.argument("target", metavar="OUT")
+@click.option(
+    "-o", "--output", "target", metavar="FILE", required=True, help="Texture to write, or folder of textures."
+)
 @click.option(
     "--cube",
     "cube_paths",
@@ -55,7 +57,7 @@ if TYPE_CHECKING:
 )
 @emission_option("Pixels are light, as in an environment map")
 @click.option(
-    "--store",
+    "--representation",
     "kind",
     type=click.Choice(("spectrum", "moments", "multipliers")),
     default="spectrum",
@@ -69,7 +71,7 @@ if TYPE_CHECKING:
     help="16 or 32 bits per channel. [default: half for reflectances, else float]",
 )
 @encoding_option()
-@input_space_option("the images", "--space")
+@input_space_option("the images")
 @out_of_gamut_option("clip")
 @fill_option()
 @click.option(
@@ -108,22 +110,22 @@ def command(
 
     \b
     Examples:
-      uplift texture wood.png wood.exr
-      uplift texture wood.png moments-32.exr --cube macbeth-32.uplift --store moments
-      uplift texture 'shot.*.exr' uplifted-31 --wavelengths 400:700:10 --resume
-      uplift texture fire.exr bright.exr --out-of-gamut scale
-      uplift texture painting.exr ap1.exr --space ACEScg
-      uplift texture shot.*.exr uplifted --scheduler tcp://10.0.0.5:8786
-      uplift texture wood.png parts.exr --mask mask.png --cube macbeth-32.uplift --cube looks.uplift
-      uplift texture sky.exr sky-spectral.exr --emission --wavelengths 400:700:10
+      uplift texture wood.png -o wood.exr
+      uplift texture wood.png -o moments-32.exr --cube macbeth-32.uplift --representation moments
+      uplift texture 'shot.*.exr' -o uplifted-31 --wavelengths 400:700:10 --resume
+      uplift texture fire.exr -o bright.exr --out-of-gamut scale
+      uplift texture painting.exr -o ap1.exr --input-space ACEScg
+      uplift texture shot.*.exr -o uplifted --scheduler tcp://10.0.0.5:8786
+      uplift texture wood.png -o parts.exr --mask mask.png --cube macbeth-32.uplift --cube looks.uplift
+      uplift texture sky.exr -o sky-spectral.exr --emission --wavelengths 400:700:10
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
     and mip-mapped. 'multipliers' can be evaluated directly, by the formula in the header. Alpha and other channels are
     copied; colours multiplied by alpha, as in OpenEXR, are divided by it first and multiplied after. Several images, or
-    a quoted pattern, go into the folder OUT.
+    a quoted pattern, go into the folder of --output.
 
-    Colours of an image in another RGB space than the cube's are converted. Its space is that of --space, or the one
-    that the file states by colorInteropID, chromaticities, code points or an ICC profile.
+    Colours of an image in another RGB space than the cube's are converted. Its space is that of --input-space, or the
+    one that the file states by colorInteropID, chromaticities, code points or an ICC profile.
 
     Colours outside [0, 1] are treated by --out-of-gamut, and NaN becomes 0. A warning counts both.
 
@@ -191,7 +193,7 @@ def _pixel_encoding(kind: str, wavelengths: Array | None) -> PixelEncoding:
         raise OptionError(
             f"{kind} have no wavelengths",
             code="wavelengths-not-applicable",
-            hint="leave out --wavelengths, or use --store spectrum",
+            hint="leave out --wavelengths, or use --representation spectrum",
         )
     return texture.PIXEL_ENCODINGS[kind]()
 

@@ -21,7 +21,11 @@ if TYPE_CHECKING:
 @click.command("wavelengths")
 @click.option("--count", metavar="N", type=Whole(), help="Number of wavelengths, 1 to 40.")
 @click.option(
-    "--target", metavar="ΔE", type=NUMBER, help="Choose the fewest wavelengths with an error below this ΔE00."
+    "--tolerance",
+    "target",
+    metavar="ΔE00",
+    type=NUMBER,
+    help="Choose the fewest wavelengths with an error below this ΔE00.",
 )
 @click.option(
     "--wavelengths",
@@ -32,7 +36,7 @@ if TYPE_CHECKING:
 @click.option(
     "--measure",
     type=click.Choice(("mean", "p95", "max")),
-    help="Statistic of --target over all materials and lights. [default: max]",
+    help="Statistic of --tolerance over all materials and lights. [default: max]",
 )
 @click.option(
     "--method",
@@ -84,16 +88,16 @@ def command(
     \b
     Examples:
       uplift wavelengths --count 8
-      uplift wavelengths --target 1 --light D65 --light FL11 --plot wavelengths.png
-      uplift wavelengths --target 0.5 --measure p95 --atlas paints.csv --format json
+      uplift wavelengths --tolerance 1 --light D65 --light FL11 --plot wavelengths.png
+      uplift wavelengths --tolerance 0.5 --measure p95 --atlas paints.csv --format json
       uplift wavelengths --wavelengths 400:700:20 --light A --format csv
       uplift wavelengths --count 4 --method meyer --light C --atlas macbeth
       uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
     """
     if sum(option is not None for option in (count, target, given, orders)) != 1:
-        raise click.UsageError("Give one of --count, --target, --wavelengths and --orders.")
+        raise click.UsageError("Give one of --count, --tolerance, --wavelengths and --orders.")
     if (measure is not None and target is None) or (method is not None and count is None and target is None):
-        raise click.UsageError("--measure requires --target, --method requires --count or --target.")
+        raise click.UsageError("--measure requires --tolerance, --method requires --count or --tolerance.")
     if channels is not None and orders is None:
         raise click.UsageError("--channels requires --orders.")
     fixed = parse_wavelengths(given)

@@ -22,7 +22,6 @@ from .number_types import Whole
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
-DEFAULT_COEFFICIENTS, MAX_COEFFICIENTS = 9, 17
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
 
@@ -65,10 +64,10 @@ def atlas_option(help: str, default: str = "") -> Decorator:
     )
 
 
-def measured_option() -> Decorator:
-    """``--measured``: names of `uplift.atlas.MEASURED`, which is not imported here."""
+def scale_option() -> Decorator:
+    """``--scale``: names of `uplift.atlas.MEASURED`, which is not imported here."""
     return click.option(
-        "--measured",
+        "--scale",
         type=click.Choice(("auto", "percent", "fraction")),
         default="auto",
         show_default=True,
@@ -139,12 +138,10 @@ def out_of_gamut_option(default: str = "error", subject: str = "linear RGB") -> 
     )
 
 
-def input_space_option(subject: str, *names: str, default: str = "as the file states") -> Decorator:
-    """``--input-space`` and its other ``names`` as ``input_space``: text for `uplift.colorimetry.spaces.find_space`."""
+def input_space_option(subject: str, default: str = "as the file states") -> Decorator:
+    """``--input-space``: text for `uplift.colorimetry.spaces.find_space`."""
     return click.option(
-        *names,
         "--input-space",
-        "input_space",
         metavar="NAME",
         shell_complete=complete_space,
         help=f"RGB space of {subject}: a name of OpenColorIO or colour-science such as ACEScg or lin_rec2020, or x,y "
@@ -223,47 +220,16 @@ def sensor_options(function: Callable[..., Any]) -> Callable[..., Any]:
     return space(illuminant(observer(function)))
 
 
-def coefficients_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """``--coefficients``, and the older ``--moments``, which counts one less; see `coefficient_count`."""
-    coefficients = click.option(
+def coefficients_option() -> Decorator:
+    """``--coefficients``."""
+    return click.option(
         "--coefficients",
         type=Whole(),
+        default=9,
+        show_default=True,
         metavar="N",
-        help=f"Coefficients per spectrum, 3 to 17. [default: {DEFAULT_COEFFICIENTS}]",
+        help="Coefficients per spectrum, 3 to 17.",
     )
-    moments = click.option("--moments", type=Whole(), hidden=True)
-    return coefficients(moments(function))
-
-
-def coefficient_count(coefficients: int | None, moments: int | None) -> int:
-    """Return the number of coefficients that ``--coefficients`` or ``--moments`` gives."""
-    if coefficients is not None and moments is not None:
-        raise click.UsageError("--moments N is the same as --coefficients N+1: give one of the two.")
-    if moments is not None:
-        return moments + 1
-    return DEFAULT_COEFFICIENTS if coefficients is None else coefficients
-
-
-def entry_coefficients_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """``--entry-coefficients``, and ``--entry-moments``, which counts one less; see `entry_coefficient_count`."""
-    coefficients = click.option(
-        "--entry-coefficients",
-        type=Whole(),
-        metavar="N",
-        help=f"Coefficients per spectrum of an atlas entry, from --coefficients to {MAX_COEFFICIENTS}. "
-        f"[default: {MAX_COEFFICIENTS}]",
-    )
-    moments = click.option("--entry-moments", type=Whole(), hidden=True)
-    return coefficients(moments(function))
-
-
-def entry_coefficient_count(coefficients: int | None, moments: int | None) -> int:
-    """Return the number of coefficients that ``--entry-coefficients`` or ``--entry-moments`` gives."""
-    if coefficients is not None and moments is not None:
-        raise click.UsageError("--entry-moments N is the same as --entry-coefficients N+1: give one of the two.")
-    if moments is not None:
-        return moments + 1
-    return MAX_COEFFICIENTS if coefficients is None else coefficients
 
 
 def force_option() -> Decorator:

@@ -93,9 +93,9 @@ def test_colour_terminals_show_swatches(invoke, monkeypatch):
 
 def test_conversion_round_trip(invoke, tmp_path):
     table, text = tmp_path / "out.csv", tmp_path / "out.txt"
-    result = invoke(MACBETH, "--convert", table)
+    result = invoke(MACBETH, "-o", table)
     assert (result.stdout, result.stderr) == ("", f"{table}: 24 entries\n")
-    invoke(table, "--convert", text)
+    invoke(table, "-o", text)
     for one, other in zip(read_atlas(text).entries, read_atlas(MACBETH).entries, strict=True):
         assert one.name == other.name
         np.testing.assert_array_equal(one.values, other.values)
@@ -104,10 +104,10 @@ def test_conversion_round_trip(invoke, tmp_path):
 def test_convert_replaces_files_only_with_force(invoke, refuse, tmp_path):
     path = tmp_path / "out.csv"
     path.write_text("mine")
-    error = refuse("atlas", MACBETH, "--convert", path)
+    error = refuse("atlas", MACBETH, "-o", path)
     assert (error.code, error.path) == ("file-exists", path)
     assert path.read_text() == "mine"
-    invoke(MACBETH, "--convert", path, "--force")
+    invoke(MACBETH, "-o", path, "--force")
     assert len(read_atlas(path)) == 24
 
 
@@ -145,7 +145,7 @@ def test_list_of_shipped_atlases_in_json_and_csv(invoke):
 
 
 def test_convert_needs_a_file(misuse, tmp_path):
-    assert "--convert" in misuse("atlas", "--convert", tmp_path / "out.csv")
+    assert "-o" in misuse("atlas", "-o", tmp_path / "out.csv")
 
 
 def test_names_of_shipped_atlases_work_in_an_empty_folder(invoke, home):

@@ -19,7 +19,7 @@ from uplift.pipeline.options import Options
 
 from .conftest import warning_lines
 
-SMALL = ("--dim", "4", "--moments", "3")
+SMALL = ("--dim", "4", "--coefficients", "4")
 
 
 def uplift_process(*args):
@@ -65,12 +65,12 @@ def test_default_name_has_atlas_or_space_and_dim(run, home, args, name):
     (home / "far").mkdir()
     (home / "a.csv").write_text("name,380,780\ngrey,0.5,0.5\n")
     (home / "far" / "b.csv").write_text("name,380,780\nblack,0.01,0.01\n")
-    run("build", "--dim", "2", "--moments", "3", *args)
+    run("build", "--dim", "2", "--coefficients", "4", *args)
     assert {path.name for path in home.iterdir()} - {"a.csv", "far"} == {name}
 
 
 def test_all_options_are_passed_to_the_build(run, home):
-    run("build", "--dim", "3", "--moments", "4", "--warp", "vision", "--axis", "linear", "--space", "Display P3",
+    run("build", "--dim", "3", "--coefficients", "5", "--warp", "vision", "--axis", "linear", "--space", "Display P3",
         "--illuminant", "D50", "--observer", "CIE 1964 10 Degree Standard Observer", "--light", "A",
         "--light", "FL2", "--start", "neighbours",
         "--solver", "dogleg", "--threshold", "1e-3", "--debug", "-o", "cube")  # fmt: skip
@@ -87,7 +87,7 @@ def test_all_options_are_passed_to_the_build(run, home):
 
 
 def test_range_and_step(run, home):
-    run("build", "--dim", "2", "--moments", "3", "--range", "360:830", "--step", "10", "-o", "cube")
+    run("build", "--dim", "2", "--coefficients", "4", "--range", "360:830", "--step", "10", "-o", "cube")
     data = uplift.load(home / "cube").data
     assert data.sensor.range == (360, 830, 10)
     assert (data.model.phase.start, data.model.phase.end) == (360, 830)
@@ -173,11 +173,9 @@ def test_files_are_replaced_only_with_force(run, refuse, home):
         (("--range", "360:1100"), "range-out-of-limits"),
         (("--range", "361:830"), "range-not-in-steps"),
         (("--step", "3"), "unsupported-step"),
-        (("--moments", "1"), "coefficients-out-of-range"),
-        (("--moments", "17"), "coefficients-out-of-range"),
-        (("--entry-moments", "17"), "entry-coefficients-out-of-range"),
         (("--coefficients", "2"), "coefficients-out-of-range"),
         (("--coefficients", "18"), "coefficients-out-of-range"),
+        (("--entry-coefficients", "18"), "entry-coefficients-out-of-range"),
         (("--threshold", "0"), "threshold-out-of-range"),
         (("--threshold", "0.2"), "threshold-out-of-range"),
         (("--threshold", "1"), "threshold-out-of-range"),
@@ -203,19 +201,11 @@ def test_suggested_dim_fits_into_memory(refuse):
         check_memory(Options(dim=dim + 1))
 
 
-def test_coefficients_count_one_more_than_moments(run, misuse, home):
-    for name, *options in (("a", "--coefficients", 4), ("b", "--moments", 3)):
-        run("build", "--dim", 2, *options, "-o", name)
-    assert (home / "a").read_bytes() == (home / "b").read_bytes()
-    assert "--coefficients" in misuse("build", "--coefficients", 4, "--moments", 3)
-
-
-def test_entries_have_the_given_number_of_coefficients(run, misuse, home):
-    for name, *options in (("a", "--entry-coefficients", 12), ("b", "--entry-moments", 11), ("c",)):
-        run("build", "--atlas", "macbeth", "--dim", 2, "--moments", 3, *options, "-o", name)
-    counts = {name: uplift.load(home / name).entry_coefficient_count for name in "abc"}
-    assert counts == {"a": 12, "b": 12, "c": 17}
-    assert "--entry-coefficients" in misuse("build", "--entry-coefficients", 12, "--entry-moments", 11)
+def test_entries_have_the_given_number_of_coefficients(run, home):
+    for name, *options in (("a", "--entry-coefficients", 12), ("b",)):
+        run("build", "--atlas", "macbeth", "--dim", 2, "--coefficients", 4, *options, "-o", name)
+    counts = {name: uplift.load(home / name).entry_coefficient_count for name in "ab"}
+    assert counts == {"a": 12, "b": 17}
 
 
 def test_progress_bars_need_a_terminal(home):

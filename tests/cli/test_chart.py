@@ -140,7 +140,7 @@ def test_chart_can_be_redrawn_from_its_table(quick, run, refuse):
 
 def test_recommendation_from_a_table(quick, run, refuse):
     table = quick[0] / "chart.csv"
-    result = run("chart", "--recommend", "--from", table, "--delta-e", 0.05, "--light", "D65")
+    result = run("chart", "--recommend", "--from", table, "--tolerance", 0.05, "--light", "D65")
     assert re.search(r"\n  uplift build (--atlas FILE )?--dim \d+ ", result.stdout)
     error = refuse("chart", "--recommend", "--from", table, "--time-ns", 0.5)
     assert error.code == "requirements-not-met"
@@ -148,7 +148,7 @@ def test_recommendation_from_a_table(quick, run, refuse):
 
 
 def test_recommendation_from_the_packaged_chart(run, repository):
-    result = run("chart", "--recommend", "--delta-e", 1, "--light", "FL11", "--atlas-materials")
+    result = run("chart", "--recommend", "--tolerance", 1, "--light", "FL11", "--atlas-materials")
     assert "--atlas FILE" in result.stdout
     stored = (repository / "uplift" / "lab" / "chart" / MEASURED).read_text(encoding="utf-8")
     assert chart_csv(shipped_chart()) == stored
@@ -160,7 +160,7 @@ def test_recommendation_from_the_packaged_chart(run, repository):
         (("--methods", "x"), "unknown-method"),
         (("--colours", 3), "too-few-colours"),
         (("--recommend",), "no-requirements"),
-        (("--recommend", "--delta-e", 1, "--light", "FL12"), "unknown-light"),
+        (("--recommend", "--tolerance", 1, "--light", "FL12"), "unknown-light"),
         (("--from", "none.csv"), "file-not-found"),
         (("-o", "file"), "folder-not-created"),
     ],

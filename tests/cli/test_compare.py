@@ -63,7 +63,7 @@ def test_page_has_both_plots_and_the_filters(quick):
 
 
 def test_target_prints_the_cheapest_for_each_set_of_lights(run, macbeth):
-    words = ["compare", "--quick", "--atlas", macbeth, "--target"]
+    words = ["compare", "--quick", "--atlas", macbeth, "--tolerance"]
     near = run(*words, 1.0).stdout.splitlines()
     assert [line.split(" lights")[0] for line in near] == ["smooth", "spiky"]
     assert all(float(re.search(r"97\.5 % below ([\d.]+)", line)[1]) <= 1 for line in near)
@@ -83,7 +83,7 @@ def test_lights_replace_the_default_sets(run, macbeth):
     ("arguments", "code"),
     [
         (("--light", "F2"), "unknown-illuminant"),
-        (("--target", 0), "target-not-positive"),
+        (("--tolerance", 0), "target-not-positive"),
         (("-o", "file"), "folder-not-created"),
         (("-o", "out"), "file-exists"),
     ],

@@ -45,30 +45,30 @@ def test_formats_and_default_names(run, home, cube, style, name, count, first):
     ],
 )
 def test_programs_come_with_a_table(run, home, cube, name, table):
-    assert table in run("export", cube, name, "--mode", "moments").stdout
+    assert table in run("export", cube, "-o", name, "--mode", "moments").stdout
     assert {path.name for path in home.iterdir()} == {cube, name, table}
     assert "moments" in (home / name).read_text()
 
 
 def test_the_table_of_a_program_is_a_choice(run, refuse, home, cube):
-    run("export", cube, "a.h", "--table", "file")
-    run("export", cube, "b.glsl", "--table", "textures")
+    run("export", cube, "-o", "a.h", "--table", "file")
+    run("export", cube, "-o", "b.glsl", "--table", "textures")
     tables = {"a.bin", *(f"b-{name}.ktx2" for name in (0, 1, 2, "entries"))}
     assert {path.name for path in home.iterdir()} == {cube, "a.h", "b.glsl", *tables}
-    assert refuse("export", cube, "c.cuh", "--table", "textures").code == "unknown-table"
-    assert refuse("export", cube, "b.wgsl", "--table", "textures").code == "file-exists"
+    assert refuse("export", cube, "-o", "c.cuh", "--table", "textures").code == "unknown-table"
+    assert refuse("export", cube, "-o", "b.wgsl", "--table", "textures").code == "file-exists"
     assert not (home / "b.wgsl").exists()
 
 
 def test_format_follows_the_suffix_of_out(run, home, cube):
-    assert run("export", cube, "table.coeff", "--res", 3).stdout.startswith("table.coeff: ")
+    assert run("export", cube, "-o", "table.coeff", "--res", 3).stdout.startswith("table.coeff: ")
     assert (home / "table.coeff").read_bytes()[:8] == b"SPEC" + bytes([3, 0, 0, 0])
-    run("export", cube, "ANY.NPZ")
+    run("export", cube, "-o", "ANY.NPZ")
     assert np.load(home / "ANY.NPZ")["nodes"].shape == (8,)
 
 
 def test_format_option_overrides_the_suffix(run, home, cube):
-    run("export", cube, "points.txt", "--format", "csv")
+    run("export", cube, "-o", "points.txt", "--format", "csv")
     assert (home / "points.txt").read_text().startswith("r,g,b")
 
 
@@ -76,10 +76,10 @@ def test_format_option_overrides_the_suffix(run, home, cube):
     ("arguments", "option"),
     [
         ((), "--format"),
-        (("cube.exr",), "--format"),
-        (("cube.h", "--res", "8"), "--res"),
-        (("cube.npz", "--mode", "moments"), "--mode"),
-        (("cube.npz", "--table", "file"), "--table"),
+        (("-o", "cube.exr"), "--format"),
+        (("-o", "cube.h", "--res", "8"), "--res"),
+        (("-o", "cube.npz", "--mode", "moments"), "--mode"),
+        (("-o", "cube.npz", "--table", "file"), "--table"),
     ],
 )
 def test_wrong_usage(misuse, home, cube, cubes, arguments, option):
@@ -90,24 +90,24 @@ def test_wrong_usage(misuse, home, cube, cubes, arguments, option):
 
 def test_files_are_replaced_only_with_force(run, refuse, home, cube):
     (home / "cube.csv").write_text("mine")
-    assert refuse("export", cube, "cube.csv").code == "file-exists"
+    assert refuse("export", cube, "-o", "cube.csv").code == "file-exists"
     assert (home / "cube.csv").read_text() == "mine"
-    run("export", cube, "cube.csv", "--force")
+    run("export", cube, "-o", "cube.csv", "--force")
     assert (home / "cube.csv").read_text() != "mine"
 
 
 def test_invalid_input_is_an_error(refuse, home, cube):
-    assert refuse("export", "missing.uplift", "cube.csv").code == "cube-not-found"
-    assert refuse("export", cube, "cube.coeff", "--res", "1").code == "resolution-out-of-range"
-    assert refuse("export", cube, "missing/cube.csv").code == "folder-missing"
+    assert refuse("export", "missing.uplift", "-o", "cube.csv").code == "cube-not-found"
+    assert refuse("export", cube, "-o", "cube.coeff", "--res", "1").code == "resolution-out-of-range"
+    assert refuse("export", cube, "-o", "missing/cube.csv").code == "folder-missing"
     assert [path.name for path in home.iterdir()] == [cube]
 
 
 def test_lights(run, refuse, home):
-    result = run("export", "emission", "lights.h")
+    result = run("export", "emission", "-o", "lights.h")
     assert result.output.startswith("lights.h: ")
     assert "lights_power" in (home / "lights.h").read_text()
-    assert refuse("export", "emission", "lights.wgsl").code == "unknown-language"
-    assert refuse("export", "emission", "lights.csv").code == "unknown-language"
-    assert refuse("export", "emission", "l.h", "--mode", "moments").code == "not-for-lights"
-    assert refuse("export", "emission", "l.coeff", "--res", "8").code == "not-for-lights"
+    assert refuse("export", "emission", "-o", "lights.wgsl").code == "unknown-language"
+    assert refuse("export", "emission", "-o", "lights.csv").code == "unknown-language"
+    assert refuse("export", "emission", "-o", "l.h", "--mode", "moments").code == "not-for-lights"
+    assert refuse("export", "emission", "-o", "l.coeff", "--res", "8").code == "not-for-lights"

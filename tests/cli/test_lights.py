@@ -70,7 +70,7 @@ def test_the_default_name_is_that_of_the_lamps(home):
     "words",
     [
         ("query", "1", "1", "1", "--cube", "lights.uplift"),
-        ("texture", "in.png", "out.exr", "--cube", "lights.uplift"),
+        ("texture", "in.png", "-o", "out.exr", "--cube", "lights.uplift"),
         ("relight", "in.png", "--cube", "lights.uplift"),
         ("mix", "#ff0000", "#0000ff", "--cube", "lights.uplift"),
         ("study", "sensitivity", "lights.uplift"),

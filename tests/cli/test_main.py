@@ -14,7 +14,6 @@ import pytest
 from click.testing import CliRunner
 from uplift_cli.main import COMMANDS, main
 from uplift_cli.output.hints import HINTS
-from uplift_cli.params.renamed import RENAMED
 
 import uplift
 from uplift.common.errors import UpliftError, UpliftWarning
@@ -207,22 +206,6 @@ def commands(command=main, path=()):
 
 def options(command):
     return {option for param in command.params for option in param.opts}
-
-
-@pytest.mark.parametrize(("key", "new"), RENAMED.items())
-def test_renamed_options_are_errors_that_name_the_new_option(refuse, key, new):
-    name, old = key
-    ((words, command),) = [each for each in commands() if each[0][-1] == name]
-    assert new in options(command)
-    assert old not in options(command)
-    error = refuse(*words, old, "1")
-    assert error.code == "option-renamed"
-    assert old in error.problem
-    assert new in error.hint
-
-
-def test_renamed_options_of_other_commands_are_unknown(misuse):
-    assert "--within" in misuse("info", "--within", "1")
 
 
 def test_hints_name_options_that_exist():

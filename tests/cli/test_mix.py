@@ -92,24 +92,24 @@ def test_paints_by_their_colours_on_white_and_black(mixed):
 
 
 def test_lights_and_filters(run, mixed):
-    assert mixed("--light", "#ff0000", "#00ff00")["hex"] == "#ffff00"
-    bright = run("mix", "--light", "3:#804020", "3:#804020", "--format", "json")
+    assert mixed("--additive", "#ff0000", "#00ff00")["hex"] == "#ffff00"
+    bright = run("mix", "--additive", "3:#804020", "3:#804020", "--format", "json")
     (warning,) = warning_lines(bright)
     assert "[0, 1]" in warning
     assert "(scale)" in warning
-    one = mixed("--light", "#804020")["rgb"]
+    one = mixed("--additive", "#804020")["rgb"]
     np.testing.assert_allclose(json.loads(bright.stdout)["rgb"], np.divide(one, one[0]))
     once, twice = (mixed("--filter", f"{x}:#ff8040")["rgb"] for x in (1, 2))
     assert all(np.less_equal(twice, once))
 
 
 def test_swatches_are_plotted(run, refuse, home):
-    run("mix", BLUE, YELLOW, "--swatches", "green.png", "--steps", 5)
+    run("mix", BLUE, YELLOW, "--plot", "green.png", "--steps", 5)
     picture = matplotlib.image.imread("green.png")
     assert picture.shape[1] == 720
     last = (255 * picture[-40, -30, :3]).round().astype(int).tolist()
     assert last == [0xFF, 0xD2, 0x00]
-    assert refuse("mix", BLUE, "--swatches", "green.png").code == "file-exists"
+    assert refuse("mix", BLUE, "--plot", "green.png").code == "file-exists"
 
 
 def test_paint_over_an_image(run, refuse, home, cubes):
@@ -122,7 +122,7 @@ def test_paint_over_an_image(run, refuse, home, cubes):
     run("mix", "--dye", "#c8342a", "--thickness", 0, *options, "-o", "bare.exr")
     np.testing.assert_allclose(read_channels(home / "bare.exr", "RGB"), rgb, atol=1e-5)
     assert refuse("mix", BLUE, *options, "-o", "o.png").code == "unknown-suffix"
-    assert refuse("mix", "--light", BLUE, *options, "-o", "o.exr").code == "unknown-coat"
+    assert refuse("mix", "--additive", BLUE, *options, "-o", "o.exr").code == "unknown-coat"
 
 
 @pytest.mark.parametrize(
@@ -150,9 +150,9 @@ def test_invalid_input_is_an_error(refuse, words, code):
         (),
         (BLUE, "--over", "in.exr"),
         (BLUE, "-o", "out.exr"),
-        (BLUE, "--light", "--ground", "white"),
+        (BLUE, "--additive", "--ground", "white"),
         (BLUE, "--steps", "1"),
-        (BLUE, "--over", "in.exr", "-o", "out.exr", "--swatches", "a.png"),
+        (BLUE, "--over", "in.exr", "-o", "out.exr", "--plot", "a.png"),
     ],
 )
 def test_wrong_usage(misuse, words):

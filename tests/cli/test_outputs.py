@@ -49,16 +49,16 @@ def inputs(home, cubes, macbeth):
 @pytest.mark.parametrize(
     "words",
     [
-        "atlas atlas.txt --convert ./atlas.txt",
+        "atlas atlas.txt -o ./atlas.txt",
         "build --atlas atlas.txt -o atlas.txt",
         "build --scene image.exr -o link.exr",
-        "export cube.uplift cube.uplift --format csv",
+        "export cube.uplift -o cube.uplift --format csv",
         "mix #c8342a --over image.exr -o image.exr",
         "mix #c8342a --over image.exr -o link.exr",
-        "mix black --atlas atlas.txt --swatches atlas.png",
-        "palette palette.toml --matrix palette.png",
-        "palette palette.toml --atlas atlas.txt",
-        "palette palette.toml --spectra palette.png",
+        "mix black --atlas atlas.txt --plot atlas.png",
+        "palette palette.toml --plot palette.png",
+        "palette palette.toml -o atlas.txt",
+        "palette palette.toml --plot-spectra palette.png",
         "palette palette.toml --html image.exr --image image.exr",
         "plan scene.toml -o scene.toml",
         "plan scene.toml -o image.exr",
@@ -67,11 +67,11 @@ def inputs(home, cubes, macbeth):
         "query --input colours.csv --plot colours.pdf",
         "report cube.uplift -o cube.uplift",
         "report cube.uplift --atlas atlas.txt -o atlas.txt",
-        "slices cube.uplift cube.uplift",
-        "slices cube.uplift --sheet cube.uplift",
-        "texture image.exr image.exr",
-        "texture image.exr link.exr",
-        "texture image.exr .",
+        "slices cube.uplift -o cube.uplift",
+        "slices cube.uplift --plot cube.uplift",
+        "texture image.exr -o image.exr",
+        "texture image.exr -o link.exr",
+        "texture image.exr -o .",
         "wavelengths --count 4 --atlas atlas.txt --plot atlas.png",
     ],
 )
@@ -84,10 +84,10 @@ def test_inputs_are_not_replaced(refuse, home, inputs, words):
 @pytest.mark.parametrize(
     "words",
     [
-        "palette palette.toml --matrix new.png --spectra {}",
+        "palette palette.toml --plot new.png --plot-spectra {}",
         "plan scene.toml -o {}.json",
-        "slices cube.uplift new.exr --sheet {}",
-        "texture image.exr link.exr {}",
+        "slices cube.uplift -o new.exr --plot {}",
+        "texture image.exr link.exr -o {}",
     ],
 )
 def test_nothing_is_written_if_one_output_exists(refuse, home, inputs, words):
@@ -105,7 +105,7 @@ def test_nothing_is_written_if_one_output_exists(refuse, home, inputs, words):
 
 @pytest.mark.parametrize(
     "words",
-    ["palette palette.toml --matrix a.png --spectra ./a.png", "slices cube.uplift a.exr --sheet ./a.exr"],
+    ["palette palette.toml --plot a.png --plot-spectra ./a.png", "slices cube.uplift -o a.exr --plot ./a.exr"],
 )
 def test_outputs_differ(refuse, inputs, words):
     assert refuse(*words.split(), "--force").code == "duplicate-output"

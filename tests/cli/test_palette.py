@@ -57,7 +57,7 @@ def test_json_reproduces_the_matrix(run, spec):
 
 
 def test_files_are_written(run, spec, home):
-    files = ("--atlas", "new.txt", "--matrix", "m.png", "--spectra", "s.png")
+    files = ("-o", "new.txt", "--plot", "m.png", "--plot-spectra", "s.png")
     text = run("palette", spec(), *files).stderr
     assert "new.txt: 1 designed materials" in text
     assert uplift.read_atlas("new.txt").names == ("new",)
@@ -66,8 +66,8 @@ def test_files_are_written(run, spec, home):
 
 def test_files_are_replaced_only_with_force(refuse, run, spec, home):
     (home / "m.png").write_text("mine")
-    assert refuse("palette", spec(), "--matrix", "m.png").code == "file-exists"
-    run("palette", spec(), "--matrix", "m.png", "--force")
+    assert refuse("palette", spec(), "--plot", "m.png").code == "file-exists"
+    run("palette", spec(), "--plot", "m.png", "--force")
 
 
 def test_invalid_specs_are_errors(refuse, spec):

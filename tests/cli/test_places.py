@@ -70,8 +70,8 @@ def test_folder_that_may_not_be_searched(tmp_path, cubes, arguments):
 @pytest.mark.parametrize(
     "arguments",
     ["info {}.uplift", "info {}.uplift --format json", "atlas {}.txt", "query 0 0 0 --plot {}.png", "info {}-.uplift",
-     "export {}.uplift {}.csv", "query 0 0 0 --cube {}.uplift --format csv", "slices {}.uplift --sheet {}.sh.png",
-     "report {}.uplift -o {}.htm", "texture {}.png t.exr", "query {}", "query --{}", "{}"],
+     "export {}.uplift -o {}.csv", "query 0 0 0 --cube {}.uplift --format csv", "slices {}.uplift --plot {}.sh.png",
+     "report {}.uplift -o {}.htm", "texture {}.png -o t.exr", "query {}", "query --{}", "{}"],
 )  # fmt: skip
 def test_names_of_files(home, cubes, macbeth, name, arguments):
     shutil.copy(cubes / "moments-8.uplift", f"{name}.uplift")

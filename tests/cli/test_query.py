@@ -169,15 +169,15 @@ P3 = "0.68,0.32 0.265,0.69 0.15,0.06 0.3127,0.329"
 @pytest.mark.parametrize("name", ["P3-D65", P3])
 def test_colours_of_another_display(ask, name):
     theirs = colour.matrix_RGB_to_RGB("P3-D65", "sRGB")
-    requested = ask("0.5", "0.6", "0.3", "--space", name)["requested_rgb"]
+    requested = ask("0.5", "0.6", "0.3", "--input-space", name)["requested_rgb"]
     np.testing.assert_allclose(requested, theirs @ [0.5, 0.6, 0.3], rtol=0, atol=3e-4)
-    green = ask("0", "1", "0", "--space", name, "--out-of-gamut", "clip")
+    green = ask("0", "1", "0", "--input-space", name, "--out-of-gamut", "clip")
     np.testing.assert_allclose(green["requested_rgb"], theirs[:, 1], rtol=0, atol=3e-4)
     assert green["rgb"] == [0, 1, 0]
 
 
 def test_range_is_checked_after_conversion_from_another_display(ask, table):
-    results = ask("--input", table("-0.1,0.5,0.4"), "--space", "0.4,0.34 0.31,0.4 0.25,0.2 0.3127,0.329")
+    results = ask("--input", table("-0.1,0.5,0.4"), "--input-space", "0.4,0.34 0.31,0.4 0.25,0.2 0.3127,0.329")
     assert 0 <= min(results[0]["rgb"]) <= max(results[0]["rgb"]) <= 1
 
 
@@ -191,7 +191,7 @@ def test_range_is_checked_after_conversion_from_another_display(ask, table):
     ],
 )
 def test_invalid_primaries_are_errors(refuse, name, code):
-    assert refuse("query", "0.5", "0.6", "0.3", "--space", name).code == code
+    assert refuse("query", "0.5", "0.6", "0.3", "--input-space", name).code == code
 
 
 def test_a_file_and_a_colour_exclude_each_other(misuse, table):

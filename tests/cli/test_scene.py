@@ -70,7 +70,7 @@ def test_queries_of_other_colours_are_errors_unless_filled(run, refuse, scene):
 def test_textures_with_other_colours_are_errors_unless_filled(run, refuse, scene, home, small_cube):
     rgb = np.array([[[0.001, 0.002, 0.001], [0.1, 0.9, 0.2]]], np.float32)
     write_exr(home / "image.exr", planes(rgb))
-    arguments = ("texture", "image.exr", "out.exr", "--cube", scene, "--store", "multipliers")
+    arguments = ("texture", "image.exr", "-o", "out.exr", "--cube", scene, "--representation", "multipliers")
     error = refuse(*arguments)
     assert (error.code, error.path.name) == ("colour-not-in-scene", "image.exr")
     assert "(0.1, 0.9, 0.2)" in error.problem

@@ -36,7 +36,7 @@ def texture(tmp_path):
     """A process that converts two large images on two workers, and has begun with both."""
     for name in ("a.png", "b.png"):
         Image.fromarray(np.full((4096, 4096, 3), 100, np.uint8)).save(tmp_path / name, compress_level=1)
-    command = [sys.executable, "-m", "uplift_cli", "texture", "a.png", "b.png", "out", "--processes", "2"]
+    command = [sys.executable, "-m", "uplift_cli", "texture", "a.png", "b.png", "-o", "out", "--processes", "2"]
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
         wait_until(lambda: len(unfinished(tmp_path)) == 2 or process.poll() is not None)
         yield process

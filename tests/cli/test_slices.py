@@ -17,7 +17,7 @@ def cube(home):
 
 
 def test_slices_and_sheet(run, cube, home):
-    assert run("slices", cube, "out.exr", "--sheet", "sheet.png").stdout.splitlines() == [
+    assert run("slices", cube, "-o", "out.exr", "--plot", "sheet.png").stdout.splitlines() == [
         "out.exr: 4 blue slices",
         "sheet.png: contact sheet",
     ]
@@ -26,12 +26,12 @@ def test_slices_and_sheet(run, cube, home):
 
 
 def test_sheet_alone(run, cube, home):
-    assert run("slices", cube, "--sheet", "sheet.exr").stdout == "sheet.exr: contact sheet\n"
+    assert run("slices", cube, "--plot", "sheet.exr").stdout == "sheet.exr: contact sheet\n"
     assert {path.name for path in home.iterdir()} == {cube, "sheet.exr"}
 
 
 def test_emission_tables_are_one_image_and_a_sheet(run, home):
-    assert run("slices", "emission", "lights.exr", "--sheet", "lights.png").stdout.splitlines() == [
+    assert run("slices", "emission", "-o", "lights.exr", "--plot", "lights.png").stdout.splitlines() == [
         "lights.exr: chromaticity diagram",
         "lights.png: contact sheet",
     ]
@@ -40,26 +40,25 @@ def test_emission_tables_are_one_image_and_a_sheet(run, home):
 
 
 def test_an_output_is_required(misuse, cube):
-    assert "--sheet" in misuse("slices", cube)
+    assert "--plot" in misuse("slices", cube)
 
 
 @pytest.mark.parametrize("exists", ["out.exr", "sheet.png"])
 def test_nothing_is_written_if_one_file_exists(run, refuse, cube, home, exists):
     (home / exists).write_text("old")
-    error = refuse("slices", cube, "out.exr", "--sheet", "sheet.png")
+    error = refuse("slices", cube, "-o", "out.exr", "--plot", "sheet.png")
     assert (error.code, error.where) == ("file-exists", exists)
     assert {path.name for path in home.iterdir()} == {cube, exists}
-    run("slices", cube, "out.exr", "--sheet", "sheet.png", "--force")
+    run("slices", cube, "-o", "out.exr", "--plot", "sheet.png", "--force")
 
 
 def test_invalid_cubes_are_errors(refuse, home):
     (home / "text.uplift").write_text("not a cube")
-    assert refuse("slices", "text.uplift", "out.exr").code == "not-a-cube"
-    assert refuse("slices", "missing.uplift", "out.exr").code == "cube-not-found"
+    assert refuse("slices", "text.uplift", "-o", "out.exr").code == "not-a-cube"
+    assert refuse("slices", "missing.uplift", "-o", "out.exr").code == "cube-not-found"
     assert not (home / "out.exr").exists()
 
 
 def test_help_has_examples(run):
     text = run("slices", "--help").stdout
-    assert "[OUT.exr]" in text
-    assert "    uplift slices macbeth-32.uplift --sheet sheet.png" in text.splitlines()
+    assert "    uplift slices macbeth-32.uplift --plot sheet.png" in text.splitlines()

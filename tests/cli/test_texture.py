@@ -25,20 +25,20 @@ def frames(home):
 
 
 def test_one_image(run, refuse, frames, cubes):
-    options = ("--cube", cubes / "moments-8.uplift", "--store", "moments")
-    result = run("texture", "shot.0.exr", "out.exr", *options)
+    options = ("--cube", cubes / "moments-8.uplift", "--representation", "moments")
+    result = run("texture", "shot.0.exr", "-o", "out.exr", *options)
     assert result.output.startswith("out.exr: 1 texture, 30 pixels, 0.0 MB, ")
     assert "moment.08" in OpenEXR.File("out.exr", separate_channels=True).channels()
-    assert refuse("texture", "shot.0.exr", "out.exr", *options).code == "file-exists"
-    result = run("texture", "shot.0.exr", "out.exr", *options, "--resume")
+    assert refuse("texture", "shot.0.exr", "-o", "out.exr", *options).code == "file-exists"
+    result = run("texture", "shot.0.exr", "-o", "out.exr", *options, "--resume")
     assert result.output.startswith("out.exr: 0 textures, 1 skipped, ")
-    assert run("texture", "shot.0.exr", "out.exr", *options, "--force", "-q").output == ""
+    assert run("texture", "shot.0.exr", "-o", "out.exr", *options, "--force", "-q").output == ""
 
 
 def test_sequences_continue_after_an_invalid_image(run, shown, frames, cubes):
     (frames / "shot.2.exr").write_text("not an image")
     result = run(
-        "texture", "shot.*.exr", "out", "--cube", cubes / "moments-8.uplift", "--store", "moments",
+        "texture", "shot.*.exr", "-o", "out", "--cube", cubes / "moments-8.uplift", "--representation", "moments",
         "--processes", 1, code=2,
     )  # fmt: skip
     assert result.stdout.startswith("out: 2 textures, 60 pixels, ")
@@ -52,15 +52,18 @@ def test_sequences_continue_after_an_invalid_image(run, shown, frames, cubes):
 @pytest.mark.parametrize(
     ("words", "code"),
     [
-        (("none.exr", "out.exr"), "file-not-found"),
-        (("none*.exr", "out"), "no-match"),
-        (("shot.0.exr", "out.png"), "unknown-suffix"),
-        (("shot.0.exr", "shot.1.exr", "out.exr"), "not-a-folder"),
-        (("shot.0.exr", "shot.1.exr", "shot.2.exr/out"), "not-a-folder"),
-        (("shot.0.exr", "a.exr", "--store", "moments", "--wavelengths", "500"), "wavelengths-not-applicable"),
-        (("shot.0.exr", "a.exr", "--wavelengths", "500:400:5"), "invalid-wavelengths"),
-        (("shot.0.exr", "a.exr", "--cube", "none.uplift"), "cube-not-found"),
-        (("shot.0.exr", "a.exr", "--store", "multipliers", "--depth", "half"), "unsupported-depth"),
+        (("none.exr", "-o", "out.exr"), "file-not-found"),
+        (("none*.exr", "-o", "out"), "no-match"),
+        (("shot.0.exr", "-o", "out.png"), "unknown-suffix"),
+        (("shot.0.exr", "shot.1.exr", "-o", "out.exr"), "not-a-folder"),
+        (("shot.0.exr", "shot.1.exr", "-o", "shot.2.exr/out"), "not-a-folder"),
+        (
+            ("shot.0.exr", "-o", "a.exr", "--representation", "moments", "--wavelengths", "500"),
+            "wavelengths-not-applicable",
+        ),
+        (("shot.0.exr", "-o", "a.exr", "--wavelengths", "500:400:5"), "invalid-wavelengths"),
+        (("shot.0.exr", "-o", "a.exr", "--cube", "none.uplift"), "cube-not-found"),
+        (("shot.0.exr", "-o", "a.exr", "--representation", "multipliers", "--depth", "half"), "unsupported-depth"),
     ],
 )
 def test_invalid_input_is_an_error(refuse, frames, words, code):
@@ -68,7 +71,16 @@ def test_invalid_input_is_an_error(refuse, frames, words, code):
 
 
 def test_out_of_gamut(run, refuse, frames, cubes):
-    words = ("texture", "shot.1.exr", "out.exr", "--cube", cubes / "moments-8.uplift", "--store", "moments")
+    words = (
+        "texture",
+        "shot.1.exr",
+        "-o",
+        "out.exr",
+        "--cube",
+        cubes / "moments-8.uplift",
+        "--representation",
+        "moments",
+    )
     (warning,) = warning_lines(run(*words, "--out-of-gamut", "scale"))
     assert re.search(r"\d+ of 30 pixels", warning)
     scaled = OpenEXR.File("out.exr", separate_channels=True).channels()
@@ -84,47 +96,47 @@ def test_out_of_gamut(run, refuse, frames, cubes):
 def test_textures_do_not_replace_any_image_of_the_sequence(refuse, frames):
     before = {path.name: path.read_bytes() for path in frames.iterdir()}
     for words in (("shot.*.exr",), ("shot.1.exr", "shot.0.exr")):
-        assert refuse("texture", *words, ".", "--force").code == "output-is-input"
+        assert refuse("texture", *words, "-o", ".", "--force").code == "output-is-input"
     assert {path.name: path.read_bytes() for path in frames.iterdir()} == before
 
 
 def test_lights(run, refuse, home):
     write_exr(home / "sky.exr", planes(np.full((2, 3, 3), 1e5, np.float32)))
     options = ("--emission", "--wavelengths", "450,550,650")
-    result = run("texture", "sky.exr", "out.exr", *options)
+    result = run("texture", "sky.exr", "-o", "out.exr", *options)
     assert result.output.startswith("out.exr: 1 texture, 6 pixels, 0.0 MB, ")
     found = OpenEXR.File("out.exr", separate_channels=True).channels()
     assert found["S0.550,000000nm"].pixels.min() > 1e4
-    assert run("texture", "sky.exr", "out.exr", *options, "--resume").output.startswith("out.exr: 0 textures")
+    assert run("texture", "sky.exr", "-o", "out.exr", *options, "--resume").output.startswith("out.exr: 0 textures")
 
 
 @pytest.mark.parametrize(
     "words",
-    [("--store", "moments"), ("--out-of-gamut", "scale"), ("--fill-missing",)],
+    [("--representation", "moments"), ("--out-of-gamut", "scale"), ("--fill-missing",)],
 )
 def test_options_that_lights_do_not_have(refuse, home, words):
     write_exr(home / "sky.exr", planes(np.ones((2, 3, 3), np.float32)))
-    assert refuse("texture", "sky.exr", "out.exr", "--emission", *words).code == "not-for-lights"
+    assert refuse("texture", "sky.exr", "-o", "out.exr", "--emission", *words).code == "not-for-lights"
 
 
 def test_a_cube_is_no_emission_table(refuse, home, cubes):
     write_exr(home / "sky.exr", planes(np.ones((2, 3, 3), np.float32)))
     path = cubes / "moments-8.uplift"
-    assert refuse("texture", "sky.exr", "out.exr", "--emission", "--cube", path).code == "not-an-emission-table"
+    assert refuse("texture", "sky.exr", "-o", "out.exr", "--emission", "--cube", path).code == "not-an-emission-table"
 
 
 def test_masks_choose_among_cubes(run, refuse, frames, cubes):
     two = ("--cube", cubes / "moments-8.uplift", "--cube", cubes / "moments-8-macbeth.uplift")
     write_exr(frames / "mask.exr", {"Y": np.full((6, 5), 0.25, dtype=np.float32)})
-    options = ("--mask", "mask.exr", *two, "--store", "moments")
-    run("texture", "shot.0.exr", "mixed.exr", *options)
-    result = run("texture", "shot.0.exr", "mixed.exr", *options, "--resume")
+    options = ("--mask", "mask.exr", *two, "--representation", "moments")
+    run("texture", "shot.0.exr", "-o", "mixed.exr", *options)
+    result = run("texture", "shot.0.exr", "-o", "mixed.exr", *options, "--resume")
     assert "0 textures, 1 skipped" in result.output
     write_exr(frames / "mask.exr", {"Y": np.full((6, 5), 0.5, dtype=np.float32)})
     converter_for.cache_clear()  # as of another process
-    result = run("texture", "shot.0.exr", "mixed.exr", *options, "--resume", "--force")
+    result = run("texture", "shot.0.exr", "-o", "mixed.exr", *options, "--resume", "--force")
     assert result.output.startswith("mixed.exr: 1 texture, ")
-    assert refuse("texture", "shot.0.exr", "mask.exr", *options, "--force").code == "output-is-input"
-    assert refuse("texture", "shot.0.exr", "one.exr", *options[:4]).code == "mask-without-cubes"
-    result = run("texture", "shot.0.exr", "one.exr", *two, code=2)
+    assert refuse("texture", "shot.0.exr", "-o", "mask.exr", *options, "--force").code == "output-is-input"
+    assert refuse("texture", "shot.0.exr", "-o", "one.exr", *options[:4]).code == "mask-without-cubes"
+    result = run("texture", "shot.0.exr", "-o", "one.exr", *two, code=2)
     assert "--mask" in result.stderr

@@ -62,7 +62,7 @@ def test_csv_and_table_have_the_same_numbers(choose):
 
 
 def test_target_is_met_by_the_fewest_wavelengths(choose):
-    answer = json.loads(choose("--target", 1, "--measure", "p95", "--format", "json"))
+    answer = json.loads(choose("--tolerance", 1, "--measure", "p95", "--format", "json"))
     assert answer["errors"]["D65"]["p95"] <= 1
     fewer = json.loads(choose("--count", answer["count"] - 1, "--format", "json"))
     assert fewer["errors"]["D65"]["p95"] > 1
@@ -85,8 +85,8 @@ def test_plot(choose, home):
     [
         (["--count", "0"], "count-out-of-range"),
         (["--count", "4", "--light", "D66"], "unknown-illuminant"),
-        (["--target", "-1"], "target-not-positive"),
-        (["--target", "0.001", "--method", "uniform"], "target-unreachable"),
+        (["--tolerance", "-1"], "target-not-positive"),
+        (["--tolerance", "0.001", "--method", "uniform"], "target-unreachable"),
         (["--count", "3", "--method", "meyer"], "undefined-rule"),
         (["--wavelengths", "300:700:50"], "invalid-wavelengths"),
         (["--wavelengths", "some"], "invalid-wavelengths"),
@@ -105,7 +105,9 @@ def test_given_wavelengths(choose):
     assert answer["errors"]["D65"]["mean"] < plain["errors"]["D65"]["mean"] / 2
 
 
-@pytest.mark.parametrize("options", [[], ["--count", "4", "--target", "1"], ["--wavelengths", "500", "--count", "1"]])
+@pytest.mark.parametrize(
+    "options", [[], ["--count", "4", "--tolerance", "1"], ["--wavelengths", "500", "--count", "1"]]
+)
 def test_one_of_count_target_and_wavelengths_is_required(misuse, options):
     assert "--count" in misuse("wavelengths", *options)
 

@@ -18,9 +18,9 @@ FIRST = ("README.md", "docs/commands.md")
 TUTORIAL = "docs/tutorial.md"
 """The page whose commands and Python tests/test_tutorial.py runs together, in a separate folder."""
 ELSEWHERE = {
-    "uplift texture 'shot.*.exr' sequence --cube macbeth-32.uplift --scheduler tcp://10.0.0.5:8786",
-    "uplift texture 'shot.*.exr' uplifted --scheduler tcp://10.0.0.5:8786",
-    "uplift texture shot.*.exr uplifted --scheduler tcp://10.0.0.5:8786",
+    "uplift texture 'shot.*.exr' -o sequence --cube macbeth-32.uplift --scheduler tcp://10.0.0.5:8786",
+    "uplift texture 'shot.*.exr' -o uplifted --scheduler tcp://10.0.0.5:8786",
+    "uplift texture shot.*.exr -o uplifted --scheduler tcp://10.0.0.5:8786",
 }
 """Examples that need a Dask cluster at that address."""
 

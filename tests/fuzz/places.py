@@ -37,11 +37,11 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("query", "0.1", "0.2", "0.3", "--format", "csv"), ("query", "-"), ("query", "--input", "-", "--format", "csv"),
     ("query", "--cube", "{}", "0", "0", "0"), ("query", "--input", "{}"), ("query", "0", "0", "0", "--plot", "{}"),
     ("info", str(CUBE)), ("info", "{}"), ("info",), ("atlas",), ("atlas", str(ATLAS)), ("atlas", "{}"),
-    ("atlas", str(ATLAS), "--convert", "{}"), ("export", str(CUBE), "{}"), ("export", "{}", "x.csv"),
+    ("atlas", str(ATLAS), "-o", "{}"), ("export", str(CUBE), "-o", "{}"), ("export", "{}", "-o", "x.csv"),
     ("mix", "1:#ff0000", "2:#00ff00"), ("mix", "1:dark skin", "--cube", str(CUBE)),
-    ("chart", "--recommend", "--delta-e", "1"), ("wavelengths", "--count", "3", "--atlas", str(ATLAS)),
-    ("palette", "{}"), ("plan", "{}"), ("texture", "{}", "x.exr"), ("report", "{}"), ("slices", "{}", "x.exr"),
-    ("build", "--plan", "{}"),
+    ("chart", "--recommend", "--tolerance", "1"), ("wavelengths", "--count", "3", "--atlas", str(ATLAS)),
+    ("palette", "{}"), ("plan", "{}"), ("texture", "{}", "-o", "x.exr"), ("report", "{}"),
+    ("slices", "{}", "-o", "x.exr"), ("build", "--plan", "{}"),
 )  # fmt: skip
 NAMES = (
     "x", "folder/x.csv", "shut/x.uplift", "x.uplift", "x.txt", "nosuch/x.csv", "folder", "a" * 255, "a" * 256,

@@ -23,15 +23,15 @@ INPUTS = {
 COLOURS, IMAGE, SCENE = "colours.csv", "i.png", "s.toml"
 COMMANDS: tuple[tuple[str, ...], ...] = (
     ("query", "--cube", "c.uplift", "0", "0", "0", "--plot", "{}"), ("query", "--input", COLOURS, "--plot", "{}"),
-    ("export", "c.uplift", "{}", "--format", "csv"), ("export", "c.uplift", "{}", "--format", "npz"),
-    ("export", "c.uplift", "{}", "--format", "c"), ("atlas", "a.txt", "b.txt", "--convert", "{}"),
-    ("palette", "p.toml", "--atlas", "{}"), ("palette", "p.toml", "--matrix", "{}"),
-    ("palette", "p.toml", "--html", "{}"), ("palette", "p.toml", "--matrix", "x.png", "--spectra", "{}"),
+    ("export", "c.uplift", "-o", "{}", "--format", "csv"), ("export", "c.uplift", "-o", "{}", "--format", "npz"),
+    ("export", "c.uplift", "-o", "{}", "--format", "c"), ("atlas", "a.txt", "b.txt", "-o", "{}"),
+    ("palette", "p.toml", "-o", "{}"), ("palette", "p.toml", "--plot", "{}"),
+    ("palette", "p.toml", "--html", "{}"), ("palette", "p.toml", "--plot", "x.png", "--plot-spectra", "{}"),
     ("report", "c.uplift", "--atlas", "a.txt", "-o", "{}"), ("report", "c.uplift", "--format", "json", "-o", "{}"),
-    ("slices", "c.uplift", "{}"), ("slices", "c.uplift", "--sheet", "{}"),
+    ("slices", "c.uplift", "-o", "{}"), ("slices", "c.uplift", "--plot", "{}"),
     ("wavelengths", "--count", "3", "--atlas", "a.txt", "--atlas", "b.txt", "--plot", "{}"),
-    ("mix", "1:#ff0000", "--cube", "c.uplift", "--atlas", "a.txt", "--swatches", "{}"),
-    ("mix", "1:#ff0000", "--over", IMAGE, "-o", "{}"), ("texture", IMAGE, "{}"), ("plan", SCENE, "-o", "{}"),
+    ("mix", "1:#ff0000", "--cube", "c.uplift", "--atlas", "a.txt", "--plot", "{}"),
+    ("mix", "1:#ff0000", "--over", IMAGE, "-o", "{}"), ("texture", IMAGE, "-o", "{}"), ("plan", SCENE, "-o", "{}"),
     ("build", "--atlas", "a.txt", "--dim", "4", "-o", "{}"), ("build", "--scene", IMAGE, "--dim", "4", "-o", "{}"),
     ("chart", "--from", "chart.csv", "-o", "{}"),
 )  # fmt: skip

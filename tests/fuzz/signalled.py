@@ -34,6 +34,7 @@ def end_textures(count: int, random: np.random.Generator, folder: Path) -> Tally
     words = [
         "texture",
         *(f"{number}.png" for number in range(IMAGES)),
+        "-o",
         "out",
         "--processes",
         "2",

@@ -110,8 +110,8 @@ def test_options_of_candidates_are_accepted_by_the_command_line(planned):
     commands = {
         "coefficients": "uplift build",
         "lattice": "uplift build",
-        "wavelengths": "uplift texture a.png b.exr",
-        "storage": "uplift texture a.png b.exr",
+        "wavelengths": "uplift texture a.png -o b.exr",
+        "storage": "uplift texture a.png -o b.exr",
         "representation": "",
     }
     for decision in planned[0].decisions:

@@ -22,13 +22,13 @@ def wavelength_args(wavelengths: Array) -> str:
 
 def storage_args(form: str, depth: str) -> str:
     """Options of ``uplift texture`` for the contents of a pixel."""
-    return f"--store {form} --depth {depth}"
+    return f"--representation {form} --depth {depth}"
 
 
 def compare_command(scene: SceneFile, limit: float) -> str:
     """``uplift compare`` for the lights and materials of a scene."""
     words = [*repeat_option("--atlas", scene.atlases), *repeat_option("--light", scene.lights)]
-    return join_words("uplift compare", [*words, "--target", f"{limit:.3g}"])
+    return join_words("uplift compare", [*words, "--tolerance", f"{limit:.3g}"])
 
 
 def repeat_option(option: str, values: Iterable[object]) -> list[object]:

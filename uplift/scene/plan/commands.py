@@ -50,7 +50,7 @@ def texture_command(plan: Plan, path: Path) -> str:
     """``uplift texture`` for all textures, as the plan stores them."""
     textures, storage = plan.scene.textures, plan.storage
     target = f"{textures[0].stem}-uplifted.exr" if len(textures) == 1 else "uplifted"
-    words = [*textures, target, "--cube", cube_name(path), *storage_args(storage.form, storage.depth).split()]
+    words = [*textures, "-o", target, "--cube", cube_name(path), *storage_args(storage.form, storage.depth).split()]
     if storage.form == Spectrum.name:
         words += wavelength_args(plan.sampling.wavelengths).split()
     return join_words("uplift texture", [*words, *_encoding_args(plan.scene)])

@@ -108,7 +108,7 @@ def _method(options: CubeOptions, mode: str) -> Method:
         label=f"C {options.label} {mode}",
         mode=mode,
         build=options.command,
-        call=f"uplift export CUBE cube.h --mode {mode}; cube_reflectances(rgb, wavelengths, count, out)",
+        call=f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, wavelengths, count, out)",
         note=f"cc {' '.join(FLAGS[:5])}, called by ctypes",
         needs=COMPILER,
     )
