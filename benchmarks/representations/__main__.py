@@ -60,7 +60,7 @@ def _measure() -> None:
 
 def _compare(part: Scene, label: str) -> Comparison:
     from uplift.lab.comparison.measure import compare
-    from uplift.scene.representations.registry import all_representations
+    from uplift.scene.representations import all_representations
 
     representations = all_representations(part.powers, part.surfaces)
     with click.progressbar(length=len(representations), label=label, file=sys.stderr) as bar:

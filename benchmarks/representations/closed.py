@@ -12,11 +12,14 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.lab.comparison.measure import error_statistics
 from uplift.lab.comparison.scene import Scene
-from uplift.scene.representations import enhanced_riemann
-from uplift.scene.representations.composite import Composite
-from uplift.scene.representations.dense import TABLE_STRIDE, wavelengths, xyz_weights
-from uplift.scene.representations.riemann_sums import riemann_sums
-from uplift.scene.representations.samples import SampleRepresentation
+from uplift.scene.representations.composite import ENHANCED_THRESHOLD, Composite, enhanced_riemann
+from uplift.scene.representations.samples import (
+    TABLE_STRIDE,
+    SampleRepresentation,
+    riemann_sums,
+    wavelengths,
+    xyz_weights,
+)
 
 COUNTS = (8, 16, 32)
 
@@ -24,7 +27,7 @@ COUNTS = (8, 16, 32)
 def measure(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> list[dict[str, Any]]:
     """Return mean ΔE00 of plain and enhanced sums with disjoint and with closed cells, and of the thesis."""
     pairs: list[tuple[Any, Any]] = [(riemann_sums(count), closed(count)) for count in COUNTS]
-    pairs += [(enhanced_riemann.enhanced_riemann(count), enhanced(count)) for count in COUNTS]
+    pairs += [(enhanced_riemann(count), enhanced(count)) for count in COUNTS]
     return [
         {
             "lights": part.name,
@@ -51,7 +54,7 @@ def enhanced(count: int) -> Composite:
     """Return enhanced sums over the same cells; a spike on a border is multiplied by the mean of both."""
     inside = _cells(count)
     family = "enhanced Riemann sums, closed cells"
-    return Composite(f"RE{count}", family, closed(count), inside / inside.sum(axis=0), enhanced_riemann.THRESHOLD)
+    return Composite(f"RE{count}", family, closed(count), inside / inside.sum(axis=0), ENHANCED_THRESHOLD)
 
 
 def _cells(count: int) -> Array:

@@ -18,7 +18,7 @@ from benchmarks.wavelengths.methods import SMOOTH, SPIKY, Comparison, compare, r
 from uplift.atlas import on_grid
 from uplift.common.arrays import Array
 from uplift.scene.wavelengths import grid, make_setup
-from uplift.scene.wavelengths.opponent import cone_space, opponent_space, xyz_space
+from uplift.scene.wavelengths.meyer import cone_space, opponent_space, xyz_space
 
 PICTURES = ROOT / "docs" / "wavelengths"
 

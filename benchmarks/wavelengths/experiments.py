@@ -14,9 +14,8 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_1976, lab
 from uplift.common.arrays import Array
 from uplift.scene.quadrature import QuadratureRule
-from uplift.scene.wavelengths.meyer import Allocation, allocations, quadrature_rules
-from uplift.scene.wavelengths.opponent import ChannelSpace
-from uplift.scene.wavelengths.setup import RenderSetup
+from uplift.scene.wavelengths.meyer import Allocation, ChannelSpace, allocations, quadrature_rules
+from uplift.scene.wavelengths.sampling import RenderSetup
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,11 +14,13 @@ from uplift.scene.wavelengths import RenderSetup
 from uplift.scene.wavelengths.meyer import (
     POINTS,
     ChannelRules,
+    ChannelSpace,
+    OpponentSpace,
     channel_functions,
+    cone_space,
     four_wavelength_rule,
     quadrature_rules,
 )
-from uplift.scene.wavelengths.opponent import ChannelSpace, OpponentSpace, cone_space
 
 STEPS = {"100 steps of 3.9 nm": POINTS, "1 nm": np.arange(380.0, 771.0), "5 nm": np.arange(380.0, 771.0, 5)}
 """Grids of the sums from 380 to 770 nm."""

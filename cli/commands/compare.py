@@ -105,7 +105,7 @@ def _measure(
 ) -> tuple[Comparison, tuple[TunedFilter, ...]]:
     from uplift.lab.comparison.measure import QUICK, TimingOptions, compare
     from uplift.lab.comparison.scene import make_scene
-    from uplift.scene.representations.registry import all_representations
+    from uplift.scene.representations import all_representations
 
     tested = make_scene(read_atlases(files), lights)
     tested = tested.thinned() if quick else tested

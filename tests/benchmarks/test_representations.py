@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.representations import thesis
 from benchmarks.representations.closed import closed, enhanced
-from uplift.scene.representations.dense import xyz_weights
+from uplift.scene.representations.samples import xyz_weights
 
 
 @pytest.mark.parametrize("count", [8, 16, 32])

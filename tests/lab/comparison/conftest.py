@@ -7,11 +7,9 @@ import pytest
 from tests.lab.comparison_scenes import colorchecker
 from uplift.lab.comparison.measure import Comparison, TimingOptions, compare
 from uplift.lab.comparison.scene import Scene
-from uplift.scene.representations.enhanced_riemann import enhanced_riemann
-from uplift.scene.representations.point_sampling import point_samples
-from uplift.scene.representations.riemann_sums import riemann_sums
-from uplift.scene.representations.sun_composite import sun_composite
-from uplift.scene.representations.trigonometric_moments import trigonometric_moments
+from uplift.scene.representations.composite import enhanced_riemann, sun_composite
+from uplift.scene.representations.models import trigonometric_moments
+from uplift.scene.representations.samples import point_samples, riemann_sums
 
 EFFORT = TimingOptions(runs=3, seconds=0.001, rows=32)
 

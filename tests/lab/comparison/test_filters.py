@@ -6,9 +6,8 @@ import pytest
 
 from uplift.lab.comparison.filters import NONE, tune_filters
 from uplift.lab.comparison.measure import error_statistics
-from uplift.scene.representations.filtered_point_sampling import filtered_point_samples
-from uplift.scene.representations.filters import COARSE_STRIDE, candidates
-from uplift.scene.representations.point_sampling import point_samples
+from uplift.scene.representations.filters import COARSE_STRIDE, candidates, filtered_point_samples
+from uplift.scene.representations.samples import point_samples
 
 
 @pytest.fixture(scope="module")

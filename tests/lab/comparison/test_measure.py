@@ -16,9 +16,7 @@ from uplift.common.errors import AtlasError, UnknownNameError, UpliftError
 from uplift.lab.comparison.measure import compare, error_statistics
 from uplift.lab.comparison.scene import QUICK_SURFACES, make_scene
 from uplift.lab.comparison.statistics import HEADINGS, compute_statistics
-from uplift.scene.representations.dense import xyz_weights
-from uplift.scene.representations.point_sampling import point_samples
-from uplift.scene.representations.samples import SampleRepresentation
+from uplift.scene.representations.samples import SampleRepresentation, point_samples, xyz_weights
 
 
 def test_dense_data_have_no_error(checker):

@@ -12,8 +12,7 @@ import uplift
 from tests.conftest import MACBETH
 from tests.io.texture.conftest import planes, write_exr
 from uplift.scene import plan
-from uplift.scene.representations.point_sampling import point_samples
-from uplift.scene.representations.riemann_sums import riemann_sums
+from uplift.scene.representations.samples import point_samples, riemann_sums
 
 SMALL = plan.SearchGrid(coefficients=(5, 9), dims=(3, 5), reference=7, predicting=60, confirming=90)
 LIGHTS = ("D65", "FL11")

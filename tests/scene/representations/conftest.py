@@ -7,7 +7,7 @@ import pytest
 
 from tests.lab.comparison_scenes import colorchecker
 from uplift.lab.comparison.scene import Scene
-from uplift.scene.representations.registry import all_representations
+from uplift.scene.representations import all_representations
 
 
 @pytest.fixture(scope="session")

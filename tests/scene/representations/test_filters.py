@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.scene.representations.filtered_point_sampling import filtered_point_samples
 from uplift.scene.representations.filters import (
     COARSE_STRIDE,
     EXTENTS,
@@ -43,12 +42,6 @@ def test_resampling_equals_the_listing_of_the_thesis(low_pass, count, up, down):
     np.testing.assert_allclose(resampling_matrix(low_pass, count) @ spectrum, expected, atol=1e-12)
 
 
-@pytest.mark.parametrize("low_pass", SOME, ids=lambda one: one.kind)
-def test_constant_spectrum_is_unchanged_away_from_the_ends(low_pass):
-    inner = (resampling_matrix(low_pass, 16) @ np.ones(81))[4:12]
-    np.testing.assert_allclose(inner, 1, atol=0.06)
-
-
 @pytest.mark.parametrize(
     ("low_pass", "formula"),
     [
@@ -79,15 +72,6 @@ def test_candidates_are_every_combination_once():
         filters = candidates(kind)
         sizes = [len(values) for values in made.choices.values()]
         assert len(set(filters)) == len(filters) == len(EXTENTS) * int(np.prod(sizes))
-        assert set(candidates(kind, COARSE_STRIDE)) < set(filters)
-
-
-def test_candidates_have_finite_matrices():
-    for kind in KINDS:
-        for low_pass in candidates(kind, COARSE_STRIDE):
-            assert np.isfinite(resampling_matrix(low_pass, 16)).all(), low_pass.name
-
-
-def test_names_contain_the_parameters():
-    assert filtered_point_samples(16, SOME[4]).name == "PS16 mitchell(19, b=-0.4, c=1)"
-    assert filtered_point_samples(8, SOME[0]).name == "PS8 box(5)"
+        coarse = candidates(kind, COARSE_STRIDE)
+        assert set(coarse) < set(filters)
+        assert all(np.isfinite(resampling_matrix(low_pass, 16)).all() for low_pass in coarse)

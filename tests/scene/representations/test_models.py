@@ -9,11 +9,8 @@ from uplift.colorimetry.observer import grid
 from uplift.lab.study.technique import Technique
 from uplift.models import Sigmoid
 from uplift.models.model import evaluate
-from uplift.scene.representations.dense import wavelengths, xyz_weights
-from uplift.scene.representations.hero_wavelengths import HeroWavelengths
-from uplift.scene.representations.linear_model import linear_model
-from uplift.scene.representations.sigmoid import fit_sigmoids
-from uplift.scene.representations.trigonometric_moments import trigonometric_moments
+from uplift.scene.representations.models import fit_sigmoids, hero_wavelengths, linear_model, trigonometric_moments
+from uplift.scene.representations.samples import wavelengths, xyz_weights
 
 
 def test_moments_equal_the_integrals(checker):
@@ -42,16 +39,9 @@ def test_linear_model_of_all_components_is_exact(checker, light_powers):
     np.testing.assert_allclose(model.basis.T @ model.basis, np.eye(6), atol=1e-12)
 
 
-def test_linear_model_has_errors_outside_its_scene(checker, light_powers):
-    model = linear_model(6, checker.powers[:1], checker.surfaces[:5])
-    surfaces = checker.surfaces[5:10]
-    actual = model.xyz(model.multiply(model.encode_light(light_powers("A")[:5]), model.encode_surface(surfaces)))
-    assert np.abs(actual - (light_powers("A")[:5] * surfaces) @ xyz_weights()).max() > 1e-3
-
-
 @pytest.mark.parametrize("paths", [1, 8])
 def test_hero_wavelengths_are_a_quarter_apart_and_stratified(paths):
-    drawn = HeroWavelengths(paths).wavelengths(500)
+    drawn = hero_wavelengths(paths).wavelengths(500)
     assert drawn.shape == (500, 4 * paths)
     assert drawn.min() >= 380
     assert drawn.max() <= 780
@@ -67,13 +57,9 @@ def test_hero_wavelengths_are_unbiased_and_variance_falls_with_paths(checker):
     power = checker.powers[:1] * checker.surfaces[:1]
     spread = []
     for paths in (1, 8):
-        hero = HeroWavelengths(paths)
+        hero = hero_wavelengths(paths)
         actual = hero.xyz(hero.encode_light(np.tile(power, (4000, 1))))
         error = actual.std(axis=0) / np.sqrt(len(actual))
         assert (np.abs(actual.mean(axis=0) - power @ xyz_weights()) < 4 * error + 1e-5).all()
         spread.append(actual.std(axis=0).max())
     assert spread[1] < spread[0] / 8**0.5
-
-
-def test_hero_wavelengths_are_reproducible():
-    np.testing.assert_array_equal(HeroWavelengths(2).wavelengths(5), HeroWavelengths(2).wavelengths(5))

@@ -5,16 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.scene.representations.dense import (
-    hat_functions,
-    interp_rows,
+from uplift.scene.representations.models import interp_rows
+from uplift.scene.representations.samples import (
+    cell_overlaps,
+    gauss_samples,
     interpolation_matrix,
+    point_samples,
+    riemann_sums,
+    sample_points,
     wavelengths,
     xyz_weights,
 )
-from uplift.scene.representations.gauss_quadrature import gauss_samples
-from uplift.scene.representations.point_sampling import point_samples, sample_points
-from uplift.scene.representations.riemann_sums import cell_overlaps, riemann_sums
 
 RANDOM = np.random.default_rng(5).random((3, 401))
 
@@ -55,18 +56,8 @@ def test_quadrature_is_exact_for_polynomials(count):
         np.testing.assert_allclose(rule.xyz(rule.encode_light(power)), power @ xyz_weights(), atol=1e-3)
 
 
-def test_quadrature_nodes_lie_in_the_visible_range():
-    nodes = wavelengths() @ gauss_samples(8).encoder
-    assert 400 < nodes.min() < 440
-    assert 650 < nodes.max() < 760
-
-
 def test_interpolation_equals_numpy():
     points = np.array([380.0, 380.25, 555.5, 780.0])
     expected = [np.interp(points, wavelengths(), row) for row in RANDOM]
     np.testing.assert_allclose(RANDOM @ interpolation_matrix(points), expected, rtol=1e-12)
     np.testing.assert_allclose(interp_rows(RANDOM, np.tile(points, (3, 1))), expected, rtol=1e-12)
-
-
-def test_hat_functions_sum_to_one():
-    np.testing.assert_allclose(hat_functions([380, 400, 555.5, 780]).sum(axis=0), 1)

@@ -14,14 +14,17 @@ from uplift.common.errors import OptionError, UnknownNameError
 from uplift.scene.quadrature import UndefinedRule
 from uplift.scene.wavelengths import RenderSetup, choose_orders, evaluate, grid, make_setup
 from uplift.scene.wavelengths.meyer import (
+    OpponentSpace,
     allocations,
     channel_functions,
     combine_rules,
+    cone_space,
     four_wavelength_rule,
     meyer,
+    opponent_space,
     quadrature_rules,
+    xyz_space,
 )
-from uplift.scene.wavelengths.opponent import OpponentSpace, cone_space, opponent_space, xyz_space
 
 
 def _matrix(space: str) -> Array:

@@ -10,10 +10,8 @@ from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.scene.wavelengths import RenderSetup, choose, evaluate, fit_weights, make_setup
-from uplift.scene.wavelengths.local_fit import FitProblem, local_fit
-from uplift.scene.wavelengths.metric import delta_e_factors
-from uplift.scene.wavelengths.optimise import MAX_FITTED_PAIRS, fit_at, optimise
-from uplift.scene.wavelengths.uniform import midpoints, prefiltered, prefiltered_uniform, uniform
+from uplift.scene.wavelengths.optimise import MAX_FITTED_PAIRS, FitProblem, delta_e_factors, fit_at, local_fit, optimise
+from uplift.scene.wavelengths.sampling import midpoints, prefiltered, prefiltered_uniform, uniform
 
 
 def test_metric_is_delta_e_of_close_colours(spiky: RenderSetup) -> None:

@@ -21,10 +21,15 @@ from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.comparison.measure import error_statistics
 from uplift.lab.comparison.scene import LightSet, Scene
 from uplift.lab.comparison.statistics import Statistics
-from uplift.scene.representations.dense import TABLE_STRIDE
-from uplift.scene.representations.filtered_point_sampling import filtered_point_samples
-from uplift.scene.representations.filters import FINE_STRIDE, KINDS, Filter, candidates, resampling_matrix
-from uplift.scene.representations.point_sampling import point_samples
+from uplift.scene.representations.filters import (
+    FINE_STRIDE,
+    KINDS,
+    Filter,
+    candidates,
+    filtered_point_samples,
+    resampling_matrix,
+)
+from uplift.scene.representations.samples import TABLE_STRIDE, point_samples
 
 COUNTS = (4, 8, 16)
 """Numbers of samples in the thesis."""

@@ -15,7 +15,7 @@ from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.comparison.scene import LightSet, Scene
 from uplift.lab.comparison.statistics import Statistics, compute_statistics
 from uplift.lab.timing import Spread, environment, time_calls
-from uplift.scene.representations.representation import Representation
+from uplift.scene.representations.samples import Representation
 
 
 @dataclass(frozen=True)

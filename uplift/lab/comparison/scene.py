@@ -14,7 +14,7 @@ from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.lights import KMENT_LIGHTS
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
-from uplift.scene.representations.dense import STEP, wavelengths, xyz_weights
+from uplift.scene.representations.samples import STEP, wavelengths, xyz_weights
 
 NAMED_SET = "given"
 """Name of the set of lights that a user lists."""

@@ -18,9 +18,8 @@ from uplift.scene.plan.arguments import compare_command
 from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.decision import Decision, Trial, decide
 from uplift.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet
-from uplift.scene.representations.dense import STEP, wavelengths, xyz_weights
-from uplift.scene.representations.registry import all_representations
-from uplift.scene.representations.representation import Representation
+from uplift.scene.representations import all_representations
+from uplift.scene.representations.samples import STEP, Representation, wavelengths, xyz_weights
 
 COLOURS = 200
 """Colours of each group that representations are evaluated on."""

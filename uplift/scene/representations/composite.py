@@ -1,19 +1,86 @@
 """Composite models: a smooth part in few coefficients, and spikes.
 
+References
+----------
 Sun, Drew & Fracchia 1999, "Representing spectral functions by a composite model of smooth and spiky components for
-efficient full-spectrum photorealism"; Kment 2011, section 5.5.
+efficient full-spectrum photorealism". Deville, Merzouk, Cazier & Paul 1994, "Spectral data modeling for a lighting
+application". Kment 2011, sections 4.3, 5.4 and 5.5.
 """
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from uplift.common.arrays import Array
-from uplift.scene.representations.representation import Representation
-from uplift.scene.representations.spikes import Spikes, heights_at, spike_xyz, split_spikes
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array, Indices
+from uplift.common.errors import OptionError
+from uplift.scene.representations.samples import (
+    TABLE_STRIDE,
+    Representation,
+    cell_overlaps,
+    hat_functions,
+    riemann_sums,
+    wavelengths,
+    xyz_weights,
+)
+
+NOISE = 1e-9
+"""Heights below this fraction of the highest sample are rounding."""
+NUMBERS_PER_SPIKE = 2
+"""A position and a height."""
+SUN_THRESHOLD, ENHANCED_THRESHOLD = 0.3, 0.2
+"""Relative gradients of spikes, from Kment 2011, section 6.1."""
+
+
+class Spikes(NamedTuple):
+    """Heights (n, P) of spikes at ``positions`` (P,), indices of the 5 nm table; 0 where a spectrum has no spike."""
+
+    positions: Indices
+    heights: Array
+
+    @property
+    def storage(self) -> Array:
+        """Numbers (n,) stored for the spikes of each spectrum."""
+        return NUMBERS_PER_SPIKE * (self.heights != 0).sum(axis=1, dtype=float)
+
+
+def split_spikes(spectra: Array, threshold: float) -> tuple[Array, Spikes]:
+    """Split dense spectra (n, 401) into a smooth part (n, 401), linear between 5 nm, and spikes.
+
+    Choices that the text leaves open: the gradient is that between two samples of the 5 nm table, relative to the
+    highest sample of the spectrum. The smooth part is the largest spectrum below the given one that is nowhere steeper
+    than the threshold. The spikes are the difference.
+    """
+    table = spectra[:, ::TABLE_STRIDE]
+    highest = table.max(axis=1)
+    step = threshold * highest
+    smooth = table.copy()
+    # Limit the gradient by one sweep in each direction.
+    for index in range(1, smooth.shape[1]):
+        smooth[:, index] = np.minimum(smooth[:, index], smooth[:, index - 1] + step)
+    for index in reversed(range(smooth.shape[1] - 1)):
+        smooth[:, index] = np.minimum(smooth[:, index], smooth[:, index + 1] + step)
+    heights = table - smooth
+    heights[heights < NOISE * highest[:, None]] = 0
+    positions = np.flatnonzero(heights.any(axis=0))
+    return (table - heights) @ hat_functions(observer.grid()), Spikes(positions, heights[:, positions])
+
+
+def heights_at(spikes: Spikes, positions: Indices) -> Array:
+    """Heights (n, Q) at ``positions`` (Q,), a superset of those of the spikes."""
+    heights = np.zeros((len(spikes.heights), len(positions)))
+    heights[:, np.searchsorted(positions, spikes.positions)] = spikes.heights
+    return heights
+
+
+@functools.cache
+def spike_xyz() -> Array:
+    """XYZ (81, 3) of a spike of height 1 at each position: a triangle as wide as linear interpolation makes it."""
+    return hat_functions(observer.grid()) @ xyz_weights()
 
 
 class CompositeCode(NamedTuple):
@@ -24,25 +91,14 @@ class CompositeCode(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Composite:
+class Composite(Representation):
     """Smooth part in another representation, and spikes steeper than a threshold.
 
-    In a product, a spike meets the spike and the smooth part of the other spectrum at its position.
-
-    Parameters
-    ----------
-    name, family : str
-        See `Representation`.
-    smooth : Representation
-        Representation of the smooth part, whose codes are arrays (n, C).
-    decoder : ndarray, shape (C, 81)
-        ``code @ decoder`` is the smooth part at 5 nm.
-    threshold : float
-        Largest relative gradient of the smooth part between samples of the 5 nm table.
+    ``code @ decoder`` (C, 81) is the smooth part at 5 nm. ``threshold`` is the largest relative gradient of the smooth
+    part between samples of the 5 nm table. In a product, a spike meets the spike and the smooth part of the other
+    spectrum at its position.
     """
 
-    name: str
-    family: str
     smooth: Representation
     decoder: Array
     threshold: float
@@ -50,10 +106,6 @@ class Composite:
     def encode_light(self, power: Array) -> CompositeCode:
         rest, spikes = split_spikes(power, self.threshold)
         return CompositeCode(self.smooth.encode_light(rest), spikes)
-
-    def encode_surface(self, reflectance: Array) -> CompositeCode:
-        rest, spikes = split_spikes(reflectance, self.threshold)
-        return CompositeCode(self.smooth.encode_surface(rest), spikes)
 
     def multiply(self, light: CompositeCode, surface: CompositeCode) -> CompositeCode:
         positions = np.union1d(light.spikes.positions, surface.spikes.positions)
@@ -67,3 +119,66 @@ class Composite:
 
     def storage(self, code: CompositeCode) -> Array:
         return self.smooth.storage(code.smooth) + code.spikes.storage
+
+
+@dataclass(frozen=True, eq=False)
+class FourierCoefficients(Representation):
+    """Coefficients (n, C) of a real Fourier basis: the smooth part of Sun's composite model.
+
+    The period is 380–780 nm, so a spectrum whose ends differ has a jump there. Choices that the text leaves open: the
+    coefficients are those of eq. 4.7 over the 5 nm table, with the mean of both ends where they meet. A product,
+    computed point by point as in the text, keeps as many coefficients as its factors have: it has twice the highest
+    frequency, and at 2C points in the period none of it is aliased to a lower one (the "Shannon theorem" of the text).
+    """
+
+    waves: Array
+    """Basis functions (C, 401) at the dense wavelengths."""
+    product_waves: Array
+    """Basis functions (C, 2C) at the points of a product."""
+
+    def encode_light(self, power: Array) -> Array:
+        periodic = power[:, :-1:TABLE_STRIDE].copy()
+        periodic[:, 0] = (power[:, 0] + power[:, -1]) / 2
+        return _analyse(periodic, self.waves[:, :-1:TABLE_STRIDE])
+
+    def multiply(self, light: Array, surface: Array) -> Array:
+        return _analyse((light @ self.product_waves) * (surface @ self.product_waves), self.product_waves)
+
+    def xyz(self, light: Array) -> Array:
+        return light @ (self.waves @ xyz_weights())
+
+
+def fourier_coefficients(count: int) -> FourierCoefficients:
+    """Representation by ``count`` real coefficients, a_0 to a_m and b_1 to b_m: an odd number, or `OptionError`."""
+    if count < 1 or count % 2 == 0:
+        raise OptionError(
+            f"number of Fourier coefficients must be odd and positive, got {count}",
+            hint="a mean and pairs of cosine and sine are an odd number",
+        )
+    dense = 2 * np.pi * (wavelengths() - observer.START) / (observer.END - observer.START)
+    product = np.pi * np.arange(2 * count) / count
+    return FourierCoefficients(f"F{count}", "Fourier coefficients", _waves(dense, count), _waves(product, count))
+
+
+def _waves(phase: Array, count: int) -> Array:
+    """Basis (count, K) of 1, cos φ, sin φ, cos 2φ, sin 2φ, … at phases (K,)."""
+    orders = np.arange(1, count // 2 + 1)[:, None]
+    pairs = np.stack([np.cos(orders * phase), np.sin(orders * phase)], axis=1)
+    return np.concatenate([np.ones((1, len(phase))), pairs.reshape(-1, len(phase))])
+
+
+def _analyse(values: Array, waves: Array) -> Array:
+    """Coefficients (n, C) of values (n, K) at K evenly spaced points of a period, for waves (C, K)."""
+    return np.asarray(values @ waves.T / (waves**2).sum(axis=1))
+
+
+def sun_composite(count: int) -> Composite:
+    """Sun's composite model (CS): spikes, and ``count`` Fourier coefficients of the smooth part."""
+    smooth = fourier_coefficients(count)
+    return Composite(f"CS{count}", "Sun's composite", smooth, smooth.waves[:, ::TABLE_STRIDE], SUN_THRESHOLD)
+
+
+def enhanced_riemann(count: int) -> Composite:
+    """Enhanced Riemann sums (RE): spikes, which meet the mean of their cell, and Riemann sums of the smooth part."""
+    decoder = cell_overlaps(count)[:, ::TABLE_STRIDE]
+    return Composite(f"RE{count}", "enhanced Riemann sums", riemann_sums(count), decoder, ENHANCED_THRESHOLD)

@@ -1,8 +1,8 @@
-"""Low-pass filters for sampling-rate conversion by L/M, applied to a spectrum before point sampling.
+"""Point sampling after a low-pass filter (PF), which is a sampling-rate conversion by L/M.
 
-Kment 2011, section 4.4 (conversion) and section 4.5, eq. 4.13–4.19 (filters). The 81 samples of the 5 nm table are
-upsampled L times with zeros, filtered, and every M-th sample is kept. L/M = (n − 1)/80, so that the ends remain those
-of point sampling. Values outside 380–780 nm count as 0 (section 6.1).
+Kment 2011, section 4.4 (conversion), section 4.5, eq. 4.13–4.19 (filters), and section 6.3. The 81 samples of the
+5 nm table are upsampled L times with zeros, filtered, and every M-th sample is kept. L/M = (n − 1)/80, so that the ends
+remain those of point sampling. Values outside 380–780 nm count as 0 (section 6.1).
 
 Choices that the text leaves open: ``extent``, an odd number, is the number of table samples that a filter covers. x
 runs from −1 to 1 across it, −2 to 2 for Mitchell, at any extent. Lanczos is the windowed sinc of Pharr & Humphreys
@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
@@ -22,7 +22,19 @@ from scipy.signal import resample_poly, windows
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
+from uplift.scene.representations.samples import (
+    TABLE_STRIDE,
+    SampleRepresentation,
+    hat_functions,
+    sample_points,
+    wavelengths,
+    xyz_weights,
+)
 
+MITCHELL_B, MITCHELL_C = -0.4, 1.0
+"""Parameters of the best Mitchell filter in table A.2."""
+FILTER_SPACINGS = 4
+"""Width of that filter in spacings of its 16 points, which is the usual width of cubic filters."""
 EXTENTS = range(3, 22, 2)
 """Extents tried in the thesis."""
 FINE_STRIDE, COARSE_STRIDE = 1, 5
@@ -31,17 +43,8 @@ FINE_STRIDE, COARSE_STRIDE = 1, 5
 
 @dataclass(frozen=True)
 class FilterKind:
-    """A family of filters.
-
-    Parameters
-    ----------
-    title : str
-        Name for tables.
-    window : callable
-        Function of an odd number of taps and the parameters.
-    choices : mapping
-        Values that a search tries, by the name of the parameter.
-    """
+    """A family of filters: its title in tables, its taps from an odd number of them and the parameters, and the values
+    that a search tries for each parameter."""
 
     title: str
     window: Callable[..., Array]
@@ -125,3 +128,19 @@ KINDS: dict[str, FilterKind] = {
     "hamming": FilterKind("Hamming", functools.partial(_without_ends, windows.hamming), {}),
 }
 """Kinds by name, in the order of tables A.1 and A.2."""
+
+
+def filtered_point_samples(count: int, low_pass: Filter) -> SampleRepresentation:
+    """Representation by ``count`` samples of spectra that pass through a filter."""
+    encoder = np.zeros((len(wavelengths()), count))
+    encoder[::TABLE_STRIDE] = resampling_matrix(low_pass, count).T
+    weights = hat_functions(sample_points(count)) @ xyz_weights()
+    return SampleRepresentation(f"PS{count} {low_pass.name}", "point sampling, filtered", encoder, weights)
+
+
+def mitchell_point_samples(count: int) -> SampleRepresentation:
+    """Representation with the best Mitchell filter of table A.2, `FILTER_SPACINGS` wide for any count."""
+    spacing = (len(observer.grid()) - 1) / (count - 1)
+    extent = 2 * round((FILTER_SPACINGS * spacing - 1) / 2) + 1
+    low_pass = Filter("mitchell", extent, (MITCHELL_B, MITCHELL_C))
+    return replace(filtered_point_samples(count, low_pass), name=f"PF{count}")

@@ -1,39 +1,97 @@
-"""Base of representations by n samples that are multiplied one by one."""
+"""Representations by samples that are multiplied one by one, and the dense spectra that all representations encode."""
 
 from __future__ import annotations
 
+import functools
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from uplift.colorimetry import observer
 from uplift.common.arrays import Array
+from uplift.common.errors import UpliftError
 from uplift.models.matmul import matmul_rows
+from uplift.scene.quadrature import UndefinedRule, gauss_rule, interpolatory_rule
+
+STEP = 1.0
+"""Distance of dense samples in nm, from 380 to 780 nm."""
+TABLE_STRIDE = round(observer.STEP / STEP)
+"""Dense samples per sample of the 5 nm tables, of 81 samples, in which lights are published."""
+
+
+def wavelengths() -> Array:
+    """Wavelengths (401,) of dense spectra in nm."""
+    return np.arange(observer.START, observer.END + STEP / 2, STEP)
+
+
+@functools.cache
+def xyz_weights() -> Array:
+    """Weights (401, 3): ``spectra @ xyz_weights()`` is XYZ, where a power of 1 at every wavelength has Y = 1."""
+    cmfs = observer.matching_functions(step=STEP)
+    weights = cmfs / cmfs[:, 1].sum()
+    weights.setflags(write=False)
+    return weights
+
+
+def hat_functions(points: ArrayLike) -> Array:
+    """Basis (n, 401) of linear interpolation between ascending ``points`` (n,) nm."""
+    points = np.asarray(points, dtype=float)
+    return np.stack([np.interp(wavelengths(), points, row) for row in np.eye(len(points))])
+
+
+def interpolation_matrix(points: Array) -> Array:
+    """Matrix (401, n) that maps dense spectra to their values at ``points`` (n,) nm, linear between samples."""
+    return np.asarray(np.maximum(1 - np.abs(wavelengths()[:, None] - points), 0))
 
 
 @dataclass(frozen=True, eq=False)
-class SampleRepresentation:
-    """Linear encoding, the same for lights and surfaces.
+class Representation(ABC):
+    """Encoding of spectra that a renderer can multiply (Kment 2011, section 5.4).
 
-    Parameters
-    ----------
-    name, family : str
-        See `Representation`.
-    encoder : ndarray, shape (401, n)
-        ``spectra @ encoder`` is the code.
-    weights : ndarray, shape (n, 3)
-        ``code @ weights`` is the XYZ of a light.
+    A code holds n spectra; its type belongs to the representation. The product of a light and surfaces is again a
+    light, which may meet the next surface. Row r of a light meets row r of the surfaces. ``name`` is the abbreviation
+    of the thesis with the number of coefficients, such as ``PS16``, and ``family`` the method without its size.
     """
 
     name: str
     family: str
+
+    @abstractmethod
+    def encode_light(self, power: Array) -> Any:
+        """Encode spectral powers (n, 401)."""
+
+    def encode_surface(self, reflectance: Array) -> Any:
+        """Encode reflectances (n, 401), by default as lights."""
+        return self.encode_light(reflectance)
+
+    @abstractmethod
+    def multiply(self, light: Any, surface: Any) -> Any:
+        """Code of the light that surfaces reflect."""
+
+    @abstractmethod
+    def xyz(self, light: Any) -> Array:
+        """XYZ (n, 3) of lights, in the units of `xyz_weights`."""
+
+    def storage(self, code: Any) -> Array:
+        """Numbers stored per spectrum (n,), by default those of a code that is a single array."""
+        return np.full(len(code), float(code[0].size))
+
+
+@dataclass(frozen=True, eq=False)
+class SampleRepresentation(Representation):
+    """Linear encoding, the same for lights and surfaces.
+
+    ``spectra @ encoder`` (401, n) is the code, and ``code @ weights`` (n, 3) the XYZ of a light.
+    """
+
     encoder: Array
     weights: Array
 
     def encode_light(self, power: Array) -> Array:
         return np.asarray(matmul_rows(power, self.encoder))
-
-    def encode_surface(self, reflectance: Array) -> Array:
-        return self.encode_light(reflectance)
 
     def multiply(self, light: Array, surface: Array) -> Array:
         return light * surface
@@ -41,10 +99,60 @@ class SampleRepresentation:
     def xyz(self, light: Array) -> Array:
         return light @ self.weights
 
-    def storage(self, code: Array) -> Array:
-        return row_sizes(code)
+
+def sample_points(count: int) -> Array:
+    """Evenly spaced wavelengths (count,) in nm from end to end."""
+    return np.linspace(observer.START, observer.END, count)
 
 
-def row_sizes(code: Array) -> Array:
-    """Numbers per row (n,) of a code that is a single array."""
-    return np.full(len(code), float(code[0].size))
+def point_samples(count: int) -> SampleRepresentation:
+    """Point sampling (PS): values at evenly spaced wavelengths, both ends included (Kment 2011, sections 5.4, 6.1).
+
+    A choice that the text leaves open: XYZ is the integral of the linear interpolant, not a sum over equally sampled
+    colour-matching functions. With the sum, the errors at 8, 16 and 32 points would not decrease fourfold from one to
+    the next, as those of table 6.1 do.
+    """
+    points = sample_points(count)
+    weights = hat_functions(points) @ xyz_weights()
+    return SampleRepresentation(f"PS{count}", "point sampling", interpolation_matrix(points), weights)
+
+
+def riemann_sums(count: int) -> SampleRepresentation:
+    """Riemann sums (RS): the mean of a spectrum over each of ``count`` cells (Kment 2011, section 5.4, eq. 5.3).
+
+    Choices that the text leaves open: sums are divided by the width of their cell, so that products are sums of the
+    same kind. XYZ are products times the integral of the colour-matching functions over the cell.
+    """
+    overlaps = cell_overlaps(count)
+    means = overlaps / overlaps.sum(axis=1, keepdims=True)
+    return SampleRepresentation(f"RS{count}", "Riemann sums", means.T, overlaps @ xyz_weights())
+
+
+def cell_overlaps(count: int) -> Array:
+    """Fraction (count, 401) of the nanometre around each dense sample that lies in each cell.
+
+    The cells have equal widths and cover the range. A sample on a border counts half for either side, where eq. 5.3 as
+    printed counts it twice.
+    """
+    edges = np.linspace(observer.START - STEP / 2, observer.END + STEP / 2, count + 1)
+    low, high = wavelengths() - STEP / 2, wavelengths() + STEP / 2
+    overlap = np.minimum(edges[1:, None], high) - np.maximum(edges[:-1, None], low)
+    return np.asarray(np.maximum(overlap, 0) / STEP)
+
+
+def gauss_samples(count: int) -> SampleRepresentation:
+    """Samples at the nodes of Gaussian quadrature (GQ) with the weight function x̄ + ȳ + z̄.
+
+    With n nodes the rule is exact for polynomials of degree 2n − 1 under that weight function. Each colour-matching
+    function has its own weights at the same nodes, exact for degree n − 1. Raises `UpliftError` without such a rule.
+    """
+    rule = gauss_rule(wavelengths(), xyz_weights().sum(axis=1), count)
+    if isinstance(rule, UndefinedRule):
+        raise UpliftError(
+            f"order {count} has no quadrature rule: {rule.reason}",
+            code="undefined-rule",
+            hint="choose another number of nodes",
+        )
+    weights = [interpolatory_rule(rule.nodes, wavelengths(), masses).weights for masses in xyz_weights().T]
+    encoder = interpolation_matrix(rule.nodes)
+    return SampleRepresentation(f"GQ{count}", "Gaussian quadrature", encoder, np.stack(weights, axis=1))

@@ -15,8 +15,7 @@ True
 from __future__ import annotations
 
 from uplift.scene.wavelengths.choose import MAX_COUNT, METHODS, Choice, choose, choose_orders, fit_weights
-from uplift.scene.wavelengths.sampling import MEASURES, ColourErrors, Sampling, evaluate
-from uplift.scene.wavelengths.setup import RenderSetup, grid, make_setup
+from uplift.scene.wavelengths.sampling import MEASURES, ColourErrors, RenderSetup, Sampling, evaluate, grid, make_setup
 
 __all__ = [
     "MAX_COUNT",

@@ -8,12 +8,17 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from uplift.common.errors import OptionError, unknown_name
-from uplift.scene.wavelengths.meyer import meyer, meyer_orders
-from uplift.scene.wavelengths.opponent import CHANNELS
+from uplift.scene.wavelengths.meyer import CHANNELS, meyer, meyer_orders
 from uplift.scene.wavelengths.optimise import fit_at, fit_uniform, optimise
-from uplift.scene.wavelengths.sampling import MEASURES, ColourErrors, Sampling, evaluate
-from uplift.scene.wavelengths.setup import RenderSetup
-from uplift.scene.wavelengths.uniform import prefiltered_uniform, uniform
+from uplift.scene.wavelengths.sampling import (
+    MEASURES,
+    ColourErrors,
+    RenderSetup,
+    Sampling,
+    evaluate,
+    prefiltered_uniform,
+    uniform,
+)
 
 METHODS: Mapping[str, Callable[[RenderSetup, int], Sampling]] = {
     "optimised": optimise,

@@ -1,17 +1,127 @@
-"""Wavelengths, weights and prefiltered lights fitted to the materials and lights of a setup."""
+"""Wavelengths, weights and prefiltered lights fitted to the materials and lights of a setup, by least squares."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import least_squares
 
+from uplift.colorimetry.delta_e import delta_e_2000, lab_jacobian
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.scene.wavelengths.local_fit import FitProblem, local_fit
-from uplift.scene.wavelengths.sampling import Sampling, evaluate
-from uplift.scene.wavelengths.setup import RenderSetup
-from uplift.scene.wavelengths.uniform import midpoints, prefiltered
+from uplift.common.threads import single_threaded_blas
+from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, evaluate, midpoints, prefiltered
+
+STEP = 1e-3
+"""Length of the finite differences, in units of L*a*b*."""
+MIN_EIGENVALUE = 1e-3
+"""Lower bound of the eigenvalues of the form; rounding may make them negative."""
+
+
+def delta_e_factors(setup: RenderSetup) -> Array:
+    """Factors T (K, M, 3, 3) of the form at every material and light: |T (XYZ' − XYZ)| ≈ ΔE00 of close colours."""
+    jacobian = np.stack([lab_jacobian(xyz, white) for xyz, white in zip(setup.xyz, setup.whites, strict=True)])
+    values, vectors = np.linalg.eigh(_quadratic_form(setup.lab))
+    root = np.sqrt(np.maximum(values, MIN_EIGENVALUE))[..., None] * np.swapaxes(vectors, -1, -2)
+    return np.asarray(root @ jacobian)
+
+
+def _quadratic_form(lab: Array) -> Array:
+    """Matrices G (…, 3, 3) with dᵀ G d ≈ ΔE00² for small differences d of L*a*b* (…, 3)."""
+    steps = np.eye(3) * STEP
+
+    def squared(difference: Array) -> Array:
+        return (delta_e_2000(lab, lab + difference) / STEP) ** 2
+
+    diagonal = [squared(step) for step in steps]
+    form = np.empty((*lab.shape, 3))
+    for i in range(3):
+        form[..., i, i] = diagonal[i]
+        for j in range(i):
+            mixed = (squared(steps[i] + steps[j]) - diagonal[i] - diagonal[j]) / 2
+            form[..., i, j] = form[..., j, i] = mixed
+    return form
+
+
+MAX_EVALUATIONS = 60
+"""More evaluations gain nothing on materials outside the fit."""
+
+
+@dataclass(frozen=True, eq=False)
+class FitProblem:
+    """Least-squares problem over a vector of wavelengths (n,), weights (n, 3) and powers (K, n), in this order."""
+
+    setup: RenderSetup
+
+    @cached_property
+    def factors(self) -> Array:
+        """Factors (K, M, 3, 3) of ΔE00, see `delta_e_factors`."""
+        return delta_e_factors(self.setup)
+
+    @staticmethod
+    def pack(sampling: Sampling) -> Array:
+        """Concatenate the unknowns of a sampling."""
+        return np.concatenate([sampling.wavelengths, sampling.to_xyz.ravel(), sampling.powers.ravel()])
+
+    def unpack(self, unknowns: Array) -> Sampling:
+        """Invert `pack`."""
+        lights = len(self.setup.lights)
+        count = len(unknowns) // (4 + lights)
+        nm, weights, powers = np.split(unknowns, [count, 4 * count])
+        return Sampling(nm, weights.reshape(count, 3), self.setup.lights, powers.reshape(lights, count))
+
+    def residuals(self, unknowns: Array) -> Array:
+        """Differences (K · M · 3,) from the colours of the full grid; the length of each triple is ΔE00."""
+        sampling = self.unpack(unknowns)
+        difference = sampling.xyz(self.setup.curves(sampling.wavelengths)) - self.setup.xyz
+        return np.einsum("kmij,kmj->kmi", self.factors, difference).ravel()
+
+    def jacobian(self, unknowns: Array) -> Array:
+        """Derivative (K · M · 3, (4 + K) n) of the residuals."""
+        sampling = self.unpack(unknowns)
+        values, slopes = (self.setup.curves(sampling.wavelengths, order) for order in (0, 1))
+        lights, materials, count = len(sampling.lights), len(values), len(sampling)
+        weighted = np.einsum("kmij,nj->kmin", self.factors, sampling.to_xyz)
+        radiance = sampling.powers[:, None, :] * values
+        by_powers = np.zeros((lights, materials, 3, lights, count))
+        for light in range(lights):
+            by_powers[light, :, :, light] = weighted[light] * values[:, None, :]
+        blocks = (
+            weighted * (sampling.powers[:, None, :] * slopes)[:, :, None, :],
+            radiance[:, :, None, :, None] * self.factors[:, :, :, None, :],
+            by_powers,
+        )
+        height = lights * materials * 3
+        return np.concatenate([block.reshape(height, -1) for block in blocks], axis=1)
+
+
+def local_fit(problem: FitProblem, start: Sampling, *, fix_wavelengths: bool = False) -> Sampling:
+    """Find the local minimum nearest to ``start`` with weights and powers of at least 0."""
+    nm = problem.setup.wavelengths
+    count, fixed = len(start), len(start) if fix_wavelengths else 0
+    unknowns = problem.pack(start)
+    others = len(unknowns) - count
+    low = np.concatenate([np.full(count, nm[0]), np.zeros(others)])
+    high = np.concatenate([np.full(count, nm[-1]), np.full(others, np.inf)])
+    unknowns = np.clip(unknowns, low, high)
+
+    def with_fixed(free: Array) -> Array:
+        return np.concatenate([unknowns[:fixed], free])
+
+    with single_threaded_blas():
+        solution = least_squares(
+            lambda free: problem.residuals(with_fixed(free)),
+            unknowns[fixed:],
+            lambda free: problem.jacobian(with_fixed(free))[:, fixed:],
+            bounds=(low[fixed:], high[fixed:]),
+            x_scale="jac",
+            max_nfev=MAX_EVALUATIONS,
+        )
+    return problem.unpack(with_fixed(solution.x))
+
 
 START_RANGES = ((400.0, 700.0), (410.0, 680.0))
 """Ranges in nm of the two starting points: least squares ends in the nearest local minimum."""
