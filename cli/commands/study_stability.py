@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.number_text import parse_float, parse_whole
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value, parse_float, parse_whole
 
 from ..output.console import json_text, make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
 from uplift.common.errors import ColourError
-from uplift.common.number_text import parse_float
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value, parse_float
 
 from .text_lines import HINT, line_blocks
 

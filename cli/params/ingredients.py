@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from uplift.common.number_text import parse_float
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value, parse_float
 
 from .colours import from_arguments
 

@@ -7,8 +7,7 @@ from typing import Any
 
 import click
 
-from uplift.common.number_text import parse_float, parse_whole
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value, parse_float, parse_whole
 
 LARGEST = 10**9
 """Default limit of whole numbers; the library has smaller ones."""

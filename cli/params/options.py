@@ -8,8 +8,7 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from uplift.common.number_text import parse_whole
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value, parse_whole
 
 from .completion import (
     complete_atlas,

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from uplift.common.number_text import parse_float
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value, parse_float
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array

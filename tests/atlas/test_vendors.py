@@ -175,11 +175,11 @@ def test_damaged_files_raise(save, text, code):
 
 def test_content_of_archives_is_limited(tmp_path, monkeypatch):
     monkeypatch.setattr(spreadsheet, "MAX_CONTENT", 100)
-    with raises(AtlasError, "file-too-large"):
+    with raises(AtlasError, "file-unreadable"):
         read_atlas(XLSX.save(MACBETH, tmp_path))
     monkeypatch.undo()
     monkeypatch.setattr(spreadsheet, "MAX_CELLS", 10)
-    with raises(AtlasError, "file-too-large"):
+    with raises(AtlasError, "file-unreadable"):
         read_atlas(XLSX.save(MACBETH, tmp_path))
 
 

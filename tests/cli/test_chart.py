@@ -162,7 +162,7 @@ def test_recommendation_from_the_packaged_chart(run, repository):
         (("--recommend",), "no-requirements"),
         (("--recommend", "--tolerance", 1, "--light", "FL12"), "unknown-light"),
         (("--from", "none.csv"), "file-not-found"),
-        (("-o", "file"), "folder-not-created"),
+        (("-o", "file"), "output"),
     ],
 )
 def test_invalid_input_is_an_error(refuse, home, macbeth, arguments, code):

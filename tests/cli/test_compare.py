@@ -84,7 +84,7 @@ def test_lights_replace_the_default_sets(run, macbeth):
     [
         (("--light", "F2"), "unknown-illuminant"),
         (("--tolerance", 0), "target-not-positive"),
-        (("-o", "file"), "folder-not-created"),
+        (("-o", "file"), "output"),
         (("-o", "out"), "file-exists"),
     ],
 )

@@ -99,7 +99,7 @@ def test_files_are_replaced_only_with_force(run, refuse, home, cube):
 def test_invalid_input_is_an_error(refuse, home, cube):
     assert refuse("export", "missing.uplift", "-o", "cube.csv").code == "cube-not-found"
     assert refuse("export", cube, "-o", "cube.coeff", "--res", "1").code == "resolution-out-of-range"
-    assert refuse("export", cube, "-o", "missing/cube.csv").code == "folder-missing"
+    assert refuse("export", cube, "-o", "missing/cube.csv").code == "output"
     assert [path.name for path in home.iterdir()] == [cube]
 
 

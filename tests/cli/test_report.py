@@ -100,7 +100,7 @@ def test_invalid_input_is_an_error_and_nothing_is_written(refuse, home, cube):
     assert refuse("report", "text.uplift").code == "not-a-cube"
     assert refuse("report", cube, "--light", "D66").code == "unknown-illuminant"
     assert refuse("report", cube, "--atlas", "none.txt").code == "file-not-found"
-    assert refuse("report", cube, "-o", "nowhere/page.html").code == "folder-missing"
+    assert refuse("report", cube, "-o", "nowhere/page.html").code == "output"
     assert {path.name for path in home.iterdir()} == before
 
 

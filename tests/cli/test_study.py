@@ -106,8 +106,8 @@ def test_files_are_replaced_only_with_force(run, refuse, home, tcs):
         (("--atlas", "tcs.txt", "--max-moments", 33), "moments-out-of-range"),
         (("--atlas", "tcs.txt", "--max-moments", -1), "moments-out-of-range"),
         (("--atlas", "tcs.txt", "--atlas", "copy/tcs.txt"), "duplicate-atlas"),
-        (("--atlas", "tcs.txt", "-o", "file"), "folder-not-created"),
-        (("--atlas", "tcs.txt", "-o", "none/out"), "folder-not-created"),
+        (("--atlas", "tcs.txt", "-o", "file"), "output"),
+        (("--atlas", "tcs.txt", "-o", "none/out"), "output"),
     ],
 )
 def test_invalid_input_is_an_error(refuse, home, tcs, options, code):

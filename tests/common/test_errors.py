@@ -25,9 +25,10 @@ def test_message_is_location_problem_and_hint():
     }
 
 
-def test_unknown_parts_are_left_out_of_the_message():
-    assert str(AtlasError("no samples", code="no-samples")) == "no samples"
-    assert str(AtlasError("no samples", code="no-samples", entry="red")) == "entry 'red': no samples"
+def test_message_is_one_line_for_any_texts():
+    error = UpliftError("no such\nfile", path="a\x1b[2J", entry="b\u202e", hint="look\relsewhere")
+    assert str(error) == "a\\x1b[2J: entry 'b\\u202e': no such\\nfile; look\\relsewhere"
+    assert str(AtlasError("no samples")) == "no samples"
 
 
 @pytest.mark.parametrize("kind", CLASSES)
@@ -52,7 +53,3 @@ def test_unknown_name_suggests_near_names_regardless_of_case():
 def test_unknown_name_lists_valid_names_if_none_is_near():
     assert unknown_name("?", ("none", "vision"), "warp").hint == "did you mean 'none', 'vision'?"
     assert unknown_name("?", (), "warp").hint == ""
-
-
-def test_code_of_unknown_name_is_the_kind_in_kebab_case():
-    assert unknown_name("x", ("sRGB",), "RGB space").code == "unknown-rgb-space"

@@ -1,16 +1,16 @@
-"""Text that is safe to show."""
+"""Text that is safe to show, and numbers in text."""
 
 from __future__ import annotations
 
 import json
+import math
 import unicodedata
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from uplift.common.errors import UpliftError
-from uplift.common.text import json_escapes, printable
+from uplift.common.text import format_value, json_escapes, parse_float, parse_whole, printable
 
 ANY_TEXT = st.text(st.characters(exclude_categories=()))
 """Text of any code points, lone surrogates among them."""
@@ -31,19 +31,6 @@ def test_printable_text_stays(text):
     assert printable(text) == text
 
 
-@pytest.mark.parametrize(
-    ("text", "shown"),
-    [
-        ("\x1b]52;c;eA==\x07", "\\x1b]52;c;eA==\\x07"),
-        ("a\r\nb", "a\\r\\nb"),
-        ("\u202ex", "\\u202ex"),
-        ("\udcff", "\\udcff"),
-    ],
-)
-def test_escapes_are_those_of_python(text, shown):
-    assert printable(text) == shown
-
-
 @given(st.dictionaries(ANY_TEXT, ANY_TEXT), st.sampled_from([None, 2]))
 def test_escaped_json_has_the_same_values_and_only_printable_lines(values, indent):
     text = json_escapes(json.dumps(values, ensure_ascii=False, indent=indent))
@@ -51,7 +38,37 @@ def test_escaped_json_has_the_same_values_and_only_printable_lines(values, inden
     assert all(printable(line) == line for line in text.split("\n"))
 
 
-def test_errors_are_one_line_for_any_texts():
-    error = UpliftError("no such\nfile", path="a\x1b[2J", entry="b\u202e", hint="look\relsewhere")
-    assert str(error) == "a\\x1b[2J: entry 'b\\u202e': no such\\nfile; look\\relsewhere"
-    assert error.args == (str(error),)
+def test_every_value_has_a_short_text_without_control_characters():
+    deep: list[object] = []
+    for _ in range(100_000):
+        deep = [deep]
+    for value in ("\x1b]0;title\x07", "\ud800", "\u202e", "\n", 16**5000, deep, "a" * 100):
+        text = format_value(value)
+        assert text.isprintable()
+        assert text.encode()
+        assert len(text) <= 41
+
+
+@given(st.floats())
+def test_every_float_is_read_back(value):
+    found = parse_float(repr(value))
+    assert found == value or (math.isnan(found) and math.isnan(value))
+
+
+@given(st.integers(-(10**18) + 1, 10**18 - 1))
+def test_every_whole_number_is_read_back(value):
+    assert parse_whole(str(value)) == parse_whole(f" {value:+} ") == value
+
+
+@pytest.mark.parametrize(
+    "text", ["", "1_000", "١", "²", "0x10", "1,5", "1e", "e5", ".", "--1", "1\n2", "9" * 10_000 + ":"]
+)
+def test_other_texts_are_errors(text):
+    for parse in (parse_float, parse_whole):
+        with pytest.raises(ValueError, match="not a"):
+            parse(text)
+
+
+def test_whole_numbers_of_thousands_of_digits_are_errors():
+    with pytest.raises(ValueError, match="not a"):
+        parse_whole("9" * 5000)

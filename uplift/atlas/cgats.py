@@ -15,7 +15,7 @@ from uplift.atlas.atlas import Header
 from uplift.atlas.document import Document, SourceLocation, parse_number
 from uplift.atlas.grid import Cell, Row, find_table, read_grid, wavelength
 from uplift.atlas.measurements import Measurements, check_quantity, refuse_quantity
-from uplift.common.number_text import parse_float
+from uplift.common.text import parse_float
 
 FORMAT, DATA = "DATA_FORMAT", "DATA"
 TOKEN = re.compile(r'"((?:[^"]|"")*)"|(\S+)')

@@ -10,9 +10,8 @@ from functools import cached_property
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import AtlasError
-from uplift.common.input_file import read_bytes
-from uplift.common.number_text import parse_float
-from uplift.common.text import printable
+from uplift.common.files import read_bytes
+from uplift.common.text import parse_float, printable
 
 MAX_QUOTED = 40
 """Characters of an invalid token or name that a message quotes."""

@@ -10,9 +10,8 @@ import numpy as np
 
 from uplift.atlas.document import MAX_BYTES, Document, SourceLocation, truncate
 from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
-from uplift.common.errors import AtlasError
-from uplift.common.extras import needs_extra
-from uplift.common.input_file import read_bytes
+from uplift.common.errors import AtlasError, needs_extra
+from uplift.common.files import read_bytes
 
 HEADER, LIBRARY = ".hdr", ".sli"
 MAGIC = b"ENVI"

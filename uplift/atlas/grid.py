@@ -14,7 +14,7 @@ from typing import NamedTuple
 from uplift.atlas.checks import SLACK, VISIBLE
 from uplift.atlas.document import SourceLocation, parse_number, without_unit
 from uplift.atlas.measurements import Measurements, Spectrum, check_quantity, not_used_note, refuse_quantity
-from uplift.common.number_text import parse_float
+from uplift.common.text import parse_float
 
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
 LAYOUT = "write a header row of wavelengths in nm and a row per entry, or the transpose"

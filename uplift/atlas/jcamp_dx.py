@@ -20,8 +20,7 @@ from uplift.atlas.measurements import (
     refuse_quantity,
 )
 from uplift.common.arrays import Array
-from uplift.common.errors import AtlasError
-from uplift.common.extras import needs_extra
+from uplift.common.errors import AtlasError, needs_extra
 
 POINTS = re.compile(r"^##\s*NPOINTS\s*=\s*(\S+)", re.IGNORECASE | re.MULTILINE)
 MAX_POINTS = 1_000_000

@@ -11,8 +11,7 @@ from uplift.atlas.document import Document, SourceLocation
 from uplift.atlas.grid import NO_TABLE, Cell, Row, read_grid, trimmed
 from uplift.atlas.measurements import Measurements, parsed_by
 from uplift.common.csv import plain_cell
-from uplift.common.errors import AtlasError
-from uplift.common.extras import needs_extra
+from uplift.common.errors import AtlasError, needs_extra
 
 ZIP, OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
 MAX_CONTENT = 256 << 20
@@ -65,7 +64,7 @@ def _rows(book: Any, name: str, path: str) -> list[Row]:
             raise SourceLocation(path).error(
                 f"a sheet must have at most {MAX_CELLS:,} cells, got {sheet.height} × {sheet.width}",
                 HINT,
-                code="file-too-large",
+                code="file-unreadable",
             )
         start = sheet.start[0] if sheet.start else 0
         lines = sheet.to_python(skip_empty_area=True)
@@ -99,7 +98,7 @@ def _check_content(document: Document) -> None:
         for size in _sizes(archive):
             total += size
             if total > MAX_CONTENT:
-                raise location.error(f"its content must not exceed {MAX_CONTENT:,} bytes", HINT, code="file-too-large")
+                raise location.error(f"its content must not exceed {MAX_CONTENT:,} bytes", HINT, code="file-unreadable")
 
 
 def _sizes(archive: zipfile.ZipFile) -> Iterator[int]:

@@ -16,7 +16,7 @@ from uplift.atlas.grid import LAYOUT, NO_TABLE, Cell, Row, read_grid, trimmed, w
 from uplift.atlas.measurements import Measurements, Spectrum
 from uplift.common.csv import csv_text, plain_cell
 from uplift.common.errors import OutputError
-from uplift.common.number_text import parse_float
+from uplift.common.text import parse_float
 
 DELIMITERS = ",;\t"
 BLANKS = " "

@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError
-from uplift.common.input_file import read_bytes
-from uplift.common.number_text import parse_float
-from uplift.common.quoting import format_value
+from uplift.common.files import read_bytes
+from uplift.common.text import format_value, parse_float
 
 CAMERA = "camera"
 """Name of the RGB space of raw values, balanced so that the perfect reflector is (1, 1, 1)."""

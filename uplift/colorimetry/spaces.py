@@ -18,8 +18,7 @@ from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import OptionError, unknown_name
-from uplift.common.number_text import parse_float
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value, parse_float
 
 COMMON_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 """Names of colour-science, by the area of the gamut in CIE 1976 u′, v′."""

@@ -11,7 +11,7 @@ import numpy as np
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value
 
 HEX = re.compile("#[0-9a-fA-F]{6}")
 MAX_NUMBER = 1e6

@@ -13,15 +13,9 @@ __all__ = ["colour_science"]
 
 @functools.cache
 def colour_science() -> ModuleType:
-    """Import colour-science, which takes a second.
+    """Import colour-science, which takes a second, without its warnings about optional dependencies.
 
-    Warnings about its optional dependencies are suppressed, and the print options of numpy, which it changes, are
-    restored.
-
-    Returns
-    -------
-    module
-        ``colour``.
+    The print options of numpy, which it changes, are restored.
     """
     with warnings.catch_warnings(), np.printoptions():
         warnings.simplefilter("ignore")

@@ -25,88 +25,37 @@ class _Writable(Protocol):
 
 
 class CsvWriter:
-    """Writer of rows with LF line ends, to an open text file.
+    """Writer of rows with LF line ends, to a text file opened with ``newline=""``.
 
-    Parameters
-    ----------
-    file : text file
-        The file, opened with ``newline=""``.
-    quote_text : bool
-        Quote all text, which distinguishes a name such as ``1`` from a number.
-
-    Examples
-    --------
-    >>> text = io.StringIO()
-    >>> CsvWriter(text).write(["=1+2", -1.5, None])
-    >>> text.getvalue()
-    "'=1+2,-1.5,\\n"
+    With ``quote_text`` all text is quoted, which distinguishes a name such as ``1`` from a number.
     """
 
     def __init__(self, file: _Writable, *, quote_text: bool = False) -> None:
-        self._writer = csv.writer(
-            file, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL
-        )
+        quoting = csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL
+        self._writer = csv.writer(file, lineterminator="\n", quoting=quoting)
 
     def write(self, row: Iterable[object]) -> None:
-        """Write a row.
-
-        Parameters
-        ----------
-        row : iterable
-            Cells. Floats are written with all significant digits, None as an empty cell. Text is neutralised.
-        """
+        """Write floats with all significant digits, None as an empty cell, and neutralised text."""
         self._writer.writerow([_safe_cell(cell) for cell in row])
 
 
 def csv_text(header: Sequence[object], rows: Iterable[Sequence[object]], *, quote_text: bool = False) -> str:
-    """Format a table as CSV with LF line ends.
+    """Format a table as CSV.
 
-    Parameters
-    ----------
-    header : sequence
-        Cells of the first row.
-    rows : iterable of sequence
-        Cells of the other rows, as for `CsvWriter.write`.
-    quote_text : bool
-        Quote all text, which distinguishes a name such as ``1`` from a number.
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> print(csv_text(["name", "value"], [["a, b", 0.1], ["c", None]]), end="")
+    >>> print(csv_text(["name", "value"], [["a, b", 0.1], ["=1+2", None]]), end="")
     name,value
     "a, b",0.1
-    c,
+    '=1+2,
     """
     text = io.StringIO()
     writer = CsvWriter(text, quote_text=quote_text)
-    writer.write(header)
-    for row in rows:
+    for row in (header, *rows):
         writer.write(row)
     return text.getvalue()
 
 
 def plain_cell(cell: str) -> str:
-    """Return a cell without the apostrophe that `CsvWriter` puts before a formula.
-
-    Parameters
-    ----------
-    cell : str
-        A cell as read.
-
-    Returns
-    -------
-    str
-        The text that was written.
-
-    Examples
-    --------
-    >>> plain_cell("'=1+2"), plain_cell("it's")
-    ('=1+2', "it's")
-    """
+    """Return a cell without the apostrophe that `CsvWriter` puts before a formula."""
     return cell[1:] if _NEUTRALISED.match(cell) else cell
 
 

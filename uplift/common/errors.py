@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import contextlib
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from uplift.common.text import printable
@@ -24,6 +25,7 @@ __all__ = [
     "UnknownNameError",
     "UpliftError",
     "UpliftWarning",
+    "needs_extra",
     "unknown_name",
 ]
 
@@ -82,29 +84,12 @@ class Diagnostic(Exception):  # noqa: N818
         return self.describe(self.hint)
 
     def describe(self, hint: str) -> str:
-        """One line with another hint.
-
-        Parameters
-        ----------
-        hint : str
-            How to solve the problem; empty for none.
-
-        Returns
-        -------
-        str
-            Location, problem and hint, with control characters escaped.
-        """
+        """Location, problem and another hint in one line, with control characters escaped."""
         text = f"{self.where}: {self.problem}" if self.where else self.problem
         return printable(f"{text}; {hint}" if hint else text)
 
     def to_json(self) -> dict[str, Any]:
-        """Plain values for machines.
-
-        Returns
-        -------
-        dict
-            ``code``, ``where``, ``problem`` and ``hint``, all text.
-        """
+        """``code``, ``where``, ``problem`` and ``hint``, all text, for machines."""
         return {"code": self.code, "where": self.where, "problem": self.problem, "hint": self.hint}
 
 
@@ -185,24 +170,8 @@ class UpliftWarning(Diagnostic, UserWarning):
 
 
 def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError:
-    """Make the error for an unknown name, with the nearest known names as its hint.
+    """Make the error for an unknown name of a ``kind``, with the nearest known names as its hint.
 
-    Parameters
-    ----------
-    name : str
-        The name received.
-    known : iterable of str
-        Valid names.
-    kind : str
-        What the name stands for, such as ``"RGB space"``. Its kebab case follows ``unknown-`` in the code.
-
-    Returns
-    -------
-    UnknownNameError
-        The error to raise.
-
-    Examples
-    --------
     >>> error = unknown_name("srbg", ("sRGB", "P3-D65"), "RGB space")
     >>> print(error.code, "|", error)
     unknown-rgb-space | unknown RGB space 'srbg'; did you mean 'sRGB'?
@@ -214,3 +183,17 @@ def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError
     choices = ", ".join(f"'{by_folded[entry]}'" for entry in near)
     code = "unknown-" + "-".join(kind.casefold().split())
     return UnknownNameError(f"unknown {kind} '{name}'", code=code, hint=f"did you mean {choices}?" if near else "")
+
+
+@contextlib.contextmanager
+def needs_extra(extra: str, purpose: str, error: type[UpliftError]) -> Iterator[None]:
+    """Import an optional package in the block; ``error`` names the extra of uplift that installs it."""
+    try:
+        yield
+    except ImportError as cause:
+        name = (cause.name or "").partition(".")[0]
+        raise error(
+            f"{purpose} need the module '{name}', which is not installed",
+            code="extra-not-installed",
+            hint=f"install it: pip install 'spectral-uplift[{extra}]'",
+        ) from cause

@@ -1,215 +1,157 @@
-"""Atomic writing: a file is complete or absent, and never takes the place of an input.
+"""Files in and out: regular files of limited size are read; a file that is written is complete or absent.
 
-A writer fills a temporary file in the same folder, then renames it. A lock on the temporary file distinguishes a live
-writer from a killed one, whose file the next writer to the same path removes. A file that appeared during the work is
-replaced only with ``force``; else the result is kept under another name.
+A writer fills a temporary file in the same folder, flushes it to disk and renames it. With concurrent writers the last
+one to finish wins.
 """
 
 from __future__ import annotations
 
 import contextlib
-import errno
-import itertools
 import os
-import re
 import stat
-import threading
+import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from uplift.common.arrays import StrPath
-from uplift.common.errors import OutputError
-
-try:
-    import fcntl
-except ImportError:  # Windows: temporary files of killed processes stay
-    fcntl = None  # type: ignore[assignment]
+from uplift.common.errors import OutputError, UpliftError
 
 __all__ = [
     "atomic_write",
     "check_folder",
     "check_output",
     "check_outputs",
+    "check_regular",
+    "read_bytes",
     "remove_stale",
     "remove_temporaries",
     "write_text",
 ]
 
-SUFFIX = ".part"
-"""Suffix of temporary files."""
-NO_HARD_LINKS = {errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK, errno.EXDEV}
-"""Errors of file systems without hard links."""
-
-Identity = tuple[int, int]
-"""Device and inode of a file."""
-
-_UMASK = threading.Lock()
+DAY = 86_400.0
+"""Seconds without a change after which a temporary file belongs to a writer that was killed."""
+READ = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+"""Opening a pipe, or reading a file of the kernel, must not wait."""
 _TEMPORARIES: set[Path] = set()
 """Temporary files that this process is writing."""
+
+
+def check_regular(path: StrPath, error: type[UpliftError], *, hint: str) -> None:
+    """Check that a path is a regular file, which ends and can be read twice; raise ``error`` otherwise."""
+    try:
+        mode = os.stat(path).st_mode
+    except (OSError, ValueError) as cause:
+        raise _unreadable(path, error, hint, cause) from cause
+    _check_mode(mode, path, error, hint)
+
+
+def read_bytes(path: StrPath, error: type[UpliftError], *, limit: int, hint: str) -> bytes:
+    """Read a regular file of at most ``limit`` bytes; raise ``error`` otherwise."""
+    check_regular(path, error, hint=hint)
+    try:
+        with open(os.open(path, READ), "rb") as file:
+            _check_mode(os.fstat(file.fileno()).st_mode, path, error, hint)  # another file may have this name now
+            data = file.read(limit + 1)
+    except UpliftError:
+        raise
+    except (OSError, ValueError) as cause:
+        raise _unreadable(path, error, hint, cause) from cause
+    if data is None:
+        raise _unreadable(path, error, hint, OSError("it has no content yet"))
+    if len(data) > limit:
+        raise error(f"must not exceed {limit:,} bytes", code="file-unreadable", path=path, hint=hint)
+    return data
+
+
+def _check_mode(mode: int, path: StrPath, error: type[UpliftError], hint: str) -> None:
+    if not stat.S_ISREG(mode):
+        kind = "a folder" if stat.S_ISDIR(mode) else "a device or a pipe"
+        raise error(f"must be a file, got {kind}", code="not-a-regular-file", path=path, hint=hint)
+
+
+def _unreadable(path: StrPath, error: type[UpliftError], hint: str, cause: Exception) -> UpliftError:
+    if isinstance(cause, FileNotFoundError | NotADirectoryError):
+        return error("no such file", code="file-not-found", path=path, hint=hint)
+    reason = getattr(cause, "strerror", None) or cause  # a null byte in the path has none
+    return error(f"cannot be read: {reason}", code="file-unreadable", path=path, hint=hint)
 
 
 def check_outputs(
     paths: Iterable[StrPath | None], *, inputs: Iterable[StrPath | None] = (), force: bool = False
 ) -> None:
-    """Check all outputs of a program before it reads and writes anything.
-
-    Parameters
-    ----------
-    paths : iterable of path-like or None
-        The files to write, None for those that are not written.
-    inputs : iterable of path-like or None
-        The files to read, which no output may replace. Names without a file are ignored.
-    force : bool
-        Accept existing files.
-
-    Raises
-    ------
-    OutputError
-        As `check_output` for each file, or two outputs are the same file (code ``duplicate-output``).
-    """
-    identities, checked = _identities(inputs), dict[Path, StrPath]()
+    """Check all outputs of a program before it reads and writes anything, as `check_output`; None are left out."""
+    inputs, checked = list(inputs), dict[Path, StrPath]()
     for path in paths:
         if path is None:
             continue
-        place = _check(path, identities, force=force).resolve()
+        place = check_output(path, inputs=inputs, force=force).resolve()
         if place in checked:
-            raise OutputError(
-                f"is the same file as {os.fspath(checked[place])}",
-                code="duplicate-output",
-                path=path,
-                hint="give each output its own name",
-            )
+            problem = f"is the same file as {os.fspath(checked[place])}"
+            raise OutputError(problem, code="duplicate-output", path=path, hint="give each output its own name")
         checked[place] = path
 
 
 def check_output(path: StrPath, *, inputs: Iterable[StrPath | None] = (), force: bool = False) -> Path:
     """Check that a file can be written, before long work rather than after it.
 
-    Parameters
-    ----------
-    path : path-like
-        The file to write.
-    inputs : iterable of path-like or None
-        The files to read, which the output must not replace, even with ``force``.
-    force : bool
-        Accept an existing file.
-
-    Returns
-    -------
-    Path
-        The path.
-
-    Raises
-    ------
-    OutputError
-        The path cannot be written, exists and ``force`` is false, or is one of the inputs (code
-        ``output-is-input``).
+    An existing file is accepted with ``force``, one of the ``inputs`` never (``output-is-input``). Names of inputs
+    without a file, such as those of shipped atlases, are ignored.
     """
-    return _check(path, _identities(inputs), force=force)
-
-
-def _check(path: StrPath, inputs: set[Identity], *, force: bool) -> Path:
     if os.fspath(path) == "-":
-        raise OutputError(
-            "stands for standard output, which cannot hold a file",
-            code="standard-output",
-            path=path,
-            hint="give a file name, or ./- for a file of this name",
-        )
+        hint = "give a file name, or ./- for a file of this name"
+        raise OutputError("stands for standard output, which cannot hold a file", path=path, hint=hint)
     path = Path(path)
-    status = _status(path)
-    if status is not None and (status.st_dev, status.st_ino) in inputs:
-        raise OutputError(
-            "is read as input and must not be replaced",
-            code="output-is-input",
-            path=path,
-            hint="choose another name",
-        )
-    if status is not None and not stat.S_ISREG(status.st_mode):
-        raise OutputError("is not a regular file", code="not-a-regular-file", path=path, hint="name a file to write to")
-    if status is not None and not force:
-        raise OutputError(
-            "exists already",
-            code="file-exists",
-            path=path,
-            hint="pass force=True to replace it, or choose another name",
-        )
-    folder = path.resolve().parent
-    if not folder.is_dir():
-        raise OutputError(
-            f"the folder {folder} does not exist", code="folder-missing", path=path, hint="create it first"
-        )
-    if not os.access(folder, os.W_OK):
-        raise _no_permission(path, folder)
+    try:
+        status = path.stat()
+        target = path.resolve()
+    except (FileNotFoundError, NotADirectoryError):
+        status, target = None, path.resolve()
+    except PermissionError as error:
+        raise _no_permission(path, path.parent) from error
+    except (OSError, ValueError) as error:  # too long, with NUL, or a loop of links
+        reason = getattr(error, "strerror", None) or error
+        raise OutputError(f"cannot be written: {reason}", path=path, hint="choose another name") from error
+    if status is not None:
+        _check_existing(path, status, inputs, force)
+    if not target.parent.is_dir():
+        raise OutputError(f"the folder {target.parent} does not exist", path=path, hint="create it first")
+    if not os.access(target.parent, os.W_OK):
+        raise _no_permission(path, target.parent)
     return path
 
 
+def _check_existing(path: Path, status: os.stat_result, inputs: Iterable[StrPath | None], force: bool) -> None:
+    for each in inputs:
+        if each is not None and os.path.exists(each) and os.path.samestat(status, os.stat(each)):
+            problem = "is read as input and must not be replaced"
+            raise OutputError(problem, code="output-is-input", path=path, hint="choose another name")
+    if not stat.S_ISREG(status.st_mode):
+        raise OutputError("is not a regular file", code="not-a-regular-file", path=path, hint="name a file to write to")
+    if not force:
+        hint = "pass force=True to replace it, or choose another name"
+        raise OutputError("exists already", code="file-exists", path=path, hint=hint)
+
+
 def _no_permission(path: Path, folder: Path) -> OutputError:
-    return OutputError(
-        f"no permission to write in {folder}",
-        code="no-permission",
-        path=path,
-        hint="choose another folder",
-    )
+    return OutputError(f"no permission to write in {folder}", path=path, hint="choose another folder")
 
 
 def check_folder(
     path: StrPath, names: Iterable[str], *, inputs: Iterable[StrPath | None] = (), force: bool = False
 ) -> Path:
-    """Create a folder if necessary, and check that files can be written in it.
-
-    Parameters
-    ----------
-    path : path-like
-        The folder. Its parent must exist.
-    names : iterable of str
-        Names of the files.
-    inputs : iterable of path-like or None
-        The files to read, which no output may replace.
-    force : bool
-        Accept existing files.
-
-    Returns
-    -------
-    Path
-        The folder.
-
-    Raises
-    ------
-    OutputError
-        The folder cannot be created, or a file fails `check_outputs`.
-    """
+    """Create a folder if necessary, and check that files with these names can be written in it."""
     folder = Path(path)
     try:
         folder.mkdir(exist_ok=True)
     except OSError as error:
-        raise OutputError(
-            f"cannot be created: {error.strerror}",
-            code="folder-not-created",
-            path=folder,
-            hint="name a folder to write to",
-        ) from error
+        problem = f"cannot be created: {error.strerror}"
+        raise OutputError(problem, path=folder, hint="name a folder to write to") from error
     check_outputs([folder / name for name in names], inputs=inputs, force=force)
     return folder
 
 
 def write_text(text: str, path: StrPath, *, force: bool = False) -> None:
-    """Write text as UTF-8 with LF line ends, atomically.
-
-    Parameters
-    ----------
-    text : str
-        The text.
-    path : path-like
-        The file to write.
-    force : bool
-        Replace an existing file.
-
-    Raises
-    ------
-    OutputError
-        As `atomic_write`.
-    """
+    """Write text as UTF-8 with LF line ends, atomically."""
     with atomic_write(path, force=force) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
@@ -218,30 +160,8 @@ def write_text(text: str, path: StrPath, *, force: bool = False) -> None:
 def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
     """Provide a temporary path that is renamed to ``path`` if the block succeeds, and removed if it fails.
 
-    A replaced file keeps its permissions. With ``force`` the last of several concurrent writers wins. Without it the
-    first wins, and the results of the others are kept under names with a number. A symbolic link is kept and its target
-    replaced. Temporary files of killed writers to the same path are removed; those of live writers are locked and stay.
+    A replaced file keeps its owner and permissions. A symbolic link is kept and its target replaced.
 
-    Parameters
-    ----------
-    path : path-like
-        The file to write.
-    force : bool
-        Replace an existing file.
-
-    Yields
-    ------
-    Path
-        Temporary file in the same folder.
-
-    Raises
-    ------
-    OutputError
-        The path cannot be written, the disk is full, or the file exists and ``force`` is false (code
-        ``file-exists``; ``file-appeared`` if it was created during the block).
-
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     with atomic_write(Path(folder) / "notes.txt") as temporary:
@@ -251,174 +171,52 @@ def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
     """
     path = check_output(path, force=force)
     target = path.resolve()
+    temporary = target.with_name(f"{_prefix(target)}{os.urandom(4).hex()}.part")
+    _TEMPORARIES.add(temporary)
     try:
         remove_stale(target)
-        handle, temporary = _reserve(target)
-    except OSError as error:
-        raise _write_error(path, error) from error
-    try:
+        temporary.touch(exist_ok=False)
         yield temporary
-        _flush(temporary, target, force=force)
-        _publish(temporary, target, path, force=force)
+        with temporary.open("rb+") as file:
+            os.fsync(file.fileno())
+        if target.exists():
+            _copy_permissions(target, temporary)
+        os.replace(temporary, target)
     except OutputError:
         raise
     except OSError as error:
-        raise _write_error(path, error) from error
+        problem = f"cannot be written: {error.strerror or error}"
+        raise OutputError(problem, path=path, hint="an existing file is unchanged") from error
     finally:
-        _discard(temporary)
-        if fcntl is not None:
-            os.close(handle)
+        temporary.unlink(missing_ok=True)
+        _TEMPORARIES.discard(temporary)
 
 
-def remove_stale(path: StrPath) -> None:
-    """Remove the temporary files of killed writers to a path. Those of live writers are locked and stay.
-
-    Parameters
-    ----------
-    path : path-like
-        The file that the writers would have written.
-
-    Raises
-    ------
-    OSError
-        The folder cannot be listed.
-    """
-    if fcntl is None:
-        return
+def remove_stale(path: StrPath, seconds: float = DAY) -> None:
+    """Remove the temporary files of writers to a path that have not changed for so long: their writers were killed."""
     target = Path(path).resolve()
-    name = re.compile(re.escape(_prefix(target)) + "[a-z0-9_]{8}" + re.escape(SUFFIX))
-    for temporary in [Path(entry) for entry in os.scandir(target.parent) if name.fullmatch(entry.name)]:
-        with contextlib.suppress(OSError), temporary.open("rb+") as file:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            temporary.unlink()
+    for entry in os.scandir(target.parent):
+        if entry.name.startswith(_prefix(target)) and entry.name.endswith(".part"):
+            with contextlib.suppress(OSError):
+                if time.time() - entry.stat().st_mtime >= seconds:
+                    os.unlink(entry)
 
 
 def remove_temporaries() -> None:
     """Remove the temporary files that this process is writing, before it ends without leaving its blocks."""
     for temporary in list(_TEMPORARIES):
         with contextlib.suppress(OSError):
-            _discard(temporary)
-
-
-def _status(path: Path) -> os.stat_result | None:
-    """Return the status of a file, None if there is none. Raise `OutputError` for impossible names."""
-    try:
-        return path.stat()
-    except (FileNotFoundError, NotADirectoryError):
-        return None
-    except PermissionError as error:
-        raise _no_permission(path, path.parent) from error
-    except (OSError, ValueError) as error:  # too long, with NUL, or a loop of links
-        raise OutputError(
-            f"cannot be written: {getattr(error, 'strerror', None) or error}",
-            code="invalid-file-name",
-            path=path,
-            hint="choose another name",
-        ) from error
-
-
-def _identities(paths: Iterable[StrPath | None]) -> set[Identity]:
-    """Return device and inode of the files that exist; names such as those of shipped atlases have none."""
-    found = set()
-    for path in paths:
-        if path is not None:
-            with contextlib.suppress(OSError, ValueError):
-                status = os.stat(path)
-                found.add((status.st_dev, status.st_ino))
-    return found
+            temporary.unlink()
 
 
 def _prefix(target: Path) -> str:
     return f".{target.name[:40]}."
 
 
-def _reserve(target: Path) -> tuple[int, Path]:
-    """Create a temporary file that is locked as long as its descriptor is open."""
-    import tempfile  # slow to import, and readers do not need it
-
-    while True:
-        handle, name = tempfile.mkstemp(prefix=_prefix(target), suffix=SUFFIX, dir=target.parent)
-        temporary = Path(name)
-        _TEMPORARIES.add(temporary)
-        if fcntl is None:
-            os.close(handle)  # Windows cannot rename an open file
-            return handle, temporary
-        with contextlib.suppress(OSError):  # without locks, no other writer finds the file stale either
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        if os.fstat(handle).st_nlink:
-            return handle, temporary
-        _TEMPORARIES.discard(temporary)
-        os.close(handle)  # another writer removed it as stale before it was locked
-
-
-def _discard(temporary: Path) -> None:
-    temporary.unlink(missing_ok=True)
-    _TEMPORARIES.discard(temporary)
-
-
-def _flush(temporary: Path, target: Path, *, force: bool) -> None:
-    """Write the file to disk, with the owner and permissions of the file that it replaces, or those of a new one."""
-    with temporary.open("rb+") as file:
-        os.fsync(file.fileno())
-    try:
-        old = target.stat() if force else None
-    except FileNotFoundError:
-        old = None
-    if old is None:
-        temporary.chmod(0o666 & ~_umask())
-        return
+def _copy_permissions(old: Path, new: Path) -> None:
+    """Give a new file the owner and permissions of the file that it replaces."""
+    status = old.stat()
     if hasattr(os, "chown"):
         with contextlib.suppress(OSError):  # only root can give files away
-            os.chown(temporary, old.st_uid, old.st_gid)
-    temporary.chmod(stat.S_IMODE(old.st_mode) & 0o777)
-
-
-def _umask() -> int:
-    """Return the umask of the process. Reading it changes it for a moment."""
-    with _UMASK:
-        umask = os.umask(0)
-        os.umask(umask)
-    return umask
-
-
-def _publish(temporary: Path, target: Path, path: Path, *, force: bool) -> None:
-    """Give the complete file its name, or a name with a number if another program took it during the work."""
-    if force:
-        os.replace(temporary, target)
-        return
-    with contextlib.suppress(FileExistsError):
-        _rename_new(temporary, target)
-        return
-    for number in itertools.count(2):
-        kept = target.with_name(f"{target.stem[:40]}-{number}{target.suffix[:40]}")
-        with contextlib.suppress(FileExistsError):
-            _rename_new(temporary, kept)
-            raise OutputError(
-                f"was created by another program during the work; the result is in {path.parent / kept.name}",
-                code="file-appeared",
-                path=path,
-                hint="compare the two files",
-            )
-
-
-def _rename_new(temporary: Path, target: Path) -> None:
-    """Rename a file. Raises `FileExistsError` if the new name is taken, which `os.replace` would not."""
-    if os.name == "nt":
-        os.rename(temporary, target)
-        return
-    try:
-        os.link(temporary, target)
-    except OSError as error:
-        if error.errno not in NO_HARD_LINKS:
-            raise
-        os.close(os.open(target, os.O_CREAT | os.O_EXCL))
-        os.replace(temporary, target)
-
-
-def _write_error(path: Path, error: OSError) -> OutputError:
-    return OutputError(
-        f"cannot be written: {error.strerror or error}",
-        code="cannot-write",
-        path=path,
-        hint="an existing file is unchanged",
-    )
+            os.chown(new, status.st_uid, status.st_gid)
+    new.chmod(stat.S_IMODE(status.st_mode) & 0o777)

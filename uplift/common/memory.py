@@ -11,13 +11,7 @@ CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limi
 
 
 def total_memory() -> int | None:
-    """Return the memory in bytes that this process may have at most, None if the system does not state it.
-
-    Returns
-    -------
-    int or None
-        Memory of the machine, or of the container if that is less.
-    """
+    """Return the bytes that this process may have at most, None if unknown: of the machine or of its container."""
     limits = []
     with contextlib.suppress(AttributeError, ValueError, OSError):  # not on Windows
         limits.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))

@@ -6,13 +6,11 @@ import contextlib
 import multiprocessing
 import os
 import signal
-import sys
 import threading
 import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnContext
 from types import FrameType
 from typing import Any, TypeVar
 
@@ -25,8 +23,6 @@ GRACE = 5.0
 """Seconds that a child may take to exit after its answer."""
 ENDED = 1
 """Exit code of a worker whose parent ended."""
-SILENT = "ignore:resource_tracker:UserWarning"
-"""Warnings of the process that frees what killed processes leave behind."""
 
 
 class ChildError(Exception):
@@ -36,28 +32,10 @@ class ChildError(Exception):
 def call_in_child(function: Callable[..., Result], *arguments: Any, seconds: float) -> Result:
     """Call a function in a separate process, whose crash or hang leaves this process unharmed.
 
-    Parameters
-    ----------
-    function : callable
-        Function of a module, which the child imports.
-    *arguments
-        Its arguments, as far as they can be pickled.
-    seconds : float
-        Time limit; the child is killed after it.
-
-    Returns
-    -------
-    object
-        The result.
-
-    Raises
-    ------
-    ChildError
-        If the child ends without an answer, or has none in time.
-    Exception
-        Any exception of the function.
+    The function and its arguments are pickled. Its exceptions are raised here; a child that crashes, or has no answer
+    after ``seconds`` and is killed, raises `ChildError`.
     """
-    spawn = _spawn_context()
+    spawn = multiprocessing.get_context("spawn")  # JAX cannot be forked
     ours, theirs = spawn.Pipe()
     child = spawn.Process(target=_answer, args=(theirs, function, arguments), daemon=True)
     child.start()
@@ -102,18 +80,8 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
     """Start processes that end, and remove their temporary files, when the block raises or this process ends.
 
     A pipe ties them: the system closes its end in this process even if this process is killed.
-
-    Parameters
-    ----------
-    count : int
-        Number of processes.
-
-    Yields
-    ------
-    ProcessPoolExecutor
-        The processes, started as they are needed.
     """
-    spawn = _spawn_context()
+    spawn = multiprocessing.get_context("spawn")  # JAX cannot be forked
     reader, writer = spawn.Pipe(duplex=False)
     pool = ProcessPoolExecutor(count, mp_context=spawn, initializer=_tie, initargs=(reader,))
     try:
@@ -125,19 +93,6 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
         pool.shutdown(cancel_futures=True)
         writer.close()
         reader.close()
-
-
-def _spawn_context() -> SpawnContext:
-    """Return the context that spawns children, as JAX cannot be forked; its resource tracker prints no warnings."""
-    if os.name == "posix":
-        from multiprocessing import resource_tracker
-
-        sys.warnoptions.append(SILENT)
-        try:
-            resource_tracker.ensure_running()
-        finally:
-            sys.warnoptions.remove(SILENT)
-    return multiprocessing.get_context("spawn")
 
 
 def _tie(reader: Connection) -> None:

@@ -8,18 +8,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Progress:
-    """Work done so far in one stage.
+    """Work done so far: ``done`` of ``total`` items of a stage such as ``"fit"``, in a ``step``.
 
-    Parameters
-    ----------
-    stage : str
-        Name of the stage, such as ``"fit"``, ``"store"`` or ``"images"``.
-    done, total : int
-        Items finished in this stage, and items in all.
-    step : int, optional
-        Step within the stage, such as the round of growth.
-    detail : str, optional
-        One line for verbose output.
+    ``detail`` is one line for verbose output.
     """
 
     stage: str

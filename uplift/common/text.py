@@ -1,78 +1,77 @@
-"""Text that came from elsewhere, made safe to show: names in files, file names, arguments.
-
-A name may hold characters that a terminal obeys (escape sequences, carriage returns), that reorder a line (marks of
-writing direction) or that have no encoding (lone surrogates). `printable` writes them as escapes, as Python does in a
-literal, so that a text is one line and looks like what it is.
-"""
+"""Text from elsewhere: made safe to show, shortened for messages, and parsed as numbers."""
 
 from __future__ import annotations
 
 import re
 
-__all__ = ["json_escapes", "printable"]
+__all__ = ["format_value", "json_escapes", "parse_float", "parse_whole", "printable", "shorten"]
 
-_UNPRINTABLE = (
+MAX_LENGTH = 40
+"""Characters of a received value in a message."""
+_UNPRINTABLE = re.compile(
     "[\x00-\x1f\x7f-\x9f"  # controls, among them the newline
     "\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"  # direction, line breaks, invisible
     "\ud800-\udfff\U000e0000-\U000e007f]"  # no encoding; invisible
 )
-_SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
+_FLOAT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?(?:inf|infinity|nan)", re.IGNORECASE)
+_WHOLE = re.compile(r"[+-]?[0-9]{1,18}")  # fits into 64 bits; Python takes long to convert thousands of digits
 
 
 def printable(text: str) -> str:
-    """Escape the characters that a terminal would obey or cannot show.
+    r"""Escape what a terminal would obey or cannot show: controls, marks of writing direction, lone surrogates.
 
-    Parameters
-    ----------
-    text : str
-        Any text.
-
-    Returns
-    -------
-    str
-        One line without control characters, marks of writing direction, and lone surrogates.
-
-    Examples
-    --------
-    >>> printable("red\\x1b[2J\\nΔE00")
-    'red\\\\x1b[2J\\\\nΔE00'
+    >>> printable("red\x1b[2J\nΔE00")
+    'red\\x1b[2J\\nΔE00'
     """
-    return text if text.isprintable() else re.sub(_UNPRINTABLE, _python_escape, text)
+    if text.isprintable():
+        return text
+    return _UNPRINTABLE.sub(lambda match: match[0].encode("unicode_escape").decode(), text)
 
 
 def json_escapes(text: str) -> str:
-    """Escape the same characters in JSON text, which keeps its meaning.
-
-    Parameters
-    ----------
-    text : str
-        JSON on one or more lines. Its strings hold such characters, and nothing else of it does but line breaks.
-
-    Returns
-    -------
-    str
-        JSON of the same values.
-
-    Examples
-    --------
-    >>> json_escapes('"\\u202e"') == '"' + "\\\\u202e" + '"'
-    True
-    """
-    return text if text.isprintable() else re.sub(_UNPRINTABLE, _json_escape, text)
-
-
-def _python_escape(match: re.Match[str]) -> str:
-    code = ord(match[0])
-    if match[0] in _SHORT:
-        return _SHORT[match[0]]
-    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+    """Escape the same characters in JSON text, which keeps its meaning. Line breaks between values stay."""
+    return text if text.isprintable() else _UNPRINTABLE.sub(_json_escape, text)
 
 
 def _json_escape(match: re.Match[str]) -> str:
     code = ord(match[0])
-    if match[0] in _SHORT:  # between values; within strings the encoder has escaped them
+    if match[0] in "\n\r\t":  # between values; within strings the encoder has escaped them
         return match[0]
     if code < 0x10000:
         return f"\\u{code:04x}"
     high, low = divmod(code - 0x10000, 0x400)
     return f"\\u{0xD800 + high:04x}\\u{0xDC00 + low:04x}"
+
+
+def format_value(value: object) -> str:
+    """Return the representation of a received value for a message, at most `MAX_LENGTH` characters of it."""
+    try:
+        return shorten(repr(value))
+    except ValueError:  # Python does not print integers of more than 4300 digits
+        return "an integer of thousands of digits"
+    except RecursionError:
+        return "a deeply nested value"
+
+
+def shorten(text: str) -> str:
+    """Return at most `MAX_LENGTH` characters of a text, and an ellipsis if it has more."""
+    return text if len(text) <= MAX_LENGTH else f"{text[:MAX_LENGTH]}…"
+
+
+def parse_float(text: str) -> float:
+    """Parse a number, which may be infinite or NaN; `ValueError` otherwise.
+
+    Python also accepts digits of other scripts and underscores, which are errors in data.
+    """
+    text = text.strip()
+    if not _FLOAT.fullmatch(text):
+        raise ValueError(f"not a number: {text[:40]!r}")
+    return float(text)
+
+
+def parse_whole(text: str) -> int:
+    """Parse a whole number of at most 18 ASCII digits; `ValueError` otherwise."""
+    text = text.strip()
+    if not _WHOLE.fullmatch(text):
+        raise ValueError(f"not a whole number: {text[:40]!r}")
+    return int(text)

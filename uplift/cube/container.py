@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from uplift.common.errors import CubeFileError, OutputError, UpliftError
 from uplift.common.files import atomic_write
 from uplift.common.json_text import parse_json
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value
 
 KEY = "uplift"
 """The only metadata entry: safetensors does not keep the order of several."""

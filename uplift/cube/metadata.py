@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from uplift.common.errors import CubeFileError
-from uplift.common.quoting import format_value, shorten
+from uplift.common.text import format_value, shorten
 
 __all__ = ["MAX_THRESHOLD", "MIN_THRESHOLD", "check_emission_metadata", "check_metadata"]
 

@@ -17,7 +17,7 @@ from uplift.colorimetry.lights import STANDARD_ILLUMINANTS, Lamps
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value
 from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
 from uplift.lights.entries import lamp_entries

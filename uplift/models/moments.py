@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value
 from uplift.models import duality
 from uplift.models.arctan import arctan, arctan_difference
 from uplift.models.duality import PRECISE, Quadrature

@@ -10,7 +10,7 @@ import numpy as np
 from uplift.colorimetry.written_colour import WrittenColour, is_number, parse_colour
 from uplift.common.arrays import StrPath
 from uplift.common.errors import LookError, UpliftError
-from uplift.common.quoting import format_value, shorten
+from uplift.common.text import format_value, shorten
 
 MAX_WISH = 2.0
 """Limit of the linear sRGB of a wish: brighter colours are typing errors."""

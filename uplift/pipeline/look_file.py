@@ -7,8 +7,8 @@ from typing import Any
 from uplift.colorimetry.observer import illuminant_spd
 from uplift.common.arrays import StrPath
 from uplift.common.errors import LookError, UpliftError, unknown_name
-from uplift.common.quoting import format_value
 from uplift.common.spec_file import SpecFile, read_toml
+from uplift.common.text import format_value
 from uplift.pipeline.look import Look
 
 TABLE = "look"
@@ -53,7 +53,7 @@ def read_looks(path: StrPath) -> tuple[Look, ...]:
             file.fail((key,), "unknown key", code="unknown-key", hint=hint)
     tables = file.values.get(TABLE, [])
     if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
-        file.fail((TABLE,), f"must be tables, got {format_value(tables)}", code="wrong-type", hint=EXAMPLE)
+        file.fail((TABLE,), f"must be tables, got {format_value(tables)}", code="invalid-value", hint=EXAMPLE)
     if not 0 < len(tables) <= MAX_LOOKS:
         file.fail((), f"must have 1 to {MAX_LOOKS} looks, got {len(tables)}", code="no-looks", hint=EXAMPLE)
     return tuple(_look(file, number, table) for number, table in enumerate(tables))
@@ -66,12 +66,12 @@ def _look(file: SpecFile, number: int, table: dict[str, Any]) -> Look:
     for key in TEXTS:
         if not isinstance(table.get(key, ""), str):
             problem = f"must be text in quotes, got {format_value(table[key])}"
-            file.fail((*place, key), problem, code="wrong-type", hint="write name = 'brick'")
+            file.fail((*place, key), problem, code="invalid-value", hint="write name = 'brick'")
     lights = {key: value for key, value in table.items() if key not in ("rgb", *NUMBERS, *TEXTS)}
     for light, wish in lights.items():
         if isinstance(wish, dict):
             hint = f'quote names with a dot, such as "{light}.1"'
-            file.fail((*place, light), "must be a colour, got a table", code="wrong-type", hint=hint)
+            file.fail((*place, light), "must be a colour, got a table", code="invalid-value", hint=hint)
         try:
             illuminant_spd(light)
         except UpliftError as error:

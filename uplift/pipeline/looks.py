@@ -19,7 +19,7 @@ from uplift.colorimetry.srgb import hex_codes
 from uplift.colorimetry.written_colour import parse_colour
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import LookError, UpliftError, UpliftWarning
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value
 from uplift.cube import AtlasTable, EntrySpectra
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap

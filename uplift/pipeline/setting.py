@@ -12,7 +12,7 @@ from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import ERROR_ILLUMINANT
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.errors import OptionError, unknown_name
-from uplift.common.quoting import format_value
+from uplift.common.text import format_value
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_map
 from uplift.pipeline.options import CUSTOM, SOLVERS, Options

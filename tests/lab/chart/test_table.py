@@ -51,7 +51,7 @@ def test_unreadable_file_is_an_error(tmp_path):
     for name, code in (
         ("none.csv", "file-not-found"),
         ("", "not-a-regular-file"),
-        ("bytes.csv", "not-utf8"),
+        ("bytes.csv", "file-unreadable"),
     ):
         with raises(ChartFileError, code):
             read_chart(tmp_path / name)

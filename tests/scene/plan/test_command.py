@@ -62,9 +62,9 @@ def test_an_invalid_scene_file_is_refused_with_its_line(refuse, here):
 def test_other_files_are_refused_as_plans(refuse, here):
     (here / "deep.json").write_text("[" * 100_000)
     for name, code in (
-        ("wood.exr", "not-utf8"),
+        ("wood.exr", "file-unreadable"),
         ("there.json", "file-not-found"),
-        ("deep.json", "nesting-too-deep"),
+        ("deep.json", "invalid-json"),
     ):
         error = refuse("build", "--plan", name)
         assert (error.code, error.where) == (code, name)

@@ -50,7 +50,7 @@ def test_all_keys_are_read(read, tmp_path):
 @pytest.mark.parametrize("field", dataclasses.fields(SceneFile)[1:], ids=lambda field: field.name)
 def test_every_field_is_a_key_with_a_checked_type(read, field):
     lines = f"{field.name} = {{}}" if field.name == "textures" else f"textures = 'a.png'\n{field.name} = {{}}"
-    with raises(PlanFileError, "wrong-type") as caught:
+    with raises(PlanFileError, "invalid-value") as caught:
         read(lines)
     assert caught.value.problem.startswith(f"{field.name} must be ")
     assert caught.value.problem.endswith(", got {}")
@@ -65,8 +65,8 @@ TEXTURES = "textures = 'a.png'\n"
         ("lights = ['D65']", "missing-key", None, "textures"),
         ("\ntextures = [", "invalid-toml", 2, ""),
         ("textures = " + "9" * 5000, "invalid-toml", 1, ""),
-        ("textures = " + "[" * 50_000, "nesting-too-deep", None, ""),
-        ("a." * 2000 + "b = 1", "nesting-too-deep", None, ""),
+        ("textures = " + "[" * 50_000, "invalid-toml", 1, ""),
+        ("a." * 2000 + "b = 1", "invalid-toml", 1, ""),
         (TEXTURES + "\nlight = 'A'", "unknown-key", 3, "light"),
         (TEXTURES + "path = 'A'", "unknown-key", 2, "path"),
         ("textures = 'x.png'", "file-not-found", 1, "textures"),
@@ -76,22 +76,22 @@ TEXTURES = "textures = 'a.png'\n"
         ("textures = '" + "x" * 5000 + "*'", "invalid-path", 1, "textures"),
         ('textures = ["x\\u0000*"]', "invalid-path", 1, "textures[0]"),
         ("textures = ''", "invalid-path", 1, "textures"),
-        ("textures = []", "too-few-items", 1, "textures"),
-        ("textures = [3]", "wrong-type", 1, "textures[0]"),
+        ("textures = []", "invalid-value", 1, "textures"),
+        ("textures = [3]", "invalid-value", 1, "textures[0]"),
         (TEXTURES + "atlases = 'd.txt'", "file-not-found", 2, "atlases:"),
         (TEXTURES + "lights = ['D65', 'FL99']", "unknown-illuminant", 2, "lights[1]"),
-        (TEXTURES + "lights = []", "too-few-items", 2, "lights"),
-        (TEXTURES + "[lights]\nD65 = 1", "wrong-type", 2, "lights"),
-        (TEXTURES + "tolerance = 0", "out-of-range", 2, "tolerance"),
-        (TEXTURES + "tolerance = true", "wrong-type", 2, "tolerance"),
-        (TEXTURES + "tolerance = nan", "out-of-range", 2, "tolerance"),
-        (TEXTURES + "tolerance = 1" + "0" * 400, "wrong-type", 2, "tolerance"),
-        (TEXTURES + "tolerance = 0x1" + "0" * 9000, "wrong-type", 2, "tolerance"),
-        (TEXTURES + "quantile = 97.5", "out-of-range", 2, "quantile"),
+        (TEXTURES + "lights = []", "invalid-value", 2, "lights"),
+        (TEXTURES + "[lights]\nD65 = 1", "invalid-value", 2, "lights"),
+        (TEXTURES + "tolerance = 0", "invalid-value", 2, "tolerance"),
+        (TEXTURES + "tolerance = true", "invalid-value", 2, "tolerance"),
+        (TEXTURES + "tolerance = nan", "invalid-value", 2, "tolerance"),
+        (TEXTURES + "tolerance = 1" + "0" * 400, "invalid-value", 2, "tolerance"),
+        (TEXTURES + "tolerance = 0x1" + "0" * 9000, "invalid-value", 2, "tolerance"),
+        (TEXTURES + "quantile = 97.5", "invalid-value", 2, "quantile"),
         (TEXTURES + 'space = "a\\nb"', "unknown-rgb-space", 2, "space"),
         (TEXTURES + 'space = "' + "x" * 5000 + '"', "unknown-rgb-space", 2, "space"),
         (TEXTURES + '"a\\nb" = 3', "unknown-key", None, "a b"),
-        (TEXTURES + "space = 3", "wrong-type", 2, "space"),
+        (TEXTURES + "space = 3", "invalid-value", 2, "space"),
         (TEXTURES + "space = 'sRGV'", "unknown-rgb-space", 2, "space"),
         (TEXTURES + "illuminant = 'D66'", "unknown-illuminant", 2, "illuminant"),
         (TEXTURES + "observer = 'me'", "unknown-observer", 2, "observer"),
@@ -125,7 +125,7 @@ def test_the_nearest_name_is_suggested(read, text, suggestion):
 
 
 def test_the_received_value_is_reported(read):
-    with raises(PlanFileError, "out-of-range") as caught:
+    with raises(PlanFileError, "invalid-value") as caught:
         read(TEXTURES + "quantile = 97.5")
     assert caught.value.problem == "quantile must be less than or equal to 1, got 97.5"
 
@@ -138,12 +138,12 @@ def test_a_missing_or_binary_file_is_refused(tmp_path):
     with raises(PlanFileError, "file-unreadable"):
         read_scene_file(tmp_path / "a\0b.toml")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
-    with raises(PlanFileError, "not-utf8"):
+    with raises(PlanFileError, "file-unreadable"):
         read_scene_file(tmp_path / "bytes.toml")
 
 
 def test_a_file_of_many_bytes_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr("uplift.common.spec_file.MAX_BYTES", 10)
     (tmp_path / "long.toml").write_text("textures = 'a.png'")
-    with raises(PlanFileError, "file-too-large"):
+    with raises(PlanFileError, "file-unreadable"):
         read_scene_file(tmp_path / "long.toml")

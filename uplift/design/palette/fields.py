@@ -10,8 +10,8 @@ from pydantic import AfterValidator, Field, PlainValidator
 
 from uplift.colorimetry.written_colour import MAX_NUMBER, WrittenColour, is_number, parse_colour
 from uplift.common.errors import ColourError
-from uplift.common.quoting import format_value
 from uplift.common.spec_file import problem
+from uplift.common.text import format_value
 
 NAME = re.compile(r"[^\W_][\w .+-]*(?<! )")
 """Names appear in tables, plots and atlases."""

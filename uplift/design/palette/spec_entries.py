@@ -18,8 +18,8 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.written_colour import WrittenColour
 from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
-from uplift.common.quoting import format_value
 from uplift.common.spec_file import SpecModel, problem, resolves
+from uplift.common.text import format_value
 from uplift.design.palette.fields import Bounds, Colour, Name, NonNegative, Number, TrueFlag
 from uplift.design.palette.lights import MAX_KELVIN, MIN_KELVIN, illuminant, planck
 from uplift.design.palette.palette import SpectrumSpec
@@ -156,7 +156,7 @@ def _check_kind(*kinds: str) -> BeforeValidator:
 
     def check(value: Any) -> Any:
         if not isinstance(value, dict):
-            raise problem("wrong-type", f"must be a table, got {format_value(value)}")
+            raise problem("invalid-value", f"must be a table, got {format_value(value)}")
         present = [kind for kind in kinds if kind in value]
         if len(present) != 1:
             text = f"must have exactly one of {', '.join(kinds)}, got {', '.join(present) or 'none'}"

@@ -196,7 +196,7 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
 
 def _digest(path: Path) -> str:
     from uplift.common.errors import TextureError
-    from uplift.common.input_file import check_regular
+    from uplift.common.files import check_regular
 
     check_regular(path, TextureError, hint="name an image")
     with path.open("rb") as file:

@@ -299,7 +299,7 @@ def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
     for job in jobs:
         if job.target not in finished:
             with contextlib.suppress(OSError):
-                remove_stale(job.target)
+                remove_stale(job.target, seconds=0)
     names = ", ".join(target.name for target in finished[:MAX_NAMES])
     more = f" and {len(finished) - MAX_NAMES} more" if len(finished) > MAX_NAMES else ""
     return TextureError(

@@ -12,9 +12,8 @@ from enum import StrEnum
 
 from uplift.common.csv import csv_text
 from uplift.common.errors import ChartFileError
-from uplift.common.input_file import read_bytes
-from uplift.common.number_text import parse_float
-from uplift.common.quoting import format_value, shorten
+from uplift.common.files import read_bytes
+from uplift.common.text import format_value, parse_float, shorten
 
 FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 """Columns with the same text in all rows."""
@@ -155,7 +154,7 @@ def read_chart(path: str | os.PathLike[str]) -> Chart:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise _chart_error(path, "not a UTF-8 text file", "not-utf8") from error
+        raise _chart_error(path, "not a UTF-8 text file", "file-unreadable") from error
     return parse_chart(text, path)
 
 

@@ -14,8 +14,8 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError, unknown_name
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.common.quoting import format_value
 from uplift.common.spec_file import SpecFile, SpecModel, read_json, resolves
+from uplift.common.text import format_value
 from uplift.common.version import VERSION
 from uplift.io.scene_colours import Images, file_digest
 from uplift.io.texture.colours import check_encoding

@@ -15,8 +15,8 @@ from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError
-from uplift.common.quoting import format_value
 from uplift.common.spec_file import SpecFile, SpecModel, problem, read_toml, resolves
+from uplift.common.text import format_value
 from uplift.io.texture.colours import check_encoding
 
 MIN_TOLERANCE, MAX_TOLERANCE = 0.01, 100.0
