@@ -31,8 +31,9 @@ class CsvWriter:
     """
 
     def __init__(self, file: _Writable, *, quote_text: bool = False) -> None:
-        quoting = csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL
-        self._writer = csv.writer(file, lineterminator="\n", quoting=quoting)
+        self._writer = csv.writer(
+            file, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL
+        )
 
     def write(self, row: Iterable[object]) -> None:
         """Write floats with all significant digits, None as an empty cell, and neutralised text."""
