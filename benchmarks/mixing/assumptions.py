@@ -14,9 +14,9 @@ from benchmarks.mixing.paints import BLUES, Mixtures, acrylics, codes, published
 from benchmarks.mixing.pictures import colour
 from uplift.colorimetry.delta_e import delta_e_rgb, rgb_to_lab
 from uplift.common.arrays import Array
-from uplift.design.mixing import kubelka_munk, pigments
+from uplift.design.mixing import pigments
 from uplift.design.mixing.criteria import SHARES
-from uplift.design.mixing.scattering import (
+from uplift.design.mixing.pigments import (
     CONSTANT,
     SQUARE_ROOT,
     PowerOfReflectance,
@@ -101,7 +101,7 @@ def mix(cube: Cube, mixtures: Mixtures, rule: Scattering | None) -> Array:
 
 def _mix(cube: Cube, mixtures: Mixtures, paints: pigments.Pigment) -> Array:
     pairs = pigments.Pigment(paints.absorption[mixtures.pairs], paints.scattering[mixtures.pairs])
-    found = kubelka_munk.opaque_reflectance(pairs.mix(mixtures.shares))
+    found = pairs.mix(mixtures.shares).opaque_reflectance()
     return np.clip(cube.data.sensor.rgb(found), 0, 1)
 
 

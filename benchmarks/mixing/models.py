@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.design.mixing import surface
-from uplift.design.mixing.criteria import CRITERIA, CriterionResult, evaluate
-from uplift.design.mixing.mixers import mixers
+from uplift.design.mixing import layers, mixers
+from uplift.design.mixing.criteria import CRITERIA, evaluate
 from uplift.lookup import Cube
 
 INDICES = (1.33, 1.48, 1.5, 1.66)
@@ -21,15 +20,14 @@ def criteria(cube: Cube) -> dict[str, Any]:
     coloured = atlas[np.ptp(atlas, axis=1) > 0.1 * atlas.max(axis=1)]
     rows = []
     for mixer in mixers(cube):
-        verdicts = evaluate(mixer, cube.data.sensor, coloured)
-        rows.append({"mixer": mixer.title, "verdicts": [verdict_record(verdict) for verdict in verdicts]})
+        values = evaluate(mixer, cube.data.sensor, coloured)
+        verdicts = [
+            {"obeys": value <= criterion.limit, "value": value + 0.0}
+            for criterion, value in zip(CRITERIA, values, strict=True)
+        ]
+        rows.append({"mixer": mixer.title, "verdicts": verdicts})
     titles = [{"title": one.title, "measure": one.measure, "limit": one.limit} for one in CRITERIA]
     return {"patches": len(coloured), "criteria_titles": titles, "criteria": rows}
-
-
-def verdict_record(verdict: CriterionResult) -> dict[str, Any]:
-    """Return whether a criterion holds, and the measured value."""
-    return {"obeys": bool(verdict.passed), "value": float(verdict.value) + 0.0}
 
 
 def surfaces() -> dict[str, Any]:
@@ -41,7 +39,7 @@ def surface_record(index: float) -> dict[str, float]:
     """Return the reflectance at normal incidence (9.3), for diffuse light (10.9), and for diffuse light from inside."""
     return {
         "index": index,
-        "perpendicular": float(surface.fresnel_reflectance(index)),
-        "diffuse": float(surface.diffuse_reflectance(index)),
-        "internal": float(surface.internal_reflectance(index)),
+        "perpendicular": float(layers.fresnel_reflectance(index)),
+        "diffuse": float(layers.diffuse_reflectance(index)),
+        "internal": float(layers.internal_reflectance(index)),
     }

@@ -9,7 +9,6 @@ import numpy as np
 
 from benchmarks.record import ROOT
 from uplift.common.arrays import Array
-from uplift.design.mixing import kubelka_munk
 from uplift.design.mixing.criteria import SHARES
 from uplift.design.mixing.pigments import Pigment
 from uplift.lookup import Cube
@@ -72,9 +71,9 @@ def three_bands(name: str) -> Mixtures:
     values = np.array([row[1:] for row in _rows("paints_rgb.csv") if row[0] == name], dtype=float)
     K, S = values[:, :3], values[:, 3:]
     pairs = np.array(list(itertools.combinations(range(len(K)), 2)))
-    mixtures = [kubelka_munk.opaque_reflectance(Pigment(K[pairs], S[pairs]).mix(share)) for share in SHARES]
+    mixtures = [Pigment(K[pairs], S[pairs]).mix(share).opaque_reflectance() for share in SHARES]
     return Mixtures(
-        kubelka_munk.opaque_reflectance(Pigment(K, S)),
+        Pigment(K, S).opaque_reflectance(),
         np.concatenate([pairs] * len(SHARES)),
         np.repeat(SHARES, len(pairs), axis=0),
         np.concatenate(mixtures),

@@ -9,10 +9,7 @@ import numpy as np
 from benchmarks.mixing.paints import published
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.design.mixing import coats
-from uplift.design.mixing.mixers import mixers
-from uplift.design.mixing.recipes import ramp
-from uplift.design.mixing.scattering import dispersive
+from uplift.design.mixing import Ingredients, Medium, dispersive, make_coat, mixers, ramp
 from uplift.lookup import Cube
 from uplift.viz.swatches import Strip, plot_strips
 
@@ -85,12 +82,13 @@ def _coats(cube: Cube) -> list[Strip]:
     spectra = cube.reflectance(np.array([colour(cube, word) for word in ("#b01030", "#ffd200", "#005fa0")]))
     strips = []
     for name, spectrum in zip(("red", "yellow", "blue"), spectra, strict=True):
-        paint = coats.stack([coats.pigment_from_reflectance(spectrum, dispersive(cube.data.sensor))])
+        colorant, scattering = Ingredients(spectrum[None]), dispersive(cube.data.sensor)
         for ground, on in ((1.0, "white"), (0.0, "black")):
-            layers = [coats.from_pigments(paint, [1], x).over(np.full(81, ground)) for x in thickness]
+            media = [Medium(x, scattering=scattering) for x in thickness]
+            layers = [make_coat("pigment", colorant, [1], medium).over(np.full(81, ground)) for medium in media]
             title = f"{name} paint on {on}, {', '.join(f'{x:.3g}' for x in thickness)} units thick"
             strips.append(_strip(cube, title, cube.data.sensor.rgb(layers)))
-        layers = [coats.from_dyes(spectrum[None], [1], x).over(1.0) for x in thickness]
+        layers = [make_coat("dye", colorant, [1], Medium(x)).over(1.0) for x in thickness]
         strips.append(_strip(cube, f"{name} dye on white, the same thicknesses", cube.data.sensor.rgb(layers)))
     return strips
 

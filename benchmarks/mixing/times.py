@@ -11,10 +11,10 @@ import numpy as np
 from benchmarks.mixing.pictures import colour
 from uplift.colorimetry.observer import colour_science
 from uplift.common.arrays import Array
-from uplift.design.mixing import coats, hsl, kubelka_munk, overpaint
-from uplift.design.mixing.mixers import mixers, spectral_models
-from uplift.design.mixing.pigments import Pigment
-from uplift.design.mixing.scattering import dispersive
+from uplift.design.mixing import Ingredients, Medium, dispersive, make_coat, overpainter
+from uplift.design.mixing.heuristics import hsl_to_rgb
+from uplift.design.mixing.pigments import Pigment, from_opaque
+from uplift.design.mixing.theories import mixers, spectral_models
 from uplift.lab.timing import Spread, time_calls
 from uplift.lookup import Cube
 
@@ -61,23 +61,23 @@ def images(cube: Cube) -> list[dict[str, Any]]:
     """Return nanoseconds of a coat over an image, and of HSL to RGB."""
     rng = np.random.default_rng(0)
     spectrum = cube.reflectance(colour(cube, "red"))
-    red = coats.stack([coats.pigment_from_reflectance(spectrum, dispersive(cube.data.sensor))])
-    coat = coats.from_pigments(red, [1], 0.5)
-    brush = overpaint.prepare(cube, coat, threads=1)
+    scattering = dispersive(cube.data.sensor)
+    coat = make_coat("pigment", Ingredients(spectrum[None]), [1], Medium(0.5, scattering=scattering))
+    brush = overpainter(cube, coat, threads=1)
     image = rng.random((PIXELS, 3)).astype(np.float32)
     expected = cube.data.sensor.rgb(coat.over(cube.reflectance(image[:CHECKED])))
     if np.abs(brush.paint(image)[:CHECKED] - expected).max() > 1e-5:
         raise RuntimeError("wrong result: nothing to time")
     colours = rng.random((COLOURS, 3))
     peer = colour_science().HSL_to_RGB
-    if not np.allclose(hsl.to_rgb(colours), peer(colours)):
+    if not np.allclose(hsl_to_rgb(colours), peer(colours)):
         raise RuntimeError("wrong result: nothing to time")
     spectra = cube.reflectance(image[:MIXTURES])
-    paint = partial(_over, red, spectra)
+    paint = partial(_over, from_opaque(spectrum[None], scattering), spectra)
     operations: dict[str, tuple[Callable[[], object], int]] = {
         "coat over a painting, RGB to RGB": (lambda: brush.paint(image), PIXELS),
         "Kubelka–Munk layer on a ground, 81 wavelengths": (paint, MIXTURES),
-        "HSL to RGB (5.3.5)": (lambda: hsl.to_rgb(colours), COLOURS),
+        "HSL to RGB (5.3.5)": (lambda: hsl_to_rgb(colours), COLOURS),
         "HSL to RGB, colour-science": (lambda: peer(colours), COLOURS),
     }
     return [{"operation": name, "ns": _ns(function, count)} for name, (function, count) in operations.items()]
@@ -85,7 +85,7 @@ def images(cube: Cube) -> list[dict[str, Any]]:
 
 def _over(paint: Pigment, grounds: Array) -> Array:
     thickness = np.linspace(0.01, 3, len(grounds))
-    return kubelka_munk.layer(paint.mix([1]), thickness).over(grounds)
+    return paint.mix([1]).layer(thickness).over(grounds)
 
 
 def _ns(function: Callable[[], object], count: int) -> Spread:

@@ -127,8 +127,7 @@ def command(
       uplift mix --theories '#005fa0' '#ffd200'
     """
     from uplift.common.files import check_outputs
-    from uplift.design.mixing.recipes import Medium
-    from uplift.design.mixing.surface import INCIDENCES
+    from uplift.design.mixing import Medium, Surface
     from uplift.lookup import load
 
     _check_usage(kind, ground, over, output, swatches)
@@ -136,7 +135,7 @@ def command(
         raise click.UsageError("--theories mixes opaque colours, without --thickness, --ground, --over and --plot.")
     check_outputs((swatches, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
-    surface = INCIDENCES[incidence](refractive_index)
+    surface = Surface.of_index(refractive_index, incidence)
     space = resolve_space(input_space)
     listed = cube.resolve_wavelengths(parse_wavelengths(wavelengths))
     resolver = make_resolver(cube, files, listed, space)
@@ -159,7 +158,7 @@ def command(
 
 def _check_usage(kind: str, ground: str | None, over: str | None, output: str | None, swatches: str | None) -> None:
     from uplift.common.errors import OutputError
-    from uplift.design.mixing.recipes import COATS
+    from uplift.design.mixing.coats import COATS
 
     if (over is None) != (output is None):
         raise click.UsageError("--over IMAGE and --output EXR require each other.")

@@ -15,7 +15,7 @@ from .query_output import format_rgb, hex_code, patch, print_columns, print_fiel
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.design.mixing.recipes import Medium
+    from uplift.design.mixing.coats import Medium
     from uplift.lookup import Cube
 
     from ..params.ingredients import Ingredient, SpectrumResolver
@@ -59,7 +59,7 @@ def make_mixture(
     import numpy as np
 
     from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.design.mixing.recipes import mix, ramp
+    from uplift.design.mixing.coats import mix, ramp
 
     sensor = resolver.cube.data.sensor
     parts = np.array([one.parts for one in ingredients])

@@ -13,8 +13,8 @@ from .progress import progress_bar
 
 if TYPE_CHECKING:
     from uplift.colorimetry.spaces import ImageSpace
+    from uplift.design.mixing import Medium
     from uplift.design.mixing.overpaint import Overpainter
-    from uplift.design.mixing.recipes import Medium
     from uplift.lookup import Cube
 
     from ..params.ingredients import Ingredient
@@ -32,8 +32,7 @@ def make_brush(
 ) -> Overpainter:
     """Mix a coat and prepare it at the wavelengths of the cube's sensor; ``scattering`` is recorded by its name."""
     enable_jit_cache()
-    from uplift.design.mixing.overpaint import prepare
-    from uplift.design.mixing.recipes import make_coat
+    from uplift.design.mixing import make_coat, overpainter
 
     count = len(cube.data.sensor.wavelengths)
     parts = [one.parts for one in ingredients]
@@ -45,7 +44,7 @@ def make_brush(
         "surface": asdict(medium.surface),
         "scattering": scattering,
     }
-    return prepare(cube, mixture, recipe, encoding=encoding, out_of_gamut=method, space=space)
+    return overpainter(cube, mixture, recipe, encoding=encoding, out_of_gamut=method, space=space)
 
 
 def paint(brush: Overpainter, image: str, output: str, *, force: bool) -> None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from uplift.atlas import Atlas
     from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
-    from uplift.design.mixing.recipes import Ingredients
+    from uplift.design.mixing.coats import Ingredients
     from uplift.lookup import Cube
 
 PARTS = re.compile(r"\s*([0-9.+-][0-9.eE+-]*)\s*:(.*)", re.DOTALL)
@@ -115,7 +115,7 @@ def library_ingredients(ingredients: list[Ingredient], count: int | None = None)
     """Convert to the library's type, at the first ``count`` wavelengths."""
     import numpy as np
 
-    from uplift.design.mixing.recipes import Ingredients
+    from uplift.design.mixing.coats import Ingredients
 
     return Ingredients(
         np.stack([one.spectrum[:count] for one in ingredients]),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
 
-from uplift.design.mixing import duntley, kubelka_munk
+from uplift.design.mixing import duntley
 from uplift.design.mixing.duntley import Flux
 from uplift.design.mixing.pigments import Pigment
 
@@ -59,7 +59,7 @@ def test_dyes():
 def test_thick_layers():
     """R∞ = Q' B / (K + B + γ) − P'."""
     K, B = DIFFUSE.absorption, DIFFUSE.backward
-    P, Q = duntley._sources(BEAM, DIFFUSE)
+    P, Q = duntley.sources(BEAM, DIFFUSE)
     expected = Q * B / (K + B + np.sqrt(K * (K + 2 * B))) - P
     found = duntley.layer(BEAM, DIFFUSE, 200.0)
     np.testing.assert_allclose(found.reflectance, expected)
@@ -69,10 +69,10 @@ def test_thick_layers():
 def test_strong_forward_scattering_gives_the_two_constant_theory():
     """P' → 0 and Q' → 1: the beam becomes diffuse before anything else happens."""
     beam = Flux(BEAM.absorption, BEAM.backward, np.full(2, 1e7))
-    P, Q = duntley._sources(beam, DIFFUSE)
+    P, Q = duntley.sources(beam, DIFFUSE)
     np.testing.assert_allclose(P, 0, atol=1e-6)
     np.testing.assert_allclose(Q, 1, atol=1e-6)
-    two = kubelka_munk.layer(Pigment(DIFFUSE.absorption, DIFFUSE.backward), 0.9)
+    two = Pigment(DIFFUSE.absorption, DIFFUSE.backward).layer(0.9)
     found = duntley.layer(beam, DIFFUSE, 0.9)
     np.testing.assert_allclose(found.reflectance, two.reflectance, atol=1e-6)
     np.testing.assert_allclose(found.transmittance, two.transmittance, atol=1e-6)
@@ -108,7 +108,7 @@ def test_an_empty_layer_transmits_everything():
 def test_isotropic_paint_in_a_beam_is_two_r_over_three_minus_r(rng):
     """Eq. 10.8 in the limit of thick layers against the closed form, and its inverse."""
     paint = Pigment(rng.uniform(0.01, 4, 30), rng.uniform(0.2, 3, 30))
-    r = kubelka_munk.opaque_reflectance(paint)
+    r = paint.opaque_reflectance()
     thick = duntley.layer(*duntley.isotropic(paint), 400.0).reflectance
     np.testing.assert_allclose(duntley.directed_reflectance(r), thick, rtol=1e-6)
     np.testing.assert_allclose(duntley.diffuse_reflectance(duntley.directed_reflectance(r)), r, rtol=1e-12)

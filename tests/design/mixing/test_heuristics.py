@@ -1,20 +1,21 @@
-"""Heuristics of Fishkin 1983: RYB-HSL and phosphor curves."""
+"""Heuristics of Fishkin 1983: HSL as in 1979 and in the standard library, RYB-HSL and phosphor curves."""
 
 from __future__ import annotations
+
+import colorsys
 
 import numpy as np
 import pytest
 
-from tests.helpers import raises
-from uplift.common.errors import UnknownNameError
-from uplift.design.mixing import hsl, phosphors, ryb
+from uplift.design.mixing import heuristics
+from uplift.design.mixing.heuristics import RGB_WHEEL, RYB_WHEEL, hsl_to_rgb, mix_ryb, rgb_to_hsl
 
 COLOURS = np.array([[1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0.2, 0.5, 0.3], [0.9, 0.8, 0.7]])
 
 
 @pytest.fixture(scope="module")
 def monitor():
-    return phosphors.make_monitor()
+    return heuristics.make_monitor()
 
 
 def pairs(other):
@@ -22,42 +23,36 @@ def pairs(other):
 
 
 def test_paint_mixed_with_itself_does_not_change():
-    np.testing.assert_allclose(ryb.mix(np.stack([COLOURS] * 2, axis=1), [3, 1]), COLOURS, atol=1e-12)
+    np.testing.assert_allclose(mix_ryb(np.stack([COLOURS] * 2, axis=1), [3, 1]), COLOURS, atol=1e-12)
 
 
 def test_shades_keep_their_chromaticity_and_tints_their_hue():
-    np.testing.assert_allclose(ryb.mix(pairs(np.zeros(3)), [1, 3]), COLOURS / 4, atol=1e-12)
-    np.testing.assert_allclose(ryb.mix(pairs(np.ones(3)), [1, 3]), (COLOURS + 3) / 4, atol=1e-12)
+    np.testing.assert_allclose(mix_ryb(pairs(np.zeros(3)), [1, 3]), COLOURS / 4, atol=1e-12)
+    np.testing.assert_allclose(mix_ryb(pairs(np.ones(3)), [1, 3]), (COLOURS + 3) / 4, atol=1e-12)
 
 
 @pytest.mark.parametrize("hue", [0, 0.1, 1 / 6, 0.4, 2 / 3, 0.9])
 def test_opposite_hues_mix_to_grey(hue):
-    opposite = np.interp((np.interp(hue, ryb.RGB_WHEEL, ryb.RYB_WHEEL) + 0.5) % 1, ryb.RYB_WHEEL, ryb.RGB_WHEEL)
-    full = hsl.to_rgb([[hue, 1, 0.5], [opposite, 1, 0.5]])
-    np.testing.assert_allclose(ryb.mix(full, [1, 1]), 0.5, atol=1e-12)
+    opposite = np.interp((np.interp(hue, RGB_WHEEL, RYB_WHEEL) + 0.5) % 1, RYB_WHEEL, RGB_WHEEL)
+    full = hsl_to_rgb([[hue, 1, 0.5], [opposite, 1, 0.5]])
+    np.testing.assert_allclose(mix_ryb(full, [1, 1]), 0.5, atol=1e-12)
 
 
 def test_the_thesis_s_complements():
     """Blue and orange, yellow and purple are opposite; red and green nearly are."""
     blue, orange, yellow, purple = [0, 0, 1], [1, 0.5, 0], [1, 1, 0], [1, 0, 1]
     for pair in ((blue, orange), (yellow, purple)):
-        np.testing.assert_allclose(ryb.mix(pair, [1, 1]), 0.5, atol=1e-12)
-    assert np.ptp(ryb.mix([[1, 0, 0], [0, 1, 0]], [1, 1])) < 0.2
+        np.testing.assert_allclose(mix_ryb(pair, [1, 1]), 0.5, atol=1e-12)
+    assert np.ptp(mix_ryb([[1, 0, 0], [0, 1, 0]], [1, 1])) < 0.2
 
 
 def test_blue_and_yellow_are_green():
-    red, green, blue = ryb.mix([[0, 0, 1], [1, 1, 0]], [1, 1])
+    red, green, blue = mix_ryb([[0, 0, 1], [1, 1, 0]], [1, 1])
     assert green > max(red, blue)
 
 
-def test_the_printed_hue_map_has_no_inverse():
-    """With the sign corrected it still ends at 7/12 and jumps to 2/3 at blue."""
-    assert pytest.approx(7 / 12) == (2 / 3 - 1 / 6) / 2 + 1 / 3
-    assert (np.diff(ryb.RYB_WHEEL) > 0).all()
-
-
 def test_mixtures_stay_in_gamut(rng):
-    found = ryb.mix(rng.random((2000, 3, 3)), rng.random((2000, 3)))
+    found = mix_ryb(rng.random((2000, 3, 3)), rng.random((2000, 3)))
     assert ((found >= 0) & (found <= 1)).all()
 
 
@@ -78,7 +73,41 @@ def test_the_white_curve_is_not_a_clear_filter(monitor):
     assert (monitor.mix(np.ones((2, 3)), np.ones(2)) < 0.6).all()
 
 
-def test_an_unknown_monitor_raises():
-    with raises(UnknownNameError, "unknown-display") as caught:
-        phosphors.make_monitor("Typical CRT")
-    assert "Typical CRT Brainard 1997" in caught.value.hint
+def core_1979(h, s, l):  # noqa: E741
+    """Convert HSL to RGB by the algorithm of 1979 (Fishkin 1983, 5.3.3), in degrees."""
+
+    def value(low, high, hue):
+        hue %= 360
+        if hue < 60:
+            return low + (high - low) * hue / 60
+        if hue < 180:
+            return high
+        if hue < 240:
+            return low + (high - low) * (240 - hue) / 60
+        return low
+
+    high = l * (1 + s) if l <= 0.5 else l + s - l * s
+    low = 2 * l - high
+    return [value(low, high, 360 * h + offset) for offset in (120, 0, -120)]
+
+
+def test_conversion_agrees_with_the_1979_algorithm(rng):
+    random = rng.random((2000, 3))
+    ends = np.stack(np.meshgrid(np.arange(13) / 12, [0, 0.3, 1], [0, 0.5, 0.7, 1]), axis=-1).reshape(-1, 3)
+    for colours in (random, ends):
+        expected = [core_1979(*colour) for colour in colours]
+        np.testing.assert_allclose(hsl_to_rgb(colours), expected, atol=1e-12)
+
+
+def test_round_trip(rng):
+    rgb = np.concatenate([rng.random((500, 3)), rng.integers(0, 3, (500, 3)) / 2])
+    found = rgb_to_hsl(rgb)
+    assert ((found >= 0) & (found <= 1)).all()
+    np.testing.assert_allclose(hsl_to_rgb(found), rgb, atol=1e-12)
+    expected = np.array([colorsys.rgb_to_hls(*one) for one in rgb])[:, [0, 2, 1]]
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
+def test_hues_repeat():
+    np.testing.assert_allclose(hsl_to_rgb([[-1 / 3, 1, 0.5], [5 / 3, 1, 0.5]]), [[0, 0, 1], [0, 0, 1]], atol=1e-12)
+    np.testing.assert_allclose(hsl_to_rgb([-1e-18, 1, 0.5]), [1, 0, 0], atol=1e-12)

@@ -1,39 +1,85 @@
-"""Layers agree with the explicit sum over interreflections."""
+"""Layers agree with the sum over interreflections, surfaces with the integral of Fresnel's equations."""
 
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from uplift.design.mixing.layers import Layer
+from uplift.common.errors import OptionError, UnknownNameError
+from uplift.design.mixing import Surface, layers
+from uplift.design.mixing.layers import NO_SURFACE, Layer
 
-UPPER = Layer(np.array([0.2, 0.5, 0.0]), np.array([0.7, 0.1, 1.0]))
-LOWER = Layer(np.array([0.3, 0.9, 0.4]), np.array([0.6, 0.1, 0.0]))
-
-
-def sum_of_reflections(upper, ground):
-    return upper.reflectance + sum(
-        upper.transmittance**2 * ground * (upper.reflectance * ground) ** bounce for bounce in range(2000)
-    )
+INDICES = (1.01, 1.2, 1.5, 1.66, 2.4)
 
 
 def test_reflectance_on_a_ground_is_the_sum_of_all_reflections():
+    layer = Layer(np.array([0.2, 0.5, 0.0]), np.array([0.7, 0.1, 1.0]))
     ground = np.array([0.9, 1.0, 0.5])
-    np.testing.assert_allclose(UPPER.over(ground), sum_of_reflections(UPPER, ground))
-
-
-def test_black_ground_and_clear_layer():
-    np.testing.assert_array_equal(UPPER.over(0), UPPER.reflectance)
+    passes = (layer.transmittance**2 * ground * (layer.reflectance * ground) ** bounce for bounce in range(2000))
+    np.testing.assert_allclose(layer.over(ground), layer.reflectance + sum(passes))
+    np.testing.assert_array_equal(layer.over(0), layer.reflectance)
     clear = Layer(np.zeros(3), np.ones(3))
     np.testing.assert_array_equal(clear.over([0.1, 0.2, 1]), [0.1, 0.2, 1])
 
 
-def test_a_stack_reflects_as_the_upper_layer_on_the_lower():
-    both = UPPER.stack_on(LOWER)
-    np.testing.assert_allclose(both.reflectance, sum_of_reflections(UPPER, LOWER.reflectance))
-    assert (both.reflectance + both.transmittance <= 1).all()
-
-
 def test_perfect_mirrors_face_to_face_give_no_nan():
-    mirror = Layer(np.ones(1), np.zeros(1))
-    assert mirror.over(1.0) == 1
-    assert np.isfinite(mirror.stack_on(mirror).reflectance).all()
+    assert Layer(np.ones(1), np.zeros(1)).over(1.0) == 1
+
+
+def integrated(n):
+    """Integrate Fresnel's reflectance of unpolarised light over the hemisphere by the midpoint rule."""
+    cosine = (np.arange(200_000) + 0.5) / 200_000
+    inner = np.sqrt(1 - (1 - cosine**2) / n**2)
+    s = (cosine - n * inner) / (cosine + n * inner)
+    p = (n * cosine - inner) / (n * cosine + inner)
+    return float(((s**2 + p**2) / 2 * 2 * cosine).mean())
+
+
+@pytest.mark.parametrize("n", INDICES)
+def test_duntley_s_formula_is_the_integral_of_fresnel_s(n):
+    assert layers.diffuse_reflectance(n) == pytest.approx(integrated(n), abs=1e-8)
+
+
+def test_the_formula_as_printed_is_wrong():
+    n = 1.5
+    printed = layers.diffuse_reflectance(n) + (n - 1) * (3 * n + 1) * (1 / (8 * n + 1) - 1 / (6 * (n + 1) ** 2))
+    assert printed != pytest.approx(integrated(n), abs=0.1)
+
+
+def test_published_values():
+    """The thesis for an index of 1.5: 4 % (9.3) and 9 % (10.3); Judd 1942: 0.596 from within."""
+    assert layers.fresnel_reflectance(1.5) == pytest.approx(0.04)
+    assert layers.diffuse_reflectance(1.5) == pytest.approx(0.0918, abs=5e-5)
+    assert layers.internal_reflectance(1.5) == pytest.approx(0.596, abs=5e-4)
+
+
+@pytest.mark.parametrize("incidence", layers.INCIDENCES)
+@pytest.mark.parametrize("n", INDICES)
+def test_saunderson_round_trip(incidence, n):
+    surface = Surface.of_index(n, incidence)
+    internal = np.linspace(0, 1, 101)
+    measured = surface.apply(internal)
+    np.testing.assert_allclose(surface.remove(measured), internal, atol=1e-12)
+    assert (np.diff(measured) > 0).all()
+    assert measured[0] == surface.outside
+    assert measured[-1] == pytest.approx(1)  # perfect white stays white, as nothing absorbs
+
+
+def test_an_index_of_1_has_no_surface():
+    assert Surface.of_index(1) == Surface.of_index(1, "diffuse") == NO_SURFACE
+    np.testing.assert_array_equal(NO_SURFACE.apply([0, 0.3, 1]), [0, 0.3, 1])
+
+
+def test_reflectance_below_the_surface_s_is_negative_beneath():
+    assert Surface.of_index(1.5).remove(0.03) < 0
+
+
+def test_invalid_surfaces_raise():
+    for index in (0.9, np.nan, np.inf):
+        with pytest.raises(OptionError):
+            Surface.of_index(index)
+    with pytest.raises(UnknownNameError):
+        Surface.of_index(1.5, "oblique")
+    for values in ((1, 0), (0, 1), (-0.1, 0), (np.nan, 0)):
+        with pytest.raises(OptionError):
+            Surface(*values)

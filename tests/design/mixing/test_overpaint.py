@@ -11,25 +11,23 @@ import pytest
 from tests.helpers import raises
 from tests.io.texture.conftest import channels, planes, read_channels, write_exr
 from uplift.common.errors import ColourError, OptionError, OutputError, TextureError
-from uplift.design.mixing import coats, overpaint
-from uplift.design.mixing.scattering import SQUARE_ROOT
+from uplift.design.mixing import Ingredients, Medium, Surface, make_coat
+from uplift.design.mixing import overpainter as make_overpainter
+from uplift.design.mixing.pigments import SQUARE_ROOT
 from uplift.io.texture import convert
 
 
 @pytest.fixture(scope="module")
 def glaze(small_cube):
     """Half a unit of the ColorChecker's red in oil."""
-    from uplift.design.mixing import surface
-
     atlas = small_cube.data.atlas
     red = small_cube.reflectance(atlas.rgb[atlas.names.index("red")])
-    oil = surface.normal_incidence(1.5)
-    return coats.from_pigments(coats.stack([coats.pigment_from_reflectance(red, SQUARE_ROOT, oil)]), [1], 0.5, oil)
+    return make_coat("pigment", Ingredients(red[None]), [1], Medium(0.5, Surface.of_index(1.5), SQUARE_ROOT))
 
 
 @pytest.fixture(scope="module")
 def overpainter(small_cube, glaze):
-    return overpaint.prepare(small_cube, glaze, {"of": "red"}, threads=1)
+    return make_overpainter(small_cube, glaze, {"of": "red"}, threads=1)
 
 
 @pytest.fixture
@@ -73,25 +71,18 @@ def test_8_bit_images_are_decoded(small_cube, overpainter, tmp_path):
     np.testing.assert_allclose(read_channels(tmp_path / "out.exr", "RGB"), expected, atol=1e-6)
 
 
-def test_opaque_paint_hides_the_image(small_cube, image):
-    paint = coats.pigment_from_reflectance(small_cube.reflectance([0.3, 0.2, 0.1]), SQUARE_ROOT)
-    opaque = overpaint.prepare(small_cube, coats.from_pigments(coats.stack([paint]), [1]), threads=1)
-    expected = np.broadcast_to([0.3, 0.2, 0.1], image.shape)
-    np.testing.assert_allclose(opaque.paint(image), expected, atol=1e-5)
-
-
-def test_a_coat_of_zero_thickness_leaves_the_image(small_cube, image):
-    paint = coats.pigment_from_reflectance(small_cube.reflectance([0.3, 0.2, 0.1]), SQUARE_ROOT)
-    none = coats.from_pigments(coats.stack([paint]), [1], 0.0)
-    painted = overpaint.prepare(small_cube, none, threads=1).paint(image)
-    np.testing.assert_allclose(painted, image, atol=1e-5)
+def test_opaque_paint_hides_the_image_and_a_coat_without_thickness_leaves_it(small_cube, image):
+    paint = Ingredients(small_cube.reflectance([[0.3, 0.2, 0.1]]))
+    for thickness, expected in ((None, np.broadcast_to([0.3, 0.2, 0.1], image.shape)), (0.0, image)):
+        coat = make_coat("pigment", paint, [1], Medium(thickness, scattering=SQUARE_ROOT))
+        np.testing.assert_allclose(make_overpainter(small_cube, coat, threads=1).paint(image), expected, atol=1e-5)
 
 
 def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, image, tmp_path):
     """A thick dye is saturated enough to leave the gamut."""
-    dye = coats.from_dyes(small_cube.reflectance([[0.9, 0.1, 0.02]]), [1], 3.0)
+    dye = make_coat("dye", Ingredients(small_cube.reflectance([[0.9, 0.1, 0.02]])), [1], Medium(3.0))
     write_exr(tmp_path / "in.exr", planes(image + 0.5))
-    overpainter = overpaint.prepare(small_cube, dye, threads=1)
+    overpainter = make_overpainter(small_cube, dye, threads=1)
     result = convert(overpainter, tmp_path / "in.exr", tmp_path / "out.exr")
     assert 0 < result.counts.outside < 30
     assert result.counts.painted_outside > 0
@@ -102,7 +93,7 @@ def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, im
     assert f"{result.counts.painted_outside} of 30 pixels lie outside [0, 1] after painting: scaled" in after.problem
     found = read_channels(tmp_path / "out.exr", "RGB")
     assert ((found >= 0) & (found <= 1)).all()
-    strict = overpaint.prepare(small_cube, dye, out_of_gamut="error", threads=1)
+    strict = make_overpainter(small_cube, dye, out_of_gamut="error", threads=1)
     with pytest.raises(ColourError) as caught:
         convert(strict, tmp_path / "in.exr", tmp_path / "strict.exr")
     assert caught.value.path == tmp_path / "in.exr"
@@ -111,9 +102,9 @@ def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, im
 
 def test_invalid_input_raises(small_cube, glaze, overpainter, image, tmp_path):
     with raises(OptionError, "unknown-encoding"):
-        overpaint.prepare(small_cube, glaze, encoding="srgb")
+        make_overpainter(small_cube, glaze, encoding="srgb")
     with raises(OptionError, "unknown-gamut-mapping"):
-        overpaint.prepare(small_cube, glaze, out_of_gamut="away")
+        make_overpainter(small_cube, glaze, out_of_gamut="away")
     with raises(TextureError, "file-not-found"):
         convert(overpainter, tmp_path / "none.exr", tmp_path / "out.exr")
     write_exr(tmp_path / "in.exr", planes(image))

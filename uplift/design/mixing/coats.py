@@ -1,24 +1,39 @@
-"""Coats of paint or dye under a surface, for any ground: a uniform colour or the pixels of an image.
+"""Mixtures by kind of component, and coats of paint or dye on any ground: a uniform colour or the pixels of an image.
 
 All reflectances include the surface. A coat of thickness 0 therefore leaves its ground unchanged. Grounds darker than
 the surface alone are treated as black beneath it.
+
+Dyes absorb and do not scatter (Fishkin 1983, eq. 9.3–9.7). Derivation of eq. 9.7: the surface reflects a fraction ρ of
+the light, and 1 − ρ enters. The light crosses the layer (T), is reflected by a ground in optical contact (R_g), and
+crosses the layer again (T). There 1 − ρ_i leaves, and ρ_i is reflected back for another pass. The i-th pass contributes
+(1 − ρ) (1 − ρ_i) (T² R_g)^i ρ_i^(i−1), so that
+
+    R = ρ + (1 − ρ) (1 − ρ_i) T² R_g Σ_{i≥0} (ρ_i T² R_g)^i = ρ + (1 − ρ) (1 − ρ_i) T² R_g / (1 − ρ_i T² R_g).
+
+The thesis, with ρ_i = ρ, prints (1 − ρ)² / (ρ (1 − ρ T² R_g)). Its sum starts at 1, but the term i = 0 was not
+subtracted, so the numerator lacks ρ T² R_g, and R exceeds 1 for every small ρ. The correct result is Saunderson's
+correction (eq. 10.10) of T² R_g, which is Kubelka and Munk's result without scattering.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
-from uplift.design.mixing import dyes, kubelka_munk
-from uplift.design.mixing.layers import Layer
-from uplift.design.mixing.pigments import Pigment, from_black_and_white, from_opaque
-from uplift.design.mixing.scattering import Scattering
-from uplift.design.mixing.surface import NO_SURFACE, Surface
-from uplift.design.mixing.validation import as_length
+from uplift.common.errors import OptionError, UpliftWarning
+from uplift.design.mixing.amounts import add_lights, as_amounts, as_shares, as_thickness, stack_filters, weighted_sum
+from uplift.design.mixing.layers import NO_SURFACE, Layer, Surface
+from uplift.design.mixing.pigments import Pigment, Scattering, from_black_and_white, from_opaque
+
+COATS = ("pigment", "dye")
+KINDS = (*COATS, "filter", "light")
+DARKEST = 1e-6
+"""Smallest transmittance that the absorption of a dye is derived from; it diverges at 0."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,119 +64,209 @@ class Coat:
         ndarray of shape (..., N)
             Reflectance, surface included.
         """
-        return self.surface.apply(self.layer.over(_internal(self.surface, ground)))
+        return self.surface.apply(self.layer.over(_beneath(self.surface, ground)))
 
 
-def from_dyes(spectra: ArrayLike, parts: ArrayLike, thickness: float = 1.0, surface: Surface = NO_SURFACE) -> Coat:
-    """Make a coat of dyes.
+@dataclass(frozen=True, eq=False)
+class Ingredients:
+    """Spectra of the components of a mixture.
 
     Parameters
     ----------
-    spectra : array_like of shape (n, N)
-        Reflectance of each dye on white, one unit thick, surface included.
-    parts : array_like of shape (..., n)
-        Amounts of the dyes.
-    thickness : float
-        Thickness in the same units.
-    surface : Surface
-        Surface of the vehicle.
-
-    Returns
-    -------
-    Coat
-        The coat.
+    spectra : ndarray of shape (n, N)
+        Reflectance of opaque pigments, reflectance of dyes one unit thick on white, transmittance of filters, or power
+        of lights.
+    on_black : tuple of ndarray of shape (N,) or None, one for each component, optional
+        Reflectance on black of the pigments that ``spectra`` gives on white, one unit thick. None for the others.
     """
-    mixture = dyes.mix(dyes.from_reflectance(spectra, surface), parts)
-    transmittance = dyes.transmittance(mixture, thickness=thickness)
-    return Coat(Layer(np.zeros_like(transmittance), transmittance), surface)
+
+    spectra: Array
+    on_black: tuple[Array | None, ...] = ()
+
+    @property
+    def measured_on_black(self) -> list[Array]:
+        """The spectra on black that are given.
+
+        Returns
+        -------
+        list of ndarray of shape (N,)
+            Those of ``on_black`` that are not None.
+        """
+        return [one for one in self.on_black if one is not None]
 
 
-def from_pigments(
-    paints: Pigment, parts: ArrayLike, thickness: float | None = None, surface: Surface = NO_SURFACE
-) -> Coat:
-    """Make a coat of paints.
+@dataclass(frozen=True)
+class Medium:
+    """Properties of a coat.
 
     Parameters
     ----------
-    paints : Pigment
-        Absorption and scattering (n, N) of the paints; see `stack`.
-    parts : array_like of shape (..., n)
-        Amounts of the paints.
     thickness : float, optional
-        Thickness in units of 1/K and 1/S, by default opaque.
+        Thickness in units, by default opaque for pigments and 1 for dyes.
     surface : Surface
         Surface of the vehicle.
+    scattering : callable, optional
+        S of pigments given by one colour, which need it; see `dispersive`.
+    """
+
+    thickness: float | None = None
+    surface: Surface = NO_SURFACE
+    scattering: Scattering | None = None
+
+
+def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium) -> Coat:
+    """Make a coat of pigments or dyes.
+
+    Parameters
+    ----------
+    kind : {"pigment", "dye"}
+        Kind of the components.
+    ingredients : Ingredients
+        The n components.
+    parts : array_like of shape (..., n)
+        Amounts of the components.
+    medium : Medium
+        Thickness, surface and scattering.
 
     Returns
     -------
     Coat
         The coat.
-    """
-    mixture = paints.mix(parts)
-    if thickness is None:
-        reflectance = kubelka_munk.opaque_reflectance(mixture)
-        return Coat(Layer(reflectance, np.zeros_like(reflectance)), surface)
-    return Coat(kubelka_munk.layer(mixture, as_length(thickness)), surface)
-
-
-def pigment_from_reflectance(reflectance: ArrayLike, scattering: Scattering, surface: Surface = NO_SURFACE) -> Pigment:
-    """Derive absorption and scattering of an opaque paint from its reflectance, surface included.
-
-    Parameters
-    ----------
-    reflectance : array_like of shape (N,)
-        Reflectance of the opaque paint.
-    scattering : Scattering
-        S that is assumed for a reflectance beneath the surface.
-    surface : Surface
-        Surface of the vehicle.
-
-    Returns
-    -------
-    Pigment
-        Absorption and scattering (N,).
-    """
-    return from_opaque(_internal(surface, reflectance), scattering)
-
-
-def pigment_from_two_grounds(on_white: ArrayLike, on_black: ArrayLike, surface: Surface = NO_SURFACE) -> Pigment:
-    """Derive absorption and scattering of a paint, one unit thick, from its reflectances, surface included.
-
-    Parameters
-    ----------
-    on_white, on_black : array_like of shape (N,)
-        Reflectances on white and on black.
-    surface : Surface
-        Surface of the vehicle.
-
-    Returns
-    -------
-    Pigment
-        Absorption and scattering (N,).
 
     Raises
     ------
+    OptionError
+        The kind is unknown, parts or thickness are invalid, a dye has a colour on black, or the scattering of a pigment
+        is missing.
     ColourError
-        No paint has both reflectances; see `pigments.from_black_and_white`.
+        No pigment has the given reflectances on white and on black.
+
+    Warns
+    -----
+    UpliftWarning
+        A component is darker than the surface alone at some wavelengths.
     """
-    return from_black_and_white(_internal(surface, on_black), _internal(surface, on_white))
+    if kind not in COATS:
+        raise OptionError(f"a coat cannot be of kind '{kind}'", code="unknown-coat", hint=f"use {' or '.join(COATS)}")
+    surface, spectra = medium.surface, [*ingredients.spectra, *ingredients.measured_on_black]
+    dark = sum(bool((surface.remove(one) < -SLACK).any()) for one in spectra)
+    if dark:
+        problem = (
+            f"{dark} of {len(spectra)} colours are partly darker than the surface alone; they are treated as "
+            "black there"
+        )
+        warnings.warn(UpliftWarning(problem), stacklevel=2)
+    if kind == "dye":
+        if ingredients.measured_on_black:
+            raise OptionError("dyes must not have a colour on black", hint="pass their colour on white only")
+        absorption = weighted_sum(dye_absorption(ingredients.spectra, surface), as_shares(parts))
+        transmittance = dye_transmittance(absorption, 1.0 if medium.thickness is None else medium.thickness)
+        return Coat(Layer(np.zeros_like(transmittance), transmittance), surface)
+    on_black = ingredients.on_black or (None,) * len(ingredients.spectra)
+    paints = [_pigment(*pair, medium) for pair in zip(ingredients.spectra, on_black, strict=True)]
+    stacked = Pigment(np.stack([one.absorption for one in paints]), np.stack([one.scattering for one in paints]))
+    mixture = stacked.mix(parts)
+    if medium.thickness is not None:
+        return Coat(mixture.layer(as_thickness(medium.thickness)), surface)
+    reflectance = mixture.opaque_reflectance()
+    return Coat(Layer(reflectance, np.zeros_like(reflectance)), surface)
 
 
-def stack(paints: Sequence[Pigment]) -> Pigment:
-    """Stack paints (N,) into one array of paints (n, N).
+def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, ground: ArrayLike) -> Array:
+    """Mix components.
 
     Parameters
     ----------
-    paints : sequence of Pigment
-        The paints.
+    kind : {"pigment", "dye", "filter", "light"}
+        Kind of the components.
+    ingredients : Ingredients
+        The n components.
+    parts : array_like of shape (..., n)
+        Amounts; for filters their thickness.
+    medium : Medium
+        Thickness, surface and scattering of pigments and dyes.
+    ground : array_like of shape (N,)
+        Reflectance of the ground below pigments and dyes.
 
     Returns
     -------
-    Pigment
-        Absorption and scattering (n, N).
+    ndarray of shape (..., N)
+        Reflectance, transmittance of filters or power of lights.
+
+    Raises
+    ------
+    OptionError
+        The kind is unknown, the parts are invalid, or the medium does not apply to the kind.
+    ColourError
+        As `make_coat`.
     """
-    return Pigment(np.stack([one.absorption for one in paints]), np.stack([one.scattering for one in paints]))
+    if kind in COATS:
+        return make_coat(kind, ingredients, parts, medium).over(ground)
+    if kind not in KINDS:
+        raise OptionError(f"unknown kind of mixture '{kind}'", hint=f"use one of {', '.join(KINDS)}")
+    if (medium.thickness, medium.surface) != (None, NO_SURFACE) or ingredients.measured_on_black:
+        problem = f"{kind}s must not have a thickness, a surface or a colour on black"
+        raise OptionError(problem, hint="leave them out; parts of filters are their thickness")
+    return (stack_filters if kind == "filter" else add_lights)(ingredients.spectra, parts)
 
 
-def _internal(surface: Surface, reflectance: ArrayLike) -> Array:
+def ramp(parts: ArrayLike, steps: int) -> Array:
+    """Return proportions from the first component alone, through the others, to the last alone.
+
+    Parameters
+    ----------
+    parts : array_like of shape (n,)
+        Amounts at which each component stands alone.
+    steps : int
+        Number of steps, at least 2.
+
+    Returns
+    -------
+    ndarray of shape (steps, n)
+        Parts of each step. The shape is (0, 1) for a single component.
+
+    Raises
+    ------
+    OptionError
+        There are fewer than two steps.
+
+    Examples
+    --------
+    >>> ramp([2, 1], 3).tolist()
+    [[2.0, 0.0], [1.0, 0.5], [0.0, 1.0]]
+    """
+    if steps < 2:
+        raise OptionError(f"a ramp must have at least 2 steps, got {steps}", hint="use 2 or more")
+    ends = np.diag(as_amounts(parts))
+    if len(ends) < 2:
+        return np.empty((0, len(ends)))
+    positions, stops = np.linspace(0, len(ends) - 1, steps), np.arange(len(ends))
+    return np.stack([np.interp(positions, stops, column) for column in ends.T], axis=-1)
+
+
+def dye_transmittance(absorption: ArrayLike, thickness: float) -> Array:
+    """Return the transmittance T = exp(−K X) of absorption (..., N) (Beer and Bouguer, eq. 9.5).
+
+    A concentration multiplies the thickness.
+    """
+    return np.exp(-as_thickness(thickness) * np.asarray(absorption, dtype=float))
+
+
+def dye_absorption(reflectance: ArrayLike, surface: Surface = NO_SURFACE) -> Array:
+    """Return the absorption (..., N) of a dye, one unit thick, from its reflectance on perfect white (eq. 9.7, 9.5)."""
+    transmittance = np.sqrt(_beneath(surface, reflectance))
+    return -np.log(np.clip(transmittance, DARKEST, 1))
+
+
+def _pigment(spectrum: Array, on_black: Array | None, medium: Medium) -> Pigment:
+    internal = _beneath(medium.surface, spectrum)
+    if on_black is not None:
+        return from_black_and_white(_beneath(medium.surface, on_black), internal)
+    if medium.scattering is None:
+        problem = "one colour does not determine the scattering of a pigment"
+        raise OptionError(problem, hint="set the scattering of the medium, or give a colour on black")
+    return from_opaque(internal, medium.scattering)
+
+
+def _beneath(surface: Surface, reflectance: ArrayLike) -> Array:
     return np.clip(surface.remove(reflectance), 0, 1)

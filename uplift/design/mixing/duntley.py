@@ -19,8 +19,6 @@ Two colours cannot determine eight constants. Particles that scatter in all dire
 path of diffuse light is on average twice as long as the beam's, so that K' = K/2 and B' = F' = S/2 for Kubelka and
 Munk's K and S = B. An opaque layer of reflectance r in diffuse light then has R = 2r / (3 − r) in a beam.
 
-References
-----------
 S. Q. Duntley, J. Opt. Soc. Am. 32(2), 1942.
 """
 
@@ -32,7 +30,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
-from uplift.design.mixing import kubelka_munk
 from uplift.design.mixing.layers import Layer
 from uplift.design.mixing.pigments import Pigment
 
@@ -42,13 +39,7 @@ MIN_RELATIVE_GAP = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Flux:
-    """Constants of a kind of light, per unit thickness.
-
-    Parameters
-    ----------
-    absorption, backward, forward : ndarray of shape (..., N)
-        Fractions that are absorbed, scattered backward and scattered forward.
-    """
+    """Fractions (..., N) of a kind of light that are absorbed, scattered backward and forward per unit thickness."""
 
     absorption: Array
     backward: Array
@@ -56,103 +47,48 @@ class Flux:
 
     @property
     def attenuation(self) -> Array:
-        """Sum of all three (..., N)."""
+        """Sum of all three (..., N), μ of a beam."""
         return self.absorption + self.backward + self.forward
 
 
 def isotropic(pigment: Pigment) -> tuple[Flux, Flux]:
-    """Derive the constants of a pigment that scatters in all directions alike.
-
-    Parameters
-    ----------
-    pigment : Pigment
-        Kubelka and Munk's K and S (..., N).
-
-    Returns
-    -------
-    beam, diffuse : Flux
-        Constants of the incident beam and of diffuse light.
-    """
+    """Derive the constants of beam and diffuse light for a pigment that scatters in all directions alike."""
     K, S = pigment.absorption, pigment.scattering
     return Flux(K / 2, S / 2, S / 2), Flux(K, S, S)
 
 
 def directed_reflectance(diffuse: ArrayLike) -> Array:
-    """Return the reflectance in a beam of an opaque, isotropic layer, R = 2r / (3 − r).
-
-    Parameters
-    ----------
-    diffuse : array_like of shape (...)
-        Its reflectance r in diffuse light, in [0, 1]; see `kubelka_munk.opaque_reflectance`.
-
-    Returns
-    -------
-    ndarray of shape (...)
-        Reflectance in [0, 1].
-
-    Examples
-    --------
-    >>> directed_reflectance([0.0, 0.6, 1.0]).tolist()
-    [0.0, 0.5, 1.0]
-    """
+    """Return the reflectance in a beam of an opaque, isotropic layer, R = 2r / (3 − r)."""
     r = np.asarray(diffuse, dtype=float)
     return 2 * r / (3 - r)
 
 
 def diffuse_reflectance(directed: ArrayLike) -> Array:
-    """Return the reflectance in diffuse light of an opaque, isotropic layer, r = 3R / (2 + R).
-
-    Parameters
-    ----------
-    directed : array_like of shape (...)
-        Its reflectance R in a beam, in [0, 1].
-
-    Returns
-    -------
-    ndarray of shape (...)
-        Reflectance in [0, 1].
-    """
+    """Return the reflectance in diffuse light of an opaque, isotropic layer, r = 3R / (2 + R)."""
     R = np.asarray(directed, dtype=float)
     return 3 * R / (2 + R)
 
 
 def layer(beam: Flux, diffuse: Flux, thickness: float) -> Layer:
-    """Return the optical properties of a layer for collimated light (eq. 10.8).
-
-    Parameters
-    ----------
-    beam, diffuse : Flux
-        Constants of the incident beam and of diffuse light.
-    thickness : float
-        Thickness, in the units of the constants.
-
-    Returns
-    -------
-    Layer
-        Diffuse reflectance on black, and total transmittance of the beam.
-    """
+    """Return the optical properties of a layer for collimated light (eq. 10.8)."""
     mu = beam.attenuation
     gamma = np.sqrt(diffuse.absorption * (diffuse.absorption + 2 * diffuse.backward))
     step = MIN_RELATIVE_GAP * np.maximum(mu, gamma)
-    close = np.abs(mu - gamma) < step
-    offset = np.where(close, 2 * step, 0.0)
-    above, below = (_layer(_absorb_more(beam, side * offset), diffuse, thickness) for side in (1, -1))
+    offset = np.where(np.abs(mu - gamma) < step, 2 * step, 0.0)
+    sides = [Flux(beam.absorption + shift, beam.backward, beam.forward) for shift in (offset, -offset)]
+    above, below = (_layer(side, diffuse, thickness) for side in sides)
     return Layer((above.reflectance + below.reflectance) / 2, (above.transmittance + below.transmittance) / 2)
 
 
-def _absorb_more(beam: Flux, offset: Array) -> Flux:
-    return Flux(beam.absorption + offset, beam.backward, beam.forward)
-
-
 def _layer(beam: Flux, diffuse: Flux, thickness: float) -> Layer:
-    inner = kubelka_munk.layer(Pigment(diffuse.absorption, diffuse.backward), thickness)
+    inner = Pigment(diffuse.absorption, diffuse.backward).layer(thickness)
     r, tau = inner.reflectance, inner.transmittance
     unscattered = np.exp(-beam.attenuation * thickness)
-    P, Q = _sources(beam, diffuse)
+    P, Q = sources(beam, diffuse)
     return Layer(Q * r + P * unscattered * tau - P, Q * tau + P * unscattered * r - (Q - 1) * unscattered)
 
 
-def _sources(beam: Flux, diffuse: Flux) -> tuple[Array, Array]:
+def sources(beam: Flux, diffuse: Flux) -> tuple[Array, Array]:
     """Return P' and Q', which are 0 for a beam that is not scattered."""
     K, B = diffuse.absorption, diffuse.backward
     K1, B1, F1 = beam.absorption, beam.backward, beam.forward

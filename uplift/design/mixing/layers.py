@@ -1,74 +1,166 @@
-"""A symmetric layer that reflects and transmits light, on a ground or on another layer.
+"""Optics of a layer on a ground, and of the surface between air and the vehicle of a paint.
 
-Light travels back and forth between the two, which sums to a geometric series.
+Incident light is collimated and perpendicular (Fresnel; Fishkin 1983, eq. 9.3) or diffuse (Duntley, eq. 10.9). Light
+within is diffuse. Saunderson's correction (eq. 10.10) converts between the internal reflectance, as in Kubelka and
+Munk's theory, and the measured one.
 
-References
-----------
-G. G. Stokes, 1862; P. Kubelka, "New contributions to the optics of intensely light-scattering materials, part II",
-J. Opt. Soc. Am. 44, 1954, eq. 1–4.
+S. Q. Duntley, J. Opt. Soc. Am. 32(2), 1942; J. L. Saunderson, J. Opt. Soc. Am. 32, 1942; D. B. Judd, "Fresnel
+reflection of diffusely incident light", J. Res. NBS 29, 1942; P. Kubelka, J. Opt. Soc. Am. 44, 1954, eq. 1–4.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
+from uplift.common.errors import OptionError, unknown_name
 
 TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """Optical properties of a layer, the same from both sides.
+    """A layer with the same properties from both sides."""
+
+    reflectance: Array  # (..., N) on a black ground
+    transmittance: Array  # (..., N); the sum of both is at most 1
+
+    def over(self, ground: ArrayLike) -> Array:
+        """Return the reflectance (..., N) on a ground (..., N)."""
+        ground = np.asarray(ground, dtype=float)
+        # Light travels back and forth between both: R + T² g Σ (R g)^i. The sum diverges only where no light gets.
+        escaping = np.maximum(1 - self.reflectance * ground, TINY)
+        return self.reflectance + self.transmittance**2 * ground / escaping
+
+
+def fresnel_reflectance(index: float) -> float:
+    """Return the reflectance of a perpendicular beam, from either side (eq. 9.3): 0.04 for an index of 1.5."""
+    return ((_check_index(index) - 1) / (index + 1)) ** 2
+
+
+def diffuse_reflectance(index: float) -> float:
+    """Return the reflectance of diffuse light from air: Fresnel's, integrated (eq. 10.9); 0.092 for an index of 1.5.
+
+    Fishkin 1983 prints 8n + 1² for 6 (n + 1)². The tests integrate Fresnel's equations.
+    """
+    n = _check_index(index)
+    if n == 1:
+        return 0.0
+    n2, n4 = n**2, n**4
+    return float(
+        0.5
+        + (n - 1) * (3 * n + 1) / (6 * (n + 1) ** 2)
+        + n2 * (n2 - 1) ** 2 / (n2 + 1) ** 3 * np.log((n - 1) / (n + 1))
+        - 2 * n**3 * (n2 + 2 * n - 1) / ((n2 + 1) * (n4 - 1))
+        + 8 * n4 * (n4 + 1) / ((n2 + 1) * (n4 - 1) ** 2) * np.log(n)
+    )
+
+
+def internal_reflectance(index: float) -> float:
+    """Return the reflectance of diffuse light from within, 1 − (1 − ρ) / n², total reflection included (Judd 1942)."""
+    return 1 - (1 - diffuse_reflectance(index)) / index**2
+
+
+INCIDENCES = {"perpendicular": fresnel_reflectance, "diffuse": diffuse_reflectance}
+"""Reflectance of a surface by the kind of incident light."""
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Reflectances of a surface; the default is a vehicle with the refractive index of air.
 
     Parameters
     ----------
-    reflectance : ndarray of shape (..., N)
-        Reflectance on a black ground.
-    transmittance : ndarray of shape (..., N)
-        Transmittance. The sum of both is at most 1.
+    outside : float
+        Reflectance of incident light, in [0, 1).
+    inside : float
+        Reflectance of diffuse light from within, in [0, 1).
+
+    Raises
+    ------
+    OptionError
+        A reflectance is outside [0, 1).
     """
 
-    reflectance: Array
-    transmittance: Array
+    outside: float = 0.0
+    inside: float = 0.0
 
-    def over(self, ground: ArrayLike) -> Array:
-        """Return the reflectance on a ground.
+    def __post_init__(self) -> None:
+        for value in (self.outside, self.inside):
+            if not 0 <= value < 1:
+                problem = f"reflectance of a surface must be in [0, 1), got {value}"
+                raise OptionError(problem, hint="use 0 for a vehicle without a surface")
 
-        Parameters
-        ----------
-        ground : array_like of shape (..., N)
-            Reflectance of the ground.
-
-        Returns
-        -------
-        ndarray of shape (..., N)
-            Reflectance of both.
-        """
-        ground = np.asarray(ground, dtype=float)
-        return self.reflectance + self.transmittance**2 * ground / self._escaping(ground)
-
-    def stack_on(self, lower: Layer) -> Layer:
-        """Combine this layer with one beneath it.
-
-        The result is symmetric only if both layers are of the same material.
+    @classmethod
+    def of_index(cls, index: float, incidence: str = "perpendicular") -> Self:
+        """Compute the reflectances of a surface from the refractive index of the vehicle.
 
         Parameters
         ----------
-        lower : Layer
-            The layer beneath.
+        index : float
+            Refractive index relative to air, at least 1.
+        incidence : {"perpendicular", "diffuse"}
+            Incident light.
 
         Returns
         -------
-        Layer
-            Optical properties of both, from above.
-        """
-        escaping = self._escaping(lower.reflectance)
-        return Layer(self.over(lower.reflectance), self.transmittance * lower.transmittance / escaping)
+        Surface
+            The surface.
 
-    def _escaping(self, below: Array) -> Array:
-        """Return the fraction of the light in between that leaves per pass; 0 only where no light gets there."""
-        return np.maximum(1 - self.reflectance * below, TINY)
+        Raises
+        ------
+        OptionError
+            The index is below 1 or not finite.
+        UnknownNameError
+            The incidence is unknown.
+        """
+        if incidence not in INCIDENCES:
+            raise unknown_name(incidence, INCIDENCES, "incidence")
+        return cls(INCIDENCES[incidence](index), internal_reflectance(index))
+
+    def apply(self, internal: ArrayLike) -> Array:
+        """Return the reflectance measured through the surface (Saunderson's correction, eq. 10.10).
+
+        Parameters
+        ----------
+        internal : array_like of shape (...)
+            Reflectance beneath the surface.
+
+        Returns
+        -------
+        ndarray of shape (...)
+            Measured reflectance.
+        """
+        internal = np.asarray(internal, dtype=float)
+        transmitted = (1 - self.outside) * (1 - self.inside)
+        return self.outside + transmitted * internal / (1 - self.inside * internal)
+
+    def remove(self, measured: ArrayLike) -> Array:
+        """Return the reflectance beneath the surface (inverse of eq. 10.10).
+
+        Parameters
+        ----------
+        measured : array_like of shape (...)
+            Measured reflectance.
+
+        Returns
+        -------
+        ndarray of shape (...)
+            Internal reflectance, negative where the measured one is below that of the surface alone.
+        """
+        rest = np.asarray(measured, dtype=float) - self.outside
+        return rest / ((1 - self.outside) * (1 - self.inside) + self.inside * rest)
+
+
+NO_SURFACE = Surface()
+
+
+def _check_index(index: float) -> float:
+    if not (np.isfinite(index) and index >= 1):
+        problem = f"refractive index must be finite and at least 1, got {index}"
+        raise OptionError(problem, hint="linseed oil has 1.5")
+    return index

@@ -22,54 +22,18 @@ from uplift.lookup.blocks import blockwise
 
 @dataclass(frozen=True, eq=False)
 class Overpainter(Converter):
-    """A converter that lays a coat over images, made by `prepare`; pass it to `uplift.io.texture.convert`.
+    """Converter that lays a coat over images, made by `overpainter`. The gamut is mapped before and after painting."""
 
-    Parameters
-    ----------
-    sensor, depth, encoding, out_of_gamut, channels, header, space
-        As in `uplift.io.texture.Converter`. The gamut mapping applies before and after painting.
-    coat : Coat
-        The coat, at the wavelengths of the sensor.
-    reflectance : callable
-        From linear RGB (..., 3) to reflectances (..., N).
-    threads : int
-        Threads that share a band.
-    """
-
-    coat: Coat
-    reflectance: Callable[[Floats], Floats]
-    threads: int
+    coat: Coat  # at the wavelengths of the sensor
+    reflectance: Callable[[Floats], Floats]  # from linear RGB (..., 3) to reflectances (..., N)
+    threads: int  # that share a band
 
     def paint(self, rgb: Floats) -> Floats:
-        """Lay the coat over colours.
-
-        Parameters
-        ----------
-        rgb : ndarray of shape (..., 3)
-            Linear RGB in [0, 1].
-
-        Returns
-        -------
-        ndarray of shape (..., 3)
-            Linear RGB, possibly outside [0, 1].
-        """
+        """Lay the coat over linear RGB (..., 3) in [0, 1]; the result may be outside."""
         return blockwise(self._paint_block, rgb.astype(float), 3, np.float32, self.threads)
 
     def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
-        """Lay the coat over a block of colours and map the result to the gamut.
-
-        Parameters
-        ----------
-        rgb : ndarray of shape (..., 3)
-            Linear RGB in [0, 1].
-
-        Returns
-        -------
-        tuple of ndarray
-            Linear RGB (..., 3) in [0, 1].
-        Counts
-            Painted pixels outside [0, 1].
-        """
+        """Lay the coat over a block of colours (..., 3) and map the result to the gamut, counting pixels outside."""
         mapped = map_to_gamut(self.paint(rgb), self.sensor, self.out_of_gamut)
         return (mapped.rgb,), Counts(painted_outside=mapped.count)
 
@@ -77,7 +41,7 @@ class Overpainter(Converter):
         return self.sensor.rgb(self.coat.over(self.reflectance(rgb.astype(np.float32))))
 
 
-def prepare(
+def overpainter(
     cube: Cube,
     coat: Coat,
     recipe: Mapping[str, Any] | None = None,
@@ -120,13 +84,14 @@ def prepare(
     --------
     ::
 
-        from uplift.design.mixing import coats, dispersive, overpaint
+        import numpy as np
+
+        from uplift.design.mixing import Ingredients, Medium, dispersive, make_coat, overpainter
         from uplift.io import texture
 
-        spectrum = cube.reflectance([0.5, 0.05, 0.03])
-        red = coats.pigment_from_reflectance(spectrum, dispersive(cube.data.sensor))
-        glaze = coats.from_pigments(coats.stack([red]), [1], thickness=0.5)
-        texture.convert(overpaint.prepare(cube, glaze), "painting.exr", "painted.exr")
+        red = Ingredients(cube.reflectance(np.array([[0.5, 0.05, 0.03]])))
+        glaze = make_coat("pigment", red, [1], Medium(0.5, scattering=dispersive(cube.data.sensor)))
+        texture.convert(overpainter(cube, glaze), "painting.exr", "painted.exr")
     """
     from uplift.lookup import bulk
 

@@ -1,25 +1,41 @@
-"""Absorption K and scattering S of paints, from measured reflectances.
+"""Paints that absorb (K) and scatter (S) light, per unit thickness, by Kubelka and Munk's two-flux theory.
 
-Mixtures average both (eq. 10.7). Reflectances on two grounds determine both. The reflectance R of opaque paint
-determines K/S only (eq. 10.6, where Fishkin 1983 prints 1 − R² for (1 − R)²), so S must be assumed; see
-`uplift.design.mixing.scattering`.
+With γ = √(K (K + 2S)) a layer of thickness X has (Fishkin 1983, eq. 10.2)
 
-References
-----------
-D. R. Duncan, Proc. Phys. Soc. 52, 1940; Fishkin 1983, eq. 10.6, 10.7.
+    T = γ / Δ,    R = S sinh γX / Δ,    Δ = (K + S) sinh γX + γ cosh γX.
+
+Mixtures average K and S (Duncan, eq. 10.7). Reflectances on two grounds determine both. The reflectance R of opaque
+paint determines K/S only (eq. 10.6, where Fishkin 1983 prints 1 − R² for (1 − R)²), so S must be assumed:
+
+S = R^p
+    p = 0, equal scattering, is the single-constant theory. p = ½ lets dark paints scatter less.
+S = Y^¾ exp(h / 4)
+    Y is the luminance factor of the paint. h(λ) is the mean of √(K/S) at wavelengths below λ, less the mean above it,
+    both with weights exp(−abs(λ − λ') / 40 nm). The refractive index of a pigment rises on the long-wave side of an
+    absorption band and falls on its short-wave side (anomalous dispersion), and scattering grows with the difference
+    from the index of the binder. A yellow pigment therefore scatters most in the green, where its absorption ends; a
+    blue one scatters little there. That is why both together are green.
+
+docs/mixing.md compares these rules with measured paints.
+
+P. Kubelka and F. Munk, Zeitschrift für technische Physik 12, 1931; P. Kubelka, J. Opt. Soc. Am. 38, 1948;
+D. R. Duncan, Proc. Phys. Soc. 52, 1940; C. F. Bohren & D. R. Huffman, *Absorption and Scattering of Light by Small
+Particles*, Wiley 1983, chapter 9 (anomalous dispersion).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError
-from uplift.design.mixing.scattering import Scattering
-from uplift.design.mixing.validation import as_length, as_shares, weighted_sum
+from uplift.design.mixing.amounts import as_shares, weighted_sum
+from uplift.design.mixing.layers import TINY, Layer
 
 DARKEST = 1e-4
 """Smallest reflectance that K and S are derived from; K diverges at 0."""
@@ -27,145 +43,155 @@ SLACK = 1e-3
 """Contradiction between measurements on two grounds that is accepted as rounding."""
 MIN_TRANSMITTANCE = 1e-3
 """Smallest transmittance at which K and S can be separated."""
+REACH = 40.0
+"""Distance in nm at which the weight of absorption in h falls to 1/e."""
+DARKEST_DISPERSED = 0.01
+"""Smallest reflectance that h is computed from; √(K/S) diverges at 0, where the colour no longer determines it."""
+
+Scattering = Callable[[Array], Array]
+"""From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has 1."""
+
+
+@dataclass(frozen=True)
+class PowerOfReflectance:
+    """S = R^p."""
+
+    exponent: float
+
+    def __call__(self, reflectance: Array) -> Array:
+        return np.asarray(reflectance**self.exponent)
+
+
+SQUARE_ROOT, CONSTANT = PowerOfReflectance(0.5), PowerOfReflectance(0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Dispersive:
+    """S = Y^exponent exp(weight · h), made by `dispersive`."""
+
+    luminance: Array  # (N,) weights of Y, of sum 1
+    imbalance: Array  # (N, N) from √(K/S) to h; rows sum to 0, so that a grey paint has h = 0
+    exponent: float = 0.75
+    weight: float = 0.25
+
+    def __call__(self, reflectance: Array) -> Array:
+        R = np.maximum(reflectance, DARKEST_DISPERSED)
+        h = ((1 - R) / np.sqrt(2 * R)) @ self.imbalance.T
+        Y = (reflectance @ self.luminance)[..., None]
+        return np.asarray(Y**self.exponent * np.exp(self.weight * h))
+
+
+def dispersive(sensor: Sensor, further: ArrayLike = ()) -> Dispersive:
+    """Make the dispersive scattering of spectra at the wavelengths of a sensor.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Y and h are sums over its wavelengths. Y is for light of equal energy, as it belongs to the paint.
+    further : array_like of shape (n,), optional
+        Wavelengths in nm of samples that follow those of the sensor. They enter no sum. Beyond the range of the sensor,
+        h is that of its end.
+
+    Returns
+    -------
+    Dispersive
+        The scattering of spectra (..., N + n).
+    """
+    inner = sensor.wavelengths
+    outer = np.concatenate([inner, np.clip(np.asarray(further, dtype=float), inner[0], inner[-1])])
+    distance = outer[:, None] - inner
+    weights = np.exp(-np.abs(distance) / REACH)
+    below, above = weights * (distance >= 0), weights * (distance <= 0)
+    imbalance = np.zeros((len(outer), len(outer)))
+    imbalance[:, : len(inner)] = below / below.sum(axis=1)[:, None] - above / above.sum(axis=1)[:, None]
+    luminance = np.zeros(len(outer))
+    luminance[: len(inner)] = sensor.cmfs[:, 1] / sensor.cmfs[:, 1].sum()
+    return Dispersive(luminance, imbalance)
 
 
 @dataclass(frozen=True, eq=False)
 class Pigment:
-    """Absorption and scattering of paint.
+    """Absorption and scattering of paint, in Kubelka and Munk's theory."""
 
-    Parameters
-    ----------
-    absorption, scattering : ndarray of shape (..., N)
-        K and S per unit thickness, at least 0.
-    """
+    absorption: Array  # (..., N) K per unit thickness, at least 0
+    scattering: Array  # (..., N) S per unit thickness, at least 0
 
-    absorption: Array
-    scattering: Array
+    @property
+    def gamma(self) -> Array:
+        """γ = √(K (K + 2S)), shape (..., N)."""
+        return np.sqrt(self.absorption * (self.absorption + 2 * self.scattering))
 
     def mix(self, parts: ArrayLike) -> Pigment:
-        """Mix the pigments along the last axis but one (eq. 10.7).
-
-        Parameters
-        ----------
-        parts : array_like of shape (..., n)
-            Amounts of the pigments (..., n, N).
-
-        Returns
-        -------
-        Pigment
-            The mixture (..., N).
-
-        Raises
-        ------
-        OptionError
-            A part is negative or not finite, or all are 0 (code ``invalid-parts``).
-        """
+        """Mix the pigments along the last axis but one by parts (..., n) (eq. 10.7)."""
         weights = as_shares(parts)
         return Pigment(weighted_sum(self.absorption, weights), weighted_sum(self.scattering, weights))
 
+    def opaque_reflectance(self) -> Array:
+        """Return the reflectance (..., N) of opaque paint, the limit X → ∞ (eq. 10.5)."""
+        K, S = self.absorption, self.scattering
+        return np.asarray(S / np.maximum(K + S + self.gamma, TINY))
 
-def absorption_over_scattering(reflectance: ArrayLike) -> Array:
-    """Return K/S of opaque paint (eq. 10.6).
+    def layer(self, thickness: ArrayLike) -> Layer:
+        """Return the optical properties of a layer of a thickness X (...) in units of 1/K and 1/S (eq. 10.2).
 
-    Parameters
-    ----------
-    reflectance : array_like of shape (...)
-        Reflectance in (0, 1].
+        Numerators and denominators are divided by γ e^γX, which prevents overflow and covers K → 0 and S → 0.
+        """
+        X = np.asarray(thickness, dtype=float)[..., None]
+        if not (np.isfinite(X) & (X >= 0)).all():
+            raise OptionError(
+                f"thickness must be finite and at least 0, got {np.squeeze(X).tolist()}",
+                code="invalid-thickness",
+                hint="use opaque_reflectance for opaque paint",
+            )
+        gamma = self.gamma
+        path = 2 * gamma * X
+        sinh = np.where(path > 0, -np.expm1(-path) / np.maximum(2 * gamma, TINY), X)
+        cosh = (1 + np.exp(-path)) / 2
+        delta = (self.absorption + self.scattering) * sinh + cosh
+        return Layer(self.scattering * sinh / delta, np.exp(-path / 2) / delta)
 
-    Returns
-    -------
-    ndarray of shape (...)
-        K/S.
-    """
-    R = np.asarray(reflectance, dtype=float)
-    return (1 - R) ** 2 / (2 * R)
+    def amy_opaque_reflectance(self) -> Array:
+        """Return the reflectance (..., N) of opaque paint in Amy's approximation (eq. 10.4), at most 1/2.
+
+        It is for strong absorption, (K + S)² ≫ S²; for white it is half of the exact one (L. Amy, Revue d'Optique
+        16(3), 1937). It serves as a comparison.
+        """
+        K, S = self.absorption, self.scattering
+        return np.asarray(S / np.maximum(2 * (K + S), TINY))
+
+    def amy_layer(self, thickness: ArrayLike) -> Layer:
+        """Return a layer in Amy's approximation (eq. 10.3): γ is K + S, except in the exponent of the reflectance."""
+        X = np.asarray(thickness, dtype=float)[..., None]
+        reflectance = self.amy_opaque_reflectance() * -np.expm1(-2 * self.gamma * X)
+        return Layer(reflectance, np.exp(-(self.absorption + self.scattering) * X))
 
 
 def from_opaque(reflectance: ArrayLike, scattering: Scattering) -> Pigment:
-    """Derive K and S from the reflectance of opaque paint.
-
-    Parameters
-    ----------
-    reflectance : array_like of shape (..., N)
-        Reflectance in [0, 1]; values below `DARKEST` are raised to it.
-    scattering : Scattering
-        S that is assumed for a reflectance.
-
-    Returns
-    -------
-    Pigment
-        Absorption and scattering (..., N).
-    """
+    """Derive K and S from the reflectance (..., N) of opaque paint (eq. 10.6)."""
     R = np.clip(np.asarray(reflectance, dtype=float), DARKEST, 1)
     S = scattering(R)
-    return Pigment(S * absorption_over_scattering(R), S)
+    return Pigment(S * ((1 - R) ** 2 / (2 * R)), S)
 
 
-def from_black_and_white(
-    on_black: ArrayLike,
-    on_white: ArrayLike,
-    grounds: tuple[ArrayLike, ArrayLike] = (0.0, 1.0),
-    thickness: float = 1.0,
-) -> Pigment:
-    """Derive K and S from reflectances on two grounds.
+def from_black_and_white(on_black: ArrayLike, on_white: ArrayLike) -> Pigment:
+    """Derive K and S from the reflectances (..., N) of a layer of unit thickness on black and on white.
 
-    Paint on a ground g has R = R₀ + T² g / (1 − R₀ g), which is linear in R₀ and T² − R₀² once multiplied out. With
-    the absorptance A = 1 − R₀ − T: cosh γX = 1 + A (A + 2R₀) / 2T, SX = γX R₀ / (T sinh γX) and
-    KX = γX A (1 − R₀ + T) / (2T sinh γX). These forms do not cancel for S → 0 or K → 0.
-
-    Parameters
-    ----------
-    on_black, on_white : array_like of shape (..., N)
-        Reflectances on the first and the second ground.
-    grounds : pair of array_like of shape (..., N)
-        Reflectances of the grounds, by default perfect black and perfect white.
-    thickness : float
-        Thickness X, greater than 0.
-
-    Returns
-    -------
-    Pigment
-        Absorption and scattering (..., N).
-
-    Raises
-    ------
-    ColourError
-        The layer is too opaque, or lighter on the darker ground (code ``layer-too-opaque``), or no paint has these
-        reflectances (``impossible-paint``).
-    OptionError
-        The grounds are equal or the thickness is 0 (code ``equal-grounds``, ``invalid-thickness``).
+    Paint on white has R = R₀ + T² / (1 − R₀). With the absorptance A = 1 − R₀ − T: cosh γ = 1 + A (A + 2R₀) / 2T,
+    S = γ R₀ / (T sinh γ) and K = γ A (1 − R₀ + T) / (2T sinh γ). These forms do not cancel for S → 0 or K → 0.
+    Raises `ColourError` if no paint has both reflectances, or if they do not differ enough.
     """
-    g1, g2 = (np.asarray(ground, dtype=float) for ground in grounds)
-    R1, R2 = np.asarray(on_black, dtype=float), np.asarray(on_white, dtype=float)
-    if not (np.abs(g2 - g1) > SLACK).all():
-        raise OptionError(
-            "K and S need two different grounds", code="equal-grounds", hint="measure on black and on white"
-        )
-    if not as_length(thickness):
-        raise OptionError("thickness must be greater than 0, got 0", code="invalid-thickness", hint="1 is the unit")
-    determinant = g2 - g1 + g1 * g2 * (R1 - R2)
-    R0 = (R1 * g2 - R2 * g1) / determinant
-    squared = ((1 + R1 * g1) * R2 - (1 + R2 * g2) * R1) / determinant + R0**2
-    T = np.sqrt(np.maximum(squared, 0))
+    R0, R1 = np.asarray(on_black, dtype=float), np.asarray(on_white, dtype=float)
+    T = np.sqrt(np.maximum(R1 - (1 + R1) * R0 + R0**2, 0))
     if not (T > MIN_TRANSMITTANCE).all():
-        raise ColourError(
-            "the layer hides the ground, or is lighter on the darker ground",
-            code="layer-too-opaque",
-            hint="measure a thinner layer",
-        )
+        problem = "the layer hides the ground, or is lighter on the darker ground"
+        raise ColourError(problem, hint="measure a thinner layer")
     if not ((R0 >= -SLACK) & (R0 + T <= 1 + SLACK)).all():
-        raise ColourError(
-            "no paint has these reflectances on these grounds",
-            code="impossible-paint",
-            hint="check the order of the grounds",
-        )
-    return _from_layer(np.maximum(R0, 0), T, thickness)
-
-
-def _from_layer(R0: Array, T: Array, thickness: float) -> Pigment:
+        problem = "no paint has these reflectances on these grounds"
+        raise ColourError(problem, hint="check the order of the grounds")
+    R0 = np.maximum(R0, 0)
     A = np.maximum(1 - R0 - T, 0)
     cosh_minus_1 = A * (A + 2 * R0) / (2 * T)
     sinh = np.sqrt(cosh_minus_1 * (cosh_minus_1 + 2))
     safe = np.where(sinh > 0, sinh, 1)
-    ratio = np.where(sinh > 0, np.log1p(cosh_minus_1 + sinh) / safe, 1) / (T * thickness)
+    ratio = np.where(sinh > 0, np.log1p(cosh_minus_1 + sinh) / safe, 1) / T
     return Pigment(ratio * A * (1 - R0 + T) / 2, ratio * R0)

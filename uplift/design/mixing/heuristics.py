@@ -1,0 +1,110 @@
+"""Heuristics of RGB in place of spectra: HSL, paints on a wheel of red, yellow and blue, and phosphor curves.
+
+HSL: hue, saturation and lightness in [0, 1], hue 0 is red, 1/3 green, 2/3 blue (GSPC, "Status Report of the Graphics
+Standards Planning Committee", 1979; Fishkin 1983, section 5.3.5).
+
+RYB-HSL (Fishkin 1983, section 10.4): the centroid in the double cone of figure 10.3, whose radius is chroma. Lines to
+black and white therefore keep hue and saturation. Two errors in the printed hue map are corrected:
+
+- Its middle third subtracts 1/3, but only adding 1/3 continues from yellow (1/6 → 1/3).
+- Its slope of 1/2 ends at 7/12 and jumps to 2/3 at blue, so the map is not invertible. A slope of 2/3 joins both ends.
+
+Green, 1/3, maps to 4/9, so red and green are not exactly opposite.
+
+Phosphor curves (Fishkin 1983, chapter 7): the curve of a colour is the sum of the monitor's phosphor spectra that
+display it (eq. 7.1). Curves are treated as transmittances and multiplied as filters (eq. 9.1). The result is the
+monitor RGB that matches the product.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.colorimetry import observer
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
+from uplift.common.arrays import Array
+from uplift.design.mixing.amounts import as_shares, stack_filters, weighted_sum
+
+SEXTANTS = np.array([[0, 1, 2], [3, 0, 2], [2, 0, 1], [2, 3, 0], [1, 2, 0], [0, 2, 3]])
+"""For each sixth of the hues: indices of red, green and blue among (largest, rising, smallest, falling)."""
+RGB_WHEEL = (0.0, 1 / 6, 2 / 3, 1.0)
+RYB_WHEEL = (0.0, 1 / 3, 2 / 3, 1.0)
+"""Hues of red, yellow, blue and red again."""
+
+
+def hsl_to_rgb(hsl: ArrayLike) -> Array:
+    """Convert hue, saturation and lightness (..., 3) to RGB.
+
+    The largest and the smallest component follow from lightness and saturation as in HSL, the third as in HSV. Only
+    the sixth of the hue circle that contains the hue is computed (Fishkin 1983, 5.3.5).
+    """
+    hue, saturation, lightness = np.moveaxis(np.asarray(hsl, dtype=float), -1, 0)
+    largest = np.where(lightness <= 0.5, lightness * (1 + saturation), lightness + saturation - lightness * saturation)
+    smallest = 2 * lightness - largest
+    position = 6 * (hue % 1)
+    sextant = np.minimum(position.astype(int), 5)  # −1e-17 % 1 is 1
+    change = (largest - smallest) * (position - sextant)
+    values = np.stack([largest, smallest + change, smallest, largest - change], axis=-1)
+    return np.take_along_axis(values, SEXTANTS[sextant], axis=-1)
+
+
+def rgb_to_hsl(rgb: ArrayLike) -> Array:
+    """Convert RGB (..., 3) in [0, 1] to hue, saturation and lightness."""
+    rgb = np.asarray(rgb, dtype=float)
+    largest, smallest = rgb.max(axis=-1), rgb.min(axis=-1)
+    chroma, lightness = largest - smallest, (largest + smallest) / 2
+    max_chroma = np.minimum(2 * lightness, 2 - 2 * lightness)
+    red, green, blue = np.moveaxis(rgb, -1, 0)
+    safe = np.where(chroma > 0, chroma, 1)
+    position = np.select(
+        [largest == red, largest == green],
+        [(green - blue) / safe % 6, (blue - red) / safe + 2],
+        (red - green) / safe + 4,
+    )
+    saturation = np.where(max_chroma > 0, chroma / np.where(max_chroma > 0, max_chroma, 1), 0)
+    return np.stack([np.where(chroma > 0, position / 6 % 1, 0), saturation, lightness], axis=-1)
+
+
+def mix_ryb(rgb: ArrayLike, parts: ArrayLike) -> Array:
+    """Mix RGB (..., n, 3) in [0, 1] by parts (..., n) as paints on the wheel of red, yellow and blue."""
+    rgb = np.asarray(rgb, dtype=float)
+    # To the double cone: x, y and lightness.
+    hue, _, lightness = np.moveaxis(rgb_to_hsl(rgb), -1, 0)
+    angle = 2 * np.pi * np.interp(hue, RGB_WHEEL, RYB_WHEEL)
+    chroma = rgb.max(axis=-1) - rgb.min(axis=-1)
+    cone = np.stack([chroma * np.cos(angle), chroma * np.sin(angle), lightness], axis=-1)
+    # The centroid, and back.
+    x, y, lightness = np.moveaxis(weighted_sum(cone, as_shares(parts)), -1, 0)
+    hue = np.interp(np.arctan2(y, x) / (2 * np.pi) % 1, RYB_WHEEL, RGB_WHEEL)
+    max_chroma = np.minimum(2 * lightness, 2 - 2 * lightness)
+    saturation = np.where(max_chroma > 0, np.hypot(x, y) / np.where(max_chroma > 0, max_chroma, 1), 0)
+    return hsl_to_rgb(np.stack([hue, np.minimum(saturation, 1), lightness], axis=-1))
+
+
+@dataclass(frozen=True, eq=False)
+class Monitor:
+    """A display with three primaries."""
+
+    curves: Array  # (3, N) spectra of red, green and blue at full drive
+    to_rgb: Array  # (3, N) from a curve to its RGB
+
+    def mix(self, rgb: ArrayLike, thickness: ArrayLike) -> Array:
+        """Mix colours (..., n, 3) as filters of a thickness (..., n)."""
+        curves = np.asarray(rgb, dtype=float) @ self.curves
+        return np.maximum(stack_filters(curves, thickness) @ self.to_rgb.T, 0)
+
+
+def make_monitor() -> Monitor:
+    """Make a monitor with the primaries of a cathode-ray tube.
+
+    The curve of white is scaled to a maximum of 1 (Fishkin 1983, section 7.2), so that no curve amplifies light.
+    """
+    phosphors = observer.display_primaries(observer.CRT).T
+    matching = observer.matching_functions()
+    white = observer.light(DEFAULT_ILLUMINANT).white
+    curves = phosphors * np.linalg.solve((phosphors @ matching).T, white)[:, None]
+    curves /= curves.sum(axis=0).max()
+    return Monitor(curves, np.asarray(np.linalg.solve((curves @ matching).T, matching.T), dtype=float))
