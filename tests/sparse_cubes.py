@@ -6,13 +6,13 @@ import numpy as np
 
 from tests.helpers import with_points
 from uplift.cube import CubeData
-from uplift.cube.checks import POINT_TYPES
+from uplift.cube.file import POINTS
 from uplift.lattice import ABSENT_VALUES
 
 
 def with_absent_points(data: CubeData, present: np.ndarray) -> CubeData:
     """Return the cube with the points ``present`` (dim³,) only, as a build for a scene returns it."""
-    arrays = {name: getattr(data.points, name) for name in POINT_TYPES}
+    arrays = {name: getattr(data.points, name) for name in POINTS}
     arrays = {name: array.copy() for name, array in arrays.items() if array is not None}
     for name, array in arrays.items():
         array[~present] = ABSENT_VALUES.get(name, 0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import struct
 from collections.abc import Callable
@@ -11,18 +12,27 @@ from typing import Any
 import numpy as np
 from safetensors.numpy import save_file
 
-from uplift.cube import CubeData, container, file
+from uplift.cube import CubeData, container, contents
 
 
 def forge(data: CubeData, path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None]) -> Path:
     """Write ``data`` after ``change(tensors, metadata)``, with the digest of the changed content."""
-    tensors, metadata = file._tensors(data), file._metadata(data)
+    tensors, metadata = contents(data)
     metadata = json.loads(json.dumps(metadata))
     change(tensors, metadata)
     tensors = {name: np.ascontiguousarray(array) for name, array in tensors.items()}
-    metadata["digest"] = container._digest(tensors, forged_json(metadata))
+    metadata["digest"] = forged_digest(tensors, metadata)
     save_file(tensors, path, metadata={container.KEY: forged_json(metadata)})
     return path
+
+
+def forged_digest(tensors: dict[str, Any], metadata: dict[str, Any]) -> str:
+    """Digest of docs/cube-file.md, also of values that cube files may not have."""
+    content = hashlib.sha256(forged_json(metadata).encode())
+    for name, array in sorted(tensors.items()):
+        content.update(f"{name} {array.dtype.str} {array.shape}".encode())
+        content.update(array.tobytes())
+    return content.hexdigest()
 
 
 def forged_json(metadata: dict[str, Any]) -> str:

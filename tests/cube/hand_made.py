@@ -9,7 +9,7 @@ import numpy as np
 from tests.helpers import with_points
 from uplift.colorimetry.observer import axis_nodes, sensor
 from uplift.cube import AtlasTable, CubeData
-from uplift.cube.checks import POINT_TYPES
+from uplift.cube.file import POINTS
 from uplift.lattice import Lattice, PointTable, Status
 from uplift.models import Moments
 
@@ -44,5 +44,5 @@ def hand_made(dim: int = 4, **changes: object) -> CubeData:
         error_illuminant="A",
         provenance={},
     )
-    arrays = {name: changes.pop(name) for name in POINT_TYPES if name in changes}
+    arrays = {name: changes.pop(name) for name in POINTS if name in changes}
     return replace(with_points(data, **arrays), **changes)

@@ -14,7 +14,7 @@ from tests.fuzz.mutate import Random
 from tests.fuzz.target import ROOT, Target
 from tests.fuzz.use_cube import use_cube
 from uplift.cube import CubeData, read
-from uplift.cube.file import POINT_TYPES
+from uplift.cube.file import POINTS
 from uplift.lattice import Lattice, PointTable
 
 Tensors = dict[str, NDArray[Any]]
@@ -49,7 +49,7 @@ def _coarse(data: CubeData) -> CubeData:
     """Keep every seventh node of the lattice, which makes a small valid cube."""
     lattice = Lattice(data.lattice.nodes[::7])
     kept = data.lattice.index(7 * lattice.position(np.arange(lattice.size)))
-    arrays = {name: getattr(data.points, name) for name in POINT_TYPES}
+    arrays = {name: getattr(data.points, name) for name in POINTS}
     return replace(
         data,
         lattice=lattice,

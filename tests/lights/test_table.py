@@ -84,32 +84,30 @@ def spoil(name, value):
 @pytest.mark.parametrize(
     ("code", "change"),
     [
-        ("array-not-finite", spoil("spectra", np.nan)),
-        ("array-not-finite", spoil("spectra", -1)),
-        ("array-not-finite", spoil("error", np.inf)),
-        ("array-not-finite", spoil("entries.radius", -0.1)),
-        ("misplaced-spectrum", spoil("spectra", 5e3)),
-        ("misplaced-spectrum", spoil("entries.uv", 0.9)),
-        ("invalid-discs", spoil("entries.radius", 0.2)),
-        ("invalid-discs", spoil("entries.radius", 0.05)),
-        ("sensor-wavelengths", spoil("wavelengths", 100)),
-        ("invalid-primaries", lambda tensors, _: tensors.update(rgb_to_xyz=np.ones((3, 3)))),
-        ("invalid-chromaticity-lattice", spoil("rings", 0.5)),
-        ("invalid-array", lambda tensors, _: tensors.pop("error")),
-        ("invalid-array", lambda tensors, _: tensors.update(more=np.zeros(1))),
-        ("invalid-array", lambda tensors, _: tensors.update(white=np.zeros(3))),
-        ("invalid-array", lambda tensors, _: tensors.update(white=np.zeros(2, dtype=np.float32))),
-        ("invalid-metadata", lambda _, metadata: metadata.update(space=1)),
-        ("invalid-metadata", lambda _, metadata: metadata.update(extra="more")),
-        ("invalid-metadata", lambda _, metadata: metadata.update(entries=["A"] * 5)),
+        ("cube-invalid", spoil("spectra", np.nan)),
+        ("cube-invalid", spoil("spectra", -1)),
+        ("cube-invalid", spoil("error", np.inf)),
+        ("cube-invalid", spoil("entries.radius", -0.1)),
+        ("cube-invalid", spoil("spectra", 5e3)),
+        ("cube-invalid", spoil("entries.uv", 0.9)),
+        ("cube-invalid", spoil("entries.radius", 0.2)),
+        ("cube-invalid", spoil("entries.radius", 0.05)),
+        ("cube-invalid", spoil("wavelengths", 100)),
+        ("cube-invalid", lambda tensors, _: tensors.update(rgb_to_xyz=np.ones((3, 3)))),
+        ("cube-invalid", spoil("rings", 0.5)),
+        ("cube-invalid", lambda tensors, _: tensors.pop("error")),
+        ("cube-invalid", lambda tensors, _: tensors.update(more=np.zeros(1))),
+        ("cube-invalid", lambda tensors, _: tensors.update(white=np.zeros(3))),
+        ("cube-invalid", lambda tensors, _: tensors.update(white=np.zeros(2, dtype=np.float32))),
+        ("cube-invalid", lambda _, metadata: metadata.update(space=1)),
+        ("cube-invalid", lambda _, metadata: metadata.update(extra="more")),
+        ("cube-invalid", lambda _, metadata: metadata.update(entries=["A"] * 5)),
         ("cube-version", lambda _, metadata: metadata.update(version=2)),
     ],
 )
 def test_invalid_content_is_refused(tmp_path, data, code, change):
-    with pytest.raises(CubeFileError) as found:
+    with raises(CubeFileError, code):
         read_emission(forge(data, tmp_path / "forged.uplift", change))
-    assert found.value.code in (code, "cube-invalid")
-    assert found.value.code == code or code == "invalid-chromaticity-lattice"
 
 
 def test_an_unreadable_table_is_not_written(tmp_path, data):

@@ -76,10 +76,10 @@ def test_xyz_are_not_taken_for_raw_values(cube, tmp_path):
 @pytest.mark.parametrize(
     ("sensitivities", "code"),
     [
-        (np.full((81, 3), np.nan), "array-not-finite"),
-        (np.full((81, 3), -1.0), "array-not-finite"),
-        (np.ones((80, 3)), "invalid-array"),
-        (np.zeros((81, 3)), "invalid-white"),
+        (np.full((81, 3), np.nan), "cube-invalid"),
+        (np.full((81, 3), -1.0), "cube-invalid"),
+        (np.ones((80, 3)), "cube-invalid"),
+        (np.zeros((81, 3)), "cube-invalid"),
     ],
 )
 def test_files_with_invalid_sensitivities_are_refused(cube, tmp_path, monkeypatch, sensitivities, code):

@@ -145,10 +145,10 @@ def test_cube_with_looks_is_stored_and_rebuilt(cubes, tmp_path):
 @pytest.mark.parametrize(
     ("change", "code"),
     [
-        (lambda looks: [{**looks[0], "name": "other"}, *looks[1:]], "unknown-look"),
-        (lambda looks: looks * 10, "unknown-look"),
-        (lambda looks: [{**looks[0], "rgb": [0.1, "x", 0]}], "invalid-metadata"),
-        (lambda looks: [{"name": "brick"}], "invalid-metadata"),
+        (lambda looks: [{**looks[0], "name": "other"}, *looks[1:]], "cube-invalid"),
+        (lambda looks: looks * 10, "cube-invalid"),
+        (lambda looks: [{**looks[0], "rgb": [0.1, "x", 0]}], "cube-invalid"),
+        (lambda looks: [{"name": "brick"}], "cube-invalid"),
     ],
 )
 def test_damaged_records_are_refused(bare, tmp_path, change, code):

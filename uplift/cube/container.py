@@ -5,10 +5,11 @@ Equal contents have equal bytes.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,44 +18,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.errors import CubeFileError, OutputError, UpliftError
-from uplift.common.files import atomic_write
+from uplift.common.files import atomic_write, check_regular
 from uplift.common.json_text import parse_json
-from uplift.common.text import format_value
+from uplift.common.text import format_value, printable
 
 KEY = "uplift"
 """The only metadata entry: safetensors does not keep the order of several."""
-INVALID = (AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError, UpliftError)
-"""Errors caused by the content of a file."""
-MAX_REASON = 200
-"""Characters of an error of another library."""
-
-STORED_TYPES = {
-    "F64": "float64",
-    "F32": "float32",
-    "U8": "uint8",
-    "I32": "int32",
-    "I16": "int16",
-    "U32": "uint32",
-}
-"""Names of the types in numpy, by their names in the file."""
+STORED_TYPES = ("F64", "F32", "U8", "I32", "I16", "U32")
+"""Types of arrays, by their names in safetensors."""
+MAX_VALUE = 1e30
+"""Limit of all numbers: far above those of any cube, and their squares do not overflow."""
 
 Tensors = dict[str, NDArray[Any]]
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of file.
+    """A kind of file: the text that names it in the metadata, versions that are read, the noun of messages.
 
-    Parameters
-    ----------
-    format : str
-        Text by which the metadata name it.
-    readable : tuple of int
-        Versions that are read.
-    noun : str
-        Noun of messages, after "a" or "the".
-    foreign : str
-        Code of the error for files that are not of this kind.
+    ``foreign`` is the code of the error for files of another kind.
     """
 
     format: str
@@ -63,23 +45,21 @@ class Kind:
     foreign: str
 
 
-def save(tensors: Tensors, metadata: Mapping[str, Any], path: Path) -> None:
-    """Write arrays and metadata with their digest.
+@dataclass(frozen=True)
+class Stored:
+    """How an array is stored: its shape in the letters of docs/cube-file.md, its types, its least value.
 
-    Parameters
-    ----------
-    tensors : dict of str to ndarray
-        Arrays by their names.
-    metadata : mapping
-        JSON values.
-    path : Path
-        File to write.
-
-    Raises
-    ------
-    CubeFileError
-        Metadata that are not JSON values (``invalid-metadata``).
+    With a ``feature``, the array is in the files only that announce the feature.
     """
+
+    shape: str
+    types: tuple[str, ...] = ("float64",)
+    low: float = -MAX_VALUE
+    feature: str = ""
+
+
+def save(tensors: Tensors, metadata: Mapping[str, Any], path: Path) -> None:
+    """Write arrays and metadata with their digest."""
     from safetensors.numpy import save as encode
 
     complete = {**metadata, "digest": content_digest(tensors, metadata)}
@@ -95,26 +75,7 @@ def replace_file(
     *,
     force: bool,
 ) -> None:
-    """Write a file atomically. The new file is read back before it replaces an existing one.
-
-    Parameters
-    ----------
-    content : tuple
-        Arrays and metadata.
-    path : path-like
-        File to write.
-    kind : Kind
-        Kind of the file.
-    read : callable
-        Reads the file and checks it.
-    force : bool
-        Replace an existing file.
-
-    Raises
-    ------
-    OutputError
-        The file exists and ``force`` is false, cannot be written, or does not read back (``cube-unreadable``).
-    """
+    """Write arrays and metadata atomically. The new file is read back before it replaces an existing one."""
     with atomic_write(path, force=force) as temporary:
         try:
             save(*content, temporary)
@@ -129,27 +90,7 @@ def replace_file(
 
 
 def load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:
-    """Read arrays and metadata of a kind, and check version and digest.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    kind : Kind
-        Kind that the file must have.
-
-    Returns
-    -------
-    tensors : dict of str to ndarray
-        Arrays by their names.
-    metadata : dict
-        JSON values without the digest.
-
-    Raises
-    ------
-    CubeFileError
-        The file is missing, damaged, or of another kind or version.
-    """
+    """Read arrays, and metadata without the digest, of a kind; check format, version and digest."""
     tensors, metadata = _load(path, kind)
     if metadata.get("version") not in kind.readable:
         versions, version = " or ".join(map(str, kind.readable)), format_value(metadata.get("version"))
@@ -159,25 +100,41 @@ def load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:
             path=path,
             hint=f"build the {kind.noun} again, or use the version of uplift that wrote it",
         )
-    digest = metadata.pop("digest", None)
-    if digest != content_digest(tensors, metadata):
-        raise invalid_file(path, kind, "is damaged: the content does not match its digest", "cube-damaged")
+    if metadata.pop("digest", None) != content_digest(tensors, metadata):
+        raise _invalid(path, kind, "is damaged: the content does not match its digest", "cube-damaged")
     return tensors, metadata
 
 
+def _load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:
+    from safetensors import SafetensorError, safe_open
+
+    try:
+        check_regular(path, CubeFileError, hint=f"name a {kind.noun} file")
+    except CubeFileError as error:
+        if error.code != "file-not-found":
+            raise
+        hint = f"build the {kind.noun} first"
+        raise CubeFileError("no such file", code="cube-not-found", path=path, hint=hint) from error
+    try:
+        with safe_open(path, framework="numpy") as file:
+            metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
+            found = metadata.get("format") if isinstance(metadata, dict) else None
+            if found != kind.format:
+                got = "" if found is None else f", got {format_value(found)}"
+                raise _invalid(path, kind, f"must be an {kind.format}{got}", kind.foreign)
+            for name in file.keys():  # noqa: SIM118  not a dictionary
+                if file.get_slice(name).get_dtype() not in STORED_TYPES:
+                    raise _invalid(path, kind, f"has an array of an unknown type, {format_value(name)}")
+            return {name: file.get_tensor(name) for name in sorted(file.keys())}, metadata
+    except CubeFileError:
+        raise
+    except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
+        problem = f"is not a {kind.noun} file, or is truncated ({_reason(error)})"
+        raise _invalid(path, kind, problem, kind.foreign) from error
+
+
 def format_of(path: Path) -> str | None:
-    """Read of which format a file is.
-
-    Parameters
-    ----------
-    path : Path
-        A file.
-
-    Returns
-    -------
-    str or None
-        The word that files of a `Kind` begin with; None for other files and for those that cannot be read.
-    """
+    """Return the word by which a file names its `Kind`; None for other files and for those that cannot be read."""
     from safetensors import SafetensorError, safe_open
 
     try:
@@ -190,30 +147,8 @@ def format_of(path: Path) -> str | None:
 
 
 def content_digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
-    """Compute the digest of arrays and metadata.
-
-    Parameters
-    ----------
-    tensors : dict of str to ndarray
-        Arrays by their names.
-    metadata : mapping
-        JSON values.
-
-    Returns
-    -------
-    str
-        SHA-256 in hexadecimal.
-
-    Raises
-    ------
-    CubeFileError
-        Metadata that are not JSON values (``invalid-metadata``).
-    """
-    return _digest(tensors, _json(metadata))
-
-
-def _digest(tensors: Tensors, metadata: str) -> str:
-    content = hashlib.sha256(metadata.encode())
+    """Compute the SHA-256 of arrays and metadata, in hexadecimal."""
+    content = hashlib.sha256(_json(metadata).encode())
     for name in sorted(tensors):
         array = np.ascontiguousarray(tensors[name])
         content.update(f"{name} {array.dtype.str} {array.shape}".encode())
@@ -221,94 +156,54 @@ def _digest(tensors: Tensors, metadata: str) -> str:
     return content.hexdigest()
 
 
-def error_text(error: Exception) -> str:
-    """Return the text of an error of another library, which may quote the file.
-
-    Parameters
-    ----------
-    error : Exception
-        The error.
-
-    Returns
-    -------
-    str
-        Printable text.
-    """
-    text = str(error)[:MAX_REASON]
-    return text if text.isprintable() else ascii(text)
-
-
-def invalid_file(path: Path, kind: Kind, problem: str, code: str) -> CubeFileError:
-    """Make the error for an invalid file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    kind : Kind
-        Kind that it must have.
-    problem : str
-        The constraint and the value received.
-    code : str
-        Stable identifier.
-
-    Returns
-    -------
-    CubeFileError
-        The error to raise.
-    """
-    return CubeFileError(problem, code=code, path=path, hint=f"build the {kind.noun} again")
-
-
-def _load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:
-    from safetensors import SafetensorError, safe_open
-
-    if not os.path.isfile(path):  # Path.is_file raises for impossible names
-        raise _not_a_file(path, kind)
-    try:
-        with safe_open(path, framework="numpy") as file:
-            metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
-            if not isinstance(metadata, dict) or metadata.get("format") != kind.format:
-                raise invalid_file(path, kind, _foreign_problem(metadata, kind), kind.foreign)
-            for name in file.keys():  # noqa: SIM118  not a dictionary
-                if file.get_slice(name).get_dtype() not in STORED_TYPES:
-                    problem = f"has an array of an unknown type, {ascii(name)[:40]}"
-                    raise invalid_file(path, kind, problem, "invalid-array")
-            tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
-    except CubeFileError:
-        raise
-    except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
-        problem = f"is not a {kind.noun} file, or is truncated ({error_text(error)})"
-        raise invalid_file(path, kind, problem, kind.foreign) from error
-    return tensors, metadata
-
-
-def _foreign_problem(metadata: Any, kind: Kind) -> str:
-    """Describe a file of another kind, which is named if the file names it."""
-    found = metadata.get("format") if isinstance(metadata, dict) else None
-    return f"must be an {kind.format}" + ("" if found is None else f", got {format_value(found)}")
-
-
-def _not_a_file(path: Path, kind: Kind) -> CubeFileError:
-    if os.path.exists(path):
-        return CubeFileError(
-            "must be a file, got a folder, a device or a pipe",
-            code="not-a-regular-file",
-            path=path,
-            hint=f"name a {kind.noun} file",
-        )
-    try:
-        os.stat(path)
-    except PermissionError as error:
-        problem = f"cannot be read: {error.strerror}"
-        return CubeFileError(problem, code="file-unreadable", path=path, hint="check its permissions")
-    except (OSError, ValueError):
-        pass
-    return CubeFileError("no such file", code="cube-not-found", path=path, hint=f"build the {kind.noun} first")
-
-
 def _json(metadata: Mapping[str, Any]) -> str:
     try:
         return json.dumps(metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     except (TypeError, ValueError, RecursionError) as error:
-        raise CubeFileError(f"the metadata are not JSON values ({error})", code="invalid-metadata") from error
+        raise CubeFileError(f"the metadata are not JSON values ({error})", code="cube-invalid") from error
+
+
+@contextlib.contextmanager
+def validation(path: Path, kind: Kind) -> Iterator[None]:
+    """Turn every error that the content of a file causes in the block into one `CubeFileError` about the file."""
+    try:
+        yield
+    except CubeFileError as error:
+        raise _invalid(path, kind, f"is not a valid {kind.noun}: {error.problem}") from error
+    except (AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError, UpliftError) as error:
+        raise _invalid(path, kind, f"is not a valid {kind.noun} ({type(error).__name__}: {_reason(error)})") from error
+
+
+def check_arrays(tensors: Tensors, schema: Mapping[str, Stored], sizes: Mapping[str, int]) -> None:
+    """Check presence, type, shape and range of all arrays as stored, before anything is computed from them.
+
+    ``sizes`` has the lengths that the letters of shapes stand for; other letters are numbers.
+    """
+    missing = [name for name in schema if name not in tensors]
+    require(not missing, f"has no array {', '.join(missing)}")
+    for name, stored in schema.items():
+        array = tensors[name]
+        shape = tuple(sizes[axis] if axis in sizes else int(axis) for axis in stored.shape.split())
+        fits = array.shape == shape and array.dtype.name in stored.types
+        require(fits, f"{name} must be {' or '.join(stored.types)} of shape {shape}")
+        require(in_range(array, stored.low, MAX_VALUE), f"{name} must have numbers in [{stored.low:g}, {MAX_VALUE:g}]")
+
+
+def require(condition: bool, problem: str) -> None:
+    """Raise `CubeFileError` unless the condition is met."""
+    if not condition:
+        raise CubeFileError(problem, code="cube-invalid")
+
+
+def in_range(array: NDArray[Any], low: float, high: float) -> bool:
+    """Whether all numbers are in [low, high]; False for NaN."""
+    return bool(((array >= low) & (array <= high)).all())
+
+
+def _invalid(path: Path, kind: Kind, problem: str, code: str = "cube-invalid") -> CubeFileError:
+    return CubeFileError(problem, code=code, path=path, hint=f"build the {kind.noun} again")
+
+
+def _reason(error: Exception) -> str:
+    """Text of an error of another library, which may quote the file."""
+    return printable(str(error)[:200])

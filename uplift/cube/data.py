@@ -21,17 +21,10 @@ from uplift.models import Model, evaluate
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EntrySpectra:
-    """The spectra that answer the colours of atlas entries.
+    """The spectra that answer the colours of atlas entries: ``coefficients`` (E, K) in a ``model``.
 
     Entries are few and nodes are many, so the entries may have more coefficients than the nodes: the model is that of
     the cube, with the same or a larger number of coefficients.
-
-    Parameters
-    ----------
-    model : Model
-        Spectrum model of the entries.
-    coefficients : ndarray, shape (E, K)
-        Coefficients of the spectra in this model.
     """
 
     model: Model
@@ -46,20 +39,7 @@ class EntrySpectra:
         return self.model.from_storage(self.coefficients)
 
     def reflectance(self, entries: Indices, wavelengths: Array) -> Array:
-        """Evaluate the spectra of entries.
-
-        Parameters
-        ----------
-        entries : ndarray of int, shape (k,)
-            Rows of the entries.
-        wavelengths : ndarray, shape (N,)
-            Wavelengths in nm.
-
-        Returns
-        -------
-        ndarray, shape (k, N)
-            Reflectance in [0, 1].
-        """
+        """Evaluate the spectra of ``entries`` (k,) at wavelengths (N,) in nm: reflectance (k, N) in [0, 1]."""
         return evaluate(self.model, self.multipliers[entries], wavelengths)
 
 
@@ -67,12 +47,8 @@ class EntrySpectra:
 class LeftOut:
     """Atlas entries as measured, and as answered without them: evidence for the errors of answers.
 
-    Parameters
-    ----------
-    measured : ndarray of float32, shape (M, N)
-        Measured reflectances at the wavelengths of the sensor, of all entries but looks.
-    answered : ndarray of float32, shape (M, N)
-        Reflectances at the colours of the entries, each predicted from the others.
+    Both are reflectances (M, N) at the wavelengths of the sensor, of all entries but looks. ``answered`` are those at
+    the colours of the entries, each predicted from the others.
     """
 
     measured: NDArray[np.float32]
@@ -84,39 +60,24 @@ class LeftOut:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AtlasTable:
-    """The atlas entries that constrain a cube.
-
-    Parameters
-    ----------
-    names : tuple of str
-        Unique names of the E entries.
-    rgb : ndarray, shape (E, 3)
-        Linear RGB.
-    coefficients : ndarray, shape (E, C)
-        Coefficients of the entries in the model of the nodes, for uses that need one number of coefficients:
-        interpolated coefficients, textures of moments, exported tables. Spectra are evaluated from
-        `CubeData.entry_spectra`.
-    half_width : ndarray, shape (E,)
-        Half the width of each entry box in lattice steps, 0 to 1. 0 for an entry whose colour an earlier entry has.
-    error : ndarray, shape (E,)
-        ΔE00 between fitted and measured spectrum under `CubeData.error_illuminant`.
-    spectra : EntrySpectra, optional
-        The entries with more coefficients than the nodes; None if they have as many.
-    left_out : LeftOut, optional
-        Evidence for the errors of answers; None for a small atlas, and for files of earlier versions.
-    looks : int, default 0
-        Number of looks, which are the last entries: chosen spectra, of which no measurement is known. Their ``error``
-        is the standard error of the other entries at their colours.
-    """
+    """The E atlas entries that constrain a cube. The last ones may be looks."""
 
     names: tuple[str, ...]
+    """Unique names."""
     rgb: Array
+    """(E, 3) linear RGB."""
     coefficients: Array
+    """(E, C) coefficients in the model of the nodes, for uses that need one number of coefficients."""
     half_width: Array
+    """(E,) half the width of each entry box in lattice steps, 0 to 1. 0 if an earlier entry has the colour."""
     error: Array
+    """(E,) ΔE00 between fitted and measured spectrum; for looks the standard error at their colours."""
     spectra: EntrySpectra | None = None
+    """The entries with more coefficients than the nodes; None if they have as many."""
     left_out: LeftOut | None = None
+    """None for a small atlas, and for files of earlier versions."""
     looks: int = 0
+    """Number of looks: chosen spectra, of which no measurement is known."""
 
     @property
     def measured_count(self) -> int:
@@ -129,46 +90,27 @@ class AtlasTable:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CubeData:
-    """A lattice of spectra, and the sensor and atlas that it was built with.
-
-    Parameters
-    ----------
-    model : Model
-        Spectrum model of the coefficients.
-    lattice : Lattice
-        Axis nodes in linear RGB.
-    sensor : Sensor
-        RGB space, illuminant and observer.
-    threshold : float
-        Largest fitting distance, in linear RGB, of a fitted point.
-    atlas : AtlasTable
-        The entries that constrain the cube.
-    points : PointTable
-        Arrays over the lattice points.
-    error_illuminant : str
-        Illuminant of all ΔE00 values in the cube.
-    provenance : mapping
-        How the cube was built: version, options, names and digests of the atlas files. JSON values.
-    """
+    """A lattice of spectra, and the sensor and atlas that it was built with."""
 
     model: Model
     lattice: Lattice
     sensor: Sensor
     threshold: float
+    """Largest fitting distance, in linear RGB, of a fitted point."""
     atlas: AtlasTable
     points: PointTable
     error_illuminant: str
+    """Illuminant of all ΔE00 values in the cube."""
     provenance: Mapping[str, Any]
+    """How the cube was built: version, options, names and digests of the atlas files. JSON values."""
 
     def __repr__(self) -> str:
-        sensor = self.sensor
+        sensor, spectra = self.sensor, self.atlas.spectra
+        more = "" if spectra is None else f" with {spectra.model.count} coefficients"
         return (
             f"CubeData({self.model.name} with {self.model.count} coefficients, dim {self.lattice.dim}, "
-            f"{sensor.space} under {sensor.illuminant}, {len(self.atlas.names)} entries{self._entry_count()})"
+            f"{sensor.space} under {sensor.illuminant}, {len(self.atlas.names)} entries{more})"
         )
-
-    def _entry_count(self) -> str:
-        return "" if self.atlas.spectra is None else f" with {self.entry_spectra.model.count} coefficients"
 
     @cached_property
     def entry_spectra(self) -> EntrySpectra:

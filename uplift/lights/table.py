@@ -12,20 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
-from uplift.common.errors import CubeFileError
-from uplift.cube.checks import MAX_CONDITION, MAX_VALUE, require
 from uplift.cube.container import (
-    INVALID,
     Kind,
+    Stored,
     Tensors,
+    check_arrays,
     content_digest,
-    error_text,
     format_of,
-    invalid_file,
     load,
     replace_file,
+    require,
+    validation,
 )
-from uplift.cube.metadata import check_emission_metadata
+from uplift.cube.file import MAX_CONDITION
+from uplift.cube.metadata import ENTRIES, PROVENANCE, check_metadata, count, text
 from uplift.lights.discs import LampEntries
 from uplift.lights.lattice import ChromaticityLattice, chromaticity
 
@@ -36,20 +36,26 @@ MAX_OFFSET = 1e-4
 MAX_RADIUS = 0.1
 """Largest radius of a disc in u′v′."""
 ARRAYS = {
-    "white": ("float64",),
-    "knots": ("float64",),
-    "rings": ("float64",),
-    "spectra": ("float32",),
-    "error": ("float32",),
-    "wavelengths": ("float64",),
-    "cmfs": ("float64",),
-    "rgb_to_xyz": ("float64",),
-    "entries.uv": ("float64",),
-    "entries.spectra": ("float64",),
-    "entries.radius": ("float64",),
+    "white": Stored("2", low=0),
+    "knots": Stored("K 2", low=0),
+    "rings": Stored("R", low=0),
+    "spectra": Stored("K R N", ("float32",), low=0),
+    "error": Stored("K R", ("float32",), low=0),
+    "wavelengths": Stored("N", low=0),
+    "cmfs": Stored("N 3"),
+    "rgb_to_xyz": Stored("3 3"),
+    "entries.uv": Stored("E 2", low=0),
+    "entries.spectra": Stored("E N", low=0),
+    "entries.radius": Stored("E", low=0),
 }
-"""Types of the arrays of a file."""
-SIGNED = ("rgb_to_xyz", "cmfs")
+METADATA = {
+    "format": text,
+    "version": count,
+    "space": text,
+    "observer": text,
+    "entries": ENTRIES,
+    "provenance": PROVENANCE,
+}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -141,16 +147,13 @@ def read_emission(path: str | os.PathLike[str]) -> EmissionData:
     """
     path = Path(path)
     tensors, metadata = load(path, KIND)
-    try:
-        check_emission_metadata(metadata)
-        _check_arrays(tensors, len(metadata["entries"]))
+    with validation(path, KIND):
+        check_metadata(metadata, METADATA)
+        require(set(tensors) == set(ARRAYS), f"the arrays must be {', '.join(ARRAYS)}")
+        sizes = {"K": len(tensors["knots"]), "R": tensors["rings"].size, "N": tensors["wavelengths"].size}
+        check_arrays(tensors, ARRAYS, {**sizes, "E": len(metadata["entries"])})
         data = _data(tensors, metadata)
         _check(data)
-    except CubeFileError as error:
-        raise invalid_file(path, KIND, f"is not a valid emission table: {error.problem}", error.code) from error
-    except INVALID as error:
-        problem = f"is not a valid emission table ({type(error).__name__}: {error_text(error)})"
-        raise invalid_file(path, KIND, problem, "cube-invalid") from error
     return data
 
 
@@ -200,7 +203,7 @@ def _tensors(data: EmissionData) -> Tensors:
         "entries.spectra": data.entries.spectra,
         "entries.radius": data.entries.radius,
     }
-    return {name: np.ascontiguousarray(found[name], dtype=types[0]) for name, types in ARRAYS.items()}
+    return {name: np.ascontiguousarray(found[name], dtype=stored.types[0]) for name, stored in ARRAYS.items()}
 
 
 def _metadata(data: EmissionData) -> dict[str, Any]:
@@ -231,51 +234,25 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> EmissionData:
     )
 
 
-def _check_arrays(tensors: Tensors, entries: int) -> None:
-    """Check type, shape and range of every array as it is stored."""
-    require(set(tensors) == set(ARRAYS), "invalid-array", f"the arrays must be {', '.join(ARRAYS)}")
-    samples, knots, rings = (tensors[name].size for name in ("wavelengths", "knots", "rings"))
-    shapes = {
-        "white": (2,),
-        "knots": (knots // 2, 2),
-        "rings": (rings,),
-        "spectra": (knots // 2, rings, samples),
-        "error": (knots // 2, rings),
-        "wavelengths": (samples,),
-        "cmfs": (samples, 3),
-        "rgb_to_xyz": (3, 3),
-        "entries.uv": (entries, 2),
-        "entries.spectra": (entries, samples),
-        "entries.radius": (entries,),
-    }
-    for name, types in ARRAYS.items():
-        array = tensors[name]
-        fits = array.shape == shapes[name] and array.dtype.name in types
-        require(fits, "invalid-array", f"{name} must be {' or '.join(types)} of shape {shapes[name]}")
-        low = -MAX_VALUE if name in SIGNED else 0
-        within = bool(((array >= low) & (array <= MAX_VALUE)).all())
-        require(within, "array-not-finite", f"{name} must have numbers in [{low:g}, {MAX_VALUE:g}]")
-
-
 def _check(data: EmissionData) -> None:
     """Check that the arrays belong together."""
     steps = np.diff(data.wavelengths)
     even = len(steps) > 0 and bool((steps > 0).all()) and float(np.ptp(steps)) < 1e-6
-    require(even, "sensor-wavelengths", "the wavelengths must ascend evenly")
+    require(even, "the wavelengths must ascend evenly")
     luminance = float(data.cmfs[:, 1].sum())
-    require(luminance > 0, "invalid-observer", "the colour-matching functions must respond")
+    require(luminance > 0, "the colour-matching functions must respond")
     condition = float(np.linalg.cond(data.rgb_to_xyz))
-    require(condition < MAX_CONDITION, "invalid-primaries", "the RGB space must have three primaries")
+    require(condition < MAX_CONDITION, "the RGB space must have three primaries")
     places = ((data.spectra, data.lattice.nodes), (data.entries.spectra, data.entries.uv))
     for spectra, uv in places:
         xyz = spectra @ (data.cmfs / luminance)
         unit = np.abs(xyz @ (1.0, 15.0, 3.0) - 1).max(initial=0) <= MAX_OFFSET
         there = unit and np.abs(chromaticity(xyz) - uv).max(initial=0) <= MAX_OFFSET
-        require(bool(there), "misplaced-spectrum", "every spectrum must have the chromaticity of its place")
+        require(bool(there), "every spectrum must have the chromaticity of its place")
     realisable = bool(data.lattice.contains(data.entries.uv).all())
-    require(realisable, "misplaced-spectrum", "lamps must be realisable")
+    require(realisable, "lamps must be realisable")
     uv, radius = data.entries.uv, data.entries.radius
     apart = np.linalg.norm(uv[:, None] - uv, axis=-1) - radius[:, None] - radius
     overlap = bool((apart[~np.eye(len(uv), dtype=bool)] < -MAX_OFFSET).any())
     valid = not overlap and bool((radius <= MAX_RADIUS).all())
-    require(valid, "invalid-discs", f"discs must not overlap, and have radii up to {MAX_RADIUS:g}")
+    require(valid, f"discs must not overlap, and have radii up to {MAX_RADIUS:g}")
