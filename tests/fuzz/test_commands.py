@@ -42,7 +42,7 @@ def test_texts_that_are_not_escaped_are_found(tmp_path, monkeypatch):
 
 def test_inputs_that_are_replaced_are_found(tmp_path, monkeypatch):
     monkeypatch.setattr(same_file, "COMMANDS", same_file.QUICK)
-    monkeypatch.setattr("uplift.common.files._identities", lambda inputs: set())
+    monkeypatch.setattr("uplift.common.files._check_existing", lambda *_: None)
     tally = fuzz(COMMANDS["outputs that are inputs"], 1, range(40), tmp_path, tmp_path)
     assert any("an input was replaced" in failure for failure in tally.failures)
 
