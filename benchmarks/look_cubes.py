@@ -26,7 +26,7 @@ from uplift.colorimetry.observer import display_sensors, light, sensor
 from uplift.colorimetry.srgb import hex_codes, to_display_codes
 from uplift.common.arrays import Array
 from uplift.io import texture
-from uplift.io.texture.source import Window
+from uplift.io.texture.image import Window
 from uplift.io.texture.writer import OutputPart, open_writer
 from uplift.lookup import Cube
 from uplift.models import Moments

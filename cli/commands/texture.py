@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
 import warnings
-from collections.abc import Iterable
+from collections.abc import Generator
 from typing import TYPE_CHECKING
 
 import click
@@ -149,17 +150,20 @@ def command(
     named = [os.path.abspath(find_file(path)) for path in cube_paths]
     cubes: list[str | None] = [*named] or [None]
     threads, at = max(cores // count, 1), parse_wavelengths(wavelengths)
-    settings: texture.Settings
     if is_emission:
         refuse_for_lights("kind", "method", "fill_missing", "mask")
-        settings = texture.LightSettings(cubes[0], _as_tuple(at), depth, encoding, threads, input_space)
-    else:
-        form = _pixel_encoding(kind, at)
-        each = [
-            texture.TextureSettings(cube, form, depth, encoding, threads, fill_missing, method, input_space)
-            for cube in cubes
-        ]
-        settings = each[0] if mask is None else texture.MaskedSettings(tuple(each), os.path.abspath(mask))
+    settings = texture.TextureSettings(
+        tuple(cubes),
+        _pixel_encoding(kind, at),
+        depth=depth,
+        encoding=encoding,
+        out_of_gamut=method,
+        space=input_space,
+        mask=None if mask is None else os.path.abspath(mask),
+        emission=is_emission,
+        fill_missing=fill_missing,
+        threads=threads,
+    )
     jobs = [texture.Job(settings, source.absolute(), path.absolute(), force) for source, path in pairs]
     pending = texture.pending(jobs, resume=resume)
     texture.converter_for(settings)  # report invalid options once, not once per image
@@ -167,9 +171,8 @@ def command(
     if scheduler is None and len(jobs) == 1:
         results: list[Conversion | Failure] = [_convert_here(job, quiet=quiet) for job in pending]
     else:
-        pool = texture.process_executor(count) if scheduler is None else texture.dask_executor(scheduler)
-        with pool as executor:
-            results = _collect(texture.convert_all(pending, executor), len(pending), quiet=quiet)
+        outcomes = texture.convert_all(pending, processes=count, scheduler=scheduler)
+        results = _collect(outcomes, len(pending), quiet=quiet)
     converted = [one for one in results if isinstance(one, texture.Conversion)]
     for conversion in converted:
         for warning in conversion.warnings:
@@ -212,11 +215,11 @@ def _convert_here(job: Job, *, quiet: bool) -> Conversion:
         )
 
 
-def _collect(results: Iterable[Conversion | Failure], total: int, *, quiet: bool) -> list[Conversion | Failure]:
+def _collect(results: Generator[Conversion | Failure], total: int, *, quiet: bool) -> list[Conversion | Failure]:
     """Collect results as images finish, with a progress bar over the images."""
     collected = []
     try:
-        with progress_bar("images", quiet=quiet) as progress:
+        with contextlib.closing(results), progress_bar("images", quiet=quiet) as progress:
             for result in results:
                 collected.append(result)
                 progress(Progress("images", len(collected), total))

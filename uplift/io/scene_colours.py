@@ -17,10 +17,9 @@ from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback
-from uplift.io.texture.colours import check_encoding, make_decoder
-from uplift.io.texture.part_layout import colour_channels_by_part
-from uplift.io.texture.source import open_image
-from uplift.io.texture.source_space import space_warnings
+from uplift.io.texture.channels import coloured_parts
+from uplift.io.texture.colours import check_encoding, make_decoder, space_warnings
+from uplift.io.texture.image import open_image
 from uplift.lattice import CORNERS, EntryBoxes, Lattice
 from uplift.lattice.entry_boxes import MARGIN
 
@@ -30,24 +29,9 @@ BLOCK_PIXELS = 1 << 16
 
 @dataclass(frozen=True)
 class Images:
-    """A scene of images; implements `uplift.lattice.SceneLike`. Memory holds the cells of the colours only.
+    """A scene of at least one image; implements `uplift.lattice.SceneLike`. Memory holds the cells of the colours only.
 
-    Parameters
-    ----------
-    paths : tuple of Path
-        Images, at least one.
-    encoding : str, default "auto"
-        Encoding of the pixels, as for `uplift.io.texture.convert_texture`.
-    out_of_gamut : str, default "clip"
-        Gamut mapping of linear RGB outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
-    space : str, optional
-        RGB space of the images, as for `uplift.colorimetry.spaces.find_space`, by default the one that each file
-        states.
-
-    Raises
-    ------
-    OptionError
-        No images (``scene-without-colours``), or an unknown encoding or gamut mapping.
+    ``encoding``, ``out_of_gamut`` and ``space`` are those of `uplift.io.texture.prepare`. Raises `OptionError`.
     """
 
     paths: tuple[Path, ...]
@@ -62,33 +46,9 @@ class Images:
             raise _no_colours()
 
     def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        """Return the lattice points that answer the colours of the images; see `SceneLike`.
+        """Return the mask (dim³,) of the lattice points that answer the colours of the images; see `SceneLike`.
 
-        Parameters
-        ----------
-        boxes : EntryBoxes
-            Entry boxes, and the lattice that they lie in.
-        sensor : Sensor
-            RGB space of the cube.
-        progress : callable
-            Called with a `Progress` event of stage ``"images"`` before each image.
-
-        Returns
-        -------
-        ndarray of bool, shape (dim³,)
-            Mask of points.
-
-        Raises
-        ------
-        TextureError
-            An image that cannot be read.
-        ColourError
-            A colour out of gamut, with ``out_of_gamut="error"``.
-
-        Warns
-        -----
-        UpliftWarning
-            An image in another RGB space.
+        Raises `TextureError`, and `ColourError` with ``out_of_gamut="error"``. Warns of images in another RGB space.
         """
         cells = np.zeros(boxes.lattice.size, dtype=bool)
         for done, path in enumerate(self.paths):
@@ -100,39 +60,18 @@ class Images:
         return boxes.required_points(cells)
 
     def describe(self) -> list[dict[str, Any]]:
-        """Return name and digest of each image, and how it was decoded.
-
-        Returns
-        -------
-        list of dict
-            JSON values, one dictionary per image.
-        """
+        """Return name and digest of each image, and how it was decoded, as JSON values."""
         decoding = {"encoding": self.encoding, "out_of_gamut": self.out_of_gamut}
         decoding |= {} if self.space is None else {"space": self.space}
         return [{"name": path.name, "digest": file_digest(path), **decoding} for path in self.paths]
 
     def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
-        """Read the colours of an image block by block.
-
-        Parameters
-        ----------
-        path : Path
-            One of the images.
-        sensor : Sensor
-            RGB space of the colours.
-
-        Yields
-        ------
-        ndarray, shape (n, 3)
-            Linear RGB in [0, 1].
-        """
+        """Yield the colours of an image, linear RGB (n, 3) in [0, 1] of a sensor, block by block."""
         space = None if self.space is None else find_space(self.space)
         with open_image(path) as image:
             for warning in space_warnings(image, sensor, space):
                 warnings.warn(warning, stacklevel=5)
-            for part, channels in colour_channels_by_part(image):
-                if channels is None:
-                    continue
+            for part, channels in coloured_parts(image):
                 decode = make_decoder(sensor, part, self.encoding, self.out_of_gamut, space)
                 for _, band in image.bands(part):
                     pixels = band.reshape(-1, band.shape[-1])
@@ -141,20 +80,7 @@ class Images:
 
 
 def cells_touched(lattice: Lattice, rgb: Array) -> Array:
-    """Return the cells around colours, and those within rounding error of them.
-
-    Parameters
-    ----------
-    lattice : Lattice
-        The lattice.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB.
-
-    Returns
-    -------
-    ndarray of int, shape (m,)
-        Cell numbers, with repetitions.
-    """
+    """Return the numbers (m,) of the cells around linear RGB (n, 3), and of those within rounding error of them."""
     low, high = lattice.lowest_corner(rgb - MARGIN), lattice.lowest_corner(rgb + MARGIN)
     on_face = (low != high).any(axis=1)
     adjacent = np.where(CORNERS[:, None, :] == 1, high[on_face], low[on_face]).reshape(-1, 3)

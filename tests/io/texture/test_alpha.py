@@ -10,7 +10,7 @@ from tests.io.texture.conftest import WAVELENGTHS, channels, planes, read_channe
 from uplift.io import texture
 from uplift.io.mitsuba.texture_file import read_colours
 from uplift.io.scene_colours import Images
-from uplift.io.texture.alpha import ColourChannels
+from uplift.io.texture.channels import ColourChannels
 from uplift.io.texture.picture import read_picture
 from uplift.report.relight import RGB_PRODUCT, relight
 
@@ -62,7 +62,7 @@ def test_moments_are_multiplied_and_multipliers_are_not(multiplied, colours, alp
 
 def test_bands_do_not_change_the_result(multiplied, spectral, tmp_path, monkeypatch):
     texture.convert(spectral, multiplied, tmp_path / "whole.exr")
-    monkeypatch.setattr("uplift.io.texture.source.MAX_BAND_BYTES", 1)
+    monkeypatch.setattr("uplift.io.texture.image.MAX_BAND_BYTES", 1)
     monkeypatch.setattr("uplift.io.texture.writer.MAX_BAND_BYTES", 1)
     texture.convert(spectral, multiplied, tmp_path / "bands.exr")
     assert (tmp_path / "bands.exr").read_bytes() == (tmp_path / "whole.exr").read_bytes()

@@ -281,9 +281,9 @@ def test_corrupt_profiles_do_not_raise():
         corrupt = bytearray(intact[:length])
         for place in rng.integers(0, max(len(corrupt), 1), 8 if corrupt else 0):
             corrupt[place] = rng.integers(256)
-        found = colour_profile._read_icc("corrupt", bytes(corrupt))
-        if found.space is not None:
-            values = found.space.decode(np.linspace([0.0] * 3, [1.0] * 3, 9))
+        found = colour_profile._icc_space("corrupt", bytes(corrupt))
+        if found is not None:
+            values = found.decode(np.linspace([0.0] * 3, [1.0] * 3, 9))
             assert np.isfinite(values).all()
             read += 1
     assert 0 < read < 300

@@ -193,7 +193,7 @@ def other_planes(shape):
 @pytest.mark.parametrize("kind", [OpenEXR.scanlineimage, OpenEXR.tiledimage])
 @pytest.mark.parametrize("band", [1, 1 << 25])
 def test_several_parts_tiles_windows_and_other_channels(kind, band, spectral, tmp_path, monkeypatch):
-    monkeypatch.setattr("uplift.io.texture.source.MAX_BAND_BYTES", band)
+    monkeypatch.setattr("uplift.io.texture.image.MAX_BAND_BYTES", band)
     shape = (70, 45)
     rgb = np.random.default_rng(2).random((*shape, 3)).astype(np.float16)
     others = other_planes(shape)
@@ -244,7 +244,7 @@ def test_integers_that_float32_cannot_hold_raise(colours, spectral, tmp_path):
 def test_bands_are_bounded_and_do_not_change_the_result(spectral, colours, tmp_path, monkeypatch):
     source = write_exr(tmp_path / "in.exr", planes(np.tile(colours, (5, 1, 1))))
     texture.convert(spectral, source, tmp_path / "whole.exr")
-    monkeypatch.setattr("uplift.io.texture.source.MAX_BAND_BYTES", 1)
+    monkeypatch.setattr("uplift.io.texture.image.MAX_BAND_BYTES", 1)
     monkeypatch.setattr("uplift.io.texture.writer.MAX_BAND_BYTES", 1)
     shapes, rows = [], []
 

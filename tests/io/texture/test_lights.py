@@ -206,7 +206,9 @@ def test_encoded_floats_are_refused(table, sky, tmp_path):
 
 
 def test_a_sequence_resumes(sky, tmp_path):
-    settings = texture.LightSettings(None, (450.0, 550.0), "half", "auto", 1)
+    settings = texture.TextureSettings(
+        pixel_encoding=texture.Spectrum((450.0, 550.0)), depth="half", emission=True, threads=1
+    )
     source = write_exr(tmp_path / "sky.exr", planes(sky / 2))
     job = texture.Job(settings, source, Path(tmp_path / "out.exr"))
     assert texture.pending([job], resume=True) == [job]

@@ -125,7 +125,7 @@ def test_bands_read_the_rows_of_the_mask(converted, cubes, colours, tmp_path, mo
     mask = png(tmp_path / "ids.png", numbers)
     expected = converted(cubes[:2], mask)
     monkeypatch.setattr("uplift.io.texture.writer.MAX_BAND_BYTES", 1)
-    monkeypatch.setattr("uplift.io.texture.source.MAX_BAND_BYTES", 1)
+    monkeypatch.setattr("uplift.io.texture.image.MAX_BAND_BYTES", 1)
     np.testing.assert_array_equal(converted(cubes[:2], mask), expected)
 
 

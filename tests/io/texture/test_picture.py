@@ -8,7 +8,7 @@ import pytest
 from tests.helpers import raises
 from tests.io.texture.conftest import planes, write_exr
 from uplift.common.errors import ColourError, OptionError, TextureError
-from uplift.io.texture import source
+from uplift.io.texture import image as source
 from uplift.io.texture.picture import read_picture
 
 

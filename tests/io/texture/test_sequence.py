@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import pickle
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +21,7 @@ CUBE = "moments-8-macbeth.uplift"
 
 @pytest.fixture
 def sequence_settings(repository):
-    return texture.TextureSettings(str(repository / "cubes" / CUBE), texture.Moments(), None, "auto", 1)
+    return texture.TextureSettings((str(repository / "cubes" / CUBE),), texture.Moments(), threads=1)
 
 
 @pytest.fixture
@@ -61,19 +61,15 @@ def test_warnings_survive_pickling(spectral, colours, tmp_path):
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_processes(count, jobs, small_cube, colours):
-    with texture.process_executor(count) as executor:
-        check(jobs, texture.convert_all(jobs, executor), small_cube, colours)
+    check(jobs, texture.convert_all(jobs, processes=count), small_cube, colours)
 
 
 @pytest.mark.filterwarnings("ignore")
 def test_a_dask_cluster(jobs, small_cube, colours):
     distributed = pytest.importorskip("distributed")
     options = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
-    with (
-        distributed.LocalCluster(**options) as local,
-        texture.dask_executor(local.scheduler_address) as executor,
-    ):
-        check(jobs, texture.convert_all(jobs, executor), small_cube, colours)
+    with distributed.LocalCluster(**options) as local:
+        check(jobs, texture.convert_all(jobs, scheduler=local.scheduler_address), small_cube, colours)
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -82,14 +78,14 @@ def test_an_unreachable_cluster_raises(address, monkeypatch):
     distributed = pytest.importorskip("distributed")
     client = distributed.Client
     monkeypatch.setattr(distributed, "Client", lambda address, timeout: client(address, timeout="0.2s"))
-    with raises(OptionError, "dask-unreachable"), texture.dask_executor(address):
-        pass
+    with raises(OptionError, "dask-unreachable"):
+        list(texture.convert_all([], scheduler=address))
 
 
 def test_missing_dask_raises(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
-    with raises(OptionError, "dask-not-installed"), texture.dask_executor("tcp://here:1"):
-        pass
+    with raises(OptionError, "dask-not-installed"):
+        list(texture.convert_all([], scheduler="tcp://here:1"))
 
 
 def test_resume_leaves_out_complete_newer_textures(jobs):
@@ -121,7 +117,7 @@ def test_resume_repeats_textures_of_other_settings(jobs):
         {"depth": "half"},
         {"encoding": "linear"},
         {"pixel_encoding": texture.Multipliers()},
-        {"cube": None},
+        {"cubes": (None,)},
     ):
         other = replace(jobs[0], settings=replace(jobs[0].settings, **change), force=True)
         assert texture.pending([other], resume=True) == [other]
@@ -133,14 +129,27 @@ def test_two_images_with_one_target_raise(jobs):
         texture.pending(twice)
 
 
-def test_closing_the_iterator_cancels_pending_jobs(jobs):
-    with ThreadPoolExecutor(1) as executor:
-        results = texture.convert_all([jobs[0]] * 50, executor)
-        next(results)
-        results.close()
-    assert executor._work_queue.qsize() <= 1
+@pytest.mark.parametrize("count", [1, 2])
+def test_closing_the_iterator_ends_the_conversions(jobs, count, tmp_path):
+    many = [replace(jobs[0], target=tmp_path / "out" / f"{number}.exr") for number in range(50)]
+    results = texture.convert_all(many, processes=count)
+    next(results)
+    results.close()
+    names = [path.name for path in (tmp_path / "out").iterdir()]
+    assert 1 <= len(names) < 50
+    assert all(name.endswith(".exr") for name in names)  # no unfinished file
+
+
+def test_lost_workers_are_an_error_that_names_the_finished_textures(jobs, monkeypatch):
+    def lost(future):
+        raise BrokenProcessPool
+
+    monkeypatch.setattr("concurrent.futures.Future.result", lost)
+    with raises(TextureError, "workers-lost") as caught:
+        list(texture.convert_all(jobs, processes=2))
+    assert "0 of 3 textures" in caught.value.problem
 
 
 def test_the_number_of_processes_is_positive():
-    with raises(OptionError, "too-few-processes"), texture.process_executor(0):
-        pass
+    with pytest.raises(OptionError):
+        list(texture.convert_all([], processes=0))

@@ -15,7 +15,7 @@ from uplift.common.arrays import Array
 from uplift.design.mixing.coats import Coat
 from uplift.io.slices import exr
 from uplift.io.texture.colours import Counts, Floats, check_encoding
-from uplift.io.texture.converter import Converter
+from uplift.io.texture.uplifter import Converter
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 

@@ -17,13 +17,11 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import TextureError, UpliftError, UpliftWarning
 from uplift.io.mitsuba.texels import THREADS, Samples, Texels, model_texels
 from uplift.io.texture import exr_file
-from uplift.io.texture.alpha import ColourChannels
-from uplift.io.texture.colours import Counts, Floats, make_decoder
-from uplift.io.texture.converter import ReadColours
+from uplift.io.texture.channels import ColourChannels, colour_channels_by_part
+from uplift.io.texture.colours import Counts, Floats, make_decoder, space_warnings
+from uplift.io.texture.image import Image, Part, open_image
 from uplift.io.texture.lights import prepare_lights
-from uplift.io.texture.part_layout import colour_channels_by_part
-from uplift.io.texture.source import Image, Part, open_image
-from uplift.io.texture.source_space import space_warnings
+from uplift.io.texture.uplifter import ReadColours
 from uplift.lights.lookup import EmissionTable
 from uplift.lookup.blocks import blockwise
 from uplift.models import Model, Moments, from_description

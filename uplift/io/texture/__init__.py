@@ -15,24 +15,10 @@ from __future__ import annotations
 
 from uplift.io.texture.colours import ENCODINGS, Counts
 from uplift.io.texture.conversion import Conversion, convert
-from uplift.io.texture.converter import Converter
 from uplift.io.texture.lights import LightUplifter, prepare_lights
-from uplift.io.texture.masked import MaskedUplifter, prepare_masked
 from uplift.io.texture.pixel_encoding import PIXEL_ENCODINGS, Moments, Multipliers, PixelEncoding, Spectrum
-from uplift.io.texture.sequence import (
-    Failure,
-    Job,
-    LightSettings,
-    MaskedSettings,
-    Settings,
-    TextureSettings,
-    convert_all,
-    converter_for,
-    dask_executor,
-    pending,
-    process_executor,
-)
-from uplift.io.texture.uplifter import Uplifter, prepare
+from uplift.io.texture.sequence import Failure, Job, TextureSettings, convert_all, converter_for, pending
+from uplift.io.texture.uplifter import Converter, MaskedUplifter, Uplifter, prepare, prepare_masked
 
 __all__ = [
     "ENCODINGS",
@@ -42,24 +28,19 @@ __all__ = [
     "Counts",
     "Failure",
     "Job",
-    "LightSettings",
     "LightUplifter",
-    "MaskedSettings",
     "MaskedUplifter",
     "Moments",
     "Multipliers",
     "PixelEncoding",
-    "Settings",
     "Spectrum",
     "TextureSettings",
     "Uplifter",
     "convert",
     "convert_all",
     "converter_for",
-    "dask_executor",
     "pending",
     "prepare",
     "prepare_lights",
     "prepare_masked",
-    "process_executor",
 ]

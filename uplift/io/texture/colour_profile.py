@@ -1,12 +1,13 @@
 """Colour space that an image file states: colorInteropID or chromaticities of OpenEXR, PNG code points, or ICC.
 
 Matrix profiles, as displays have them, state their primaries and tone curves. LittleCMS, through Pillow, reads the
-primaries. Profiles with lookup tables are not used.
+primaries, but evaluates curves with 8 bits only: they are read here. Profiles with lookup tables are not used.
 """
 
 from __future__ import annotations
 
 import io
+import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -19,7 +20,9 @@ from uplift.colorimetry.spaces import ImageSpace, from_ocio
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.io.texture.icc_curve import read_curves
+
+Curve = Callable[[Array], Array]
+"""From codes in [0, 1] to linear values."""
 
 H273_PRIMARIES = {
     1: SRGB,
@@ -33,6 +36,13 @@ D50 = (0.3457, 0.3585)
 GREY = b"GRAY"
 NOT_STATED = ("", "unknown")
 """Values of colorInteropID that name no space."""
+TONE_CURVES = (b"rTRC", b"gTRC", b"bTRC")
+GREY_CURVE = b"kTRC"
+MAX_TAGS = 100
+FIXED = 65536.0
+"""Scale of s15Fixed16 numbers."""
+PARAMETERS = (1, 3, 4, 5, 7)
+"""Number of parameters of each function type of ICC.1:2022, 10.18."""
 
 
 def _decode_bt709(codes: Array) -> Array:
@@ -42,7 +52,7 @@ def _decode_bt709(codes: Array) -> Array:
     )
 
 
-def _power(gamma: float) -> Callable[[Array], Array]:
+def _power(gamma: float) -> Curve:
     return lambda codes: np.maximum(codes, 0) ** gamma
 
 
@@ -50,7 +60,7 @@ def _linear(codes: Array) -> Array:
     return codes
 
 
-H273_TRANSFERS: dict[int, Callable[[Array], Array]] = {
+H273_TRANSFERS: dict[int, Curve] = {
     **dict.fromkeys((1, 6, 14, 15), _decode_bt709),
     4: _power(2.2),
     5: _power(2.8),
@@ -63,15 +73,7 @@ H273_TRANSFERS: dict[int, Callable[[Array], Array]] = {
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Statement of an image file about its colour space.
-
-    Parameters
-    ----------
-    name : str
-        Name of the space or profile, empty if it has none.
-    space : ImageSpace or None
-        The space; None if the statement cannot be used.
-    """
+    """Statement of an image file about its colour space; ``space`` is None if it cannot be used."""
 
     name: str
     space: ImageSpace | None
@@ -91,7 +93,7 @@ def read_profile(spec: Any) -> Profile | None:
     if (data := spec.getattribute("ICCProfile")) is not None:
         name = spec.get_string_attribute("ICCProfile:profile_description") or "an ICC profile without a name"
         is_bytes = isinstance(data, np.ndarray) and data.dtype == np.uint8
-        return _read_icc(name, data.tobytes()) if is_bytes else Profile(name, None)
+        return Profile(name, _icc_space(name, data.tobytes()) if is_bytes else None)
     return None
 
 
@@ -109,8 +111,9 @@ def _by_code_points(points: Any) -> Profile:
         return Profile("CICP", None)
     name = f"CICP {points[0]}, {points[1]}"
     primaries, transfer = H273_PRIMARIES.get(points[0]), H273_TRANSFERS.get(points[1])
-    known = primaries is not None and transfer is not None
-    return Profile(name, ImageSpace(name, primaries, transfer) if known and primaries is not None else None)
+    if primaries is None or transfer is None:
+        return Profile(name, None)
+    return Profile(name, ImageSpace(name, primaries, transfer))
 
 
 def _primaries(numbers: Any) -> Primaries | None:
@@ -121,15 +124,77 @@ def _primaries(numbers: Any) -> Primaries | None:
         return None
 
 
-def _read_icc(name: str, data: bytes) -> Profile:
+def _icc_space(name: str, data: bytes) -> ImageSpace | None:
     from PIL import ImageCms
 
-    curves = read_curves(data)
+    curves = _tone_curves(data)
     try:
         icc = ImageCms.ImageCmsProfile(io.BytesIO(data))
     except OSError:
-        return Profile(name, None)
+        return None
     primaries = (icc.profile.red_primary, icc.profile.green_primary, icc.profile.blue_primary)
     numbers = [number for each in primaries if each is not None for number in each[1][:2]]
     gamut = SRGB if data[16:20] == GREY else _primaries((*numbers, *D50))
-    return Profile(name, None if gamut is None or curves is None else ImageSpace(name, gamut, curves))
+    return None if gamut is None or curves is None else ImageSpace(name, gamut, curves)
+
+
+def _tone_curves(profile: bytes) -> Curve | None:
+    """Return the tone curves (…, 3) of a matrix or grey profile; None for others, and for damaged ones."""
+    try:
+        (count,) = struct.unpack_from(">I", profile, 128)
+        entries = (struct.unpack_from(">4sII", profile, 132 + 12 * index) for index in range(min(count, MAX_TAGS)))
+        tags = {name: profile[start : start + size] for name, start, size in entries}
+        names = TONE_CURVES if all(name in tags for name in TONE_CURVES) else (GREY_CURVE,) * 3
+        curves = [_tone_curve(tags[name]) for name in names]
+    except (KeyError, ValueError, struct.error):
+        return None
+
+    def evaluate(codes: Array) -> Array:
+        return np.stack([curve(codes[..., channel]) for channel, curve in enumerate(curves)], axis=-1)
+
+    values = evaluate(np.linspace([0.0] * 3, [1.0] * 3, 256))
+    is_plausible = np.isfinite(values).all() and np.ptp(values[[0, -1]], axis=0).min() > 0.5
+    return evaluate if is_plausible and (np.diff(values, axis=0) >= 0).all() else None
+
+
+def _tone_curve(tag: bytes) -> Curve:
+    """Read a curve (ICC.1:2022, 10.6 curveType and 10.18 parametricCurveType). Raises `ValueError`."""
+    if tag[:4] == b"para":
+        (kind,) = struct.unpack_from(">H", tag, 8)
+        if kind >= len(PARAMETERS):
+            raise ValueError("another function")
+        return _parametric([number / FIXED for number in struct.unpack_from(f">{PARAMETERS[kind]}i", tag, 12)])
+    if tag[:4] != b"curv":
+        raise ValueError("another type of curve")
+    (count,) = struct.unpack_from(">I", tag, 8)
+    if count == 0:
+        return _linear
+    if 12 + 2 * count > len(tag):
+        raise ValueError("the curve is cut short")
+    numbers = np.frombuffer(tag, ">u2", count, 12)
+    if count == 1:
+        return _power(float(numbers[0]) / 256)
+    positions, table = np.linspace(0, 1, count), numbers / 65535
+    return lambda codes: np.interp(codes, positions, table)
+
+
+def _parametric(parameters: list[float]) -> Curve:
+    """Return Y = (aX + b)^g + e for X ≥ d, else cX + f; the function type follows from the number of parameters."""
+    a, b, c, d, e, f = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    match parameters:
+        case [g]:
+            pass
+        case [g, a, b]:
+            d = -b / a if a else 0.0
+        case [g, a, b, e]:
+            d, f = -b / a if a else 0.0, e
+        case [g, a, b, c, d]:
+            pass
+        case [g, a, b, c, d, e, f]:
+            pass
+
+    def evaluate(codes: Array) -> Array:
+        with np.errstate(all="ignore"):
+            return np.where(codes >= d, np.maximum(a * codes + b, 0) ** g + e, c * codes + f)
+
+    return evaluate

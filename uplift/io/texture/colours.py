@@ -1,4 +1,4 @@
-"""Colour channels of an image, and their conversion to linear RGB in [0, 1]."""
+"""Conversion of the colours of an image to linear RGB in [0, 1], with counts of the colours that had to change."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.gamut import map_to_gamut
+from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
+from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError, TextureError, UpliftWarning
-from uplift.io.texture.alpha import ColourChannels, without_rounding
-from uplift.io.texture.source import Part, Values
-from uplift.io.texture.source_space import source_space
+from uplift.common.errors import OptionError, UpliftWarning
+from uplift.io.texture.channels import without_rounding
+from uplift.io.texture.image import Image, Part, Values
 
 Floats = NDArray[np.float32]
 
@@ -30,7 +30,8 @@ PAST_TENSE = {
     "desaturate-oklab": "desaturated in Oklab",
 }
 """Words for messages, by the names in `uplift.colorimetry.gamut.METHODS`."""
-COLOUR_TYPES = {"uint8", "uint16", "half", "float", "double"}
+SRGB_SPACE = ImageSpace("sRGB", SRGB, decode)
+"""Space of 8-bit and 16-bit images that state none."""
 
 
 @dataclass(frozen=True)
@@ -86,120 +87,72 @@ class Counts:
         tuple of UpliftWarning
             The warnings. They are not emitted.
         """
-        past, change = PAST_TENSE[method], f"a component by up to {self.max_change:.3g}"
-        counts = (
-            self.outside,
-            self.not_finite,
-            self.unrealisable,
-            self.painted_outside,
-            self.not_lights,
-            self.too_bright,
+        past = PAST_TENSE[method]
+        kinds = (
+            (
+                self.outside,
+                "pixels-out-of-gamut",
+                f"lie outside [0, 1]: {past}, a component by up to {self.max_change:.3g}",
+            ),
+            (self.not_finite, "pixels-not-finite", "are not finite: NaN is replaced by 0, infinity is clamped"),
+            (
+                self.unrealisable,
+                "pixels-unrealisable",
+                "are close to unrealisable colours: their spectra have less chroma",
+            ),
+            (self.painted_outside, "painted-pixels-out-of-gamut", f"lie outside [0, 1] after painting: {past}"),
+            (
+                self.not_lights,
+                "pixels-not-lights",
+                "have colours that no light has: moved towards white of the same luminance",
+            ),
+            (self.too_bright, "pixels-too-bright", "are brighter than half floats can store: clamped"),
         )
-        outside, not_finite, unrealisable, painted, not_lights, too_bright = (
-            f"{count:,} of {self.pixels:,} pixels" for count in counts
+        hints = {"pixels-too-bright": "use 32-bit channels"}
+        return tuple(
+            UpliftWarning(f"{count:,} of {self.pixels:,} pixels {text}", code=code, path=path, hint=hints.get(code, ""))
+            for count, code, text in kinds
+            if count
         )
-        warnings = (
-            UpliftWarning(f"{outside} lie outside [0, 1]: {past}, {change}", code="pixels-out-of-gamut", path=path),
-            UpliftWarning(
-                f"{not_finite} are not finite: NaN is replaced by 0, infinity is clamped",
-                code="pixels-not-finite",
-                path=path,
-            ),
-            UpliftWarning(
-                f"{unrealisable} are close to unrealisable colours: their spectra have less chroma",
-                code="pixels-unrealisable",
-                path=path,
-            ),
-            UpliftWarning(
-                f"{painted} lie outside [0, 1] after painting: {past}",
-                code="painted-pixels-out-of-gamut",
-                path=path,
-            ),
-            UpliftWarning(
-                f"{not_lights} have colours that no light has: moved towards white of the same luminance",
-                code="pixels-not-lights",
-                path=path,
-            ),
-            UpliftWarning(
-                f"{too_bright} are brighter than half floats can store: clamped",
-                code="pixels-too-bright",
-                path=path,
-                hint="use 32-bit channels",
-            ),
-        )
-        return tuple(warning for count, warning in zip(counts, warnings, strict=True) if count)
 
 
-def colour_channels(part: Part) -> ColourChannels | None:
-    """Find the colour channels of a part: R, G, B, else those of the only layer that has them, else Y.
+def source_space(part: Part, sensor: Sensor, chosen: ImageSpace | None = None) -> ImageSpace | None:
+    """Return the space of the colours of a part, None if it is that of the sensor.
 
-    Parameters
-    ----------
-    part : Part
-        A part of an image.
-
-    Returns
-    -------
-    ColourChannels or None
-        None for a part without colour.
-
-    Raises
-    ------
-    TextureError
-        Several layers have colours (code ``ambiguous-colour-layers``), or the colours are integers of unknown
-        scale (``unsupported-colour-type``).
+    The one that the caller names comes first, then the statement of the file, then sRGB for codes and the space of the
+    sensor for floats.
     """
-    names = _colour_names(part)
-    if names is None:
-        return None
-    red, green, blue = (part.channels.index(name) for name in names)
-    if types := {part.types[channel] for channel in (red, green, blue)} - COLOUR_TYPES:
-        raise TextureError(
-            f"colour channels must be 8-bit, 16-bit, half or float, got {min(types)}",
-            code="unsupported-colour-type",
-            hint="convert them",
-        )
-    alpha = names[0][:-1] + "A"
-    is_multiplied = part.has_associated_alpha and alpha in part.channels
-    return ColourChannels((red, green, blue), part.channels.index(alpha) if is_multiplied else None)
+    stated = None if part.profile is None else part.profile.space
+    space = chosen or stated or (SRGB_SPACE if part.max_code else None)
+    return None if space is None or space.agrees_with(sensor, encoded=bool(part.max_code)) else space
 
 
-def _colour_names(part: Part) -> tuple[str, str, str] | None:
-    layers = [name[:-1] for name in part.channels if name == "R" or name.endswith(".R")]
-    layers = [layer for layer in layers if {layer + "G", layer + "B"} <= set(part.channels)]
-    if "" in layers:
-        return "R", "G", "B"
-    if len(layers) > 1:
-        names = ", ".join(layer[:-1] for layer in layers)
-        raise TextureError(
-            f"a part must have one layer of colour, got {names}",
-            code="ambiguous-colour-layers",
-            hint="write each layer as a part or a file",
-        )
-    if layers:
-        return layers[0] + "R", layers[0] + "G", layers[0] + "B"
-    is_luminance = "Y" in part.channels and not {"RY", "BY"} & set(part.channels)
-    return ("Y", "Y", "Y") if is_luminance else None
+def space_warnings(image: Image, sensor: Sensor, chosen: ImageSpace | None = None) -> tuple[UpliftWarning, ...]:
+    """Return warnings about parts whose space is not known: unusable statements, and assumptions."""
+    found: dict[str, UpliftWarning] = {}
+    for part in image.parts if chosen is None else ():
+        read_as = f"its colours are read as {'sRGB' if part.max_code else f'linear {sensor.space}'}"
+        if part.profile is None:
+            if SRGB_SPACE.agrees_with(sensor, encoded=False):
+                continue
+            code, problem = "colour-space-assumed", f"the image states no colour space; {read_as}"
+        elif part.profile.space is None:
+            name = f" ({part.profile.name})" if part.profile.name else ""
+            code = "colour-space-unreadable"
+            problem = f"the image states a colour space that cannot be used{name}; {read_as}"
+        else:
+            continue
+        found[problem] = UpliftWarning(problem, code=code, path=image.path)
+    return tuple(found.values())
 
 
 @dataclass(frozen=True, eq=False)
 class Decoder:
     """Conversion of the colours (…, 3) of a part to linear RGB of a sensor, made by `make_decoder`.
 
-    Parameters
-    ----------
-    function : callable
-        From the numbers of the part to linear RGB of its space.
-    is_bounded : bool
-        Whether these are always in [0, 1].
-    maps_codes : bool
-        Whether codes outside [0, 1] are mapped before decoding, as the encoding ends at 0 and 1.
-    matrix : ndarray of shape (3, 3), or None
-        From the space of the part to that of the sensor, None if they agree.
-    sensor : Sensor
-        The sensor.
-    method : str
-        Gamut mapping.
+    ``function`` maps the numbers of the part to linear RGB of its space, which are in [0, 1] if ``is_bounded``. With
+    ``maps_codes``, codes outside [0, 1] are mapped before decoding, as the encoding ends at 0 and 1. ``matrix`` (3, 3)
+    leads from the space of the part to that of the sensor; None if they agree.
     """
 
     function: Callable[[Values], Values]
@@ -252,44 +205,21 @@ def _all_inside(colours: Values) -> bool:
 
 
 def check_encoding(encoding: str) -> None:
-    """Raise `OptionError` (code ``unknown-encoding``) unless ``encoding`` is one of `ENCODINGS`."""
+    """Raise `OptionError` unless ``encoding`` is one of `ENCODINGS`."""
     if encoding not in ENCODINGS:
         raise OptionError(
-            f"unknown encoding '{encoding}'",
-            code="unknown-encoding",
-            hint=f"use one of {', '.join(ENCODINGS)}",
+            f"unknown encoding '{encoding}'", code="unknown-encoding", hint=f"use one of {', '.join(ENCODINGS)}"
         )
 
 
 def make_decoder(
     sensor: Sensor, part: Part, encoding: str, method: str = "clip", space: ImageSpace | None = None
 ) -> Decoder:
-    """Make the decoder of a part.
+    """Make the decoder of a part to linear RGB of a sensor, for the gamut mapping ``method``.
 
-    Parameters
-    ----------
-    sensor : Sensor
-        The sensor whose linear RGB are wanted.
-    part : Part
-        The part of an image.
-    encoding : {"auto", "linear", "encoded"}
-        Interpretation of the numbers; ``auto`` takes 8-bit and 16-bit integers as encoded, all else as linear.
-    method : str
-        Gamut mapping for colours outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
-    space : ImageSpace, optional
-        The space of the colours, by default the one that the file states; see `source_space`.
-
-    Returns
-    -------
-    Decoder
-        The conversion to linear RGB.
-
-    Raises
-    ------
-    OptionError
-        Encoded floats with a mapping other than ``clip`` or ``error``, as the encoding ends at 0 and 1
-        (code ``encoded-floats-not-mapped``), or ``linear`` for a space whose floats are encoded
-        (``encoding-contradicts-space``).
+    ``encoding`` ``auto`` takes 8-bit and 16-bit integers as encoded, all else as linear. ``space`` is by default the
+    one that the file states. Raises `OptionError` for encoded floats with a mapping other than ``clip`` or ``error``,
+    as the encoding ends at 0 and 1, and for ``linear`` with a space whose floats are encoded.
     """
     source = source_space(part, sensor, space)
     matrix = None if source is None else source.matrix_to(sensor)
@@ -299,38 +229,40 @@ def make_decoder(
             code="encoding-contradicts-space",
             hint="name its linear counterpart, or leave the encoding to the space",
         )
-    if part.max_code:
-        return Decoder(integer_reader(sensor, part.max_code, encoding, source), True, False, matrix, sensor, method)
-    if source is not None and source.floats_are_codes and source.decode is not None:
-        return Decoder(source.decode, False, False, matrix, sensor, method)
-    if encoding == "encoded":
-        if method not in ("error", "clip"):
-            raise OptionError(
-                f"encoded floats must use the gamut mapping clip or error, got '{method}'",
-                code="encoded-floats-not-mapped",
-                hint="their encoding ends at 0 and 1; pass out_of_gamut='clip' or encoding='linear'",
-            )
-        return Decoder(code_decoder(sensor, source), False, True, matrix, sensor, method)
-    return Decoder(lambda floats: floats, False, False, matrix, sensor, method)
+    is_encoded = encoding == "encoded" and not reads_codes(part, source)
+    if is_encoded and method not in ("error", "clip"):
+        raise OptionError(
+            f"encoded floats must use the gamut mapping clip or error, got '{method}'",
+            code="encoded-floats-not-mapped",
+            hint="their encoding ends at 0 and 1; pass out_of_gamut='clip' or encoding='linear'",
+        )
+    function = linear_reader(sensor, part, encoding, source)
+    return Decoder(function, bool(part.max_code), is_encoded, matrix, sensor, method)
 
 
-def code_decoder(sensor: Sensor, source: ImageSpace | None) -> Callable[[Values], Values]:
-    """Return the function from codes in [0, 1] of a space, None for that of the sensor, to linear values."""
-    if source is None or source.decode is None:
-        return lambda codes: sensor.decode(255 * codes)
-    return source.decode
+def reads_codes(part: Part, source: ImageSpace | None) -> bool:
+    """Return whether the numbers of a part are codes of their space, whatever the encoding of floats."""
+    return bool(part.max_code) or (source is not None and source.floats_are_codes)
 
 
-def integer_reader(
-    sensor: Sensor, max_code: int, encoding: str, source: ImageSpace | None
-) -> Callable[[Values], Values]:
-    """Return the function from integers (…, 3) to linear values, by a table where channels are independent."""
-    decode = code_decoder(sensor, source)
+def linear_reader(sensor: Sensor, part: Part, encoding: str, source: ImageSpace | None) -> Callable[[Values], Values]:
+    """Return the function from the numbers (…, 3) of a part to linear values of its space, None for the sensor's."""
+    to_linear = _code_decoder(sensor, source)
+    if not part.max_code:
+        return to_linear if encoding == "encoded" or reads_codes(part, source) else np.asarray
     if source is not None and source.mixes_channels:
-        return lambda codes: decode(codes / max_code)
-    share = np.repeat(np.linspace(0, 1, max_code + 1)[:, None], 3, axis=1)
-    table = (share if encoding == "linear" else decode(share)).astype(np.float32)
+        return lambda codes: to_linear(codes / part.max_code)
+    # A table, as channels are independent.
+    share = np.repeat(np.linspace(0, 1, part.max_code + 1)[:, None], 3, axis=1)
+    table = (share if encoding == "linear" else to_linear(share)).astype(np.float32)
     if (table == table[:, :1]).all():
         curve = table[:, 0].copy()
         return lambda codes: curve[codes]
     return lambda codes: np.stack([table[:, k][codes[..., k]] for k in range(3)], axis=-1)
+
+
+def _code_decoder(sensor: Sensor, source: ImageSpace | None) -> Callable[[Values], Values]:
+    """Return the function from codes in [0, 1] of a space, None for that of the sensor, to linear values."""
+    if source is None or source.decode is None:
+        return lambda codes: sensor.decode(255 * codes)
+    return source.decode

@@ -10,15 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.common.errors import UpliftWarning
+from uplift.common.errors import TextureError, UpliftWarning
 from uplift.common.files import check_output
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.io.texture.colours import Counts
-from uplift.io.texture.converter import Converter
-from uplift.io.texture.part_layout import PartLayout, part_layouts
-from uplift.io.texture.source import Image, Values, open_image
-from uplift.io.texture.source_space import source_space, space_warnings
-from uplift.io.texture.writer import Writer, open_writer
+from uplift.io.texture.channels import ColourChannels, colour_channels_by_part
+from uplift.io.texture.colours import Counts, source_space, space_warnings
+from uplift.io.texture.image import Image, Part, Values, open_image
+from uplift.io.texture.uplifter import Converter, ConvertRows, ReadColours
+from uplift.io.texture.writer import OutputPart, Writer, open_writer
 
 
 @dataclass(frozen=True)
@@ -92,42 +91,62 @@ def convert(
     """
     begin = time.perf_counter()
     check_output(target, inputs=[source], force=force)
-    with open_image(source) as image, converter.opened(image) as converter:
-        layouts = part_layouts(converter, image)
+    with open_image(source) as image, converter.opened(image) as convert_rows:
+        layouts = [_layout(converter, image, part, colours) for part, colours in colour_channels_by_part(image)]
+        total = sum(layout.part.window.height for layout in layouts)
+        counts, done = Counts(), 0
         with open_writer(target, [each.output for each in layouts], force=force) as writer:
-            counts = _write_parts(converter, image, layouts, writer, progress)
+            for layout in layouts:
+                writer.start_part(layout.part.number)
+                for first, band in _bands(image, layout):
+                    counts += _write_band(converter, convert_rows, layout, writer, first, band)
+                    done += len(band)
+                    progress(Progress("rows", done, total))
         notes = space_warnings(image, converter.sensor, converter.space)
-        spaces = _converted_from(converter, layouts)
     warnings = (*counts.warnings(converter.out_of_gamut, source), *notes)
-    return Conversion(Path(source), Path(target), counts, warnings, time.perf_counter() - begin, spaces)
+    spaces = (source_space(each.part, converter.sensor, converter.space) for each in layouts if each.colours)
+    names = tuple(dict.fromkeys(space.name for space in spaces if space is not None))
+    return Conversion(Path(source), Path(target), counts, warnings, time.perf_counter() - begin, names)
 
 
-def _write_parts(
-    converter: Converter,
-    image: Image,
-    layouts: list[PartLayout],
-    writer: Writer,
-    progress: ProgressCallback,
-) -> Counts:
-    counts, done = Counts(), 0
-    total = sum(layout.part.window.height for layout in layouts)
-    for layout in layouts:
-        writer.start_part(layout.part.number)
-        for first, band in _bands(image, layout):
-            ready = converter if layout.colours is None else converter.at_rows(layout.part, first, len(band))
-            counts, done = counts + _write_band(ready, layout, writer, first, band), done + len(band)
-            progress(Progress("rows", done, total))
-    return counts
+@dataclass(frozen=True, eq=False)
+class _Layout:
+    """Which channels of a part are colours, which pass through (indices ``others``), and how it is written."""
+
+    part: Part
+    colours: ColourChannels | None
+    others: tuple[int, ...]
+    decoder: ReadColours
+    output: OutputPart
 
 
-def _converted_from(converter: Converter, layouts: list[PartLayout]) -> tuple[str, ...]:
-    """Return the names of the spaces that differ from that of the cube."""
-    parts = (layout.part for layout in layouts if layout.colours is not None)
-    spaces = (source_space(part, converter.sensor, converter.space) for part in parts)
-    return tuple(dict.fromkeys(space.name for space in spaces if space is not None))
+def _layout(converter: Converter, image: Image, part: Part, found: ColourChannels | None) -> _Layout:
+    colours = None if found is None else converter.colour_channels(found)
+    rgb = () if colours is None else colours.rgb
+    others = tuple(index for index in range(len(part.channels)) if index not in rgb)
+    names = tuple(part.channels[index] for index in others)
+    types = tuple(_lossless_type(part.types[index]) for index in others)
+    if colours is not None:
+        converted = (*"RGB", *converter.channels)
+        if duplicates := set(converted) & set(names):
+            raise TextureError(
+                f"channel '{min(duplicates)}' exists next to the colour and would be written twice",
+                code="duplicate-channel",
+                hint="remove that channel",
+            )
+        names, types = (*converted, *names), (*(converter.depth,) * len(converted), *types)
+    modified = time.strftime("%Y:%m:%d %H:%M:%S", time.gmtime(image.path.stat().st_mtime))  # as EXIF writes it
+    header = {**part.metadata, **converter.header}
+    output = OutputPart(part.name, part.window, names, types, header, part.date or modified)
+    return _Layout(part, colours, others, converter.decoder(part), output)
 
 
-def _bands(image: Image, layout: PartLayout) -> Iterator[tuple[int, Values]]:
+def _lossless_type(name: str) -> str:
+    """Return the OpenEXR type that holds all values of a type; integers become [0, 1]."""
+    return name if name in ("half", "float", "uint") else {"uint8": "half"}.get(name, "float")
+
+
+def _bands(image: Image, layout: _Layout) -> Iterator[tuple[int, Values]]:
     """Yield bands to write, with the number of their first row."""
     step = layout.output.rows_per_band
     for first, band in image.bands(layout.part):
@@ -135,25 +154,22 @@ def _bands(image: Image, layout: PartLayout) -> Iterator[tuple[int, Values]]:
             yield first + start, band[start : start + step]
 
 
-def _write_band(converter: Converter, layout: PartLayout, writer: Writer, first: int, band: Values) -> Counts:
+def _write_band(
+    converter: Converter, convert_rows: ConvertRows, layout: _Layout, writer: Writer, first: int, band: Values
+) -> Counts:
     """Convert and write a band. Its arrays are gone before those of the next, which halves the memory."""
-    values, counts = _convert_band(converter, layout, band)
-    writer.write_rows(first, values)
-    return counts
-
-
-def _convert_band(converter: Converter, layout: PartLayout, band: Values) -> tuple[Values, Counts]:
-    """Return the channels (k, width, N) to write, and counts of unusual pixels."""
-    others = band[..., layout.others]
+    others, counts = band[..., layout.others], Counts()
+    values: tuple[Values, ...] = ()
     if layout.part.max_code:
         others = others / np.float32(layout.part.max_code)
-    if layout.colours is None:
-        return others, Counts()
-    rgb, decoded = layout.decoder(layout.colours.straight(band))
-    values, converted = converter.convert(rgb)
-    if (opacity := layout.colours.opacity(band)) is not None:
-        values = converter.multiply(values, opacity)
+    if layout.colours is not None:
+        rgb, decoded = layout.decoder(layout.colours.straight(band))
+        values, converted = convert_rows(layout.part, first, rgb)
+        if (opacity := layout.colours.opacity(band)) is not None:
+            values = converter.multiply(values, opacity)
+        counts = decoded + converted
     # OpenImageIO would convert floats to half floats in another array.
     is_half = set(layout.output.types) == {"half"}
     dtype = np.float16 if is_half else np.result_type(np.float32, others)
-    return np.concatenate([*values, others], axis=-1, dtype=dtype), decoded + converted
+    writer.write_rows(first, np.concatenate([*values, others], axis=-1, dtype=dtype))
+    return counts

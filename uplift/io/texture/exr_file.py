@@ -1,8 +1,6 @@
-"""Structure of OpenEXR files, read without their pixels: attributes, chunks, and a checksum of the file.
+"""Structure of OpenEXR files, read without their pixels: limits of the headers, and a checksum of the file.
 
-References
-----------
-"OpenEXR File Layout", Academy Software Foundation, https://openexr.com/en/latest/OpenEXRFileLayout.html.
+Reference: "OpenEXR File Layout", Academy Software Foundation, https://openexr.com/en/latest/OpenEXRFileLayout.html.
 """
 
 from __future__ import annotations
@@ -10,8 +8,6 @@ from __future__ import annotations
 import os
 import struct
 import zlib
-from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
@@ -30,19 +26,10 @@ MAX_NAME = 255
 CHECKSUM = "uplift.checksum"
 """Name of the attribute with the CRC-32 of the file, taken with zeros in its place."""
 NO_CHECKSUM = "00000000"
-CHECKSUM_BLOCK = 1 << 24
-"""Bytes read at a time."""
-
-
-@dataclass(frozen=True)
-class Attribute:
-    """An attribute of a header: the index of its part, its name, its type, and where its value lies in the file."""
-
-    part: int
-    name: bytes
-    type: bytes
-    offset: int
-    size: int
+CHECKSUM_MARK = CHECKSUM.encode() + b"\0string\0" + struct.pack("<i", len(NO_CHECKSUM))
+"""Bytes of the attribute before its value."""
+BLOCK = 1 << 24
+"""Bytes read at a time, more than a header of `uplift texture` has."""
 
 
 def is_exr(path: Path) -> bool:
@@ -52,100 +39,47 @@ def is_exr(path: Path) -> bool:
 
 
 def check_size(path: Path) -> None:
-    """Raise `TextureError` for headers that would take libraries minutes to read.
-
-    Raises
-    ------
-    TextureError
-        The header is damaged (code ``damaged-image``), or has too many channels (``too-many-channels``) or
-        attributes (``too-many-attributes``).
-    """
+    """Raise `TextureError` for damaged headers, and for those that would take libraries minutes to read."""
     with path.open("rb") as file:
-        if sum(_channel_count(file, each) for each in attributes(file)) > MAX_CHANNELS:
-            raise TextureError(
-                f"an image must have at most {MAX_CHANNELS} channels",
-                code="too-many-channels",
-                hint="write the channels to several files",
-            )
-
-
-def attributes(file: BinaryIO) -> Iterator[Attribute]:
-    """Yield the attributes of all parts, and leave the position at the end of the headers.
-
-    Raises `TextureError` (codes ``damaged-image`` and ``too-many-attributes``).
-    """
-    end = os.fstat(file.fileno()).st_size
-    start = file.read(8)
-    if len(start) < 8 or start[:4] != MAGIC:
-        raise _damaged()
-    is_multi_part = bool(int.from_bytes(start[4:], "little") & MULTI_PART)
-    part, first, count = 0, True, 0
-    while True:
-        name = _name(file)
-        if not name:  # the end of a header, and after the last header of several another one
-            if first or not is_multi_part:
-                return
-            part, first = part + 1, True
-            continue
-        first, count = False, count + 1
-        if count > MAX_ATTRIBUTES:
-            raise TextureError(
-                f"an image must have at most {MAX_ATTRIBUTES} attributes",
-                code="too-many-attributes",
-                hint="remove some of them",
-            )
-        kind = _name(file)
-        (size,) = struct.unpack("<i", _read(file, 4))
-        offset = file.tell()
-        if not 0 <= size <= end - offset:
+        end = os.fstat(file.fileno()).st_size
+        start = _read(file, 8)
+        if start[:4] != MAGIC:
             raise _damaged()
-        file.seek(size, os.SEEK_CUR)
-        yield Attribute(part, name, kind, offset, size)
-
-
-def check_chunks(path: Path, heights: list[int], rows_per_chunk: int) -> None:
-    """Check that all chunks of a file are there: parts of scan lines, written in order.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    heights : list of int
-        Rows of every part.
-    rows_per_chunk : int
-        Rows of a chunk.
-
-    Raises
-    ------
-    TextureError
-        The file ends early, or a chunk is missing (code ``damaged-image``).
-    """
-    counts = [-(-height // rows_per_chunk) for height in heights]
-    has_part_number = len(heights) > 1
-    head = "<iii" if has_part_number else "<ii"
-    with path.open("rb") as file:
-        for _ in attributes(file):
-            pass
-        offsets = struct.unpack(f"<{sum(counts)}Q", _read(file, 8 * sum(counts)))
-        expected, end = file.tell(), os.fstat(file.fileno()).st_size
-        for offset in offsets:
-            if offset != expected:
+        is_multi_part = bool(int.from_bytes(start[4:], "little") & MULTI_PART)
+        is_first, attributes, channels = True, 0, 0
+        # Headers of attributes: name, type, size, value. An empty name ends a header, and another one the last header
+        # of several.
+        while (name := _name(file)) or (is_multi_part and not is_first):
+            is_first = not name
+            if is_first:
+                continue
+            attributes += 1
+            kind = _name(file)
+            (size,) = struct.unpack("<i", _read(file, 4))
+            value = file.tell()
+            if not 0 <= size <= end - value:
                 raise _damaged()
-            file.seek(offset)
-            *_, size = struct.unpack(head, _read(file, struct.calcsize(head)))
-            expected = offset + struct.calcsize(head) + size
-        if expected != end:
-            raise _damaged()
+            if kind == b"chlist":
+                while channels <= MAX_CHANNELS and file.tell() < value + size and _name(file):
+                    file.seek(CHANNEL_BYTES, os.SEEK_CUR)
+                    channels += 1
+            file.seek(value + size)
+            _check_limit(attributes, MAX_ATTRIBUTES, "attributes", "remove some of them")
+            _check_limit(channels, MAX_CHANNELS, "channels", "write the channels to several files")
+
+
+def _check_limit(count: int, limit: int, things: str, hint: str) -> None:
+    if count > limit:
+        raise TextureError(f"an image must have at most {limit} {things}", code=f"too-many-{things}", hint=hint)
 
 
 def seal(path: Path) -> None:
     """Store the checksum of a file in its attribute `CHECKSUM`, which must be `NO_CHECKSUM`."""
     with path.open("rb+") as file:
         place = _checksum_place(file)
-        if place is None:
-            raise _damaged()
+        crc = _crc(file, place)
         file.seek(place)
-        file.write(f"{_crc(file, place):08x}".encode())
+        file.write(crc)
 
 
 def is_intact(path: Path) -> bool:
@@ -153,45 +87,30 @@ def is_intact(path: Path) -> bool:
     try:
         with path.open("rb") as file:
             place = _checksum_place(file)
-            if place is None:
-                return False
             file.seek(place)
-            stored = file.read(len(NO_CHECKSUM))
-            return stored == f"{_crc(file, place):08x}".encode()
+            return file.read(len(NO_CHECKSUM)) == _crc(file, place)
     except (OSError, TextureError):
         return False
 
 
-def _channel_count(file: BinaryIO, attribute: Attribute) -> int:
-    """Return the number of channels in a list of channels, or more than `MAX_CHANNELS`; 0 for other attributes."""
-    if attribute.type != b"chlist":
-        return 0
-    position, count = file.tell(), 0
-    file.seek(attribute.offset)
-    while count <= MAX_CHANNELS and file.tell() < attribute.offset + attribute.size and _name(file):
-        file.seek(CHANNEL_BYTES, os.SEEK_CUR)
-        count += 1
-    file.seek(position)
-    return count
+def _checksum_place(file: BinaryIO) -> int:
+    """Return the offset of the checksum, which lies in the first header. Raises `TextureError` if there is none."""
+    head = file.read(BLOCK)
+    place = head.find(CHECKSUM_MARK)
+    if not head.startswith(MAGIC) or place < 0:
+        raise _damaged()
+    return place + len(CHECKSUM_MARK)
 
 
-def _checksum_place(file: BinaryIO) -> int | None:
-    """Return the offset of the checksum, None if the file has none."""
-    found = [each for each in attributes(file) if each.name == CHECKSUM.encode()]
-    return found[0].offset if found and found[0].size == len(NO_CHECKSUM) else None
-
-
-def _crc(file: BinaryIO, place: int) -> int:
-    """Return the CRC-32 of a file with `NO_CHECKSUM` at ``place``, and leave the position at ``place``."""
+def _crc(file: BinaryIO, place: int) -> bytes:
+    """Return the CRC-32 of a file with `NO_CHECKSUM` at ``place``, in hexadecimal."""
     file.seek(0)
     crc = zlib.crc32(file.read(place))
     crc = zlib.crc32(NO_CHECKSUM.encode(), crc)
     file.seek(place + len(NO_CHECKSUM))
-    buffer = bytearray(CHECKSUM_BLOCK)
-    while size := file.readinto(buffer):  # type: ignore[attr-defined]
-        crc = zlib.crc32(memoryview(buffer)[:size], crc)
-    file.seek(place)
-    return crc
+    while block := file.read(BLOCK):
+        crc = zlib.crc32(block, crc)
+    return f"{crc:08x}".encode()
 
 
 def _name(file: BinaryIO) -> bytes:

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from uplift.colorimetry.gamut import conversion
 from uplift.colorimetry.observer import sensor
-from uplift.colorimetry.spaces import ImageSpace, find_space
+from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.io.slices import exr
-from uplift.io.texture.alpha import ColourChannels
-from uplift.io.texture.colours import Counts, Floats, check_encoding, code_decoder, integer_reader
-from uplift.io.texture.converter import Converter, ReadColours
+from uplift.io.texture.channels import ColourChannels
+from uplift.io.texture.colours import Counts, Floats, check_encoding, linear_reader, reads_codes, source_space
+from uplift.io.texture.image import Part, Values
 from uplift.io.texture.pixel_encoding import SPECTRAL_LAYOUT, spectral_channels
-from uplift.io.texture.source import Part, Values
-from uplift.io.texture.source_space import source_space
+from uplift.io.texture.uplifter import Converted, Converter, ReadColours
 from uplift.lights.lookup import MAX_VALUE, EmissionTable
 from uplift.lights.table import emission_digest
 from uplift.lookup.validation import as_wavelengths
@@ -53,71 +51,32 @@ class LightUplifter(Converter):
     threads: int
 
     def colour_channels(self, found: ColourChannels) -> ColourChannels:
-        """Leave colours multiplied by alpha: a spectrum scales with its light, and light needs no opacity.
-
-        Parameters
-        ----------
-        found : ColourChannels
-            The channels that the part has.
-
-        Returns
-        -------
-        ColourChannels
-            The same without alpha.
-        """
+        # Colours stay multiplied by alpha: a spectrum scales with its light, and light needs no opacity.
         return replace(found, alpha=None)
 
     def decoder(self, part: Part) -> ReadColours:
-        """Make the conversion of a part's colours to linear RGB of the table, of any size and sign.
-
-        Parameters
-        ----------
-        part : Part
-            Part of an image.
-
-        Returns
-        -------
-        callable
-            From the numbers of the part to linear RGB.
-
-        Raises
-        ------
-        OptionError
-            Encoded floats (``encoded-lights``): a transfer function ends at 1, lights do not.
-        """
         source = source_space(part, self.sensor, self.space)
-        floats_are_codes = source is not None and source.floats_are_codes
-        if self.encoding == "encoded" and not (part.max_code or floats_are_codes):
-            raise OptionError(
+        if self.encoding == "encoded" and not reads_codes(part, source):
+            raise OptionError(  # a transfer function ends at 1, lights do not
                 "floats of lights must be linear",
                 code="encoded-lights",
                 hint="leave out encoding='encoded', or name an encoded space",
             )
         matrix = None if source is None else conversion(source.gamut, self.table)
-        return _LightReader(self._linear(part, source), matrix)
+        to_linear = linear_reader(self.sensor, part, self.encoding, source)
 
-    def _linear(self, part: Part, source: ImageSpace | None) -> Callable[[Values], Values]:
-        if part.max_code:
-            return integer_reader(self.sensor, part.max_code, self.encoding, source)
-        if source is not None and source.floats_are_codes:
-            return code_decoder(self.sensor, source)
-        return lambda floats: floats
+        def read(colours: Values) -> tuple[Floats, Counts]:
+            rgb = np.asarray(to_linear(colours), dtype=float)
+            usable = np.abs(rgb) <= MAX_VALUE  # NaN is not
+            rgb = np.where(usable, rgb, np.where(rgb > 0, BRIGHTEST, 0.0))
+            if matrix is not None:
+                rgb = rgb @ matrix.T
+            changed = int((~usable.all(axis=-1)).sum())
+            return rgb.astype(np.float32, copy=False), Counts(colours.size // 3, not_finite=changed)
 
-    def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
-        """Uplift a block of colours.
+        return read
 
-        Parameters
-        ----------
-        rgb : ndarray of shape (..., 3)
-            Linear RGB of any size and sign, finite, float32.
-
-        Returns
-        -------
-        tuple of ndarray
-            R, G, B (..., 3) of the spectra, and power (..., N) at the wavelengths.
-        Counts
-            Pixels whose colour no light has, and those that are too bright for half floats.
-        """
+    def convert(self, rgb: Floats) -> Converted:
         lights, limit = rgb.astype(float), np.finfo(np.float16 if self.depth == "half" else np.float32).max
         wrong = ~self.table.contains(lights)
         lights[wrong] = self.table.rgb(self.table.spectrum(lights[wrong], outside="clip"))
@@ -126,23 +85,6 @@ class LightUplifter(Converter):
         bright = (np.abs(values[0]) > limit).any(axis=-1) | (power > limit).any(axis=-1)
         counts = Counts(not_lights=int(wrong.sum()), too_bright=int(bright.sum()))
         return (np.clip(values[0], -limit, limit), np.clip(values[1], 0, limit)), counts
-
-
-@dataclass(frozen=True, eq=False)
-class _LightReader:
-    """From the numbers of an image to linear RGB of a table."""
-
-    linear: Callable[[Values], Values]
-    matrix: Array | None
-
-    def __call__(self, colours: Values) -> tuple[Floats, Counts]:
-        rgb = np.asarray(self.linear(colours), dtype=float)
-        usable = np.abs(rgb) <= MAX_VALUE  # NaN is not
-        rgb = np.where(usable, rgb, np.where(rgb > 0, BRIGHTEST, 0.0))
-        if self.matrix is not None:
-            rgb = rgb @ self.matrix.T
-        changed = int((~usable.all(axis=-1)).sum())
-        return rgb.astype(np.float32, copy=False), Counts(colours.size // 3, not_finite=changed)
 
 
 def prepare_lights(
@@ -179,8 +121,7 @@ def prepare_lights(
     Raises
     ------
     OptionError
-        The depth or encoding is unknown (``unsupported-depth``, ``unknown-encoding``), or the wavelengths do not ascend
-        (``wavelengths-not-ascending``).
+        The depth or encoding is unknown, or the wavelengths do not ascend.
     UnknownNameError
         The RGB space is unknown.
 

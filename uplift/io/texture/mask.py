@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.errors import TextureError
-from uplift.io.texture.colours import Floats, colour_channels
-from uplift.io.texture.source import Image, Part, Values, open_image
+from uplift.io.texture.channels import colour_channels
+from uplift.io.texture.colours import Floats
+from uplift.io.texture.image import Image, Part, Values, open_image
 
 MIN_WHITE = 0.5
 """Share of white that the largest weight of an integer mask has; smaller ones may be numbers of too many cubes."""
@@ -30,19 +31,7 @@ ToWeights = Callable[[Values], Floats]
 
 @dataclass(frozen=True, eq=False)
 class Mask:
-    """An open mask.
-
-    Parameters
-    ----------
-    image : Image
-        The file.
-    part : Part
-        Its first part.
-    channels : tuple of int
-        Channels that hold R, G and B.
-    to_weights : callable
-        From the numbers of the mask to weights, whose sum is 1.
-    """
+    """An open mask: its first part, the channels that hold R, G and B, and the meaning of their numbers."""
 
     image: Image
     part: Part
@@ -50,44 +39,17 @@ class Mask:
     to_weights: ToWeights
 
     def rows(self, first: int, count: int) -> Floats:
-        """Read weights.
-
-        Parameters
-        ----------
-        first, count : int
-            First row, from 0, and number of rows.
-
-        Returns
-        -------
-        ndarray of float32, shape (count, width, n)
-            Weights of the n cubes, whose sum is 1.
-        """
+        """Read weights (count, width, n) of the n cubes, whose sum is 1, from row ``first`` on, counted from 0."""
         band = self.image.rows(self.part, first, count)
         return self.to_weights(band[..., self.channels])
 
 
 @contextlib.contextmanager
 def open_mask(path: str | os.PathLike[str], cubes: int, window: tuple[int, int]) -> Iterator[Mask]:
-    """Open a mask. Its rows are read once to find out what its numbers are.
+    """Open a mask of at least two cubes, for an image of this width and height.
 
-    Parameters
-    ----------
-    path : path-like
-        OpenEXR, PNG, JPEG or TIFF image.
-    cubes : int
-        Number of cubes, at least 2.
-    window : tuple of int
-        Width and height of the image that it is a mask of.
-
-    Yields
-    ------
-    Mask
-
-    Raises
-    ------
-    TextureError
-        The file cannot be read, has another size than the image (code ``mask-size``), or numbers that are neither
-        numbers of the cubes nor weights (``mask-values``).
+    Its rows are read once to find out what its numbers are. Raises `TextureError` for a file that cannot be read or has
+    another size, and for numbers that are neither numbers of the cubes nor weights.
     """
     with open_image(path) as image:
         part = image.parts[0]

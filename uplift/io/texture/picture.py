@@ -10,26 +10,16 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import StrPath
 from uplift.common.errors import UpliftWarning
-from uplift.io.texture.colours import Counts, Floats, check_encoding, make_decoder
-from uplift.io.texture.part_layout import colour_channels_by_part
-from uplift.io.texture.source import Part, Values, open_image
-from uplift.io.texture.source_space import space_warnings
+from uplift.io.texture.channels import coloured_parts
+from uplift.io.texture.colours import Counts, Floats, check_encoding, make_decoder, space_warnings
+from uplift.io.texture.image import Part, Values, open_image
 
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """The colours of an image.
+    """Linear RGB (height, width, 3) in [0, 1], divided by alpha, and the alpha (height, width, 1) of divided colours.
 
-    Parameters
-    ----------
-    rgb : ndarray of float32, shape (height, width, 3)
-        Linear RGB in [0, 1], not multiplied by alpha.
-    opacity : ndarray of float32, shape (height, width, 1), or None
-        Alpha in [0, 1], if the file holds colours multiplied by it.
-    reduction : int
-        Pixels of the image per pixel of the picture, along each side.
-    warnings : tuple of UpliftWarning
-        Warnings about the image, not emitted.
+    ``reduction`` pixels of the image make one of the picture, along each side.
     """
 
     rgb: Floats
@@ -47,43 +37,15 @@ def read_picture(
     out_of_gamut: str = "clip",
     space: ImageSpace | None = None,
 ) -> Picture:
-    """Read the first part of an image that has colours. Pixels of a larger image are averaged in linear RGB,
-    weighted by alpha where the file holds colours multiplied by it.
+    """Read the first part of an image that has colours, at most ``max_side`` wide and high.
 
-    Parameters
-    ----------
-    path : path-like
-        OpenEXR, Radiance HDR, PNG, JPEG or TIFF image.
-    sensor : Sensor
-        RGB space of the colours.
-    max_side : int
-        Largest width and height of the picture.
-    encoding : {"auto", "linear", "encoded"}
-        Interpretation of the numbers; ``auto`` takes integers as encoded, floats as linear.
-    out_of_gamut : str
-        Gamut mapping for colours outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
-
-    space : ImageSpace, optional
-        RGB space of the image, by default the one that the file states.
-
-    Returns
-    -------
-    Picture
-
-    Raises
-    ------
-    TextureError
-        The image cannot be read, or has no colour channels.
-    ColourError
-        A colour lies outside [0, 1] and the gamut mapping is ``error``.
-    OptionError
-        An unknown encoding, or a gamut mapping that encoded floats do not allow.
+    Pixels of a larger image are averaged in linear RGB, weighted by alpha where the file holds colours multiplied by
+    it. Warnings are returned, not emitted. Raises `TextureError`, `ColourError` and `OptionError` as
+    `uplift.io.texture.convert`.
     """
     check_encoding(encoding)
     with open_image(path) as image:
-        part, channels = next(
-            (part, channels) for part, channels in colour_channels_by_part(image) if channels is not None
-        )
+        part, channels = coloured_parts(image)[0]
         decode = make_decoder(sensor, part, encoding, out_of_gamut, space)
         mean, opacities = _Reducer(part, max_side, 3), _Reducer(part, max_side, 1)
         counts = Counts()

@@ -33,6 +33,8 @@ class PixelEncoding(ABC):
     """Channel types that are precise enough, the default first."""
     is_linear: ClassVar[bool] = True
     """Whether the numbers are linear in the spectrum, and so can be filtered and multiplied by alpha."""
+    header: ClassVar[dict[str, str]] = {}
+    """Attributes that the layout requires."""
 
     @abstractmethod
     def channels(self, cube: Cube) -> tuple[str, ...]:
@@ -51,7 +53,7 @@ class PixelEncoding(ABC):
         Raises
         ------
         OptionError
-            The cube has no such numbers.
+            The cube has no such numbers, or wavelengths do not ascend.
         """
 
     @abstractmethod
@@ -70,16 +72,6 @@ class PixelEncoding(ABC):
         callable
             From linear RGB (..., 3), float32 in [0, 1], to numbers (..., N).
         """
-
-    def header(self) -> dict[str, str]:
-        """Return the attributes that the layout requires.
-
-        Returns
-        -------
-        dict
-            Attributes by name, none by default.
-        """
-        return {}
 
     def describe(self, cube: Cube) -> dict[str, Any]:
         """Return the encoding as JSON values.
@@ -114,67 +106,15 @@ class Spectrum(PixelEncoding):
     wavelengths: tuple[float, ...] | None = None
     name = "spectrum"
     depths = ("half", "float")
+    header = SPECTRAL_LAYOUT
 
     def channels(self, cube: Cube) -> tuple[str, ...]:
-        """Return the channel names; see `PixelEncoding`.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-
-        Returns
-        -------
-        tuple of str
-            One name per wavelength.
-
-        Raises
-        ------
-        OptionError
-            The wavelengths do not ascend (code ``wavelengths-not-ascending``).
-        """
         return spectral_channels("T", cube.resolve_wavelengths(self.wavelengths))
 
-    def header(self) -> dict[str, str]:
-        """Return the version of the spectral layout.
-
-        Returns
-        -------
-        dict
-            ``spectralLayoutVersion``.
-        """
-        return dict(SPECTRAL_LAYOUT)
-
     def describe(self, cube: Cube) -> dict[str, Any]:
-        """Return the name and the wavelengths.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-
-        Returns
-        -------
-        dict
-            ``as`` and ``wavelengths``.
-        """
         return {"as": self.name, "wavelengths": cube.resolve_wavelengths(self.wavelengths).tolist()}
 
     def make_sampler(self, cube: Cube, threads: int) -> Sampler:
-        """Return the function that computes reflectances.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-        threads : int
-            Number of threads.
-
-        Returns
-        -------
-        callable
-            From linear RGB (..., 3) to reflectances (..., N).
-        """
         from uplift.lookup import bulk
 
         return bulk.spectra(cube, self.wavelengths, threads=threads)
@@ -188,23 +128,6 @@ class Moments(PixelEncoding):
     depths = ("float", "half")
 
     def channels(self, cube: Cube) -> tuple[str, ...]:
-        """Return the channel names; see `PixelEncoding`.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-
-        Returns
-        -------
-        tuple of str
-            ``moment.00`` onwards.
-
-        Raises
-        ------
-        OptionError
-            The cube stores sigmoids (code ``no-moments``).
-        """
         model = cube.data.model
         if not isinstance(model, models.Moments):
             raise OptionError(
@@ -212,23 +135,9 @@ class Moments(PixelEncoding):
                 code="no-moments",
                 hint="write multipliers, or use a moments cube",
             )
-        return _numbered("moment", model.count)
+        return tuple(f"moment.{index:02}" for index in range(model.count))
 
     def make_sampler(self, cube: Cube, threads: int) -> Sampler:
-        """Return the function that computes moments.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-        threads : int
-            Number of threads.
-
-        Returns
-        -------
-        callable
-            From linear RGB (..., 3) to moments (..., C).
-        """
         from uplift.lookup import bulk
 
         return bulk.coefficients(cube, threads=threads)
@@ -246,35 +155,9 @@ class Multipliers(PixelEncoding):
     is_linear = False
 
     def channels(self, cube: Cube) -> tuple[str, ...]:
-        """Return the channel names; see `PixelEncoding`.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-
-        Returns
-        -------
-        tuple of str
-            ``multiplier.00`` onwards.
-        """
-        return _numbered("multiplier", cube.data.model.count)
+        return tuple(f"multiplier.{index:02}" for index in range(cube.data.model.count))
 
     def make_sampler(self, cube: Cube, threads: int) -> Sampler:
-        """Return the function that computes multipliers.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-        threads : int
-            Number of threads.
-
-        Returns
-        -------
-        callable
-            From linear RGB (..., 3) to multipliers (..., C).
-        """
         refined = partial(refined_multipliers, cube.data)
         width = cube.data.model.count
         return lambda rgb: blockwise(refined, rgb.astype(float), width, np.float32, threads)
@@ -285,24 +168,10 @@ PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {each.name: each for e
 
 
 def spectral_channels(quantity: str, wavelengths: Array) -> tuple[str, ...]:
-    """Name the channels of a spectral image in the layout of Fichet et al. 2021.
+    """Name the channels of ascending wavelengths (N,) in nm, such as ``T.550,000000nm``.
 
-    Parameters
-    ----------
-    quantity : {"T", "S0"}
-        Reflectance, or power that is not polarised.
-    wavelengths : ndarray, shape (N,)
-        Ascending wavelengths in nm.
-
-    Returns
-    -------
-    tuple of str
-        Such as ``T.550,000000nm``.
-
-    Raises
-    ------
-    OptionError
-        The wavelengths do not ascend (code ``wavelengths-not-ascending``).
+    The layout is that of Fichet et al. 2021: the quantity is T, reflectance, or S0, power that is not polarised. Raises
+    `OptionError` for wavelengths that do not ascend.
     """
     names = tuple(f"{quantity}." + f"{wavelength:.6f}nm".replace(".", ",") for wavelength in wavelengths)
     if (np.diff(wavelengths) <= 0).any() or len(set(names)) < len(names):
@@ -312,7 +181,3 @@ def spectral_channels(quantity: str, wavelengths: Array) -> tuple[str, ...]:
             hint="sort them and remove duplicates",
         )
     return names
-
-
-def _numbered(name: str, count: int) -> tuple[str, ...]:
-    return tuple(f"{name}.{index:02}" for index in range(count))

@@ -5,35 +5,25 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
-import threading
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import (
-    BrokenExecutor,
-    CancelledError,
-    Executor,
-    Future,
-    ThreadPoolExecutor,
-    as_completed,
-)
-from dataclasses import dataclass
+from collections.abc import Generator, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, as_completed
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from uplift.common.errors import OptionError, TextureError, UpliftError
 from uplift.common.files import check_outputs, remove_stale
 from uplift.common.processes import tied_processes
-from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.io.texture import exr_file
 from uplift.io.texture.conversion import Conversion, convert
-from uplift.io.texture.converter import Converter
+from uplift.io.texture.image import open_image
 from uplift.io.texture.lights import prepare_lights
-from uplift.io.texture.masked import prepare_masked
-from uplift.io.texture.pixel_encoding import PixelEncoding
-from uplift.io.texture.source import open_image
-from uplift.io.texture.uplifter import Uplifter, prepare
+from uplift.io.texture.pixel_encoding import PixelEncoding, Spectrum
+from uplift.io.texture.uplifter import Converter, prepare, prepare_masked
 from uplift.lights.lookup import load_emission
 from uplift.lookup import load
 
@@ -42,8 +32,6 @@ MAX_NAMES = 4
 DASK_TIMEOUT = "10s"
 DASK_CLOSE_SECONDS = 2
 
-T = TypeVar("T")
-
 
 @dataclass(frozen=True)
 class TextureSettings:
@@ -51,136 +39,62 @@ class TextureSettings:
 
     Parameters
     ----------
-    cube : str or None
-        Path of the cube, None for the default cube.
+    cubes : tuple of str or None
+        Path of the cube, or of the emission table; None for the default one. Several for a ``mask``.
     pixel_encoding : PixelEncoding
-        Numbers that a pixel holds.
+        Numbers that a pixel holds: a `Spectrum` for ``emission``.
     depth : {"half", "float"} or None
         Type of the channels, None for the default of the pixel encoding.
     encoding : {"auto", "linear", "encoded"}
         Interpretation of the numbers in images.
-    threads : int
-        Threads per process.
-    fill_missing : bool
-        Whether to add the nodes that a cube built for a scene lacks (`Cube.fill_missing`).
     out_of_gamut : str
-        Gamut mapping for pixels outside [0, 1].
+        Gamut mapping for pixels outside [0, 1]; not used for ``emission``.
     space : str or None
         RGB space of the images, None for the one that each file states.
+    mask : str or None
+        Path of the image of which cube a pixel belongs to; see `uplift.io.texture.mask`.
+    emission : bool
+        Whether pixels are light; see `prepare_lights`.
+    fill_missing : bool
+        Whether to add the nodes that a cube built for a scene lacks (`Cube.fill_missing`).
+    threads : int
+        Threads per process.
     """
 
-    cube: str | None
-    pixel_encoding: PixelEncoding
-    depth: str | None
-    encoding: str
-    threads: int
-    fill_missing: bool = False
+    cubes: tuple[str | None, ...] = (None,)
+    pixel_encoding: PixelEncoding = field(default_factory=Spectrum)
+    depth: str | None = None
+    encoding: str = "auto"
     out_of_gamut: str = "clip"
     space: str | None = None
+    mask: str | None = None
+    emission: bool = False
+    fill_missing: bool = False
+    threads: int = 2
 
-    @property
-    def inputs(self) -> tuple[str | None, ...]:
-        """Files that the settings name."""
-        return (self.cube,)
-
-    def prepare(self) -> Uplifter:
-        """Prepare the cube for textures.
+    def prepare(self) -> Converter:
+        """Prepare the cubes or the emission table for textures.
 
         Returns
         -------
-        Uplifter
-            The converter.
+        Converter
+            The converter to pass to `convert`.
         """
-        cube = load(self.cube)
+        shared: dict[str, Any] = {
+            "depth": self.depth,
+            "encoding": self.encoding,
+            "space": self.space,
+            "threads": self.threads,
+        }
+        if self.emission:
+            at = self.pixel_encoding.wavelengths if isinstance(self.pixel_encoding, Spectrum) else None
+            return prepare_lights(load_emission(self.cubes[0]), None if at is None else np.array(at), **shared)
+        cubes = [load(path) for path in self.cubes]
         if self.fill_missing:
-            cube = cube.fill_missing(threads=self.threads)
-        return prepare(
-            cube,
-            self.pixel_encoding,
-            depth=self.depth,
-            encoding=self.encoding,
-            out_of_gamut=self.out_of_gamut,
-            space=self.space,
-            threads=self.threads,
-        )
-
-
-@dataclass(frozen=True)
-class LightSettings:
-    """Settings that all images of lights in a sequence share.
-
-    Parameters
-    ----------
-    cube : str or None
-        Path of the emission table, None for that of the package.
-    wavelengths : tuple of float or None
-        Wavelengths of the channels in nm, None for those of the table.
-    depth, encoding, threads, space
-        As in `TextureSettings`.
-    """
-
-    cube: str | None
-    wavelengths: tuple[float, ...] | None
-    depth: str | None
-    encoding: str
-    threads: int
-    space: str | None = None
-
-    @property
-    def inputs(self) -> tuple[str | None, ...]:
-        """Files that the settings name."""
-        return (self.cube,)
-
-    def prepare(self) -> Converter:
-        """Prepare the emission table for textures.
-
-        Returns
-        -------
-        Converter
-            A `LightUplifter`.
-        """
-        return prepare_lights(
-            load_emission(self.cube),
-            None if self.wavelengths is None else np.array(self.wavelengths),
-            depth=self.depth,
-            encoding=self.encoding,
-            space=self.space,
-            threads=self.threads,
-        )
-
-
-@dataclass(frozen=True)
-class MaskedSettings:
-    """Settings of images with several cubes.
-
-    Parameters
-    ----------
-    cubes : tuple of TextureSettings
-        Settings of at least two cubes, which differ in the cube only.
-    mask : str
-        Path of the mask; see `uplift.io.texture.mask`.
-    """
-
-    cubes: tuple[TextureSettings, ...]
-    mask: str
-
-    @property
-    def inputs(self) -> tuple[str | None, ...]:
-        """Files that the settings name."""
-        return (*(each.cube for each in self.cubes), self.mask)
-
-    def prepare(self) -> Converter:
-        """Prepare the cubes for textures.
-
-        Returns
-        -------
-        Converter
-            A `MaskedUplifter`.
-        """
-        return prepare_masked([each.prepare() for each in self.cubes], Path(self.mask))
-
-
-Settings = TextureSettings | LightSettings | MaskedSettings
+            cubes = [cube.fill_missing(threads=self.threads) for cube in cubes]
+        shared["out_of_gamut"] = self.out_of_gamut
+        uplifters = [prepare(cube, self.pixel_encoding, **shared) for cube in cubes]
+        return uplifters[0] if self.mask is None else prepare_masked(uplifters, Path(self.mask))
 
 
 @dataclass(frozen=True)
@@ -189,7 +103,7 @@ class Job:
 
     Parameters
     ----------
-    settings : TextureSettings, LightSettings or MaskedSettings
+    settings : TextureSettings
         Settings of the sequence.
     source, target : Path
         The image to read and the file to write.
@@ -197,7 +111,7 @@ class Job:
         Whether to replace an existing file.
     """
 
-    settings: Settings
+    settings: TextureSettings
     source: Path
     target: Path
     force: bool = False
@@ -220,12 +134,12 @@ class Failure:
 
 
 @lru_cache(maxsize=1)
-def converter_for(settings: Settings) -> Converter:
+def converter_for(settings: TextureSettings) -> Converter:
     """Return the converter of the settings, which each process prepares once.
 
     Parameters
     ----------
-    settings : TextureSettings, LightSettings or MaskedSettings
+    settings : TextureSettings
         Settings of the sequence.
 
     Returns
@@ -247,15 +161,22 @@ def run(job: Job, progress: ProgressCallback = ignore_progress) -> Conversion | 
         return Failure(job.source, TextureError(problem, code="out-of-memory", path=job.source, hint=hint))
 
 
-def convert_all(jobs: Iterable[Job], executor: Executor) -> Iterator[Conversion | Failure]:
-    """Convert images in parallel. Closing the iterator cancels the jobs that have not started.
+def convert_all(
+    jobs: Iterable[Job], *, processes: int = 1, scheduler: str | None = None
+) -> Generator[Conversion | Failure]:
+    """Convert images one after the other, in several processes, or on a Dask cluster.
+
+    An exception and closing the iterator end the conversions. Unfinished files are removed, also when this process
+    ends.
 
     Parameters
     ----------
     jobs : iterable of Job
         The images.
-    executor : Executor
-        Where to run; see `process_executor` and `dask_executor`.
+    processes : int
+        Number of processes; 1 converts in the current process.
+    scheduler : str, optional
+        Address of a Dask scheduler, such as ``tcp://10.0.0.5:8786``, whose workers share the file system.
 
     Yields
     ------
@@ -264,35 +185,31 @@ def convert_all(jobs: Iterable[Job], executor: Executor) -> Iterator[Conversion 
 
     Raises
     ------
+    OptionError
+        The number of processes is below 1, Dask is not installed, or no scheduler responds.
     TextureError
-        The workers ended before all images were converted (code ``workers-lost``). The error lists the textures that
-        are finished; no other file remains.
+        The workers ended before all images were converted. The error lists the textures that are finished; no other
+        file remains.
     """
+    if processes < 1:
+        raise OptionError(f"the number of processes must be at least 1, got {processes}", hint="use 1 or more")
     jobs = list(jobs)
-    futures: dict[Future[Conversion | Failure], Job] = {}
+    if scheduler is None and processes == 1:
+        yield from map(run, jobs)
+        return
     finished: list[Path] = []
     try:
-        futures |= {executor.submit(run, job): job for job in jobs}
-        for future in as_completed(futures):
-            result = future.result()
-            if isinstance(result, Conversion):
-                finished.append(result.target)
-            yield result
+        with tied_processes(processes) if scheduler is None else _dask_executor(scheduler) as executor:
+            for future in as_completed([executor.submit(run, job) for job in jobs]):
+                result = future.result()
+                if isinstance(result, Conversion):
+                    finished.append(result.target)
+                yield result
     except Exception as error:
-        if not _is_lost(error):
+        is_of_dask = type(error).__module__.partition(".")[0] == "distributed"
+        if not (is_of_dask or isinstance(error, BrokenExecutor | CancelledError | TimeoutError)):
             raise
-        if isinstance(error, BrokenExecutor):
-            executor.shutdown()  # wait until the workers have closed their files
         raise _workers_lost(jobs, finished) from error
-    finally:
-        for future in futures:
-            future.cancel()
-
-
-def _is_lost(error: BaseException) -> bool:
-    """Return whether an error of an executor means that its workers or its scheduler ended."""
-    is_of_dask = type(error).__module__.partition(".")[0] == "distributed"
-    return is_of_dask or isinstance(error, BrokenExecutor | CancelledError | TimeoutError)
 
 
 def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
@@ -308,6 +225,40 @@ def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
         code="workers-lost",
         hint="resume with the others, with fewer processes if memory ran out",
     )
+
+
+@contextlib.contextmanager
+def _dask_executor(address: str) -> Iterator[Executor]:
+    """Connect to a cluster. Dask does not log lost connections, which are raised as errors. Raises `OptionError`."""
+    try:
+        import distributed
+    except ImportError as error:
+        raise OptionError(
+            "clusters need Dask, which is not installed",
+            code="dask-not-installed",
+            hint="install it: pip install 'spectral-uplift[cluster]'",
+        ) from error
+    levels = {handler: handler.level for handler in logging.getLogger("distributed").handlers}
+    try:
+        for handler in levels:
+            handler.setLevel(logging.CRITICAL + 1)
+        try:
+            client = distributed.Client(address, timeout=DASK_TIMEOUT)
+        except Exception as error:  # each protocol has its own, such as RuntimeError for missing certificates
+            reason = " ".join(str(error).split())
+            raise OptionError(
+                f"no Dask scheduler can be used at '{address}'" + (f": {reason}" if reason else ""),
+                code="dask-unreachable",
+                hint="start one: dask scheduler",
+            ) from error
+        try:
+            yield client.get_executor()
+        finally:
+            with contextlib.suppress(Exception):  # of a scheduler that has ended
+                client.close(timeout=DASK_CLOSE_SECONDS)
+    finally:
+        for handler, level in levels.items():
+            handler.setLevel(level)
 
 
 def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
@@ -329,7 +280,7 @@ def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
     Raises
     ------
     TextureError
-        Two images have the same target (code ``duplicate-target``).
+        Two images have the same target.
     OutputError
         A target cannot be written, exists, or is an image or the cube of any job.
     """
@@ -343,7 +294,7 @@ def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
                 hint="write them to different folders",
             )
     remaining = [job for job in jobs if not (resume and _is_up_to_date(job))]
-    inputs = [path for job in jobs for path in (job.source, *job.settings.inputs)]
+    inputs = [path for job in jobs for path in (job.source, *job.settings.cubes, job.settings.mask)]
     for force in (False, True):
         check_outputs([job.target for job in remaining if job.force == force], inputs=inputs, force=force)
     return remaining
@@ -354,122 +305,9 @@ def _is_up_to_date(job: Job) -> bool:
     try:
         if job.target.stat().st_mtime < job.source.stat().st_mtime:
             return False
-    except OSError:
-        return False
-    header = converter_for(job.settings).header
-    try:
+        header = converter_for(job.settings).header
         with open_image(job.target) as image:
             equal = all(image.header_text(name) == header[name] for name in ("uplift.cube", "uplift.texture"))
-    except TextureError:
+    except (OSError, TextureError):
         return False
     return equal and exr_file.is_intact(job.target)
-
-
-@contextlib.contextmanager
-def process_executor(count: int) -> Iterator[Executor]:
-    """Start processes on this machine; a single one is a thread of the current process.
-
-    The processes end, and remove their unfinished files, when this process ends in any way or the block raises.
-
-    Parameters
-    ----------
-    count : int
-        Number of processes, at least 1.
-
-    Yields
-    ------
-    Executor
-        The executor to pass to `convert_all`.
-
-    Raises
-    ------
-    OptionError
-        The number is below 1 (code ``too-few-processes``).
-    """
-    if count < 1:
-        raise OptionError(
-            f"the number of processes must be at least 1, got {count}",
-            code="too-few-processes",
-            hint="use 1 or more",
-        )
-    with _OneThread() if count == 1 else tied_processes(count) as pool:
-        yield pool
-
-
-class _OneThread(ThreadPoolExecutor):
-    """A thread whose job ends at its next report of progress when the block raises."""
-
-    def __init__(self) -> None:
-        super().__init__(1)
-        self._is_stopped = threading.Event()
-
-    def submit(self, function: Callable[..., T], /, *args: Any, **options: Any) -> Future[T]:
-        """Submit a job that takes ``progress``."""
-        return super().submit(function, *args, progress=self._check, **options)
-
-    def __exit__(self, kind: type[BaseException] | None, *rest: Any) -> None:
-        """Wait for the running job."""
-        if kind is not None:
-            self._is_stopped.set()
-        super().__exit__(kind, *rest)
-
-    def _check(self, progress: Progress) -> None:
-        if self._is_stopped.is_set():
-            raise CancelledError
-
-
-@contextlib.contextmanager
-def dask_executor(address: str) -> Iterator[Executor]:
-    """Connect to a Dask cluster whose workers share the file system.
-
-    Parameters
-    ----------
-    address : str
-        Address of the scheduler, such as ``tcp://10.0.0.5:8786``.
-
-    Yields
-    ------
-    Executor
-        The executor to pass to `convert_all`.
-
-    Raises
-    ------
-    OptionError
-        Dask is not installed (code ``dask-not-installed``), or no scheduler responds (``dask-unreachable``).
-    """
-    try:
-        import distributed
-    except ImportError as error:
-        raise OptionError(
-            "clusters need Dask, which is not installed",
-            code="dask-not-installed",
-            hint="install it: pip install 'spectral-uplift[cluster]'",
-        ) from error
-    with _quiet_dask():
-        try:
-            client = distributed.Client(address, timeout=DASK_TIMEOUT)
-        except Exception as error:  # each protocol has its own, such as RuntimeError for missing certificates
-            reason = " ".join(str(error).split())
-            raise OptionError(
-                f"no Dask scheduler can be used at '{address}'" + (f": {reason}" if reason else ""),
-                code="dask-unreachable",
-                hint="start one: dask scheduler",
-            ) from error
-        try:
-            yield client.get_executor()
-        finally:
-            with contextlib.suppress(Exception):  # of a scheduler that has ended
-                client.close(timeout=DASK_CLOSE_SECONDS)
-
-
-@contextlib.contextmanager
-def _quiet_dask() -> Iterator[None]:
-    """Keep Dask from logging tracebacks of lost connections, which are raised as errors."""
-    handlers = {handler: handler.level for handler in logging.getLogger("distributed").handlers}
-    for handler in handlers:
-        handler.setLevel(logging.CRITICAL + 1)
-    try:
-        yield
-    finally:
-        for handler, level in handlers.items():
-            handler.setLevel(level)

@@ -15,8 +15,7 @@ import numpy as np
 from uplift.common.errors import OutputError, TextureError
 from uplift.common.files import atomic_write
 from uplift.io.texture import exr_file
-from uplift.io.texture.file_name import utf8_name
-from uplift.io.texture.source import Attribute, Values, Window, read_error
+from uplift.io.texture.image import Attribute, Values, Window, open_image, read_error, utf8_name
 
 ROWS_PER_CHUNK = 16
 """Rows that OpenEXR compresses together as ZIP."""
@@ -77,7 +76,6 @@ class Writer:
 
         self._path, self._specs = path, [part.spec() for part in parts]
         self._specs[0].attribute(exr_file.CHECKSUM, exr_file.NO_CHECKSUM)
-        self._heights = [part.window.height for part in parts]
         self._total = sum(part.window.height * part.window.width * len(part.channels) for part in parts)
         self._written = 0
         specs = tuple(self._specs) if len(self._specs) > 1 else self._specs[0]
@@ -104,12 +102,7 @@ class Writer:
         """Finish the file, check that all of it is there, and add its checksum. Raises `OSError` and `OutputError`."""
         self._check(self._handle.close())
         self._handle = None  # closed only now, if the image is an environment map
-        try:  # a disk that fills up with the last bytes gives no other sign
-            exr_file.check_chunks(self._path, self._heights, ROWS_PER_CHUNK)
-        except TextureError as error:
-            raise OutputError(
-                "the file is incomplete", code="incomplete-write", hint="free space on the disk"
-            ) from error
+        self._check_end()
         exr_file.seal(self._path)
 
     def abort(self) -> None:
@@ -118,6 +111,17 @@ class Writer:
             return
         self._handle.close()
         read_error(self._handle)  # otherwise it is printed when the process ends
+
+    def _check_end(self) -> None:
+        """Raise `OutputError` if the last rows cannot be read: a disk that fills up with them gives no other sign."""
+        try:
+            with open_image(self._path) as image:
+                for part in image.parts:
+                    image.rows(part, part.window.height - 1, 1)
+        except TextureError as error:
+            raise OutputError(
+                "the file is incomplete", code="incomplete-write", hint="free space on the disk"
+            ) from error
 
     def _check_space(self) -> None:
         """Raise `OutputError` at the first rows if the rest of the image will not fit on the disk."""

@@ -13,8 +13,8 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.scene_colours import Images, cells_touched
-from uplift.io.texture.part_layout import colour_channels_by_part
-from uplift.io.texture.source import open_image
+from uplift.io.texture.channels import colour_channels_by_part
+from uplift.io.texture.image import open_image
 from uplift.lattice import Lattice
 from uplift.lattice.entry_boxes import EntryBoxes
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OptionError, TextureError, unknown_name
-from uplift.io.texture.colours import colour_channels
-from uplift.io.texture.source import Part, Values, open_image
+from uplift.io.texture.channels import colour_channels
+from uplift.io.texture.image import Part, Values, open_image
 
 MAX_PIXELS = 1 << 20
 """Pixels that a page can light in real time."""

@@ -17,11 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.errors import ColourError, TextureError
+from uplift.common.errors import ColourError, TextureError, UpliftError
 from uplift.common.memory import total_memory
 from uplift.io.texture import exr_file
 from uplift.io.texture.colour_profile import Profile, read_profile
-from uplift.io.texture.file_name import utf8_name
 
 FORMATS = ("openexr", "hdr", "png", "jpeg", "tiff")
 MAX_BAND_BYTES = 1 << 25
@@ -73,32 +72,10 @@ class Attribute:
 
 @dataclass(frozen=True)
 class Part:
-    """One part of a file. Files of formats other than OpenEXR have one part.
+    """One part of a file; files of formats other than OpenEXR have one.
 
-    Parameters
-    ----------
-    number : int
-        Index of the part.
-    name : str
-        Name, empty if it has none.
-    window : Window
-        Data and display window.
-    channels : tuple of str
-        Names of the channels.
-    types : tuple of str
-        Types of the channels: half, float, uint, uint8 or uint16.
-    rows_per_block : int
-        Rows that are decoded together.
-    is_tiled : bool
-        Whether the part is stored in tiles.
-    profile : Profile or None
-        The colour space that the file states.
-    date : str or None
-        The date that the file states.
-    metadata : mapping of str to Attribute
-        Statements of the file that textures keep, such as its author, frame rate or camera.
-    has_associated_alpha : bool
-        Whether colours next to an alpha are multiplied by it.
+    ``types`` of the channels are half, float, uint, uint8 or uint16. ``rows_per_block`` rows are decoded together.
+    ``metadata`` are statements of the file that textures keep, such as its author, frame rate or camera.
     """
 
     number: int
@@ -112,6 +89,7 @@ class Part:
     date: str | None
     metadata: Mapping[str, Attribute] = field(default_factory=dict)
     has_associated_alpha: bool = False
+    """Whether colours next to an alpha are multiplied by it."""
 
     @property
     def max_code(self) -> int:
@@ -139,6 +117,7 @@ class Image:
 
     def rows(self, part: Part, first: int, count: int) -> Values:
         """Read rows (count, width, channels) from row ``first`` of the window, as `bands` does."""
+        self.handle.seek_subimage(part.number, 0)
         top = part.window.y + first
         return self._band(part, top, top + count)
 
@@ -382,3 +361,13 @@ def read_error(source: Any) -> str:
         return " ".join(source.geterror().split())
     except UnicodeDecodeError:  # it quotes bytes of the file
         return UNKNOWN_PROBLEM
+
+
+def utf8_name(path: Path, error: type[UpliftError]) -> str:
+    """Return the name of a file for OpenImageIO, which opens only names that are UTF-8. Raises ``error``."""
+    name = os.fspath(path)
+    try:
+        name.encode()
+    except UnicodeEncodeError as cause:
+        raise error("the file name is not UTF-8", code="name-not-utf8", path=path, hint="rename the file") from cause
+    return name
