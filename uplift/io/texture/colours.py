@@ -241,7 +241,7 @@ def make_decoder(
 
 
 def reads_codes(part: Part, source: ImageSpace | None) -> bool:
-    """Return whether the numbers of a part are codes of their space, whatever the encoding of floats."""
+    """Return whether the numbers of a part are codes of their space, independent of the encoding of floats."""
     return bool(part.max_code) or (source is not None and source.floats_are_codes)
 
 
