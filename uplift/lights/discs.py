@@ -1,4 +1,4 @@
-"""Lamps in discs over chromaticity: within a disc, answers blend to the lamp at its centre."""
+"""Measured lamps in discs over u′v′: within a disc, answers blend to the lamp at its centre."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ from itertools import product
 
 import numpy as np
 
+from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array, Indices
+from uplift.lights.lattice import DENOMINATOR, ChromaticityLattice, chromaticity
 
 BINS = 256
 """Bins along u′ and v′, which range from 0 to 1."""
 MIN_RADIUS = 1e-4
 """Radius in u′v′ below which single precision does not resolve a disc."""
+MAX_RADIUS = 0.01
+"""Largest radius of a disc of a build in u′v′."""
+SAME_CHROMATICITY = 1e-5
+"""Distance in u′v′ at which two constraints are one: they have one RGB."""
+CLEARANCE = 2e-3
+"""Distance in u′v′ that other lamps keep from constraints: about two just noticeable differences."""
 
 
 @dataclass(frozen=True, eq=False)
 class DiscHits:
-    """Chromaticities in discs.
+    """Those of n chromaticities that lie in discs.
 
-    Parameters
-    ----------
-    rows : ndarray of int, shape (k,)
-        Numbers of the chromaticities.
-    entry : ndarray of int, shape (k,)
-        Numbers of the lamps.
-    share : ndarray, shape (k,)
-        Share of the lamp in the answer: 1 at its chromaticity, 0 on the circle.
-    exit_uv : ndarray, shape (k, 2)
-        Where the ray from the lamp through the chromaticity leaves the disc: the rest of the answer is that of the
-        lattice there.
+    `rows` and `entry` (k,) number the chromaticities and their lamps. `share` (k,) of the answer is the lamp: 1 at its
+    chromaticity, 0 on the circle. The rest is the answer of the lattice at `exit_uv` (k, 2), where the ray from the
+    lamp through the chromaticity leaves the disc.
     """
 
     rows: Indices
@@ -41,18 +41,9 @@ class DiscHits:
 
 @dataclass(frozen=True, eq=False)
 class LampEntries:
-    """Measured lamps that a table returns exactly at their chromaticities.
+    """Measured lamps that a table returns exactly: E names, each once, u′v′ (E, 2), spectra (E, N) and radii (E,).
 
-    Parameters
-    ----------
-    names : tuple of str
-        Names, each once.
-    uv : ndarray, shape (E, 2)
-        u′v′ of the lamps.
-    spectra : ndarray, shape (E, N)
-        Power of unit X + 15 Y + 3 Z.
-    radius : ndarray, shape (E,)
-        Radius in u′v′ of the disc around each lamp in which answers blend to it. Discs do not overlap.
+    Spectra have unit X + 15 Y + 3 Z. The radius is that of the disc, in u′v′; discs do not overlap.
     """
 
     names: tuple[str, ...]
@@ -61,18 +52,7 @@ class LampEntries:
     radius: Array
 
     def locate(self, uv: Array) -> DiscHits:
-        """Find the discs of chromaticities.
-
-        Parameters
-        ----------
-        uv : ndarray, shape (n, 2)
-            u′v′.
-
-        Returns
-        -------
-        DiscHits
-            Those in a disc.
-        """
+        """Find the discs of chromaticities (n, 2)."""
         places, lists = self._candidates
         u, v = _bins(uv).T
         listed = places.take(u * BINS + v)
@@ -109,6 +89,55 @@ class LampEntries:
         return places, lists
 
 
+def lamp_entries(
+    constraints: Lamps, others: Lamps, lattice: ChromaticityLattice, radiometry: Array
+) -> tuple[LampEntries, tuple[tuple[str, str], ...]]:
+    """Give each lamp a disc that reaches half of the way to the next one, and does not leave the lattice.
+
+    Other lamps are exact unless they are close to a constraint, or have nearly the chromaticity of another lamp: of two
+    lamps of one RGB neither is exact, and the expected light averages them. `radiometry` (N, 3) leads from power to
+    XYZ. Returns also the constraints that are left out, each with an earlier one of the same chromaticity.
+    """
+    power, uv = _unit(constraints.power, radiometry)
+    kept: list[int] = []
+    duplicates: list[tuple[str, str]] = []
+    for row, name in enumerate(constraints.names):
+        twins = [other for other in kept if np.linalg.norm(uv[row] - uv[other]) <= SAME_CHROMATICITY]
+        if twins:
+            duplicates.append((name, constraints.names[twins[0]]))
+        else:
+            kept.append(row)
+    more, more_uv = _unit(others.power, radiometry)
+    clear = np.flatnonzero(_distances(more_uv, uv[kept]).min(axis=1, initial=np.inf) > CLEARANCE)
+    names = (*(constraints.names[row] for row in kept), *(others.names[row] for row in clear))
+    uv = np.concatenate([uv[kept], more_uv[clear]])
+    spectra = np.concatenate([power[kept], more[clear]])
+    apart = _distances(uv, uv) + np.diag(np.full(len(uv), np.inf))
+    radius = np.minimum(apart.min(axis=1) / 2, MAX_RADIUS)
+    radius = np.minimum(radius, _to_rim(uv, lattice))
+    resolved = np.flatnonzero((np.arange(len(names)) < len(kept)) | (radius >= MIN_RADIUS))
+    entries = LampEntries(tuple(names[row] for row in resolved), uv[resolved], spectra[resolved], radius[resolved])
+    return entries, tuple(duplicates)
+
+
 def _bins(uv: Array) -> Indices:
     """Bins (n, 2) along u′ and v′."""
     return np.clip(uv * float(BINS), 0, BINS - 1).astype(np.int64)
+
+
+def _unit(power: Array, radiometry: Array) -> tuple[Array, Array]:
+    """Power of unit X + 15 Y + 3 Z, and u′v′."""
+    unit = power / (power @ radiometry @ DENOMINATOR)[:, None]
+    return unit, chromaticity(unit @ radiometry)
+
+
+def _distances(first: Array, second: Array) -> Array:
+    return np.asarray(np.linalg.norm(first[:, None] - second, axis=-1))
+
+
+def _to_rim(uv: Array, lattice: ChromaticityLattice) -> Array:
+    """Distances (n,) from the polygon; 0 on it."""
+    edges = np.roll(lattice.knots, -1, axis=0) - lattice.knots
+    offset = uv[:, None] - lattice.knots
+    across = edges[:, 0] * offset[..., 1] - edges[:, 1] * offset[..., 0]
+    return np.asarray((across / np.linalg.norm(edges, axis=1)).min(axis=1).clip(0.0))

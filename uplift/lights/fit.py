@@ -1,12 +1,12 @@
-"""Fit the nodes of an emission table: the light expected at each chromaticity, moved least to it exactly."""
+"""Fit the nodes of an emission table: the rim of single wavelengths, and expected lights moved to chromaticities."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices
 from uplift.fit.solve import solve
-from uplift.lights.lattice import DENOMINATOR, ChromaticityLattice, chromaticity, unit_xyz
+from uplift.lights.lattice import BEND, DENOMINATOR, ChromaticityLattice, chromaticity, unit_xyz
 from uplift.models.exponential import Exponential
 from uplift.models.minimum_norm import forward_map
 
@@ -15,24 +15,62 @@ TOLERANCE = 1e-9
 MAX_PASSES = 60
 FAINTEST = 1e-6
 """Smallest power of a prior as a share of its mean: the model has positive powers only."""
+MIN_ANGLE = 1e-3
+"""Smallest angle in radians between a wavelength inside the convex polygon and its neighbours on the rim."""
+
+
+def locus_lattice(radiometry: Array, white: Array, knots: int, rings: Array) -> tuple[ChromaticityLattice, Array]:
+    """Create a lattice whose rim is the spectral locus, the polygon of the chromaticities of single wavelengths.
+
+    Every corner of the polygon is a knot; the others divide its longest edges, as white views them, until there are
+    `knots`. Returns also the power (K, N) of unit X + 15 Y + 3 Z at the knots. `radiometry` (N, 3) leads from power to
+    XYZ, `white` (2,) is u′v′ of the centre.
+    """
+    # The locus is not quite convex: from 575 to 700 nm, mixtures of wavelengths lie outside it by up to BEND. They have
+    # a place on the rim nevertheless, next to the wavelengths between them. On the convex polygon, pure orange would be
+    # a mixture of yellow and red.
+    size = radiometry @ DENOMINATOR
+    visible = np.flatnonzero(size > 0)
+    uv = chromaticity(radiometry[visible])
+    corners = _corners(uv, white)
+    rim = np.zeros((len(corners), len(radiometry)))
+    rim[np.arange(len(corners)), visible[corners]] = 1 / size[visible[corners]]
+    places = uv[corners]
+    while len(places) < knots:
+        edge = int(np.argmax(_angles(places - white, np.roll(places, -1, axis=0) - white)))
+        places, rim = (
+            np.insert(array, edge + 1, (array[edge] + array[(edge + 1) % len(array)]) / 2, axis=0)
+            for array in (places, rim)
+        )
+    return ChromaticityLattice(white, places, rings), rim
+
+
+def _corners(uv: Array, white: Array) -> Indices:
+    """Corners of the convex polygon of chromaticities (n, 2), and others that lie on it but for `BEND`, in order."""
+    from scipy.spatial import ConvexHull
+
+    hull = ConvexHull(uv).vertices
+    length = ChromaticityLattice(white, uv[hull], np.array([0.0, 1.0])).polar(uv - white)[2]
+    corners = list(hull)
+    for row in np.flatnonzero(length >= 1 - BEND):
+        apart = np.abs(_angles(uv[corners] - white, np.broadcast_to(uv[row] - white, (len(corners), 2))))
+        if apart.min() >= MIN_ANGLE:
+            corners.append(row)
+    turn = _angles(np.broadcast_to(uv[hull[0]] - white, (len(corners), 2)), uv[corners] - white) % (2 * np.pi)
+    return np.array(corners)[np.argsort(turn)]
+
+
+def _angles(first: Array, second: Array) -> Array:
+    """Angles (n,) in radians from vectors (n, 2) to others, counterclockwise."""
+    cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    return np.asarray(np.arctan2(cross, (first * second).sum(axis=1)))
 
 
 def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
-    """Move spectra to chromaticities, each by the smoothest and smallest factor.
+    """Move spectra (n, N), of any scale, to chromaticities (n, 2), each by the smoothest and smallest factor.
 
-    Parameters
-    ----------
-    prior : ndarray, shape (n, N)
-        Expected power, of any scale.
-    uv : ndarray, shape (n, 2)
-        u′v′ within the spectral locus.
-    radiometry : ndarray, shape (N, 3)
-        From power to XYZ, at evenly spaced wavelengths.
-
-    Returns
-    -------
-    ndarray, shape (n, N)
-        Power of unit X + 15 Y + 3 Z. Chromaticities near the spectral locus may be missed; see `mix_with_rim`.
+    `radiometry` (N, 3) leads from power, at evenly spaced wavelengths, to XYZ. Returns power (n, N) of unit
+    X + 15 Y + 3 Z. Chromaticities near the spectral locus may be missed; see `mix_with_rim`.
     """
     model = Exponential(len(radiometry), 0.0, 1.0)
     wavelengths = np.linspace(0.0, 1.0, len(radiometry))
@@ -54,50 +92,26 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
 
 
 def mix_with_rim(power: Array, uv: Array, lattice: ChromaticityLattice, rim: Array, radiometry: Array) -> Array:
-    """Remove the last differences in chromaticity by adding a little light of the rim.
+    """Remove the last differences of power (n, N) from chromaticities (n, 2) by adding a little light of the rim.
 
-    Parameters
-    ----------
-    power : ndarray, shape (n, N)
-        Power of unit X + 15 Y + 3 Z.
-    uv : ndarray, shape (n, 2)
-        u′v′ that the spectra must have.
-    lattice : ChromaticityLattice
-        Lattice of K knots.
-    rim : ndarray, shape (K, N)
-        Power of unit X + 15 Y + 3 Z at the knots.
-    radiometry : ndarray, shape (N, 3)
-        From power to XYZ.
-
-    Returns
-    -------
-    ndarray, shape (n, N)
-        Power of unit X + 15 Y + 3 Z, with the chromaticities ``uv`` up to rounding.
-    """
-    reached = chromaticity(power @ radiometry)
-    share, sector, along = _exits(reached, uv, lattice)
-    following = (sector + 1) % len(rim)
-    edge = (1 - along)[:, None] * rim[sector] + along[:, None] * rim[following]
-    return np.asarray((1 - share)[:, None] * power + share[:, None] * edge)
-
-
-def _exits(start: Array, goal: Array, lattice: ChromaticityLattice) -> tuple[Array, Array, Array]:
-    """Where rays from ``start`` through ``goal`` (n, 2) leave the polygon.
-
-    Returns the share of that point in the mixture with ``start`` that gives the goal, its sector, and its position.
+    `rim` (K, N) is the power at the knots; it, `power` and the result have unit X + 15 Y + 3 Z.
     """
     knots = lattice.knots
     edges = np.roll(knots, -1, axis=0) - knots
-    direction = goal - start
+    reached = chromaticity(power @ radiometry)
+    # Where rays from the chromaticity that was reached through the wanted one leave the polygon: the solutions of
+    # reached + length (uv − reached) = knot + along edge, for all rays and edges.
+    direction = uv - reached
     denominator = direction[:, None, 0] * edges[:, 1] - direction[:, None, 1] * edges[:, 0]
-    offset = knots - start[:, None]
+    offset = knots - reached[:, None]
     valid = np.abs(denominator) > 0
     safe = np.where(valid, denominator, 1.0)
     length = (offset[..., 0] * edges[:, 1] - offset[..., 1] * edges[:, 0]) / safe
     along = (offset[..., 0] * direction[:, None, 1] - offset[..., 1] * direction[:, None, 0]) / safe
     inside = valid & (length > 0) & (along >= -1e-9) & (along <= 1 + 1e-9)
     length = np.where(inside, length, np.inf)
-    sector = length.argmin(axis=1)
-    rows = np.arange(len(start))
-    share = 1 / np.maximum(length[rows, sector], 1.0)
-    return share, sector, np.clip(along[rows, sector], 0.0, 1.0)
+    rows, sector = np.arange(len(uv)), length.argmin(axis=1)
+    share = (1 / np.maximum(length[rows, sector], 1.0))[:, None]
+    position = np.clip(along[rows, sector], 0.0, 1.0)[:, None]
+    edge = (1 - position) * rim[sector] + position * rim[(sector + 1) % len(rim)]
+    return np.asarray((1 - share) * power + share * edge)

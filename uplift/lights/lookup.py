@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.colorimetry.gamut import as_rgb
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError, OptionError
-from uplift.lights.spectra import TREATMENTS, errors, is_light, resample, spectra
+from uplift.lattice import weighted_sum
+from uplift.lights.lattice import BEND, DENOMINATOR, Cells
 from uplift.lights.table import EmissionData, is_emission_table, read_emission, write_emission
 from uplift.lookup.blocks import Function, blockwise
 from uplift.lookup.validation import as_float_type, as_thread_count, as_wavelengths
@@ -24,6 +26,8 @@ EMISSION = Path(__file__).with_name("emission.uplift")
 """The packaged table of linear sRGB."""
 MAX_VALUE = 1e30
 """Limit of the components of a colour."""
+FAR = 10.0
+"""Bound of u′v′ of colours that no light has; those of lights are within 0 and 1."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -174,21 +178,19 @@ class EmissionTable:
         """Spectral power (..., N) of colours (..., 3), whose rows are converted to XYZ block by block."""
         if outside not in TREATMENTS:
             raise OptionError(
-                f"unknown treatment of colours outside '{outside}'",
-                code="unknown-treatment",
-                hint=f"use one of {', '.join(TREATMENTS)}",
+                f"unknown treatment of colours outside '{outside}'", hint=f"use one of {', '.join(TREATMENTS)}"
             )
         at = self.wavelengths if wavelengths is None else as_wavelengths(wavelengths)
         kind, count = as_float_type(dtype), as_thread_count(threads)
-        samples = resample(self.data, at, kind)
-        treat = TREATMENTS[outside]
-        return blockwise(
-            lambda rows: spectra(self.data, samples, treat, convert(rows)),
-            as_rgb(colours),
-            len(at),
-            kind,
-            count,
+        nodes, entries = (
+            _resample(spectra, self.wavelengths, at).astype(kind, copy=False)
+            for spectra in (self.data.spectra.reshape(-1, len(self.wavelengths)), self.data.entries.spectra)
         )
+
+        def power(rows: Array) -> NDArray[Any]:
+            return _power(self.data, nodes, entries, TREATMENTS[outside], convert(rows))
+
+        return blockwise(power, as_rgb(colours), len(at), kind, count)
 
     def _rows_to_xyz(self, rgb: NDArray[Any]) -> Array:
         return np.asarray(matmul_rows(_checked(rgb), self.data.rgb_to_xyz.T))
@@ -261,7 +263,7 @@ class EmissionTable:
             Values that are not finite.
         """
         xyz = self.xyz(rgb)
-        return is_light(self.data, xyz.reshape(-1, 3)).reshape(xyz.shape[:-1])
+        return _is_light(self.data, xyz.reshape(-1, 3)).reshape(xyz.shape[:-1])
 
     def expected_error(self, rgb: ArrayLike) -> Array:
         """Estimate how far surfaces lit by an answer are from those lit by a measured lamp of the same chromaticity.
@@ -283,7 +285,14 @@ class EmissionTable:
         ColourError
             Values that are not finite, or a colour that no light has (``colour-not-a-light``).
         """
-        return blockwise(partial(errors, self.data), self.xyz(rgb), 1)[..., 0]
+
+
+        def errors(xyz: Array) -> Array:
+            cells, _ = _cells(self.data, _refuse, xyz, *_chromaticities(xyz))
+            corners = self.data.lattice.corners(cells)
+            return weighted_sum(self.data.error.reshape(-1, 1).astype(float), corners, cells.weights)
+
+        return blockwise(errors, self.xyz(rgb), 1)[..., 0]
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Write the file of the table, atomically.
@@ -347,3 +356,94 @@ def _checked(colours: NDArray[Any]) -> Array:
     if not (np.abs(array) <= MAX_VALUE).all():
         raise ColourError(f"colours of lights must be finite, and at most {MAX_VALUE:g}", code="rgb-not-finite")
     return array
+
+
+def _resample(spectra: Values, grid: Array, wavelengths: Array) -> Values:
+    """Interpolate spectra (n, M) on a grid (M,) linearly at wavelengths (N,), constant outside the grid."""
+    if np.array_equal(wavelengths, grid):
+        return spectra
+    place = np.clip(np.interp(wavelengths, grid, np.arange(len(grid))), 0, len(grid) - 1)
+    low = np.minimum(place.astype(int), len(grid) - 2)
+    share = place - low
+    return np.asarray(spectra[:, low] * (1 - share) + spectra[:, low + 1] * share)
+
+
+Treatment = Callable[[EmissionData, Array], tuple[Array, Array]]
+"""What is done with XYZ (m, 3) that no light has: return their u′v′ (m, 2) and X + 15 Y + 3 Z (m,)."""
+
+
+def _power(data: EmissionData, nodes: Values, entries: Values, treat: Treatment, xyz: Array) -> NDArray[Any]:
+    """Power (n, N) of lights of XYZ (n, 3), in the type of the spectra of the nodes (K · R, N) and lamps (E, N)."""
+    uv, size = _chromaticities(xyz)
+    discs = data.entries.locate(uv)
+    uv[discs.rows] = discs.exit_uv
+    cells, size = _cells(data, treat, xyz, uv, size)
+    entry_size = size[discs.rows] * discs.share
+    size[discs.rows] -= entry_size
+    power = weighted_sum(nodes, data.lattice.corners(cells), cells.weights * size[:, None])
+    power[discs.rows] += entry_size[:, None].astype(power.dtype) * entries[discs.entry]
+    return power
+
+
+def _chromaticities(xyz: Array) -> tuple[Array, Array]:
+    """u′v′ (n, 2), column by column, and X + 15 Y + 3 Z (n,); any u′v′ within `FAR` where that is not positive."""
+    x, y, z = np.ascontiguousarray(xyz.T)
+    size = x + 15.0 * y + 3.0 * z
+    known = np.where(size > 0, size, np.inf)
+    uv = np.empty((2, len(xyz)))
+    with np.errstate(over="ignore"):
+        np.divide(4.0 * x, known, out=uv[0])
+        np.divide(9.0 * y, known, out=uv[1])
+    return np.clip(uv, -FAR, FAR, out=uv).T, size
+
+
+def _cells(data: EmissionData, treat: Treatment, xyz: Array, uv: Array, size: Array) -> tuple[Cells, Array]:
+    """Cells of chromaticities (n, 2), and X + 15 Y + 3 Z (n,), after the treatment of those that no light has."""
+    lattice = data.lattice
+    sector, along, length = lattice.polar(uv - lattice.white)
+    rows = np.flatnonzero((size <= 0) | (length > 1))
+    if rows.size:
+        moved, size[rows] = treat(data, xyz[rows])
+        sector[rows], along[rows], length[rows] = lattice.polar(moved - lattice.white)
+    return lattice.cells(sector, along, length), size
+
+
+def _homogeneous(data: EmissionData, xyz: Array) -> tuple[Array, Array]:
+    """u′v′ from white (n, 2), times X + 15 Y + 3 Z, and X + 15 Y + 3 Z (n,)."""
+    size = xyz @ DENOMINATOR
+    return xyz[:, :2] * (4.0, 9.0) - size[:, None] * data.lattice.white, size
+
+
+def _is_light(data: EmissionData, xyz: Array) -> Mask:
+    """Test whether XYZ (n, 3) are black or within the spectral locus, beyond which `BEND` is allowed."""
+    offset, size = _homogeneous(data, xyz)
+    length = data.lattice.polar(offset)[2]
+    return np.asarray(((size > 0) & (length <= size * (1 + BEND))) | (xyz == 0).all(axis=1))
+
+
+def _refuse(data: EmissionData, xyz: Array) -> tuple[Array, Array]:
+    """Raise `ColourError` unless all excesses are within `BEND`, which `_clip` removes."""
+    wrong = ~_is_light(data, xyz)
+    if wrong.any():
+        first = ", ".join(f"{value:.4g}" for value in xyz[wrong][0])
+        raise ColourError(
+            f"no light has the colour XYZ ({first})",
+            code="colour-not-a-light",
+            hint="use outside='clip' for the nearest colour towards white",
+        )
+    return _clip(data, xyz)
+
+
+def _clip(data: EmissionData, xyz: Array) -> tuple[Array, Array]:
+    """Move colours towards white of the same luminance, white + f (colour − white), up to the spectral locus."""
+    offset, size = _homogeneous(data, xyz)
+    length = data.lattice.polar(offset)[2]
+    white = np.maximum(xyz[:, 1], 0.0) * 9 / data.lattice.white[1]
+    reach = length + white - size
+    step = np.divide(white, reach, out=np.zeros_like(reach), where=reach > 0)
+    rim = np.divide(offset, length[:, None], out=np.zeros_like(offset), where=length[:, None] > 0)
+    return data.lattice.white + rim, step * length
+
+
+TREATMENTS: dict[str, Treatment] = {"error": _refuse, "clip": _clip}
+"""Treatments of colours that no light has, by name: an error, or the nearest colour towards white."""

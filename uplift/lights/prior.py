@@ -1,8 +1,7 @@
-"""The light expected at a chromaticity: kriging of the deviations of lamps from the smoothest light.
+"""The light expected at a chromaticity: kriging of the deviations of lamps from the smoothest light."""
 
-Colours of surfaces are linear in the power of the light that falls on them, so the best prediction is the conditional
-mean of the power. It is spiky near the chromaticities of lamps, and smooth far from them.
-"""
+# Colours of surfaces are linear in the power of the light that falls on them, so the best prediction is the conditional
+# mean of the power. It is spiky near the chromaticities of lamps, and smooth far from them.
 
 from __future__ import annotations
 
@@ -11,10 +10,10 @@ from itertools import product
 
 import numpy as np
 
+from uplift.colorimetry.delta_e import delta_e_2000, lab_of
 from uplift.common.arrays import Array
 from uplift.lights.fit import nearest_lights
 from uplift.lights.lattice import DENOMINATOR, chromaticity
-from uplift.lights.relit import relit_delta_e
 
 LENGTHS = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 NUGGETS = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)
@@ -29,12 +28,7 @@ SMOOTHEST_SHARE = 1e-3
 class LampKernel:
     """Covariance exp(−d / length) of the deviations of two lamps, where d is their distance in u′v′.
 
-    Parameters
-    ----------
-    length : float
-        Correlation length in u′v′.
-    nugget : float
-        Variance that a lamp shares with no other.
+    The nugget is the variance that a lamp shares with no other.
     """
 
     length: float
@@ -48,20 +42,10 @@ class LampKernel:
 
 @dataclass(frozen=True, eq=False)
 class LampPrior:
-    """Expected lights.
+    """Lights expected from lamps at u′v′ (L, 2).
 
-    Parameters
-    ----------
-    uv : ndarray, shape (L, 2)
-        u′v′ of the lamps.
-    weights : ndarray, shape (L, N)
-        Weights of the kernel around each lamp.
-    precision : ndarray, shape (L, L)
-        Inverse of the covariance of the lamps.
-    kernel : LampKernel
-        Covariance of the deviations.
-    radiometry : ndarray, shape (N, 3)
-        From power to XYZ.
+    `weights` (L, N) are those of the kernel around each lamp, `precision` (L, L) is the inverse of the covariance of
+    the lamps. `radiometry` (N, 3) leads from power to XYZ.
     """
 
     uv: Array
@@ -88,29 +72,11 @@ class LampPrior:
 
 
 def fit_lamp_prior(power: Array, surfaces: Array, radiometry: Array, exact: int = 0) -> tuple[LampPrior, Array]:
-    """Fit the prior to lamps, with the kernel that predicts left-out lamps best.
+    """Fit the prior to lamps (L, N) of any scale, with the kernel that predicts left-out lamps best.
 
-    Parameters
-    ----------
-    power : ndarray, shape (L, N)
-        Power of the lamps, of any scale.
-    surfaces : ndarray, shape (P, N)
-        Reflectances of the surfaces by whose colours predictions are judged.
-    radiometry : ndarray, shape (N, 3)
-        From power to XYZ.
-    exact : int, default 0
-        Number of the first lamps, which the expected lights reach nearly; others of one chromaticity are averaged.
-
-    Returns
-    -------
-    prior : LampPrior
-        Expected lights.
-    left_out : ndarray, shape (L, N)
-        Light expected at the chromaticity of each lamp without the lamp, exact in chromaticity.
-
-    References
-    ----------
-    Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 5.12, for the left-out predictions.
+    Predictions are judged by the colours of `surfaces` (P, N). The expected lights nearly reach the first `exact`
+    lamps; others of one chromaticity are averaged. Returns also the light (L, N) that is expected at the chromaticity
+    of each lamp without the lamp, exact in chromaticity.
     """
     power = power / (power @ radiometry @ DENOMINATOR)[:, None]
     uv = chromaticity(power @ radiometry)
@@ -118,6 +84,8 @@ def fit_lamp_prior(power: Array, surfaces: Array, radiometry: Array, exact: int 
     own_share = np.where(np.arange(len(uv)) < exact, EXACT_SHARE, 1.0)
 
     def predict(kernel: LampKernel) -> tuple[Array, Array, Array]:
+        # Left-out predictions of all lamps from one inverse: Rasmussen & Williams 2006, "Gaussian processes for machine
+        # learning", eq. 5.12.
         inverse = np.asarray(np.linalg.inv(kernel(uv, uv) + np.diag(kernel.nugget * own_share)))
         weights = inverse @ (power - smooth)
         return inverse, weights, _bounded(power - weights / np.diag(inverse)[:, None], smooth)
@@ -138,3 +106,25 @@ def smoothest_lights(uv: Array, radiometry: Array) -> Array:
 def _bounded(power: Array, smooth: Array) -> Array:
     """Replace powers that are not positive by a little of the smoothest light."""
     return np.maximum(power, SMOOTHEST_SHARE * smooth)
+
+
+def relit_delta_e(lamps: Array, estimates: Array, reflectances: Array, radiometry: Array) -> Array:
+    """Compare surfaces (P, N) lit by lamps (L, N) with the same surfaces lit by estimates of the lamps.
+
+    Returns ΔE00 (L, P) between CIE L*a*b* relative to the white of the respective light. Powers have any scale.
+    """
+    first, second = (_relit_lab(power, reflectances, radiometry) for power in (lamps, estimates))
+    return delta_e_2000(first, second)
+
+
+def _relit_lab(power: Array, reflectances: Array, radiometry: Array) -> Array:
+    """CIE L*a*b* (L, P, 3).
+
+    For the 10° observer sodium light has no Z. Z relative to white is then the ratio of luminances, as it is for all
+    single wavelengths.
+    """
+    weights = (reflectances[:, :, None] * radiometry).transpose(1, 0, 2).reshape(len(radiometry), -1)
+    xyz = (power @ weights).reshape(len(power), -1, 3)
+    white = (power @ radiometry)[:, None]
+    missing = white <= 0
+    return np.asarray(lab_of(np.where(missing, xyz[..., 1:2], xyz), np.where(missing, white[..., 1:2], white)))
