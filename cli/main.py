@@ -34,7 +34,7 @@ from .startup import draw_without_window, hide_drawing_notes
 
 GROUPS = {
     "First steps": ("relight", "samples"),
-    "Cubes": ("build", "query", "texture", "mix", "export"),
+    "Cubes": ("build", "query", "bounds", "texture", "mix", "export", "lights"),
     "Inspection": ("info", "slices", "report", "check", "atlas"),
     "Scenes": ("plan", "wavelengths", "compare", "palette"),
     "Measurements": ("chart", "study"),

@@ -19,12 +19,11 @@ from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.lights import STANDARD_ILLUMINANTS, Lamps
 from uplift.common.arrays import Array
-from uplift.lights.entries import CLEARANCE, MAX_RADIUS
+from uplift.lights.discs import CLEARANCE, MAX_RADIUS
 from uplift.lights.fit import nearest_lights
 from uplift.lights.lattice import chromaticity
 from uplift.lights.lookup import EmissionTable
-from uplift.lights.prior import fit_lamp_prior
-from uplift.lights.relit import relit_delta_e
+from uplift.lights.prior import fit_lamp_prior, relit_delta_e
 
 SURFACES = {"ColorChecker": "macbeth", "CIE 2017": "cie2017"}
 TABLE, ALONE = "emission table", "the prior alone"

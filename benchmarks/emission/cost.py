@@ -15,7 +15,7 @@ import uplift
 from benchmarks.emission.left_out import drop_discs
 from uplift.common.arrays import Array
 from uplift.lab.timing import spread
-from uplift.lights.relit import relit_delta_e
+from uplift.lights.prior import relit_delta_e
 
 REFERENCE = {"knots": 192, "rings": 64}
 """Table whose interpolation counts as exact."""

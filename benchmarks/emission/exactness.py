@@ -13,7 +13,7 @@ from uplift.common.arrays import Array
 from uplift.lights.fit import unit_xyz
 from uplift.lights.lattice import DENOMINATOR, chromaticity
 from uplift.lights.lookup import EmissionTable
-from uplift.lights.relit import relit_delta_e
+from uplift.lights.prior import relit_delta_e
 
 TYPES = ("float64", "float32")
 GREY = 0.18

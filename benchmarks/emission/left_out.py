@@ -14,7 +14,7 @@ from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array
 from uplift.lights.discs import LampEntries
 from uplift.lights.lookup import EmissionTable
-from uplift.lights.relit import relit_delta_e
+from uplift.lights.prior import relit_delta_e
 
 FAMILIES = {
     "daylight": r"[BC]|I?D\d\d",

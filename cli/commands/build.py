@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.build_summary import print_emission_summary, print_improvements, print_summary
+from ..output.build_summary import print_improvements, print_summary
 from ..params.image_paths import expand_patterns
 from ..params.number_types import NUMBER, Whole
 from ..params.options import (
@@ -24,7 +24,6 @@ from ..params.options import (
     light_option,
     out_of_gamut_option,
     quiet_option,
-    refuse_for_lights,
     scale_option,
     sensor_options,
     verbose_option,
@@ -36,19 +35,11 @@ if TYPE_CHECKING:
     from uplift.io.scene_colours import Images
     from uplift.lookup import Cube
 
-ALLOWED_WITH_EMISSION = ("is_emission", "files", "output", "space", "observer", "force", "quiet", "verbose")
-"""Parameters that may accompany --emission."""
 ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose")
 """Parameters that may accompany --plan."""
 
 
 @click.command("build")
-@click.option(
-    "--emission",
-    "is_emission",
-    is_flag=True,
-    help="Build an emission table, of lights; --atlas files contain the spectral powers of lamps.",
-)
 @atlas_option("Measured spectra")
 @scale_option()
 @click.option(
@@ -159,7 +150,6 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
 @quiet_option()
 @verbose_option()
 def command(
-    is_emission: bool,
     plan_path: str | None,
     files: tuple[str, ...],
     scale: str,
@@ -188,7 +178,6 @@ def command(
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
       uplift build --atlas macbeth --observer 'Nikon 5100 (NPL)' --space camera --dim 16
       uplift build --plan kitchen.plan.json
-      uplift build --emission -o lights.uplift
 
     Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the
     spectra that real materials of such colours are expected to have.
@@ -199,9 +188,6 @@ def command(
     Entries have their own values in the --range as far as they were measured, and continue as constants. So does the
     learnt prior, from 380 and 780 nm.
 
-    With --emission, lights of any brightness get the spectral powers that lamps of their colour are expected to have.
-    The lamps of --atlas are exact at their colours; tables of power need no scale.
-
     With --scene the cube is sparse: it is smaller and faster to build, and gives the same spectra for colours of the
     images. Other colours are errors, unless 'query' and 'texture' are given --fill-missing.
     """
@@ -210,9 +196,6 @@ def command(
 
     from ..output.progress import build_progress
 
-    if is_emission:
-        _build_emission(files, output, options, force=force, quiet=quiet)
-        return
     build: Callable[..., Cube]
     inputs: tuple[str | Path | None, ...]
     if plan_path is None:
@@ -239,26 +222,6 @@ def command(
         print_improvements(cube)
     if not quiet:
         print_summary(cube, path, time.perf_counter() - begin)
-
-
-def _build_emission(
-    files: tuple[str, ...], output: str | None, options: dict[str, Any], *, force: bool, quiet: bool
-) -> None:
-    """Build and write an emission table. Raises `OptionError` for options that lights do not have."""
-    from uplift.common.files import check_output
-    from uplift.lights.build import build_emission
-
-    names = [each.name or "" for each in click.get_current_context().command.params]
-    refuse_for_lights(*(name for name in names if name not in ALLOWED_WITH_EMISSION))
-    stem = "+".join(Path(file).stem for file in files)
-    name = f"{stem}-emission.uplift" if stem else "emission.uplift"
-    path = check_output(name if output is None else output, inputs=files, force=force)
-    begin = time.perf_counter()
-    given = {key: options[key] for key in ("space", "observer") if options[key] is not None}
-    table = build_emission(files or None, **given)
-    table.save(path, force=force)
-    if not quiet:
-        print_emission_summary(table, path, time.perf_counter() - begin)
 
 
 def _build(files: tuple[str, ...], scale: Any, **options: Any) -> Cube:

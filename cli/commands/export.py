@@ -12,7 +12,7 @@ from ..output.console import say
 from ..output.progress import spinner
 from ..params.completion import complete_cube
 from ..params.number_types import Whole
-from ..params.options import fill_option, force_option, refuse_for_lights
+from ..params.options import fill_option, force_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -76,8 +76,6 @@ def command(
     3-D textures instead. A coeff table stores sigmoid spectra of the cube's colours:
     three coefficients cannot represent the atlas.
 
-    CUBE can also be an emission table, or the packaged one, named emission. Lights are written in C or GLSL.
-
     \b
     Examples:
       uplift export macbeth-32.uplift -o macbeth-32.npz
@@ -86,7 +84,6 @@ def command(
       uplift export macbeth-32.uplift -o filed.h --table file
       uplift export macbeth-32.uplift -o moments.wgsl --mode moments --table textures
       uplift export macbeth-32.uplift --format csv
-      uplift export emission -o lights.h
     """
     style = style or _format_of(out)
     if res is not None and style != "coeff":
@@ -97,16 +94,11 @@ def command(
         raise click.UsageError("--table applies to programs only.")
     out = out or Path(cube).stem + SUFFIXES[style]
     from uplift.common.files import check_output
-    from uplift.lights.lookup import names_emission_table
     from uplift.lookup import load
 
     path = check_output(out, inputs=[cube], force=force)
     options = {"res": res, "mode": mode, "form": table, "style": style if style in PROGRAMS else None}
     options = {key: value for key, value in options.items() if value is not None}
-    if names_emission_table(cube):
-        refuse_for_lights("res", "mode", "fill_missing")
-        say(f"{path}: {_light_program(cube, path, force=force, **{'style': style, **options})}")
-        return
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
     say(f"{path}: {WRITERS[style](loaded.data, path, force=force, **options)}")
 
@@ -135,18 +127,6 @@ def _program(data: CubeData, path: Path, **options: Any) -> str:
     size = sum(each.stat().st_size for each in written) / 1e6
     tables = "".join(f", table in {each}" for each in written[1:])
     return f"{data.lattice.size} nodes, {len(data.atlas.names)} atlas entries, {size:.1f} MB{tables}"
-
-
-def _light_program(cube: str, path: Path, **options: Any) -> str:
-    from uplift.io.export import write_light_program
-    from uplift.lights.lookup import load_emission
-
-    data = load_emission(cube).data
-    written = write_light_program(data, path, **options)
-    size = sum(each.stat().st_size for each in written) / 1e6
-    tables = "".join(f", table in {each}" for each in written[1:])
-    knots, rings = data.lattice.shape
-    return f"{knots * rings} nodes, {len(data.entries.names)} lamps, {size:.1f} MB{tables}"
 
 
 def _npz(data: CubeData, path: Path, **options: Any) -> str:

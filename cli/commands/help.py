@@ -74,7 +74,7 @@ def _print_gamut() -> None:
         _print_documentation(f"{name}: {inspect.getdoc(mapping)}".split("\n\n")[0])
 
 
-def _print_lights() -> None:
+def _print_illuminants() -> None:
     from uplift.colorimetry import lights
     from uplift.colorimetry.observer import illuminant_names
 
@@ -144,7 +144,7 @@ TOPICS: dict[str, tuple[str, Callable[[], None]]] = {
     "completion": ("names and options completed by bash, zsh and fish", _print_completion),
     "exit-codes": ("what a script can test", _print_exit_codes),
     "gamut": ("colours outside [0, 1]: --out-of-gamut", _print_gamut),
-    "lights": ("names of illuminants: --light, --illuminant", _print_lights),
+    "illuminants": ("names of illuminants: --light, --illuminant", _print_illuminants),
     "modes": ("ways to interpolate a cube: query --mode", _print_modes),
     "observers": ("names of standard observers: --observer", _print_observers),
     "spaces": ("names of RGB spaces: --space, --input-space", _print_spaces),

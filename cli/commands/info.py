@@ -18,29 +18,22 @@ from ..params.options import format_option
 def command(file: str | None, style: str) -> None:
     """Show the contents and provenance of a cube file. FILE defaults to the packaged cube.
 
-    FILE can also be an emission table, or the packaged one, named emission.
-
     \b
     Examples:
       uplift info macbeth-32.uplift
       uplift info macbeth-32.uplift --format json | jq .status
-      uplift info emission
     """
-    from uplift.lights.lookup import load_emission, names_emission_table
     from uplift.lookup import load
-    from uplift.report.summary import summarise, summarise_emission
+    from uplift.report.summary import summarise
 
-    if file is not None and names_emission_table(file):
-        fields = summarise_emission(load_emission(file).data)
-    else:
-        fields = summarise(load(file).data)
+    print_facts(file or "packaged cube", summarise(load(file).data), style)
+
+
+def print_facts(name: str, fields: dict[str, Any], style: str) -> None:
+    """Print what a file contains as JSON, or as a table below its name."""
     if style == "json":
         print_json(fields)
-    else:
-        _table(file or "packaged cube", fields)
-
-
-def _table(name: str, fields: dict[str, Any]) -> None:
+        return
     say(name)
     table = make_table(show_header=False, box=None)
     table.add_column(style="bold", no_wrap=True)

@@ -5,30 +5,29 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.colorimetry.lights import RELIGHT_LIGHTS
-
-from ..output.light_output import query_lights, treatment, write_lights
 from ..output.query_answers import Answers
 from ..output.query_output import WRITERS
-from ..params.number_types import NUMBER
 from ..params.options import (
+    Decorator,
     cube_option,
-    emission_option,
+    encoded_option,
     fill_option,
     force_option,
     format_option,
+    input_option,
     input_space_option,
     light_option,
     out_of_gamut_option,
-    refuse_for_lights,
+    stacked,
     wavelengths_option,
+    xyz_options,
 )
 from ..params.plots import plot_option
-from ..params.query_colours import as_xyz, lights_xyz, read_colours
+from ..params.query_colours import find_point, read_colours
 from ..params.spaces import resolve_space
 from ..params.wavelengths import parse_wavelengths
 from ..startup import hide_drawing_notes
@@ -48,57 +47,32 @@ class ColourCommand(click.Command):
         return super().parse_args(ctx, [f" {arg}" if NEGATIVE_NUMBER.match(arg) else arg for arg in args])
 
 
-@click.command("query", cls=ColourCommand)
-@click.argument("colour", nargs=-1)
-@cube_option()
-@emission_option("The colour is that of a light, of any brightness")
-@click.option("--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input.")
-@click.option(
-    "--xyz",
-    type=NUMBER,
-    nargs=3,
-    metavar="X Y Z",
-    help="Colour by XYZ under the cube's illuminant, where white has Y = 1; also outside the cube's space.",
-)
-@click.option(
-    "--xy",
-    type=NUMBER,
-    nargs=2,
-    metavar="X Y",
-    help="Colour by chromaticity, with --luminance, as for --xyz.",
-)
-@click.option("--luminance", type=NUMBER, metavar="Y", help="Luminance of --xy from 0 to 1.")
-@click.option("--encoded", is_flag=True, help="Numbers are encoded 8-bit codes from 0 to 255.")
-@wavelengths_option()
-@click.option(
-    "--mode",
-    type=click.Choice(("spectra", "moments", "refined", "nearest")),
-    default="spectra",
-    show_default=True,
-    help="Interpolate spectra (exact), coefficients (fast), coefficients with refinement, or use the nearest node.",
-)
-@input_space_option("the colours", default="that of the cube")
-@out_of_gamut_option()
-@fill_option()
-@light_option("Illuminant under which colour, standard error or --bounds are shown", "none")
-@click.option(
-    "--bounds",
-    "with_bounds",
-    is_flag=True,
-    help="Bounds of all reflectances of the colour under each --light, by default A, FL11 and HP1.",
-)
-@format_option("table", "json", "csv")
-@plot_option("--plot", "plot_path", "Plot the spectra, or the bounds")
-@click.option(
-    "--html",
-    metavar="FILE",
-    help="Write a page on which the colour under each --light is dragged within its bounds, for a file of looks.",
-)
-@force_option()
-def command(
+def colour_options() -> Decorator:
+    """Argument and options of the colours of a query, and of how they are answered; for `ask`."""
+    return stacked(
+        click.argument("colour", nargs=-1),
+        cube_option(),
+        input_option(),
+        xyz_options("Colour by XYZ under the cube's illuminant, where white has Y = 1; also outside the cube's space."),
+        encoded_option(),
+        wavelengths_option(),
+        click.option(
+            "--mode",
+            type=click.Choice(("spectra", "moments", "refined", "nearest")),
+            default="spectra",
+            show_default=True,
+            help="Interpolate spectra (exact), coefficients (fast), coefficients with refinement, or use the nearest "
+            "node.",
+        ),
+        input_space_option("the colours", default="that of the cube"),
+        out_of_gamut_option(),
+        fill_option(),
+    )
+
+
+def ask(
     colour: tuple[str, ...],
     cube_path: str | None,
-    is_emission: bool,
     input_path: str | None,
     xyz: tuple[float, float, float] | None,
     xy: tuple[float, float] | None,
@@ -110,12 +84,29 @@ def command(
     method: str,
     fill_missing: bool,
     lights: tuple[str, ...],
-    with_bounds: bool,
-    style: str,
-    plot_path: str | None,
-    html: str | None,
-    force: bool,
-) -> None:
+) -> tuple[Answers, Iterable[list[QueryResult]], bool]:
+    """Return answers, their blocks, and whether there is a single colour, from the values of `colour_options`."""
+    from uplift.lookup import load
+
+    space = resolve_space(input_space)
+    point, single = find_point(colour, input_path, xyz, xy, luminance)
+    cube = load(cube_path)
+    at = parse_wavelengths(wavelengths)
+    answers = Answers(cube, method, at, mode, _read_lights(lights, cube), fill_missing=fill_missing)
+    if point is not None:
+        return answers, answers.result_of_xyz(point), single
+    bounded = method == "error" and input_space is None
+    blocks = read_colours(colour, input_path, cube.data.sensor, encoded=encoded, bounded=bounded, space=space)
+    return answers, answers.results(blocks), single
+
+
+@click.command("query", cls=ColourCommand)
+@colour_options()
+@light_option("Illuminant under which colour and standard error are shown", "none")
+@format_option("table", "json", "csv")
+@plot_option("--plot", "plot_path", "Plot the spectra")
+@force_option()
+def command(lights: tuple[str, ...], style: str, plot_path: str | None, force: bool, **colours: Any) -> None:
     """Query the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
 
     Numbers are linear RGB from 0 to 1 in the cube's space, or in that of --input-space. Hex colours, and numbers with
@@ -133,71 +124,24 @@ def command(
       uplift query --xy 0.17 0.7 --luminance 0.15 --format json
       echo 0.5,0.5,0.5 | uplift query - --format json
       uplift query '#cc3319' --cube macbeth-32.uplift --light FL11 --light HP1
-      uplift query 30 22 9 --emission
-      uplift query '#8a2a20' --bounds --light A --light FL11 --plot bounds.png
-      uplift query '#8a2a20' --light A --light FL11 --html red.html
 
     Standard errors are those of materials like the entries of the cube's atlas. RGB does not identify a material:
-    others of the same colour may differ by more. --bounds computes by how much any reflectance can: the largest ΔE00
-    from the answer under a light, and the ranges of L*, a* and b*. The page of --html shows the bounds of one colour
-    and a spectrum for every choice in them; it writes the TOML for 'uplift build --look'.
-
-    With --emission, colours are lights: linear RGB of any size, negative components included, and the spectrum is a
-    power of which 1 at all wavelengths has luminance 1. Colours that no light has are errors, or with --out-of-gamut
-    clip the nearest ones towards white.
+    others of the same colour may differ by more, at most as 'uplift bounds' states.
 
     Lines of files and of standard input are answered in blocks as they come. An error in a later block follows the
     answers to earlier ones.
     """
     from uplift.common.files import check_outputs
-    from uplift.lookup import load
 
-    check_outputs((plot_path, html), inputs=(cube_path, input_path), force=force)
-    space = resolve_space(input_space)
-    point = as_xyz(xyz, xy, luminance)
-    if point is not None and (colour or input_path is not None):
-        raise click.UsageError("Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'.")
-    single = point is not None or (bool(colour) and colour != ("-",))
-    if is_emission:
-        refuse_for_lights("mode", "fill_missing", "lights", "with_bounds", "html")
-        from uplift.lights.lookup import load_emission
+    check_outputs((plot_path,), inputs=(colours["cube_path"], colours["input_path"]), force=force)
+    answers, results, single = ask(lights=lights, **colours)
+    if plot_path is not None:
+        from uplift.viz.spectra import plot_spectra
 
-        table = load_emission(cube_path)
-        found = lights_xyz(table, point, colour, input_path, encoded=encoded, space=space)
-        lit = query_lights(table, found, parse_wavelengths(wavelengths), treatment(method))
-        write_lights(table, lit, style, plot_path, single=single, force=force)
-        return
-    cube = load(cube_path)
-    bounded = method == "error" and input_space is None
-    answers = Answers(
-        cube,
-        method,
-        parse_wavelengths(wavelengths),
-        mode,
-        _read_lights(lights or (RELIGHT_LIGHTS if with_bounds or html else ()), cube),
-        fill_missing=fill_missing,
-    )
-    results: Iterable[list[QueryResult]]
-    if point is not None:
-        results = answers.result_of_xyz(point)
-    else:
-        blocks = read_colours(colour, input_path, cube.data.sensor, encoded=encoded, bounded=bounded, space=space)
-        results = answers.results(blocks)
-    if html is not None and not single:
-        raise click.UsageError("--html shows one colour: give it on the command line.")
-    if with_bounds or html is not None:
-        from ..output.bounds_output import write_bounds
-
-        bounds = ((block, answers.bounds(block, single=single)) for block in results)
-        write_bounds(cube, bounds, style, plot_path, html, single=single, force=force)
-    else:
-        if plot_path is not None:
-            from uplift.viz.spectra import plot_spectra
-
-            hide_drawing_notes()
-            results = list(results)
-            plot_spectra(cube, list(chain.from_iterable(results)), plot_path, force=force)
-        WRITERS[style](cube, results, single)
+        hide_drawing_notes()
+        results = list(results)
+        plot_spectra(answers.cube, list(chain.from_iterable(results)), plot_path, force=force)
+    WRITERS[style](answers.cube, results, single)
     answers.warn()
 
 

@@ -16,7 +16,6 @@ from ..params.options import (
     force_option,
     format_option,
     light_option,
-    refuse_for_lights,
 )
 
 if TYPE_CHECKING:
@@ -65,9 +64,6 @@ def command(
       uplift report macbeth-32.uplift --atlas cie2017 -o unseen.html
       uplift report macbeth-32.uplift --light D50 --light FL4 --worst 6 -o worst.html
       uplift report macbeth-32.uplift --format json | jq .failures
-      uplift report emission -o emission.html
-
-    CUBE can also be an emission table, or the packaged one, named emission: random lights, expected errors and lamps.
 
     The measured spectra are those of the cube's atlases. Atlases are identified by name and content, and searched for
     in --atlas-dir, the cube's folder, 'atlases' in these, and the shipped atlases.
@@ -76,7 +72,6 @@ def command(
     materials, and whether its standard errors are calibrated.
     """
     from uplift.common.files import check_output, write_text
-    from uplift.lights.lookup import names_emission_table
     from uplift.lookup import load
 
     from ..output.progress import spinner
@@ -84,10 +79,6 @@ def command(
     path = _path(output, cube_path, style)
     if path is not None:
         check_output(path, inputs=(cube_path, *files), force=force)
-    if names_emission_table(cube_path):
-        refuse_for_lights("files", "folders", "lights", "worst")
-        _report_lights(cube_path, path, style, force=force)
-        return
     cube = load(cube_path)
     with spinner("evaluating the cube"):
         assessment = _assess(cube, cube_path, files, folders, lights)
@@ -97,28 +88,6 @@ def command(
     else:
         write_text(text, path, force=force)
         say(f"{path}: {_summary(assessment)}")
-
-
-def _report_lights(table_path: str, path: Path | None, style: str, *, force: bool) -> None:
-    """Assess an emission table, and write the page or the numbers."""
-    from uplift.common.files import write_text
-    from uplift.lights.lookup import find_table, load_emission
-    from uplift.report.light_page import render_light_report
-    from uplift.report.lights import assess_lights, lights_to_json
-
-    file = Path(find_table(table_path))
-    assessment = assess_lights(load_emission(file), file.name, file.stat().st_size)
-    is_json = style == "json"
-    text = json_text(lights_to_json(assessment)) + "\n" if is_json else render_light_report(assessment)
-    if path is None:
-        emit(text, nl=False)
-        return
-    write_text(text, path, force=force)
-    say(
-        f"{path}: {len(assessment.lamp_errors)} lamps, round trip within u′v′ {assessment.round_trip.largest:.1e}, "
-        f"smallest power {assessment.smallest_power:.1e}, "
-        f"expected ΔE00 of surfaces {assessment.expected_error.median:.1f} (median of random lights)"
-    )
 
 
 def _path(output: str | None, cube: str, style: str) -> Path | None:

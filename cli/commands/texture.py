@@ -7,7 +7,8 @@ import os
 import time
 import warnings
 from collections.abc import Generator
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -20,14 +21,14 @@ from ..params.completion import complete_cube
 from ..params.image_paths import texture_paths
 from ..params.number_types import Whole
 from ..params.options import (
-    emission_option,
+    Decorator,
     encoding_option,
     fill_option,
     force_option,
     input_space_option,
     out_of_gamut_option,
     quiet_option,
-    refuse_for_lights,
+    stacked,
     wavelengths_option,
 )
 from ..params.wavelengths import parse_wavelengths
@@ -35,14 +36,34 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.io.texture import Conversion, Failure, Job, PixelEncoding
+    from uplift.io.texture import Conversion, Failure, Job, PixelEncoding, TextureSettings
+
+
+def image_options() -> Decorator:
+    """Images, their target, and how they are converted; for `convert`."""
+    return stacked(
+        click.argument("sources", metavar="IN...", nargs=-1, required=True),
+        click.option(
+            "-o", "--output", "target", metavar="FILE", required=True, help="Texture to write, or folder of textures."
+        ),
+        click.option(
+            "--processes",
+            type=Whole(1, 1024),
+            help="Number of processes for several images. [default: one per core]",
+        ),
+        click.option(
+            "--scheduler",
+            metavar="ADDRESS",
+            help="Dask cluster that converts the images; requires spectral-uplift[cluster].",
+        ),
+        click.option("--resume", is_flag=True, help="Skip images whose textures are complete and newer."),
+        force_option(),
+        quiet_option(),
+    )
 
 
 @click.command("texture")
-@click.argument("sources", metavar="IN...", nargs=-1, required=True)
-@click.option(
-    "-o", "--output", "target", metavar="FILE", required=True, help="Texture to write, or folder of textures."
-)
+@image_options()
 @click.option(
     "--cube",
     "cube_paths",
@@ -56,7 +77,6 @@ if TYPE_CHECKING:
     metavar="FILE",
     help="Image of which cube a pixel belongs to: 0 for the first, 1 for the second …, or from black to white.",
 )
-@emission_option("Pixels are light, as in an environment map")
 @click.option(
     "--representation",
     "kind",
@@ -75,25 +95,9 @@ if TYPE_CHECKING:
 @input_space_option("the images")
 @out_of_gamut_option("clip")
 @fill_option()
-@click.option(
-    "--processes",
-    type=Whole(1, 1024),
-    help="Number of processes for several images. [default: one per core]",
-)
-@click.option(
-    "--scheduler",
-    metavar="ADDRESS",
-    help="Dask cluster that converts the images; requires spectral-uplift[cluster].",
-)
-@click.option("--resume", is_flag=True, help="Skip images whose textures are complete and newer.")
-@force_option()
-@quiet_option()
 def command(
-    sources: tuple[str, ...],
-    target: str,
     cube_paths: tuple[str, ...],
     mask: str | None,
-    is_emission: bool,
     kind: str,
     wavelengths: str | None,
     depth: str | None,
@@ -101,11 +105,7 @@ def command(
     input_space: str | None,
     method: str,
     fill_missing: bool,
-    processes: int | None,
-    scheduler: str | None,
-    resume: bool,
-    force: bool,
-    quiet: bool,
+    **images: Any,
 ) -> None:
     """Convert every pixel of an image (EXR, HDR, PNG, JPEG, TIFF) to a spectrum and write an OpenEXR texture.
 
@@ -118,7 +118,6 @@ def command(
       uplift texture painting.exr -o ap1.exr --input-space ACEScg
       uplift texture shot.*.exr -o uplifted --scheduler tcp://10.0.0.5:8786
       uplift texture wood.png -o parts.exr --mask mask.png --cube macbeth-32.uplift --cube looks.uplift
-      uplift texture sky.exr -o sky-spectral.exr --emission --wavelengths 400:700:10
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
     and mip-mapped. 'multipliers' can be evaluated directly, by the formula in the header. Alpha and other channels are
@@ -134,36 +133,45 @@ def command(
     order of --cube; or, for two cubes, weights: black is the first, white the second, and grey mixes both. A coloured
     mask holds the weights of three cubes in R, G and B. Mixed spectra keep the colour of the pixel.
 
-    With --emission, pixels are light of any brightness, such as those of an environment map, and channels hold spectral
-    power. Its unit is that of the equal-energy light of luminance 1; RGB (1, 1, 1) has luminance 1. Only colours
-    outside the spectral locus change.
+    Pixels that are light, such as those of an environment map, need 'uplift lights texture'.
     """
-    enable_jit_cache()
     from uplift.io import texture
     from uplift.lookup.packaged import find_file
 
-    pairs = texture_paths(sources, target)
-    cores = os.cpu_count() or 1
-    count = processes or min(cores, len(pairs))
     if len(cube_paths) > 1 and mask is None:
         raise click.UsageError("Several cubes need --mask, an image of which cube a pixel belongs to.")
-    named = [os.path.abspath(find_file(path)) for path in cube_paths]
-    cubes: list[str | None] = [*named] or [None]
-    threads, at = max(cores // count, 1), parse_wavelengths(wavelengths)
-    if is_emission:
-        refuse_for_lights("kind", "method", "fill_missing", "mask")
+    cubes = tuple(os.path.abspath(find_file(path)) for path in cube_paths)
     settings = texture.TextureSettings(
-        tuple(cubes),
-        _pixel_encoding(kind, at),
+        cubes or (None,),
+        _pixel_encoding(kind, parse_wavelengths(wavelengths)),
         depth=depth,
         encoding=encoding,
         out_of_gamut=method,
         space=input_space,
         mask=None if mask is None else os.path.abspath(mask),
-        emission=is_emission,
         fill_missing=fill_missing,
-        threads=threads,
     )
+    convert(settings, **images)
+
+
+def convert(
+    settings: TextureSettings,
+    sources: tuple[str, ...],
+    target: str,
+    processes: int | None,
+    scheduler: str | None,
+    resume: bool,
+    force: bool,
+    quiet: bool,
+) -> None:
+    """Convert images, on as many threads as the processes leave; the other parameters are those of `image_options`."""
+    enable_jit_cache()
+    from uplift.io import texture
+
+    pairs = texture_paths(sources, target)
+    cores = os.cpu_count() or 1
+    count = processes or min(cores, len(pairs))
+    settings = replace(settings, threads=max(cores // count, 1))
     jobs = [texture.Job(settings, source.absolute(), path.absolute(), force) for source, path in pairs]
     pending = texture.pending(jobs, resume=resume)
     texture.converter_for(settings)  # report invalid options once, not once per image
@@ -191,7 +199,7 @@ def _pixel_encoding(kind: str, wavelengths: Array | None) -> PixelEncoding:
     from uplift.io import texture
 
     if kind == texture.Spectrum.name:
-        return texture.Spectrum(_as_tuple(wavelengths))
+        return texture.Spectrum(as_tuple(wavelengths))
     if wavelengths is not None:
         raise OptionError(
             f"{kind} have no wavelengths",
@@ -201,7 +209,7 @@ def _pixel_encoding(kind: str, wavelengths: Array | None) -> PixelEncoding:
     return texture.PIXEL_ENCODINGS[kind]()
 
 
-def _as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:
+def as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:
     return None if wavelengths is None else tuple(wavelengths.tolist())
 
 

@@ -1,4 +1,4 @@
-"""Bounds of answers of ``uplift query`` as table, JSON or CSV."""
+"""Bounds of answers as table, JSON or CSV."""
 
 from __future__ import annotations
 

@@ -9,7 +9,6 @@ from .console import say
 
 if TYPE_CHECKING:
     from uplift.cube import CubeData
-    from uplift.lights.lookup import EmissionTable
     from uplift.lookup import Cube
 
 
@@ -35,16 +34,6 @@ def print_summary(cube: Cube, path: Path, seconds: float) -> None:
     say(
         f"{path}: {_node_count(data)}, {entries}{accuracy} (worst {worst:.1e}), "
         f"{counts['improved']} improved, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
-    )
-
-
-def print_emission_summary(table: EmissionTable, path: Path, seconds: float) -> None:
-    """Print nodes, lamps, expected error of white, size and time on one line."""
-    knots, rings = table.data.lattice.shape
-    say(
-        f"{path}: {knots} × {rings} nodes, {len(table.lamp_names)} lamps, "
-        f"expected ΔE00 of surfaces {float(table.expected_error([1.0, 1.0, 1.0])):.1f} (white), "
-        f"{path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
     )
 
 

@@ -22,13 +22,22 @@ def complete_atlas(ctx: click.Context, param: click.Parameter, text: str) -> lis
 
 
 def complete_cube(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:
-    """Complete names of cubes and lights of the package, of cube files, and of folders."""
+    """Complete names of cubes of the package, of cube files, and of folders."""
     from uplift.lookup.packaged import PACKAGED
 
+    return _named_files(PACKAGED, text)
+
+
+def complete_lights(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:
+    """Complete the name of the packaged emission table, and names of files and folders."""
+    return _named_files(("emission",), text)
+
+
+def _named_files(names: Iterable[str], text: str) -> list[CompletionItem]:
     paths = sorted(glob.glob(f"{glob.escape(text)}*"))
     folders = (f"{path}{os.sep}" for path in paths if os.path.isdir(path))
     files = (path for path in paths if path.endswith(".uplift"))
-    return [*_matching(map(CompletionItem, (*PACKAGED, "emission")), text), *map(CompletionItem, (*folders, *files))]
+    return [*_matching(map(CompletionItem, names), text), *map(CompletionItem, (*folders, *files))]
 
 
 def complete_illuminant(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:

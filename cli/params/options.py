@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Any
 
 import click
-from click.core import ParameterSource
 
 from uplift.common.text import format_value, parse_whole
 
@@ -17,7 +16,7 @@ from .completion import (
     complete_observer,
     complete_space,
 )
-from .number_types import Whole
+from .number_types import NUMBER, Whole
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -95,24 +94,38 @@ def output_folder_option() -> Decorator:
     return click.option("-o", "--output", metavar="DIR", help="Folder for tables and plots.")
 
 
-def emission_option(meaning: str) -> Decorator:
-    """``--emission`` as ``is_emission``."""
-    return click.option("--emission", "is_emission", is_flag=True, help=f"{meaning}; --cube is an emission table.")
+def input_option() -> Decorator:
+    """``--input`` as ``input_path``."""
+    return click.option(
+        "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
+    )
 
 
-def refuse_for_lights(*names: str) -> None:
-    """Raise `OptionError` if a parameter of the current command that lights do not have was given."""
-    from uplift.common.errors import OptionError
+def encoded_option() -> Decorator:
+    """``--encoded``."""
+    return click.option("--encoded", is_flag=True, help="Numbers are encoded 8-bit codes from 0 to 255.")
 
-    context = click.get_current_context()
-    for parameter in context.command.params:
-        is_given = context.get_parameter_source(parameter.name or "") is ParameterSource.COMMANDLINE
-        if parameter.name in names and is_given:
-            raise OptionError(
-                f"{parameter.opts[0]} does not apply to lights",
-                code="not-for-lights",
-                hint=f"leave out {parameter.opts[0]}",
-            )
+
+def stacked(*decorators: Decorator) -> Decorator:
+    """Combine decorators, the first one outermost."""
+
+    def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
+        for each in reversed(decorators):
+            function = each(function)
+        return function
+
+    return decorate
+
+
+def xyz_options(help: str) -> Decorator:
+    """``--xyz``, and ``--xy`` with ``--luminance``."""
+    return stacked(
+        click.option("--xyz", type=NUMBER, nargs=3, metavar="X Y Z", help=help),
+        click.option(
+            "--xy", type=NUMBER, nargs=2, metavar="X Y", help="Colour by chromaticity, with --luminance, as for --xyz."
+        ),
+        click.option("--luminance", type=NUMBER, metavar="Y", help="Luminance of --xy, where white has 1."),
+    )
 
 
 def fill_option() -> Decorator:

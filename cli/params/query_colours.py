@@ -11,24 +11,32 @@ if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
     from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
-    from uplift.lights.lookup import EmissionTable
 
 
-def as_xyz(
-    xyz: tuple[float, float, float] | None, xy: tuple[float, float] | None, luminance: float | None
-) -> tuple[float, float, float] | None:
-    """Return XYZ of --xyz, or of --xy and --luminance; None without them. Raises `ColourError` and click's error."""
+def find_point(
+    colour: tuple[str, ...],
+    input_path: str | None,
+    xyz: tuple[float, float, float] | None,
+    xy: tuple[float, float] | None,
+    luminance: float | None,
+) -> tuple[tuple[float, float, float] | None, bool]:
+    """Return XYZ of --xyz, or of --xy and --luminance, None without them; and whether there is a single colour.
+
+    Raises `ColourError`, and click's error if there is not exactly one source of colours.
+    """
     if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
         raise click.UsageError("--xy X Y and --luminance Y require each other, and --xyz is an alternative.")
-    if xy is None or luminance is None:
-        return xyz
-    from uplift.common.errors import ColourError
+    if xy is not None and luminance is not None:
+        from uplift.common.errors import ColourError
 
-    x, y = xy
-    if not y > 0:
-        problem = f"y of a chromaticity must be positive, got {y:g}"
-        raise ColourError(problem, code="invalid-chromaticity", hint="give CIE x and y")
-    return x * luminance / y, luminance, (1 - x - y) * luminance / y
+        x, y = xy
+        if not y > 0:
+            problem = f"y of a chromaticity must be positive, got {y:g}"
+            raise ColourError(problem, code="invalid-chromaticity", hint="give CIE x and y")
+        xyz = x * luminance / y, luminance, (1 - x - y) * luminance / y
+    if xyz is not None and (colour or input_path is not None):
+        raise click.UsageError("Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'.")
+    return xyz, xyz is not None or (bool(colour) and colour != ("-",))
 
 
 def read_colours(
@@ -68,23 +76,3 @@ def _read_file(path: str, sensor: Sensor, *, encoded: bool, bounded: bool, space
             path=path,
             hint="give a CSV file of colours",
         ) from error
-
-
-def lights_xyz(
-    table: EmissionTable,
-    point: tuple[float, float, float] | None,
-    words: tuple[str, ...],
-    path: str | None,
-    *,
-    encoded: bool,
-    space: ImageSpace | None,
-) -> Iterable[Array]:
-    """Return blocks of XYZ (n, 3) of lights from arguments, a file or standard input."""
-    if point is not None:
-        import numpy as np
-
-        return [np.array([point])]
-    from uplift.colorimetry.observer import sensor
-
-    target = sensor(table.space)
-    return map(table.xyz, read_colours(words, path, target, encoded=encoded, bounded=False, space=space))

@@ -101,13 +101,3 @@ def test_invalid_input_is_an_error(refuse, home, cube):
     assert refuse("export", cube, "-o", "cube.coeff", "--res", "1").code == "resolution-out-of-range"
     assert refuse("export", cube, "-o", "missing/cube.csv").code == "output"
     assert [path.name for path in home.iterdir()] == [cube]
-
-
-def test_lights(run, refuse, home):
-    result = run("export", "emission", "-o", "lights.h")
-    assert result.output.startswith("lights.h: ")
-    assert "lights_power" in (home / "lights.h").read_text()
-    assert refuse("export", "emission", "-o", "lights.wgsl").code == "unknown-language"
-    assert refuse("export", "emission", "-o", "lights.csv").code == "unknown-language"
-    assert refuse("export", "emission", "-o", "l.h", "--mode", "moments").code == "not-for-lights"
-    assert refuse("export", "emission", "-o", "l.coeff", "--res", "8").code == "not-for-lights"

@@ -24,7 +24,7 @@ def test_topics_have_what_the_code_has(run):
     text = run("help", "modes").stdout
     assert all(f'"{mode}"' in text for mode in MODES)
     assert all(atlas.name in run("help", "atlases").stdout for atlas in shipped_atlases())
-    assert "LED-B3" in run("help", "lights").stdout
+    assert "LED-B3" in run("help", "illuminants").stdout
     assert "ITU-R BT.2020" in run("help", "spaces").stdout
 
 
@@ -59,7 +59,7 @@ def test_unlike_words_have_none(misuse):
         ("uplift build --space acesc", "ACEScg"),
         ("uplift report CUBES/moments-8-", "CUBES/moments-8-macbeth.uplift"),
         ("uplift query --mode ref", "refined"),
-        ("uplift query --cube em", "emission"),
+        ("uplift lights info em", "emission"),
         ("uplift info sr", "srgb"),
     ],
 )

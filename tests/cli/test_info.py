@@ -10,7 +10,6 @@ from uplift_cli.output.hints import hint_for
 import uplift
 from tests.helpers import with_points
 from uplift.cube import digest, write
-from uplift.lights.table import emission_digest
 
 
 def test_json_has_all_fields(run, cubes):
@@ -73,32 +72,6 @@ def test_names_with_brackets_are_not_markup(run, small_cube, home):
     text = run("query", "--cube", "a[red].uplift", "--input", "colours.csv").stdout
     assert "[/red]" in text
     assert "[bold]tile" in text
-
-
-def test_emission_tables_have_lamps_and_expected_errors(run, home):
-    table = uplift.load_emission()
-    table.save(home / "lights.uplift")
-    facts = json.loads(run("info", "lights.uplift", "--format", "json").stdout)
-    assert facts == json.loads(run("info", "emission", "--format", "json").stdout)
-    assert facts["nodes"] == facts["knots"] * facts["rings"] == table.data.error.size
-    assert facts["lamps"] == list(table.lamp_names)
-    assert facts["largest_expected_error"] == float(table.data.error.max())
-    assert facts["wavelengths"] == {"first": 380, "last": 780, "step": 5}
-    assert facts["digest"] == emission_digest(table.data)
-    text = " ".join(run("info", "lights.uplift").stdout.split())
-    for part in (
-        "lights.uplift",
-        "uplift emission table",
-        "LED-B3",
-        "first 380, last 780, step 5",
-        "option knots 96",
-    ):
-        assert part in text
-
-
-def test_a_file_takes_precedence_over_the_name(run, cubes, home):
-    (home / "emission").write_bytes((cubes / "moments-8-macbeth.uplift").read_bytes())
-    assert json.loads(run("info", "emission", "--format", "json").stdout)["dim"] == 8
 
 
 def test_invalid_files_are_errors(refuse, home, repository):

@@ -1,4 +1,4 @@
-"""From a choice on the page of ``uplift query --html`` to a cube that answers it."""
+"""From a choice on the page of ``uplift bounds --html`` to a cube that answers it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def choose(page):
 def test_a_cube_answers_what_was_chosen_on_the_page(run, home):
     need(CHROMIUM)
     before = json.loads(
-        run("query", "#8a2a20", *LIGHTS, "--html", "page.html", "--format", "json").stdout.split("\n")[0]
+        run("bounds", "#8a2a20", *LIGHTS, "--html", "page.html", "--format", "json").stdout.split("\n")[0]
     )
     (home / "looks.toml").write_text(choose(home / "page.html"), encoding="utf-8")
     (look,) = tomllib.loads((home / "looks.toml").read_text(encoding="utf-8"))["look"]

@@ -21,7 +21,6 @@ from uplift_cli.params.text_lines import line_blocks
 import uplift
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.srgb import hex_codes
-from uplift.lookup.light_errors import LIKELY
 
 from .conftest import warning_lines
 
@@ -542,64 +541,6 @@ def test_xyz_excludes_other_colours(misuse, refuse):
     assert refuse("query", "--xy", "0.3", "0", "--luminance", "0.1").code == "invalid-chromaticity"
 
 
-def test_bounds_of_a_colour_in_json(ask):
-    found = ask("#8a2a20", "--bounds", "--light", "A", "--light", "FL11")
-    assert list(found["bounds"]) == ["A", "FL11"]
-    for name, each in found["bounds"].items():
-        (least, most), answer = np.array(each["lab_range"]), np.array(each["lab"])
-        assert ((least < answer) & (answer < most)).all()
-        light = uplift.colorimetry.observer.light(name)
-        lab = uplift.colorimetry.delta_e.lab(light.xyz @ found["reflectance"], light.white)
-        np.testing.assert_allclose(answer, lab, atol=1e-9)
-        assert 0 < each["largest_delta_e_2000"] <= each["outer_delta_e_2000"]
-        assert len(each["outline"]) == 120
-        assert (each["likely"], each["likely_share"]) == (None, LIKELY)  # the packaged cube has no atlas
-    assert found["bounds"]["FL11"]["share"] > 10 * found["bounds"]["A"]["share"]
-
-
-def test_the_likely_difference_is_the_error_bound(run, ask, cubes):
-    """One share in all formats: that of the likely region."""
-    colour = (
-        "--cube",
-        cubes / "moments-16-macbeth.uplift",
-        "0.2",
-        "0.3",
-        "0.1",
-        "--bounds",
-        "--light",
-        "FL11",
-    )
-    found = ask(*colour)
-    bound = found["error_bounds"]["FL11"]
-    assert bound > found["standard_errors"]["FL11"]
-    assert float(run("query", *colour).stdout.splitlines()[-1].split()[4]) == pytest.approx(bound, abs=0.005)
-    (row,) = csv.DictReader(io.StringIO(run("query", *colour, "--format", "csv").stdout))
-    assert float(row["error_bound"]) == pytest.approx(bound)
-
-
-def test_bounds_of_many_colours(run, table):
-    text = run("query", "--input", table("0.2,0.3,0.4\n0.9,0.1,0.1"), "--bounds", "--format", "csv").stdout
-    rows = list(csv.DictReader(io.StringIO(text)))
-    assert [row["light"] for row in rows] == 2 * ["A", "FL11", "HP1"]
-    assert all(0 < float(row["largest"]) <= float(row["outer"]) for row in rows)
-    assert all(float(row["a*_min"]) < float(row["a*"]) < float(row["a*_max"]) for row in rows)
-
-
-def test_table_and_plot_of_bounds(run, home):
-    text = run("query", "0.2,0.3,0.4", "--bounds", "--light", "D65", "--plot", "bounds.png").stdout
-    heading, row = text.splitlines()[-2:]
-    assert heading.split() == ["light", "L*", "a*", "b*", "likely", "95%", "largest", "a*", "b*", "share"]
-    assert row.split()[0] == "D65"
-    assert float(row.split()[5]) == 0  # metamers match under the build light
-    assert max(map(len, text.splitlines())) <= 80
-    assert matplotlib.image.imread(home / "bounds.png").shape[2] == 4
-
-
-def test_bounds_of_an_unrealisable_colour(run):
-    result = run("query", "--xyz", "1", "0.1", "0.02", "--bounds", code=2)
-    assert "no reflectance has the colour" in result.stderr
-
-
 def test_colours_under_lights_are_those_of_relit_images(run, ask, cubes):
     """sRGB with the white of the light, as looks state them."""
     path = cubes / "moments-8-macbeth.uplift"
@@ -618,14 +559,3 @@ def test_colours_under_lights_are_those_of_relit_images(run, ask, cubes):
 def test_colours_outside_the_space_have_colours_under_lights(ask):
     found = ask("--xyz", "0.05", "0.2", "0.1", "--light", "D65")
     np.testing.assert_allclose(found["lights"]["D65"]["xyz"], [0.05, 0.2, 0.1], atol=1e-5)
-
-
-def test_page_of_bounds(run, home):
-    result = run("query", "#8a2a20", "--light", "FL11", "--html", "look.html")
-    assert "FL11" in result.stdout
-    assert "Looks of #8a2a20" in (home / "look.html").read_text()
-    assert "exists already" in run("query", "#8a2a20", "--html", "look.html", code=2).stderr
-
-
-def test_a_page_needs_one_colour(run, table):
-    assert "one colour" in run("query", "--input", table("0.2,0.3,0.4"), "--html", "p.html", code=2).stderr

@@ -30,15 +30,6 @@ def test_sheet_alone(run, cube, home):
     assert {path.name for path in home.iterdir()} == {cube, "sheet.exr"}
 
 
-def test_emission_tables_are_one_image_and_a_sheet(run, home):
-    assert run("slices", "emission", "-o", "lights.exr", "--plot", "lights.png").stdout.splitlines() == [
-        "lights.exr: chromaticity diagram",
-        "lights.png: contact sheet",
-    ]
-    assert len(OpenEXR.File("lights.exr").parts) == 1
-    assert (home / "lights.png").read_bytes().startswith(b"\x89PNG")
-
-
 def test_an_output_is_required(misuse, cube):
     assert "--plot" in misuse("slices", cube)
 

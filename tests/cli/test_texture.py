@@ -100,31 +100,6 @@ def test_textures_do_not_replace_any_image_of_the_sequence(refuse, frames):
     assert {path.name: path.read_bytes() for path in frames.iterdir()} == before
 
 
-def test_lights(run, refuse, home):
-    write_exr(home / "sky.exr", planes(np.full((2, 3, 3), 1e5, np.float32)))
-    options = ("--emission", "--wavelengths", "450,550,650")
-    result = run("texture", "sky.exr", "-o", "out.exr", *options)
-    assert result.output.startswith("out.exr: 1 texture, 6 pixels, 0.0 MB, ")
-    found = OpenEXR.File("out.exr", separate_channels=True).channels()
-    assert found["S0.550,000000nm"].pixels.min() > 1e4
-    assert run("texture", "sky.exr", "-o", "out.exr", *options, "--resume").output.startswith("out.exr: 0 textures")
-
-
-@pytest.mark.parametrize(
-    "words",
-    [("--representation", "moments"), ("--out-of-gamut", "scale"), ("--fill-missing",)],
-)
-def test_options_that_lights_do_not_have(refuse, home, words):
-    write_exr(home / "sky.exr", planes(np.ones((2, 3, 3), np.float32)))
-    assert refuse("texture", "sky.exr", "-o", "out.exr", "--emission", *words).code == "not-for-lights"
-
-
-def test_a_cube_is_no_emission_table(refuse, home, cubes):
-    write_exr(home / "sky.exr", planes(np.ones((2, 3, 3), np.float32)))
-    path = cubes / "moments-8.uplift"
-    assert refuse("texture", "sky.exr", "-o", "out.exr", "--emission", "--cube", path).code == "not-an-emission-table"
-
-
 def test_masks_choose_among_cubes(run, refuse, frames, cubes):
     two = ("--cube", cubes / "moments-8.uplift", "--cube", cubes / "moments-8-macbeth.uplift")
     write_exr(frames / "mask.exr", {"Y": np.full((6, 5), 0.25, dtype=np.float32)})

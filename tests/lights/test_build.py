@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import uplift
-from tests.helpers import raises, warns
+from tests.helpers import warns
 from uplift.atlas import Atlas, Entry
 from uplift.common.errors import OptionError
 from uplift.lights.build import build_emission
@@ -95,18 +95,15 @@ def test_expected_errors_are_numbers_where_sodium_has_no_z():
 
 
 @pytest.mark.parametrize(
-    ("code", "atlas"),
-    [
-        ("no-lamps", Atlas(())),
-        ("lamp-without-power", Atlas((Entry("dark", AT, np.zeros(81)),))),
-    ],
+    ("problem", "atlas"),
+    [("got none", Atlas(())), ("none of 'dark'", Atlas((Entry("dark", AT, np.zeros(81)),)))],
 )
-def test_atlases_without_light_are_refused(code, atlas):
-    with raises(OptionError, code):
+def test_atlases_without_light_are_refused(problem, atlas):
+    with pytest.raises(OptionError, match=problem):
         build_emission(atlas, **SMALL)
 
 
 @pytest.mark.parametrize("options", [{"knots": 2}, {"rings": 2}, {"knots": True}, {"rings": 4.0}, {"knots": 10**6}])
 def test_bad_numbers_of_nodes_are_refused(options):
-    with raises(OptionError, "nodes-out-of-range"):
+    with pytest.raises(OptionError, match="whole number from 3"):
         build_emission(**options)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from uplift.colorimetry import observer
+from uplift.lights.fit import locus_lattice
 from uplift.lights.lattice import BEND, chromaticity
-from uplift.lights.locus import locus_lattice
 
 CMFS = observer.matching_functions()
 RADIOMETRY = CMFS / CMFS[:, 1].sum()

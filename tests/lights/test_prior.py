@@ -8,13 +8,10 @@ import pytest
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import Lamps
-from uplift.lights.discs import MIN_RADIUS
-from uplift.lights.entries import lamp_entries
-from uplift.lights.fit import mix_with_rim, nearest_lights
+from uplift.lights.discs import MIN_RADIUS, lamp_entries
+from uplift.lights.fit import locus_lattice, mix_with_rim, nearest_lights
 from uplift.lights.lattice import chromaticity
-from uplift.lights.locus import locus_lattice
-from uplift.lights.prior import fit_lamp_prior, smoothest_lights
-from uplift.lights.relit import relit_delta_e
+from uplift.lights.prior import fit_lamp_prior, relit_delta_e, smoothest_lights
 
 CMFS = observer.matching_functions()
 RADIOMETRY = CMFS / CMFS[:, 1].sum()

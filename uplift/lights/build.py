@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Collection, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -16,21 +16,16 @@ from uplift.colorimetry import observer as observers
 from uplift.colorimetry.lights import STANDARD_ILLUMINANTS, Lamps
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning
-from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import format_value
 from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
-from uplift.lights.entries import lamp_entries
-from uplift.lights.fit import mix_with_rim, nearest_lights
+from uplift.lights.discs import lamp_entries
+from uplift.lights.fit import locus_lattice, mix_with_rim, nearest_lights
 from uplift.lights.lamps import read_lamps
 from uplift.lights.lattice import ChromaticityLattice, chromaticity
-from uplift.lights.locus import locus_lattice
 from uplift.lights.lookup import EmissionTable
-from uplift.lights.prior import LampKernel, LampPrior, fit_lamp_prior
-from uplift.lights.relit import relit_delta_e
+from uplift.lights.prior import LampKernel, LampPrior, fit_lamp_prior, relit_delta_e
 from uplift.lights.table import EmissionData
-
-LampFiles = Atlas | StrPath | Sequence[StrPath] | None
 
 ERROR_LENGTH = 0.02
 """Distance in u′v′ over which errors of left-out lamps are averaged."""
@@ -42,6 +37,8 @@ SURFACES = "macbeth"
 STACK_LEVEL = 4
 """Frames between a warning and the caller of `build_emission`, whose decorator adds two."""
 
+LampFiles = Atlas | StrPath | Sequence[StrPath] | None
+
 
 @single_threaded_blas()
 def build_emission(
@@ -52,11 +49,10 @@ def build_emission(
     space: str = "sRGB",
     observer: str = observers.DEFAULT_OBSERVER,
     without: Collection[str] = (),
-    progress: ProgressCallback = ignore_progress,
 ) -> EmissionTable:
     """Build a table of the spectra of lights, constrained by measured lamps.
 
-    Lights scale, so the table is a lattice over chromaticity, the whole spectral locus. Lamps are exact at their
+    Lights scale, so the table is a lattice over chromaticity, up to the spectral locus. Lamps are exact at their
     chromaticities. Between them, spectra are those expected by the lamps around, and smooth where no lamp is near.
 
     Parameters
@@ -74,8 +70,6 @@ def build_emission(
         Colour-matching functions.
     without : collection of str, optional
         Names of lamps of colour-science to leave out, to test how lamps are predicted that the table does not know.
-    progress : callable, optional
-        Called with `Progress` events of the stage ``"fit"``.
 
     Returns
     -------
@@ -109,18 +103,22 @@ def build_emission(
     radiometry = sensor.cmfs / sensor.cmfs[:, 1].sum()
     matrix = observers.primaries(space).rgb_to_xyz
     white = chromaticity(matrix.sum(axis=1))
+    known = observers.lamps(observer).without(without)
+    exact, others, sources = _choose_lamps(atlas, known, sensor.wavelengths, radiometry)
+    lamps = np.concatenate([exact.power, others.power])
+    surfaces = on_grid(read_atlas(SURFACES), observers.grid())
+
+    prior, left_out = fit_lamp_prior(lamps, surfaces, radiometry, len(exact))
     lattice, rim = locus_lattice(radiometry, white, int(knots), np.linspace(0, 1, int(rings)))
-    constraints, sources = _read(atlas, sensor.wavelengths, radiometry)
-    lamps = _choose(constraints, observers.lamps(observer).without(without))
-    prior, left_out = fit_lamp_prior(lamps.all.power, _surfaces(), radiometry, len(lamps.exact))
-    power = _nodes(prior, lattice, rim, radiometry, progress)
-    entries, duplicates = lamp_entries(lamps.exact, lamps.others, lattice, radiometry)
+    uv = lattice.nodes[:, :-1].reshape(-1, 2)
+    inner = mix_with_rim(nearest_lights(prior(uv), uv, radiometry), uv, lattice, rim, radiometry)
+    nodes = np.concatenate([inner.reshape(len(rim), -1, inner.shape[1]), rim[:, None]], axis=1)
+    left_out_errors = relit_delta_e(lamps, left_out, surfaces, radiometry).mean(axis=1)
+
+    entries, duplicates = lamp_entries(exact, others, lattice, radiometry)
     for name, other in duplicates:
         problem = f"left out: it has the chromaticity of '{other}'"
-        warnings.warn(
-            UpliftWarning(problem, code="entry-duplicate", entry=name),
-            stacklevel=STACK_LEVEL,
-        )
+        warnings.warn(UpliftWarning(problem, code="entry-duplicate", entry=name), stacklevel=STACK_LEVEL)
     return EmissionTable(
         EmissionData(
             space=sensor.space,
@@ -129,13 +127,13 @@ def build_emission(
             wavelengths=sensor.wavelengths,
             cmfs=sensor.cmfs,
             lattice=lattice,
-            spectra=power,
-            error=_expected_error(lamps.all, left_out, prior, lattice),
+            spectra=nodes.astype(np.float32),
+            error=_expected_error(left_out_errors, prior, lattice),
             entries=entries,
             provenance={
                 "uplift": VERSION,
                 "options": {"knots": int(knots), "rings": int(rings), "without": sorted(without)},
-                "atlases": sources,
+                "atlases": [_record(source) for source in sources],
                 "left_out": [name for name, _ in duplicates],
                 "prior": asdict(prior.kernel),
             },
@@ -143,35 +141,48 @@ def build_emission(
     )
 
 
-@dataclass(frozen=True)
-class _Lamps:
-    """Lamps of a build."""
+def _choose_lamps(
+    atlas: LampFiles, known: Lamps, wavelengths: Array, radiometry: Array
+) -> tuple[Lamps, Lamps, tuple[Source, ...]]:
+    """Return lamps that must be exact, other known ones, and the files of the former.
 
-    exact: Lamps
-    """Constraints."""
-    others: Lamps
-    """Lamps of colour-science that are none."""
-
-    @property
-    def all(self) -> Lamps:
-        names = (*self.exact.names, *self.others.names)
-        return Lamps(names, np.concatenate([self.exact.power, self.others.power]))
-
-
-def _read(atlas: LampFiles, wavelengths: Array, radiometry: Array) -> tuple[Lamps | None, list[dict[str, str]]]:
-    """Return the lamps of an atlas at luminance 1, and what the table records of their files."""
+    The exact ones are those of the atlas at luminance 1, by default standard illuminants. None of the others has the
+    name or spectrum of an exact one.
+    """
     if atlas is None:
-        return None, []
+        is_standard = np.isin(known.names, STANDARD_ILLUMINANTS)
+        return _rows(known, is_standard), _rows(known, ~is_standard), ()
     if not isinstance(atlas, Atlas):
         atlas = read_lamps(*([atlas] if isinstance(atlas, str | os.PathLike) else atlas))
     if not len(atlas):
-        raise OptionError("an atlas of lamps must have lamps, got none", code="no-lamps")
+        raise OptionError("an atlas of lamps must have lamps, got none")
     power = on_grid(atlas, wavelengths)
     luminance = power @ radiometry[:, 1]
     if not (luminance > 0).all():
         dark = atlas.names[int(luminance.argmin())]
-        raise OptionError(f"a lamp must have visible power, got none of '{dark}'", code="lamp-without-power")
-    return Lamps(atlas.names, power / luminance[:, None]), [_record(source) for source in atlas.sources]
+        raise OptionError(f"a lamp must have visible power, got none of '{dark}'")
+    exact = Lamps(atlas.names, power / luminance[:, None])
+    is_other = [
+        name not in exact.names and np.abs(exact.power - row).max(axis=1).min() > observers.SAME_LAMP * row.max()
+        for name, row in zip(known.names, known.power, strict=True)
+    ]
+    return exact, _rows(known, np.array(is_other)), atlas.sources
+
+
+def _rows(lamps: Lamps, kept: NDArray[np.bool_]) -> Lamps:
+    return Lamps(tuple(np.array(lamps.names)[kept].tolist()), lamps.power[kept])
+
+
+def _expected_error(errors: Array, prior: LampPrior, lattice: ChromaticityLattice) -> NDArray[np.float32]:
+    """ΔE00 (K, R) of the ColorChecker lit by an answer.
+
+    Errors (L,) of left-out lamps, in units of the standard deviation of the prior there, are averaged by distance.
+    """
+    units = errors / prior.left_out_deviation()
+    uv = lattice.nodes.reshape(-1, 2)
+    weights = LampKernel(ERROR_LENGTH, 0.0)(uv, prior.uv)
+    unit = (weights @ units + FAR_SHARE * units.mean()) / (weights.sum(axis=1) + FAR_SHARE)
+    return np.asarray((unit * prior.standard_deviation(uv)).reshape(lattice.shape), dtype=np.float32)
 
 
 def _record(source: Source) -> dict[str, str]:
@@ -180,58 +191,6 @@ def _record(source: Source) -> dict[str, str]:
     return {"name": source.name, "digest": source.digest, **scale}
 
 
-def _choose(constraints: Lamps | None, known: Lamps) -> _Lamps:
-    """Split the known lamps into constraints and others, of which none has the name or spectrum of a constraint."""
-    if constraints is None:
-        is_standard = np.isin(known.names, STANDARD_ILLUMINANTS)
-        return _Lamps(_rows(known, is_standard), _rows(known, ~is_standard))
-    kept = [
-        name not in constraints.names
-        and np.abs(constraints.power - row).max(axis=1).min() > observers.SAME_LAMP * row.max()
-        for name, row in zip(known.names, known.power, strict=True)
-    ]
-    return _Lamps(constraints, _rows(known, np.array(kept)))
-
-
-def _rows(lamps: Lamps, kept: NDArray[np.bool_]) -> Lamps:
-    return Lamps(tuple(np.array(lamps.names)[kept].tolist()), lamps.power[kept])
-
-
-def _nodes(
-    prior: LampPrior, lattice: ChromaticityLattice, rim: Array, radiometry: Array, progress: ProgressCallback
-) -> NDArray[np.float32]:
-    """Fit all nodes (K, R, N)."""
-    uv = lattice.nodes[:, :-1].reshape(-1, 2)
-    progress(Progress("fit", 0, len(uv)))
-    power = mix_with_rim(nearest_lights(prior(uv), uv, radiometry), uv, lattice, rim, radiometry)
-    progress(Progress("fit", len(uv), len(uv)))
-    inner = power.reshape(len(rim), -1, power.shape[1])
-    return np.asarray(np.concatenate([inner, rim[:, None]], axis=1), dtype=np.float32)
-
-
-def _surfaces() -> Array:
-    """Reflectances (P, N) of the ColorChecker."""
-    return on_grid(read_atlas(SURFACES), observers.grid())
-
-
-def _expected_error(
-    lamps: Lamps, left_out: Array, prior: LampPrior, lattice: ChromaticityLattice
-) -> NDArray[np.float32]:
-    """ΔE00 (K, R) of the ColorChecker lit by an answer.
-
-    Errors of left-out lamps, in units of the standard deviation of the prior there, are averaged by distance.
-    """
-    errors = relit_delta_e(lamps.power, left_out, _surfaces(), prior.radiometry).mean(axis=1)
-    units = errors / prior.left_out_deviation()
-    uv = lattice.nodes.reshape(-1, 2)
-    weights = LampKernel(ERROR_LENGTH, 0.0)(uv, prior.uv)
-    unit = (weights @ units + FAR_SHARE * units.mean()) / (weights.sum(axis=1) + FAR_SHARE)
-    return np.asarray((unit * prior.standard_deviation(uv)).reshape(lattice.shape), dtype=np.float32)
-
-
 def _check_count(name: str, value: Any, most: int) -> None:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 3 <= value <= most:
-        raise OptionError(
-            f"{name} must be a whole number from 3 to {most}, got {format_value(value)}",
-            code="nodes-out-of-range",
-        )
+        raise OptionError(f"{name} must be a whole number from 3 to {most}, got {format_value(value)}")

@@ -17,27 +17,8 @@ from uplift.common.arrays import StrPath
 def read_lamps(*paths: StrPath) -> Atlas:
     """Read files of spectral powers into one atlas, in the formats of `uplift.atlas.read_atlas`.
 
-    Powers have no common scale: the largest one of each lamp is 1.
-
-    Parameters
-    ----------
-    *paths : path-like
-        Files, in the order of their lamps.
-
-    Returns
-    -------
-    Atlas
-
-    Raises
-    ------
-    AtlasError
-        A file cannot be read, holds reflectances (``not-a-lamp``), a lamp has no power (``lamp-without-power``), or two
-        lamps share a name.
-
-    Warns
-    -----
-    UpliftWarning
-        A lamp was skipped (``entry-skipped``).
+    Powers have no common scale: the largest one of each lamp is 1. `AtlasError` for files of reflectances and lamps
+    without power.
     """
     atlas = merge(map(_read, map(read_document, paths)))
     for skipped in atlas.skipped:

@@ -155,7 +155,7 @@ class ChromaticityLattice:
 
 
 def _error(problem: str) -> OptionError:
-    return OptionError(f"a lattice over chromaticity {problem}", code="invalid-chromaticity-lattice")
+    return OptionError(f"a lattice over chromaticity {problem}")
 
 
 def _pseudo_angle(offset: Array) -> Array:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import weighted_sum
 from uplift.lights.lattice import BEND, DENOMINATOR, Cells
-from uplift.lights.table import EmissionData, is_emission_table, read_emission, write_emission
+from uplift.lights.table import EmissionData, read_emission, write_emission
 from uplift.lookup.blocks import Function, blockwise
 from uplift.lookup.validation import as_float_type, as_thread_count, as_wavelengths
 from uplift.models.matmul import matmul_rows
@@ -81,11 +80,6 @@ class EmissionTable:
     def lamp_names(self) -> tuple[str, ...]:
         """Names of the lamps that are exact."""
         return self.data.entries.names
-
-    @cached_property
-    def _radiometry(self) -> Array:
-        """(N, 3) from power to XYZ."""
-        return np.asarray(self.data.cmfs / self.data.cmfs[:, 1].sum())
 
     def spectrum(
         self,
@@ -228,7 +222,7 @@ class EmissionTable:
         ndarray, shape (..., 3)
             Linear RGB.
         """
-        return self.rgb_of_xyz(np.asarray(power, dtype=float) @ self._radiometry)
+        return self.rgb_of_xyz(np.asarray(power, dtype=float) @ self.data.radiometry)
 
     def rgb_of_xyz(self, xyz: ArrayLike) -> Array:
         """Convert XYZ to linear RGB, the inverse of `xyz`.
@@ -286,7 +280,6 @@ class EmissionTable:
             Values that are not finite, or a colour that no light has (``colour-not-a-light``).
         """
 
-
         def errors(xyz: Array) -> Array:
             cells, _ = _cells(self.data, _refuse, xyz, *_chromaticities(xyz))
             corners = self.data.lattice.corners(cells)
@@ -339,13 +332,8 @@ def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
     return EmissionTable(read_emission(EMISSION if path is None else find_table(path)))
 
 
-def names_emission_table(path: str | os.PathLike[str]) -> bool:
-    """Whether a path or the name of the packaged table stands for an emission table; False for unreadable files."""
-    return is_emission_table(find_table(path))
-
-
 def find_table(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
-    """Return the packaged table for its name in any case, unless a file has it, or else the path."""
+    """Return the packaged table for its name ``emission``, unless a file has it, or else the path."""
     is_packaged = os.fsdecode(path).casefold() == EMISSION.stem and not os.path.lexists(path)
     return EMISSION if is_packaged else path
 

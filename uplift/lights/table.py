@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,6 @@ from uplift.cube.container import (
     Tensors,
     check_arrays,
     content_digest,
-    format_of,
     load,
     replace_file,
     require,
@@ -60,68 +60,46 @@ METADATA = {
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EmissionData:
-    """Content of an emission table.
+    """Content of an emission table: a lattice of K knots and R rings, spectra at N wavelengths, and lamps.
 
-    Powers are relative to the equal-energy light of luminance 1, whose power is 1 at every wavelength: XYZ of a power s
-    is Σ s cmfs / Σ ȳ.
-
-    Parameters
-    ----------
-    space : str
-        RGB space of queries.
-    observer : str
-        Colour-matching functions.
-    rgb_to_xyz : ndarray, shape (3, 3)
-        Linear RGB to XYZ; white has Y = 1.
-    wavelengths : ndarray, shape (N,)
-        Wavelengths in nm, evenly spaced, ascending.
-    cmfs : ndarray, shape (N, 3)
-        Colour-matching functions.
-    lattice : ChromaticityLattice
-        K knots and R rings.
-    spectra : ndarray of float32, shape (K, R, N)
-        Power of unit X + 15 Y + 3 Z at each node.
-    error : ndarray of float32, shape (K, R)
-        Expected ΔE00 of surfaces lit by the answer instead of a measured lamp of the same chromaticity.
-    entries : LampEntries
-        Lamps that are exact.
-    provenance : mapping
-        Version, options and files of the build.
+    Powers are relative to the equal-energy light of luminance 1, whose power is 1 at every wavelength.
     """
 
     space: str
+    """RGB space of queries."""
     observer: str
+    """Colour-matching functions."""
     rgb_to_xyz: Array
+    """(3, 3) from linear RGB to XYZ; white has Y = 1."""
     wavelengths: Array
+    """(N,) wavelengths in nm, evenly spaced, ascending."""
     cmfs: Array
+    """(N, 3) colour-matching functions."""
     lattice: ChromaticityLattice
     spectra: NDArray[np.float32]
+    """(K, R, N) power of unit X + 15 Y + 3 Z at the nodes."""
     error: NDArray[np.float32]
+    """(K, R) expected ΔE00 of surfaces lit by the answer instead of a measured lamp of the same chromaticity."""
     entries: LampEntries
+    """Lamps that are exact."""
     provenance: Mapping[str, Any]
+    """Version, options and files of the build."""
 
     def __repr__(self) -> str:
         lamps = f"{len(self.entries.names)} {'lamp' if len(self.entries.names) == 1 else 'lamps'}"
         knots, rings = self.lattice.shape
         return f"EmissionData({knots} × {rings} nodes, {len(self.wavelengths)} wavelengths, {self.space}, {lamps})"
 
+    @cached_property
+    def radiometry(self) -> Array:
+        """(N, 3) from power to XYZ: XYZ of a power s is Σ s cmfs / Σ ȳ."""
+        return np.asarray(self.cmfs / self.cmfs[:, 1].sum())
+
 
 def write_emission(data: EmissionData, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write an emission table, atomically. The new file is read back before it replaces an existing one.
+    """Write an emission table, atomically; `OutputError` if the file exists and `force` is false, or cannot be written.
 
-    Parameters
-    ----------
-    data : EmissionData
-        The table.
-    path : path-like
-        File to write.
-    force : bool, default False
-        Replace an existing file.
-
-    Raises
-    ------
-    OutputError
-        The file exists and ``force`` is false, cannot be written, or does not read back (``cube-unreadable``).
+    The new file is read back before it replaces an existing one.
     """
     replace_file((_tensors(data), _metadata(data)), path, KIND, read_emission, force=force)
 
@@ -129,21 +107,7 @@ def write_emission(data: EmissionData, path: str | os.PathLike[str], *, force: b
 def read_emission(path: str | os.PathLike[str]) -> EmissionData:
     """Read an emission table, and check its digest and all its content.
 
-    Parameters
-    ----------
-    path : path-like
-        The file.
-
-    Returns
-    -------
-    EmissionData
-        The table.
-
-    Raises
-    ------
-    CubeFileError
-        The file is missing (``cube-not-found``), damaged (``cube-damaged``), not an emission table
-        (``not-an-emission-table``), of another version (``cube-version``), or its content is invalid.
+    `CubeFileError` if the file is missing, damaged, or not an emission table of this version.
     """
     path = Path(path)
     tensors, metadata = load(path, KIND)
@@ -157,35 +121,8 @@ def read_emission(path: str | os.PathLike[str]) -> EmissionData:
     return data
 
 
-def is_emission_table(path: str | os.PathLike[str]) -> bool:
-    """Whether a file is an emission table, by its first words; `read_emission` reports what is wrong with others.
-
-    Parameters
-    ----------
-    path : path-like
-        A file.
-
-    Returns
-    -------
-    bool
-        False for other files, and for those that cannot be read.
-    """
-    return os.path.isfile(path) and format_of(Path(path)) == KIND.format
-
-
 def emission_digest(data: EmissionData) -> str:
-    """Compute the digest of a table. Tables with equal digests give equal answers, bit for bit.
-
-    Parameters
-    ----------
-    data : EmissionData
-        The table.
-
-    Returns
-    -------
-    str
-        SHA-256 in hexadecimal.
-    """
+    """SHA-256 in hexadecimal of a table. Tables with equal digests give equal answers, bit for bit."""
     return content_digest(_tensors(data), _metadata(data))
 
 
@@ -239,13 +176,12 @@ def _check(data: EmissionData) -> None:
     steps = np.diff(data.wavelengths)
     even = len(steps) > 0 and bool((steps > 0).all()) and float(np.ptp(steps)) < 1e-6
     require(even, "the wavelengths must ascend evenly")
-    luminance = float(data.cmfs[:, 1].sum())
-    require(luminance > 0, "the colour-matching functions must respond")
+    require(float(data.cmfs[:, 1].sum()) > 0, "the colour-matching functions must respond")
     condition = float(np.linalg.cond(data.rgb_to_xyz))
     require(condition < MAX_CONDITION, "the RGB space must have three primaries")
     places = ((data.spectra, data.lattice.nodes), (data.entries.spectra, data.entries.uv))
     for spectra, uv in places:
-        xyz = spectra @ (data.cmfs / luminance)
+        xyz = spectra @ data.radiometry
         unit = np.abs(xyz @ (1.0, 15.0, 3.0) - 1).max(initial=0) <= MAX_OFFSET
         there = unit and np.abs(chromaticity(xyz) - uv).max(initial=0) <= MAX_OFFSET
         require(bool(there), "every spectrum must have the chromaticity of its place")

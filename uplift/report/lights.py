@@ -1,80 +1,60 @@
-"""Quality of an emission table: exact colours, powers that are not negative, and expected errors."""
+"""Quality of an emission table as a self-contained HTML page: exact colours, powers, and expected errors."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 
+from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.lights.lattice import chromaticity
 from uplift.lights.lookup import EmissionTable
+from uplift.report.charts import histogram_chart
 from uplift.report.round_trip import COLOURS, SEED
 from uplift.report.summary import summarise_emission
+from uplift.viz.chromaticity import draw_colours, draw_errors, draw_lamps
+from uplift.viz.figure import STYLE, to_page_svg
 from uplift.viz.histogram import Histogram, linear_edges, log_edges, make_histogram
+from uplift.viz.html import render
+from uplift.viz.scatter import new_panels
 
 MIN_DISTANCE = 1e-9
 """Smaller distances in u′v′ are rounding errors and are counted in the lowest bin."""
 PEAKS = 40
 """Exponent of the random powers: large ones leave few wavelengths, so that colours reach the spectral locus."""
+PANEL = (4.2, 4.05)
+"""Inches of a diagram; the page scales it to its columns."""
+MARGINS = {"left": 0.11, "right": 0.98, "bottom": 0.11, "top": 0.98}
+DIAGRAMS = {
+    "Colours": (draw_colours, "Chromaticity diagram of the colours of lights, with the exact lamps"),
+    "Expected error": (draw_errors, "Chromaticity diagram of the expected error of surfaces"),
+    "Lamps": (draw_lamps, "Chromaticity diagram of the exact lamps and their discs"),
+}
+"""How each diagram is drawn, and what it shows, by its title."""
 
 
 @dataclass(frozen=True, eq=False)
 class LightAssessment:
-    """Quality of one emission table.
+    """Answers of a table to random lights, and errors expected at its exact lamps."""
 
-    Parameters
-    ----------
-    name : str
-        Base name of its file.
-    size : int
-        Bytes of the file.
-    table : EmissionTable
-        The table.
-    facts : dict
-        The result of `summarise_emission`.
-    round_trip : Histogram
-        Distance in u′v′ of random lights from the answers.
-    smallest_power : float
-        Smallest power of these answers.
-    expected_error : Histogram
-        Expected ΔE00 of the ColorChecker lit by these answers instead of a measured lamp.
-    lamp_errors : ndarray, shape (E,)
-        Expected ΔE00 at the chromaticities of the exact lamps, of another lamp of the same chromaticity.
-    lamp_rgb : ndarray, shape (E, 3)
-        Linear RGB of the exact lamps at luminance 1.
-    """
-
-    name: str
-    size: int
-    table: EmissionTable
-    facts: dict[str, Any]
     round_trip: Histogram
+    """Distance in u′v′ of random lights from the answers."""
     smallest_power: float
+    """Smallest power of these answers."""
     expected_error: Histogram
+    """Expected ΔE00 of the ColorChecker lit by these answers instead of a measured lamp."""
     lamp_errors: Array
+    """(E,) expected ΔE00 at the exact lamps, of another lamp of the same chromaticity."""
     lamp_rgb: Array
+    """(E, 3) linear RGB of the exact lamps at luminance 1."""
 
 
-def assess_lights(table: EmissionTable, name: str, size: int) -> LightAssessment:
-    """Assess an emission table by random lights and by its lamps.
-
-    Parameters
-    ----------
-    table : EmissionTable
-        The table.
-    name : str
-        Base name of its file.
-    size : int
-        Bytes of the file.
-
-    Returns
-    -------
-    LightAssessment
-        All numbers of a report.
-    """
-    radiometry = table.data.cmfs / table.data.cmfs[:, 1].sum()
+def assess_lights(table: EmissionTable) -> LightAssessment:
+    """Assess an emission table by random lights and by its lamps."""
+    radiometry = table.data.radiometry
     xyz = np.random.default_rng(SEED).random((COLOURS, len(radiometry))) ** PEAKS @ radiometry
     power = table.spectrum_of_xyz(xyz)
     distance = np.linalg.norm(chromaticity(power @ radiometry) - chromaticity(xyz), axis=1)
@@ -82,10 +62,6 @@ def assess_lights(table: EmissionTable, name: str, size: int) -> LightAssessment
     lamps = table.data.entries.spectra @ radiometry
     lamp_rgb = table.rgb_of_xyz(lamps / lamps[:, 1:2])
     return LightAssessment(
-        name=name,
-        size=size,
-        table=table,
-        facts=summarise_emission(table.data),
         round_trip=make_histogram(distance, log_edges(distance, MIN_DISTANCE)),
         smallest_power=float(power.min()),
         expected_error=make_histogram(expected, linear_edges(expected)),
@@ -94,34 +70,31 @@ def assess_lights(table: EmissionTable, name: str, size: int) -> LightAssessment
     )
 
 
-def lights_to_json(assessment: LightAssessment) -> dict[str, Any]:
-    """Return the numbers of an assessment as JSON values.
-
-    Parameters
-    ----------
-    assessment : LightAssessment
-        The assessment.
-
-    Returns
-    -------
-    dict
-        JSON values.
-    """
-    entries = assessment.table.data.entries
-    rows = zip(entries.names, entries.uv.tolist(), entries.radius.tolist(), assessment.lamp_errors, strict=True)
-    return {
-        "table": assessment.name,
-        "bytes": assessment.size,
-        "facts": assessment.facts,
-        "random_lights": COLOURS,
-        "round_trip_uv": _statistics(assessment.round_trip),
-        "smallest_power": assessment.smallest_power,
-        "expected_error": _statistics(assessment.expected_error),
-        "lamps": [
-            {"name": name, "uv": uv, "disc": radius, "expected_error": float(error)} for name, uv, radius, error in rows
-        ],
-    }
+def render_light_report(table: EmissionTable, name: str, size: int) -> str:
+    """Render the page of a table in a file of a name and a size in bytes. The same table gives the same text."""
+    entries, assessment = table.data.entries, assess_lights(table)
+    brightest = np.clip(assessment.lamp_rgb / assessment.lamp_rgb.max(axis=1, keepdims=True), 0, 1)
+    codes = hex_codes(brightest, table) if len(entries.names) else []
+    return render(
+        "report/templates/lights.html.j2",
+        title=name,
+        size=size,
+        report=assessment,
+        facts=summarise_emission(table.data),
+        provenance=table.data.provenance,
+        count=COLOURS,
+        diagrams=[(title, _diagram(draw, label, table)) for title, (draw, label) in DIAGRAMS.items()],
+        lamps=list(zip(entries.names, codes, entries.uv, entries.radius, assessment.lamp_errors, strict=True)),
+        histogram_chart=histogram_chart,
+    )
 
 
-def _statistics(values: Histogram) -> dict[str, float]:
-    return {"mean": values.mean, "median": values.median, "p95": values.p95, "max": values.largest}
+def _diagram(draw: Callable[..., None], label: str, table: EmissionTable) -> Markup:
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        figure, ((axes,),) = new_panels(1, 1, PANEL, MARGINS)
+        figure.patch.set_visible(False)
+        axes.patch.set_visible(False)
+        draw(axes, table)
+        return to_page_svg(figure, label)

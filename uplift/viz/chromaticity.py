@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,7 @@ from numpy.typing import NDArray
 from uplift.colorimetry.lights import STANDARD_ILLUMINANTS
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.lights.chromaticity_map import ALL, Window, map_chromaticities
-from uplift.lights.lattice import chromaticity
+from uplift.lights.lattice import chromaticity, unit_xyz
 from uplift.lights.lookup import EmissionTable
 from uplift.viz.figure import GREY, INK, STYLE
 from uplift.viz.ramp import colour_map
@@ -38,19 +38,20 @@ LAMP: dict[str, Any] = {
 }
 
 
+@dataclass(frozen=True)
+class Window:
+    """A part of the diagram: lowest and highest u′ and v′."""
+
+    u: tuple[float, float]
+    v: tuple[float, float]
+
+
+ALL = Window((-0.04, 0.64), (0.0, 0.62))
+"""All chromaticities of lights, with a margin."""
+
+
 def light_figure(table: EmissionTable) -> Any:
-    """Draw colours, expected errors, and the region of the lamps side by side.
-
-    Parameters
-    ----------
-    table : EmissionTable
-        The table.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-    """
+    """Draw colours, expected errors, and the region of the lamps side by side."""
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
@@ -69,15 +70,7 @@ def light_figure(table: EmissionTable) -> Any:
 
 
 def draw_colours(axes: Any, table: EmissionTable) -> None:
-    """Draw the colours of lights, the triangle of the RGB space and the wavelengths of the spectral locus.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Axes to draw on.
-    table : EmissionTable
-        The table.
-    """
+    """Draw the colours of lights, the triangle of the RGB space and the wavelengths of the spectral locus."""
     _draw_map(axes, table, ALL, _codes(table, ALL))
     corners = chromaticity(table.xyz(np.eye(3)[[0, 1, 2, 0]]))
     axes.plot(*corners.T, color=INK, linewidth=0.9, linestyle=(0, (4, 2)), label=f"{table.space} primaries")
@@ -87,16 +80,8 @@ def draw_colours(axes: Any, table: EmissionTable) -> None:
 
 
 def draw_errors(axes: Any, table: EmissionTable) -> None:
-    """Draw the map of expected errors with its scale.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Axes to draw on.
-    table : EmissionTable
-        The table.
-    """
-    errors = map_chromaticities(table, ALL, _step(ALL)).error
+    """Draw the map of expected errors with its scale."""
+    errors = table.expected_error(_pixels(table, ALL))
     largest = float(table.data.error.max())
     image = _draw_map(axes, table, ALL, errors, cmap=colour_map(), vmin=0, vmax=largest)
     _draw_lamp_marks(axes, table)
@@ -110,13 +95,6 @@ def draw_lamps(axes: Any, table: EmissionTable) -> None:
     """Draw the part of the diagram that has the lamps, with their names as far as there is room.
 
     Circles are the discs in which answers blend to a lamp.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Axes to draw on, whose figure has a renderer.
-    table : EmissionTable
-        The table.
     """
     from matplotlib.patches import Circle
 
@@ -134,17 +112,7 @@ def draw_lamps(axes: Any, table: EmissionTable) -> None:
 
 
 def lamp_window(table: EmissionTable) -> Window:
-    """Return the part of the diagram that has the lamps, of the proportions of `ALL`.
-
-    Parameters
-    ----------
-    table : EmissionTable
-        The table.
-
-    Returns
-    -------
-    Window
-    """
+    """Return the part of the diagram that has the lamps, of the proportions of `ALL`."""
     uv = np.concatenate([table.data.entries.uv, table.data.lattice.white[None]])
     low, high = uv.min(axis=0) - MARGIN, uv.max(axis=0) + MARGIN
     full = np.array([ALL.u[1] - ALL.u[0], ALL.v[1] - ALL.v[0]])
@@ -153,15 +121,22 @@ def lamp_window(table: EmissionTable) -> Window:
     return Window((u - du, u + du), (v - dv, v + dv))
 
 
+def _pixels(table: EmissionTable, window: Window) -> Array:
+    """Linear RGB (H, W, 3) of luminance 1 at the pixels of a window, v′ upwards; outside the locus that of its edge."""
+    step = (window.u[1] - window.u[0]) / PIXELS
+    u, v = (low + step * (np.arange(round((high - low) / step)) + 0.5) for low, high in (window.u, window.v))
+    lattice = table.data.lattice
+    offset = np.stack(np.meshgrid(u, v[::-1]), axis=-1) - lattice.white
+    length = lattice.polar(offset.reshape(-1, 2))[2].reshape(offset.shape[:2])
+    xyz = unit_xyz(lattice.white + offset / np.maximum(length, 1.0)[..., None])
+    return table.rgb_of_xyz(xyz / xyz[..., 1:2])
+
+
 def _codes(table: EmissionTable, window: Window) -> NDArray[np.uint8]:
     """Encoded sRGB (H, W, 3) of the brightest colours of the chromaticities in a window."""
-    rgb = map_chromaticities(table, window, _step(window)).rgb
+    rgb = _pixels(table, window)
     brightest = np.clip(rgb / rgb.max(axis=-1, keepdims=True), 0, 1)
     return np.asarray(to_display_codes(brightest, table), dtype=np.uint8)
-
-
-def _step(window: Window) -> float:
-    return (window.u[1] - window.u[0]) / PIXELS
 
 
 def _draw_map(axes: Any, table: EmissionTable, window: Window, values: NDArray[Any], **style: Any) -> Any:

@@ -21,7 +21,7 @@ The texture ``uplift``:
 
 The emitter ``uplift_envmap`` takes ``filename`` or ``bitmap``, ``cube``, ``to_world`` and ``scale``, as Mitsuba's
 ``envmap``. Images are uplifted when they are loaded, to 4 bytes per wavelength of the emission table and pixel; a
-spectral image of ``uplift texture --emission`` has the wavelengths that it was written with.
+spectral image of ``uplift lights texture`` has the wavelengths that it was written with.
 
 One colour becomes a regular spectrum of Mitsuba, without extra cost. Images are uplifted when they are loaded, to the
 multipliers of each texel, 4 bytes per coefficient. An image with colours near atlas entries has as many multipliers per

@@ -86,7 +86,7 @@ def read_colours(path: Path, sensor: Sensor, method: str) -> tuple[Floats, tuple
 
 
 def read_lights(path: Path, table: EmissionTable) -> tuple[Floats, tuple[UpliftWarning, ...]]:
-    """Read linear RGB (h, w, 3) of the lights in an image, as `uplift texture --emission` does, and its warnings.
+    """Read linear RGB (h, w, 3) of the lights in an image, as `uplift lights texture` does, and its warnings.
 
     Raises `TextureError` and `OptionError`.
     """

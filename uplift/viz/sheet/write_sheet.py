@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.srgb import decode, encode
+from uplift.colorimetry.srgb import encode
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write, check_output
 from uplift.cube.data import CubeData
-from uplift.io.slices import exr, light_attributes
-from uplift.lights.lookup import EmissionTable
-from uplift.viz.chromaticity import light_figure
-from uplift.viz.figure import figure_text, rendered
+from uplift.io.slices import exr
+from uplift.viz.figure import figure_text
 from uplift.viz.sheet.sheet import Label, compose
 
 TEXT_GREY = 0.75
@@ -32,8 +29,6 @@ STYLE: dict[str, Any] = {
 }
 
 Image = NDArray[np.float32]
-Header = Callable[[], dict[str, Any]]
-"""Makes the attributes of an OpenEXR file."""
 
 
 def write_sheet(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -60,29 +55,7 @@ def write_sheet(data: CubeData, path: str | os.PathLike[str], *, force: bool = F
     check_sheet(path, force=force)
     sheet = compose(data)
     image = _draw_text(sheet.image, sheet.labels)
-    WRITERS[_suffix(path)](image, lambda: exr.attributes(data), Path(path), force)
-
-
-def write_light_sheet(table: EmissionTable, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write the contact sheet of an emission table: chromaticity diagrams of its colours, expected errors and lamps.
-
-    Parameters
-    ----------
-    table : EmissionTable
-        The table.
-    path : path-like
-        File to write: linear RGB in a single-part ``.exr``, or sRGB in a ``.png``.
-    force : bool, default False
-        Replace an existing file.
-
-    Raises
-    ------
-    OutputError
-        As `write_sheet` raises it.
-    """
-    check_sheet(path, force=force)
-    image = decode(rendered(light_figure(table)) / 255).astype(np.float32)
-    WRITERS[_suffix(path)](image, lambda: light_attributes(table), Path(path), force)
+    WRITERS[_suffix(path)](image, data, Path(path), force)
 
 
 def check_sheet(path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -114,12 +87,12 @@ def _suffix(path: str | os.PathLike[str]) -> str:
     return Path(path).suffix.lower()
 
 
-def _write_exr(image: Image, header: Header, path: Path, force: bool) -> None:
+def _write_exr(image: Image, data: CubeData, path: Path, force: bool) -> None:
     channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
-    exr.write_parts([exr.make_part("sheet", header(), channels)], path, force=force)
+    exr.write_parts([exr.make_part("sheet", exr.attributes(data), channels)], path, force=force)
 
 
-def _write_png(image: Image, header: Header, path: Path, force: bool) -> None:
+def _write_png(image: Image, data: CubeData, path: Path, force: bool) -> None:
     from matplotlib.image import imsave
 
     codes = np.rint(255 * encode(image)).astype(np.uint8)
