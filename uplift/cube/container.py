@@ -133,19 +133,6 @@ def _load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:
         raise _invalid(path, kind, problem, kind.foreign) from error
 
 
-def format_of(path: Path) -> str | None:
-    """Return the word by which a file names its `Kind`; None for other files and for those that cannot be read."""
-    from safetensors import SafetensorError, safe_open
-
-    try:
-        with safe_open(path, framework="numpy") as file:
-            metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
-    except (SafetensorError, ValueError, TypeError, OSError, MemoryError):
-        return None
-    found = metadata.get("format") if isinstance(metadata, dict) else None
-    return found if isinstance(found, str) else None
-
-
 def content_digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
     """Compute the SHA-256 of arrays and metadata, in hexadecimal."""
     content = hashlib.sha256(_json(metadata).encode())
