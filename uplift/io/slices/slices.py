@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,6 @@ from uplift.common.errors import OutputError
 from uplift.common.files import check_output
 from uplift.cube.data import CubeData
 from uplift.io.slices import exr
-from uplift.io.slices.blue_slices import blue_slices
 
 COMMENTS = (
     "A blue slice of a spectral uplifting cube. A pixel is a lattice point: red rises to the right, green "
@@ -24,6 +23,8 @@ COMMENTS = (
     "Absent points, of a cube built for a scene, hold nothing but their status."
 )
 """The ``comments`` attribute of every part."""
+
+Number = TypeVar("Number", bound=np.generic)
 
 
 def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -34,40 +35,14 @@ def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = 
     lattice RGB under the build illuminant), ``status``, ``entry`` and ``round`` (−1 for none; ``round`` only with debug
     information), ``standardError`` (of cubes with an atlas) and ``coefficient.00`` onwards.
 
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-    path : path-like
-        File to write.
-    force : bool
-        Whether to replace an existing file.
-
-    Raises
-    ------
-    OutputError
-        The path does not end in ``.exr`` (code ``unknown-suffix``), cannot be written, or exists and ``force`` is
-        off.
+    Raises `OutputError` for other suffixes than ``.exr``, and as `uplift.common.files.check_output`.
     """
     check_slices(path, force=force)
     exr.write_parts(_parts(data), path, force=force)
 
 
 def check_slices(path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Check that `write_slices` can write a file, before long work.
-
-    Parameters
-    ----------
-    path : path-like
-        File to write.
-    force : bool
-        Whether an existing file can be replaced.
-
-    Raises
-    ------
-    OutputError
-        As `write_slices` raises it.
-    """
+    """Check that `write_slices` can write a file, before long work. Raises `OutputError`."""
     if Path(path).suffix.lower() != ".exr":
         raise OutputError(
             "the name of a file of slices must end in .exr",
@@ -76,6 +51,15 @@ def check_slices(path: str | os.PathLike[str], *, force: bool = False) -> None:
             hint="name the file .exr, or write a contact sheet",
         )
     check_output(path, force=force)
+
+
+def blue_slices(values: NDArray[Number], dim: int) -> NDArray[Number]:
+    """Arrange the values (dim³, …) of nodes as a view (dim, dim, dim, …) with axes blue, row, red.
+
+    Image rows count downwards, so row 0 has the highest green: ``row = dim − 1 − green``.
+    """
+    by_red = values.reshape(dim, dim, dim, *values.shape[1:])
+    return by_red.swapaxes(0, 2)[:, ::-1]
 
 
 def channels(data: CubeData) -> dict[str, NDArray[Any]]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
 from uplift.cube.data import CubeData
-from uplift.io.slices.blue_slices import blue_slices
+from uplift.io.slices.slices import blue_slices
 from uplift.viz.sheet.panels import BACKGROUND, Key, Panel, panels
 
 PANEL = 640
