@@ -72,14 +72,9 @@ def command(scene: str, output: str | None, style: str, force: bool) -> None:
 
 
 def _print_summary(plan: Plan, lines: list[str]) -> None:
-    from uplift.scene.plan.summary import (
-        describe_error,
-        describe_metamerism,
-        summary_rows,
-        verdict,
-        worst_case,
-    )
+    from uplift.scene.plan.page import describe_error, describe_metamerism, summary_rows, verdict
 
+    worst = plan.confirmed.worst
     table = make_table()
     table.add_column("smallest sufficient")
     table.add_column("")
@@ -88,7 +83,7 @@ def _print_summary(plan: Plan, lines: list[str]) -> None:
     table.add_column("options")
     for row in summary_rows(plan):
         table.add_row(row.title, row.chosen, row.error, row.cost, row.cli_args)
-    paragraph(f"{plan.scene.path.name}: {verdict(plan)} ({worst_case(plan.confirmed)})")
+    paragraph(f"{plan.scene.path.name}: {verdict(plan)} ({worst.group} under {worst.light})")
     say()
     show(table)
     say()

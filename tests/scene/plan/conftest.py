@@ -47,7 +47,7 @@ def planned(kitchen):
     with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         patch.setattr(
-            "uplift.scene.plan.representation.all_representations",
+            "uplift.scene.plan.decisions.all_representations",
             lambda lights, surfaces: [riemann_sums(8), point_samples(32)],
         )
         return plan.plan(plan.read_scene_file(kitchen), SMALL, steps.append), steps

@@ -7,9 +7,16 @@ import pytest
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.scene.plan.decision import Trial, decide
-from uplift.scene.plan.evaluation import WORST_DELTA_E, ColourGroup, ErrorSummary, EvaluationSet, GroupError
-from uplift.scene.plan.previews import make_previews
+from uplift.scene.plan.evaluation import (
+    WORST_DELTA_E,
+    ColourGroup,
+    ErrorSummary,
+    EvaluationSet,
+    GroupError,
+    Trial,
+    decide,
+    make_previews,
+)
 
 LIGHTS = ("D65", "FL11")
 

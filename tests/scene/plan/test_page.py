@@ -12,8 +12,7 @@ from uplift_cli.main import main
 
 from tests.browsing import check_page
 from uplift.scene.plan.commands import build_command, cube_name, expanded_command, texture_command
-from uplift.scene.plan.page import _budget, _previews_by_light, page
-from uplift.scene.plan.summary import summary_rows, verdict
+from uplift.scene.plan.page import _budget, page, summary_rows, verdict
 from uplift.viz.format import format_size
 
 EMPTY = {"meta", "br", "col", "input"}
@@ -72,13 +71,6 @@ def test_bars_are_proportional_to_errors_and_stay_on_the_axis(planned):
     assert ratio == pytest.approx(plan.chain[0].trial.error.quantile / plan.confirmed.quantile)
     assert bars[-1]["limit"] / bars[-1]["error"] == pytest.approx(plan.scene.tolerance / plan.confirmed.quantile)
     assert all(0 <= bar[key] < 100 for bar in bars for key in ("error", "limit"))
-
-
-def test_previews_are_grouped_by_light(planned):
-    rows = _previews_by_light(planned[0])
-    assert [light for light, _ in rows] == list(planned[0].scene.lights)
-    assert len({tuple(preview.share for preview in row) for _, row in rows}) == 1
-    assert sum(len(row) for _, row in rows) == len(planned[0].previews)
 
 
 def test_every_row_of_the_summary_has_a_cost(planned):

@@ -13,7 +13,7 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.scene_colours import Images, cells_touched
-from uplift.io.texture.channels import colour_channels_by_part
+from uplift.io.texture.channels import coloured_parts
 from uplift.io.texture.image import open_image
 from uplift.lattice import Lattice
 from uplift.lattice.entry_boxes import EntryBoxes
@@ -32,15 +32,10 @@ class PixelSample:
 
 @dataclass(frozen=True, eq=False)
 class SampledColours:
-    """Pixels of the textures.
+    """Disjoint samples of the textures' pixels, to choose candidates by and to verify the result.
 
-    Parameters
-    ----------
-    predicting, confirming : PixelSample
-        Disjoint samples, to choose candidates by and to verify the result. Textures with fewer pixels than both
-        need together have all pixels in both.
-    colour_bins : ndarray, shape (n, 3)
-        A colour of every bin that has any pixel, in linear RGB.
+    Textures with fewer pixels than both need together have all pixels in both. ``colour_bins`` (n, 3) has a colour of
+    every bin that has any pixel, in linear RGB.
     """
 
     predicting: PixelSample
@@ -81,8 +76,7 @@ def sample_colours(
 def _pixel_count(path: Path) -> int:
     """Pixels of the parts of an image that have colour channels."""
     with open_image(path) as image:
-        parts = [part for part, channels in colour_channels_by_part(image) if channels]
-        return sum(part.window.width * part.window.height for part in parts)
+        return sum(part.window.width * part.window.height for part, _ in coloured_parts(image))
 
 
 def _bin_index(sensor: Sensor, rgb: Array) -> Any:
@@ -99,13 +93,7 @@ def _distinct(sample: Array, occupied: Array) -> PixelSample:
 
 @dataclass(frozen=True, eq=False)
 class ColourSet:
-    """Scene of given colours for `uplift.build`: the cube gets the lattice points that they need.
-
-    Parameters
-    ----------
-    rgb : ndarray, shape (n, 3)
-        Linear RGB.
-    """
+    """Scene of linear RGB (n, 3) for `uplift.build`: the cube gets the lattice points that the colours need."""
 
     rgb: Array
 

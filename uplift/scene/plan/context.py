@@ -55,26 +55,9 @@ def quiet_warnings() -> Iterator[None]:
 
 @dataclass(frozen=True, eq=False)
 class PlanContext:
-    """A scene with its files read.
+    """A scene with its files read: pixels of the textures, and the atlas entries within the RGB space of the sensor.
 
-    Parameters
-    ----------
-    scene : SceneFile
-        The scene file.
-    grid : SearchGrid
-        Candidates to try.
-    sensor : Sensor
-        RGB space of the textures.
-    atlas : Atlas or None
-        All entries of the scene's atlases.
-    reflectances : ndarray, shape (E, N)
-        Entries within the RGB space.
-    materials : ndarray, shape (E, 3)
-        Their linear RGB.
-    colours : SampledColours
-        Pixels of the textures.
-    progress : ProgressCallback
-        Called with each step.
+    ``reflectances`` (E, N) are those of the entries, ``materials`` (E, 3) their linear RGB.
     """
 
     scene: SceneFile

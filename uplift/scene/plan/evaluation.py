@@ -1,36 +1,28 @@
-"""Colour errors of a candidate on test colours, under the lights of the scene."""
+"""Colour errors of a candidate on test colours, under the lights of the scene, and the choice among candidates."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Light
+from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 
 TEXTURES, MATERIALS = "textures", "materials"
 WORST_DELTA_E = 100.0
 """ΔE00 of colours that are not finite: the difference between black and white."""
+MEDIAN, ALL = 0.5, 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class ColourGroup:
-    """Test colours whose error is one statistic.
-
-    Parameters
-    ----------
-    name : str
-        `TEXTURES` or `MATERIALS`.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB.
-    reflectances : ndarray, shape (n, N)
-        Reference spectra.
-    weights : ndarray, shape (n,)
-        Weights, which sum to 1.
-    """
+    """Test colours whose error is one statistic: linear RGB (n, 3), reference spectra (n, N), weights (n,) of sum 1."""
 
     name: str
     rgb: Array
@@ -76,16 +68,10 @@ class ErrorSummary:
 
 @dataclass(frozen=True, eq=False)
 class EvaluationSet:
-    """Test colours with their reference spectra, and the lights to compare them under.
+    """Test colours with their reference spectra, and the lights to compare them under, on the grid of the spectra.
 
-    Parameters
-    ----------
-    groups : tuple of ColourGroup
-        Arrays of all colours are those of the groups, one below the other.
-    lights : tuple of Light
-        Lights on the grid of the reference spectra.
-    quantile : float
-        Share of the colours whose largest ΔE00 is the error of a group.
+    Arrays of all colours are those of the groups, one below the other. ``quantile`` is the share of the colours whose
+    largest ΔE00 is the error of a group.
     """
 
     groups: tuple[ColourGroup, ...]
@@ -113,23 +99,102 @@ class EvaluationSet:
     def error_of_xyz(self, xyz: Sequence[Array] | Array) -> ErrorSummary:
         """Errors of XYZ (n, 3) under each light, where white has Y = 1."""
         ends = np.cumsum([len(group.rgb) for group in self.groups])[:-1]
-        parts = [
-            self._group_error(group, light, values)
-            for light, delta_e in zip(self.lights, self.delta_e(xyz), strict=True)
-            for group, values in zip(self.groups, np.split(delta_e, ends), strict=True)
-        ]
+        parts = []
+        for light, delta_e in zip(self.lights, self.delta_e(xyz), strict=True):
+            for group, values in zip(self.groups, np.split(delta_e, ends), strict=True):
+                quantile = np.quantile(values, self.quantile, weights=group.weights, method="inverted_cdf")
+                mean, largest = float(values @ group.weights), float(values.max())
+                parts.append(GroupError(group.name, light.name, mean, float(quantile), largest))
         return ErrorSummary(tuple(parts))
 
     def delta_e(self, xyz: Sequence[Array] | Array) -> list[Array]:
         """ΔE00 (n,) under each light to XYZ (n, 3)."""
-        return [self._delta_e(light, values) for light, values in zip(self.lights, xyz, strict=True)]
+        found = []
+        for light, values in zip(self.lights, xyz, strict=True):
+            reference = self.reflectances @ light.xyz.T
+            difference = delta_e_2000(lab(reference, light.white), lab(values, light.white))
+            found.append(np.where(np.isfinite(difference), difference, WORST_DELTA_E))
+        return found
 
-    def _delta_e(self, light: Light, xyz: Array) -> Array:
-        reference = self.reflectances @ light.xyz.T
-        delta_e = delta_e_2000(lab(reference, light.white), lab(xyz, light.white))
-        return np.where(np.isfinite(delta_e), delta_e, WORST_DELTA_E)
 
-    def _group_error(self, group: ColourGroup, light: Light, delta_e: Array) -> GroupError:
-        quantile = np.quantile(delta_e, self.quantile, weights=group.weights, method="inverted_cdf")
-        mean = float(delta_e @ group.weights)
-        return GroupError(group.name, light.name, mean, float(quantile), float(delta_e.max()))
+@dataclass(frozen=True)
+class Preview:
+    """A colour of the textures under a light, by the reference cube and by the plan, with its ΔE00.
+
+    ``share`` of the pixels have at most this error. Colours are ``#rrggbb``, with the light's white as that of the
+    display.
+    """
+
+    light: str
+    share: float
+    delta_e: float
+    reference: str
+    planned: str
+
+
+def make_previews(tests: EvaluationSet, xyz: Sequence[Array] | Array, observer: str) -> tuple[Preview, ...]:
+    """Previews for half of the pixels, for the quantile of the scene, and for all; XYZ (n, 3) under each light."""
+    textures = tests.groups[0]
+    displays = display_sensors([light.name for light in tests.lights], observer)
+    previews = []
+    for light, display, planned, delta_e in zip(tests.lights, displays, xyz, tests.delta_e(xyz), strict=True):
+        order = np.argsort(delta_e[: len(textures.rgb)], kind="stable")
+        cumulative = np.cumsum(textures.weights[order])
+        for share in dict.fromkeys((MEDIAN, tests.quantile, ALL)):
+            row = order[min(int(np.searchsorted(cumulative, share - 1e-12)), len(order) - 1)]
+            pair = np.stack([light.xyz @ textures.reflectances[row], planned[row]]) @ display.xyz_to_rgb.T
+            previews.append(Preview(light.name, share, float(delta_e[row]), *hex_codes(pair)))
+    return tuple(previews)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A candidate and its measured error: that of the chain up to this decision, with all earlier ones applied.
+
+    Candidates are ordered by ``cost``. ``cli_args`` are the options of the command line that select the candidate,
+    ``choice`` is the candidate in JSON values.
+    """
+
+    name: str
+    cost: float
+    cost_text: str
+    cli_args: str
+    choice: Mapping[str, Any]
+    error: ErrorSummary
+
+
+@dataclass(frozen=True)
+class Decision:
+    """Candidates of one kind, as they were measured, and the index of the selected one.
+
+    That is the first within the ``limit``, a ΔE00, or else the one of the smallest error. ``unit`` is that of the cost.
+    """
+
+    key: str
+    title: str
+    unit: str
+    limit: float
+    trials: tuple[Trial, ...]
+    selected: int
+
+    @property
+    def trial(self) -> Trial:
+        """The selected trial."""
+        return self.trials[self.selected]
+
+    @property
+    def within_limit(self) -> bool:
+        """Whether the selected trial meets the limit."""
+        return self.trial.error.quantile <= self.limit
+
+
+def decide(key: str, title: str, unit: str, limit: float, trials: Iterable[Trial]) -> Decision:
+    """Measure candidates up to the first within the limit. ``trials`` makes each one when it is requested."""
+    measured: list[Trial] = []
+    for trial in trials:
+        measured.append(trial)
+        if trial.error.quantile <= limit:
+            break
+    errors = [trial.error.quantile for trial in measured]
+    selected = len(errors) - 1 if errors[-1] <= limit else errors.index(min(errors))
+    return Decision(key, title, unit, limit, tuple(measured), selected)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -23,8 +23,7 @@ from uplift.lookup import Cube
 from uplift.pipeline import build
 from uplift.pipeline.options import Options, recorded_options
 from uplift.scene.plan.commands import build_command, expanded_command, texture_command
-from uplift.scene.plan.decision import Decision, Trial
-from uplift.scene.plan.evaluation import ErrorSummary
+from uplift.scene.plan.evaluation import Decision, ErrorSummary
 from uplift.scene.plan.planning import Plan
 
 FORMAT: Literal["uplift plan 1"] = "uplift plan 1"
@@ -48,6 +47,10 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
         All decisions with their measurements, the wavelengths with their weights, and the command lines.
     """
     scene, final = plan.scene, plan.final_build
+    # All options in JSON values, so that later defaults do not change the build.
+    options = {
+        key: list(each) if isinstance(each, tuple) else each for key, each in asdict(Options(**plan.options)).items()
+    }
     return {
         "format": FORMAT,
         "uplift": VERSION,
@@ -60,7 +63,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
             "textures": _sources(scene.textures, path),
             "atlases": _sources(scene.atlases, path),
         },
-        "build": _all_options(plan.options),
+        "build": options,
         "cells": "sparse" if final.is_sparse else "whole",
         "texture": asdict(plan.storage),
         "rendering": {
@@ -97,25 +100,25 @@ def _error_json(error: ErrorSummary) -> dict[str, Any]:
 
 
 def _decision_json(decision: Decision) -> dict[str, Any]:
+    trials = [
+        {
+            "name": trial.name,
+            "cost": trial.cost,
+            "told": trial.cost_text,
+            "typed": trial.cli_args,
+            "choice": trial.choice,
+            "error": asdict(trial.error.worst),
+        }
+        for trial in decision.trials
+    ]
     return {
         "key": decision.key,
         "title": decision.title,
         "unit": decision.unit,
         "limit": decision.limit,
-        "trials": [_trial_json(trial) for trial in decision.trials],
+        "trials": trials,
         "taken": decision.selected,
         "kept": decision.within_limit,
-    }
-
-
-def _trial_json(trial: Trial) -> dict[str, Any]:
-    return {
-        "name": trial.name,
-        "cost": trial.cost,
-        "told": trial.cost_text,
-        "typed": trial.cli_args,
-        "choice": trial.choice,
-        "error": asdict(trial.error.worst),
     }
 
 
@@ -235,20 +238,14 @@ def read_plan(path: StrPath) -> PlanFile:
     )
 
 
-def _all_options(options: Mapping[str, Any]) -> dict[str, Any]:
-    """All options of a build in JSON values, so that later defaults do not change it."""
-    values = asdict(Options(**options))
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
-
-
 def _check_sources(file: SpecFile, key: str, sources: list[_Source]) -> tuple[Path, ...]:
-    for number, source in enumerate(sources):
+    paths = [file.path.parent / source.path for source in sources]
+    for number, (source, path) in enumerate(zip(sources, paths, strict=True)):
         keys = "scene", key, number, "path"
-        path = file.path.parent / source.path
         if not os.path.isfile(path):
             hint = f"restore it, or {HINT}"
             file.fail(keys, f"no file named {format_value(source.path)}", code="file-not-found", hint=hint)
         if file_digest(path) != source.digest:
             text = f"{format_value(source.path)} has changed since the plan was made"
             file.fail(keys, text, code="source-changed", hint=HINT)
-    return tuple(file.path.parent / source.path for source in sources)
+    return tuple(paths)

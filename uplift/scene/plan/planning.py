@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import tempfile
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,16 +14,20 @@ import numpy as np
 from uplift.colorimetry.observer import DEFAULT_OBSERVER
 from uplift.common.errors import PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.scene.plan.context import PlanContext, SearchGrid, prepare_context
-from uplift.scene.plan.decision import Decision
-from uplift.scene.plan.evaluation import ErrorSummary, EvaluationSet
-from uplift.scene.plan.final_build import FinalBuild, build_final
-from uplift.scene.plan.lattice_choice import choose_coefficients, choose_lattice
-from uplift.scene.plan.previews import Preview, make_previews
-from uplift.scene.plan.representation import choose_representation
+from uplift.io.scene_colours import Images
+from uplift.lookup import Cube
+from uplift.pipeline import build
+from uplift.scene.plan.context import PlanContext, SearchGrid, prepare_context, quiet_warnings
+from uplift.scene.plan.decisions import (
+    Storage,
+    choose_coefficients,
+    choose_lattice,
+    choose_representation,
+    choose_storage,
+    choose_wavelengths,
+)
+from uplift.scene.plan.evaluation import Decision, ErrorSummary, EvaluationSet, Preview, make_previews
 from uplift.scene.plan.scene_file import SceneFile
-from uplift.scene.plan.storage import Storage, choose_storage
-from uplift.scene.plan.wavelengths import choose_wavelengths
 from uplift.scene.wavelengths import Sampling
 from uplift.viz.format import format_error
 
@@ -30,6 +37,34 @@ BUDGET = {"coefficients": 0.4, "lattice": 0.55, "wavelengths": 0.9, "storage": 1
 Errors of independent origin add up like their squares. That leaves 0.4, 0.38, 0.71 and 0.44 of the tolerance to each
 decision alone: most to the wavelengths, as every ray pays for them. A representation takes their place.
 """
+
+
+MIN_SAVING = 1e6
+"""Bytes that a sparse cube must save, as it cannot answer other colours."""
+
+
+@dataclass(frozen=True, eq=False)
+class FinalBuild:
+    """The planned cube, the bytes of its file, and the CPU time of the build.
+
+    ``full_size`` and ``sparse_size`` are the bytes with all cells, and with those of the textures alone.
+    """
+
+    cube: Cube
+    size: int
+    seconds: float
+    full_size: float
+    sparse_size: float
+
+    @property
+    def is_sparse(self) -> bool:
+        """Whether the cube has only the cells of the textures."""
+        return self.cube.data.complete_cells is not None
+
+    @property
+    def points(self) -> int:
+        """Number of lattice points."""
+        return int(self.cube.data.points.present.sum())
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +145,15 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     context = prepare_context(scene, grid or SearchGrid(), progress)
     progress(Progress("reference cube", 0, 1))
     tests, reference_error = context.evaluation_set(context.colours.predicting)
-    _check_feasible(scene, reference_error)
+    worst = reference_error.worst
+    if worst.quantile > scene.tolerance:
+        raise PlanFileError(
+            f"tolerance must be at least the error of the reference cube, ΔE00 {format_error(worst.quantile)} of "
+            f"{worst.group} under {worst.light}, got {scene.tolerance:g}",
+            code="tolerance-unreachable",
+            path=scene.path,
+            hint=f"set tolerance = {np.ceil(worst.quantile * 110) / 100:g} or more",
+        )
     limits = {key: share * scene.tolerance for key, share in BUDGET.items()}
 
     coefficients = choose_coefficients(context, tests, limits["coefficients"])
@@ -144,16 +187,31 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     )
 
 
-def _check_feasible(scene: SceneFile, reference_error: ErrorSummary) -> None:
-    worst = reference_error.worst
-    if worst.quantile > scene.tolerance:
-        raise PlanFileError(
-            f"tolerance must be at least the error of the reference cube, ΔE00 {format_error(worst.quantile)} of "
-            f"{worst.group} under {worst.light}, got {scene.tolerance:g}",
-            code="tolerance-unreachable",
-            path=scene.path,
-            hint=f"set tolerance = {np.ceil(worst.quantile * 110) / 100:g} or more",
-        )
+def build_final(context: PlanContext, options: Mapping[str, Any]) -> FinalBuild:
+    """Build the cube for the textures, or with all cells unless that saves enough, with the warnings of `build`."""
+    scene = context.scene
+    cube, seconds = _timed_build(context, options, Images(scene.textures, scene.encoding))
+    sparse_size = _file_size(cube)
+    full_size = sparse_size * cube.data.lattice.size / int(cube.data.points.present.sum())
+    if full_size - sparse_size >= MIN_SAVING:
+        return FinalBuild(cube, sparse_size, seconds, full_size, sparse_size)
+    with quiet_warnings():  # the sparse build has issued all of them
+        cube, seconds = _timed_build(context, options)
+    size = _file_size(cube)
+    return FinalBuild(cube, size, seconds, size, sparse_size)
+
+
+def _timed_build(context: PlanContext, options: Mapping[str, Any], scene: Images | None = None) -> tuple[Cube, float]:
+    begin = time.process_time()
+    cube = build(context.atlas, scene=scene, **options)
+    return cube, time.process_time() - begin
+
+
+def _file_size(cube: Cube) -> int:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "cube.uplift"
+        cube.save(path)
+        return path.stat().st_size
 
 
 def _confirm(
