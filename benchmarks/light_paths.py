@@ -12,9 +12,9 @@ from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.design.palette import FactorModel, LinearModel
+from uplift.design.palette import FactorModel, illuminant
 from uplift.design.palette.colours import exposure, screen_matrix
-from uplift.design.palette.lights import illuminant
+from uplift.design.palette.factor import linear_product
 
 LIGHTS = ("D65", "D50", "A", "E", "FL2", "FL7", "FL11", "LED-B3", "HP1")
 BOUNCES = (1, 2, 3, 4)
@@ -74,7 +74,6 @@ def unsharpened(model: FactorModel) -> Product:
 
 def by_matrices(model: FactorModel) -> Product:
     """Return products of the Λ model; the light is the first factor, within the span."""
-    linear = LinearModel(model)
     return lambda power, met: model.rgb(
-        linear.product(model.reflectance(power), *np.moveaxis(model.reflectance(met), 1, 0))
+        linear_product(model, model.reflectance(power), *np.moveaxis(model.reflectance(met), 1, 0))
     )

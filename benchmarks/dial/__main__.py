@@ -18,9 +18,8 @@ from benchmarks.browser import Browser, browser
 from benchmarks.record import ROOT, write
 from uplift.colorimetry.srgb import encode
 from uplift.design.palette import Design, design, read_palette, standard_model
-from uplift.design.palette.relight_viewer.cutaway import cutaway
-from uplift.design.palette.relight_viewer.page import page
-from uplift.design.palette.relight_viewer.relighting import Relighting, relighting
+from uplift.design.palette.picture import cutaway
+from uplift.design.palette.relight_page import Relighting, page, relighting
 from uplift.lab.timing import Spread, environment, spread
 from uplift.samples import sample_path
 
@@ -30,7 +29,7 @@ TASKS = ((5, 512), (7, 512), (9, 512), (7, 1024))
 RUNS, SECONDS = 5, 3.0
 WINDOW = (1240, 1440)
 CURVE_STEPS = 1 << 16
-"""Entries of the table of the sRGB curve in screen.js."""
+"""Entries of the table of the sRGB curve in relight_page.js."""
 MOVE = """(async seconds => {
   const next = requestAnimationFrame.bind(window), script = [];
   window.requestAnimationFrame = frame => next(now => {
@@ -94,7 +93,7 @@ def _take_pictures(tab: Browser, path: Path) -> None:
     view = _view(7, 512)
     path.write_text(page(view), encoding="utf-8")
     tab.open(path)
-    for number, name in enumerate(view.lights.names, start=1):
+    for number, name in enumerate(view.lights, start=1):
         _press(tab, str(number))
         tab.canvas("picture")
         (FOLDER / f"{name}.jpg").write_bytes(tab.screenshot(".view", scale=0.5))
@@ -141,7 +140,7 @@ def _view(coefficients: int, side: int) -> Relighting:
 def _error(tab: Browser, view: Relighting) -> int:
     """Return the largest difference from NumPy under equal parts of all lights, in 8-bit codes."""
     _press(tab, "0")
-    drawn, lights = tab.canvas("picture")[..., :3], len(view.lights.names)
+    drawn, lights = tab.canvas("picture")[..., :3], len(view.lights)
     expected = np.rint(255 * encode(view.rgb(np.full(lights, 1 / lights))))
     error = int(np.abs(drawn - expected).max())
     assert error <= 1, f"{error} codes off"

@@ -22,7 +22,7 @@ from benchmarks.record import ROOT
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
 from uplift.design.palette import design, read_palette, standard_model
-from uplift.design.palette.relight_viewer import relighting
+from uplift.design.palette.relight_page import relighting
 from uplift.samples import sample_path
 
 VOXELS, SIDE = 160, 360
@@ -55,7 +55,7 @@ def main() -> None:
     palette = read_palette(sample_path("engine.toml"))
     order = [list(DENSITIES).index(material.name) for material in palette.materials]
     view = relighting("engine", design(palette, standard_model(palette.sensor, palette.count)), weights[..., order])
-    lights = np.eye(len(view.lights.names))
+    lights = np.eye(len(view.lights))
     row = np.concatenate([encode(np.clip(EXPOSURE * view.rgb(one), 0, 1)) for one in lights], axis=1)
     imsave(ROOT / "docs" / "palette-dial" / "scan.jpg", row, pil_kwargs={"quality": 88})
 

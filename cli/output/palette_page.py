@@ -30,7 +30,7 @@ def read_picture(
         return None
     if html is None:
         raise OptionError("--image requires --html", code="image-without-page", hint="give the page to write")
-    from uplift.design.palette.relight_viewer.picture_file import read_weights
+    from uplift.design.palette.picture import read_weights
 
     return read_weights(image, [part.name for part in palette.materials], _parse_labels(labels))
 
@@ -53,9 +53,8 @@ def _parse_labels(labels: tuple[str, ...]) -> dict[str, str] | None:
 def write_page(design: Design, spec: str, picture: NDArray[np.float32] | None, path: str, *, force: bool) -> None:
     """Write the page, titled with the stem of the spec's file name."""
     from uplift.common.files import write_text
-    from uplift.design.palette.relight_viewer.cutaway import cutaway
-    from uplift.design.palette.relight_viewer.page import page
-    from uplift.design.palette.relight_viewer.relighting import relighting
+    from uplift.design.palette.picture import cutaway
+    from uplift.design.palette.relight_page import page, relighting
 
     weights = cutaway(len(design.palette.materials)) if picture is None else picture
     write_text(page(relighting(Path(spec).stem, design, weights)), path, force=force)

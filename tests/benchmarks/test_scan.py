@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.dial import scan
-from uplift.design.palette.relight_viewer import read_weights
+from uplift.design.palette.picture import read_weights
 
 SIDE = 90
 

@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.design.palette import FactorModel, Palette, standard_model
-from uplift.design.palette.lights import illuminant
-from uplift.design.palette.palette import ColourGoal, SpectrumSpec
+from uplift.design.palette import ColourGoal, FactorModel, Palette, SpectrumSpec, illuminant, standard_model
 
 
 @pytest.fixture(scope="session")

@@ -10,10 +10,8 @@ from tests.conftest import MACBETH, ROOT
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
 from uplift.common.errors import AtlasError, CubeFileError, PaletteError, UnknownNameError, UpliftError
-from uplift.design.palette import read_palette
-from uplift.design.palette.colours import screen_matrix
-from uplift.design.palette.lights import planck
-from uplift.design.palette.palette import MinDifference
+from uplift.design.palette import MinDifference, illuminant, read_palette
+from uplift.design.palette.colours import planck, screen_matrix
 
 COMPLETE = f"""
 smoothness = 0.002
@@ -110,8 +108,6 @@ def test_lights_may_have_a_norm(read, sensor):
 
 def test_a_black_body_of_2856_k_is_illuminant_a(sensor):
     """The CIE defines A by Planck's law; its table has six digits."""
-    from uplift.design.palette.lights import illuminant
-
     np.testing.assert_allclose(planck(sensor, 2855.5), illuminant(sensor, "A"), rtol=1e-3)
 
 
@@ -146,49 +142,37 @@ HEAD = 'lights.day.illuminant = "D65"\nmaterials.new.design = true\n'
         ("lights = [", "invalid-toml", ""),
         ("", "missing-key", "lights"),
         ("[lights]\n[materials]", "invalid-value", "lights"),
-        ("lights = 3", "invalid-value", "lights"),
         (HEAD + "smothness = 1", "unknown-key", "smothness"),
         (HEAD + "smoothness = -1", "invalid-value", "smoothness"),
         (HEAD + "fit = 'rgb'", "invalid-value", "fit"),
-        (HEAD + "smoothness = true", "invalid-value", "smoothness"),
         (HEAD + "smoothness = 1" + "0" * 7, "invalid-value", "smoothness"),
-        (HEAD + "smoothness = 1" + "0" * 400, "invalid-value", "smoothness"),
         (HEAD + "model-error = nan", "invalid-value", "model-error"),
-        (HEAD + "model_error = 1", "unknown-key", "model_error"),
         (HEAD + "coefficients = 6.5", "invalid-value", "coefficients"),
         (HEAD + "coefficients = 40", "invalid-value", "coefficients"),
-        (HEAD + 'coefficients = "7"', "invalid-value", "coefficients"),
         (HEAD + 'colours.ne.day = "#000000"', "unknown-material", "colours.ne"),
         (HEAD + 'colours.new.dya = "#000000"', "unknown-light", "colours.new.dya"),
-        (HEAD + "colours = 3", "invalid-value", "colours"),
         (HEAD + 'colours.new = "#000000"', "invalid-value", "colours.new"),
         (HEAD + 'colours.new.day = "red"', "invalid-colour", "colours.new.day"),
-        (HEAD + 'colours.new.day = "#gg0000"', "invalid-colour", "colours.new.day"),
         (HEAD + "colours.new.day = [1, 2]", "invalid-colour", "colours.new.day"),
-        (HEAD + "colours.new.day = [1, 2, true]", "invalid-colour", "colours.new.day"),
         (HEAD + "colours.new.day = [1, 2, inf]", "invalid-colour", "colours.new.day"),
-        (HEAD + "colours.new.day = [1e9, 0, 0]", "invalid-colour", "colours.new.day"),
         (HEAD + "colours.new.day = { rgb = 3 }", "invalid-colour", "colours.new.day.rgb"),
         (HEAD + "colours.new.day = { weight = 2 }", "missing-key", "colours.new.day.rgb"),
         (HEAD + 'colours.new.day = { free = "a", rgb = "#000000" }', "unknown-key", "colours.new.day.rgb"),
         (HEAD + 'colours.new.day = { free = "a", weight = -1 }', "invalid-value", "colours.new.day.weight"),
-        (HEAD + 'colours.new.day = { free = "" }', "invalid-name", "colours.new.day.free"),
-        (HEAD + 'free.a = { low = "#808080", high = "#80ffff" }', "empty-range", "free.a"),
-        (HEAD + "materials.'$x' = { design = true }", "invalid-name", "materials.$x"),
+        (HEAD + 'colours.new.day = { free = "" }', "invalid-value", "colours.new.day.free"),
+        (HEAD + 'free.a = { low = "#808080", high = "#80ffff" }', "invalid-value", "free.a"),
+        (HEAD + "materials.'$x' = { design = true }", "invalid-value", "materials.$x"),
         (HEAD + "materials.x.design = false", "invalid-value", "materials.x.design"),
-        (HEAD + "materials.x.design = 1", "invalid-value", "materials.x.design"),
-        (HEAD + "materials.x = { design = true, bounds = [1, 0] }", "invalid-bounds", "materials.x.bounds"),
-        (HEAD + "materials.x = { design = true, bounds = true }", "invalid-bounds", "materials.x.bounds"),
-        (HEAD + "materials.x = { design = true, bounds = [0, 1e9] }", "invalid-bounds", "materials.x.bounds"),
-        (HEAD + "materials.x = { }", "ambiguous-kind", "materials.x"),
-        (HEAD + 'materials.x = { design = true, rgb = "#000000" }', "ambiguous-kind", "materials.x"),
+        (HEAD + "materials.x = { design = true, bounds = [1, 0] }", "invalid-value", "materials.x.bounds"),
+        (HEAD + "materials.x = { design = true, bounds = true }", "invalid-value", "materials.x.bounds"),
+        (HEAD + "materials.x = { design = true, bounds = [0, 1e9] }", "invalid-value", "materials.x.bounds"),
+        (HEAD + "materials.x = { }", "invalid-value", "materials.x"),
+        (HEAD + 'materials.x = { design = true, rgb = "#000000" }', "invalid-value", "materials.x"),
         (HEAD + "materials.x = { design = true, entry = 'a' }", "unknown-key", "materials.x.entry"),
-        (HEAD + "materials.x = 4", "invalid-value", "materials.x"),
         (HEAD + "materials.x = { atlas = 3, entry = 'a' }", "invalid-value", "materials.x.atlas"),
         (HEAD + 'lights.x = { planck = "hot" }', "invalid-value", "lights.x.planck"),
-        (HEAD + "lights.x = { planck = 3 }", "invalid-value", "lights.x.planck"),
         (HEAD + "lights.x = { planck = 3000, luminance = -1 }", "invalid-value", "lights.x.luminance"),
-        (HEAD + "lights.x = { planck = 3000, luminance = 1, norm = 1 }", "scaled-twice", "lights.x"),
+        (HEAD + "lights.x = { planck = 3000, luminance = 1, norm = 1 }", "invalid-value", "lights.x"),
         (HEAD + 'lights.x.illuminant = "D66"', "unknown-illuminant", "lights.x.illuminant"),
         (HEAD + "apart = 3", "invalid-value", "apart"),
         (HEAD + '[[apart]]\nmaterials = ["new"]\nlight = "day"', "invalid-value", "apart[0].materials"),

@@ -1,39 +1,83 @@
-"""Colours on a display: linear RGB of spectral powers without adaptation, and their perceptual derivatives."""
+"""Colours on a display: linear RGB of spectral powers without adaptation, their derivatives, and powers of lights."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import lab_jacobian
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
 
 MID_GREY = 0.18
 """Luminance to which single colours are exposed, so that dark colours have the weight of bright ones."""
+C2 = 1.438776877e7
+"""Second radiation constant in nm K (CODATA 2018)."""
+MIN_KELVIN, MAX_KELVIN = 500.0, 1e6
+"""Below, a black body has no visible power; above, its colour no longer changes."""
+REFERENCE_NM = 560.0
+"""Wavelength of unit power before scaling, which keeps all powers near 1."""
 
 
 def screen_matrix(sensor: Sensor) -> Array:
-    """Matrix Q (3, N) from spectral power to linear RGB, without adaptation: the colour of a light remains visible.
+    """Return the matrix Q (3, N) from power to linear RGB, without adaptation: the colour of a light remains visible.
 
     A flat power of 1 has luminance 1. The sensor's illuminant at luminance 1 is white, (1, 1, 1).
     """
     return sensor.xyz_to_rgb @ (sensor.cmfs / sensor.cmfs[:, 1].sum()).T
 
 
-def luminance(sensor: Sensor, rgb: ArrayLike) -> Array:
-    """Y (…) of linear RGB (…, 3)."""
-    return sensor.xyz(rgb)[..., 1]
-
-
 def exposure(sensor: Sensor, rgb: ArrayLike) -> Array:
-    """Factor (…) that takes linear RGB (…, 3) to the luminance of mid-grey."""
-    return np.asarray(MID_GREY / luminance(sensor, rgb))
+    """Return the factor (…) that takes linear RGB (…, 3) to the luminance of mid-grey."""
+    return np.asarray(MID_GREY / sensor.xyz(rgb)[..., 1])
 
 
 def lab_per_rgb(sensor: Sensor, rgb: ArrayLike) -> Array:
-    """Derivative (…, 3, 3) of L*a*b* by linear RGB (…, 3) exposed to mid-grey; the last axis is RGB."""
+    """Return the derivative (…, 3, 3) of L*a*b* by linear RGB (…, 3) exposed to mid-grey; the last axis is RGB."""
     rgb = np.asarray(rgb, dtype=float)
     gain = exposure(sensor, rgb)[..., None]
     jacobian = lab_jacobian(sensor.xyz(rgb * gain), sensor.light.white)
     return jacobian @ np.linalg.inv(sensor.xyz_to_rgb) * gain[..., None]
+
+
+def illuminant(sensor: Sensor, name: str) -> Array:
+    """Compute the spectral power of an illuminant.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Gives the wavelengths.
+    name : str
+        Name of the illuminant in colour-science.
+
+    Returns
+    -------
+    ndarray, shape (N,)
+        Power under which the perfect reflector has luminance 1.
+
+    Raises
+    ------
+    UnknownNameError
+        If the illuminant is unknown.
+    """
+    start, end = sensor.wavelengths[[0, -1]]
+    step = sensor.wavelengths[1] - start
+    return _scale(sensor, observer.illuminant_spd(name, float(start), float(end), float(step)))
+
+
+def planck(sensor: Sensor, kelvin: float) -> Array:
+    """Return the power (N,) of a black body (Bergner, eq. 25), of luminance 1."""
+    if not MIN_KELVIN <= kelvin <= MAX_KELVIN:
+        problem = f"temperature must be in [{MIN_KELVIN:g}, {MAX_KELVIN:g}] K, got {kelvin:g}"
+        raise OptionError(problem, hint="give the temperature in kelvin")
+    nm = sensor.wavelengths
+    ratio = np.expm1(C2 / (REFERENCE_NM * kelvin)) / np.expm1(C2 / (nm * kelvin))
+    return _scale(sensor, (REFERENCE_NM / nm) ** 5 * ratio)
+
+
+def _scale(sensor: Sensor, power: Array) -> Array:
+    """Scale a power (N,) to luminance 1."""
+    weights = sensor.cmfs[:, 1]
+    return power * (weights.sum() / (power @ weights))

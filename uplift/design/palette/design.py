@@ -1,23 +1,35 @@
-"""Design of the open spectra of a palette by one linear least-squares problem.
+"""Design of the open spectra of a palette by one linear least-squares problem, its colours, and the goals it misses.
 
-References
-----------
 S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, section 3.3.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import dataclasses
+import math
+import warnings
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.common.arrays import Array
-from uplift.common.errors import PaletteError
-from uplift.design.palette.equations import equations, underdetermined_goal, unknowns
+from uplift.atlas import Atlas, Entry, Header, write_atlas
+from uplift.atlas.checks import HIGHEST, LOWEST
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import PaletteError, UpliftWarning
+from uplift.design.palette.colours import screen_matrix
+from uplift.design.palette.equations import equations, unknowns
 from uplift.design.palette.factor import FactorModel
-from uplift.design.palette.palette import Palette
+from uplift.design.palette.palette import ColourGoal, MinDifference, Palette, SpectrumSpec
 from uplift.fit.bounded_least_squares import solve_bounded
+
+VISIBLE = 0.5
+"""ΔE00 above which a goal is missed: about half of a difference that is visible side by side."""
+MAX_REMAINING = 0.8
+"""Fraction of the ΔE00 that a useful relaxation may leave."""
+MAX_RELAXATIONS = 3
+"""Relaxations that are listed for a goal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,18 +82,214 @@ def design(palette: Palette, model: FactorModel) -> Design:
     UpliftWarning
         If the solver stops before it converges.
     """
-    goal = underdetermined_goal(palette)
-    if goal is not None:
-        raise PaletteError(
-            f"light or material of a goal must be given, got {goal}, both to be designed",
-            code="goal-underdetermined",
-            hint="give one of them, or remove the goal",
-        )
+    for goal in palette.goals:
+        if palette.material(goal.material).designed and palette.light(goal.light).designed:
+            raise PaletteError(
+                f"light or material of a goal must be given, got {goal}, both to be designed",
+                hint="give one of them, or remove the goal",
+            )
     where, x = unknowns(palette), solve_bounded(equations(palette, model))
-    return Design(
-        palette,
-        model,
-        np.array([x[where.light(s.name)] if s.samples is None else s.samples for s in palette.lights]),
-        np.array([x[where.material(s.name)] if s.samples is None else s.samples for s in palette.materials]),
-        {name: x[where.free(name)] for name in palette.free},
+
+    def spectra(kind: str, specs: tuple[SpectrumSpec, ...]) -> Array:
+        return np.array([x[where[kind, spec.name]] if spec.samples is None else spec.samples for spec in specs])
+
+    free = {name: x[where["free", name]] for name in palette.free}
+    return Design(palette, model, spectra("light", palette.lights), spectra("material", palette.materials), free)
+
+
+@dataclass(frozen=True, eq=False)
+class Matrix:
+    """Linear RGB on a display, for M materials and L lights.
+
+    Parameters
+    ----------
+    target : ndarray, shape (M, L, 3)
+        Targets of the goals; NaN without a goal.
+    obtained, factor : ndarray, shape (M, L, 3)
+        Colours by full spectra, and by the factor model.
+    delta_e : ndarray, shape (M, L)
+        ΔE00 from target to the colour that the palette fits, by spectra or by the factor model; NaN without a goal.
+    model_error : ndarray, shape (M, L)
+        ΔE00 from full spectra to the factor model.
+    whites : ndarray, shape (L, 3)
+        The perfect reflector under each light.
+    """
+
+    target: Array
+    obtained: Array
+    factor: Array
+    delta_e: Array
+    model_error: Array
+    whites: Array
+
+
+def matrix(design: Design) -> Matrix:
+    """Compute all colours of a design.
+
+    Parameters
+    ----------
+    design : Design
+        The design.
+
+    Returns
+    -------
+    Matrix
+        Colours and their ΔE00 against the white of the display.
+    """
+    palette, model = design.palette, design.model
+    screen = screen_matrix(palette.sensor)
+    obtained = (design.reflectances[:, None] * design.powers) @ screen.T
+    surfaces, lights = model.reflectance(design.reflectances), model.light(design.powers)
+    factor = model.rgb(model.product(surfaces[:, None], lights))
+    target = np.full_like(obtained, np.nan)
+    for goal in palette.goals:
+        # The target of a free colour is the value that the design chose.
+        target[palette.cell(goal.material, goal.light)] = design.free[goal.free] if goal.free else goal.rgb
+    return Matrix(
+        target,
+        obtained,
+        factor,
+        delta_e_rgb(palette.sensor, target, factor if palette.fit == "factor-model" else obtained),
+        delta_e_rgb(palette.sensor, obtained, factor),
+        design.powers @ screen.T,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class UnmetGoal:
+    """A goal that a design misses.
+
+    Parameters
+    ----------
+    goal : ColourGoal or MinDifference
+        The goal.
+    delta_e : float
+        ΔE00 from the target, or between the materials.
+    relaxations : tuple of (str, float)
+        Names of the criteria to relax, the most effective first, and the ΔE00 of the goal without them.
+    """
+
+    goal: ColourGoal | MinDifference
+    delta_e: float
+    relaxations: tuple[tuple[str, float], ...] = ()
+
+    def __str__(self) -> str:
+        if isinstance(self.goal, MinDifference):
+            first, second = self.goal.materials
+            return (
+                f"{first} and {second} under {self.goal.light}: ΔE00 must be at least {self.goal.delta_e:g}, "
+                f"got {self.delta_e:.2f}; choose colours that differ more"
+            )
+        criteria = ", ".join(f"{name} (then {remaining:.2f})" for name, remaining in self.relaxations)
+        hint = f"relax {criteria}" if criteria else "no single criterion is responsible"
+        return f"{self.goal}: missed by ΔE00 {self.delta_e:.2f}; {hint}"
+
+
+def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
+    """Find the goals that a design misses. The palette is designed again without each criterion in turn.
+
+    Parameters
+    ----------
+    found : Design
+        The design.
+
+    Returns
+    -------
+    tuple of UnmetGoal
+        Colours missed by a visible difference, then differences that are too small.
+    """
+    colours, palette = matrix(found), found.palette
+    fitted = colours.factor if palette.fit == "factor-model" else colours.obtained
+    errors = {goal: float(colours.delta_e[palette.cell(goal.material, goal.light)]) for goal in palette.goals}
+    missed = [goal for goal in palette.goals if goal.weight and errors[goal] > VISIBLE]
+    relaxed = [(name, matrix(design(each, found.model)).delta_e) for name, each in _relaxed(palette)] if missed else []
+    unmet = []
+    for goal in missed:
+        cell = palette.cell(goal.material, goal.light)
+        remaining = [(name, float(delta_e[cell])) for name, delta_e in relaxed if name != _weight_of(goal)]
+        useful = [each for each in remaining if each[1] < MAX_REMAINING * errors[goal]]
+        unmet.append(UnmetGoal(goal, errors[goal], tuple(sorted(useful, key=lambda each: each[1])[:MAX_RELAXATIONS])))
+    for pair in palette.min_differences:
+        first, second = (fitted[palette.cell(material, pair.light)] for material in pair.materials)
+        delta_e = float(delta_e_rgb(palette.sensor, first, second))
+        if delta_e < pair.delta_e:
+            unmet.append(UnmetGoal(pair, delta_e))
+    return tuple(unmet)
+
+
+def _weight_of(goal: ColourGoal) -> str:
+    return f"the weight of {goal}"
+
+
+def _relaxed(palette: Palette) -> Iterator[tuple[str, Palette]]:
+    """Yield the name of each criterion, and the palette without it."""
+    if palette.smoothness:
+        yield "smoothness", dataclasses.replace(palette, smoothness=0.0)
+    if palette.model_error:
+        yield "model-error", dataclasses.replace(palette, model_error=0.0)
+    for name in palette.free:
+        unbounded = (np.full(3, -np.inf), np.full(3, np.inf))
+        yield f"the range of {name}", dataclasses.replace(palette, free={**palette.free, name: unbounded})
+    for spec in (*palette.lights, *palette.materials):
+        if spec.designed and (math.isfinite(spec.low) or math.isfinite(spec.high)):
+            free = dataclasses.replace(spec, low=-math.inf, high=math.inf)
+            lights, materials = (
+                tuple(free if each is spec else each for each in specs) for specs in (palette.lights, palette.materials)
+            )
+            yield f"the bounds of {spec.name}", dataclasses.replace(palette, lights=lights, materials=materials)
+    for goal in palette.goals:
+        if goal.weight:
+            others = (dataclasses.replace(each, weight=0.0) if each is goal else each for each in palette.goals)
+            yield _weight_of(goal), dataclasses.replace(palette, goals=tuple(others))
+
+
+def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int:
+    """Write the designed materials as an atlas file, so that they can constrain a cube like measured ones.
+
+    Parameters
+    ----------
+    design : Design
+        The design.
+    path : path-like
+        The file, in the format of `uplift.write_atlas`.
+    force : bool
+        Replace an existing file.
+
+    Returns
+    -------
+    int
+        Number of entries written.
+
+    Raises
+    ------
+    PaletteError
+        If no material can be written.
+    OutputError
+        If the file exists or cannot be written.
+
+    Warns
+    -----
+    UpliftWarning
+        For each material outside the range of reflectances of an atlas, which is left out.
+    """
+    entries = []
+    for material, values in zip(design.palette.materials, design.reflectances, strict=True):
+        if not material.designed:
+            continue
+        if values.min() < LOWEST or values.max() > HIGHEST:
+            text = (
+                f"material '{material.name}' is left out of the atlas: reflectance must be in "
+                f"[{LOWEST:g}, {HIGHEST:g}], got {values.min():.3g} to {values.max():.3g}"
+            )
+            warnings.warn(UpliftWarning(text, code="entry-left-out"), stacklevel=2)
+            continue
+        lights = [goal.light for goal in design.palette.goals if goal.material == material.name and goal.weight]
+        description = f"designed for its colours under {', '.join(lights)}" if lights else "designed"
+        entries.append(Entry(material.name, design.palette.sensor.wavelengths, values, description=description))
+    if not entries:
+        raise PaletteError(
+            "no designed material has reflectances that an atlas can hold",
+            hint="design one with bounds within [0, 1]",
+        )
+    write_atlas(Atlas(tuple(entries)), path, Header(content="Reflectances designed by uplift palette"), force=force)
+    return len(entries)

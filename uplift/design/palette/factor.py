@@ -1,29 +1,31 @@
 """Spectral factor model: m coefficients per spectrum, whose products are the coefficients of products of spectra.
 
-References
-----------
 S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, section 2. Measurements are in
 docs/palette.md.
 """
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift import lookup
+from uplift.colorimetry.lights import PALETTE_LIGHTS
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.design.palette.colours import lab_per_rgb, screen_matrix
-from uplift.design.palette.light_paths import LightPaths, make_light_paths
-from uplift.design.palette.sharpen import sharpen
+from uplift.design.palette.colours import illuminant, lab_per_rgb, screen_matrix
+from uplift.design.palette.sharpen import make_light_paths, sharpen
 
 COUNTS = range(3, 13)
 """Supported numbers of coefficients; Bergner uses 5 to 7."""
 MIN_WEIGHT = 0.002
 """Least weight of a wavelength, so that those of low sensitivity are fitted too."""
+NODES = np.linspace(0.02, 0.98, 5) ** 2
+"""Linear R, G and B of the colours whose spectra stand for all materials; denser among dark colours."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,6 +143,32 @@ class FactorModel:
         return np.asarray(coefficients, dtype=float) @ self.basis.T
 
 
+def standard_model(sensor: Sensor, count: int = 7) -> FactorModel:
+    """Fit the standard factor model.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Wavelengths, observer and RGB space.
+    count : int
+        Number of coefficients, from 3 to 12.
+
+    Returns
+    -------
+    FactorModel
+        The model, the same on every machine up to rounding.
+
+    Raises
+    ------
+    OptionError
+        If ``count`` is not supported.
+    """
+    materials = np.array(list(itertools.product(NODES, repeat=3)))
+    reflectances = lookup.load().reflectance(materials, sensor.wavelengths)
+    lights = np.array([illuminant(sensor, name) for name in PALETTE_LIGHTS])
+    return factor_model(sensor, reflectances, lights, count)
+
+
 def factor_model(sensor: Sensor, reflectances: Array, lights: Array, count: int = 7) -> FactorModel:
     """Fit a factor model to materials and lights.
 
@@ -169,31 +197,46 @@ def factor_model(sensor: Sensor, reflectances: Array, lights: Array, count: int 
         If ``count`` is not supported.
     """
     if count not in COUNTS:
-        raise OptionError(f"count must be in [{COUNTS[0]}, {COUNTS[-1]}], got {count}", code="count-out-of-range")
+        raise OptionError(f"count must be in [{COUNTS[0]}, {COUNTS[-1]}], got {count}")
     paths = make_light_paths(reflectances, lights)
-    principal, projection = _principal_basis(sensor, paths, count)
+    principal, projection = _principal_basis(sensor, paths.prod(axis=0), count)
     transform = sharpen(sensor, principal, projection, paths)
     basis, projection = principal @ np.linalg.inv(transform), transform @ projection
     matrix = screen_matrix(sensor) @ basis
     single = make_light_paths(reflectances, np.ones((1, len(sensor.wavelengths))))
-    tint = _light_projection(sensor, single.signals, projection, matrix)
+    tint = _light_projection(sensor, single.prod(axis=0), projection, matrix)
     return FactorModel(sensor.wavelengths, basis, transform, projection, tint, matrix)
 
 
-def _principal_basis(sensor: Sensor, paths: LightPaths, count: int) -> tuple[Array, Array]:
-    """Principal basis (N, m) of the colour signals weighted by the observer's sensitivity, and its inverse (m, N).
+def linear_product(model: FactorModel, first: ArrayLike, *others: ArrayLike) -> Array:
+    """Multiply spectra of the span of the basis, given by coefficients (..., m), without sharpening (eq. 5–7).
+
+    Every factor is an m × m matrix Λ: products are exact, projected into the span, at m³ multiplications in place of m.
+    """
+    # Products of basis functions, B⁺_i (B_j * B_k).
+    basis = model.basis
+    tensor = np.einsum("in,nj,nk->ijk", model.projection, basis, basis, optimize=True)
+    product = np.asarray(first, dtype=float)
+    for factor in others:
+        matrix = np.einsum("ijk,...k->...ij", tensor, np.asarray(factor, dtype=float))
+        product = np.einsum("...ij,...j->...i", matrix, product)
+    return product
+
+
+def _principal_basis(sensor: Sensor, signals: Array, count: int) -> tuple[Array, Array]:
+    """Return the principal basis (N, m) of signals (n, N) weighted by the sensitivity, and its inverse (m, N).
 
     Signals are scaled half-way to equal luminance: dark ones matter less, but are not negligible.
     """
     weights = np.sqrt(sensor.cmfs.sum(axis=1) + MIN_WEIGHT)
-    luminances = paths.signals @ sensor.cmfs[:, 1] / sensor.cmfs[:, 1].sum()
-    signals = paths.signals / np.sqrt(np.maximum(luminances, MIN_WEIGHT))[:, None]
+    luminances = signals @ sensor.cmfs[:, 1] / sensor.cmfs[:, 1].sum()
+    signals = signals / np.sqrt(np.maximum(luminances, MIN_WEIGHT))[:, None]
     axes = np.linalg.svd(signals * weights, full_matrices=False)[2][:count]
     return (axes / weights).T, axes * weights
 
 
 def _light_projection(sensor: Sensor, surfaces: Array, projection: Array, matrix: Array) -> Array:
-    """Least squares (m, N) over surfaces (n, N): matrix · (e * s) against the colour of the full product."""
+    """Return least squares (m, N) over surfaces (n, N): matrix · (e * s) against the colour of the full product."""
     weights = lab_per_rgb(sensor, surfaces @ screen_matrix(sensor).T)
     factor = np.einsum("nij,jm,nm->nim", weights, matrix, surfaces @ projection.T)
     full = np.einsum("nij,jl,nl->nil", weights, screen_matrix(sensor), surfaces)

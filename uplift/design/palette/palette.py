@@ -153,3 +153,19 @@ class Palette:
             The material.
         """
         return next(material for material in self.materials if material.name == name)
+
+    def cell(self, material: str, light: str) -> tuple[int, int]:
+        """Find the cell of a material under a light in the matrix of a design.
+
+        Parameters
+        ----------
+        material, light : str
+            Their names, which must be of the palette.
+
+        Returns
+        -------
+        tuple of int
+            Row and column.
+        """
+        rows, columns = ([spec.name for spec in specs] for specs in (self.materials, self.lights))
+        return rows.index(material), columns.index(light)

@@ -8,8 +8,7 @@ import numpy as np
 
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array, StrPath
-from uplift.design.palette.design import Design
-from uplift.design.palette.matrix import Matrix
+from uplift.design.palette.design import Design, Matrix
 from uplift.design.palette.palette import SpectrumSpec
 from uplift.viz.figure import BAND, GREY, INK, figure_text, new_figure, style_axes, write_figure
 
@@ -51,7 +50,8 @@ def plot_matrix(design: Design, colours: Matrix, path: StrPath, *, force: bool =
     axes.set_axis_off()
     for column, (light, white) in enumerate(zip(design.palette.lights, colours.whites, strict=True)):
         x = NAMES + CELL[0] * column
-        _patch(axes, (x, TOP - 0.22), (CELL[0] * PATCH[0], 0.14), _displayable(white))
+        # The colour of a light, scaled down to the range of the display.
+        _patch(axes, (x, TOP - 0.22), (CELL[0] * PATCH[0], 0.14), white / max(float(white.max()), 1.0))
         _frame(axes, (x, TOP - 0.22), (CELL[0] * PATCH[0], 0.14))
         _name(axes, (x, TOP - 0.36), light, ha="left")
     for row, material in enumerate(design.palette.materials):
@@ -88,7 +88,13 @@ def plot_spectra(design: Design, path: StrPath, *, force: bool = False) -> None:
         (design.powers, design.reflectances),
         strict=True,
     ):
-        _lines(axes, design.palette.sensor.wavelengths, specs, samples)
+        for spec, row in zip(specs, samples, strict=True):
+            dash = "-" if spec.designed else (0, (4, 2))
+            name = figure_text(_short(spec.name))
+            axes.plot(design.palette.sensor.wavelengths, row, linewidth=1.8, linestyle=dash, label=name)
+        axes.margins(x=0.01)
+        axes.legend(frameon=False, fontsize=8)
+        style_axes(axes)
         axes.set(xlabel="wavelength / nm", ylabel=label)
         axes.set_title(title, loc="left", fontsize=10, fontweight="bold", color=INK)
     write_figure(figure, path, force=force)
@@ -114,7 +120,7 @@ def _patch(axes: Any, corner: tuple[float, float], size: tuple[float, float], rg
 
 
 def _frame(axes: Any, corner: tuple[float, float], size: tuple[float, float]) -> None:
-    """Outline, so that white is visible on white."""
+    """Draw an outline, so that white is visible on white."""
     from matplotlib.patches import Rectangle
 
     axes.add_patch(Rectangle(corner, *size, facecolor="none", edgecolor=BAND, linewidth=0.6))
@@ -123,20 +129,6 @@ def _frame(axes: Any, corner: tuple[float, float], size: tuple[float, float]) ->
 def _name(axes: Any, at: tuple[float, float], spec: SpectrumSpec, ha: str) -> None:
     weight = "bold" if spec.designed else "normal"
     axes.text(*at, figure_text(_short(spec.name)), fontsize=9, fontweight=weight, color=INK, ha=ha, va="center")
-
-
-def _lines(axes: Any, wavelengths: Array, specs: tuple[SpectrumSpec, ...], samples: Array) -> None:
-    for spec, row in zip(specs, samples, strict=True):
-        dash = "-" if spec.designed else (0, (4, 2))
-        axes.plot(wavelengths, row, linewidth=1.8, linestyle=dash, label=figure_text(_short(spec.name)))
-    axes.margins(x=0.01)
-    axes.legend(frameon=False, fontsize=8)
-    style_axes(axes)
-
-
-def _displayable(rgb: Array) -> Array:
-    """Colour of a light, scaled down to the range of the display."""
-    return rgb / max(float(rgb.max()), 1.0)
 
 
 def _short(name: str) -> str:

