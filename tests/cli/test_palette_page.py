@@ -43,7 +43,7 @@ def test_picture_from_an_image_of_labels(run, spec, home):
         (("--image", "labels.png"), "image-without-page"),
         (("--html", "a.html", "--label", "leaf=#ff0000"), "label-without-image"),
         (("--html", "a.html", "--image", "labels.png", "--label", "leaf"), "invalid-label"),
-        (("--html", "a.html", "--image", "labels.png"), "unknown-label"),
+        (("--html", "a.html", "--image", "labels.png"), "texture"),
         (
             ("--html", "a.html", "--image", "labels.png", "--label", "leaf=#1", "--label", "leaf=#2"),
             "repeated-label",
