@@ -136,7 +136,7 @@ def command(
     Pixels that are light, such as those of an environment map, need 'uplift lights texture'.
     """
     from uplift.io import texture
-    from uplift.lookup.packaged import find_file
+    from uplift.lookup.cube import find_file
 
     if len(cube_paths) > 1 and mask is None:
         raise click.UsageError("Several cubes need --mask, an image of which cube a pixel belongs to.")

@@ -23,7 +23,7 @@ def complete_atlas(ctx: click.Context, param: click.Parameter, text: str) -> lis
 
 def complete_cube(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:
     """Complete names of cubes of the package, of cube files, and of folders."""
-    from uplift.lookup.packaged import PACKAGED
+    from uplift.lookup.cube import PACKAGED
 
     return _named_files(PACKAGED, text)
 

@@ -20,7 +20,7 @@ from uplift.cube import AtlasTable, digest
 from uplift.io.scene_colours import Images, cells_touched
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube, bulk
-from uplift.lookup.nodes import around
+from uplift.lookup.interpolate import around
 from uplift.pipeline.rebuild import StoredScene, rebuild
 from uplift.report.regression import compare_rebuilt
 

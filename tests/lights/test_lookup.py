@@ -15,7 +15,7 @@ from uplift.common.errors import ColourError, CubeFileError, OptionError
 from uplift.lights.lattice import DENOMINATOR, chromaticity, unit_xyz
 from uplift.lights.lookup import EMISSION, find_table
 from uplift.lookup.blocks import BLOCK
-from uplift.lookup.packaged import DEFAULT
+from uplift.lookup.cube import DEFAULT
 
 TABLE = uplift.load_emission()
 RADIOMETRY = TABLE.data.cmfs / TABLE.data.cmfs[:, 1].sum()

@@ -11,7 +11,7 @@ import uplift
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.solid import solid
 from uplift.lookup import interpolate
-from uplift.lookup.exact import inexact_rows
+from uplift.lookup.interpolate import inexact_rows
 from uplift.lookup.refine import within_solid
 
 GREYS = np.linspace(0, 1, 33)[:, None].repeat(3, axis=1)
@@ -46,7 +46,7 @@ def test_realisable_colours_are_exact(wide, colours, mode):
 
 def test_plain_mixtures_are_not_exact(wide):
     """The test above can fail."""
-    mixed = interpolate._mixed_spectra(wide.data, GREYS, wide.wavelengths)
+    mixed = interpolate.mixed_spectra(wide.data, GREYS, wide.wavelengths)
     assert delta_e(wide, GREYS, mixed).max() >= 1
 
 
@@ -78,7 +78,7 @@ def test_mixtures_with_their_colours_do_not_change():
     assert cube.data.inexact_cells is None
     assert not inexact_rows(cube.data, GREYS).size
     np.testing.assert_array_equal(
-        cube.reflectance(GREYS), interpolate._mixed_spectra(cube.data, GREYS, cube.wavelengths)
+        cube.reflectance(GREYS), interpolate.mixed_spectra(cube.data, GREYS, cube.wavelengths)
     )
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from uplift.lattice import weighted_sum
-from uplift.lookup.nodes import around
+from uplift.lookup.interpolate import around
 from uplift.models import reflectance
 
 colours = arrays(float, (5, 3), elements=st.floats(0, 1))

@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from uplift.lookup.packaged import DEFAULT, PACKAGED, find_file
+from uplift.lookup.cube import DEFAULT, PACKAGED, find_file
 
 
 @pytest.mark.parametrize("name", PACKAGED)

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import rgb_to_lab
-from uplift.colorimetry.expected_error import COVERAGE, familiar_distance
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.lattice import Lattice, PointTable
@@ -125,12 +124,14 @@ class CubeData:
     @cached_property
     def familiar_distance(self) -> float:
         """ΔE*ab from the nearest entry up to which a colour is like those of the atlas."""
+        from uplift.colorimetry.expected_error import familiar_distance
+
         return familiar_distance(self.entry_lab)
 
     @property
     def error_bound_factor(self) -> float:
         """Error bound in standard errors, under `error_illuminant`; 2 in cubes that do not record it."""
-        return float(self.provenance.get("prior", {}).get("error_bound", COVERAGE[1][1]))
+        return float(self.provenance.get("prior", {}).get("error_bound", 2.0))
 
     @cached_property
     def entry_boxes(self) -> EntryBoxes:

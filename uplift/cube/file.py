@@ -113,7 +113,6 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
     measured, answered = (None, None) if atlas.left_out is None else (atlas.left_out.measured, atlas.left_out.answered)
     arrays = {
         "nodes": data.lattice.nodes,
-        **{name: getattr(data.points, name) for name in POINTS},
         **{f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR},
         "atlas.rgb": atlas.rgb,
         "atlas.coefficients": atlas.coefficients,
@@ -122,6 +121,7 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
         ENTRY_COEFFICIENTS: spectra,
         "atlas.measured": measured,
         "atlas.left_out": answered,
+        **{name: getattr(data.points, name) for name in POINTS},
     }
     tensors = {name: _as_stored(name, array) for name, array in arrays.items() if array is not None}
     if data.complete_cells is not None:

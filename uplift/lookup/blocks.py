@@ -26,27 +26,9 @@ def blockwise(
     threads: int = 1,
     block: int = BLOCK,
 ) -> NDArray[Any]:
-    """Apply a function of rows block by block. numpy releases the GIL, so threads run in parallel.
+    """Apply a function, from rows (k, K) to rows (k, width), to rows (…, K) block by block: (…, width).
 
-    Parameters
-    ----------
-    function : callable
-        From rows (k, K) to rows (k, width).
-    rows : ndarray, shape (..., K)
-        Input.
-    width : int
-        Number of columns of the result.
-    dtype : dtype, default float64
-        Type of the result.
-    threads : int, default 1
-        Number of threads.
-    block : int, default 4096
-        Rows per block.
-
-    Returns
-    -------
-    ndarray, shape (..., width)
-        The result; it does not depend on the number of threads.
+    numpy releases the GIL, so threads run in parallel. The result does not depend on their number.
     """
     flat = rows.reshape(-1, rows.shape[-1])
     result = np.empty((len(flat), width), dtype=dtype)

@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData, read, write
 from uplift.lookup.blocks import Function, blockwise
-from uplift.lookup.fill import fill_missing, missing_points
-from uplift.lookup.interpolate import MODES, coefficients, extended_coefficients, node_errors
-from uplift.lookup.light_errors import light_errors, unlike_atlas
-from uplift.lookup.node_table import TABULATED, tabulate, tabulate_coefficients
-from uplift.lookup.nodes import covers
-from uplift.lookup.packaged import DEFAULT, find_file
+from uplift.lookup.interpolate import (
+    MODES,
+    TABULATED,
+    cells,
+    coefficients,
+    extended_coefficients,
+    node_errors,
+    tabulate,
+    tabulate_coefficients,
+)
 from uplift.lookup.validation import (
     as_coefficient_count,
     as_colours,
@@ -33,8 +40,13 @@ from uplift.lookup.validation import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from uplift.colorimetry.sensor import Light
+    from uplift.colorimetry.sensor import Light, Sensor
 
+FOLDER = Path(__file__).parent
+DEFAULT = FOLDER / "default.uplift"
+"""The cube of linear sRGB."""
+PACKAGED = {"srgb": DEFAULT, "acescg": FOLDER / "acescg.uplift"}
+"""Cubes of the package by the name of their space in lower case. They have D65 and no atlas."""
 MAX_TABLE_BYTES = 1 << 28
 """Largest table of the spectra of all lattice points that a query computes."""
 OBSERVER = "uplift.colorimetry.observer"
@@ -149,11 +161,8 @@ class Cube:
             An unsupported count or type, or fewer than one thread.
         """
         width = as_coefficient_count(count, self.data)
-        colours, kind, threads = (
-            as_colours(rgb, self.data.sensor),
-            as_float_type(dtype),
-            as_thread_count(threads),
-        )
+        colours = as_colours(rgb, self.data.sensor)
+        kind, threads = as_float_type(dtype), as_thread_count(threads)
         function: Function = partial(coefficients, self.data)
         if width != self.coefficient_count:
             function = partial(extended_coefficients, self.data)
@@ -207,11 +216,7 @@ class Cube:
         """
         if mode not in MODES:
             raise OptionError(f"unknown mode '{mode}'", code="unknown-mode", hint=f"use one of {', '.join(MODES)}")
-        at, kind, count = (
-            self.resolve_wavelengths(wavelengths),
-            as_float_type(dtype),
-            as_thread_count(threads),
-        )
+        at, kind, count = self.resolve_wavelengths(wavelengths), as_float_type(dtype), as_thread_count(threads)
         colours = as_colours(rgb, self.data.sensor)
         function: Function
         if mode in TABULATED and self._is_table_worthwhile(colours.size // 3, len(at) * kind.itemsize):
@@ -244,7 +249,9 @@ class Cube:
             A colour outside [0, 1] or not finite.
         """
         colours = as_colours(rgb, self.data.sensor)
-        return covers(self.data, colours.reshape(-1, 3)).reshape(colours.shape[:-1])
+        if self.data.complete_cells is None:
+            return np.ones(colours.shape[:-1], dtype=bool)
+        return self.data.complete_cells[cells(self.data, colours.reshape(-1, 3))].reshape(colours.shape[:-1])
 
     def fill_missing(self, rgb: ArrayLike | None = None, other: Cube | None = None, *, threads: int = 1) -> Cube:
         """Add missing lattice points of a sparse cube, with the spectra of another cube.
@@ -270,6 +277,8 @@ class Cube:
         ColourError
             Cubes of different RGB spaces, or a colour that ``other`` cannot answer.
         """
+        from uplift.lookup.fill import fill_missing, missing_points
+
         colours = None if rgb is None else as_colours(rgb, self.data.sensor).reshape(-1, 3)
         points = missing_points(self.data, colours)
         if not points.size:
@@ -337,13 +346,13 @@ class Cube:
         """Standard errors, column 0, or error bounds, column 1. Nodes have those under one light."""
         if self.data.points.standard_error is None:
             return None
-        lit: Light | None = (
-            import_module(OBSERVER).light(light, self.observer, *self.data.sensor.range)
-            if isinstance(light, str)
-            else light
-        )
+        lit: Light | None = light if not isinstance(light, str) else None
+        if isinstance(light, str):
+            lit = import_module(OBSERVER).light(light, self.observer, *self.data.sensor.range)
         function: Function = partial(node_errors, self.data)
         if lit is not None and lit.name != self.data.error_illuminant:
+            from uplift.lookup.light_errors import light_errors
+
             function = light_errors(self.data, lit)
         return blockwise(function, as_colours(rgb, self.data.sensor), 2)[..., column]
 
@@ -366,8 +375,11 @@ class Cube:
         ColourError
             A colour outside [0, 1] or not finite.
         """
-        colours = as_colours(rgb, self.data.sensor)
-        return unlike_atlas(self.data, colours.reshape(-1, 3)).reshape(colours.shape[:-1])
+        from uplift.colorimetry.expected_error import nearest_distances
+
+        colours = rgb_to_lab(self.data.sensor, as_colours(rgb, self.data.sensor))
+        distances = nearest_distances(colours.reshape(-1, 3), self.data.entry_lab)
+        return (distances > self.data.familiar_distance).reshape(colours.shape[:-1])
 
     def resolve_wavelengths(self, wavelengths: ArrayLike | None = None) -> Array:
         """Return wavelengths as an array, by default those of the sensor.
@@ -470,7 +482,7 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
     Parameters
     ----------
     path : path-like, optional
-        Cube file, or a name of `uplift.lookup.packaged` if no file has it. By default the sRGB cube of the package.
+        Cube file, or ``"srgb"`` or ``"acescg"`` if no file has the name. By default the sRGB cube of the package.
         The packaged cubes have D65 and no atlas.
 
     Returns
@@ -494,3 +506,23 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
 
 def _reflectance(data: CubeData, mode: str, wavelengths: Array, rgb: Array) -> Array:
     return MODES[mode](data, rgb, wavelengths)
+
+
+def find_file(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
+    """Return the file that a path or a name of `PACKAGED`, in any case, stands for. A file takes precedence."""
+    packaged = PACKAGED.get(os.fsdecode(path).casefold())
+    return path if packaged is None or os.path.lexists(path) else packaged
+
+
+def common_sensor(cubes: Iterable[Cube]) -> Sensor:
+    """Return the sensor of cubes that have the same RGB space, illuminant and observer; `OptionError` otherwise."""
+    cubes = list(cubes)
+    spaces = {(cube.space, cube.illuminant, cube.observer) for cube in cubes}
+    if len(spaces) > 1:
+        names = " and ".join(", ".join(space) for space in sorted(spaces))
+        raise OptionError(
+            f"cubes that are used together must have one RGB space, illuminant and observer, got {names}",
+            code="cubes-of-different-spaces",
+            hint="build the cube with the settings of the other",
+        )
+    return cubes[0].data.sensor

@@ -9,14 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData, digest
 from uplift.lattice import Status
 from uplift.lookup.blocks import blockwise
-from uplift.lookup.interpolate import refined
-from uplift.lookup.nodes import cells
+from uplift.lookup.interpolate import cells, refined
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models import reflectance
 
@@ -35,32 +33,17 @@ def missing_points(data: CubeData, rgb: Array | None = None) -> Indices:
 
 
 def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int = 1) -> CubeData:
-    """Return the cube with absent points filled.
+    """Return the cube with absent ``points`` (k,) filled by the answers of another cube of the same RGB space.
 
     Their standard error is the largest of the cube, as their distance from measurements is unknown.
-
-    Parameters
-    ----------
-    data : CubeData
-        A sparse cube.
-    points : ndarray of int, shape (k,)
-        Absent points to fill.
-    other : CubeData
-        Cube that answers the colours of the points.
-    threads : int, default 1
-        Number of threads.
-
-    Returns
-    -------
-    CubeData
-        The filled cube.
-
-    Raises
-    ------
-    ColourError
-        Cubes of different RGB spaces, or a colour that ``other`` cannot answer.
     """
-    _require_same_rgb(data.sensor, other.sensor)
+    spaces = [f"{each.space} under {each.illuminant}, {each.observer}" for each in (data.sensor, other.sensor)]
+    if spaces[0] != spaces[1]:
+        raise ColourError(
+            f"a cube can only be filled from one of the same RGB space: {spaces[0]}, got {spaces[1]}",
+            code="rgb-space-mismatch",
+            hint="build the cube with all colours in its scene, or without a scene",
+        )
     target, table = data.lattice.target(points), data.points
     multipliers = blockwise(partial(_fit_to_other, data, other), target, data.model.count, threads=threads)
     coefficients, kind = data.model.to_storage(multipliers), table.coefficients.dtype
@@ -96,13 +79,3 @@ def _fit_to_other(data: CubeData, other: CubeData, rgb: Array) -> Array:
     linear = data.model.unsquash(np.clip(spectra, MIN_REFLECTANCE, 1 - MIN_REFLECTANCE))
     start = np.linalg.lstsq(data.model.basis(data.sensor.wavelengths), linear.T, rcond=None)[0].T
     return refine_to_rgb(data, data.model, np.ascontiguousarray(start), rgb)
-
-
-def _require_same_rgb(first: Sensor, second: Sensor) -> None:
-    names = [f"{each.space} under {each.illuminant}, {each.observer}" for each in (first, second)]
-    if names[0] != names[1]:
-        raise ColourError(
-            f"a cube can only be filled from one of the same RGB space: {names[0]}, got {names[1]}",
-            code="rgb-space-mismatch",
-            hint="build the cube with all colours in its scene, or without a scene",
-        )

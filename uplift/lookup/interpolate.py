@@ -1,13 +1,14 @@
-"""Interpolate coefficients and spectra between nodes, in four modes (docs/mathematics.md, 8). Needs numpy only.
+"""Interpolation of coefficients and spectra between nodes, in four modes (docs/mathematics.md, 8). Needs numpy only.
 
 spectra   weighted spectra of the surrounding nodes; exact colours, as RGB is linear in the spectrum, and by steps where
-          nodes are unrealisable (`uplift.lookup.exact`)
+          nodes are unrealisable (section 9)
 moments   weighted coefficients; one reconstruction instead of eight
-refined   ``moments``, then minimum-norm steps to the exact colour
+refined   ``moments``, then minimum-norm steps to the exact colour (section 5)
 nearest   the spectrum of the node of largest weight, of another colour
 
-In the box of an entry all modes but ``nearest`` mix the answer of the lattice, where the ray leaves the box, with the
-spectrum of the entry. Spectra mix exactly; lattice and entry may have different numbers of coefficients.
+In the box of an entry all modes but ``nearest`` mix the answer of the lattice, where the ray from the entry through the
+colour leaves the box, with the spectrum of the entry. Spectra mix exactly; lattice and entry may have different numbers
+of coefficients.
 
 All of it in float64: the conversion from moments to multipliers amplifies rounding errors.
 """
@@ -15,64 +16,143 @@ All of it in float64: the conversion from moments to multipliers amplifies round
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
+from numpy.typing import DTypeLike
 
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Indices, Mask, Values
+from uplift.common.errors import ColourError
 from uplift.cube import CubeData
 from uplift.lattice import weighted_sum
-from uplift.lookup.exact import inexact_rows, with_colours
-from uplift.lookup.nodes import Nodes, around
-from uplift.lookup.refine import refine_to_rgb
+from uplift.lookup.blocks import blockwise
+from uplift.lookup.refine import refine_to_rgb, with_colours
 from uplift.models import evaluate, reflectance
 
 
-def coefficients(data: CubeData, rgb: Array) -> Array:
-    """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1]."""
-    return around(data, rgb).weighted_sum(data.points.coefficients, data.atlas.coefficients)
+@dataclass(frozen=True, eq=False, repr=False)
+class Nodes:
+    """The nodes around n colours: eight corners of a cell each and, for k of them, the entry of a box."""
+
+    points: Indices
+    """(n, 8) lattice points."""
+    weights: Array
+    """(n, 8) their trilinear weights w, summing to 1."""
+    rows: Indices
+    """(k,) colours in entry boxes."""
+    entry: Indices
+    """(k,) their entries."""
+    lattice_weight: Array
+    """(k,) weight t of the lattice: the share of the way from the entry to the face of its box. The entry has 1 − t."""
+    exit_rgb: Array
+    """(k, 3) linear RGB at which the lattice is evaluated: where the ray leaves the box."""
+
+    def mix(self, lattice: Values, entry: Values) -> Values:
+        """Mix values (n, K) of the lattice, in place, with those (k, K) of entries: t · lattice + (1 − t) · entry."""
+        if self.rows.size:
+            weight = self.lattice_weight.astype(lattice.dtype)[:, None]
+            lattice[self.rows] = weight * lattice[self.rows] + (1 - weight) * entry
+        return lattice
+
+    def weighted_sum(self, lattice: Values, atlas: Values) -> Values:
+        """Σ w · values of the lattice points (dim³, K), mixed with the entries (E, K): (n, K), in their type."""
+        return self.mix(weighted_sum(lattice, self.points, self.weights), atlas[self.entry])
+
+    def nearest(self) -> tuple[Indices, Indices, Indices]:
+        """Return the nodes of largest weight: lattice points (n,), and rows and entries (m,) where it is an entry."""
+        best = self.weights.argmax(axis=1)[:, None]
+        points = np.take_along_axis(self.points, best, axis=1)[:, 0]
+        weights = np.take_along_axis(self.weights, best, axis=1)[:, 0]
+        is_entry = self.lattice_weight * (1 + weights[self.rows]) <= 1  # 1 − t ≥ t · w
+        return points, self.rows[is_entry], self.entry[is_entry]
+
+    def lattice_rgb(self, rgb: Array) -> Array:
+        """Return the colours (n, 3) at which the lattice is evaluated for linear RGB (n, 3)."""
+        evaluated = rgb.copy()
+        evaluated[self.rows] = self.exit_rgb
+        return evaluated
 
 
-def extended_coefficients(data: CubeData, rgb: Array) -> Array:
-    """Weighted coefficients (n, K) of the nodes' spectra, as many as the entries have."""
-    nodes, points = _unique_points(around(data, rgb))
-    lattice = extend_coefficients(data, data.points.coefficients[points])
-    return nodes.weighted_sum(lattice, data.entry_spectra.coefficients)
+def around(data: CubeData, rgb: Array) -> Nodes:
+    """Return the nodes around linear RGB (n, 3) in [0, 1]; `ColourError` if a sparse cube lacks one of them."""
+    lattice = data.lattice
+    # The cell of each colour: its lowest corner and the fractions along the axes.
+    low, fraction = lattice.cell(rgb)
+    # In an entry box the lattice is evaluated on the face instead, in the cell in which the ray leaves the box.
+    hits = data.entry_boxes.find_in_cells(rgb, lattice.index(low))
+    low[hits.rows], fraction[hits.rows] = lattice.cell(hits.exit_rgb)
+    if data.complete_cells is not None:
+        require_covered(data.complete_cells[lattice.index(low)], rgb)
+    points, weights = lattice.cell_corners(low, fraction)
+    return Nodes(points, weights, *hits)
 
 
-def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
-    """Coefficients (m, K) in the model of the entries of the lattice spectra with coefficients (m, C)."""
-    multipliers = data.model.from_storage(coefficients)
-    extended = data.entry_spectra.model.to_storage(_append_zeros(data, multipliers))
-    extended[:, : data.model.count] = coefficients
-    return extended
+def cells(data: CubeData, rgb: Array) -> Indices:
+    """Return the numbers (n,) of the cells in which the lattice is evaluated for linear RGB (n, 3) in [0, 1]."""
+    lattice = data.lattice
+    low = lattice.lowest_corner(rgb)
+    hits = data.entry_boxes.find_in_cells(rgb, lattice.index(low))
+    low[hits.rows] = lattice.lowest_corner(hits.exit_rgb)
+    return lattice.index(low)
 
 
-def node_errors(data: CubeData, rgb: Array) -> Array:
-    """Standard errors and error bounds (n, 2) from those of the nodes, for a cube that has them."""
-    nodes, factors = around(data, rgb), np.array([1, data.error_bound_factor])
-    errors = np.asarray(data.points.standard_error, dtype=float)[:, None]
-    entries = np.repeat(data.atlas.error[:, None], 2, axis=1)
-    entries[data.atlas.measured_count :] *= factors  # errors of looks are expected ones
-    lattice = weighted_sum(errors, nodes.points, nodes.weights) * factors
-    return nodes.mix(lattice, entries[nodes.entry])
+def require_covered(covered: Mask, rgb: Array) -> None:
+    """Raise `ColourError` for the first colour (n, 3) that is not covered (n,)."""
+    if not covered.all():
+        values = ", ".join(f"{value:.6g}" for value in rgb[int(covered.argmin())])
+        raise ColourError(
+            f"the cube answers the colours of its scene only, got linear RGB ({values})",
+            code="colour-not-in-scene",
+            hint="build the cube with this colour in its scene, or fill it with Cube.fill_missing",
+        )
 
 
 def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) as weighted spectra of the nodes, moved to exact colours where nodes have not their own."""
-    mixed = _mixed_spectra(data, rgb, wavelengths)
+    mixed = mixed_spectra(data, rgb, wavelengths)
     rows = inexact_rows(data, rgb)
     if rows.size:
-        at_sensor = _mixed_spectra(data, rgb[rows], data.sensor.wavelengths)
+        at_sensor = mixed_spectra(data, rgb[rows], data.sensor.wavelengths)
         mixed[rows] = with_colours(data, mixed[rows], at_sensor, rgb[rows], wavelengths)
     return mixed
 
 
-def _mixed_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) as weighted spectra of the nodes."""
-    nodes, points = _unique_points(around(data, rgb))
+def mixed_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
+    """Reflectance (n, N) as weighted spectra Σ w · g of the nodes, whose colours are Σ w · RGB."""
+    nodes = around(data, rgb)
+    # Each lattice point is evaluated once, although neighbouring colours share points.
+    points, row = np.unique(nodes.points, return_inverse=True)
     values = reflectance(data.model, data.points.coefficients[points], wavelengths)
-    return _mix_entries(data, nodes, weighted_sum(values, nodes.points, nodes.weights), wavelengths)
+    lattice = weighted_sum(values, row.reshape(nodes.points.shape), nodes.weights)
+    return _mix_entries(data, nodes, lattice, wavelengths)
+
+
+def inexact_rows(data: CubeData, rgb: Array) -> Indices:
+    """Return the rows of linear RGB (n, 3) in [0, 1] whose nodes do not all have their own colours.
+
+    A wide-gamut lattice has corners of colours that no reflectance has, and stores other colours there. Mixtures of
+    such corners miss the requested colour, although most colours of their cells are realisable.
+    """
+    if data.inexact_cells is None:
+        return np.zeros(0, dtype=np.int64)
+    return np.flatnonzero(data.inexact_cells[cells(data, rgb)])
+
+
+def moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
+    """Reflectance (n, N) of the weighted coefficients of the lattice, mixed with entries."""
+    nodes = around(data, rgb)
+    lattice = reflectance(data.model, _lattice_coefficients(data, nodes), wavelengths)
+    return _mix_entries(data, nodes, lattice, wavelengths)
+
+
+def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
+    """Reflectance (n, N) of the weighted coefficients of the lattice and of entries, moved to exact colours."""
+    nodes = around(data, rgb)
+    lattice = evaluate(data.model, _exact_lattice(data, nodes, rgb), wavelengths)
+    if not nodes.rows.size:
+        return lattice
+    return nodes.mix(lattice, evaluate(data.entry_spectra.model, _exact_entries(data, nodes), wavelengths))
 
 
 def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
@@ -92,20 +172,33 @@ def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     return weighted_sum(values, row.reshape(corners.shape), weights)
 
 
-def moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of the weighted coefficients of the lattice, mixed with entries."""
-    nodes = around(data, rgb)
-    lattice = reflectance(data.model, _lattice_coefficients(data, nodes), wavelengths)
-    return _mix_entries(data, nodes, lattice, wavelengths)
+Mode = Callable[[CubeData, Array, Array], Array]
+"""From a cube, linear RGB (n, 3) and wavelengths (N,) in nm to reflectance (n, N)."""
+MODES: dict[str, Mode] = {"spectra": spectra, "moments": moments, "refined": refined, "nearest": nearest}
 
 
-def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of the weighted coefficients of the lattice and of entries, moved to exact colours."""
+def coefficients(data: CubeData, rgb: Array) -> Array:
+    """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1]."""
+    return around(data, rgb).weighted_sum(data.points.coefficients, data.atlas.coefficients)
+
+
+def extended_coefficients(data: CubeData, rgb: Array) -> Array:
+    """Weighted coefficients (n, K) of the nodes' spectra, as many as the entries have."""
     nodes = around(data, rgb)
-    lattice = evaluate(data.model, _exact_lattice(data, nodes, rgb), wavelengths)
-    if not nodes.rows.size:
-        return lattice
-    return nodes.mix(lattice, evaluate(data.entry_spectra.model, _exact_entries(data, nodes), wavelengths))
+    points, row = np.unique(nodes.points, return_inverse=True)
+    lattice = extend_coefficients(data, data.points.coefficients[points])
+    nodes = replace(nodes, points=row.reshape(nodes.points.shape))
+    return nodes.weighted_sum(lattice, data.entry_spectra.coefficients)
+
+
+def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
+    """Coefficients (m, K) in the model of the entries of the lattice spectra with coefficients (m, C).
+
+    Multipliers followed by zeros are those of the same spectrum, which has more moments.
+    """
+    extended = data.entry_spectra.model.to_storage(_append_zeros(data, data.model.from_storage(coefficients)))
+    extended[:, : data.model.count] = coefficients
+    return extended
 
 
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
@@ -128,6 +221,20 @@ def extended_multipliers(data: CubeData, rgb: Array) -> Array:
     return extended
 
 
+def node_errors(data: CubeData, rgb: Array) -> Array:
+    """Standard errors and error bounds (n, 2) from those of the nodes, for a cube that has them."""
+    nodes, factors = around(data, rgb), np.array([1, data.error_bound_factor])
+    errors = np.asarray(data.points.standard_error, dtype=float)[:, None]
+    entries = np.repeat(data.atlas.error[:, None], 2, axis=1)
+    entries[data.atlas.measured_count :] *= factors  # errors of looks are expected ones
+    lattice = weighted_sum(errors, nodes.points, nodes.weights) * factors
+    return nodes.mix(lattice, entries[nodes.entry])
+
+
+def _lattice_coefficients(data: CubeData, nodes: Nodes) -> Array:
+    return weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
+
+
 def _exact_lattice(data: CubeData, nodes: Nodes, rgb: Array) -> Array:
     """Multipliers (n, C) of the lattice that have exactly its share of the colours (n, 3)."""
     start = data.model.from_storage(_lattice_coefficients(data, nodes))
@@ -136,23 +243,13 @@ def _exact_lattice(data: CubeData, nodes: Nodes, rgb: Array) -> Array:
 
 def _exact_entries(data: CubeData, nodes: Nodes) -> Array:
     """Multipliers (k, K) of the entry of each colour in a box, that have exactly the colour of the entry."""
-    spectra, (entries, row) = data.entry_spectra, np.unique(nodes.entry, return_inverse=True)
-    return refine_to_rgb(data, spectra.model, spectra.multipliers[entries], data.atlas.rgb[entries])[row]
+    entry_spectra, (entries, row) = data.entry_spectra, np.unique(nodes.entry, return_inverse=True)
+    return refine_to_rgb(data, entry_spectra.model, entry_spectra.multipliers[entries], data.atlas.rgb[entries])[row]
 
 
 def _append_zeros(data: CubeData, multipliers: Array) -> Array:
     """Multipliers (m, K) in the model of the entries of the spectra with multipliers (m, C)."""
     return np.pad(multipliers, ((0, 0), (0, data.entry_spectra.model.count - data.model.count)))
-
-
-def _lattice_coefficients(data: CubeData, nodes: Nodes) -> Array:
-    return weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
-
-
-def _unique_points(nodes: Nodes) -> tuple[Nodes, Indices]:
-    """The nodes with rows of the returned lattice points (m,) in place of point numbers."""
-    points, row = np.unique(nodes.points, return_inverse=True)
-    return replace(nodes, points=row.reshape(nodes.points.shape)), points
 
 
 def _mix_entries(data: CubeData, nodes: Nodes, lattice: Array, wavelengths: Array) -> Array:
@@ -163,6 +260,67 @@ def _mix_entries(data: CubeData, nodes: Nodes, lattice: Array, wavelengths: Arra
     return nodes.mix(lattice, data.entry_spectra.reflectance(entries, wavelengths)[row])
 
 
-Mode = Callable[[CubeData, Array, Array], Array]
+@dataclass(frozen=True, eq=False, repr=False)
+class NodeTable:
+    """Values of all nodes, float64 or float32, for queries of more colours than the lattice has points."""
 
-MODES: dict[str, Mode] = {"spectra": spectra, "moments": moments, "refined": refined, "nearest": nearest}
+    data: CubeData
+    lattice: Values
+    """(dim³, K) values of the lattice points, NaN at absent points."""
+    atlas: Values
+    """(E, K) values of the atlas entries."""
+    wavelengths: Array | None = None
+    """(K,) wavelengths in nm of a table of reflectances; None for other values."""
+
+    @classmethod
+    def of_present_points(
+        cls, data: CubeData, points: Values, atlas: Values, wavelengths: Array | None = None
+    ) -> NodeTable:
+        """Make a table from values (m, K) of the present points."""
+        if data.complete_cells is None:
+            return cls(data, points, atlas, wavelengths)
+        lattice = np.full((data.lattice.size, points.shape[1]), np.nan, points.dtype)
+        lattice[data.points.present] = points
+        return cls(data, lattice, atlas, wavelengths)
+
+    def spectra(self, rgb: Array) -> Values:
+        """Reflectance (n, N) in mode ``spectra``."""
+        mixed = np.clip(self.values(rgb), 0, 1)
+        rows = inexact_rows(self.data, rgb)
+        if rows.size and self.wavelengths is not None:
+            mixed[rows] = spectra(self.data, rgb[rows], self.wavelengths)
+        return mixed
+
+    def nearest(self, rgb: Array) -> Values:
+        """Reflectance (n, N) in mode ``nearest``."""
+        points, rows, entry = around(self.data, rgb).nearest()
+        values = self.lattice[points]
+        values[rows] = self.atlas[entry]
+        return values
+
+    def values(self, rgb: Array) -> Values:
+        """Weighted values (n, K) of the nodes."""
+        return around(self.data, rgb).weighted_sum(self.lattice, self.atlas)
+
+
+TABULATED = {"spectra": NodeTable.spectra, "nearest": NodeTable.nearest}
+"""Modes that can use a table."""
+
+
+def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1) -> NodeTable:
+    """Compute the reflectances of all nodes at wavelengths (N,) in nm: dim³ × N numbers."""
+    evaluate_rows = partial(reflectance, data.model, wavelengths=wavelengths)
+    stored = data.points.coefficients[data.points.present]
+    present = blockwise(evaluate_rows, stored, len(wavelengths), dtype, threads)
+    entries = data.entry_spectra.reflectance(np.arange(len(data.atlas.names)), wavelengths)
+    return NodeTable.of_present_points(data, present, entries.astype(dtype, copy=False), wavelengths)
+
+
+def tabulate_coefficients(data: CubeData, count: int, dtype: DTypeLike = np.float64, threads: int = 1) -> NodeTable:
+    """Tabulate the coefficients of all nodes, ``count`` each: as many as the nodes or the entries have."""
+    present = data.points.coefficients[data.points.present]
+    entries = data.atlas.coefficients
+    if count != data.model.count:
+        present = blockwise(partial(extend_coefficients, data), present, count, dtype, threads)
+        entries = data.entry_spectra.coefficients
+    return NodeTable.of_present_points(data, present.astype(dtype, copy=False), entries.astype(dtype, copy=False))

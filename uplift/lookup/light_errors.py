@@ -1,7 +1,7 @@
 """Standard errors of answers under any light, learnt from atlas entries that were left out (docs/mathematics.md, 7).
 
-RGB does not identify a material: the errors are those of materials like the entries of the atlas. `unlike_atlas` finds
-colours that no entry is near to; of a material of another family with the colour of an entry nothing can be known.
+RGB does not identify a material: the errors are those of materials like the entries of the atlas. `Cube.unlike_atlas`
+finds colours that no entry is near to; of a material of another family with the colour of an entry nothing is known.
 """
 
 from __future__ import annotations
@@ -19,14 +19,13 @@ from uplift.colorimetry.expected_error import (
     expected_products,
     learn_radii,
     mahalanobis,
-    nearest_distances,
 )
 from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData
 from uplift.cube.data import LeftOut
-from uplift.lookup.nodes import around
+from uplift.lookup.interpolate import around
 from uplift.models import reflectance
 
 LIKELY = 0.95
@@ -37,21 +36,13 @@ NORMAL_RADIUS = float(np.sqrt(-2 * np.log1p(-LIKELY)))
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LightErrors:
-    """Standard errors and error bounds under a light.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-    expected : ExpectedError
-        Squares of ΔE00, without entry boxes.
-    entries : ndarray, shape (E, 2)
-        ΔE00 between the measured and the stored spectrum of each entry; of looks, what remains at entries on average.
-    """
+    """Standard errors and error bounds under a light."""
 
     data: CubeData
     expected: ExpectedError
+    """Squares of ΔE00, without entry boxes."""
     entries: Array
+    """(E, 2) ΔE00 between the measured and the stored spectrum of each entry; of looks, what remains on average."""
 
     def __call__(self, rgb: Array) -> Array:
         """ΔE00 (n, 2) that 68 % and 95 % of measurements stay within, at linear RGB (n, 3) in [0, 1].
@@ -66,25 +57,7 @@ class LightErrors:
 
 
 def light_errors(data: CubeData, light: Light) -> LightErrors:
-    """Learn the standard errors under a light.
-
-    Parameters
-    ----------
-    data : CubeData
-        A cube that has left-out entries.
-    light : Light
-        A light at the wavelengths of the sensor.
-
-    Returns
-    -------
-    LightErrors
-        Standard errors by colour.
-
-    Raises
-    ------
-    OptionError
-        The cube has no left-out entries.
-    """
+    """Learn the standard errors under a light; `OptionError` without left-out entries."""
     left_out, at = _left_out(data), data.sensor.wavelengths
     missed = delta_e_spectra(light, left_out.answered, left_out.measured)
     rows = np.arange(len(left_out.measured))
@@ -99,22 +72,13 @@ def light_errors(data: CubeData, light: Light) -> LightErrors:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LabErrors:
-    """Differences in CIE L*a*b* between measurements and answers under a light.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-    expected : ExpectedError
-        Products (9) of the components of the differences.
-    likely_radius : float
-        Mahalanobis distance in a* and b* that `LIKELY` of the materials like the atlas stay within. Normal
-        differences would have 2.45.
-    """
+    """Differences in CIE L*a*b* between measurements and answers under a light."""
 
     data: CubeData
     expected: ExpectedError
+    """Products (9) of the components of the differences."""
     likely_radius: float
+    """Mahalanobis distance in a* and b* that `LIKELY` of the materials like the atlas stay within. Normal: 2.45."""
 
     def covariance(self, rgb: Array) -> Array:
         """Expected covariances (n, 3, 3) around the answers at linear RGB (n, 3) in [0, 1].
@@ -126,25 +90,7 @@ class LabErrors:
 
 
 def lab_errors(data: CubeData, light: Light) -> LabErrors:
-    """Learn the differences in CIE L*a*b* under a light.
-
-    Parameters
-    ----------
-    data : CubeData
-        A cube that has left-out entries.
-    light : Light
-        A light at the wavelengths of the sensor.
-
-    Returns
-    -------
-    LabErrors
-        Covariances by colour, and the radius of the likely region.
-
-    Raises
-    ------
-    OptionError
-        The cube has no left-out entries.
-    """
+    """Learn the covariances in CIE L*a*b* under a light; `OptionError` without left-out entries."""
     left_out = _left_out(data)
     coefficients = data.atlas.coefficients[: len(left_out.measured)]
     spectra = (left_out.answered, reflectance(data.model, coefficients, data.sensor.wavelengths))
@@ -155,24 +101,6 @@ def lab_errors(data: CubeData, light: Light) -> LabErrors:
     distances = mahalanobis(own[:, 1:, 1:], differences[0][:, 1:])
     (radius,) = learn_radii(distances, [(LIKELY, NORMAL_RADIUS)])
     return LabErrors(data, expected, radius)
-
-
-def unlike_atlas(data: CubeData, rgb: Array) -> Mask:
-    """Find colours that are farther from all entries than nearly all entries are from their nearest neighbour.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB in [0, 1].
-
-    Returns
-    -------
-    ndarray of bool, shape (n,)
-        True for all colours if the atlas has fewer than two entries.
-    """
-    return nearest_distances(rgb_to_lab(data.sensor, rgb), data.entry_lab) > data.familiar_distance
 
 
 def _left_out(data: CubeData) -> LeftOut:

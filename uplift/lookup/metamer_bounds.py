@@ -15,39 +15,26 @@ from uplift.colorimetry.solid import solid_volume
 from uplift.common.arrays import Array
 from uplift.lookup.cube import Cube
 from uplift.lookup.light_errors import lab_errors
-from uplift.lookup.outside import reflectance_outside
+from uplift.lookup.query import reflectance_outside
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Bounds:
-    """Bounds of the answers to n colours under a light.
-
-    Parameters
-    ----------
-    light : Light
-        The light.
-    reflectance : ndarray, shape (n, N)
-        The answers at the wavelengths of the sensor.
-    xyz : ndarray, shape (n, 3)
-        XYZ of the answers under the light.
-    volumes : MismatchVolumes
-        XYZ of all reflectances of the colours.
-    largest : LargestDifference
-        The reflectances whose colour differs most from that of the answer.
-    covariance : ndarray, shape (n, 3, 3), optional
-        Expected covariance of L*a*b* of a material of the colour, around the answer; None if the cube has no
-        left-out entries.
-    likely_radius : float, optional
-        Mahalanobis distance in a* and b* that `LIKELY` of the materials like the atlas stay within.
-    """
+    """Bounds of the answers to n colours under a light."""
 
     light: Light
     reflectance: Array
+    """(n, N) the answers at the wavelengths of the sensor."""
     xyz: Array
+    """(n, 3) their XYZ under the light."""
     volumes: MismatchVolumes
+    """XYZ of all reflectances of the colours."""
     largest: LargestDifference
+    """The reflectances whose colour differs most from that of the answer."""
     covariance: Array | None
+    """(n, 3, 3) expected covariance of L*a*b* of a material of the colour; None without left-out entries."""
     likely_radius: float | None
+    """Mahalanobis distance in a* and b* that `LIKELY` of the materials like the atlas stay within."""
 
     @property
     def lab(self) -> Array:
@@ -66,32 +53,11 @@ class Bounds:
         return np.stack([found.min(axis=1), found.max(axis=1)], axis=1)
 
     def outline(self, row: int) -> Array:
-        """Compute the outline in a* and b* of all colours that the reflectances of a colour can have.
-
-        Parameters
-        ----------
-        row : int
-            The colour.
-
-        Returns
-        -------
-        ndarray, shape (M, 2)
-        """
+        """Compute the outline (M, 2) in a* and b* of all colours that the reflectances of colour ``row`` can have."""
         return outline(self.volumes.lab[row, :, 1:], self.volumes.directions.faces)
 
     def likely(self, row: int) -> Array | None:
-        """Compute the ellipse in a* and b* that holds `LIKELY` of the materials like the atlas.
-
-        Parameters
-        ----------
-        row : int
-            The colour.
-
-        Returns
-        -------
-        ndarray, shape (M, 2), optional
-            None without a covariance.
-        """
+        """Compute the ellipse (M, 2) in a* and b* that holds `LIKELY` of the materials like the atlas, if known."""
         if self.covariance is None or self.likely_radius is None:
             return None
         values, axes = np.linalg.eigh(self.covariance[row, 1:, 1:])
@@ -101,31 +67,10 @@ class Bounds:
 
 
 def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", divisions: int = DIVISIONS) -> Bounds:
-    """Compute bounds of answers under a light.
+    """Compute bounds of the answers to linear RGB (n, 3) under a light at the wavelengths of the sensor.
 
-    Parameters
-    ----------
-    cube : Cube
-        The cube.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB; those outside [0, 1] are answered by `reflectance_outside`.
-    light : Light
-        A light at the wavelengths of the sensor.
-    mode : str, default "spectra"
-        One of `MODES`, for colours in [0, 1].
-    divisions : int, default 2
-        Density of the boundary points, see `mismatch_volumes`.
-
-    Returns
-    -------
-    Bounds
-
-    Raises
-    ------
-    ColourError
-        No reflectance has a colour (code ``colour-unrealisable``).
-    OptionError
-        An unknown mode.
+    Colours outside [0, 1] are answered by `reflectance_outside`; ``divisions`` is the density of the boundary points.
+    Raises `ColourError` if no reflectance has a colour.
     """
     data = cube.data
     volumes = mismatch_volumes(data.sensor, light, rgb, divisions)

@@ -9,75 +9,62 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.gamut import map_to_gamut
+from uplift.colorimetry.gamut import as_rgb, map_to_gamut
 from uplift.colorimetry.sensor import Light
 from uplift.colorimetry.solid import solid
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Array
+from uplift.common.errors import ColourError
 from uplift.cube import CubeData
 from uplift.lattice import Status
 from uplift.lookup.blocks import BLOCK
 from uplift.lookup.cube import Cube
-from uplift.lookup.outside import MAPPING, reflectance_outside, xyz_to_rgb
+from uplift.lookup.interpolate import coefficients
+from uplift.lookup.refine import refine_to_rgb
+from uplift.models import evaluate
 
+MAPPING = "desaturate"
+"""Gamut mapping to the colour from which the spectra of colours outside the RGB space start."""
 CODE_TOLERANCE = 0.5
 """A colour is that of an entry if their 8-bit codes differ by at most this."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class QueryResult:
-    """The answer to one colour.
-
-    Parameters
-    ----------
-    rgb : ndarray, shape (3,)
-        Linear RGB in [0, 1].
-    requested_rgb : ndarray, shape (3,)
-        Linear RGB before gamut mapping.
-    wavelengths : ndarray, shape (N,)
-        Wavelengths in nm.
-    reflectance : ndarray, shape (N,)
-        Reflectances in [0, 1].
-    round_trip : ndarray, shape (3,)
-        Linear RGB of the reflectance.
-    xyz : ndarray, shape (3,)
-        XYZ of the reflectance under the illuminant of the cube, where white has Y = 1.
-    delta_e_2000 : float
-        ΔE00 between ``rgb`` and ``round_trip``; for raw values of a camera, by an approximate matrix.
-    cell : tuple of int
-        Position of the lowest corner of the cell along the axes.
-    statuses : tuple of Status
-        Statuses of the corners of the cell.
-    entry : str, optional
-        Atlas entry of the same colour.
-    standard_error, error_bound : float, optional
-        ΔE00 from the answer that 68 % and 95 % of measurements stay within; None if the cube has no estimate.
-    standard_errors, error_bounds : mapping of str to float
-        The same under other lights, by their names; empty if the cube has no estimate.
-    light_xyz : mapping of str to ndarray, shape (3,)
-        XYZ of the reflectance under these lights; the perfect reflector has that of `Light.white`.
-    unlike_atlas : bool
-        Whether no atlas entry has a colour near this one; see `Cube.unlike_atlas`. False without standard errors.
-    realisable : bool
-        Whether a reflectance with the colour exists. If not, the answer has less chroma.
-    """
+    """The answer to one colour."""
 
     rgb: Array
+    """(3,) linear RGB, in [0, 1] unless the colour was asked by XYZ."""
     requested_rgb: Array
+    """(3,) linear RGB before gamut mapping."""
     wavelengths: Array
+    """(N,) nm."""
     reflectance: Array
+    """(N,) in [0, 1]."""
     round_trip: Array
+    """(3,) linear RGB of the reflectance."""
     xyz: Array
+    """(3,) XYZ of the reflectance under the illuminant of the cube, where white has Y = 1."""
     delta_e_2000: float
+    """ΔE00 between ``rgb`` and ``round_trip``; for raw values of a camera, by an approximate matrix."""
     cell: tuple[int, int, int]
+    """Position of the lowest corner of the cell along the axes."""
     statuses: tuple[Status, ...]
+    """Statuses of the corners of the cell."""
     entry: str | None
+    """Atlas entry of the same colour."""
     standard_error: float | None
+    """ΔE00 from the answer that 68 % of measurements stay within; None if the cube has no estimate."""
     error_bound: float | None
+    """The same for 95 %."""
     standard_errors: Mapping[str, float]
+    """Standard errors under other lights, by their names; empty if the cube has no estimate."""
     error_bounds: Mapping[str, float]
     light_xyz: Mapping[str, Array]
+    """XYZ (3,) of the reflectance under these lights; the perfect reflector has that of `Light.white`."""
     unlike_atlas: bool
+    """Whether no atlas entry has a colour near this one; see `Cube.unlike_atlas`. False without standard errors."""
     realisable: bool
+    """Whether a reflectance with the colour exists. If not, the answer has less chroma."""
 
     def __repr__(self) -> str:
         values = ", ".join(f"{value:.4g}" for value in self.rgb)
@@ -92,34 +79,9 @@ def query(
     requested_rgb: Array | None = None,
     lights: Sequence[Light] = (),
 ) -> Iterator[QueryResult]:
-    """Answer colours in full detail, block by block.
+    """Answer linear RGB (n, 3) in [0, 1] in full detail, block by block.
 
-    Parameters
-    ----------
-    cube : Cube
-        The cube.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB in [0, 1].
-    wavelengths : array_like, shape (N,), optional
-        Wavelengths in nm, by default those of the sensor.
-    mode : str, default "spectra"
-        One of `MODES`, see `Cube.reflectance`.
-    requested_rgb : ndarray, shape (n, 3), optional
-        The colours before gamut mapping, ``rgb`` by default.
-    lights : sequence of Light, optional
-        Lights of `QueryResult.standard_errors` and `QueryResult.light_xyz`.
-
-    Yields
-    ------
-    QueryResult
-        The answers in order.
-
-    Raises
-    ------
-    ColourError
-        A colour that the cube cannot answer.
-    OptionError
-        An unknown mode, invalid wavelengths, or lights for a cube without left-out entries.
+    ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of `QueryResult.standard_errors`.
     """
     at = cube.resolve_wavelengths(wavelengths)
     requested = rgb if requested_rgb is None else requested_rgb
@@ -135,37 +97,18 @@ def query_xyz(
     mode: str = "spectra",
     lights: Sequence[Light] = (),
 ) -> Iterator[QueryResult]:
-    """Answer colours by XYZ, also those outside the RGB space of the cube.
+    """Answer colours by XYZ (n, 3) under the illuminant of the cube, also those outside its RGB space.
 
-    The cube answers colours in its RGB space. The spectra of others are computed from the nearest one that it holds
-    (`uplift.lookup.outside`); they have no atlas entry and no standard error.
-
-    Parameters
-    ----------
-    cube : Cube
-        The cube.
-    xyz : array_like, shape (n, 3)
-        XYZ under the illuminant of the cube, where white has Y = 1.
-    wavelengths : array_like, shape (N,), optional
-        Wavelengths in nm, by default those of the sensor.
-    mode : str, default "spectra"
-        One of `MODES`, for colours in the RGB space of the cube.
-    lights : sequence of Light
-        Illuminants of standard errors.
-
-    Yields
-    ------
-    QueryResult
-        The answers in order; the RGB of some lie outside [0, 1].
-
-    Raises
-    ------
-    ColourError
-        No reflectance has a colour (``colour-unrealisable``), or the model does not reach it
-        (``colour-not-reached``).
+    The cube answers colours in its RGB space. The spectra of others are computed from the nearest one that it holds;
+    they have no atlas entry and no standard error. Raises `ColourError` if no reflectance has a colour
+    (``colour-unrealisable``), or the model does not reach it (``colour-not-reached``).
     """
     sensor = cube.data.sensor
-    rgb = xyz_to_rgb(cube.data, xyz)
+    sensor.require_xyz()
+    values = as_rgb(xyz).astype(float)
+    if not np.isfinite(values).all():
+        raise ColourError("XYZ must be finite", code="rgb-not-finite", hint="fix its source")
+    rgb = np.asarray(values @ sensor.xyz_to_rgb.T)
     at = cube.resolve_wavelengths(wavelengths)
     mapped = map_to_gamut(rgb, sensor, MAPPING)
     for row, result in enumerate(query(cube, mapped.rgb, at, mode, lights=lights)):
@@ -196,24 +139,59 @@ def _outside(cube: Cube, nearest: QueryResult, rgb: Array, at: Array, lights: Se
     )
 
 
+def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
+    """Compute reflectances (n, N) at wavelengths (N,) in nm, of linear RGB (n, 3) that may lie outside [0, 1].
+
+    A colour in the object-colour solid has spectra, whether or not its RGB lie in [0, 1]. The multipliers of the
+    nearest colour that the cube holds, on the line of constant dominant wavelength, move to it by minimum-norm steps,
+    which may fail close to the boundary of the solid.
+    """
+    possible = solid(data.sensor.matrix).contains(rgb)
+    if not possible.all():
+        raise ColourError(
+            f"no reflectance has the colour of XYZ {_format_xyz(data, rgb[int(possible.argmin())])}",
+            code="colour-unrealisable",
+            hint="reduce its luminance, where white has Y = 1, or its distance from white",
+        )
+    start = data.model.from_storage(coefficients(data, map_to_gamut(rgb, data.sensor, MAPPING).rgb))
+    multipliers = refine_to_rgb(data, data.model, start, rgb)
+    reached = data.sensor.rgb(evaluate(data.model, multipliers, data.sensor.wavelengths))
+    distance = np.abs(reached - rgb).max(axis=1)
+    if (distance > data.threshold).any():
+        raise ColourError(
+            f"the model does not reach the colour of XYZ {_format_xyz(data, rgb[int(distance.argmax())])}",
+            code="colour-not-reached",
+            hint="move it toward white, away from the limit of what reflectances can have",
+        )
+    return evaluate(data.model, multipliers, at)
+
+
+def _format_xyz(data: CubeData, rgb: Array) -> str:
+    return "(" + ", ".join(f"{value:.4g}" for value in data.sensor.xyz(rgb)) + ")"
+
+
 def _block(
     cube: Cube, rgb: Array, requested: Array, at: Array, mode: str, lights: Sequence[Light]
 ) -> Iterator[QueryResult]:
     data, sensor = cube.data, cube.data.sensor
     count = len(sensor.wavelengths)
     spectra = cube.reflectance(rgb, np.concatenate([sensor.wavelengths, at]), mode)
-    round_trip = sensor.rgb(spectra[:, :count])
-    xyz = spectra[:, :count] @ sensor.light.xyz.T
+    at_sensor = spectra[:, :count]
+    round_trip = sensor.rgb(at_sensor)
+    xyz = at_sensor @ sensor.light.xyz.T
     delta_e = delta_e_rgb(sensor, rgb, round_trip)
-    relit = {light.name: spectra[:, :count] @ light.xyz.T for light in lights}
+    relit = {light.name: at_sensor @ light.xyz.T for light in lights}
     errors, bounds = cube.standard_error(rgb), cube.error_bound(rgb)
-    named = {} if errors is None else {light.name: light for light in lights}
-    errors_by_light = {name: cube.standard_error(rgb, light) for name, light in named.items()}
-    bounds_by_light = {name: cube.error_bound(rgb, light) for name, light in named.items()}
+    known = () if errors is None else lights
+    errors_by_light = {light.name: np.asarray(cube.standard_error(rgb, light)) for light in known}
+    bounds_by_light = {light.name: np.asarray(cube.error_bound(rgb, light)) for light in known}
     unlike = None if errors is None else cube.unlike_atlas(rgb)
     low, fraction = data.lattice.cell(rgb)
-    corners, _ = data.lattice.cell_corners(low, fraction)
-    realisable = _realisable(data, rgb, corners)
+    statuses = data.points.status[data.lattice.cell_corners(low, fraction)[0]]
+    # Mixtures of realisable colours are realisable, so only cells with an unrealisable corner are tested.
+    realisable = ~(statuses == Status.UNREALISABLE).any(axis=1)
+    if not realisable.all():
+        realisable[~realisable] = solid(sensor.matrix).contains(rgb[~realisable])
     for row, cell in enumerate(low):
         yield QueryResult(
             rgb=rgb[row],
@@ -224,34 +202,20 @@ def _block(
             xyz=xyz[row],
             delta_e_2000=float(delta_e[row]),
             cell=(int(cell[0]), int(cell[1]), int(cell[2])),
-            statuses=tuple(map(Status, sorted(set(data.points.status[corners[row]].tolist())))),
+            statuses=tuple(map(Status, sorted(set(statuses[row].tolist())))),
             entry=_entry(cube, rgb[row]),
             standard_error=None if errors is None else float(errors[row]),
             error_bound=None if bounds is None else float(bounds[row]),
-            standard_errors=_of_row(errors_by_light, row),
-            error_bounds=_of_row(bounds_by_light, row),
+            standard_errors={name: float(each[row]) for name, each in errors_by_light.items()},
+            error_bounds={name: float(each[row]) for name, each in bounds_by_light.items()},
             light_xyz={name: each[row] for name, each in relit.items()},
             unlike_atlas=unlike is not None and bool(unlike[row]),
             realisable=bool(realisable[row]),
         )
 
 
-def _of_row(by_light: Mapping[str, Array | None], row: int) -> dict[str, float]:
-    return {name: float(each[row]) for name, each in by_light.items() if each is not None}
-
-
-def _realisable(data: CubeData, rgb: Array, corners: Indices) -> Mask:
-    """Whether linear RGB (n, 3) in cells with ``corners`` (n, 8) are realisable.
-
-    Mixtures of realisable colours are realisable, so only cells with an unrealisable corner are tested.
-    """
-    realisable = ~(data.points.status[corners] == Status.UNREALISABLE).any(axis=1)
-    if not realisable.all():
-        realisable[~realisable] = solid(data.sensor.matrix).contains(rgb[~realisable])
-    return np.asarray(realisable)
-
-
 def _entry(cube: Cube, rgb: Array) -> str | None:
+    """Name of the atlas entry of a colour (3,), if one has it."""
     atlas = cube.data.atlas
     if not atlas.names:
         return None

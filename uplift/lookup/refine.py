@@ -6,15 +6,13 @@ add its changes, which need no arc tangents of large numbers.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from uplift.colorimetry.solid import solid, toward_grey
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Indices, Values
 from uplift.cube import CubeData
 from uplift.models import Model
-from uplift.models.matmul import matmul_columns
+from uplift.models.matmul import matmul_columns, matmul_rows
 from uplift.models.minimum_norm import ForwardMap, forward_map, solve_3x3
 from uplift.models.roots import MAX_MULTIPLIER
 
@@ -43,29 +41,38 @@ def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Arr
     return multipliers.T
 
 
-def change_to_rgb(data: CubeData, reflectances: Array, rgb: Array) -> Array:
-    """Find the multipliers (n, C) to add to the linear part of reflectances (n, N) that gives them linear RGB (n, 3).
+def with_colours(data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, wavelengths: Array) -> Values:
+    """Move mixtures to their colours (n, 3), or to the nearest realisable ones (docs/mathematics.md, 9).
 
-    The reflectances, at the wavelengths of the sensor, need not be of the model: mixtures are not. Those that have
-    their colour do not change, and the others continuously. Unrealisable colours are replaced as by `refine_to_rgb`.
+    ``spectra`` (n, N) are reflectances in [0, 1] at any wavelengths (N,) in nm, ``at_sensor`` (n, M) the same at those
+    of the sensor. They need not be of the model: multipliers are added to their linear part. Those that have their
+    colour stay to the last bit, and the others change continuously.
     """
-    forward = forward_map(data.model, data.sensor.wavelengths, data.sensor.matrix)
-    linear = data.model.unsquash(np.array(reflectances.T, order="C"))
-    return _reach(data, data.model, forward, np.zeros((data.model.count, len(rgb))), rgb, linear).multipliers.T
+    model = data.model
+    forward = forward_map(model, data.sensor.wavelengths, data.sensor.matrix)
+    linear = model.unsquash(np.array(at_sensor.T, order="C"))
+    change = _reach(data, model, forward, np.zeros((model.count, len(rgb))), rgb, linear)[0].T
+    moved = model.squash(model.unsquash(spectra) + matmul_rows(change, model.basis(wavelengths).T))
+    return np.where((change != 0).any(axis=1)[:, None], moved, spectra)
 
 
-class _Reached(NamedTuple):
-    """Multipliers (C, n), the linear RGB (3, n) that they were moved to, and distances (n,) from it."""
+def within_solid(data: CubeData, rgb: Array) -> Array:
+    """Return the linear RGB (n, 3) to which unrealisable colours are moved; others are unchanged.
 
-    multipliers: Array
-    target: Array
-    distance: Array
+    Half of the threshold inside the object-colour solid, on the line to the grey of the same luminance, as
+    unrealisable points of the lattice.
+    """
+    sensor = data.sensor
+    return toward_grey(solid(sensor.matrix), sensor.grey(rgb), rgb, data.threshold / 2)
 
 
 def _reach(
     data: CubeData, model: Model, forward: ForwardMap, start: Array, rgb: Array, fixed: Array | None = None
-) -> _Reached:
-    """Move multipliers (C, n) to linear RGB (n, 3); what is not reached may be unrealisable and is moved inside."""
+) -> tuple[Array, Array, Array]:
+    """Move multipliers (C, n) to linear RGB (n, 3); what is not reached may be unrealisable and is moved inside.
+
+    Returns multipliers (C, n), the linear RGB (3, n) that they were moved to, and distances (n,) from it.
+    """
     multipliers, target = start.copy(), np.array(rgb.T, order="C")
     distance = _descend(model, forward, multipliers, target, fixed)
     failed = np.flatnonzero(distance > data.threshold)
@@ -77,17 +84,7 @@ def _reach(
         part = None if fixed is None else fixed[:, moved]
         distance[moved] = _descend(model, forward, again, target[:, moved], part)
         multipliers[:, moved] = again
-    return _Reached(multipliers, target, distance)
-
-
-def within_solid(data: CubeData, rgb: Array) -> Array:
-    """Return the linear RGB (n, 3) to which unrealisable colours are moved; others are unchanged.
-
-    Half of the threshold inside the object-colour solid, on the line to the grey of the same luminance, as
-    unrealisable points of the lattice (`uplift.fit.unrealisable`).
-    """
-    sensor = data.sensor
-    return toward_grey(solid(sensor.matrix), sensor.grey(rgb), rgb, data.threshold / 2)
+    return multipliers, target, distance
 
 
 def _descend(model: Model, forward: ForwardMap, multipliers: Array, target: Array, fixed: Array | None = None) -> Array:
@@ -100,52 +97,54 @@ def _descend(model: Model, forward: ForwardMap, multipliers: Array, target: Arra
         linear = matmul_columns(forward.basis, multipliers[:, columns])
         return linear if fixed is None else linear + fixed[:, columns]
 
-    state = _DescentState(multipliers, np.empty_like(target), np.zeros(target.shape[1]))
+    residual, damping = np.empty_like(target), np.zeros(target.shape[1])
     for first in range(0, target.shape[1], BLOCK_COLUMNS):
         block = slice(first, first + BLOCK_COLUMNS)
         linear = linear_part(block)
-        state.off[:, block] = target[:, block] - matmul_columns(forward.sensor, model.squash(linear))
-        _move(model, forward, state, block, linear)
+        residual[:, block] = target[:, block] - matmul_columns(forward.sensor, model.squash(linear))
+        _move(model, forward, multipliers, residual, damping, block, linear)
     for _ in range(MAX_STEPS - 1):
-        pending = np.flatnonzero(state.distance > TOLERANCE)
+        pending = np.flatnonzero(np.abs(residual).max(axis=0) > TOLERANCE)
         if not pending.size:
             break
         for first in range(0, pending.size, BLOCK_COLUMNS):
             columns = pending[first : first + BLOCK_COLUMNS]
-            _move(model, forward, state, columns, linear_part(columns))
-    return state.distance
+            _move(model, forward, multipliers, residual, damping, columns, linear_part(columns))
+    return np.asarray(np.abs(residual).max(axis=0))
 
 
-class _DescentState(NamedTuple):
-    """Multipliers (C, n), residual (3, n) and damping (n,), changed in place."""
+def _move(
+    model: Model,
+    forward: ForwardMap,
+    multipliers: Array,
+    residual: Array,
+    damping: Array,
+    columns: slice | Indices,
+    linear: Array,
+) -> None:
+    """Take one step of some columns with linear part (N, k); steps that do not reduce the residual are rejected.
 
-    multipliers: Array
-    off: Array
-    damping: Array
-
-    @property
-    def distance(self) -> Array:
-        return np.asarray(np.abs(self.off).max(axis=0))
-
-
-def _move(model: Model, forward: ForwardMap, state: _DescentState, columns: slice | Indices, linear: Array) -> None:
-    """Take one step of some columns with linear part (N, k); steps that do not reduce the residual are rejected."""
-    current, off, damping = state.multipliers[:, columns], state.off[:, columns], state.damping[columns]
+    Multipliers (C, n), residual (3, n) and damping (n,) change in place.
+    """
+    current, off, mu = multipliers[:, columns], residual[:, columns], damping[columns]
     with np.errstate(over="ignore", invalid="ignore"):  # overflowing steps are rejected
-        change = step(model, forward, linear, off, damping)
+        change = step(model, forward, linear, off, mu)
         trial = current + change
         difference = model.squash_difference(linear, matmul_columns(forward.basis, change))
         trial_off = off - matmul_columns(forward.sensor, difference)
     better = (trial_off**2).sum(axis=0) < (off**2).sum(axis=0)
     better &= np.abs(trial).max(axis=0) <= MAX_MULTIPLIER
-    state.multipliers[:, columns] = np.where(better, trial, current)
-    state.off[:, columns] = np.where(better, trial_off, off)
-    state.damping[columns] = np.where(better, damping / 16, 4 * damping + FIRST_DAMPING)
+    multipliers[:, columns] = np.where(better, trial, current)
+    residual[:, columns] = np.where(better, trial_off, off)
+    damping[columns] = np.where(better, mu / 16, 4 * mu + FIRST_DAMPING)
 
 
-def step(model: Model, forward: ForwardMap, linear: Array, off: Array, damping: Array) -> Array:
-    """Minimum-norm step (C, n) from the linear part (N, n) and residual (3, n), spectra as columns."""
+def step(model: Model, forward: ForwardMap, linear: Array, residual: Array, damping: Array) -> Array:
+    """Minimum-norm step (C, n) from the linear part (N, n) and residual (3, n), spectra as columns.
+
+    R Aᵀ (A Aᵀ + μ tr I)⁻¹ residual, with the Jacobian A and the root R of docs/mathematics.md, 5.
+    """
     jacobian = matmul_columns(forward.products.T, model.slope(linear)).reshape(3, len(forward.root), -1)
     gram = [[np.einsum("cn,cn->n", jacobian[a], jacobian[b]) for b in range(a + 1)] for a in range(3)]
-    y = solve_3x3(gram, damping * (gram[0][0] + gram[1][1] + gram[2][2]), off)
+    y = solve_3x3(gram, damping * (gram[0][0] + gram[1][1] + gram[2][2]), residual)
     return matmul_columns(forward.root, np.einsum("an,acn->cn", np.stack(y), jacobian))

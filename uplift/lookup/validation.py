@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from uplift.colorimetry.gamut import as_rgb, raise_out_of_gamut
 from uplift.colorimetry.sensor import SLACK, Sensor
 from uplift.common.arrays import Array
-from uplift.common.errors import ColourError, OptionError, UpliftError
+from uplift.common.errors import ColourError, OptionError
 from uplift.cube import CubeData
 
 FLOAT_TYPES = (np.dtype(np.float64), np.dtype(np.float32))
@@ -33,11 +33,11 @@ def clip_rounding(rgb: NDArray[Any], sensor: Sensor) -> Array:
 
 def as_wavelengths(wavelengths: ArrayLike) -> Array:
     """Convert to wavelengths (N,) in nm; `OptionError` if they are not positive numbers."""
-    problem = "wavelengths must be a list of positive numbers in nm"
-    array = np.atleast_1d(as_floats(wavelengths, problem, "invalid-wavelengths", OptionError))
-    if array.ndim != 1 or not array.size or not (np.isfinite(array) & (array > 0)).all():
-        raise OptionError(problem, code="invalid-wavelengths")
-    return array
+    with contextlib.suppress(TypeError, ValueError):
+        array = np.atleast_1d(np.asarray(wavelengths, dtype=float))
+        if array.ndim == 1 and array.size and (np.isfinite(array) & (array > 0)).all():
+            return array
+    raise OptionError("wavelengths must be a list of positive numbers in nm", code="invalid-wavelengths")
 
 
 def as_float_type(dtype: DTypeLike) -> np.dtype[Any]:
@@ -66,17 +66,12 @@ def as_coefficient_count(count: int | None, data: CubeData) -> int:
     return int(count)
 
 
-def as_floats(values: Any, problem: str, code: str, kind: type[UpliftError] = ColourError) -> Array:
-    """Convert to an array of float64; an error of ``kind`` if that is impossible."""
-    try:
-        return np.asarray(values, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise kind(problem, code=code) from error
-
-
 def decode_codes(sensor: Sensor, codes: ArrayLike) -> Array:
     """Convert 8-bit codes (…) to linear values by the encoding of a sensor; `ColourError` outside 0 to 255."""
-    array = as_floats(codes, "8-bit codes must be numbers", "invalid-codes")
+    try:
+        array = np.asarray(codes, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ColourError("8-bit codes must be numbers", code="invalid-codes") from error
     outside = array[~((array >= 0) & (array <= 255))]
     if outside.size:
         raise ColourError(

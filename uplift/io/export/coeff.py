@@ -27,7 +27,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
 from uplift.cube import CubeData
-from uplift.lookup.nodes import around
+from uplift.lookup.interpolate import around
 from uplift.models import Sigmoid
 from uplift.models.minimum_norm import ForwardMap, forward_map
 

@@ -30,7 +30,7 @@ from uplift.io.texture.mask import open_mask
 from uplift.io.texture.pixel_encoding import PixelEncoding, Sampler, Spectrum
 from uplift.lattice import Status
 from uplift.lookup import Cube
-from uplift.lookup.common_sensor import common_sensor
+from uplift.lookup.cube import common_sensor
 from uplift.lookup.refine import refine_to_rgb
 
 ReadColours = Callable[[Values], tuple[Floats, Counts]]

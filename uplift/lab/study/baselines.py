@@ -20,7 +20,7 @@ from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
-from uplift.lookup.exact import with_colours
+from uplift.lookup.refine import with_colours
 
 BANDWIDTHS = (7.0, 10.0, 14.0, 20.0, 28.0, 40.0, 80.0, 1e4)
 """Standard deviations of the Gaussian weights, in CIE L*a*b*; the last one weighs all materials alike."""

@@ -1,7 +1,7 @@
 """Lipschitz constants of mixtures of spectra as functions of the queried colour.
 
 They are those of the answers of mode ``spectra``, except in cells with a corner that has not its own colour
-(`CubeData.inexact_cells`). Steps to the exact colour follow there (`uplift.lookup.exact`) and are not included.
+(`CubeData.inexact_cells`). Steps to the exact colour follow there (`uplift.lookup.refine`) and are not included.
 
 Within a cell the answer is trilinear. Its derivative along one channel is constant in that channel and linear in each
 other. The norm of the Jacobian (N × 3) is then convex along every axis, and largest at a corner of the cell, where the

@@ -15,12 +15,9 @@ from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
-from uplift.lookup.bulk.grid import Grid, make_grid
-from uplift.lookup.bulk.kernel import interpolate
-from uplift.lookup.exact import inexact_rows
+from uplift.lookup.bulk.kernel import Grid, interpolate, make_grid
+from uplift.lookup.interpolate import NodeTable, inexact_rows, require_covered, tabulate, tabulate_coefficients
 from uplift.lookup.interpolate import spectra as reflectances
-from uplift.lookup.node_table import NodeTable, tabulate, tabulate_coefficients
-from uplift.lookup.nodes import require
 from uplift.lookup.validation import as_coefficient_count, as_thread_count, clip_rounding
 
 CHUNKS = (1 << 16, 1 << 12)
@@ -74,21 +71,13 @@ class Sampler:
         padded = np.pad(colours, ((0, missing), (0, 0))) if missing else colours
         with jax.enable_x64(True):
             values = np.asarray(interpolate(self.grid, padded))[: len(colours)]
-        require(~np.isnan(values[:, 0]), colours)  # absent points make NaN
+        require_covered(~np.isnan(values[:, 0]), colours)  # absent points make NaN
         return values if self.exact is None else self.exact.replace(values, colours)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SlowSpectra:
-    """Reflectances computed by `uplift.lookup.interpolate` where the kernel is not exact (`uplift.lookup.exact`).
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-    wavelengths : ndarray, shape (N,)
-        Wavelengths in nm.
-    """
+    """Reflectances at wavelengths (N,) in nm by `uplift.lookup.interpolate`, where the kernel is not exact."""
 
     data: CubeData
     wavelengths: Array
@@ -184,8 +173,9 @@ def max_rgb_error(cube: Cube, *, threads: int = 2) -> Sampler:
 
 
 def _sampler(table: NodeTable, threads: int) -> Sampler:
-    inexact = table.wavelengths.size and table.data.inexact_cells is not None
-    exact = SlowSpectra(table.data, table.wavelengths) if inexact else None
+    exact = None
+    if table.wavelengths is not None and table.data.inexact_cells is not None:
+        exact = SlowSpectra(table.data, table.wavelengths)
     return _on_device(table.data.sensor, make_grid(table), threads, exact)
 
 

@@ -18,7 +18,7 @@ from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.io.texture.colours import Floats
 from uplift.lookup import Cube, bulk
-from uplift.lookup.common_sensor import common_sensor
+from uplift.lookup.cube import common_sensor
 
 RGB_PRODUCT = "RGB × light"
 """Name of the method that multiplies the RGB of the image by those of the light."""

@@ -1,4 +1,4 @@
-"""The lookup: the nodes around a colour and their weighted sum, as in `uplift.lookup.nodes`."""
+"""The lookup: the nodes around a colour and their weighted sum, as in `uplift.lookup.interpolate`."""
 
 from __future__ import annotations
 
