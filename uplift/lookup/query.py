@@ -33,7 +33,7 @@ class QueryResult:
     """The answer to one colour."""
 
     rgb: Array
-    """(3,) linear RGB, in [0, 1] unless the colour was asked by XYZ."""
+    """(3,) linear RGB, in [0, 1] unless the query was by XYZ."""
     requested_rgb: Array
     """(3,) linear RGB before gamut mapping."""
     wavelengths: Array
