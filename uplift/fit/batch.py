@@ -1,4 +1,4 @@
-"""Batches of few shapes, so that XLA compiles rarely, over all devices that JAX has."""
+"""Batches of few shapes, so that XLA compiles rarely, over all devices that JAX has; the compiled integrals of moments."""
 
 from __future__ import annotations
 
@@ -6,32 +6,27 @@ from collections.abc import Iterator
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from uplift.common.arrays import Array
+from uplift.models.arctan import arctan
+from uplift.models.duality import Quadrature, integrate
 
 CPU_BATCH_ROWS, ACCELERATOR_BATCH_ROWS = (2048, 64), (1 << 17, 4096)
 """Rows per device: a large batch that fills a core's cache or keeps a GPU busy, and a small one for short rounds."""
+MAX_NODES = 256
+"""Larger rules of integration, which few spectra need, are not worth compiling."""
+PART_NODES = 97
+"""Nodes of the first rule. Other rules run in parts of as many: one program for all."""
 
 
 def batches(count: int, max_small: int = 0) -> Iterator[tuple[slice, int]]:
-    """Split rows into large batches and a remainder.
+    """Split rows into large batches and a remainder: their slices, and the width that `shard` pads them to.
 
-    Parameters
-    ----------
-    count : int
-        Number of rows.
-    max_small : int, default 0
-        The remainder is split into at most this many small batches; a longer one becomes a large batch. A second width
-        is a second program to compile or to load, which small batches must be worth.
-
-    Yields
-    ------
-    rows : slice
-        Rows of one batch.
-    width : int
-        Fixed number of rows that `shard` pads them to.
+    The remainder is split into at most ``max_small`` small batches; a longer one becomes a large batch. A second width
+    is a second program to compile or to load, which small batches must be worth.
     """
     devices = len(jax.devices())
     sizes = CPU_BATCH_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_BATCH_ROWS
@@ -47,14 +42,47 @@ def shard(rows: Array, width: int) -> Any:
     """Distribute the rows of a batch over the devices, with the last one repeated up to ``width``."""
     missing = width - len(rows)
     padded = np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) if missing else rows
-    return _place(padded, "rows") if len(jax.devices()) > 1 else padded
+    return _distribute(padded, "rows") if len(jax.devices()) > 1 else padded
 
 
 def replicate(constants: Any) -> Any:
     """Copy the constants of a computation to every device."""
-    return _place(constants) if len(jax.devices()) > 1 else jax.device_put(constants)
+    return _distribute(constants) if len(jax.devices()) > 1 else jax.device_put(constants)
 
 
-def _place(arrays: Any, *axes: str) -> Any:
+def _distribute(arrays: Any, *axes: str) -> Any:
     mesh = Mesh(np.array(jax.devices()), ("rows",))
     return jax.device_put(arrays, NamedSharding(mesh, PartitionSpec(*axes)))  # type: ignore[no-untyped-call]
+
+
+def _integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
+    """Compute `uplift.models.duality.integrate`, several times faster."""
+    nodes, columns = analysis.shape
+    if nodes > MAX_NODES + 1:
+        return integrate(multipliers, synthesis, analysis)
+    moments = np.zeros((len(multipliers), columns))
+    with jax.enable_x64(True):
+        for first in range(0, nodes, PART_NODES):
+            part = slice(first, first + PART_NODES)
+            rule = replicate(_padded(synthesis[:, part], analysis[part]))
+            for rows, width in batches(len(multipliers)):
+                some = moments[rows]
+                some += np.asarray(_weighted(shard(multipliers[rows], width), *rule))[: len(some), :columns]
+    return moments
+
+
+def _padded(synthesis: Array, analysis: Array) -> tuple[Array, Array]:
+    """Make a rule as large as the first one, which has two sets of moments, by nodes and moments of no weight."""
+    count, (nodes, columns) = len(synthesis), analysis.shape
+    weights = np.zeros((PART_NODES, 2 * count))
+    weights[:nodes, :columns] = analysis
+    return np.pad(synthesis, ((0, 0), (0, PART_NODES - nodes))), weights
+
+
+@jax.jit
+def _weighted(multipliers: jax.Array, synthesis: jax.Array, analysis: jax.Array) -> jax.Array:
+    return (0.5 + arctan(multipliers @ synthesis) / jnp.pi) @ analysis
+
+
+COMPILED = Quadrature(_integrate, 1e-6)
+"""For lattices: moments differ by some 1e-9 at most, a sixtieth of the rounding to single precision."""

@@ -1,46 +1,133 @@
-"""Fit atlas entries by the spectrum model: exact colour, close spectrum and colours under other lights.
+"""Fit of atlas entries: the measured spectrum, its colours under several lights, and exactly its RGB.
 
-docs/mathematics.md, 6.
+docs/mathematics.md, 6. The objective is minimised by Levenberg and Marquardt's method in MINPACK, which is faster than
+a batch on JAX at every number of entries: a batch runs until its last entry converges (docs/performance.md).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.colorimetry.sensor import Light
+from uplift.colorimetry.delta_e import delta_e_spectra, lab_jacobian, lab_of
 from uplift.common.arrays import Array
-from uplift.fit.least_change import nearest_of_colour
-from uplift.fit.objective import BALANCED, Objective, Weights, objective
+from uplift.fit.problem import Problem
+from uplift.fit.solver import solve_singly
 from uplift.models import Model
-from uplift.models.minimum_norm import ForwardMap
 
-if TYPE_CHECKING:
-    from uplift.fit.stock_solver import Solver
-
+ENDS = 8
+"""Each end of the spectrum is this part of it: 50 nm of 380–780."""
+FLATNESS = 1e-5
+"""Weight that keeps the constant multiplier finite where neither the spectrum nor the lights constrain it."""
 MAX_STEPS = 256
 PRECISION = 1e-8
 """Relative reduction of the objective, change of the multipliers and steepness at which MINPACK stops."""
 
 
+@dataclass(frozen=True)
+class Weights:
+    """Weights of the objective, relative to the root-mean-square difference of the spectra (docs/fidelity.md).
+
+    ``lights`` is that of a unit of CIE L*a*b* under a light, ``ends`` that of the two ends of the spectrum relative to
+    its middle, ``curvature`` that of the second difference. ``smoothness`` weighs the multipliers but the constant one,
+    in the metric M of docs/mathematics.md, 5: without it the minimum of a dark entry jumps, as of two spectra that meet
+    its colours nearly equally well one has multipliers ten times as large, and noise decides between them.
+    """
+
+    lights: float = 0.03
+    ends: float = 1.0
+    curvature: float = 0.0
+    smoothness: float = 1e-3
+
+
+BALANCED = Weights()
+
+
+@dataclass(frozen=True, eq=False)
+class Objective:
+    """Residuals of the fit of a measured reflectance (N,), and their derivative.
+
+    ``values`` (N,) and ``bends`` (B, N) weigh the values and second differences of a difference of spectra, ``weight``
+    a unit of CIE L*a*b*, ``multipliers`` (C,) the multipliers. ``lights`` (L, 3, N) maps spectra to XYZ, and ``whites``
+    (L, 3) are those of the perfect reflector.
+    """
+
+    model: Model
+    basis: Array
+    values: Array
+    bends: Array
+    lights: Array
+    whites: Array
+    weight: float
+    multipliers: Array
+
+    def colours(self, spectrum: Any) -> Any:
+        """CIE L*a*b* (L, 3) of a spectrum (N,) under the lights."""
+        return lab_of(self.lights @ spectrum, self.whites)
+
+    def residuals(self, multipliers: Any, measured: Any, colours: Any) -> Any:
+        """Residuals (N + B + 3 L + C,) for a measurement (N,) with its `colours`; all of numpy or of JAX."""
+        spectrum = self.model.squash(self.basis @ multipliers)
+        difference, colour_difference = spectrum - measured, self.colours(spectrum) - colours
+        return multipliers.__array_namespace__().concat(
+            [
+                self.values * difference,
+                self.bends @ difference,
+                self.weight * colour_difference.ravel(),
+                self.multipliers * multipliers,
+            ]
+        )
+
+    def jacobian(self, multipliers: Array) -> Array:
+        """Derivative (N + B + 3 L + C, C) of the residuals; it does not depend on the measurement."""
+        x = self.basis @ multipliers
+        change = self.model.slope(x)[:, None] * self.basis  # g = S(B p), so ∂g/∂p = S′(B p) B
+        to_lab = lab_jacobian(self.lights @ self.model.squash(x), self.whites)
+        colours = (to_lab @ (self.lights @ change)).reshape(-1, len(multipliers))
+        return np.concatenate(
+            [
+                self.values[:, None] * change,
+                self.bends @ change,
+                self.weight * colours,
+                np.diag(self.multipliers),
+            ]
+        )
+
+    def steepness(self, multipliers: Array, measured: Array) -> float:
+        """Largest cosine of the angle between the residuals and their derivatives: 0 at a minimum, NaN without one."""
+        slopes, residuals = self.jacobian(multipliers), self.residuals(multipliers, measured, self.colours(measured))
+        norms = np.linalg.norm(slopes, axis=0) * np.linalg.norm(residuals)
+        return float(np.abs(slopes.T @ residuals / norms).max())
+
+
+def objective(problem: Problem, weights: Weights = BALANCED) -> Objective:
+    """Make the objective of entries; the squared weights of values and bends sum to a weighted mean square."""
+    model, count = problem.model, len(problem.forward.basis)
+    importance = np.ones(count)
+    importance[: count // ENDS] = importance[-(count // ENDS) :] = weights.ends
+    second = np.diff(np.eye(count), n=2, axis=0) if weights.curvature else np.zeros((0, count))
+    # M = diag(1 + j²), but the constant multiplier is left to the measurement.
+    smooth = np.maximum(weights.smoothness * np.sqrt(model.roughness()), FLATNESS)
+    return Objective(
+        model,
+        problem.forward.basis,
+        np.sqrt(importance / importance.sum()),
+        second * weights.curvature / np.sqrt(count),
+        np.stack([light.xyz for light in problem.lights]),
+        np.stack([light.white for light in problem.lights]),
+        weights.lights,
+        np.where(model.constant() > 0, FLATNESS, smooth),
+    )
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class FittedEntries:
-    """Atlas entries as spectra of the model.
+    """E atlas entries as spectra of the model.
 
-    Parameters
-    ----------
-    rgb : ndarray, shape (E, 3)
-        Linear RGB.
-    measured : ndarray, shape (E, N)
-        Measured reflectances at the wavelengths of the sensor.
-    multipliers : ndarray, shape (E, C)
-        Multipliers of the fitted spectra.
-    error : ndarray, shape (E,)
-        ΔE00 between measured and fitted spectrum.
+    Linear ``rgb`` (E, 3), ``measured`` reflectances (E, N) at the wavelengths of the sensor, ``multipliers`` (E, C) of
+    the fitted spectra, and the ``error`` (E,): ΔE00 between both.
     """
 
     rgb: Array
@@ -51,72 +138,34 @@ class FittedEntries:
     def __len__(self) -> int:
         return len(self.rgb)
 
-    def __repr__(self) -> str:
-        return f"FittedEntries({len(self)} entries, {self.multipliers.shape[-1]} multipliers each)"
+    def rows(self, rows: Any) -> FittedEntries:
+        """Return some of the entries."""
+        return FittedEntries(*(getattr(self, key.name)[rows] for key in fields(self)))
 
 
-def fit_entries(
-    model: Model,
-    forward: ForwardMap,
-    measured: Array,
-    rgb: Array,
-    lights: Sequence[Light],
-    error_light: Light,
-    tolerance: float,
-    weights: Weights = BALANCED,
-    solver: Solver | None = None,
-) -> FittedEntries:
-    """Fit measured reflectances by the spectrum model.
+def fit_entries(problem: Problem, measured: Array, rgb: Array, weights: Weights = BALANCED) -> FittedEntries:
+    """Fit measured reflectances (E, N) by the spectrum model, and meet their linear RGB (E, 3) to the tolerance."""
+    goal = objective(problem, weights)
+    if problem.solver is None:
+        near = _minimise(goal, measured)
+    else:
+        from uplift.fit.optimistix_solvers import minimise  # the default needs no optimistix
 
-    Parameters
-    ----------
-    model : Model
-        Spectrum model.
-    forward : ForwardMap
-        Map from multipliers to the RGB of the sensor.
-    measured : ndarray, shape (E, N)
-        Reflectances at the wavelengths of ``forward``.
-    rgb : ndarray, shape (E, 3)
-        Linear RGB of the entries, met to ``tolerance``.
-    lights : sequence of Light
-        Lights under which the colours of the entries should be kept.
-    error_light : Light
-        Light of `FittedEntries.error`.
-    tolerance : float
-        Largest residual in linear RGB.
-    weights : Weights, optional
-        Weights of the terms of the objective.
-    solver : optimistix.AbstractLeastSquaresSolver, optional
-        Solver of the objective. MINPACK by default, which is faster at every number of entries: a batch of entries
-        runs until its last one converges (docs/performance.md).
-
-    Returns
-    -------
-    FittedEntries
-        Multipliers and errors.
-    """
-    goal = objective(model, forward.basis, lights, weights)
-    start = _by_minpack(goal, measured) if solver is None else _by_solver(solver, goal, measured)
-    multipliers = nearest_of_colour(model, forward, start, rgb, tolerance, MAX_STEPS)
-    spectra = np.asarray(model.squash(multipliers @ forward.basis.T))
-    return FittedEntries(rgb, measured, multipliers, delta_e_spectra(error_light, spectra, measured))
+        near = minimise(problem.solver, goal, measured)
+    # The minimum has nearly the colour; of all spectra that have it exactly, the nearest to the minimum is taken.
+    multipliers = solve_singly(problem.model, problem.forward, near, rgb, problem.tolerance, MAX_STEPS)
+    spectra = np.asarray(problem.model.squash(multipliers @ problem.forward.basis.T))
+    return FittedEntries(rgb, measured, multipliers, delta_e_spectra(problem.error_light, spectra, measured))
 
 
-def _by_solver(solver: Solver, goal: Objective, measured: Array) -> Array:
-    """Do the same as `_by_minpack` by a solver of optimistix."""
-    from uplift.fit.stock_solver import solve_objective
-
-    return solve_objective(solver, goal, measured)
-
-
-def _by_minpack(goal: Objective, measured: Array) -> Array:
-    """Multipliers (E, C) that minimise the objective of measured reflectances (E, N)."""
+def _minimise(goal: Objective, measured: Array) -> Array:
+    """Multipliers (E, C) that minimise the objective of measured reflectances (E, N), starting from grey."""
     from scipy.optimize import leastsq
 
     multipliers, scale = np.zeros((len(measured), goal.model.count)), np.ones(goal.model.count)
     for row, spectrum in enumerate(measured):
         multipliers[row], *_ = leastsq(
-            goal.residuals_from,
+            goal.residuals,
             multipliers[row],
             args=(spectrum, goal.colours(spectrum)),
             Dfun=lambda p, *_: goal.jacobian(p),
@@ -127,3 +176,10 @@ def _by_minpack(goal: Objective, measured: Array) -> Array:
             diag=scale,
         )
     return multipliers
+
+
+def join_entries(*parts: FittedEntries) -> FittedEntries:
+    """Put entries after one another."""
+    return FittedEntries(
+        *(np.concatenate([getattr(part, key.name) for part in parts]) for key in fields(FittedEntries))
+    )

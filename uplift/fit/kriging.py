@@ -1,20 +1,21 @@
-"""Simple kriging of the deviation of atlas entries from a base predictor (docs/mathematics.md, 7).
+"""Kriging of the deviation of atlas entries from a base predictor over CIE L*a*b* (docs/mathematics.md, 7).
 
-References
-----------
 Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25, and eq. 5.12 for leave-one-out.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
+from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
 from uplift.common.arrays import Array
+from uplift.fit.problem import Problem
 
 REACH = 12.0
 """ΔE*ab within which a deviation that belongs to one entry alone fades away."""
@@ -22,6 +23,16 @@ JITTER = 1e-3
 """Relative variance of noise: entries of the same colour and different spectra are averaged."""
 BLOCK_NUMBERS, BLOCK_ROWS = 1 << 20, 1 << 13
 """Numbers and rows of the kernel matrix that are held at a time, at most."""
+LENGTHS = (6.0, 12.0, 24.0, 48.0)
+NUGGETS = (0.01, 0.03, 0.1, 0.3, 1.0, 2.0)
+DOUBT = 0.25
+"""Entries' worth of the preference for `DEFAULT`, per squared doubling of the length or quadrupling of the nugget."""
+MIN_ENTRIES = 8
+"""Entries needed to learn a kernel."""
+INVISIBLE = 1e-3
+"""ΔE00 below which errors do not matter."""
+MAX_ENTRIES = 200
+"""Entries that are used: the kernel changes little with more, and its cost grows with their cube."""
 
 
 @dataclass(frozen=True)
@@ -29,54 +40,28 @@ class Kernel:
     """Covariance of the deviations of two colours: exp(−d / length) + nugget · (1 − d / 12)⁴ (1 + 4 d / 12), d = ΔE*ab.
 
     The first term is common to the materials of an atlas. The second, the nugget, belongs to one entry: kriging keeps
-    it at the colour of the entry and near it, and averages it elsewhere.
-
-    Parameters
-    ----------
-    length : float
-        Correlation length in CIE L*a*b*.
-    nugget : float
-        Variance of the second term.
-
-    References
-    ----------
-    Wendland 1995, "Piecewise polynomial, positive definite and compactly supported radial functions of minimal degree".
+    it at the colour of the entry and near it, and averages it elsewhere. It is the function of Wendland 1995,
+    "Piecewise polynomial, positive definite and compactly supported radial functions of minimal degree".
     """
 
     length: Any
     nugget: Any
 
     def __call__(self, distance: Any) -> Any:
-        """Evaluate the covariance.
-
-        Parameters
-        ----------
-        distance : array
-            ΔE*ab, of numpy or JAX.
-
-        Returns
-        -------
-        array
-        """
+        """Evaluate the covariance at ΔE*ab, an array of numpy or JAX."""
         xp = distance.__array_namespace__()
-        share = xp.minimum(distance / REACH, 1.0)
-        fade = (1 - share) ** 2
-        return xp.exp(distance / -self.length) + self.nugget * fade * fade * (1 + 4 * share)
+        relative = xp.minimum(distance / REACH, 1.0)
+        fade = (1 - relative) ** 2
+        return xp.exp(distance / -self.length) + self.nugget * fade * fade * (1 + 4 * relative)
+
+
+DEFAULT = Kernel(length=12.0, nugget=0.3)
+"""Kernel of atlases that are too small to learn one."""
 
 
 @dataclass(frozen=True, eq=False)
 class Kriging:
-    """Interpolated deviation.
-
-    Parameters
-    ----------
-    locations : ndarray, shape (E, 3)
-        CIE L*a*b* of the entries.
-    weights : ndarray, shape (E, C)
-        Weights of the kernel around each entry.
-    kernel : Kernel
-        Covariance of the deviations.
-    """
+    """Interpolated deviation d(x) = k(x)ᵀ w, from the L*a*b* (E, 3) and weights (E, C) of the entries."""
 
     locations: Array
     weights: Array
@@ -100,6 +85,7 @@ def leave_one_out(covariance: Array, deviations: Array) -> tuple[Array, Array]:
     from scipy.linalg import cho_factor, cho_solve
     from scipy.linalg.lapack import dpotri
 
+    # w = (K + 10⁻³ I)⁻¹ D, and the error of entry i without itself is w_i / [(K + 10⁻³ I)⁻¹]_ii.
     factor = cho_factor(covariance + JITTER * np.eye(len(covariance)))
     weights = cho_solve(factor, deviations)
     inverse, _ = dpotri(factor[0], overwrite_c=True)
@@ -115,8 +101,8 @@ def kernel_sums(lab: Array, locations: Array, columns: Array, kernel: Kernel) ->
             part = slice(first, first + rows)
             count = len(lab[part])
             block = lab[part] if count == rows else np.resize(lab[part], (rows, 3))  # one shape is compiled
-            found = _kernel_block(kernel.length, kernel.nugget, block, locations, columns)
-            sums[part], nearest[part] = (np.asarray(array)[:count] for array in found)
+            arrays = _kernel_block(kernel.length, kernel.nugget, block, locations, columns)
+            sums[part], nearest[part] = (np.asarray(array)[:count] for array in arrays)
     return sums, nearest
 
 
@@ -127,3 +113,44 @@ def _kernel_block(
     squared = ((lab[:, None] - locations[None]) ** 2).sum(axis=-1)
     weights = Kernel(length, nugget)(jnp.sqrt(squared))
     return weights @ columns, weights.max(axis=1)
+
+
+def learn_kernel(locations: Array, deviations: Array, visible: Array) -> Kernel:
+    """Choose the kernel with the least mean visible error of left-out entries; few entries lean towards `DEFAULT`.
+
+    The entries have L*a*b* (E, 3) and deviations (E, C), whose `visible_change` is (E, L, 3, C).
+    """
+    from scipy.spatial.distance import cdist
+
+    if len(locations) < MIN_ENTRIES:
+        return DEFAULT
+    rows = np.linspace(0, len(locations) - 1, min(len(locations), MAX_ENTRIES)).astype(np.int64)
+    distance, deviations, visible = cdist(locations[rows], locations[rows]), deviations[rows], visible[rows]
+
+    def loss(kernel: Kernel) -> float:
+        _, errors = leave_one_out(kernel(distance), deviations)
+        changes = np.linalg.norm(np.einsum("elkc,ec->elk", visible, errors), axis=-1)
+        doublings = np.log2(kernel.length / DEFAULT.length)
+        quadruplings = np.log2(kernel.nugget / DEFAULT.nugget) / 2
+        surprise = float(doublings**2 + quadruplings**2)
+        return float(np.log(changes.mean() + INVISIBLE)) + DOUBT / len(rows) * surprise
+
+    return min((Kernel(*each) for each in product(LENGTHS, NUGGETS)), key=loss)
+
+
+def visible_change(problem: Problem, measured: Array) -> Array:
+    """Derivative (E, L, 3, C) of the colours of reflectances (E, N) under L lights by coefficients, in units of ΔE00.
+
+    Lightness, chroma and hue difference change once the colour of the build is exact again. Moments are linear in the
+    spectrum, which they determine up to its roughest parts: their basis approximates the change of the spectrum.
+    """
+    basis, sensor = problem.forward.basis, problem.forward.sensor @ problem.forward.basis
+    # Of changes of the coefficients, only the part remains that a smooth change of the same colour does not undo.
+    smooth = sensor.T / problem.model.roughness()[:, None]
+    metameric = np.eye(problem.model.count) - smooth @ np.linalg.solve(sensor @ smooth, sensor)
+    changes = []
+    for light in problem.lights:
+        xyz = measured @ light.xyz.T
+        to_delta_e = delta_e_2000_weights(lab(xyz, light.white)) @ lab_jacobian(xyz, light.white)
+        changes.append(to_delta_e @ (light.xyz @ basis @ metameric))
+    return np.stack(changes, axis=1)

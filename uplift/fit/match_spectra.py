@@ -27,23 +27,9 @@ BLOCK_ROWS = 1 << 9
 
 
 def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, lights: Sequence[Light]) -> Array:
-    """Find spectra of the model near reflectances, with nearly their colours under several lights.
+    """Multipliers (n, C) of spectra near reflectances (n, N) in (0, 1), with nearly their colours under several lights.
 
-    Parameters
-    ----------
-    model : Moments
-        Spectrum model.
-    wavelengths : ndarray, shape (N,)
-        Wavelengths, evenly spaced over the range of the model.
-    reflectances : ndarray, shape (n, N)
-        Reflectances in (0, 1).
-    lights : sequence of Light
-        Lights on these wavelengths.
-
-    Returns
-    -------
-    ndarray, shape (n, C)
-        Multipliers.
+    The wavelengths (N,) are evenly spaced over the range of the model.
     """
     start = model.from_storage(matmul_rows(reflectances, moment_matrix(model, wavelengths)))
     step = _Step(model, model.basis(wavelengths), lights)

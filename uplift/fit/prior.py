@@ -1,32 +1,29 @@
-"""The prior: the spectrum expected at a colour before it is fitted, and the standard error of that expectation."""
+"""The prior: the spectrum expected at a colour before it is fitted, and the standard error of that expectation.
+
+p(x) = s(x) + d(x), the base spectrum and the kriged deviation of the atlas entries from it (docs/mathematics.md, 7).
+Moments are linear in the spectrum, and so is the colour under another light: deviations are those of coefficients.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.expected_error import LENGTH, ExpectedError, expected_error
-from uplift.colorimetry.sensor import Light, Sensor
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
-from uplift.fit.base import Base
-from uplift.fit.corner_share import CornerShare
+from uplift.fit.base import NO_FREEDOM, Base, learn_base
 from uplift.fit.entries import FittedEntries
-from uplift.fit.kriging import Kernel, Kriging, kernel_sums, krige
-from uplift.fit.learn_kernel import DEFAULT, MIN_ENTRIES, learn_kernel, visible_change
-from uplift.fit.problem import Problem
-from uplift.fit.smooth import NO_FREEDOM, TABLE, Smooth, smooth
-from uplift.fit.unrealisable import unrealisable
+from uplift.fit.kriging import DEFAULT, MIN_ENTRIES, Kernel, Kriging, kernel_sums, krige, learn_kernel, visible_change
+from uplift.fit.problem import Nodes, Problem
 from uplift.models import Model, evaluate
 
 MAX_PASSES = 32
-MARGIN = 1e-3
-"""Linear RGB between the starts of unrealisable colours and the boundary, where spectra become boxes."""
 BLOCK_POINTS = 1 << 15
-"""Points processed at a time."""
+"""Nodes processed at a time."""
 DETERMINED = Kernel(length=6.0, nugget=0.0)
 """Kernel where the colour alone determines the spectrum: it only chooses among solutions."""
 NEIGHBOURHOOD = Kernel(length=LENGTH, nugget=0.0)
@@ -43,20 +40,8 @@ coefficients reshape."""
 class Prior:
     """Base spectra and, with an atlas, the interpolated deviation of its entries from them.
 
-    Parameters
-    ----------
-    model : Model
-        Spectrum model.
-    sensor : Sensor
-        RGB space of the colours.
-    base : Base
-        Spectra expected far from all entries.
-    kriging : Kriging, optional
-        Deviation of the coefficients of the atlas entries; None without an atlas.
-    errors : ExpectedError, optional
-        Expected squares of ΔE00; None for an atlas of fewer than 8 entries.
-    left_out : ndarray, shape (E, N), optional
-        Reflectance expected at the colour of each entry without it, in the order of the entries; None likewise.
+    ``errors`` are the expected squares of ΔE00, and ``left_out`` (E, N) the reflectances expected at the colours of the
+    entries without them, in their order; both None for an atlas of fewer than 8 entries.
     """
 
     model: Model
@@ -67,48 +52,21 @@ class Prior:
     left_out: Array | None = None
 
     def __call__(self, rgb: Array) -> Array:
-        """Multipliers (n, C) to start from at linear RGB (n, 3); at an entry, nearly those of the entry."""
+        """Multipliers (n, C) expected at linear RGB (n, 3); at an entry, nearly those of the entry."""
         coefficients = self.base.coefficients(rgb)
         if self.kriging is None:
             return self.model.from_storage(coefficients)
         return _bounded(self.model, coefficients, self.kriging(rgb_to_lab(self.sensor, rgb)))
 
-    @property
-    def corner_share(self) -> CornerShare:
-        """Share of an entry in the start of the corners of its cell, the rest is the prior; see `Starts`.
-
-        Entries of an atlas with a small nugget are predicted by others. Materials of such an atlas between its entries
-        are nearer to the prior, and only half of an entry's own deviation is expected at the corners. Corners of coarse
-        lattices whose colour is another one start from the prior alone.
-        """
-        if self.kriging is None:
-            return CornerShare(near=1.0)
-        return CornerShare(near=(1 + min(self.kriging.kernel.nugget / DEFAULT.nugget, 1)) / 2)
-
     def describe(self) -> dict[str, float]:
-        """Return the learnt parameters of the kriging, for the provenance of cubes.
-
-        Returns
-        -------
-        dict
-            ``length`` in CIE L*a*b* and ``nugget``, see `Kernel`, and ``error_bound``, in standard errors, if there are
-            any; empty without an atlas.
-        """
+        """Return the learnt parameters of the kriging, for the provenance of cubes; empty without an atlas."""
         bound = {} if self.errors is None else {"error_bound": self.errors.radii.ratio}
         return {} if self.kriging is None else asdict(self.kriging.kernel) | bound
 
     def standard_error(self, rgb: Array) -> Array | None:
-        """Return the difference that 68 % of measurements are expected to have from answers.
+        """ΔE00 (n,) within which 68 % of measurements are expected to lie from answers to linear RGB (n, 3).
 
-        Parameters
-        ----------
-        rgb : ndarray, shape (n, 3)
-            Linear RGB.
-
-        Returns
-        -------
-        ndarray, shape (n,), or None
-            ΔE00; None if the atlas is too small to estimate it.
+        None if the atlas is too small to estimate it.
         """
         if self.errors is None:
             return None
@@ -117,114 +75,65 @@ class Prior:
         squares = self.errors.combine(*sums)[:, 0] + self.errors.floor
         return np.asarray(self.errors.radii.standard * np.sqrt(squares))
 
-    def standard_errors(self, problem: Problem) -> NDArray[np.float32] | None:
-        """Return the standard error of every lattice point.
-
-        Parameters
-        ----------
-        problem : Problem
-            The lattice and its active points.
-
-        Returns
-        -------
-        ndarray of float32, shape (dim³,), or None
-            ΔE00, 0 at inactive points; None if the atlas is too small to estimate it.
-        """
+    def standard_errors(self, nodes: Nodes) -> NDArray[np.float32] | None:
+        """`standard_error` of the targets of all nodes of a lattice (dim³,), 0 at those that are not fitted."""
         if self.errors is None:
             return None
-        lattice, active = problem.lattice, problem.points
-        errors = np.zeros(lattice.size, dtype=np.float32)
-        for first in range(0, len(active), BLOCK_POINTS):
-            points = active[first : first + BLOCK_POINTS]
-            errors[points] = self.standard_error(lattice.target(points))
+        errors = np.zeros(nodes.lattice.size, dtype=np.float32)
+        for first in range(0, len(nodes.points), BLOCK_POINTS):
+            points = nodes.points[first : first + BLOCK_POINTS]
+            errors[points] = self.standard_error(nodes.lattice.target(points))
         return errors
 
+    def with_entries(self, entries: FittedEntries) -> Prior:
+        """Krige the deviations of other entries with the same kernel; the standard errors stay."""
+        order = np.lexsort(entries.rgb.T)  # of the same entries in any order, sums round alike
+        rgb, multipliers = entries.rgb[order], entries.multipliers[order]
+        deviations = self.model.to_storage(multipliers) - self.base.coefficients(rgb)
+        kernel = DEFAULT if self.kriging is None else self.kriging.kernel
+        kriging, _ = krige(rgb_to_lab(self.sensor, rgb), deviations, kernel)
+        return replace(self, kriging=kriging)
 
-def smooth_base(problem: Problem, sensor: Sensor) -> Smooth:
-    """Make the base of smooth spectra.
 
-    Parameters
-    ----------
-    problem : Problem
-        Spectrum model and solver.
-    sensor : Sensor
-        RGB space of the colours.
+def fit_prior(problem: Problem, entries: FittedEntries, base: Base | None = None) -> Prior:
+    """Fit the prior to atlas entries; the base is that of smooth spectra by default.
 
-    Returns
-    -------
-    Smooth
-        Smooth spectra of the realisable colours.
+    The order of the entries does not change the rounding of sums.
     """
-    return smooth(problem.model, problem.forward, outside=unrealisable(TABLE, sensor, MARGIN))
-
-
-def fit_prior(
-    problem: Problem,
-    sensor: Sensor,
-    entries: FittedEntries,
-    lights: Sequence[Light],
-    error_light: Light,
-    base: Base | None = None,
-) -> Prior:
-    """Fit the prior to atlas entries. The order of the entries does not change the rounding of sums.
-
-    Parameters
-    ----------
-    problem : Problem
-        Spectrum model and solver.
-    sensor : Sensor
-        RGB space of the colours.
-    entries : FittedEntries
-        Atlas entries.
-    lights : sequence of Light
-        Lights under which the prior should predict the colours of materials.
-    error_light : Light
-        Light of the standard errors.
-    base : Base, optional
-        Spectra expected far from all entries. Smooth spectra by default.
-
-    Returns
-    -------
-    Prior
-        The prior.
-    """
-    model, base = problem.model, base or smooth_base(problem, sensor)
+    model, sensor = problem.model, problem.sensor
+    base = base or learn_base(problem)[0]
     if not len(entries):
         return Prior(model, sensor, base)
     order = np.lexsort(entries.rgb.T)
-    entries = FittedEntries(*(getattr(entries, key.name)[order] for key in fields(FittedEntries)))
+    entries = entries.rows(order)
+    # Deviations d_i = c_i − s(x_i) of coefficients.
     locations, expected = rgb_to_lab(sensor, entries.rgb), base.coefficients(entries.rgb)
     deviations = model.to_storage(entries.multipliers) - expected
-    kernel = _kernel(problem, lights, entries.measured, locations, deviations)
+    kernel = DETERMINED
+    if model.count != NO_FREEDOM:
+        kernel = learn_kernel(locations, deviations, visible_change(problem, entries.measured))
     kriging, errors = krige(locations, deviations, kernel)
     if len(entries) < MIN_ENTRIES:
         return Prior(model, sensor, base, kriging)
+    # Each entry as the others predict it: its deviation less its leave-one-out error, moved to its exact colour.
     start = _bounded(model, expected, deviations - errors)
     left_out = problem.solve(entries.rgb, start, MAX_PASSES).multipliers
     spectra = evaluate(model, left_out, sensor.wavelengths)
-    missed = delta_e_spectra(error_light, spectra, entries.measured)
+    missed = delta_e_spectra(problem.error_light, spectra, entries.measured)
     expected_errors = expected_error(locations, missed, entries.error)
     return Prior(model, sensor, base, kriging, expected_errors, spectra[np.argsort(order)])
-
-
-def _kernel(problem: Problem, lights: Sequence[Light], measured: Array, locations: Array, deviations: Array) -> Kernel:
-    """Learn the kernel, unless the colour alone determines the spectrum."""
-    if problem.model.count == NO_FREEDOM:
-        return DETERMINED
-    visible = visible_change(problem.model, problem.forward, lights, measured)
-    return learn_kernel(locations, deviations, visible)
 
 
 def _bounded(model: Model, expected: Array, deviation: Array) -> Array:
     """Multipliers (n, C) of expected coefficients plus their deviation (n, C), shrunk as little as is necessary."""
     multipliers, usable = _try(model, expected + deviation)
-    share = 1.0
+    fraction = 1.0
     for _ in range(MAX_SHRINKS):
         outside = np.flatnonzero(~usable)
         if not outside.size:
             return multipliers
-        share *= SHRINK
-        multipliers[outside], usable[outside] = _try(model, expected[outside] + share * deviation[outside])
+        fraction *= SHRINK
+        multipliers[outside], usable[outside] = _try(model, expected[outside] + fraction * deviation[outside])
     multipliers[~usable] = model.from_storage(expected[~usable])
     return multipliers
 

@@ -1,150 +1,101 @@
-"""The constants of a fit: model, lattice, threshold, and the points to be fitted."""
+"""What is fitted: the problem that all stages of a build share, and the nodes of a lattice with their goals."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from uplift.common.arrays import Array, Indices, Mask
-from uplift.fit.solve import Solution, solve
-from uplift.fit.unrealisable import NONE, Unrealisable
-from uplift.lattice import Lattice
+from uplift.colorimetry.sensor import Light, Sensor
+from uplift.colorimetry.solid import solid, toward_grey
+from uplift.common.arrays import Array, Indices
+from uplift.fit.solver import Solution, solve
+from uplift.lattice import CORNERS, Lattice
 from uplift.models import Model
-from uplift.models.minimum_norm import ForwardMap
+from uplift.models.minimum_norm import ForwardMap, forward_map
 
+if TYPE_CHECKING:
+    from uplift.fit.optimistix_solvers import Solver
 
-class Method(Protocol):
-    """Solves many problems: the interface of `uplift.fit.solve.solve`."""
-
-    def __call__(
-        self,
-        model: Model,
-        forward: ForwardMap,
-        start: Array,
-        target: Array,
-        *,
-        tolerance: float,
-        max_passes: int,
-        prior: Array | None = None,
-    ) -> Solution:
-        """Solve for multipliers that have given colours; see `uplift.fit.solve.solve`."""
-        ...
-
-
-NO_LATTICE = Lattice(np.array([0.0, 1.0]))
-"""Lattice of problems that are solved for given colours only."""
-
-
-def solver_tolerance(threshold: float) -> float:
-    """Return the residual at which the solver stops: the last steps converge quadratically and cost little.
-
-    Parameters
-    ----------
-    threshold : float
-        Largest fitting distance of a fitted point.
-
-    Returns
-    -------
-    float
-        Residual in linear RGB.
-    """
-    return threshold / 100
+BLOCK_NODES = 1 << 15
+"""Nodes that are tested at a time."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Problem:
-    """The problem of fitting lattice points.
+    """Sensor, spectrum model, lights under which colours are kept, light of the errors, threshold and solver.
 
-    Parameters
-    ----------
-    model : Model
-        Spectrum model.
-    forward : ForwardMap
-        Map from multipliers to the RGB of the sensor.
-    lattice : Lattice
-        The lattice.
-    threshold : float, default 1e-4
-        Largest fitting distance, in linear RGB, of a fitted point.
-    unrealisable : Unrealisable, optional
-        Points that are fitted to another colour than their target.
-    active_points : ndarray of int, shape (k,), optional
-        Numbers of the points to be fitted, ascending. All points by default.
-    method : callable, default `uplift.fit.solve.solve`
-        `uplift.fit.solve.solve`, or a `StockSolver`.
+    ``threshold`` is the largest distance of a fitted node in linear RGB. ``solver`` is a least-squares solver of
+    optimistix, or None for the steps of `uplift.fit.solver`.
     """
 
+    sensor: Sensor
     model: Model
-    forward: ForwardMap
-    lattice: Lattice
+    lights: tuple[Light, ...] = ()
+    error_light: Light | None = None
     threshold: float = 1e-4
-    unrealisable: Unrealisable = NONE
-    active_points: Indices | None = None
-    method: Method = solve
+    solver: Solver | None = None
 
     @cached_property
-    def points(self) -> Indices:
-        """Numbers of the points to be fitted, ascending."""
-        return np.arange(self.lattice.size) if self.active_points is None else self.active_points
-
-    @property
-    def absent(self) -> Mask:
-        """(dim³,) True for points that are not to be fitted."""
-        absent = np.ones(self.lattice.size, dtype=bool)
-        absent[self.points] = False
-        return absent
+    def forward(self) -> ForwardMap:
+        """Map from multipliers to the RGB of the sensor."""
+        return forward_map(self.model, self.sensor.wavelengths, self.sensor.matrix)
 
     @property
     def tolerance(self) -> float:
-        """Residual at which the solver stops."""
-        return solver_tolerance(self.threshold)
-
-    def goal(self, points: Indices) -> Array:
-        """Return the colours that points are fitted to.
-
-        Parameters
-        ----------
-        points : ndarray of int, shape (k,)
-            Point numbers.
-
-        Returns
-        -------
-        ndarray, shape (k, 3)
-            Linear RGB: the target or, for unrealisable points, the nearest realisable colour.
-        """
-        goal = self.lattice.target(points)
-        row = np.searchsorted(self.unrealisable.points, points)
-        found = np.append(self.unrealisable.points, -1)[row] == points
-        goal[found] = self.unrealisable.nearest[row[found]]
-        return goal
+        """Residual at which solvers stop: the last steps converge quadratically and cost little."""
+        return self.threshold / 100
 
     def solve(self, target: Array, start: Array, max_passes: int, prior: Array | None = None) -> Solution:
-        """Solve for multipliers that have given colours.
+        """Find multipliers (n, C) of linear RGB (n, 3); see `uplift.fit.solver.solve`."""
+        limits = {"tolerance": self.tolerance, "max_passes": max_passes}
+        if self.solver is None:
+            return solve(self.model, self.forward, start, target, prior=prior, **limits)
+        from uplift.fit.optimistix_solvers import solve_with  # the default needs no optimistix
 
-        Parameters
-        ----------
-        target : ndarray, shape (k, 3)
-            Linear RGB.
-        start : ndarray, shape (k, C)
-            Multipliers to start from.
-        max_passes : int
-            Limit of the number of passes.
-        prior : ndarray, shape (k, C), optional
-            Multipliers to change least. By default each step changes the current ones least.
+        return solve_with(self.solver, self.model, self.forward, start, target, prior=prior, **limits)
 
-        Returns
-        -------
-        Solution
-            Multipliers and their distances.
-        """
-        return self.method(
-            self.model,
-            self.forward,
-            start,
-            target,
-            tolerance=self.tolerance,
-            max_passes=max_passes,
-            prior=prior,
-        )
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Nodes:
+    """Nodes of a lattice that are to be fitted, by their numbers (k,), ascending.
+
+    ``unrealisable`` are those whose colour no reflectance has, and ``nearest`` (u, 3) the linear RGB of the nearest
+    realisable colours, which replace theirs in the fit.
+    """
+
+    lattice: Lattice
+    points: Indices
+    unrealisable: Indices
+    nearest: Array
+
+    def goal(self, points: Indices) -> Array:
+        """Linear RGB (k, 3) that nodes (k,) are fitted to."""
+        goal = self.lattice.target(points)
+        row = np.searchsorted(self.unrealisable, points)
+        replaced = np.append(self.unrealisable, -1)[row] == points
+        goal[replaced] = self.nearest[row[replaced]]
+        return goal
+
+
+def nodes_of(lattice: Lattice, sensor: Sensor, margin: float, points: Indices | None = None) -> Nodes:
+    """Find the goals of nodes, all by default (docs/mathematics.md, 9).
+
+    The goal of an unrealisable node has its hue and less chroma: it lies on the straight line to the grey of the same
+    luminance, ``margin`` in linear RGB inside the object-colour solid. The spectra on the boundary are steps between 0
+    and 1 (MacAdam 1935), which no smooth model has.
+    """
+    points = np.arange(lattice.size) if points is None else points
+    limits = solid(sensor.matrix)
+    outside, nearest = [points[:0]], [np.zeros((0, 3))]
+    # The solid is convex: with the corners of RGB it contains everything between them.
+    if not limits.contains(CORNERS.astype(float)).all():
+        for first in range(0, len(points), BLOCK_NODES):
+            block = points[first : first + BLOCK_NODES]
+            block = block[~limits.contains(lattice.target(block))]
+            target = lattice.target(block)
+            outside.append(block)
+            nearest.append(toward_grey(limits, sensor.grey(target), target, margin))
+    return Nodes(lattice, points, np.concatenate(outside), np.concatenate(nearest))

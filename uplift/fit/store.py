@@ -1,9 +1,9 @@
-"""Convert multipliers to stored coefficients, and evaluate the colours of what is stored."""
+"""Storage of growth: multipliers as coefficients, the colours of what is stored, and the status of every node."""
 
 from __future__ import annotations
 
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import jax
 import numpy as np
@@ -11,61 +11,72 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices
 from uplift.common.progress import Progress
-from uplift.fit.batch import batches, replicate, shard
+from uplift.fit.batch import COMPILED, batches, replicate, shard
 from uplift.fit.growth import Growth, blocks
 from uplift.fit.problem import Problem
-from uplift.fit.quadrature_jit import COMPILED
+from uplift.fit.seeds import Seeds
+from uplift.lattice import NO_ENTRY, NOT_FITTED, PointTable, Status
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_rgb
 
 SINGLE: np.dtype[Any] = np.dtype(np.float32)
 DOUBLE: np.dtype[Any] = np.dtype(np.float64)
 MAX_LOSS = 0.1
-"""Share of the threshold that single precision may add to the distance of a point; docs/stability.md."""
+"""Part of the threshold that single precision may add to the distance of a node; docs/stability.md."""
 
 
-class StoredPoints(NamedTuple):
-    """Result of `store`; all 0 at inactive points."""
+def store(growth: Growth, seeds: Seeds, standard_error: NDArray[np.float32] | None) -> PointTable:
+    """Return the table of all nodes. RGB, distance and status are those of the stored coefficients.
 
-    coefficients: NDArray[Any]
-    """(n, C) float32 or float64."""
-    rgb: NDArray[np.float32]
-    """(n, 3) linear RGB of the coefficients."""
-    distance: NDArray[np.float32]
-    """(n,) max |goal − RGB|."""
-
-
-def store(growth: Growth) -> StoredPoints:
-    """Convert the multipliers of growth to coefficients.
-
-    The coefficients are float32 if that is accurate enough for every point, else float64 for all. Where rounding them
-    cannot change the colour (`Model.rounds_safely`), the colour is that of the solver; elsewhere it is evaluated from
-    the rounded coefficients. The multipliers are overwritten, as memory for both may not suffice.
+    Unrealisable nodes are fitted to the nearest realisable colour; their distance is measured from their own.
     """
-    problem, kind = growth.problem, SINGLE
-    model, points = problem.model, problem.points
-    stored = StoredPoints(growth.multipliers, growth.rgb, np.zeros(len(growth.rgb), dtype=np.float32))
+    nodes, threshold = growth.nodes, growth.problem.threshold
+    coefficients, rgb, distance = _store_coefficients(growth)
+    entry = np.full(nodes.lattice.size, NO_ENTRY, dtype=np.int32)
+    entry[seeds.points] = seeds.entry
+    status = np.full(nodes.lattice.size, Status.REGULAR, dtype=np.uint8)
+    status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
+    status[growth.round == NOT_FITTED] = Status.IMPROVED
+    outside = nodes.unrealisable
+    status[outside] = Status.UNREALISABLE
+    status[distance > threshold] = Status.UNFITTED
+    distance[outside] = np.abs(nodes.lattice.target(outside) - rgb[outside]).max(axis=1)
+    status[outside[distance[outside] <= threshold]] = Status.REGULAR
+    absent = np.ones(nodes.lattice.size, dtype=bool)
+    absent[nodes.points] = False
+    status[absent], entry[absent] = Status.ABSENT, NO_ENTRY
+    return PointTable(coefficients, rgb, distance, status, entry, growth.round, standard_error)
+
+
+def _store_coefficients(growth: Growth) -> tuple[NDArray[Any], NDArray[np.float32], NDArray[np.float32]]:
+    """Coefficients (n, C), their linear RGB (n, 3) and distances (n,), all 0 at nodes that are not fitted.
+
+    The coefficients are float32 if that is accurate enough for every node, else float64 for all. Where rounding them
+    cannot change the colour (`Model.rounds_safely`), the colour is that of the solver; elsewhere it is evaluated from
+    the rounded coefficients. They overwrite the multipliers, as memory for both may not suffice.
+    """
+    problem, points, kind = growth.problem, growth.nodes.points, SINGLE
+    coefficients, rgb, distance = growth.multipliers, growth.rgb, np.zeros(len(growth.rgb), dtype=np.float32)
+
+    def evaluate(block: Indices) -> None:
+        values = rgb_of(problem, problem.model.from_storage(coefficients[block].astype(kind)))
+        rgb[block], distance[block] = values, np.abs(growth.nodes.goal(block) - values).max(axis=1)
+
     sensitive = [points[:0]]
     for block in blocks(points):
         multipliers = growth.multipliers[block]
-        safe = model.rounds_safely(multipliers)
-        stored.coefficients[block] = model.to_storage(multipliers, COMPILED)
-        stored.distance[block] = growth.distance[block]
+        safe = problem.model.rounds_safely(multipliers)
+        coefficients[block] = problem.model.to_storage(multipliers, COMPILED)
+        distance[block] = growth.distance[block]
         sensitive.append(block[~safe])
-        _evaluate(problem, stored, sensitive[-1], kind)
+        evaluate(sensitive[-1])
         limit = growth.distance[sensitive[-1]] + MAX_LOSS * problem.threshold
-        if kind == SINGLE and (stored.distance[sensitive[-1]] > limit).any():
+        if kind == SINGLE and (distance[sensitive[-1]] > limit).any():
             kind = DOUBLE
             for earlier in sensitive:
-                _evaluate(problem, stored, earlier, kind)
+                evaluate(earlier)
         growth.progress(Progress("store", int(np.searchsorted(points, block[-1])) + 1, len(points)))
-    return stored._replace(coefficients=stored.coefficients.astype(kind, copy=False))
-
-
-def _evaluate(problem: Problem, stored: StoredPoints, block: Indices, kind: np.dtype[Any]) -> None:
-    """Set RGB and distance of points (k,) from their coefficients, rounded to the type that is stored."""
-    rgb = rgb_of(problem, problem.model.from_storage(stored.coefficients[block].astype(kind)))
-    stored.rgb[block], stored.distance[block] = rgb, np.abs(problem.goal(block) - rgb).max(axis=1)
+    return coefficients.astype(kind, copy=False), rgb, distance
 
 
 def rgb_of(problem: Problem, multipliers: Array) -> Array:
@@ -75,8 +86,7 @@ def rgb_of(problem: Problem, multipliers: Array) -> Array:
         forward = replicate(problem.forward)
         for rows, width in batches(len(multipliers)):
             part = rgb[rows]
-            found = _forward_rgb(problem.model, forward, shard(multipliers[rows], width))
-            part[:] = np.asarray(found)[: len(part)]
+            part[:] = np.asarray(_forward_rgb(problem.model, forward, shard(multipliers[rows], width)))[: len(part)]
     return rgb
 
 

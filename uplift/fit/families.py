@@ -1,0 +1,240 @@
+"""Families of measured materials, which shape the prior but do not constrain the cube (docs/prior.md).
+
+The deviation of a material of family f at the colour x is d(x) + d_f(x) + noise. d and d_f are independent Gaussian
+processes over CIE L*a*b* with the same Matérn correlation; their variances are 1 and the spread of the family. What is
+expected of a material of no known family is E[d(x)], so a large family does not outweigh several small ones.
+
+With an atlas, the relevance of each family is learnt: the factor of its contribution with which it explains the
+entries. Relevances are supposed to vary about 1, and to vary less than differences that no family explains are large:
+atlases of many entries, and those which families explain well, decide; others leave relevances near 1.
+
+Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25 and 4.17 (ν = 3/2); 2.1 for the ridge.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+
+import numpy as np
+
+from uplift.colorimetry.delta_e import lab_jacobian
+from uplift.colorimetry.sensor import Light
+from uplift.common.arrays import Array, Indices
+from uplift.common.errors import unknown_name
+from uplift.fit.entries import BALANCED
+from uplift.fit.kriging import JITTER, Kernel
+
+FILE = "library.npz"
+"""Package data, written by tools/ship_library.py."""
+SAME_RMS = 1e-3
+"""rms difference within which spectra are the same measurement."""
+STEPS = 10_000
+"""Steps of reflectance from 0 to 1 in the file."""
+LENGTH = 20.0
+"""Correlation length in CIE L*a*b*: docs/prior.md."""
+NUGGET = 0.3
+"""Variance of the noise of a material, relative to that of the shared deviation."""
+BLOCK_NUMBERS = 1 << 17
+"""Numbers of the kernel matrix held at a time."""
+MAX_POINTS = 1200
+"""Points of a family. More spectra are averaged in cubes of L*a*b*."""
+CELLS = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
+"""Edges of these cubes in L*a*b*; the smallest that suffices is taken."""
+VARIANCE = 0.5
+"""Assumed variance of relevances about 1. Halves of ColorCheckers prefer 1 or more, those of mixed sets less."""
+CORRELATED = Kernel(length=24.0, nugget=1.0)
+"""Covariance of the deviations of entries that no family explains: that of close colours is left to the kriging."""
+MAX_RELEVANCE = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Spectra (E, N) measured together, which deviate from smooth spectra in a common way.
+
+    ``spread`` is the variance of the family's own deviation, relative to that of the deviation which all materials
+    share. ``related``, 0 to 1, is the part of it that the materials of a cube are expected to have as well: 0 for a
+    family like any other, 1 for the family that they belong to.
+    """
+
+    name: str
+    measured: Array
+    spread: float
+    related: float = 0.0
+
+
+@functools.cache
+def _shipped() -> tuple[Family, ...]:
+    with (files(__package__) / FILE).open("rb") as file, np.load(file, allow_pickle=False) as table:
+        measured = np.cumsum(table["steps"], axis=1, dtype=np.int64) / STEPS
+        rows = np.split(measured, np.cumsum(table["counts"])[:-1])
+        named = zip(table["names"].tolist(), rows, table["spreads"].tolist(), strict=True)
+        return tuple(Family(*row) for row in named)
+
+
+def shipped_library(leave_out: Collection[str] = ()) -> tuple[Family, ...]:
+    """Return the families that come with the package, at the wavelengths of the default sensor.
+
+    Some may be left out by name, for tests on them. Raises `UnknownNameError` for an unknown name.
+    """
+    families = _shipped()
+    names = [family.name for family in families]
+    for name in leave_out:
+        if name not in names:
+            raise unknown_name(name, names, "library family")
+    return tuple(family for family in families if family.name not in leave_out)
+
+
+def families_with(measured: Array) -> tuple[str, ...]:
+    """Names of the shipped families that contain one of some spectra (n, 81), to leave them out of tests on these."""
+    from scipy.spatial import cKDTree
+
+    if not len(measured):
+        return ()
+    tree, limit = cKDTree(measured), SAME_RMS * np.sqrt(measured.shape[1])
+    nearest = {family.name: tree.query(family.measured)[0].min() for family in shipped_library()}
+    return tuple(name for name, distance in nearest.items() if distance <= limit)
+
+
+@dataclass(frozen=True, eq=False)
+class FamilySamples:
+    """Deviations (E, N) of a family at L*a*b* (E, 3), each the mean of ``counts`` (E,) spectra; see `Family`."""
+
+    locations: Array
+    deviations: Array
+    counts: Array
+    spread: float
+    related: float
+
+
+@dataclass(frozen=True, eq=False)
+class FamilyKriging:
+    """Expected deviation of a material, as the sum of a contribution of each of ``count`` families.
+
+    The spectra of all families have L*a*b* (E, 3), kriging weights (E, N) and the row of their family (E,).
+    """
+
+    locations: Array
+    weights: Array
+    family: Indices
+    count: int
+
+    def contributions(self, lab: Array) -> Array:
+        """Contributions (F, n, N) at L*a*b* (n, 3)."""
+        rows = [np.flatnonzero(self.family == number) for number in range(self.count)]
+        return np.stack([_kernel_sum(lab, self.locations[some], self.weights[some]) for some in rows])
+
+    def __call__(self, lab: Array, relevance: Array) -> Array:
+        """Sum of the contributions (n, N) at L*a*b* (n, 3), each times the relevance (F,) of its family."""
+        return _kernel_sum(lab, self.locations, self.weights * relevance[self.family][:, None])
+
+
+def krige_families(families: Sequence[FamilySamples]) -> FamilyKriging:
+    """Fit the kriging of the deviations of families of any size, also empty."""
+    from scipy.linalg import cho_factor, cho_solve
+
+    sizes = [len(family.locations) for family in families]
+    number = np.repeat(np.arange(len(families)), sizes)
+    locations, deviations, counts = (
+        np.concatenate([getattr(family, name) for family in families]) for name in ("locations", "deviations", "counts")
+    )
+    spread = np.array([family.spread for family in families])
+    related = np.array([family.related for family in families])
+    # Covariance of samples i, j: (1 + spread_f) k_ij within a family, k_ij between families, noise on the diagonal.
+    covariance = _matern(locations, locations)
+    for own in range(len(families)):
+        rows = np.flatnonzero(number == own)
+        covariance[np.ix_(rows, rows)] *= 1 + spread[own]
+    covariance[np.diag_indices(len(number))] += NUGGET / counts
+    weights = cho_solve(cho_factor(covariance, overwrite_a=True), deviations)
+    # Their covariance with a new material, whose deviation is d(x) and the related part of d_f(x).
+    weights *= (1 + related * spread)[number][:, None]
+    return FamilyKriging(locations, weights, number, len(families))
+
+
+def average_close(locations: Array, deviations: Array) -> tuple[Array, Array, Array]:
+    """Average deviations (E, N) of close L*a*b* (E, 3), so that at most `MAX_POINTS` remain, and count them."""
+    if len(locations) <= MAX_POINTS:
+        return locations, deviations, np.ones(len(locations))
+    for edge in CELLS:
+        _, cell, counts = np.unique(np.floor(locations / edge), axis=0, return_inverse=True, return_counts=True)
+        if len(counts) <= MAX_POINTS:
+            break
+    order = np.argsort(cell.ravel(), kind="stable")
+    starts = np.cumsum(counts) - counts
+    mean_location, mean_deviation = (
+        np.add.reduceat(each[order], starts) / counts[:, None] for each in (locations, deviations)
+    )
+    return mean_location, mean_deviation, counts.astype(float)
+
+
+def _kernel_sum(lab: Array, locations: Array, weights: Array) -> Array:
+    """Sums (n, N) of weights (E, N) at L*a*b* (n, 3)."""
+    sums = np.zeros((len(lab), weights.shape[1]))
+    rows = max(BLOCK_NUMBERS // max(len(locations), 1), 1)
+    for first in range(0, len(lab) if len(locations) else 0, rows):
+        part = slice(first, first + rows)
+        sums[part] = _matern(lab[part], locations) @ weights
+    return sums
+
+
+def _matern(first: Array, second: Array) -> Array:
+    """Matérn correlation (n, m) with ν = 3/2: (1 + √3 d / l) exp(−√3 d / l), in place."""
+    from scipy.spatial.distance import cdist
+
+    distance = cdist(first, second)
+    distance *= -np.sqrt(3) / LENGTH
+    kernel = np.exp(distance)
+    kernel *= np.subtract(1, distance, out=distance)
+    return kernel
+
+
+def learn_relevance(lights: Sequence[Light], locations: Array, plain: Array, parts: Array, measured: Array) -> Array:
+    """Learn relevances (F,) of families by bounded generalised least squares, which shrinks them towards 1.
+
+    Entries at L*a*b* (n, 3) have ``measured`` reflectances (n, N). Without families ``plain`` (n, N) are expected, and
+    ``parts`` (F, n, N) are the contributions of the families. Residuals are differences of spectra and of their colours
+    under the lights; those of entries of close colours are correlated.
+    """
+    from scipy.linalg import solve_triangular
+    from scipy.optimize import lsq_linear
+    from scipy.spatial.distance import cdist
+
+    assumed = np.ones(len(parts))
+    if not len(measured):
+        return assumed
+    matrices, whites = (np.stack([getattr(light, name) for light in lights]) for name in ("xyz", "white"))
+    expected = np.clip(plain + parts.sum(axis=0), 0, 1)
+    to_lab = BALANCED.lights * lab_jacobian((expected @ matrices.mT).swapaxes(0, 1), whites)
+    covariance = CORRELATED(cdist(locations, locations)) / CORRELATED(np.zeros(()))
+    root = np.linalg.cholesky(covariance + JITTER * np.eye(len(covariance)))
+
+    def independent(change: Array) -> Array:
+        """Weighted differences (n, N + 3 L) of spectra as in the objective of entries, made independent by L⁻¹."""
+        xyz = (change @ matrices.mT).swapaxes(0, 1)
+        colours = (to_lab @ xyz[..., None])[..., 0].reshape(len(change), -1)
+        features = np.concatenate([change / np.sqrt(change.shape[1]), colours], axis=1)
+        return np.asarray(solve_triangular(root, features, lower=True))
+
+    columns = np.stack([independent(part).ravel() for part in parts], axis=1)
+    unexplained = independent(measured - plain)
+    noise = noise_variance(unexplained - (columns @ assumed).reshape(unexplained.shape))
+    if not columns.any() or not noise:
+        return assumed
+    ridge = np.sqrt(noise / VARIANCE)  # noise over assumed variance
+    rows = np.concatenate([columns, ridge * np.eye(len(parts))])
+    goal = np.concatenate([unexplained.ravel(), ridge * assumed])
+    return np.asarray(lsq_linear(rows, goal, bounds=(0, MAX_RELEVANCE), method="bvls").x)
+
+
+def noise_variance(residuals: Array) -> float:
+    """Estimate the variance of the independent parts of residuals (n, K); 0 without residuals.
+
+    Differences of spectra at neighbouring wavelengths, and of colours, are a few differences many times over. They are
+    as many as their covariance has large eigenvalues: (Σ λ)² / Σ λ².
+    """
+    products = residuals.T @ residuals
+    total, squares = np.trace(products), (products**2).sum()
+    return float(squares / total / len(residuals)) if total else 0.0
