@@ -24,10 +24,10 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
-from uplift.fit import families_with, shipped_library
+from uplift.fit.families import families_with, shipped_library
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
-from uplift.pipeline import build
+from uplift.pipeline.build import build
 
 ATLAS = "macbeth"
 LIGHTS = ("D65", "A")

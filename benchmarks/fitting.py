@@ -11,17 +11,23 @@ import jax
 import numpy as np
 
 from benchmarks.record import ROOT
-from uplift import fit
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.progress import Progress
 from uplift.common.threads import single_threaded_blas
+from uplift.fit.base import learn_base
+from uplift.fit.entries import fit_entries
+from uplift.fit.growth import grow_from_prior
+from uplift.fit.improve import improve
+from uplift.fit.prior import fit_prior
+from uplift.fit.problem import Nodes, Problem, nodes_of
+from uplift.fit.seeds import InitialGuess, learnt_blend, seed
+from uplift.fit.store import store
 from uplift.lab.timing import spread
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, Sigmoid, reflectance
-from uplift.models.minimum_norm import forward_map
-from uplift.pipeline.libraries import families as library_families
+from uplift.pipeline.entries import families_of
 from uplift.pipeline.options import Options
 
 MODELS = (Sigmoid(), *(Moments(count) for count in (3, 5, 9, 13, 17)))
@@ -87,8 +93,7 @@ def time_fit(model: Model, dim: int, runs: int) -> Timing:
 def _fit_once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float], float]:
     """Return the CPU seconds of each phase of a fit as in a build, and the largest residual of the stored nodes."""
     sensor, lattice = observer.sensor(), Lattice(observer.axis_nodes("srgb", dim))
-    problem = fit.Problem(model, forward_map(model, sensor.wavelengths, sensor.matrix), lattice)
-    lights = [observer.light(name) for name in Options.lights]
+    problem = Problem(sensor, model, tuple(map(observer.light, Options.lights)), observer.light("A"))
     rgb = sensor.rgb(measured)
     marks: dict[str, float] = {}
 
@@ -101,30 +106,33 @@ def _fit_once(model: Model, dim: int, measured: Array) -> tuple[dict[str, float]
 
     wall = time.perf_counter()
     mark("begin")
-    entries = fit.fit_entries(model, problem.forward, measured, rgb, lights, observer.light("A"), problem.tolerance)
-    seeds = fit.seed(lattice, rgb)
+    entries = fit_entries(problem, measured, rgb)
+    seeds = seed(lattice, rgb)
     mark("entries")
-    families = library_families(Options(), (), sensor)
-    base = fit.learn_base(problem, sensor, lights, families, entries).base
-    prior = fit.fit_prior(problem, sensor, entries, lights, observer.light("A"), base)
+    base, _ = learn_base(problem, families_of(Options(), (), sensor), entries)
+    prior = fit_prior(problem, entries, base)
     mark("prior")
-    starts = fit.Starts(prior, seeds, entries.multipliers, prior.corner_share)
-    fitted = fit.fit_lattice(problem, starts, progress)
+    guess = InitialGuess(prior, seeds, entries.multipliers, learnt_blend(prior))
+    nodes = nodes_of(lattice, sensor, problem.threshold / 2)
+    growth = grow_from_prior(problem, nodes, lambda at: guess(at, nodes.goal(at)), seeds.points, progress)
+    improve(growth)
+    points = store(growth, seeds, None)
+    prior.standard_errors(nodes)
     mark("errors")
     wall = time.perf_counter() - wall
     phases = ("begin", "entries", "prior", "lattice", "storing", "errors")
     laps = {phase: marks[phase] - marks[last] for last, phase in pairwise(phases)}
     laps |= {"whole": marks["lattice"] - marks["begin"], "wall": wall}
-    return laps, _worst(problem, sensor.wavelengths, sensor.matrix, fitted.points.coefficients)
+    return laps, _worst(problem, nodes, points.coefficients)
 
 
-def _worst(problem: fit.Problem, wavelengths: Array, matrix: Array, coefficients: Array) -> float:
+def _worst(problem: Problem, nodes: Nodes, coefficients: Array) -> float:
     """Return the largest residual, of every 64th node if the lattice is large, evaluated by numpy."""
     points = np.arange(0, len(coefficients), 64 if len(coefficients) > 1 << 20 else 1)
     worst = 0.0
     for part in np.array_split(points, -(-len(points) // 16384)):
-        rgb = reflectance(problem.model, coefficients[part], wavelengths) @ matrix.T
-        worst = max(worst, float(np.abs(rgb - problem.lattice.target(part)).max()))
+        rgb = problem.sensor.rgb(reflectance(problem.model, coefficients[part], problem.sensor.wavelengths))
+        worst = max(worst, float(np.abs(rgb - nodes.lattice.target(part)).max()))
     if worst > problem.threshold:
         raise RuntimeError(f"residual {worst:.1e} exceeds the threshold: nothing to time")
     return worst

@@ -18,8 +18,7 @@ import uplift
 from benchmarks.fidelity.materials import errors, materials
 from benchmarks.record import ROOT, write
 from uplift.common.arrays import Array
-from uplift.fit.grow import strides
-from uplift.fit.growth import Growth
+from uplift.fit.growth import Growth, strides
 from uplift.lab.timing import spread
 from uplift.lattice import Status
 from uplift.lookup import Cube
@@ -57,7 +56,7 @@ def main() -> None:
 def order(name: str, dim: int) -> dict[str, Any]:
     """Compare an order of growth with the answers of the default."""
     default, _ = _build(dim)
-    with patch("uplift.fit.grow.strides", ORDERS[name]):
+    with patch("uplift.fit.growth.strides", ORDERS[name]):
         cube, growth = _build(dim)
         seconds = _seconds(lambda: _build(dim), RUNS)
     difference = np.abs(_node_spectra(cube) - _node_spectra(default)).max(axis=1)

@@ -17,7 +17,6 @@ import numpy as np
 import uplift
 from benchmarks.record import ROOT, write
 from benchmarks.render import scene
-from uplift import fit
 from uplift.atlas import on_grid, read_atlas
 from uplift.atlas.shipped import shipped_atlases
 from uplift.colorimetry.delta_e import delta_e_rgb
@@ -25,6 +24,8 @@ from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.observer import display_sensors, light, sensor
 from uplift.colorimetry.srgb import hex_codes, to_display_codes
 from uplift.common.arrays import Array
+from uplift.fit.looks import MET, LookGoal, design_reflectance, fit_designs
+from uplift.fit.problem import Problem
 from uplift.io import texture
 from uplift.io.texture.image import Window
 from uplift.io.texture.writer import OutputPart, open_writer
@@ -137,22 +138,20 @@ def realisable(names: Sequence[str]) -> dict[str, Any]:
     measured = measured[here.contains(here.rgb(measured))]
     measured = measured[np.random.default_rng(0).choice(len(measured), MATERIALS, replace=False)]
     expected = cube.reflectance(np.clip(here.rgb(measured), 0, 1))
-    goals = [
-        fit.LookGoal(here.rgb(each), tuple(lights), np.stack([one.xyz @ each for one in lights])) for each in measured
-    ]
+    goals = [LookGoal(here.rgb(each), tuple(lights), np.stack([one.xyz @ each for one in lights])) for each in measured]
     designs, seconds = timed(
-        lambda: np.array([fit.design_reflectance(here, *each) for each in zip(goals, expected, strict=True)])
+        lambda: np.array([design_reflectance(here, *each) for each in zip(goals, expected, strict=True)])
     )
     errors = {}
     for count in COUNTS:
         model = Moments(count, cube.data.model.phase)
-        fitted = fit.fit_designs(model, here, goals, designs, lights[0], 1e-6)
+        fitted = fit_designs(Problem(here, model, error_light=lights[0]), goals, designs)
         answers = np.asarray(model.squash(fitted.multipliers @ model.basis(here.wavelengths).T))
         worst = [goal.delta_e(answer).max() for goal, answer in zip(goals, answers, strict=True)]
         errors[str(count)] = {
             "median": np.median(worst),
             "max": np.max(worst),
-            "met": float(np.mean(np.array(worst) <= fit.MET)),
+            "met": float(np.mean(np.array(worst) <= MET)),
         }
     return {
         "lights": ", ".join(names),

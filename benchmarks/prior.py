@@ -18,8 +18,7 @@ from tools.ship_library import FAMILIES, FILE, OTSU_SPREAD, SPREAD
 from uplift.atlas import Atlas, Entry, resample
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array
-from uplift.fit.family_kriging import LENGTH, NUGGET
-from uplift.fit.library import shipped_library
+from uplift.fit.families import LENGTH, NUGGET, shipped_library
 from uplift.lab.chart.methods import mallett2019, otsu2018, smits1999
 from uplift.lab.chart.task import make_task
 from uplift.lattice import Status

@@ -12,18 +12,19 @@ from typing import Any
 import numpy as np
 
 from benchmarks.record import write
-from uplift import fit
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
 from uplift.common.progress import ignore_progress
-from uplift.fit.grow import grow_from_prior
+from uplift.fit.base import learn_base
+from uplift.fit.growth import grow_from_prior
+from uplift.fit.prior import Prior
+from uplift.fit.problem import Nodes, Problem, nodes_of
 from uplift.fit.store import MAX_LOSS
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, Sigmoid, evaluate
-from uplift.models.minimum_norm import forward_map
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ProPhoto RGB")
 MODELS: tuple[Model, ...] = (*(Moments(count) for count in (3, 5, 9, 13, 17)), Sigmoid())
@@ -47,11 +48,11 @@ def main() -> None:
 def precision(space: str, model: Model) -> dict[str, Any]:
     """Fit a lattice, round its coefficients, and return the largest errors."""
     sensor = observer.sensor(space)
-    problem = _problem(model, sensor)
-    coefficients, distance = _fitted(problem, sensor)
+    nodes = nodes_of(Lattice(observer.axis_nodes("srgb", DIM)), sensor, THRESHOLD / 2)
+    coefficients, distance = _fitted(Problem(sensor, model, threshold=THRESHOLD), nodes)
     exact = _spectra(model, sensor, coefficients)
     half, single = (_spectra(model, sensor, coefficients.astype(kind)) for kind in (np.float16, np.float32))
-    residual = np.abs(sensor.rgb(single) - problem.goal(np.arange(len(single)))).max(axis=1)
+    residual = np.abs(sensor.rgb(single) - nodes.goal(nodes.points)).max(axis=1)
     lossy = int((residual > distance + MAX_LOSS * THRESHOLD).sum())
     half_rgb, single_rgb = (
         float(np.nanmax(np.abs(sensor.rgb(spectra) - sensor.rgb(exact)))) for spectra in (half, single)
@@ -69,22 +70,11 @@ def precision(space: str, model: Model) -> dict[str, Any]:
     }
 
 
-def _problem(model: Model, sensor: Sensor) -> fit.Problem:
-    lattice = Lattice(observer.axis_nodes("srgb", DIM))
-    unrealisable = fit.unrealisable(lattice, sensor, THRESHOLD / 2)
-    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    return fit.Problem(model, forward, lattice, THRESHOLD, unrealisable)
-
-
-def _fitted(problem: fit.Problem, sensor: Sensor) -> tuple[Array, Array]:
+def _fitted(problem: Problem, nodes: Nodes) -> tuple[Array, Array]:
     """Return coefficients (n, C) in double precision, and the residuals (n,) of the multipliers."""
-    nothing, light = np.empty((0, len(sensor.wavelengths))), observer.light("A")
-    entries = fit.fit_entries(
-        problem.model, problem.forward, nothing, np.empty((0, 3)), [sensor.light], light, problem.tolerance
-    )
-    prior = fit.fit_prior(problem, sensor, entries, [light], light)
+    prior = Prior(problem.model, problem.sensor, learn_base(problem)[0])
     nobody = np.zeros(0, dtype=np.int64)
-    grown = grow_from_prior(problem, lambda points: prior(problem.goal(points)), nobody, ignore_progress)
+    grown = grow_from_prior(problem, nodes, lambda points: prior(nodes.goal(points)), nobody, ignore_progress)
     return problem.model.to_storage(grown.multipliers), grown.distance
 
 

@@ -19,7 +19,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
-from uplift.fit.library import STEPS
+from uplift.fit.families import STEPS
 
 ROOT = Path(__file__).parents[1]
 FILE = ROOT / "uplift" / "fit" / "library.npz"

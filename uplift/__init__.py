@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from uplift.lights.build import build_emission
     from uplift.lights.lookup import EmissionTable, load_emission
     from uplift.lookup import Cube, bulk, load
-    from uplift.pipeline import Look, build
-    from uplift.pipeline.look_file import read_looks
+    from uplift.pipeline.build import build
+    from uplift.pipeline.look import Look, read_looks
 
 __all__ = [
     "Atlas",
@@ -75,8 +75,8 @@ _EXPORTS = {
     "uplift.lights.build": ("build_emission",),
     "uplift.lights.lookup": ("EmissionTable", "load_emission"),
     "uplift.lookup": ("Cube", "load"),
-    "uplift.pipeline": ("Look", "build"),
-    "uplift.pipeline.look_file": ("read_looks",),
+    "uplift.pipeline.build": ("build",),
+    "uplift.pipeline.look": ("Look", "read_looks"),
 }
 _MODULES = {"bulk": "uplift.lookup.bulk"}
 """Subpackages reached by a short name."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array
-from uplift.fit.solve import solve
+from uplift.fit.solver import solve
 from uplift.lights.fit import nearest_lights
 from uplift.lights.lattice import chromaticity
 from uplift.models.minimum_norm import forward_map

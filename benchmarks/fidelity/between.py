@@ -11,17 +11,15 @@ from typing import Any
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from benchmarks.fidelity.materials import SENSOR, Materials, entries, forward, large, materials
+from benchmarks.fidelity.materials import SENSOR, Materials, entries, forward, large, materials, problem_of
 from benchmarks.fidelity.start import solved
-from uplift import fit
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array, Indices
-from uplift.fit.kriging import Kernel, Kriging, krige
-from uplift.fit.learn_kernel import DEFAULT
-from uplift.fit.smooth import smooth
+from uplift.fit.base import smooth
+from uplift.fit.kriging import DEFAULT, Kernel, Kriging, krige
+from uplift.fit.prior import Prior, fit_prior
 from uplift.lab.study.held_out import spectrum_errors
-from uplift.lattice import Lattice
 from uplift.models import Model, Moments
 from uplift.pipeline.options import Options
 
@@ -71,9 +69,8 @@ def split(some: Materials, seed: int) -> list[Indices]:
     return np.array_split(np.random.default_rng(seed).permutation(len(some.rgb)), 2)
 
 
-def _prior(some: Materials, model: Model) -> fit.Prior:
-    problem = fit.Problem(model, forward(model), Lattice(np.array([0.0, 1.0])))
-    return fit.fit_prior(problem, SENSOR, entries(model, some), LIGHTS, LIGHTS[1])
+def _prior(some: Materials, model: Model) -> Prior:
+    return fit_prior(problem_of(model), entries(model, some))
 
 
 def _smooth(known: Materials, queried: Materials, model: Model) -> Array:

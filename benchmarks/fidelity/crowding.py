@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from benchmarks.fidelity.materials import SENSOR, entries, forward, large, materials
-from uplift import fit
+from benchmarks.fidelity.materials import entries, large, materials, problem_of
 from uplift.colorimetry import observer
-from uplift.fit.lattice_size import DIMS, lattice_error
+from uplift.fit.base import learn_base
+from uplift.fit.dim import DIMS, choose_lattice, lattice_error
+from uplift.fit.entries import FittedEntries
+from uplift.fit.families import shipped_library
+from uplift.fit.prior import Prior, fit_prior
+from uplift.fit.seeds import learnt_blend
 from uplift.lattice import Lattice
 from uplift.models import Moments
 from uplift.pipeline.options import AXES, Options
 
 TOLERANCES = (0.5, 1.0)
 MODEL = Moments(9)
-PROBLEM = fit.Problem(MODEL, forward(MODEL), fit.NO_LATTICE)
-LIGHTS = [observer.light(name) for name in Options.lights]
+PROBLEM = problem_of(MODEL)
 
 
 def measure() -> dict[str, Any]:
@@ -32,17 +34,17 @@ def measure() -> dict[str, Any]:
     return {"lights": list(Options.lights), "crowding": crowding, "lattice_choices": choices}
 
 
-def fitted_prior(fitted: fit.FittedEntries) -> fit.Prior:
-    base = fit.learn_base(PROBLEM, SENSOR, LIGHTS, fit.shipped_library(), fitted).base
-    return fit.fit_prior(PROBLEM, SENSOR, fitted, LIGHTS, LIGHTS[1], base)
+def fitted_prior(fitted: FittedEntries) -> Prior:
+    base, _ = learn_base(PROBLEM, shipped_library(), fitted)
+    return fit_prior(PROBLEM, fitted, base)
 
 
-def lattice_errors(name: str, axis: str, fitted: fit.FittedEntries, prior: fit.Prior) -> dict[str, Any]:
+def lattice_errors(name: str, axis: str, fitted: FittedEntries, prior: Prior) -> dict[str, Any]:
     """Return the median error at the entries, and how many exceed the smaller tolerance, by dim."""
     errors = {}
     for dim in DIMS[1::2]:
-        problem = replace(PROBLEM, lattice=Lattice(observer.axis_nodes(axis, dim)))
-        distances = lattice_error(problem, prior, prior.corner_share, LIGHTS, fitted)
+        lattice = Lattice(observer.axis_nodes(axis, dim))
+        distances = lattice_error(PROBLEM, lattice, prior, learnt_blend(prior), fitted)
         errors[str(dim)] = {
             "median": float(np.median(distances)),
             "over": int((distances > TOLERANCES[0]).sum()),
@@ -50,9 +52,7 @@ def lattice_errors(name: str, axis: str, fitted: fit.FittedEntries, prior: fit.P
     return {"atlas": name, "entries": len(fitted.rgb), "axis": axis, "errors": errors}
 
 
-def automatic(name: str, fitted: fit.FittedEntries, prior: fit.Prior, tolerance: float) -> dict[str, Any]:
+def automatic(name: str, fitted: FittedEntries, prior: Prior, tolerance: float) -> dict[str, Any]:
     """Return the lattice that ``--dim auto`` chooses."""
-    axis, dim, over = fit.choose_lattice(
-        PROBLEM, prior, prior.corner_share, LIGHTS, fitted, observer.axis_nodes, AXES, tolerance
-    )
+    axis, dim, over = choose_lattice(PROBLEM, prior, learnt_blend(prior), fitted, observer.axis_nodes, AXES, tolerance)
     return {"atlas": name, "tolerance": tolerance, "dim": dim, "axis": axis, "entries_over": over}

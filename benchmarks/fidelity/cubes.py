@@ -27,7 +27,7 @@ from uplift.atlas import Atlas, Entry
 from uplift.colorimetry.delta_e import lab_jacobian
 from uplift.common.arrays import Array
 from uplift.cube import contents
-from uplift.fit import families_with
+from uplift.fit.families import families_with
 from uplift.lab.study.held_out import HALF, NO_ATLAS, SIGMOID, HoldoutSplit, holdout
 from uplift.lookup import Cube
 from uplift.models import Moments

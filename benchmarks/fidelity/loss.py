@@ -8,21 +8,23 @@ from typing import Any
 import numpy as np
 
 from benchmarks.fidelity.between import LIGHTS, SPLITS, krige_samples, limit_kernel, split
-from benchmarks.fidelity.materials import SENSOR, Materials, entries, forward, materials
+from benchmarks.fidelity.materials import SENSOR, Materials, entries, materials, problem_of
 from benchmarks.fidelity.start import solved
-from uplift import fit
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array
+from uplift.fit.base import Base, learn_base
+from uplift.fit.entries import FittedEntries
+from uplift.fit.families import Family, families_with, shipped_library
 from uplift.fit.kriging import Kernel, krige
 from uplift.fit.match_spectra import match_spectra
-from uplift.fit.prior import Prior, smooth_base
+from uplift.fit.prior import Prior, fit_prior
 from uplift.lab.study.held_out import spectrum_errors
 from uplift.models import Moments
 
 MIXED = ("rawtoaces", "cie2017")
 MODEL = Moments(17)
-PROBLEM = fit.Problem(MODEL, forward(MODEL), fit.NO_LATTICE)
+PROBLEM = problem_of(MODEL)
 DIMMEST = 2e-3
 """Least distance of kriged samples from 0 and 1 before coefficients represent them."""
 
@@ -55,24 +57,23 @@ def _predictions(kept: Materials, queried: Materials, kernel: Kernel) -> Iterato
     matched = match_spectra(MODEL, SENSOR.wavelengths, within, LIGHTS)
     yield "17 coefficients of them, exact colours", solved(MODEL, matched, queried.rgb)
     known = entries(MODEL, kept)
-    smooth = smooth_base(PROBLEM, SENSOR)
+    smooth, _ = learn_base(PROBLEM)
     deviations = MODEL.to_storage(known.multipliers) - smooth.coefficients(kept.rgb)
     kriging, _ = krige(rgb_to_lab(SENSOR, kept.rgb), deviations, kernel)
-    families = fit.shipped_library(fit.families_with(materials(kept.name).measured))
-    no_entries = fit.FittedEntries(*(value[:0] for value in vars(known).values()))
+    families = shipped_library(families_with(materials(kept.name).measured))
     priors = {
         "coefficients kriged, nugget near entries": Prior(MODEL, SENSOR, smooth, kriging),
         "kernel learnt": _prior(known, smooth),
-        "library, all relevances 1": _prior(known, _base(families, no_entries)),
+        "library, all relevances 1": _prior(known, _base(families, known.rows(slice(0)))),
         "relevances learnt: the prior": _prior(known, _base(families, known)),
     }
     for label, prior in priors.items():
         yield label, solved(MODEL, prior(queried.rgb), queried.rgb)
 
 
-def _prior(known: fit.FittedEntries, base: fit.Base) -> Prior:
-    return fit.fit_prior(PROBLEM, SENSOR, known, LIGHTS, LIGHTS[1], base)
+def _prior(known: FittedEntries, base: Base) -> Prior:
+    return fit_prior(PROBLEM, known, base)
 
 
-def _base(families: tuple[fit.Family, ...], known: fit.FittedEntries) -> fit.Base:
-    return fit.learn_base(PROBLEM, SENSOR, LIGHTS, families, known).base
+def _base(families: tuple[Family, ...], known: FittedEntries) -> Base:
+    return learn_base(PROBLEM, families, known)[0]

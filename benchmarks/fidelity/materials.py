@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 
 import uplift
+import uplift.pipeline.options
 from benchmarks.record import ROOT
-from uplift import fit
 from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array
+from uplift.fit.entries import BALANCED, FittedEntries, Weights, fit_entries
+from uplift.fit.problem import Problem
 from uplift.lab.study.held_out import spectrum_errors
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_map
@@ -71,10 +73,15 @@ def entries(
     model: Model,
     some: Materials,
     lights: Sequence[str] = uplift.pipeline.options.Options.lights,
-    weights: fit.Weights = fit.objective.BALANCED,
-) -> fit.FittedEntries:
-    illuminants = [observer.light(name) for name in lights]
-    return fit.fit_entries(model, forward(model), some.measured, some.rgb, illuminants, illuminants[1], 1e-6, weights)
+    weights: Weights = BALANCED,
+) -> FittedEntries:
+    return fit_entries(problem_of(model, lights), some.measured, some.rgb, weights)
+
+
+def problem_of(model: Model, lights: Sequence[str] = uplift.pipeline.options.Options.lights) -> Problem:
+    """Return the problem of a build under some lights, with errors under the second of them."""
+    illuminants = tuple(observer.light(name) for name in lights)
+    return Problem(SENSOR, model, illuminants, illuminants[1])
 
 
 def spectra_of(model: Model, multipliers: Array) -> Array:

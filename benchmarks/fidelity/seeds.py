@@ -15,7 +15,7 @@ from benchmarks.fidelity.materials import (
     materials,
     spectra_of,
 )
-from uplift.fit import Weights
+from uplift.fit.entries import Weights
 from uplift.lab.study.held_out import spectrum_errors
 from uplift.models import Moments
 from uplift.pipeline.options import Options

@@ -9,8 +9,8 @@ import numpy as np
 
 from benchmarks.fidelity.materials import SENSOR, errors, forward, large, materials
 from uplift.common.arrays import Array
-from uplift.fit.smooth import BRIGHTENING, GREY, smooth
-from uplift.fit.solve import solve
+from uplift.fit.base import BRIGHTENING, GREY, smooth
+from uplift.fit.solver import solve
 from uplift.lab.study.held_out import spectrum_errors
 from uplift.models import Model, Moments, Phase, Sigmoid
 from uplift.models.minimum_norm import forward_map
@@ -81,7 +81,7 @@ def _variants() -> dict[str, Callable[[Array], Array]]:
         (0.7, GREY),
         (1, GREY),
     ):
-        variants[f"b = {b:g}, g = {g:.2g}"] = smooth(NINE, forward(NINE), b, g)
+        variants[f"b = {b:g}, g = {g:.2g}"] = smooth(NINE, forward(NINE), brightening=b, grey=g)
     return variants
 
 

@@ -12,11 +12,10 @@ import optimistix
 
 from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge_multipliers
-from uplift import fit
 from uplift.common.arrays import Array
-from uplift.fit.prior import smooth_base
+from uplift.fit.base import learn_base
+from uplift.fit.problem import Problem
 from uplift.models import Moments
-from uplift.models.minimum_norm import forward_map
 
 COUNT = 9
 POINTS = 1024
@@ -29,8 +28,7 @@ def optimistix_dogleg(runs: int) -> list[Peer]:
     """Time the fit of multipliers, every node from the prior, as this package starts; compilation is separate."""
     model, sensor, target = Moments(COUNT), task.sensor(), task.some(POINTS)
     basis, weights = model.basis(sensor.wavelengths), sensor.matrix
-    problem = fit.Problem(model, forward_map(model, sensor.wavelengths, weights), task.lattice())
-    starts = fit.Prior(model, sensor, smooth_base(problem, sensor))(target)
+    starts = learn_base(Problem(sensor, model))[0](target)
     solver = optimistix.Dogleg(rtol=TOLERANCE, atol=TOLERANCE)
 
     def residual(multipliers: jax.Array, rgb: jax.Array) -> jax.Array:

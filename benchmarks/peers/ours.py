@@ -6,10 +6,15 @@ import numpy as np
 
 from benchmarks.peers import task
 from benchmarks.peers.row import Peer, judge_multipliers, model_of
-from uplift import fit
-from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.models.minimum_norm import forward_map
+from uplift.common.progress import ignore_progress
+from uplift.fit.base import learn_base
+from uplift.fit.growth import grow_from_prior
+from uplift.fit.improve import improve
+from uplift.fit.prior import Prior
+from uplift.fit.problem import Problem, nodes_of
+from uplift.fit.seeds import seed
+from uplift.fit.store import store
 
 DIMS = (16, 32)
 MODELS = (("sigmoid", 3), ("moments", 3), ("moments", 5), ("moments", 9), ("moments", 17))
@@ -22,15 +27,14 @@ def ours(runs: int) -> list[Peer]:
 
 def _lattice(name: str, count: int, dim: int, runs: int) -> Peer:
     model, sensor, lattice = model_of(name, count), task.sensor(), task.lattice(dim)
-    problem = fit.Problem(model, forward_map(model, sensor.wavelengths, sensor.matrix), lattice)
-    reference = observer.light("A")
-    rgb, measured = np.empty((0, 3)), np.empty((0, len(sensor.wavelengths)))
-    none = fit.fit_entries(model, problem.forward, measured, rgb, [reference], reference, problem.tolerance)
-    seeds = fit.seed(lattice, rgb)
+    problem, nobody = Problem(sensor, model), seed(lattice, np.empty((0, 3)))
 
     def fit_all() -> Array:
-        prior = fit.fit_prior(problem, sensor, none, [reference], reference)
-        return fit.fit_lattice(problem, fit.Starts(prior, seeds, none.multipliers)).points.coefficients
+        nodes = nodes_of(lattice, sensor, problem.threshold / 2)
+        prior = Prior(model, sensor, learn_base(problem)[0])
+        growth = grow_from_prior(problem, nodes, lambda at: prior(nodes.goal(at)), nobody.points, ignore_progress)
+        improve(growth)
+        return store(growth, nobody, None).coefficients
 
     fit_all()  # compiles
     stored, cpu = task.measured(fit_all, lattice.size, runs)

@@ -27,7 +27,7 @@ from uplift.lab.study.stability_design import DesignSpace, design, grids
 from uplift.lab.study.stability_plots import plot_map
 from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES
 from uplift.lab.timing import environment
-from uplift.pipeline.provenance import recorded_atlas
+from uplift.pipeline.rebuild import recorded_atlas
 
 FOLDER = ROOT / "docs" / "stability"
 PLAIN, CONSTRAINED = "moments-16", "moments-16-macbeth"

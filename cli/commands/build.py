@@ -226,7 +226,7 @@ def command(
 
 def _build(files: tuple[str, ...], scale: Any, **options: Any) -> Cube:
     from uplift.atlas import read_atlas
-    from uplift.pipeline import build
+    from uplift.pipeline.build import build
 
     return build(read_atlas(*files, measured=scale) if files else None, **options)
 

@@ -130,7 +130,7 @@ def _cubes(path: str | None, atlases: tuple[str, ...]) -> dict[str, Cube]:
     if path is not None:
         cubes[Path(path).name] = load(path)
     if atlases:
-        from uplift.pipeline import build
+        from uplift.pipeline.build import build
 
         cubes[f"with {', '.join(Path(atlas).stem for atlas in atlases)}"] = build(atlases, dim=DIM)
     return cubes

@@ -109,7 +109,7 @@ def _assess(
 
 def _measured(cube: Cube, path: str, atlases: tuple[str, ...], folders: tuple[str, ...]) -> Atlas | None:
     from uplift.atlas import read_atlas
-    from uplift.pipeline.provenance import recorded_atlas
+    from uplift.pipeline.rebuild import recorded_atlas
 
     return read_atlas(*atlases) if atlases else recorded_atlas(cube.data, path, folders)
 

@@ -59,7 +59,7 @@ def sensitivity(
     from uplift.common.files import check_folder
     from uplift.lab.study.sensitivity import study_sensitivity
     from uplift.lookup import load
-    from uplift.pipeline.provenance import recorded_atlas
+    from uplift.pipeline.rebuild import recorded_atlas
 
     loaded = load(cube)
     atlas = recorded_atlas(loaded.data, cube, folders) if cube is not None and entries else None

@@ -143,7 +143,7 @@ def test_update_replaces_the_others_if_a_cube_cannot_be_read(run, shown, stored,
 
 
 def test_atlases_are_searched_for_in_given_folders(run, shown, home, monkeypatch, macbeth, recwarn):
-    monkeypatch.setattr("uplift.pipeline.provenance.shipped_atlases", tuple)
+    monkeypatch.setattr("uplift.pipeline.rebuild.shipped_atlases", tuple)
     with pytest.warns(uplift.UpliftWarning):
         uplift.build(macbeth, dim=3, coefficients=4).save(home / "cube.uplift")
     result = run("check", "cube.uplift", code=1)

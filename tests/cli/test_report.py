@@ -82,7 +82,7 @@ def test_a_cube_without_an_atlas(run, cubes, home):
 
 
 def test_atlases_are_searched_for_in_given_folders(run, refuse, home, monkeypatch, cube):
-    monkeypatch.setattr("uplift.pipeline.provenance.shipped_atlases", tuple)
+    monkeypatch.setattr("uplift.pipeline.rebuild.shipped_atlases", tuple)
     (home / "there").mkdir()
     shutil.move(home / "macbeth.txt", home / "there")
     error = refuse("report", cube)

@@ -9,12 +9,12 @@ from tests.conftest import MACBETH
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
-from uplift.fit.entries import fit_entries
-from uplift.fit.objective import BALANCED, FLATNESS, Weights, multiplier_weights, objective, shape_weights
+from uplift.fit.entries import BALANCED, FLATNESS, Weights, fit_entries, objective
+from uplift.fit.problem import Problem
 from uplift.models import Moments, Sigmoid
-from uplift.models.minimum_norm import forward_map
 
 LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3")
+MODEL = Moments(9)
 
 
 @pytest.fixture(scope="module")
@@ -23,12 +23,14 @@ def measured(sensor):
     return spectra[sensor.contains(sensor.rgb(spectra))]
 
 
+def problem_of(sensor, lights=LIGHTS, model=MODEL):
+    lights = tuple(map(observer.light, lights))
+    return Problem(sensor, model, lights, lights[0])
+
+
 def fitted(sensor, measured, lights=LIGHTS, weights=BALANCED):
-    model = Moments(9)
-    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    shine = [observer.light(name) for name in lights]
-    found = fit_entries(model, forward, measured, sensor.rgb(measured), shine, shine[0], 1e-6, weights)
-    return model.squash(found.multipliers @ forward.basis.T)
+    found = fit_entries(problem_of(sensor, lights), measured, sensor.rgb(measured), weights)
+    return MODEL.squash(found.multipliers @ MODEL.basis(sensor.wavelengths).T)
 
 
 def mean_delta_e(name, first, second):
@@ -78,54 +80,49 @@ def test_fit_of_a_dark_entry_is_continuous_in_the_measurement(sensor, measured):
     assert steps_along_noise(sensor, black, Weights(smoothness=0.0)).max() >= 50
 
 
-def test_smoothness_leaves_the_level_to_the_measurement():
+@pytest.mark.parametrize("model", [Moments(5), Sigmoid()], ids=lambda m: m.name)
+def test_jacobian_equals_central_differences(sensor, measured, model):
+    """Of a dark spectrum too, where L*a*b* is linear."""
+    goal = objective(problem_of(sensor, model=model))
+    colours = goal.colours(measured[0])
+    rng = np.random.default_rng(6)
+    for level in (-80, -1, 0.5):
+        at = rng.normal(size=model.count) + level * model.constant()
+        around = [
+            [goal.residuals(at + sign * step, measured[0], colours) for sign in (1, -1)]
+            for step in 1e-5 * np.eye(model.count)
+        ]
+        numeric = [(after - before) / 2e-5 for after, before in around]
+        np.testing.assert_allclose(goal.jacobian(at), np.transpose(numeric), rtol=1e-5, atol=1e-8)
+
+
+def test_weighted_squares_sum_to_a_mean_square(sensor):
+    problem, difference = problem_of(sensor), np.random.default_rng(0).normal(size=81)
+    goal = objective(problem)
+    assert np.sum((goal.values * difference) ** 2) == pytest.approx((difference**2).mean())
+    assert not len(goal.bends)
+    bends = objective(problem, Weights(curvature=2.0)).bends
+    assert np.sum((bends @ difference) ** 2) == pytest.approx(4 * (np.diff(difference, 2) ** 2).sum() / 81)
+    heavy = objective(problem, Weights(ends=3.0)).values
+    assert np.sum(heavy**2) == pytest.approx(1)
+    assert heavy[0] ** 2 == pytest.approx(3 * heavy[40] ** 2)
+
+
+def test_smoothness_leaves_the_level_to_the_measurement(sensor):
     for model in (Moments(5), Sigmoid()):
-        weights = multiplier_weights(model, Weights(smoothness=0.5))
+        weights = objective(problem_of(sensor, model=model), Weights(smoothness=0.5)).multipliers
         constant = model.constant() > 0
         assert weights[constant] == FLATNESS
         np.testing.assert_allclose(weights[~constant], 0.5 * np.sqrt(model.roughness()[~constant]))
 
 
-@pytest.mark.parametrize("model", [Moments(5), Sigmoid()], ids=lambda m: m.name)
-def test_jacobian_equals_central_differences(sensor, measured, model):
-    """Of a dark spectrum too, where L*a*b* is linear."""
-    goal = objective(model, model.basis(sensor.wavelengths), [observer.light(name) for name in LIGHTS], BALANCED)
-    rng = np.random.default_rng(6)
-    for level in (-80, -1, 0.5):
-        at = rng.normal(size=model.count) + level * model.constant()
-        steps = 1e-5 * np.eye(model.count)
-        numeric = [
-            (goal.residuals(at + step, measured[0]) - goal.residuals(at - step, measured[0])) / 2e-5 for step in steps
-        ]
-        np.testing.assert_allclose(goal.jacobian(at), np.transpose(numeric), rtol=1e-5, atol=1e-8)
-
-
-def test_weighted_squares_sum_to_a_mean_square():
-    difference = np.random.default_rng(0).normal(size=81)
-    values, bends = shape_weights(81, BALANCED)
-    assert np.sum((values * difference) ** 2) == pytest.approx((difference**2).mean())
-    assert not len(bends)
-    _, bends = shape_weights(81, Weights(curvature=2.0))
-    assert np.sum((bends @ difference) ** 2) == pytest.approx(4 * (np.diff(difference, 2) ** 2).sum() / 81)
-    heavy, _ = shape_weights(81, Weights(ends=3.0))
-    assert np.sum(heavy**2) == pytest.approx(1)
-    assert heavy[0] ** 2 == pytest.approx(3 * heavy[40] ** 2)
-
-
 def test_error_is_the_difference_between_fit_and_measurement(sensor, measured):
-    model = Moments(9)
-    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    light = observer.light("A")
-    found = fit_entries(model, forward, measured, sensor.rgb(measured), [light], light, 1e-6)
-    spectra = model.squash(found.multipliers @ forward.basis.T)
+    found = fit_entries(problem_of(sensor, ("A",)), measured, sensor.rgb(measured))
+    spectra = MODEL.squash(found.multipliers @ MODEL.basis(sensor.wavelengths).T)
     for row in range(len(measured)):
         assert found.error[row] == pytest.approx(mean_delta_e("A", spectra[row], measured[row]))
 
 
 def test_an_empty_atlas_has_no_fitted_entries(sensor):
-    model = Moments(9)
-    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    light = observer.light("D65")
-    none = fit_entries(model, forward, np.zeros((0, 81)), np.zeros((0, 3)), [light], light, 1e-6)
-    assert none.multipliers.shape == (0, 9)
-    assert none.error.shape == (0,)
+    none = fit_entries(problem_of(sensor), np.zeros((0, 81)), np.zeros((0, 3)))
+    assert (none.multipliers.shape, none.error.shape) == ((0, 9), (0,))

@@ -1,13 +1,23 @@
-"""Kriging of deviations against dense linear algebra."""
+"""Kriging of deviations against dense linear algebra, and kernels learnt where the best kernel is known."""
 
 from __future__ import annotations
+
+from functools import partial
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from uplift.fit.kriging import JITTER, REACH, Kernel, krige
+from tests.conftest import MACBETH
+from uplift.atlas import on_grid, read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.fit.base import smooth
+from uplift.fit.kriging import DEFAULT, JITTER, MIN_ENTRIES, REACH, Kernel, krige, learn_kernel, visible_change
+from uplift.fit.problem import Problem
+from uplift.fit.solver import solve
+from uplift.models import Moments
 
 RNG = np.random.default_rng(5)
 PLACES = RNG.uniform(-20, 60, (12, 3))
@@ -70,3 +80,60 @@ def test_results_do_not_depend_on_the_size_of_blocks(monkeypatch):
     whole = found(queried)
     monkeypatch.setattr("uplift.fit.kriging.BLOCK_NUMBERS", 25)
     np.testing.assert_allclose(found(queried), whole, rtol=1e-12, atol=1e-15)
+
+
+LEARNING = np.random.default_rng(8)
+MANY = LEARNING.uniform(0, 60, (150, 3))
+DISTANCES = np.linalg.norm(MANY[:, None] - MANY[None], axis=-1)
+ALL_VISIBLE = np.broadcast_to(np.eye(3), (150, 1, 3, 3))
+
+
+def drawn_from(kernel):
+    return np.linalg.cholesky(kernel(DISTANCES) + 1e-9 * np.eye(150)) @ LEARNING.normal(size=(150, 3))
+
+
+@pytest.mark.parametrize("truth", [Kernel(48.0, 0.01), Kernel(24.0, 1.0), Kernel(6.0, 0.03)])
+def test_a_large_atlas_tells_its_kernel(truth):
+    learnt = learn_kernel(MANY, drawn_from(truth), ALL_VISIBLE)
+    assert truth.length / 2 <= learnt.length <= truth.length * 2
+    assert truth.nugget / 10 <= learnt.nugget <= truth.nugget * 10
+
+
+def test_families_and_mixtures_differ():
+    family, mixture = (learn_kernel(MANY, drawn_from(Kernel(30.0, nugget)), ALL_VISIBLE) for nugget in (0.01, 2))
+    assert family.nugget < mixture.nugget
+
+
+def test_few_entries_keep_the_default():
+    few = slice(0, MIN_ENTRIES - 1)
+    deviations = LEARNING.normal(size=(150, 3))
+    assert learn_kernel(MANY[few], deviations[few], ALL_VISIBLE[few]) == DEFAULT
+
+
+def test_invisible_deviations_keep_the_default():
+    assert learn_kernel(MANY, LEARNING.normal(size=(150, 3)), 0 * ALL_VISIBLE) == DEFAULT
+    assert learn_kernel(MANY, np.zeros((150, 3)), ALL_VISIBLE) == DEFAULT
+
+
+def test_visible_change_ranks_metameric_changes_by_delta_e(sensor):
+    """A change of the coefficients, made exact in colour by the solver, against the linear prediction."""
+    model = Moments(9)
+    problem = Problem(sensor, model, (observer.light("A"), observer.light("FL11")))
+    forward = problem.forward
+    measured = on_grid(read_atlas(MACBETH), sensor.wavelengths)
+    measured = measured[sensor.contains(sensor.rgb(measured))]
+    coloured = partial(solve, model, forward, target=sensor.rgb(measured), tolerance=1e-9, max_passes=32)
+    plain = coloured(start=smooth(model, forward)(sensor.rgb(measured))).multipliers
+    moments = model.to_storage(plain)
+    change = 1e-3 * LEARNING.normal(size=moments.shape) / (1 + np.arange(9))
+    moved = coloured(start=model.from_storage(moments + change)).multipliers
+    before, after = (model.squash(each @ forward.basis.T) for each in (plain, moved))
+    linear = np.linalg.norm(np.einsum("elkc,ec->elk", visible_change(problem, before), change), axis=-1)
+    actual = np.stack([delta_e_spectra(light, before, after) for light in problem.lights], axis=1)
+    assert 0.4 < np.sqrt((linear**2).mean() / (actual**2).mean()) < 1.2  # it neglects the roughest parts
+    assert np.corrcoef(linear.ravel(), actual.ravel())[0, 1] > 0.7
+
+
+def test_the_light_of_the_build_shows_no_change(sensor):
+    grey = np.full((1, len(sensor.wavelengths)), 0.4)
+    assert np.abs(visible_change(Problem(sensor, Moments(9), (sensor.light,)), grey)).max() < 1e-9

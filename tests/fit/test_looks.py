@@ -10,13 +10,14 @@ from scipy.optimize import linprog
 
 import uplift
 from tests.conftest import MACBETH
-from uplift import fit
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
-from uplift.fit.looks import MET, LookGoal, design_reflectance, fit_designs, join_entries, prior_with_looks
+from uplift.fit.entries import fit_entries, join_entries
+from uplift.fit.looks import MET, LookGoal, design_reflectance, fit_designs
+from uplift.fit.prior import fit_prior
+from uplift.fit.problem import Problem
 from uplift.models import Moments
-from uplift.models.minimum_norm import forward_map
 
 TOLERANCE = 1e-6
 
@@ -48,7 +49,7 @@ def test_looks_of_real_materials_are_met_in_their_entry_fit(sensor, materials, n
     designs = np.array([design_reflectance(sensor, *each) for each in zip(goals, materials[1], strict=True)])
     assert designs.min() >= 0
     assert designs.max() <= 1
-    fitted = fit_designs(model, sensor, goals, designs, lights[0], TOLERANCE)
+    fitted = fit_designs(Problem(sensor, model), goals, designs)
     answers = np.asarray(model.squash(fitted.multipliers @ model.basis(sensor.wavelengths).T))
     assert np.abs(sensor.rgb(answers) - fitted.rgb).max() <= TOLERANCE
     distances = np.array([goal.delta_e(answer) for goal, answer in zip(goals, answers, strict=True)])
@@ -96,32 +97,17 @@ def test_softened_goal_lies_between(sensor, materials):
     assert goal.softened(expected, 1).delta_e(expected) == pytest.approx(goal.delta_e(expected))
 
 
-def test_no_looks_change_nothing(sensor):
-    model = Moments(5)
-    nothing = fit_designs(model, sensor, (), np.zeros((0, 81)), observer.light("A"), TOLERANCE)
-    assert (len(nothing), nothing.multipliers.shape) == (0, (0, 5))
-    prior = object()
-    assert prior_with_looks(prior, nothing, nothing) is prior
-
-
 def test_the_prior_follows_looks_nearby_only(sensor, materials):
     measured, expected = materials
-    model = Moments(9)
     light = observer.light("FL11")
-    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    problem = fit.Problem(model, forward, fit.NO_LATTICE)
-    entries = fit.fit_entries(
-        model, forward, measured[:6], np.clip(sensor.rgb(measured[:6]), 0, 1), [light], light, TOLERANCE
-    )
-    plain = fit.fit_prior(problem, sensor, entries, [light], light)
+    problem = Problem(sensor, Moments(9), (light,), light)
+    entries = fit_entries(problem, measured[:6], np.clip(sensor.rgb(measured[:6]), 0, 1))
+    plain = fit_prior(problem, entries)
     goal = goal_of(sensor, [light], 0.9 * expected[7] + 0.05, sensor.rgb(expected[7]))
-    design = design_reflectance(sensor, goal, expected[7])
-    look = fit_designs(model, sensor, [goal], design[None], light, TOLERANCE)
-    changed = prior_with_looks(plain, entries, look)
+    look = fit_designs(problem, [goal], design_reflectance(sensor, goal, expected[7])[None])
+    changed = plain.with_entries(join_entries(entries, look))
     assert changed.errors is plain.errors
     assert changed.kriging.kernel == plain.kriging.kernel
     near, far = goal.rgb[None] * 1.01, np.array([[0.9, 0.9, 0.2]])
     move = [np.abs(changed(rgb) - plain(rgb)).max() for rgb in (near, far)]
     assert move[0] > 10 * move[1]
-    turned = prior_with_looks(plain, join_entries(look, entries), look)
-    assert len(turned.kriging.locations) == 8

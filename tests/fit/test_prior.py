@@ -6,46 +6,36 @@ import numpy as np
 import pytest
 
 from tests.conftest import ATLASES
-from uplift import fit
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.fit.learn_kernel import MIN_ENTRIES
-from uplift.fit.prior import STEEP, _bounded
-from uplift.lattice import Lattice
+from uplift.fit.entries import fit_entries
+from uplift.fit.kriging import MIN_ENTRIES
+from uplift.fit.prior import STEEP, _bounded, fit_prior
+from uplift.fit.problem import Problem
 from uplift.models import Moments
-from uplift.models.minimum_norm import forward_map
 
 LIGHT = observer.light("A")
-LIGHTS = [observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3")]
+LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
 SPLITS = 6
 
 
 @pytest.fixture(scope="module")
 def problem(sensor):
-    model = Moments(9)
-    return fit.Problem(model, forward_map(model, sensor.wavelengths, sensor.matrix), Lattice(np.array([0.0, 1.0])))
-
-
-def entries_of(problem, sensor, measured):
-    rgb = sensor.rgb(measured)
-    return fit.fit_entries(problem.model, problem.forward, measured, rgb, LIGHTS, LIGHT, 1e-6)
-
-
-def some(entries, rows):
-    return fit.FittedEntries(*(getattr(entries, name)[rows] for name in ("rgb", "measured", "multipliers", "error")))
+    return Problem(sensor, Moments(9), LIGHTS, LIGHT)
 
 
 @pytest.fixture(scope="module")
 def materials(problem, sensor):
     """The materials of rawtoaces within sRGB."""
     measured = resample(read_atlas(ATLASES / "rawtoaces.txt"), sensor.wavelengths).values
-    return entries_of(problem, sensor, measured[sensor.contains(sensor.rgb(measured))])
+    measured = measured[sensor.contains(sensor.rgb(measured))]
+    return fit_entries(problem, measured, sensor.rgb(measured))
 
 
 def test_start_at_an_entry_is_nearly_its_spectrum(problem, sensor, materials):
-    few = some(materials, np.arange(0, 160, 20))
-    prior = fit.fit_prior(problem, sensor, few, LIGHTS, LIGHT)
+    few = materials.rows(np.arange(0, 160, 20))
+    prior = fit_prior(problem, few)
     apart = np.abs(
         problem.model.squash(prior(few.rgb) @ problem.forward.basis.T)
         - problem.model.squash(few.multipliers @ problem.forward.basis.T)
@@ -55,7 +45,7 @@ def test_start_at_an_entry_is_nearly_its_spectrum(problem, sensor, materials):
 
 def test_start_far_from_all_entries_is_smooth(problem, sensor, materials):
     dark = materials.rgb.max(axis=1) < 0.2
-    prior = fit.fit_prior(problem, sensor, some(materials, dark), LIGHTS, LIGHT)
+    prior = fit_prior(problem, materials.rows(dark))
     light = np.linspace(0.6, 0.9, 4)[:, None].repeat(3, axis=1)
     basis = problem.forward.basis.T
     smooth = problem.model.from_storage(prior.base.coefficients(light))
@@ -92,7 +82,7 @@ def test_a_deviation_that_ends_in_a_box_is_shrunk(problem):
 
 def test_too_few_entries_give_no_standard_error(problem, sensor, materials):
     for count, tells in ((0, False), (1, False), (MIN_ENTRIES - 1, False), (MIN_ENTRIES, True)):
-        prior = fit.fit_prior(problem, sensor, some(materials, np.arange(count)), LIGHTS, LIGHT)
+        prior = fit_prior(problem, materials.rows(np.arange(count)))
         errors = prior.standard_error(np.full((1, 3), 0.3))
         assert (errors is not None) == tells
 
@@ -107,8 +97,8 @@ def test_errors_of_left_out_entries_agree_with_the_standard_error(problem, senso
     for _ in range(SPLITS):
         order = rng.permutation(len(materials.rgb))
         half = len(order) // 2
-        prior = fit.fit_prior(problem, sensor, some(materials, order[:half]), LIGHTS, LIGHT)
-        queried = some(materials, order[half:])
+        prior = fit_prior(problem, materials.rows(order[:half]))
+        queried = materials.rows(order[half:])
         found = problem.solve(queried.rgb, prior(queried.rgb), 16).multipliers
         spectra = problem.model.squash(found @ problem.forward.basis.T)
         missed.append(delta_e_spectra(LIGHT, spectra, queried.measured))

@@ -7,29 +7,30 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from uplift import fit
 from uplift.colorimetry import observer
 from uplift.common.progress import ignore_progress
 from uplift.fit.growth import Growth
+from uplift.fit.problem import Problem, nodes_of
+from uplift.fit.seeds import seed
 from uplift.fit.store import MAX_LOSS, store
 from uplift.lattice import Lattice
 from uplift.models import Moments
-from uplift.models.minimum_norm import forward_map, residual
+from uplift.models.minimum_norm import residual
 
 DIM = 9
+LATTICE = Lattice(observer.axis_nodes("srgb", DIM))
+NOBODY = seed(LATTICE, np.zeros((0, 3)))
 
 
 @pytest.fixture(scope="module")
 def problem():
-    sensor, model = observer.sensor(), Moments(9)
-    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    return fit.Problem(model, forward, Lattice(observer.axis_nodes("srgb", DIM)))
+    return Problem(observer.sensor(), Moments(9))
 
 
 def distance(problem, coefficients):
     """Distance evaluated by numpy, as a lookup does."""
     rgb = problem.model.squash(problem.model.from_storage(coefficients) @ problem.forward.basis.T)
-    return np.abs(problem.lattice.points - rgb @ problem.forward.sensor.T).max(axis=1)
+    return np.abs(LATTICE.points - rgb @ problem.forward.sensor.T).max(axis=1)
 
 
 def greys(problem, level):
@@ -39,17 +40,17 @@ def greys(problem, level):
 
 def grown(problem, multipliers, progress=ignore_progress):
     """Growth that ended with multipliers (n, C)."""
-    growth = Growth(problem, progress)
+    growth = Growth(problem, nodes_of(LATTICE, problem.sensor, 1e-4), progress)
     growth.multipliers[:] = multipliers
-    off = residual(problem.model, problem.forward, multipliers, problem.lattice.points)
-    growth.distance[:], growth.rgb[:] = np.abs(off).max(axis=1), problem.lattice.points - off
+    off = residual(problem.model, problem.forward, multipliers, LATTICE.points)
+    growth.distance[:], growth.rgb[:] = np.abs(off).max(axis=1), LATTICE.points - off
     return growth
 
 
 def test_single_precision_is_used_where_it_is_accurate(problem):
     multipliers = greys(problem, np.linspace(0.001, 0.999, DIM**3))
     here = distance(problem, problem.model.to_storage(multipliers))
-    stored = store(grown(problem, multipliers))
+    stored = store(grown(problem, multipliers), NOBODY, None)
     assert stored.coefficients.dtype == np.float32
     np.testing.assert_allclose(stored.distance, distance(problem, stored.coefficients), atol=1e-6)
     assert (stored.distance <= here + MAX_LOSS * problem.threshold).all()
@@ -62,7 +63,7 @@ def test_double_precision_is_used_where_single_is_inaccurate(problem, monkeypatc
     multipliers = greys(problem, np.concatenate([np.full(DIM**3 - 9, 0.5), np.linspace(0.99, 0.9999, 9)]))
     coefficients = problem.model.to_storage(multipliers)
     here = distance(problem, coefficients)
-    stored = store(grown(strict, multipliers))
+    stored = store(grown(strict, multipliers), NOBODY, None)
     assert stored.coefficients.dtype == np.float64
     np.testing.assert_allclose(stored.coefficients, coefficients, atol=1e-12)
     np.testing.assert_allclose(stored.distance, here, atol=1e-7)
@@ -71,5 +72,5 @@ def test_double_precision_is_used_where_single_is_inaccurate(problem, monkeypatc
 def test_progress_is_reported_for_every_block(problem, monkeypatch):
     monkeypatch.setattr("uplift.fit.growth.BLOCK_POINTS", 256)
     events = []
-    store(grown(problem, greys(problem, np.full(DIM**3, 0.5)), events.append))
+    store(grown(problem, greys(problem, np.full(DIM**3, 0.5)), events.append), NOBODY, None)
     assert [done.done for done in events] == [256, 512, 729]

@@ -16,7 +16,7 @@ from uplift.common.errors import CubeFileError
 from uplift.cube import container, file
 from uplift.lookup import load
 from uplift.pipeline.options import Options, recorded_options
-from uplift.pipeline.provenance import recorded_atlas
+from uplift.pipeline.rebuild import recorded_atlas
 from uplift.report.summary import summarise
 
 TEXTS = (

@@ -295,5 +295,5 @@ def test_stored_scene_of_another_lattice_is_refused(scene_cube, plain_cube):
 
 
 def test_a_filled_cube_cannot_be_rebuilt(scene_cube):
-    with raises(CubeFileError, "cube-filled"):
+    with raises(CubeFileError, "cube-file"):
         rebuild(scene_cube.fill_missing([1, 1, 0]), "photo.uplift", [ATLASES])

@@ -16,7 +16,7 @@ from uplift.cube import digest
 from uplift.cube.file import contents
 from uplift.io.export.coeff import write_coeff
 from uplift.lookup import Cube, query, query_xyz
-from uplift.pipeline import rebuild
+from uplift.pipeline.rebuild import rebuild
 
 NIKON = "Nikon 5100 (NPL)"
 GREYS = np.array([[0.2, 0.2, 0.2], [0.5, 0.48, 0.45]])

@@ -15,7 +15,7 @@ from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError, OptionError, UnknownNameError
 from uplift.lookup import load
-from uplift.pipeline import rebuild
+from uplift.pipeline.rebuild import rebuild
 
 SMALL = {"dim": 8, "coefficients": 9}
 TCS = ATLASES / "tcs.txt"

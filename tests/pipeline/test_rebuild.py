@@ -14,7 +14,7 @@ from tests.helpers import raises, with_points
 from uplift.common.errors import CubeFileError
 from uplift.cube import digest
 from uplift.lookup import Cube
-from uplift.pipeline import rebuild
+from uplift.pipeline.rebuild import rebuild
 from uplift.pipeline.options import recorded_options
 from uplift.report.regression import compare_rebuilt
 
@@ -22,7 +22,7 @@ from uplift.report.regression import compare_rebuilt
 @pytest.fixture
 def home(tmp_path, monkeypatch):
     """An empty working folder, without shipped atlases."""
-    monkeypatch.setattr("uplift.pipeline.provenance.shipped_atlases", tuple)
+    monkeypatch.setattr("uplift.pipeline.rebuild.shipped_atlases", tuple)
     (tmp_path / "home").mkdir()
     monkeypatch.chdir(tmp_path / "home")
     return tmp_path / "home"
@@ -91,7 +91,7 @@ def test_a_recorded_name_opens_no_file_outside_the_folder_of_the_cube(tiny_cube,
     shutil.copy(repository / "atlases" / "macbeth.txt", elsewhere)
     monkeypatch.chdir(elsewhere)
     opened = []
-    monkeypatch.setattr("uplift.pipeline.provenance.read_document", opened.append)
+    monkeypatch.setattr("uplift.pipeline.rebuild.read_document", opened.append)
     digest = tiny_cube.data.provenance["atlases"][0]["digest"]
     cube = with_provenance(tiny_cube, atlases=[{"name": name.format(elsewhere), "digest": digest}])
     rebuild_error("atlas-not-found", cube, home / "cube.uplift")
@@ -152,7 +152,7 @@ def test_a_changed_atlas_does_not_hide_the_recorded_one(tiny_cube, repository, h
 )
 def test_unknown_recorded_options_are_reported(tiny_cube, repository, options):
     cube = with_option(tiny_cube, **options)
-    rebuild_error("unknown-recorded-options", cube, "cube.uplift", [repository / "atlases"])
+    rebuild_error("cube-file", cube, "cube.uplift", [repository / "atlases"])
 
 
 def test_options_recorded_under_earlier_names_are_accepted(tiny_cube, repository):
@@ -176,11 +176,11 @@ def test_a_cube_without_provenance_cannot_be_rebuilt(small_cube, provenance):
 
 
 def test_a_cube_of_a_custom_solver_cannot_be_rebuilt(tiny_cube):
-    rebuild_error("custom-solver", with_option(tiny_cube, solver="custom"), "cube.uplift")
+    rebuild_error("cube-file", with_option(tiny_cube, solver="custom"), "cube.uplift")
 
 
 def test_another_recorded_dim_is_reported_before_the_build(tiny_cube, monkeypatch):
-    monkeypatch.setattr("uplift.fit.fit_entries", lambda *_, **__: pytest.fail("fitted"))
+    monkeypatch.setattr("uplift.pipeline.entries.fit_entries", lambda *_, **__: pytest.fail("fitted"))
     rebuild_error("lattice-mismatch", with_option(tiny_cube, dim=400), "cube.uplift")
 
 

@@ -1,4 +1,4 @@
-"""Batches of few shapes, so that XLA compiles rarely, over all devices that JAX has; the compiled integrals of moments."""
+"""Batches of few shapes, so that XLA compiles rarely, over all devices of JAX; the compiled integrals of moments."""
 
 from __future__ import annotations
 

@@ -29,9 +29,7 @@ class LatticeChoice(NamedTuple):
     lost: int
 
 
-def lattice_error(
-    problem: Problem, lattice: Lattice, prior: Prior, blend: EntryBlend, entries: FittedEntries
-) -> Array:
+def lattice_error(problem: Problem, lattice: Lattice, prior: Prior, blend: EntryBlend, entries: FittedEntries) -> Array:
     """Largest ΔE00 (E,) under the lights between each entry's spectrum and the lattice at its colour.
 
     Only the corners of the entries' cells are fitted.

@@ -155,7 +155,9 @@ def fit_entries(problem: Problem, measured: Array, rgb: Array, weights: Weights 
     # The minimum has nearly the colour; of all spectra that have it exactly, the nearest to the minimum is taken.
     multipliers = solve_singly(problem.model, problem.forward, near, rgb, problem.tolerance, MAX_STEPS)
     spectra = np.asarray(problem.model.squash(multipliers @ problem.forward.basis.T))
-    return FittedEntries(rgb, measured, multipliers, delta_e_spectra(problem.error_light, spectra, measured))
+    return FittedEntries(
+        rgb, measured, multipliers, delta_e_spectra(problem.error_light or problem.sensor.light, spectra, measured)
+    )
 
 
 def _minimise(goal: Objective, measured: Array) -> Array:

@@ -1,9 +1,9 @@
 """Growth: nodes are fitted in rounds, each from what earlier rounds found (docs/mathematics.md, 7; docs/growth.md).
 
-From the prior, the default: from a coarse lattice to finer ones. The answer at a node is the spectrum of its colour that
-is nearest to its prior. The correction between prior and answer is smooth over the lattice: a node starts from its prior
-plus the correction interpolated from earlier rounds, and one step then does what two did. The answer does not depend on
-the start. Nodes that fail are tried again from the mean of their fitted neighbours.
+Rounds go from a coarse lattice to finer ones. The answer at a node is the spectrum of its colour that is nearest to its
+prior. The correction between prior and answer is smooth over the lattice: a node starts from its prior plus the
+correction interpolated from earlier rounds, and one step then does what two did. The answer does not depend on the
+start. Nodes that fail are tried again from the mean of their fitted neighbours.
 
 `uplift.fit.growth_thesis` grows outward from seeds instead, as Tódová 2020 does.
 """

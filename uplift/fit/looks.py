@@ -9,22 +9,16 @@ a measured one, with its colours weighted more.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab, lab_jacobian, rgb_to_lab
+from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab, lab_jacobian
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.fit.bounded_least_squares import BoundedProblem, solve_bounded
-from uplift.fit.entries import MAX_STEPS, FittedEntries, fit_entries
-from uplift.fit.kriging import krige
-from uplift.fit.learn_kernel import DEFAULT
-from uplift.fit.least_change import nearest_of_colour
-from uplift.fit.objective import Weights
-from uplift.fit.prior import Prior
-from uplift.models import Model, evaluate
-from uplift.models.minimum_norm import ForwardMap, forward_map
+from uplift.fit.entries import FittedEntries, Weights, fit_entries, join_entries
+from uplift.fit.problem import Problem
 
 MET = 0.1
 """ΔE00 within which a wish is met."""
@@ -44,16 +38,9 @@ MAX_TURNS = 3
 
 @dataclass(frozen=True, eq=False)
 class LookGoal:
-    """A colour, and its wished colours under L lights.
+    """Linear RGB (3,) under the build illuminant, and wished XYZ (L, 3) under L lights, of reflectances (N,).
 
-    Parameters
-    ----------
-    rgb : ndarray, shape (3,)
-        Linear RGB under the build illuminant.
-    lights : tuple of Light
-        The lights, at the wavelengths of the sensor.
-    xyz : ndarray, shape (L, 3)
-        Wished XYZ; the perfect reflector has that of `Light.white`.
+    The perfect reflector has the XYZ of `Light.white`.
     """
 
     rgb: Array
@@ -61,104 +48,34 @@ class LookGoal:
     xyz: Array
 
     def colours(self, reflectance: Array) -> Array:
-        """Compute the colours of a reflectance.
-
-        Parameters
-        ----------
-        reflectance : ndarray, shape (N,)
-            Reflectance at the wavelengths of the lights.
-
-        Returns
-        -------
-        ndarray, shape (L, 3)
-            XYZ under the lights.
-        """
+        """XYZ (L, 3) of a reflectance (N,) under the lights."""
         return np.stack([light.xyz @ reflectance for light in self.lights])
 
     def delta_e(self, reflectance: Array) -> Array:
-        """Compute how far a reflectance is from the goal.
-
-        Parameters
-        ----------
-        reflectance : ndarray, shape (N,)
-            Reflectance at the wavelengths of the lights.
-
-        Returns
-        -------
-        ndarray, shape (L,)
-            ΔE00 between its colours and the wished ones.
-        """
-        found = zip(self.lights, self.colours(reflectance), self.xyz, strict=True)
-        return np.array([delta_e_2000(lab(xyz, light.white), lab(wish, light.white)) for light, xyz, wish in found])
+        """ΔE00 (L,) between the colours of a reflectance (N,) and the wished ones."""
+        pairs = zip(self.lights, self.colours(reflectance), self.xyz, strict=True)
+        return np.array([delta_e_2000(lab(xyz, light.white), lab(wish, light.white)) for light, xyz, wish in pairs])
 
     def softened(self, expected: Array, weight: float) -> LookGoal:
-        """Move the wish towards the colours of an expected reflectance.
-
-        Parameters
-        ----------
-        expected : ndarray, shape (N,)
-            Reflectance at the wavelengths of the lights.
-        weight : float
-            Share of the wish, 0 to 1.
-
-        Returns
-        -------
-        LookGoal
-            The goal between both, on a straight line in XYZ.
-        """
+        """Move the wish towards the colours of an expected reflectance (N,), on a straight line in XYZ."""
         return replace(self, xyz=weight * self.xyz + (1 - weight) * self.colours(expected))
 
 
-def expected_reflectances(prior: Prior, forward: ForwardMap, rgb: Array, tolerance: float) -> Array:
-    """Compute the reflectances that a prior expects of colours.
-
-    Parameters
-    ----------
-    prior : Prior
-        The prior.
-    forward : ForwardMap
-        Map from its multipliers to RGB.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB.
-    tolerance : float
-        Largest residual in linear RGB.
-
-    Returns
-    -------
-    ndarray, shape (n, N)
-        Reflectances of these colours.
-    """
-    multipliers = nearest_of_colour(prior.model, forward, prior(rgb), rgb, tolerance, MAX_STEPS)
-    return evaluate(prior.model, multipliers, prior.sensor.wavelengths)
-
-
 def design_reflectance(sensor: Sensor, goal: LookGoal, expected: Array) -> Array:
-    """Design a reflectance of a colour with wished colours under lights.
+    """Design a reflectance (N,) in [0, 1] of a goal that differs least from ``expected`` (N,), which has its RGB.
 
-    Parameters
-    ----------
-    sensor : Sensor
-        Sensor of the RGB.
-    goal : LookGoal
-        The colours. A reflectance with the RGB must exist.
-    expected : ndarray, shape (N,)
-        Reflectance from which the result differs least, with the RGB of the goal.
-
-    Returns
-    -------
-    ndarray, shape (N,)
-        Reflectance in [0, 1]; that of the least sum of squares of (nearly) ΔE00 where no reflectance meets the goal.
+    Where no reflectance meets the goal, the sum of squares of (nearly) ΔE00 is least.
     """
-    found = expected
+    design = expected
     for weight in SHAPES:
         shape = weight * _shape(sensor.wavelengths)
         for _ in range(MAX_TURNS):
-            before, found = found, _linear_design(sensor, goal, expected, found, shape)
-            if goal.delta_e(found).max() <= ENOUGH:
-                return found
-            if np.abs(found - before).max() <= ENOUGH / EXACT:
+            before, design = design, _linear_design(sensor, goal, expected, design, shape)
+            if goal.delta_e(design).max() <= ENOUGH:
+                return design
+            if np.abs(design - before).max() <= ENOUGH / EXACT:
                 break
-    return found
+    return design
 
 
 def _shape(wavelengths: Array) -> Array:
@@ -172,111 +89,24 @@ def _linear_design(sensor: Sensor, goal: LookGoal, expected: Array, near: Array,
     """Reflectance (N,) of least squares, with L*a*b* linearised at the colours of the reflectance ``near``."""
     rows, values = [EXACT * sensor.matrix], [EXACT * (goal.rgb - sensor.matrix @ expected)]
     for light, wish, xyz in zip(goal.lights, goal.xyz, goal.colours(near), strict=True):
-        wished, found = lab(wish, light.white), lab(xyz, light.white)
+        wished, current = lab(wish, light.white), lab(xyz, light.white)
         weights = delta_e_2000_weights(wished)
         slope = weights @ lab_jacobian(xyz, light.white) @ light.xyz
         rows.append(slope)
-        values.append(weights @ (wished - found) + slope @ (near - expected))
-    matrix = np.concatenate([*rows, shape])
-    problem = BoundedProblem(
-        matrix,
-        np.concatenate([*values, np.zeros(len(shape))]),
-        -expected,
-        1 - expected,
-    )
-    return np.clip(expected + solve_bounded(problem), 0, 1)
-
-
-def fit_designs(
-    model: Model,
-    sensor: Sensor,
-    goals: Sequence[LookGoal],
-    designs: Array,
-    error_light: Light,
-    tolerance: float,
-) -> FittedEntries:
-    """Fit designed reflectances by the spectrum model, each with the lights of its goal.
-
-    Parameters
-    ----------
-    model : Model
-        Spectrum model.
-    sensor : Sensor
-        Sensor of the RGB.
-    goals : sequence of LookGoal
-        The k goals.
-    designs : ndarray, shape (k, N)
-        Their reflectances by `design_reflectance`.
-    error_light : Light
-        Light of `FittedEntries.error`.
-    tolerance : float
-        Largest residual in linear RGB.
-
-    Returns
-    -------
-    FittedEntries
-        The designs as entries.
-    """
-    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    if not goals:
-        return FittedEntries(np.zeros((0, 3)), designs, np.zeros((0, model.count)), np.zeros(0))
-    fitted = (
-        fit_entries(
-            model,
-            forward,
-            design[None],
-            goal.rgb[None],
-            (sensor.light, *goal.lights),
-            error_light,
-            tolerance,
-            COLOURS,
+        values.append(weights @ (wished - current) + slope @ (near - expected))
+    change = solve_bounded(
+        BoundedProblem(
+            np.concatenate([*rows, shape]),
+            np.concatenate([*values, np.zeros(len(shape))]),
+            -expected,
+            1 - expected,
         )
-        for goal, design in zip(goals, designs, strict=True)
     )
-    return join_entries(*fitted)
+    return np.clip(expected + change, 0, 1)
 
 
-def join_entries(*parts: FittedEntries) -> FittedEntries:
-    """Put entries after one another.
-
-    Parameters
-    ----------
-    *parts : FittedEntries
-        At least one.
-
-    Returns
-    -------
-    FittedEntries
-        All entries in order.
-    """
-    return FittedEntries(
-        *(np.concatenate([getattr(part, key.name) for part in parts]) for key in fields(FittedEntries))
-    )
-
-
-def prior_with_looks(prior: Prior, entries: FittedEntries, looks: FittedEntries) -> Prior:
-    """Let the prior know looks: the spectra of colours near a look deviate as that of the look.
-
-    Kernel and standard errors stay, as looks are not measurements.
-
-    Parameters
-    ----------
-    prior : Prior
-        Prior of the atlas entries.
-    entries, looks : FittedEntries
-        Atlas entries and looks, in the model of the prior.
-
-    Returns
-    -------
-    Prior
-        The prior of both. The order of the entries does not change the rounding of sums.
-    """
-    if not len(looks):
-        return prior
-    both = join_entries(entries, looks)
-    order = np.lexsort(both.rgb.T)
-    rgb, multipliers = both.rgb[order], both.multipliers[order]
-    deviations = prior.model.to_storage(multipliers) - prior.base.coefficients(rgb)
-    kernel = DEFAULT if prior.kriging is None else prior.kriging.kernel
-    kriging, _ = krige(rgb_to_lab(prior.sensor, rgb), deviations, kernel)
-    return replace(prior, kriging=kriging)
+def fit_designs(problem: Problem, goals: Sequence[LookGoal], designs: Array) -> FittedEntries:
+    """Fit designed reflectances (k, N) by the spectrum model, each with the lights of its goal."""
+    lit = (replace(problem, lights=(problem.sensor.light, *goal.lights), solver=None) for goal in goals)
+    parts = zip(lit, goals, designs, strict=True)
+    return join_entries(*(fit_entries(own, design[None], goal.rgb[None], COLOURS) for own, goal, design in parts))

@@ -119,7 +119,7 @@ def fit_prior(problem: Problem, entries: FittedEntries, base: Base | None = None
     start = _bounded(model, expected, deviations - errors)
     left_out = problem.solve(entries.rgb, start, MAX_PASSES).multipliers
     spectra = evaluate(model, left_out, sensor.wavelengths)
-    missed = delta_e_spectra(problem.error_light, spectra, entries.measured)
+    missed = delta_e_spectra(problem.error_light or problem.sensor.light, spectra, entries.measured)
     expected_errors = expected_error(locations, missed, entries.error)
     return Prior(model, sensor, base, kriging, expected_errors, spectra[np.argsort(order)])
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,8 +27,8 @@ BLOCK_NODES = 1 << 15
 class Problem:
     """Sensor, spectrum model, lights under which colours are kept, light of the errors, threshold and solver.
 
-    ``threshold`` is the largest distance of a fitted node in linear RGB. ``solver`` is a least-squares solver of
-    optimistix, or None for the steps of `uplift.fit.solver`.
+    ``error_light`` is that of the sensor by default. ``threshold`` is the largest distance of a fitted node in linear
+    RGB. ``solver`` is a least-squares solver of optimistix, or None for the steps of `uplift.fit.solver`.
     """
 
     sensor: Sensor
@@ -50,12 +50,14 @@ class Problem:
 
     def solve(self, target: Array, start: Array, max_passes: int, prior: Array | None = None) -> Solution:
         """Find multipliers (n, C) of linear RGB (n, 3); see `uplift.fit.solver.solve`."""
-        limits = {"tolerance": self.tolerance, "max_passes": max_passes}
-        if self.solver is None:
-            return solve(self.model, self.forward, start, target, prior=prior, **limits)
-        from uplift.fit.optimistix_solvers import solve_with  # the default needs no optimistix
+        method = solve
+        if self.solver is not None:
+            from uplift.fit.optimistix_solvers import solve_with  # the default needs no optimistix
 
-        return solve_with(self.solver, self.model, self.forward, start, target, prior=prior, **limits)
+            method = partial(solve_with, self.solver)
+        return method(
+            self.model, self.forward, start, target, tolerance=self.tolerance, max_passes=max_passes, prior=prior
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)

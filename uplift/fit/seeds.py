@@ -24,7 +24,7 @@ NEAR, FAR = 8.0, 16.0
 class Seeds:
     """Nodes (S,) that start from the entries (S,) of linear RGB (E, 3).
 
-    ``primary`` (S,) marks the node nearest to its entry. ``crowded`` are the entries without one: a closer entry has it.
+    ``primary`` (S,) marks the node nearest to its entry. ``crowded`` are entries whose nearest node a closer one has.
     """
 
     rgb: Array
@@ -82,8 +82,8 @@ def learnt_blend(prior: Prior) -> EntryBlend:
     """Return the blend ½ + ½ min(ν / 0.3, 1) near an entry, with the learnt nugget ν.
 
     Entries of an atlas with a small nugget are predicted by others. Materials of such an atlas between its entries are
-    nearer to the prior, and only half of an entry's own deviation is expected at the corners. Corners of coarse lattices
-    whose colour is another one start from the prior alone.
+    nearer to the prior, and only half of an entry's own deviation is expected at the corners. Corners of coarse
+    lattices whose colour is another one start from the prior alone.
     """
     if prior.kriging is None:
         return EntryBlend(near=1.0)

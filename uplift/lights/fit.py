@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from uplift.common.arrays import Array, Indices
-from uplift.fit.solve import solve
+from uplift.fit.solver import solve
 from uplift.lights.lattice import BEND, DENOMINATOR, ChromaticityLattice, chromaticity, unit_xyz
 from uplift.models.exponential import Exponential
 from uplift.models.minimum_norm import forward_map

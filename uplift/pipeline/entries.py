@@ -1,60 +1,87 @@
-"""Atlas entries of a build: those in gamut, as measured, and warnings of them."""
+"""Spectra of a build: the entries of its atlas and the families of its library, with warnings of those not used."""
 
 from __future__ import annotations
 
 import os
 import warnings
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from uplift import fit
 from uplift.atlas import Atlas, on_grid, read_atlas, resample
 from uplift.colorimetry.observer import grid
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import holding_note
-from uplift.common.arrays import Array
-from uplift.common.errors import UpliftWarning
+from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import OptionError, UpliftWarning
+from uplift.cube import AtlasTable, EntrySpectra, LeftOut
+from uplift.fit.base import has_freedom
+from uplift.fit.entries import FittedEntries, fit_entries
+from uplift.fit.families import Family, shipped_library
+from uplift.fit.prior import Prior
+from uplift.fit.problem import Problem
+from uplift.fit.seeds import Seeds
+from uplift.lattice import EntryBoxes
 from uplift.models import Model
-from uplift.pipeline.libraries import AtlasLike
-from uplift.pipeline.setting import Setting
+from uplift.pipeline.options import Options
 
-STACK_LEVEL = 5
+AtlasLike = Atlas | StrPath | Sequence[StrPath] | None
+
+SPREAD, RELATED = 1.0, 0.5
+"""See `uplift.fit.families.Family`; by held-out halves of large sets (docs/prior.md)."""
+MAX_NAMES = 6
+"""Entries that a warning names."""
+STACK_LEVEL = 6
 """Frames between a warning and the caller of `uplift.build`, whose decorator adds two."""
 
 
-@dataclass(frozen=True, eq=False)
-class MeasuredEntries:
-    """Entries of an atlas.
-
-    Parameters
-    ----------
-    names : tuple of str
-        Their E names.
-    rgb : ndarray, shape (E, 3)
-        Linear RGB in [0, 1].
-    reflectances : ndarray, shape (E, N)
-        Reflectances in [0, 1] at the wavelengths of the sensor.
-    """
+class MeasuredEntries(NamedTuple):
+    """Names (E,) of atlas entries, their linear RGB (E, 3) and reflectances (E, N), all in [0, 1]."""
 
     names: tuple[str, ...]
     rgb: Array
     reflectances: Array
 
-    def __len__(self) -> int:
-        return len(self.names)
 
-    def fit(self, setting: Setting, model: Model) -> fit.FittedEntries:
-        """Fit the reflectances by a spectrum model; see `uplift.fit.fit_entries`."""
-        return fit.fit_entries(
-            model,
-            setting.forward_of(model),
-            self.reflectances,
-            self.rgb,
-            setting.lights,
-            setting.error_light,
-            setting.tolerance,
-            solver=setting.solver,
+@dataclass(frozen=True, eq=False)
+class Constraints:
+    """The E entries of a cube, measured ones and then looks, in the spectrum models of the nodes and of entries."""
+
+    names: tuple[str, ...]
+    at_nodes: FittedEntries
+    at_entries: FittedEntries
+    entry_model: Model
+    looks: int = 0
+
+    def truncated(self, model: Model) -> Array:
+        """Multipliers (E, C) of the spectra of entries with the coefficients of nodes.
+
+        Fewer moments of the same spectrum are the first of them (Tódová 2020, section 3.1.3).
+        """
+        if self.at_entries is self.at_nodes or not len(self.at_nodes):
+            return self.at_nodes.multipliers
+        stored = self.entry_model.to_storage(self.at_entries.multipliers)
+        return model.from_storage(stored[:, : model.count])
+
+    def table(self, model: Model, boxes: EntryBoxes, prior: Prior) -> AtlasTable:
+        """Return the part of a cube that records the constraints; entries with more coefficients have them there."""
+        spectra, left_out = None, None
+        if self.at_entries is not self.at_nodes and len(self.at_nodes):
+            spectra = EntrySpectra(self.entry_model, self.entry_model.to_storage(self.at_entries.multipliers))
+        if prior.left_out is not None:
+            measured = self.at_nodes.measured[: len(self.names) - self.looks]
+            left_out = LeftOut(measured.astype(np.float32), prior.left_out.astype(np.float32))
+        return AtlasTable(
+            self.names,
+            self.at_nodes.rgb,
+            model.to_storage(self.at_nodes.multipliers),
+            boxes.half_width,
+            self.at_entries.error,
+            spectra,
+            left_out,
+            self.looks,
         )
 
 
@@ -68,32 +95,17 @@ def as_atlas(atlas: AtlasLike) -> Atlas:
 
 
 def entries_in_gamut(atlas: Atlas, sensor: Sensor) -> MeasuredEntries:
-    """Return the entries whose colours lie within the RGB space, with a warning for each other.
-
-    Parameters
-    ----------
-    atlas : Atlas
-        Measured spectra.
-    sensor : Sensor
-        Sensor of the cube.
-
-    Returns
-    -------
-    MeasuredEntries
-
-    Warns
-    -----
-    UpliftWarning
-        An entry out of gamut (code ``entry-out-of-gamut``).
-    """
+    """Return the entries whose colours lie within the RGB space, with a warning for each other."""
     measured = on_grid(atlas, sensor.wavelengths)
     rgb = sensor.rgb(measured)
     inside = sensor.contains(rgb)
-    way_out = "" if inside.all() else f"; {_holding_note(atlas, sensor)}"
+    note = ""
+    if not inside.all():
+        note = f"; {holding_note(resample(atlas, grid()).values, sensor.illuminant, sensor.observer)}"
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
         warn(
-            f"left out: its colour must lie within {sensor.space}, got linear RGB ({values}){way_out}",
+            f"left out: its colour must lie within {sensor.space}, got linear RGB ({values}){note}",
             "entry-out-of-gamut",
             atlas.names[row],
         )
@@ -101,8 +113,119 @@ def entries_in_gamut(atlas: Atlas, sensor: Sensor) -> MeasuredEntries:
     return MeasuredEntries(names, np.clip(rgb[inside], 0, 1), measured[inside])
 
 
-def _holding_note(atlas: Atlas, sensor: Sensor) -> str:
-    return holding_note(resample(atlas, grid()).values, sensor.illuminant, sensor.observer)
+def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntries) -> Constraints:
+    """Fit measured entries by the models of nodes and of entries, which may be the same."""
+    at_nodes = at_entries = fit_entries(problem, entries.reflectances, entries.rgb)
+    if entry_model != problem.model:
+        at_entries = fit_entries(replace(problem, model=entry_model), entries.reflectances, entries.rgb)
+    return Constraints(entries.names, at_nodes, at_entries, entry_model)
+
+
+def warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: Seeds) -> None:
+    """Warn of entries of the same colour, and of those that closer ones deprive of their nearest node."""
+    duplicates = [names[row] for row in np.flatnonzero(boxes.half_width == 0).tolist()]
+    crowded = [names[row] for row in seeds.crowded if boxes.half_width[row]]
+    if duplicates:
+        warn(
+            f"{_listed(duplicates)} left out: an earlier entry has the same colour, which has only one answer",
+            "entry-duplicate",
+        )
+    if crowded:
+        warn(
+            f"{_listed(crowded)} crowded: closer entries own the nearest lattice point. Queries at the entries' own "
+            "colours stay exact, queries near them are less accurate",
+            "entry-crowded",
+            hint='use dim="auto" for a lattice that is large enough, or see the report of the cube',
+        )
+
+
+def _listed(names: Sequence[str]) -> str:
+    """'entry 'a' is', 'entries 'a', 'b', 'c' and 12 more are'."""
+    shown = ", ".join(f"'{name}'" for name in names[:MAX_NAMES])
+    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    return f"entry {shown} is" if len(names) == 1 else f"entries {shown}{more} are"
+
+
+def describe_atlas(atlas: Atlas, names: Sequence[str]) -> dict[str, Any]:
+    """Files by name, digest and the scale of their values if the caller gave it, and the entries that are not used."""
+    return {
+        "atlases": [
+            {"name": source.name, "digest": source.digest}
+            | ({} if source.measured == "auto" else {"measured": source.measured})
+            for source in atlas.sources
+        ],
+        "left_out": [name for name in atlas.names if name not in names],
+        "skipped": [entry.name for entry in atlas.skipped],
+    }
+
+
+class Library(NamedTuple):
+    """Spectra of one file, or given as an atlas; the SHA-256 digest is empty for spectra without a file."""
+
+    name: str
+    digest: str
+    atlas: Atlas
+
+
+def read_libraries(library: AtlasLike) -> tuple[Library, ...]:
+    """Read libraries, a family per file."""
+    if library is None:
+        return ()
+    if isinstance(library, Atlas):
+        return (_library(library),)
+    paths = [library] if isinstance(library, str | os.PathLike) else library
+    return tuple(_library(read_atlas(path)) for path in paths)
+
+
+def _library(atlas: Atlas) -> Library:
+    if len(atlas.sources) != 1:
+        return Library("library", "", atlas)
+    return Library(atlas.sources[0].name, atlas.sources[0].digest, atlas)
+
+
+def families_of(options: Options, libraries: Sequence[Library], sensor: Sensor) -> tuple[Family, ...]:
+    """Return the families that shape the prior: the shipped library, then those of the user; none for smooth spectra.
+
+    Shipped families are constant outside 380–780 nm. Warns of each library that is not used as measured.
+    """
+    learnt = options.prior == "learnt" and has_freedom(options.spectrum_model())
+    if libraries and not learnt:
+        raise OptionError(
+            "a library shapes only the learnt prior of models with more than three coefficients",
+            code="library-not-used",
+            hint='use prior="learnt" and the moments model with 4 to 17 coefficients, or leave out the library',
+        )
+    shipped = shipped_library(options.leave_out)
+    if not learnt:
+        return ()
+    if not np.array_equal(sensor.wavelengths, grid()):
+        shipped = tuple(
+            replace(family, measured=np.array([np.interp(sensor.wavelengths, grid(), row) for row in family.measured]))
+            for family in shipped
+        )
+    return (*shipped, *(_family(each, sensor) for each in libraries))
+
+
+def _family(library: Library, sensor: Sensor) -> Family:
+    resampled = resample(library.atlas, sensor.wavelengths)
+    outside = int((~sensor.contains(sensor.rgb(resampled.values))).sum())
+    if resampled.clips:
+        problem = f"clipped to [0, 1]: {len(resampled.clips)} spectra, first '{resampled.clips[0].name}'"
+        warn(f"library '{library.name}': {problem}", "library-clipped")
+    if outside:
+        problem = f"{outside} of {len(resampled.values)} spectra not used: their colours lie outside {sensor.space}"
+        warn(f"library '{library.name}': {problem}", "library-out-of-gamut")
+    return Family(library.name, resampled.values, SPREAD, RELATED)
+
+
+def describe_libraries(
+    libraries: Sequence[Library], used: Sequence[Family], relevance: Sequence[float]
+) -> dict[str, Any]:
+    """Return the libraries and the relevance of the families, in JSON values."""
+    return {
+        "libraries": [{"name": library.name, "digest": library.digest} for library in libraries],
+        "families": [{"name": family.name, "relevance": value} for family, value in zip(used, relevance, strict=True)],
+    }
 
 
 def warn(problem: str, code: str, entry: str | None = None, hint: str = "") -> None:

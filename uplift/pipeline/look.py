@@ -1,19 +1,28 @@
-"""A look: a colour, and what it is to be under other lights."""
+"""A look: a colour, and what it is to be under other lights; looks as a TOML file."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from uplift.colorimetry.written_colour import WrittenColour, is_number, parse_colour
+from uplift.colorimetry.observer import illuminant_spd
+from uplift.colorimetry.written_colour import is_number, parse_colour
 from uplift.common.arrays import StrPath
-from uplift.common.errors import LookError, UpliftError
+from uplift.common.errors import LookError, UpliftError, unknown_name
 from uplift.common.text import format_value, shorten
+
+if TYPE_CHECKING:
+    from uplift.common.spec_file import SpecFile
 
 MAX_WISH = 2.0
 """Limit of the linear sRGB of a wish: brighter colours are typing errors."""
+TABLE = "look"
+EXAMPLE = "write [[look]] tables such as rgb = '#8a2a20' and FL11 = '#70392a'"
+MAX_LOOKS = 10_000
 
 WrittenRgb = str | Sequence[float]
 
@@ -31,7 +40,7 @@ class Look:
         Wished colours by the names of illuminants, as ``"#rrggbb"`` in sRGB, or as linear sRGB. The white of the light
         is the white of sRGB (Bradford), as in relit images.
     weight : float, default 1
-        Share of the wish, above 0 and at most 1; the rest is the colour that is expected without the look.
+        Weight of the wish, above 0 and at most 1; the rest is the colour that is expected without the look.
     name : str, optional
         Name of the look, by default made of its colour.
     path, line : optional
@@ -58,91 +67,109 @@ class Look:
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", self.name or f"look {format_rgb(self.rgb)}")
         if not self.lights:
-            raise self.error("must name at least one light", code="look-without-lights", hint="add FL11 = '#70392a'")
+            raise look_error(self, "must name at least one light", hint="add FL11 = '#70392a'")
         if not is_number(self.weight) or not 0 < self.weight <= 1:
             problem = f"weight must be above 0 and at most 1, got {format_value(self.weight)}"
-            raise self.error(problem, code="look-weight-out-of-range", hint="leave it out for 1")
-        self.colour("rgb", self.rgb, 0, 1)
-        for light, wish in self.lights.items():
-            self.colour(light, wish, -MAX_WISH, MAX_WISH)
+            raise look_error(self, problem, hint="leave it out for 1")
+        wishes = [(light, wish, -MAX_WISH, MAX_WISH) for light, wish in self.lights.items()]
+        for key, value, low, high in [("rgb", self.rgb, 0, 1), *wishes]:
+            try:
+                linear = parse_colour(value).linear
+            except UpliftError as error:
+                raise look_error(self, f"{key} {error.problem}", error.code, error.hint) from error
+            if any(not low <= number <= high for number in linear):
+                problem = f"{key} must be linear RGB in [{low:g}, {high:g}], got {format_value(list(linear))}"
+                raise look_error(self, problem, hint="write '#rrggbb' for encoded values")
 
-    def colour(self, key: str, value: WrittenRgb, low: float, high: float) -> WrittenColour:
-        """Parse a colour of the look and check its range.
 
-        Parameters
-        ----------
-        key : str
-            Name of the colour in errors.
-        value : str or sequence of float
-            The colour as written.
-        low, high : float
-            Range of linear numbers.
+LooksLike = StrPath | Look | Sequence[Look]
 
-        Returns
-        -------
-        WrittenColour
 
-        Raises
-        ------
-        LookError
-            A value that is not a colour, or outside the range.
-        """
-        try:
-            colour = parse_colour(value)
-        except UpliftError as error:
-            raise self.error(f"{key} {error.problem}", code=error.code, hint=error.hint) from error
-        if any(not low <= number <= high for number in colour.linear):
-            problem = f"{key} must be linear RGB in [{low:g}, {high:g}], got {format_value(list(colour.linear))}"
-            raise self.error(problem, code="look-out-of-range", hint="write '#rrggbb' for encoded values")
-        return colour
+def about(look: Look, problem: str) -> str:
+    """Put the name of a look in front of a problem; that of a look without a name begins with "look" itself."""
+    label = look.name if look.name.startswith("look ") else f"look '{shorten(look.name)}'"
+    return f"{label}: {problem}"
 
-    def about(self, problem: str) -> str:
-        """Put the name of the look in front of a problem.
 
-        Parameters
-        ----------
-        problem : str
-            The problem.
-
-        Returns
-        -------
-        str
-            Such as ``look 'brick': is missed``; the name of a look without a name begins with "look" itself.
-        """
-        label = self.name if self.name.startswith("look ") else f"look '{shorten(self.name)}'"
-        return f"{label}: {problem}"
-
-    def error(self, problem: str, *, code: str, hint: str = "") -> LookError:
-        """Make an error about the look.
-
-        Parameters
-        ----------
-        problem : str
-            The constraint and the value received.
-        code : str
-            Code of the error.
-        hint : str
-            How to solve the problem.
-
-        Returns
-        -------
-        LookError
-            The error to raise, with the location of the look.
-        """
-        return LookError(self.about(problem), code=code, path=self.path, line=self.line, hint=hint)
+def look_error(look: Look, problem: str, code: str | None = None, hint: str = "") -> LookError:
+    """Make an error with the name and location of a look."""
+    return LookError(about(look, problem), code=code, path=look.path, line=look.line, hint=hint)
 
 
 def format_rgb(rgb: WrittenRgb) -> str:
-    """Return a colour as written on one line.
+    """Return a colour as written on one line: ``#8a2a20`` or ``0.25 0.02 0.01``."""
+    return rgb if isinstance(rgb, str) else " ".join(f"{value:.4g}" for value in np.ravel(rgb).tolist())
+
+
+def as_looks(looks: LooksLike) -> tuple[Look, ...]:
+    """Return looks as given, or read from a file."""
+    if isinstance(looks, str | os.PathLike):
+        return read_looks(looks)
+    given = (looks,) if isinstance(looks, Look) else tuple(looks)
+    for each in given:
+        if not isinstance(each, Look):
+            raise LookError(f"looks must be Look objects, got {format_value(each)}")
+    return given
+
+
+def read_looks(path: StrPath) -> tuple[Look, ...]:
+    """Read a file of looks.
 
     Parameters
     ----------
-    rgb : str or sequence of float
-        The colour.
+    path : path-like
+        A TOML file.
 
     Returns
     -------
-    str
-        Such as ``#8a2a20`` or ``0.25 0.02 0.01``.
+    tuple of Look
+        The looks, in the order of the file.
+
+    Raises
+    ------
+    LookError
+        A file that cannot be read, or a value that does not fit, with its line.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "looks.toml")
+    ...     _ = path.write_text('[[look]]\\nrgb = "#8a2a20"\\nFL11 = "#70392a"\\nname = "brick"\\n')
+    ...     [look] = read_looks(path)
+    >>> look.name, look.lights
+    ('brick', {'FL11': '#70392a'})
     """
-    return rgb if isinstance(rgb, str) else " ".join(f"{value:.4g}" for value in np.ravel(rgb).tolist())
+    from uplift.common.spec_file import read_toml  # imports pydantic
+
+    file = read_toml(path, LookError)
+    for key in file.values:
+        if key != TABLE:
+            hint = unknown_name(key, (TABLE,), "key").hint or EXAMPLE
+            file.fail((key,), "unknown key", code="unknown-key", hint=hint)
+    tables = file.values.get(TABLE, [])
+    if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
+        file.fail((TABLE,), f"must be tables, got {format_value(tables)}", code="invalid-value", hint=EXAMPLE)
+    if not 0 < len(tables) <= MAX_LOOKS:
+        file.fail((), f"must have 1 to {MAX_LOOKS} looks, got {len(tables)}", code="no-looks", hint=EXAMPLE)
+    return tuple(_look(file, number, table) for number, table in enumerate(tables))
+
+
+def _look(file: SpecFile, number: int, table: dict[str, Any]) -> Look:
+    place = (TABLE, number)
+    if "rgb" not in table:
+        file.fail(place, "required key 'rgb' is missing", code="missing-key", hint="add rgb = '#8a2a20'")
+    if not isinstance(table.get("name", ""), str):
+        problem = f"must be text in quotes, got {format_value(table['name'])}"
+        file.fail((*place, "name"), problem, code="invalid-value", hint="write name = 'brick'")
+    options = {key: table[key] for key in ("weight", "name") if key in table}
+    lights = {key: value for key, value in table.items() if key not in ("rgb", "weight", "name")}
+    for light, wish in lights.items():
+        if isinstance(wish, dict):
+            hint = f'quote names with a dot, such as "{light}.1"'
+            file.fail((*place, light), "must be a colour, got a table", code="invalid-value", hint=hint)
+        try:
+            illuminant_spd(light)
+        except UpliftError as error:
+            file.fail((*place, light), error.problem, code=error.code, hint=error.hint or EXAMPLE)
+    return Look(table["rgb"], lights, **options, path=file.path, line=file.line(place))

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from numbers import Integral, Real
 from typing import Any, Literal
 
@@ -38,7 +37,13 @@ STEPS = (1.0, 5.0, 10.0)
 """Steps of the sensor's wavelengths in nm."""
 PROCESS_BYTES = 500_000_000
 """Memory of a build without its lattice."""
-
+TYPES: dict[str, tuple[Any, type, str]] = {
+    "int": (Integral, int, "a whole number"),
+    "float": (Real, float, "a number"),
+    "str": (str, str, "text"),
+    "bool": (bool | np.bool_, bool, "True or False"),
+}
+"""By the annotation of an option: types that are accepted, that which is recorded as JSON, and their name."""
 RENAMED = {"within": "auto_tolerance"}
 """Options by the names that earlier versions recorded in cubes."""
 
@@ -47,14 +52,7 @@ RENAMED = {"within": "auto_tolerance"}
 class Options:
     """Options of `uplift.build`, recorded in the cube so that the build can be repeated.
 
-    The parameters are those of `uplift.build`.
-
-    Raises
-    ------
-    OptionError
-        A value of another type (``option-type``) or outside its range.
-    UnknownNameError
-        An unknown model, axis, start or solver.
+    Raises `OptionError` for a value of another type or outside its range, and `UnknownNameError`.
     """
 
     dim: int | Literal["auto"] = 32
@@ -80,26 +78,29 @@ class Options:
     debug: bool = False
 
     def __post_init__(self) -> None:
-        for name, convert in CONVERSIONS.items():
-            object.__setattr__(self, name, convert(name, getattr(self, name)))
+        for field in fields(self):
+            value = getattr(self, field.name)
+            plain = _dim(value) if field.name == "dim" else _plain(field.name, str(field.type), value)
+            object.__setattr__(self, field.name, plain)
         self._check_range()
         self.spectrum_model()
-        self._check_entry_coefficients()
-        if self.axis not in AXES:
-            raise unknown_name(self.axis, AXES, "axis spacing")
-        if self.prior not in PRIORS:
-            raise unknown_name(self.prior, PRIORS, "prior")
-        if self.start not in STARTS:
-            raise unknown_name(self.start, STARTS, "start")
-        if self.solver not in (*SOLVERS, CUSTOM):
-            raise unknown_name(self.solver, SOLVERS, "solver")
-        if not self.lights:
-            raise OptionError("lights must name at least one illuminant, got none", code="no-lights")
-        if len(self.lights) > MAX_LIGHTS:
+        if self.model == Moments.name and not self.coefficients <= self.entry_coefficients <= MAX_COUNT:
             raise OptionError(
-                f"lights must name at most {MAX_LIGHTS} illuminants, got {len(self.lights)}",
-                code="too-many-lights",
+                f"entry_coefficients must be in [{self.coefficients}, {MAX_COUNT}], "
+                f"got {format_value(self.entry_coefficients)}",
+                code="entry-coefficients-out-of-range",
+                hint="entries have as many coefficients as the nodes, or more",
             )
+        for name, names, kind in (
+            (self.axis, AXES, "axis spacing"),
+            (self.prior, PRIORS, "prior"),
+            (self.start, STARTS, "start"),
+            (self.solver, (*SOLVERS, CUSTOM), "solver"),
+        ):
+            if name not in names:
+                raise unknown_name(name, [each for each in names if each != CUSTOM], kind)
+        if not 1 <= len(self.lights) <= MAX_LIGHTS:
+            raise OptionError(f"lights must name 1 to {MAX_LIGHTS} illuminants, got {len(self.lights)}")
         if not MIN_THRESHOLD <= self.threshold <= MAX_THRESHOLD:
             raise OptionError(
                 f"threshold must be in [{MIN_THRESHOLD:g}, {MAX_THRESHOLD}], got {self.threshold:g}",
@@ -113,23 +114,11 @@ class Options:
             )
 
     def spectrum_model(self) -> Model:
-        """Create the spectrum model that the options describe.
-
-        Returns
-        -------
-        Model
-            `Moments` or `Sigmoid` from `shortest` to `longest` nm.
-        """
+        """Create the spectrum model of the nodes, from `shortest` to `longest` nm."""
         return self._model(self.coefficients)
 
     def entry_model(self) -> Model:
-        """Create the spectrum model of the atlas entries.
-
-        Returns
-        -------
-        Model
-            That of the lattice, with `entry_coefficients` coefficients for moments.
-        """
+        """Create the spectrum model of the atlas entries, with `entry_coefficients` coefficients for moments."""
         return self._model(self.entry_coefficients)
 
     def _model(self, coefficients: int) -> Model:
@@ -144,32 +133,24 @@ class Options:
         if not low <= self.shortest <= START < END <= self.longest <= high:
             raise OptionError(
                 f"the range must hold {START:g} to {END:g} nm and lie within {low:g} to {high:g} nm, "
-                f"got {self.shortest:g} to {self.longest:g}",
-                code="range-out-of-limits",
+                f"got {self.shortest:g} to {self.longest:g}"
             )
-        if self.space == CAMERA and self.step > STEP:  # a rebuild has the sensitivities of the cube only
+        # A rebuild has the sensitivities of a camera at the wavelengths of the cube only.
+        steps = [step for step in STEPS if step <= STEP or self.space != CAMERA]
+        if self.step not in steps:
+            *others, last = (f"{step:g}" for step in steps)
+            cube = "of a camera's cube " if self.space == CAMERA else ""
             raise OptionError(
-                f"step of a camera's cube must be 1 or 5 nm, got {self.step:g}",
+                f"step {cube}must be {', '.join(others)} or {last} nm, got {self.step:g}",
                 code="unsupported-step",
                 hint="use 5",
             )
-        if self.step not in STEPS:
-            raise OptionError(f"step must be 1, 5 or 10 nm, got {self.step:g}", code="unsupported-step", hint="use 5")
         if (self.longest - self.shortest) % self.step:
             raise OptionError(
                 f"the range must be a multiple of the step of {self.step:g} nm, "
                 f"got {self.shortest:g} to {self.longest:g}",
                 code="range-not-in-steps",
                 hint="use a step of 1",
-            )
-
-    def _check_entry_coefficients(self) -> None:
-        if self.model == Moments.name and not self.coefficients <= self.entry_coefficients <= MAX_COUNT:
-            value = format_value(self.entry_coefficients)
-            raise OptionError(
-                f"entry_coefficients must be in [{self.coefficients}, {MAX_COUNT}], got {value}",
-                code="entry-coefficients-out-of-range",
-                hint="entries have as many coefficients as the nodes, or more",
             )
 
 
@@ -182,7 +163,7 @@ def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
     return {name: tuple(value) if isinstance(value, list) else value for name, value in current.items()}
 
 
-def _dim(name: str, value: object) -> int | Literal["auto"]:
+def _dim(value: object) -> int | Literal["auto"]:
     if isinstance(value, str) and value == AUTO:
         return AUTO
     if isinstance(value, bool) or not isinstance(value, Integral):
@@ -196,87 +177,35 @@ def _dim(name: str, value: object) -> int | Literal["auto"]:
     return int(value)
 
 
-def _whole(name: str, value: object) -> int:
-    if isinstance(value, bool) or not isinstance(value, Integral):
-        raise _wrong_type(name, "a whole number", value)
-    return int(value)
-
-
-def _number(name: str, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise _wrong_type(name, "a number", value)
+def _plain(name: str, kind: str, value: Any) -> Any:
+    """Return the value of an option, by its annotation, as JSON can record it."""
+    if kind.startswith("tuple"):
+        if not isinstance(value, tuple | list):
+            raise OptionError(f"{name} must be a sequence of names, got {format_value(value)}")
+        return tuple(_plain(name, "str", each) for each in value)
+    accepted, recorded, label = TYPES[kind]
+    if not isinstance(value, accepted) or (isinstance(value, bool) and recorded is not bool):
+        raise OptionError(f"{name} must be {label}, got {format_value(value)}")
     try:
-        return float(value)
-    except OverflowError:
+        return recorded(value)
+    except OverflowError:  # a whole number beyond all floats
         return np.inf
 
 
-def _text(name: str, value: object) -> str:
-    if not isinstance(value, str):
-        raise _wrong_type(name, "text", value)
-    return str(value)
-
-
-def _texts(name: str, value: object) -> tuple[str, ...]:
-    if not isinstance(value, tuple | list):
-        raise _wrong_type(name, "a sequence of names", value)
-    return tuple(_text(name, each) for each in value)
-
-
-def _flag(name: str, value: object) -> bool:
-    if not isinstance(value, bool | np.bool_):
-        raise _wrong_type(name, "True or False", value)
-    return bool(value)
-
-
-def _wrong_type(name: str, kind: str, value: object) -> OptionError:
-    return OptionError(f"{name} must be {kind}, got {format_value(value)}", code="option-type")
-
-
-CONVERSIONS: dict[str, Callable[[str, object], Any]] = {
-    "dim": _dim,
-    "model": _text,
-    "coefficients": _whole,
-    "entry_coefficients": _whole,
-    "warp": _text,
-    "axis": _text,
-    "space": _text,
-    "illuminant": _text,
-    "observer": _text,
-    "shortest": _number,
-    "longest": _number,
-    "step": _number,
-    "lights": _texts,
-    "prior": _text,
-    "leave_out": _texts,
-    "threshold": _number,
-    "auto_tolerance": _number,
-    "start": _text,
-    "solver": _text,
-    "seed_corners": _flag,
-    "debug": _flag,
-}
-"""Function by option that returns a plain value for JSON. Raises `OptionError` for other types."""
-
-
 def check_memory(options: Options) -> None:
-    """Raise `OptionError` (``dim-too-large``) if the lattice does not fit into the memory of this machine."""
+    """Raise `OptionError` if the lattice does not fit into the memory of this machine."""
     if not isinstance(options.dim, int):
         return
-    dim, coefficients = options.dim, options.spectrum_model().count
-    need, have = PROCESS_BYTES + dim**3 * _point_bytes(coefficients), _memory()
+    # Peak memory of a node: multipliers, and coefficients in single precision, and the other arrays.
+    node = 16 * options.spectrum_model().count + 60
+    need, have = PROCESS_BYTES + options.dim**3 * node, _memory()
     if need > have:
-        largest = int(max((have - PROCESS_BYTES) / _point_bytes(coefficients), 8) ** (1 / 3))
+        largest = int(max((have - PROCESS_BYTES) / node, 8) ** (1 / 3))
         raise OptionError(
-            f"dim {format_value(dim)} needs about {_gigabytes(need)} of memory, this machine has {_gigabytes(have)}",
-            code="dim-too-large",
+            f"dim {format_value(options.dim)} needs about {_gigabytes(need)} of memory, "
+            f"this machine has {_gigabytes(have)}",
             hint=f"use dim={largest} or less",
         )
-
-
-def _point_bytes(coefficients: int) -> int:
-    """Peak memory of a lattice point: multipliers, and coefficients in single precision, and the other arrays."""
-    return 16 * coefficients + 60
 
 
 def _gigabytes(count: int) -> str:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
+from uplift.atlas import Atlas, merge, read_atlas, shipped_atlases
+from uplift.atlas.document import read_document
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
@@ -15,32 +18,26 @@ from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
 from uplift.lookup import Cube
-from uplift.pipeline.build_cube import build
+from uplift.pipeline.build import build
 from uplift.pipeline.looks import recorded_looks
 from uplift.pipeline.options import CUSTOM, Options, recorded_options
-from uplift.pipeline.provenance import REBUILD, missing_provenance, recorded_atlas, recorded_libraries
+
+REBUILD = "build the cube again"
+"""Hint for cubes whose build cannot be repeated."""
+MAX_FILE_NAME = 255
 
 
 @dataclass(frozen=True, eq=False)
 class StoredScene:
-    """The scene of a cube that was built for images: its present points replace the images.
-
-    Parameters
-    ----------
-    data : CubeData
-        A sparse cube.
-    """
+    """The scene of a cube that was built for images: its present nodes replace the images."""
 
     data: CubeData
 
     def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        """Return the points that are present in the cube; see `SceneLike`."""
+        """Return the nodes that are present in the cube; see `SceneLike`."""
         dim = self.data.lattice.dim
         if dim != boxes.lattice.dim:
-            raise OptionError(
-                f"the points of a stored scene need dim {dim}, got {boxes.lattice.dim}",
-                code="scene-dim-mismatch",
-            )
+            raise OptionError(f"the points of a stored scene need dim {dim}, got {boxes.lattice.dim}")
         return self.data.points.present
 
     def describe(self) -> list[dict[str, Any]]:
@@ -55,61 +52,80 @@ def rebuild(
     *,
     progress: ProgressCallback = ignore_progress,
 ) -> Cube:
-    """Build a cube again with the options that it recorded. Warnings of the first build are not repeated.
+    """Build a cube, read from ``path``, again. Warnings of the first build are not repeated.
 
-    Parameters
-    ----------
-    stored : Cube
-        The cube.
-    path : path-like
-        File that ``stored`` was read from.
-    folders : iterable of path-like, optional
-        Folders to search for atlas files first; see `recorded_atlas`.
-    progress : callable, optional
-        Called with `Progress` events; see `uplift.build`.
-
-    Returns
-    -------
-    Cube
-        The new cube.
-
-    Raises
-    ------
-    CubeFileError
-        The cube does not record its options, was filled from another cube, or an atlas file is missing or changed.
+    Atlas files are searched as by `recorded_atlas`. Raises `CubeFileError` if the cube does not record its options, was
+    filled from another cube, or an atlas file is missing or has changed.
     """
-    options = _recorded_options(stored.data, path)
+    options = _read_options(stored.data, path)
     if "filled" in stored.data.provenance:
         raise CubeFileError(
-            "was filled from another cube and cannot be rebuilt",
-            code="cube-filled",
-            path=path,
-            hint="rebuild the cube that was filled",
+            "was filled from another cube and cannot be rebuilt", path=path, hint="rebuild the cube that was filled"
         )
     folders = tuple(folders)
     atlas = recorded_atlas(stored.data, path, folders)
-    library = recorded_libraries(stored.data, path, folders)
+    candidates = _search_path(path, folders)
+    sources = stored.data.provenance.get("libraries", ())
+    library = tuple(_find(path, source["name"], source["digest"], candidates) for source in sources)
     scene = StoredScene(stored.data) if "scene" in stored.data.provenance else None
+    given = asdict(options)
+    sensor = stored.data.sensor
+    if sensor.sensitivities is not None:
+        given["observer"] = Camera(sensor.space, sensor.wavelengths, sensor.sensitivities)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         try:
-            given = asdict(options) | _recorded_camera(stored.data.sensor)
             looks = recorded_looks(stored.data.provenance)
             return build(atlas, library=library, looks=looks, scene=scene, progress=progress, **given)
         except (LookError, OptionError, UnknownNameError) as error:
             raise _unknown_options(error, path) from error
 
 
-def _recorded_camera(sensor: Sensor) -> dict[str, Camera]:
-    """Return the option that has the sensitivities of a cube of a camera."""
-    if sensor.sensitivities is None:
-        return {}
-    return {"observer": Camera(sensor.space, sensor.wavelengths, sensor.sensitivities)}
+def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = ()) -> Atlas | None:
+    """Read the atlas that a cube, read from ``path``, was built from; None for a cube without one.
+
+    The files are searched by name and digest in ``folders``, in the folder of the cube, and in folders ``atlases`` in
+    these, and by digest among the shipped atlases. A recorded name never opens a file elsewhere. Warnings are not
+    repeated. Raises `CubeFileError` if the cube does not record its atlas, or a file is missing or has changed.
+    """
+    if "atlases" not in data.provenance:
+        raise _missing_provenance(path)
+    sources = data.provenance["atlases"]
+    if not sources:
+        return None
+    candidates = _search_path(path, folders)
+    files = [_find(path, source["name"], source["digest"], candidates) for source in sources]
+    scales = [source.get("measured", "auto") for source in sources]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        return merge(read_atlas(file, measured=scale) for file, scale in zip(files, scales, strict=True))
 
 
-def _recorded_options(data: CubeData, path: StrPath) -> Options:
+def _search_path(path: StrPath, folders: Iterable[StrPath]) -> list[Path]:
+    roots = [*map(Path, folders), Path(path).resolve().parent]
+    return [folder for root in roots for folder in (root, root / "atlases")]
+
+
+def _find(path: StrPath, name: str, digest: str, folders: Sequence[Path]) -> Path:
+    """Return the file of a name and digest; only a plain name is searched in folders, no path on any system."""
+    plain = not set(name) & set("/\\:\0") and name not in ("", ".", "..") and len(name) <= MAX_FILE_NAME
+    candidates = [file for folder in folders if (file := folder / name).is_file()] if plain else []
+    for candidate in candidates:
+        if read_document(candidate).digest == digest:
+            return candidate
+    for shipped in shipped_atlases():
+        if shipped.digest == digest:
+            return shipped.path
+    hint = "pass the folder that contains it, or build the cube again"
+    if candidates:
+        problem = f"its atlas '{name}' has changed ({candidates[0]})"
+        raise CubeFileError(problem, code="atlas-changed", path=path, hint=hint)
+    raise CubeFileError(f"its atlas '{name}' was not found", code="atlas-not-found", path=path, hint=hint)
+
+
+def _read_options(data: CubeData, path: StrPath) -> Options:
     if not data.provenance.get("options"):
-        raise missing_provenance(path)
+        raise _missing_provenance(path)
     try:
         options = Options(**recorded_options(data.provenance["options"]))
     except (TypeError, OptionError, UnknownNameError) as error:
@@ -117,7 +133,6 @@ def _recorded_options(data: CubeData, path: StrPath) -> Options:
     if options.solver == CUSTOM:
         raise CubeFileError(
             "was built with a solver that was given as an object, which a cube cannot record",
-            code="custom-solver",
             path=path,
             hint="build it again with that solver, or with a named one",
         )
@@ -131,6 +146,9 @@ def _recorded_options(data: CubeData, path: StrPath) -> Options:
     return options
 
 
+def _missing_provenance(path: StrPath) -> CubeFileError:
+    return CubeFileError("does not record how it was built", code="missing-provenance", path=path, hint=REBUILD)
+
+
 def _unknown_options(error: Exception, path: StrPath) -> CubeFileError:
-    problem = f"records options that this version does not have ({error})"
-    return CubeFileError(problem, code="unknown-recorded-options", path=path, hint=REBUILD)
+    return CubeFileError(f"records options that this version does not have ({error})", path=path, hint=REBUILD)

@@ -19,7 +19,7 @@ from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.io import texture
 from uplift.io.texture import colour_profile
-from uplift.pipeline import build
+from uplift.pipeline.build import build
 
 GAMMA = struct.pack(">4sIIHxx", b"curv", 0, 1, round(2.2 * 256))
 LINEAR = struct.pack(">4sII", b"curv", 0, 0)

@@ -16,7 +16,7 @@ from tests.parts import CC, LLVM, MITSUBA, need
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
 from uplift.common.processes import call_in_child
-from uplift.fit import families_with
+from uplift.fit.families import families_with
 from uplift.lab.chart import methods
 from uplift.lab.chart.judge import RANGE, ours, published_srgb, round_trip
 from uplift.lab.chart.measure import measure_method

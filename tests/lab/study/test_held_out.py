@@ -21,7 +21,7 @@ from uplift.lab.study.held_out import (
     pooled_calibration,
     spectrum_errors,
 )
-from uplift.pipeline import build
+from uplift.pipeline.build import build
 
 GRID = observer.grid()
 

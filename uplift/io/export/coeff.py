@@ -123,7 +123,7 @@ def _fit(data: CubeData, scale: Array) -> tuple[NDArray[np.float32], float]:
     Levels are fitted upwards and downwards from a medium one. Each starts from the multipliers of the previous level,
     so that neighbours are similar and can be interpolated.
     """
-    from uplift.fit.solve import solve
+    from uplift.fit.solver import solve
 
     sensor, res = data.sensor, len(scale)
     model = Sigmoid(*sensor.wavelengths[[0, -1]].tolist())

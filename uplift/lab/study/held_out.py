@@ -17,10 +17,10 @@ from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.cube import CubeData
-from uplift.fit import families_with
+from uplift.fit.families import families_with
 from uplift.lab.study.baselines import local_linear, mismatch_centroids
 from uplift.lookup import Cube
-from uplift.pipeline import build
+from uplift.pipeline.build import build
 from uplift.report.calibration import Calibration, check_calibration
 
 __all__ = [

@@ -17,7 +17,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.cube import CubeData
 from uplift.models import reflectance
-from uplift.pipeline import build
+from uplift.pipeline.build import build
 
 NOISE = 0.002
 """Repeatability of a spectrophotometer: standard deviation of a reflectance."""

@@ -19,7 +19,7 @@ from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.study.pointwise import PointwiseProblem, fit_pointwise
 from uplift.lattice import Lattice, Status
 from uplift.models import Moments, Sigmoid
-from uplift.pipeline import build
+from uplift.pipeline.build import build
 from uplift.pipeline.options import ModelName
 
 __all__ = ["RunConfig", "RunResult", "run", "study_stability"]

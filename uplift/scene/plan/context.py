@@ -16,7 +16,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import ProgressCallback
 from uplift.lookup import Cube
-from uplift.pipeline import build
+from uplift.pipeline.build import build
 from uplift.scene.plan.colours import ColourSet, PixelSample, SampledColours, sample_colours
 from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ColourGroup, ErrorSummary, EvaluationSet
 from uplift.scene.plan.scene_file import SceneFile

@@ -20,7 +20,7 @@ from uplift.common.version import VERSION
 from uplift.io.scene_colours import Images, file_digest
 from uplift.io.texture.colours import check_encoding
 from uplift.lookup import Cube
-from uplift.pipeline import build
+from uplift.pipeline.build import build
 from uplift.pipeline.options import Options, recorded_options
 from uplift.scene.plan.commands import build_command, expanded_command, texture_command
 from uplift.scene.plan.evaluation import Decision, ErrorSummary

@@ -113,8 +113,8 @@ def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
     tuple of Cube, float and float
         The loaded cube, the CPU seconds of the last build, which does not include compilation, and those of loading.
     """
-    from uplift.fit import families_with
-    from uplift.pipeline import build
+    from uplift.fit.families import families_with
+    from uplift.pipeline.build import build
 
     unknown = families_with(task.unseen)
     for _ in range(task.effort.builds):

@@ -8,11 +8,10 @@ import pytest
 import uplift
 from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
-from uplift.fit import Problem, unrealisable
+from uplift.fit.problem import nodes_of
 from uplift.lattice import Lattice, Status
 from uplift.lookup import query
-from uplift.models import Moments, reflectance
-from uplift.models.minimum_norm import forward_map
+from uplift.models import reflectance
 
 SPACES = ("P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 DIM = 11
@@ -35,8 +34,8 @@ def test_every_realisable_colour_is_fitted(space, model, count):
 def test_the_nearest_colour_has_the_same_hue_and_luminance(sensor):
     wide = observer.sensor("ITU-R BT.2020")
     lattice = Lattice(observer.axis_nodes("srgb", 9))
-    beyond = unrealisable(lattice, wide, 1e-4)
-    target, nearest = lattice.target(beyond.points), beyond.nearest
+    beyond = nodes_of(lattice, wide, 1e-4)
+    target, nearest = lattice.target(beyond.unrealisable), beyond.nearest
     luminance = wide.xyz(target)[:, 1:2]
     np.testing.assert_allclose(wide.xyz(nearest)[:, 1:2], luminance, atol=1e-12)
     share = (nearest - luminance) / (target - luminance)
@@ -44,18 +43,16 @@ def test_the_nearest_colour_has_the_same_hue_and_luminance(sensor):
     outside = solid(wide.matrix).signed_distance(nearest)
     assert outside.max() < 0
     assert outside.min() > -1e-3
-    assert unrealisable(lattice, sensor, 1e-4).points.size == 0  # all of sRGB is realisable
+    assert nodes_of(lattice, sensor, 1e-4).unrealisable.size == 0  # all of sRGB is realisable
 
 
 def test_goals_are_targets_or_nearest_realisable_colours():
     wide = observer.sensor("ITU-R BT.2020")
-    model, lattice = Moments(9), Lattice(observer.axis_nodes("srgb", 5))
-    beyond = unrealisable(lattice, wide, 1e-4)
-    problem = Problem(model, forward_map(model, wide.wavelengths, wide.matrix), lattice, unrealisable=beyond)
-    points = np.arange(lattice.size)[::-1]
+    lattice = Lattice(observer.axis_nodes("srgb", 5))
+    nodes = nodes_of(lattice, wide, 1e-4)
     expected = lattice.points.copy()
-    expected[beyond.points] = beyond.nearest
-    np.testing.assert_array_equal(problem.goal(points), expected[::-1])
+    expected[nodes.unrealisable] = nodes.nearest
+    np.testing.assert_array_equal(nodes.goal(nodes.points[::-1]), expected[::-1])
 
 
 def test_a_query_reports_unrealisable_colours():

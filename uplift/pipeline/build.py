@@ -1,57 +1,45 @@
-"""The order of a build: atlas → fitted entries → lattice → prior → fitted points → cube."""
+"""The order of a build: atlas → fitted entries → prior → lattice and seeds → growth → improvement → storage → cube."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from uplift import fit
-from uplift.atlas import Atlas
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
-from uplift.common.arrays import Array, StrPath
+from uplift.common.arrays import StrPath
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
 from uplift.cube import CubeData
+from uplift.fit.base import learn_base
+from uplift.fit.growth import grow_from_prior, supporting_points
+from uplift.fit.growth_thesis import grow_from_neighbours
+from uplift.fit.improve import STEPS, THESIS_STEPS, improve
+from uplift.fit.prior import fit_prior
+from uplift.fit.problem import Problem, nodes_of
+from uplift.fit.seeds import FULL_ENTRY, InitialGuess, learnt_blend, seed
+from uplift.fit.store import store
 from uplift.lattice import EntryBoxes, Lattice, SceneLike
-from uplift.lattice.box_widths import half_widths
+from uplift.lattice.entry_boxes import half_widths
 from uplift.lookup import Cube
 from uplift.models.moments import MAX_COUNT
-from uplift.pipeline.constraints import Constraints, fit_constraints
-from uplift.pipeline.entries import as_atlas, entries_in_gamut, warn
-from uplift.pipeline.libraries import AtlasLike, read_libraries
-from uplift.pipeline.libraries import describe as describe_libraries
-from uplift.pipeline.libraries import families as library_families
-from uplift.pipeline.looks import LooksLike, as_looks, resolve_looks
-from uplift.pipeline.looks import describe as describe_looks
-from uplift.pipeline.options import (
-    AUTO,
-    AXES,
-    CUSTOM,
-    ModelName,
-    Options,
-    PriorName,
-    SolverName,
-    check_memory,
-)
-from uplift.pipeline.provenance import describe_source
-from uplift.pipeline.setting import Setting, make_setting
+from uplift.pipeline import entries as spectra
+from uplift.pipeline.entries import AtlasLike
+from uplift.pipeline.options import AUTO, CUSTOM, ModelName, Options, PriorName, SolverName, check_memory
+from uplift.pipeline.problem import choose_dim, problem_of
 
 if TYPE_CHECKING:
-    from uplift.fit.stock_solver import Solver
-
-MAX_NAMES = 6
-"""Entries that a warning names."""
+    from uplift.fit.optimistix_solvers import Solver
+    from uplift.pipeline.look import LooksLike
 
 
-@single_threaded_blas()
 def build(
     atlas: AtlasLike = None,
     *,
@@ -70,7 +58,7 @@ def build(
     lights: Sequence[str] = SCENE_LIGHTS,
     prior: PriorName = "learnt",
     library: AtlasLike = None,
-    looks: LooksLike = None,
+    looks: LooksLike | None = None,
     leave_out: Sequence[str] = (),
     threshold: float = 1e-4,
     auto_tolerance: float = 0.5,
@@ -127,17 +115,15 @@ def build(
         Colours and what they are to be under other lights, or a TOML file of them; see `uplift.Look`. Each is an entry
         of the cube like a measured one. Colours near it follow.
     leave_out : sequence of str, optional
-        Families of the shipped library that the learnt prior must not know, for tests on them; see
-        `uplift.fit.shipped_library`.
+        Families of the shipped library that the learnt prior must not know, for tests on them.
     threshold : float, default 1e-4
         Largest ``|target − stored|`` of a fitted lattice point in linear RGB, in (0, 0.1].
     auto_tolerance : float, default 0.5
         With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the lattice.
     seed_corners : bool, default False
         Start all eight corners of the cell of each atlas entry from the entry, as Tódová 2020 does. By default, seven
-        of them start between entry and prior, with a share of the entry from ½ to 1 that the nugget of the atlas
-        determines, and less, down to 0, at colours unlike the entry's; see `uplift.fit.Prior.corner_share`.
-        ``start="neighbours"`` always does.
+        of them start between entry and prior, with a weight of the entry from ½ to 1 that the nugget of the atlas
+        determines, and less, down to 0, at colours unlike the entry's. ``start="neighbours"`` always does.
     start : {"prior", "neighbours"}, default "prior"
         What lattice points start from: the spectrum that the atlas lets expect at their colour, or the spectra of
         their fitted neighbours, outward from the seeds (Tódová 2020, section 3.1).
@@ -207,162 +193,87 @@ def build(
         solver=solver if isinstance(solver, str) else CUSTOM,
         debug=debug,
     )
+    if isinstance(scene, str | os.PathLike | Sequence):
+        from uplift.io.scene_colours import Images  # a build without images needs no image code
+
+        scene = Images(tuple(map(Path, [scene] if isinstance(scene, str | os.PathLike) else scene)))
     check_memory(options)
-    setting = make_setting(options, observer, solver)
-    options = setting.options
-    scene = None if scene is None else _as_scene(scene)
-    libraries = read_libraries(library)
-    families = library_families(setting.options, libraries, setting.sensor)
-    atlas = as_atlas(atlas)
-    measured = entries_in_gamut(atlas, setting.sensor)
-    wished = resolve_looks(
-        as_looks(looks), setting.entry_model, setting.sensor, atlas.names, measured.names, measured.rgb
-    )
-
-    constraints = fit_constraints(setting, measured, wished, families)
-    corner_share = _corner_share(options, constraints.prior)
-    options = _with_dim(setting, constraints, corner_share)
-    placed = _place(options, constraints.rgb)
-    _warn_of_crowding(constraints.names, placed)
-    starts = fit.Starts(constraints.prior, placed.seeds, _seed_multipliers(options, constraints), corner_share)
-    fitted = _fit_nodes(setting, placed, starts, scene, progress)
-
-    table = constraints.table(placed.boxes)
-    recorded = _provenance(options, atlas, measured.names, scene, starts, fitted)
-    recorded |= describe_libraries(libraries, families, constraints.relevance)
-    recorded |= describe_looks(constraints.looks, table, setting.model, setting.sensor)
-    return Cube(
-        CubeData(
-            model=setting.model,
-            lattice=placed.lattice,
-            sensor=setting.sensor,
-            threshold=options.threshold,
-            atlas=table,
-            points=fitted.points if options.debug else replace(fitted.points, round=None),
-            error_illuminant=ERROR_ILLUMINANT,
-            provenance=recorded,
-        )
-    )
+    options, problem = problem_of(options, observer, solver)
+    return _build(atlas, options, problem, library, looks, scene, progress)
 
 
-def _corner_share(options: Options, prior: fit.Prior) -> fit.CornerShare:
-    alone = options.seed_corners or options.start == "neighbours"
-    return fit.ENTRY_ALONE if alone else prior.corner_share
-
-
-def _seed_multipliers(options: Options, constraints: Constraints) -> Array:
-    """Multipliers (E, C) that seeds start from; growth from neighbours takes them as the thesis does."""
-    return constraints.recalculated() if options.start == "neighbours" else constraints.at_nodes.multipliers
-
-
-@dataclass(frozen=True, eq=False)
-class _Placed:
-    """Constraints in a lattice: regions with their spectra, and the points that start from them."""
-
-    lattice: Lattice
-    boxes: EntryBoxes
-    seeds: fit.Seeds
-
-
-def _place(options: Options, rgb: Array) -> _Placed:
-    lattice = Lattice(observers.axis_nodes(options.axis, int(options.dim)))
-    return _Placed(lattice, EntryBoxes(lattice, rgb, half_widths(lattice, rgb)), fit.seed(lattice, rgb))
-
-
-def _fit_nodes(
-    setting: Setting,
-    placed: _Placed,
-    starts: fit.Starts,
+@single_threaded_blas()
+def _build(
+    atlas: AtlasLike,
+    options: Options,
+    problem: Problem,
+    library: AtlasLike,
+    looks: LooksLike | None,
     scene: SceneLike | None,
     progress: ProgressCallback,
-) -> fit.LatticeFit:
-    """Fit all points of the lattice, or those that a scene needs."""
-    lattice, sensor, strategy = placed.lattice, setting.sensor, fit.STRATEGIES[setting.options.start]
-    kept = None if scene is None else np.flatnonzero(scene.required_points(placed.boxes, sensor, progress))
-    active = None if kept is None else strategy.supporting_points(lattice, kept)
-    outside = fit.unrealisable(lattice, sensor, setting.options.threshold / 2, active)
-    problem = replace(setting.problem, lattice=lattice, unrealisable=outside, active_points=active)
-    fitted = fit.fit_lattice(problem, starts, progress, strategy)
-    return fitted if kept is None else replace(fitted, points=fitted.points.restricted_to(kept))
+) -> Cube:
+    """Build a cube from checked options and the problem that they describe."""
+    sensor, model, entry_model = problem.sensor, problem.model, options.entry_model()
+    neighbours = options.start == "neighbours"
 
+    # The spectra: families of the library, entries of the atlas, and looks, which become further entries.
+    libraries = spectra.read_libraries(library)
+    families = spectra.families_of(options, libraries, sensor)
+    atlas = spectra.as_atlas(atlas)
+    measured = spectra.entries_in_gamut(atlas, sensor)
+    targets = None
+    if looks is not None:
+        from uplift.pipeline.looks import targets_of
 
-def _as_scene(scene: SceneLike | StrPath | Sequence[StrPath]) -> SceneLike:
-    """Paths as `uplift.io.scene_colours.Images`, imported only for them: a build without images needs no image code."""
-    if isinstance(scene, str | os.PathLike | Sequence):
-        from uplift.io.scene_colours import Images
+        targets = targets_of(looks, entry_model, sensor, atlas.names, measured)
 
-        paths = [scene] if isinstance(scene, str | os.PathLike) else scene
-        return Images(tuple(Path(path) for path in paths))
-    return scene
+    # Entries, and the prior that they and the families let expect.
+    constraints = spectra.fit_constraints(problem, entry_model, measured)
+    base, relevance = learn_base(problem, families, constraints.at_nodes)
+    prior = fit_prior(problem, constraints.at_nodes, base)
+    if targets is not None:
+        targets, constraints, prior = targets.fit(problem, constraints, prior)
 
+    # The lattice, the boxes of the entries in it, and the nodes that start from entries.
+    blend = FULL_ENTRY if options.seed_corners or neighbours else learnt_blend(prior)
+    if options.dim == AUTO:
+        options = choose_dim(options, problem, constraints, prior, blend)
+    lattice, rgb = Lattice(observers.axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
+    boxes, seeds = EntryBoxes(lattice, rgb, half_widths(lattice, rgb)), seed(lattice, rgb)
+    spectra.warn_of_crowding(constraints.names, boxes, seeds)
+    own = constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
+    guess = InitialGuess(prior, seeds, own, blend)
 
-def _with_dim(setting: Setting, constraints: Constraints, corner_share: fit.CornerShare) -> Options:
-    """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits into memory."""
-    options = setting.options
-    if options.dim != AUTO:
-        return options
-    choice = fit.choose_lattice(
-        setting.problem,
-        constraints.prior,
-        corner_share,
-        setting.lights,
-        constraints.at_nodes,
-        observers.axis_nodes,
-        AXES,
-        options.auto_tolerance,
-    )
-    if choice.lost:
-        warn(
-            f"no dim up to {fit.DIMS[-1]} keeps every entry within ΔE00 {options.auto_tolerance:g}: "
-            f"{choice.lost} of {len(constraints.rgb)} are too close to others; dim {choice.dim} keeps the most",
-            "no-dim-keeps-all-entries",
-        )
-    options = replace(options, axis=choice.axis, dim=choice.dim)
-    check_memory(options)
-    return options
+    # The nodes that a scene needs, or all, grow outward, are improved and stored.
+    kept = None if scene is None else np.flatnonzero(scene.required_points(boxes, sensor, progress))
+    fitted = None if kept is None or neighbours else supporting_points(lattice, kept)
+    nodes = nodes_of(lattice, sensor, options.threshold / 2, fitted)
+    grow, steps = (grow_from_neighbours, THESIS_STEPS) if neighbours else (grow_from_prior, STEPS)
+    growth = grow(problem, nodes, lambda points: guess(points, nodes.goal(points)), seeds.points, progress)
+    improvements = improve(growth, steps)
+    points = store(growth, seeds, prior.standard_errors(nodes))
+    points = points if kept is None else points.restricted_to(kept)
 
-
-def _warn_of_crowding(names: Sequence[str], placed: _Placed) -> None:
-    half_width, collisions = placed.boxes.half_width, placed.seeds.collisions
-    duplicates = [names[row] for row in np.flatnonzero(half_width == 0).tolist()]
-    crowded = [names[collision.lost] for collision in collisions if half_width[collision.lost]]
-    if duplicates:
-        warn(
-            f"{_listed(duplicates)} left out: an earlier entry has the same colour, which has only one answer",
-            "entry-duplicate",
-        )
-    if crowded:
-        warn(
-            f"{_listed(crowded)} crowded: closer entries own the nearest lattice point. Queries at the entries' own "
-            "colours stay exact, queries near them are less accurate",
-            "entry-crowded",
-            hint='use dim="auto" for a lattice that is large enough, or see the report of the cube',
-        )
-
-
-def _listed(names: Sequence[str]) -> str:
-    """'entry 'a' is', 'entries 'a', 'b', 'c' and 12 more are'."""
-    shown = ", ".join(f"'{name}'" for name in names[:MAX_NAMES])
-    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
-    return f"entry {shown} is" if len(names) == 1 else f"entries {shown}{more} are"
-
-
-def _provenance(
-    options: Options,
-    atlas: Atlas,
-    names: tuple[str, ...],
-    scene: SceneLike | None,
-    starts: fit.Starts,
-    fitted: fit.LatticeFit,
-) -> dict[str, Any]:
-    """How the cube was built, in JSON values."""
-    return {
+    table = constraints.table(model, boxes, prior)
+    provenance = {
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
-        "atlases": [describe_source(source) for source in atlas.sources],
-        "left_out": [name for name in atlas.names if name not in names],
-        "skipped": [entry.name for entry in atlas.skipped],
-        "prior": starts.describe(),
-        "improvements": [step.to_json() for step in fitted.improvements],
+        **spectra.describe_atlas(atlas, measured.names),
+        "prior": prior.describe() and {**prior.describe(), "corner_share": blend.near},
+        "improvements": [{"step": step, "tried": tried, "mended": fixed} for step, tried, fixed in improvements],
         **({} if scene is None else {"scene": scene.describe()}),
+        **spectra.describe_libraries(libraries, families, relevance),
+        **({} if targets is None else targets.describe(table, model, sensor)),
     }
+    return Cube(
+        CubeData(
+            model=model,
+            lattice=lattice,
+            sensor=sensor,
+            threshold=options.threshold,
+            atlas=table,
+            points=points if options.debug else replace(points, round=None),
+            error_illuminant=ERROR_ILLUMINANT,
+            provenance=provenance,
+        )
+    )

@@ -1,0 +1,202 @@
+"""Families of materials: the shipped library, kriging against the explicit covariance, and relevances."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from tests.conftest import ATLASES
+from tests.helpers import raises
+from tools import ship_library
+from uplift.atlas import read_atlas, resample
+from uplift.colorimetry import observer
+from uplift.common.errors import UnknownNameError
+from uplift.fit.families import (
+    FILE,
+    LENGTH,
+    MAX_POINTS,
+    MAX_RELEVANCE,
+    NUGGET,
+    STEPS,
+    FamilySamples,
+    average_close,
+    families_with,
+    krige_families,
+    learn_relevance,
+    noise_variance,
+    shipped_library,
+)
+
+RNG = np.random.default_rng(5)
+LIGHTS = [observer.light(name) for name in ("A", "FL11")]
+ENTRIES = 40
+PLACES = RNG.uniform((0, -50, -50), (100, 50, 50), (ENTRIES, 3))
+PLAIN = np.full((ENTRIES, 81), 0.4)
+WAVES = np.cos(np.arange(2, 8)[:, None] * np.linspace(0, np.pi, 81))
+PARTS = 0.02 * RNG.normal(size=(2, ENTRIES, 6)) @ WAVES
+OTHERS = RNG.normal(size=(20, ENTRIES, 6)) @ WAVES
+"""Deviations of entries that no family explains."""
+
+
+def test_the_shipped_file_is_the_output_of_the_tool(tmp_path):
+    written = tmp_path / "library.npz"
+    ship_library.main(written)
+    with np.load(written) as new, (files("uplift.fit") / FILE).open("rb") as file, np.load(file) as shipped:
+        assert set(new.files) == set(shipped.files)
+        for name in new.files:
+            np.testing.assert_array_equal(new[name], shipped[name], err_msg=name)
+    assert written.stat().st_size < 100_000
+
+
+def test_measured_families_are_the_shipped_atlases():
+    families = {family.name: family.measured for family in shipped_library()}
+    for name, atlases in ship_library.FAMILIES.items():
+        np.testing.assert_allclose(families[name], ship_library.measurements(atlases), atol=0.51 / STEPS)
+    for measured in families.values():
+        assert measured.min() >= 0
+        assert measured.max() <= 1
+
+
+def test_otsu_spectra_have_their_colours_and_no_seams():
+    light = observer.light("D65").xyz
+    ramp = np.linspace([0.30, 0.38, 0.30], [0.40, 0.38, 0.30], 400)
+    spectra = ship_library.blurred_otsu(ramp, light)
+    np.testing.assert_allclose(spectra @ light.T, ramp, atol=1e-12)
+    steps = np.abs(np.diff(spectra, axis=0)).max(axis=1)
+    assert steps.max() < 0.02
+    assert steps.max() < 10 * np.median(steps)
+
+
+def test_families_can_be_left_out():
+    names = [family.name for family in shipped_library()]
+    assert [family.name for family in shipped_library(["vs", "tcs"])] == [
+        name for name in names if name not in ("vs", "tcs")
+    ]
+    with raises(UnknownNameError, "unknown-library-family"):
+        shipped_library(["absent"])
+
+
+@pytest.mark.parametrize(("atlas", "families"), [("macbeth", ("checker",)), ("cie2017", ("cie2017",))])
+def test_families_are_found_by_their_spectra(sensor, atlas, families):
+    measured = resample(read_atlas(ATLASES / f"{atlas}.txt"), sensor.wavelengths).values
+    assert families_with(measured) == families
+    assert families_with(np.clip(measured + 0.01, 0, 1)) == ()
+    assert families_with(measured[:0]) == ()
+
+
+def samples(count, spread=5.0, related=0.0, counts=1.0):
+    locations = RNG.uniform([20, -30, -30], [90, 30, 30], (count, 3))
+    return FamilySamples(locations, RNG.normal(size=(count, 4)), np.full(count, counts), spread, related)
+
+
+def matern(first, second):
+    scaled = np.sqrt(3) * np.linalg.norm(first[:, None] - second[None], axis=-1) / LENGTH
+    return (1 + scaled) * np.exp(-scaled)
+
+
+def conditional_mean(families, lab):
+    """Mean of shared deviation plus the related share of each family's own, given all samples."""
+    where = np.concatenate([family.locations for family in families])
+    what = np.concatenate([family.deviations for family in families])
+    covariance = matern(where, where)
+    cross = matern(lab, where)
+    first = 0
+    for family in families:
+        own = slice(first, first + len(family.locations))
+        covariance[own, own] += family.spread * matern(family.locations, family.locations)
+        covariance[own, own] += np.diag(NUGGET / family.counts)
+        cross[:, own] *= 1 + family.related * family.spread
+        first = own.stop
+    return cross @ np.linalg.solve(covariance, what)
+
+
+@pytest.mark.parametrize("sizes", [(12, 30), (1, 7, 0), (25,)])
+def test_it_is_the_conditional_mean(sizes):
+    families = [
+        samples(size, spread, related) for size, spread, related in zip(sizes, (5, 1, 2), (0, 0.5, 1), strict=False)
+    ]
+    lab = RNG.uniform([0, -60, -60], [100, 60, 60], (50, 3))
+    kriging = krige_families(families)
+    np.testing.assert_allclose(kriging(lab, np.ones(len(sizes))), conditional_mean(families, lab), atol=1e-9)
+
+
+def test_the_sum_of_the_contributions_times_relevance_is_the_answer():
+    kriging = krige_families([samples(9), samples(14), samples(0)])
+    lab = RNG.uniform(0, 80, (6, 3))
+    relevance = np.array([0.3, 2.0, 1.0])
+    expected = np.einsum("f,fnk->nk", relevance, kriging.contributions(lab))
+    np.testing.assert_allclose(kriging(lab, relevance), expected, atol=1e-12)
+
+
+def test_a_large_family_does_not_outweigh_a_small_one():
+    place = np.array([[50.0, 0, 0]])
+    small = FamilySamples(place.repeat(3, axis=0), np.full((3, 1), -1.0), np.ones(3), 5.0, 0.0)
+    large = FamilySamples(place.repeat(300, axis=0), np.full((300, 1), 1.0), np.ones(300), 5.0, 0.0)
+    both = krige_families([small, large])(place, np.ones(2))
+    assert abs(both.item()) < 0.01
+    same_family = FamilySamples(
+        np.concatenate([small.locations, large.locations]),
+        np.concatenate([small.deviations, large.deviations]),
+        np.ones(303),
+        5.0,
+        0.0,
+    )
+    assert krige_families([same_family])(place, np.ones(1)).item() > 0.1
+
+
+def test_close_spectra_are_averaged_where_there_are_many():
+    few = samples(20)
+    locations, deviations, counts = average_close(few.locations, few.deviations)
+    assert locations is few.locations
+    assert deviations is few.deviations
+    np.testing.assert_array_equal(counts, 1)
+    many = samples(20 * MAX_POINTS)
+    locations, deviations, counts = average_close(many.locations, many.deviations)
+    assert len(locations) <= MAX_POINTS
+    assert counts.sum() == len(many.locations)
+    np.testing.assert_allclose(counts @ deviations, many.deviations.sum(axis=0), atol=1e-9)
+
+
+def learn(measured, rows=slice(None)):
+    return learn_relevance(LIGHTS, PLACES[rows], PLAIN[rows], PARTS[:, rows], measured[rows])
+
+
+@pytest.mark.parametrize("truth", [(2.0, 0.5), (0.0, 1.0), (1.3, 1.6)])
+def test_relevances_of_an_explained_atlas_are_found(truth):
+    measured = PLAIN + np.tensordot(truth, PARTS, 1)
+    np.testing.assert_allclose(learn(measured + 1e-4 * OTHERS[0]), truth, atol=0.1)
+
+
+def test_relevances_have_bounds():
+    assert learn(PLAIN + 7 * PARTS[0] + PARTS[1])[0] == MAX_RELEVANCE
+    assert learn(PLAIN + PARTS[0] - 5 * PARTS[1])[1] == 0
+
+
+def distances(amplitude, rows=slice(None)):
+    """Distance from 1 of relevances that are truly 2 and 0, over atlases."""
+    measured = PLAIN + 2 * PARTS[0]
+    return np.mean([np.abs(learn(measured + amplitude * other, rows) - 1).mean() for other in OTHERS])
+
+
+def test_what_no_family_explains_keeps_relevances_near_1():
+    assert distances(0.001) > 0.9
+    assert distances(0.5) < 0.5
+    assert distances(0.05, slice(0, 3)) < distances(0.05) - 0.1
+
+
+def test_without_entries_or_differences_relevances_are_1():
+    exact = PLAIN + PARTS.sum(axis=0)
+    unused = learn_relevance(LIGHTS, PLACES, PLAIN, 0 * PARTS, exact)
+    for learnt in (learn(PLAIN, slice(0, 0)), learn(exact), unused):
+        np.testing.assert_allclose(learnt, 1, atol=1e-12)
+
+
+@pytest.mark.parametrize("parts", [1, 3])
+def test_noise_counts_independent_parts(parts):
+    """Residuals of 40 values are combinations of a few independent ones of variance 4."""
+    directions = np.linalg.qr(RNG.normal(size=(40, parts)))[0].T
+    residuals = 2 * RNG.normal(size=(4000, parts)) @ directions
+    assert noise_variance(residuals) == pytest.approx(4, rel=0.1)
+    assert noise_variance(0 * residuals) == 0

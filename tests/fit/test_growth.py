@@ -1,0 +1,242 @@
+"""Growth and improvement, from the prior and as in Tódová 2020, section 3.1: all nodes are fitted from any seeds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from uplift import build, read_atlas
+from uplift.colorimetry import observer
+from uplift.common.progress import ignore_progress
+from uplift.fit.base import smooth
+from uplift.fit.growth import Growth, grow_from_prior, strides
+from uplift.fit.growth_thesis import grow_from_neighbours
+from uplift.fit.improve import improve
+from uplift.fit.prior import Prior
+from uplift.fit.problem import Nodes, Problem
+from uplift.fit.seeds import InitialGuess, seed
+from uplift.fit.store import store
+from uplift.lattice import NOT_FITTED, Lattice, Status
+from uplift.models import Moments, Sigmoid, reflectance
+from uplift.models.minimum_norm import residual
+
+MODEL = Moments(9)
+LATTICE = Lattice(observer.axis_nodes("srgb", 7))
+NOBODY = np.zeros((0, 3))
+NO_SEEDS = np.zeros(0, dtype=np.int64)
+
+
+def all_nodes(lattice, active=None):
+    """Nodes that are fitted to their own colours, realisable or not."""
+    none = np.zeros(0, dtype=np.int64)
+    return Nodes(lattice, np.arange(lattice.size) if active is None else active, none, np.zeros((0, 3)))
+
+
+def fitted(model, sensor, lattice, rgb=NOBODY):
+    """Fit a lattice with entries of grey spectra at linear RGB (E, 3): table of nodes, improvements."""
+    problem, nodes, seeds = Problem(sensor, model), all_nodes(lattice), seed(lattice, rgb)
+    prior = Prior(model, sensor, smooth(model, problem.forward))
+    guess = InitialGuess(prior, seeds, np.zeros((len(rgb), model.count)))
+    growth = grow_from_prior(problem, nodes, lambda at: guess(at, nodes.goal(at)), seeds.points, ignore_progress)
+    improvements = improve(growth)
+    return store(growth, seeds, None), improvements
+
+
+def missed(model, sensor, lattice, coefficients):
+    """Distance (n,), max |linear RGB|, of stored coefficients from their targets."""
+    spectra = reflectance(model, coefficients, sensor.wavelengths)
+    return np.abs(sensor.rgb(spectra) - lattice.points).max(axis=1)
+
+
+@settings(max_examples=8, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(arrays(float, st.tuples(st.integers(0, 6), st.just(3)), elements=st.floats(0.02, 0.98), unique=True))
+def test_any_set_of_seeds_fits_the_lattice(sensor, rgb):
+    points, _ = fitted(MODEL, sensor, LATTICE, rgb)
+    assert missed(MODEL, sensor, LATTICE, points.coefficients).max() <= 1e-4
+    assert points.distance.max() <= 1e-4
+    assert Status.UNFITTED not in points.status
+    assert np.isfinite(points.coefficients).all()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("model", [Moments(3), MODEL, Moments(17), Sigmoid()], ids=lambda m: f"{m.name}{m.count}")
+def test_tiny_lattices_are_fitted_to_their_corners(model, dim, sensor):
+    lattice = Lattice(observer.axis_nodes("srgb", dim))
+    points, _ = fitted(model, sensor, lattice)
+    assert missed(model, sensor, lattice, points.coefficients).max() <= 1e-4
+
+
+def test_points_that_fail_from_their_start_are_fitted_from_their_neighbours(sensor):
+    """All but the middle point start so near black that no step helps; growth proceeds outward from it."""
+    rounds = []
+    middle = LATTICE.size // 2
+    start = np.full((LATTICE.size, 9), -1e9) * MODEL.constant()
+    start[middle] = 0
+    grown = grow_from_prior(
+        Problem(sensor, MODEL), all_nodes(LATTICE), lambda at: start[at], np.array([middle]), rounds.append
+    )
+    steps = np.abs(LATTICE.position(np.arange(LATTICE.size)) - LATTICE.position(np.array(middle))).max(axis=1)
+    fitted = grown.round != NOT_FITTED
+    assert fitted.sum() > 300
+    assert (grown.round[fitted & (steps > 0)] >= steps[fitted & (steps > 0)]).sum() > 300
+    assert sorted({done.step for done in rounds}) == list(range(rounds[-1].step + 1))
+    assert rounds[-1].done == fitted.sum()
+    assert all(done.total == LATTICE.size for done in rounds)
+
+
+def test_growth_proceeds_from_a_coarse_lattice_to_finer_ones(sensor):
+    lattice = Lattice(observer.axis_nodes("srgb", 17))
+    assert strides(lattice.dim) == [4, 2, 1]
+    points, improvements = fitted(MODEL, sensor, lattice)
+    position = lattice.position(np.arange(lattice.size))
+    for number, stride in enumerate(strides(lattice.dim)):
+        np.testing.assert_array_equal(points.round <= number, (position % stride == 0).all(axis=1))
+    assert improvements == ()
+
+
+@pytest.mark.parametrize(("dim", "steps"), [(2, [1]), (7, [1]), (8, [2, 1]), (32, [8, 4, 2, 1])])
+def test_the_coarsest_lattice_has_at_least_four_cells_an_axis(dim, steps):
+    assert strides(dim) == steps
+
+
+def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch):
+    """All at once, from every second node, and over three rounds; few points differ."""
+    lattice = Lattice(observer.axis_nodes("srgb", 17))
+    spectra = {}
+    for order in ([1], [2, 1], [4, 2, 1]):
+        monkeypatch.setattr("uplift.fit.growth.strides", lambda dim, order=order: order)
+        points = fitted(MODEL, sensor, lattice, np.array([[0.2, 0.3, 0.4]]))[0]
+        assert points.round.max() == len(order) - 1
+        spectra[len(order)] = reflectance(MODEL, points.coefficients, sensor.wavelengths)
+    for other in (2, 3):
+        difference = np.abs(spectra[other] - spectra[1]).max(axis=1)
+        assert np.median(difference) < 1e-6
+        assert np.quantile(difference, 0.99) < 1e-5
+        assert (difference > 2e-4).mean() < 1e-3  # nearly box-shaped spectra at the faces
+
+
+def test_a_correction_saves_steps(sensor, monkeypatch):
+    lattice = Lattice(observer.axis_nodes("srgb", 17))
+    problem, nodes = Problem(sensor, MODEL), all_nodes(lattice)
+    prior = Prior(MODEL, sensor, smooth(MODEL, problem.forward))
+
+    def steps():
+        growth = grow_from_prior(problem, nodes, lambda at: prior(nodes.goal(at)), NO_SEEDS, ignore_progress)
+        return growth.steps
+
+    grown = steps()
+    monkeypatch.setattr("uplift.fit.growth.strides", lambda dim: [1])
+    assert grown < 0.9 * steps()
+
+
+def test_an_unrealisable_colour_has_status_unfitted(sensor):
+    """The green corner of ProPhoto RGB, not declared as unrealisable. Other points are not affected."""
+    wide = observer.sensor("ProPhoto RGB", "D65")
+    lattice = Lattice(np.linspace(0, 1, 3))
+    points, improvements = fitted(MODEL, wide, lattice)
+    green = int(lattice.index(np.array([0, 2, 0])))
+    grey = int(lattice.index(np.array([1, 1, 1])))
+    assert points.status[green] == Status.UNFITTED
+    assert points.status[grey] == Status.REGULAR
+    assert np.isfinite(points.coefficients).all()
+    assert len(improvements) == 5
+    assert improvements[0].tried > improvements[0].fixed
+
+
+def test_improvement_fixes_points_with_a_vanishing_gradient(sensor):
+    """Spectra so near black that only a new start helps."""
+    problem = Problem(sensor, MODEL)
+    growth, forward = Growth(problem, all_nodes(LATTICE), ignore_progress), problem.forward
+    growth.multipliers[:, 0] = -1e9
+    growth.distance[:] = np.abs(residual(MODEL, forward, growth.multipliers, LATTICE.points)).max(axis=1)
+    steps = improve(growth)
+    off = residual(MODEL, forward, growth.multipliers, LATTICE.points)
+    assert (growth.distance <= 1e-4).all()
+    np.testing.assert_allclose(np.abs(off).max(axis=1), growth.distance, atol=1e-12)
+    np.testing.assert_allclose(growth.rgb, LATTICE.points - off, atol=1e-7)
+    by_name = {step.step: step for step in steps}
+    assert by_name["more iterations"].fixed == 1  # black itself
+    assert by_name["from grey"].fixed > 300
+
+
+def test_improvement_does_not_change_fitted_points(sensor):
+    points, _ = fitted(MODEL, sensor, LATTICE)
+    multipliers = MODEL.from_storage(points.coefficients)
+    growth = Growth(Problem(sensor, MODEL), all_nodes(LATTICE), ignore_progress)
+    growth.multipliers[:], growth.distance[:] = multipliers, np.minimum(points.distance, 1e-6)
+    steps = improve(growth)
+    np.testing.assert_array_equal(growth.multipliers, multipliers)
+    assert steps == ()
+
+
+def grey(points):
+    return np.zeros((len(points), 9))
+
+
+def steps_from(points):
+    """Steps (n,) from every point to the nearest of ``points``."""
+    position = LATTICE.position(np.arange(LATTICE.size))
+    return np.abs(position[:, None] - LATTICE.position(points)).max(axis=2).min(axis=1)
+
+
+def test_without_seeds_rounds_are_the_shells_around_the_middle(sensor):
+    growth = grow_from_neighbours(Problem(sensor, MODEL), all_nodes(LATTICE), grey, NO_SEEDS, ignore_progress)
+    assert growth.round[LATTICE.size // 2] == 0
+    assert (growth.round != NOT_FITTED).mean() > 0.95
+    late = growth.round > steps_from(np.array([LATTICE.size // 2]))
+    assert late.mean() < 0.05
+
+
+def test_rounds_are_the_shells_around_the_seeds(sensor):
+    seeds = np.array([0 + LATTICE.index(np.array(p)) for p in ((1, 1, 1), (5, 4, 2))])
+    growth = grow_from_neighbours(Problem(sensor, MODEL), all_nodes(LATTICE), grey, seeds, ignore_progress)
+    fitted = growth.round != NOT_FITTED
+    assert (growth.round[seeds] == 0).all()
+    assert (growth.round[fitted] >= steps_from(seeds)[fitted]).all()
+    assert growth.round.max() < 6
+
+
+def test_only_active_points_are_fitted(sensor):
+    active = np.flatnonzero(LATTICE.points[:, 0] < 0.2)
+    growth = grow_from_neighbours(Problem(sensor, MODEL), all_nodes(LATTICE, active), grey, NO_SEEDS, ignore_progress)
+    assert not np.isfinite(growth.distance[np.setdiff1d(np.arange(LATTICE.size), active)]).any()
+    assert (growth.round[active] != NOT_FITTED).mean() > 0.9
+
+
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+@pytest.mark.parametrize("model", ["moments", "sigmoid"])
+@pytest.mark.parametrize("with_atlas", [True, False])
+def test_whole_builds_end_at_the_threshold(repository, model, with_atlas):
+    atlas = read_atlas(repository / "atlases" / "macbeth.txt") if with_atlas else None
+    cube = build(atlas, dim=7, model=model, start="neighbours", debug=True)
+    points = cube.data.points
+    assert points.distance.max() <= 1e-4
+    assert Status.UNFITTED not in points.status
+    assert points.round.max() >= 2
+    assert isinstance(cube.data.model, Moments if model == "moments" else Sigmoid)
+
+
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+def test_corners_start_from_the_entry_however_far_they_are(repository):
+    """Those of 5³ are: from the prior, their starts depend on whether this is forced."""
+    atlas = read_atlas(repository / "atlases" / "macbeth.txt")
+
+    def corners(start, seed_corners):
+        points = build(atlas, dim=5, start=start, seed_corners=seed_corners).data.points
+        return points.coefficients[points.status == Status.ATLAS_CORNER]
+
+    np.testing.assert_array_equal(corners("neighbours", False), corners("neighbours", True))
+    assert not np.allclose(corners("prior", False), corners("prior", True), atol=0.01)
+
+
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+def test_seeds_are_the_entries_with_the_coefficients_of_the_nodes(repository):
+    """The zeroth and first moments of an entry do not depend on how many are kept."""
+    cube = build(repository / "atlases" / "macbeth.txt", dim=16, coefficients=9, start="neighbours")
+    points, entries = cube.data.points, cube.data.atlas.spectra.coefficients
+    primary = points.status == Status.ATLAS_PRIMARY
+    moved = np.abs(points.coefficients[primary] - entries[points.entry[primary], :9]).max(axis=1)
+    assert np.median(moved) < 0.03
