@@ -52,16 +52,16 @@ def test_the_contracts_hold_for_a_copy(copied_code):
         ("uplift/lookup/cube.py", "import jax", "A lookup starts in the time that numpy takes"),
         (
             "uplift/cube/file.py",
-            "from uplift.fit import seed",
+            "from uplift.fit import seeds",
             "A lookup starts in the time that numpy takes",
         ),
         ("uplift/models/sigmoid.py", "import colour", "One place reads colour-science's tables"),
-        ("uplift/pipeline/build_cube.py", "import click", "Only the command line knows click and rich"),
+        ("uplift/pipeline/build.py", "import click", "Only the command line knows click and rich"),
         ("uplift/lattice/lattice.py", "import uplift.pipeline.build", "Data flows one way"),
         ("uplift/common/errors.py", "from uplift.colorimetry import sensor", "Data flows one way"),
         ("uplift/report/summary.py", "import uplift_cli.output.console", "Data flows one way"),
         ("uplift/lattice/lattice.py", "import uplift.lattice.scene", "No import cycles"),
-        ("uplift/fit/seed.py", "from uplift.viz import figure", "The core imports nothing above it"),
+        ("uplift/fit/seeds.py", "from uplift.viz import figure", "The core imports nothing above it"),
     ],
 )
 def test_violations_are_detected(copied_code, module, line, contract):

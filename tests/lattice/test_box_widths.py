@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from uplift.fit.seeds import MAX_HALF_WIDTH, half_widths
 from uplift.lattice import Lattice
-from uplift.lattice.entry_boxes import MAX_HALF_WIDTH, half_widths
 
 LATTICE = Lattice(np.linspace(0, 1, 9) ** 2)
 colours = arrays(float, st.tuples(st.integers(0, 12), st.just(3)), elements=st.floats(0, 1))

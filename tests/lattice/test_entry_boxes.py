@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from uplift.lattice import Lattice
-from uplift.lattice.entry_boxes import half_widths
+from uplift.fit.seeds import half_widths
 from uplift.lattice.entry_boxes import EntryBoxes
 
 LATTICE = Lattice(np.linspace(0, 1, 7) ** 2)

@@ -14,8 +14,8 @@ from tests.helpers import raises, with_points
 from uplift.common.errors import CubeFileError
 from uplift.cube import digest
 from uplift.lookup import Cube
-from uplift.pipeline.rebuild import rebuild
 from uplift.pipeline.options import recorded_options
+from uplift.pipeline.rebuild import rebuild
 from uplift.report.regression import compare_rebuilt
 
 

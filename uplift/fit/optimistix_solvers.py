@@ -7,7 +7,7 @@ with the small weight `CLOSENESS`. It has one minimum near the prior, which all 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import equinox
 import jax
@@ -19,10 +19,12 @@ import optimistix
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
 from uplift.fit.batch import batches, replicate, shard
-from uplift.fit.entries import Objective
 from uplift.fit.solver import FIRST_DAMPING, Solution, SolverState, init_state, take_step
 from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, residual
+
+if TYPE_CHECKING:
+    from uplift.fit.entries import Objective
 
 CLOSENESS = 1e-5
 """Weight of the difference from the prior, in linear RGB per unit of the metric; a hundredth of it in each further

@@ -1,4 +1,4 @@
-"""Seeds: nodes around the colours of atlas entries, and the multipliers that nodes start from.
+"""Atlas entries in a lattice: the widths of their boxes, seeds, and the multipliers that nodes start from.
 
 Tódová 2020, "Constrained spectral uplifting", section 3.1.2; docs/mathematics.md, 6.
 """
@@ -18,6 +18,29 @@ from uplift.lattice import CORNERS, NO_ENTRY, Lattice
 
 NEAR, FAR = 8.0, 16.0
 """ΔE*ab up to which a corner is near its entry, and from which it is far (docs/fidelity.md)."""
+MAX_HALF_WIDTH = 1.0
+"""Lattice steps: the half width of an entry box without other entries nearby."""
+SAME_COLOUR = 1e-6
+"""Lattice steps. Entries that are closer have the same colour, and only the first of them is used."""
+
+
+def half_widths(lattice: Lattice, rgb: Array) -> Array:
+    """Half widths (E,) in lattice steps, 0 to 1, of the boxes around entries of linear RGB (E, 3).
+
+    No two boxes overlap: a box extends at most half the distance to the nearest other entry (docs/mathematics.md, 8).
+    An entry whose colour an earlier entry has gets 0.
+    """
+    from scipy.spatial import KDTree
+
+    if len(rgb) < 2:
+        return np.full(len(rgb), MAX_HALF_WIDTH)
+    steps = lattice.to_steps(rgb)
+    unique = np.ones(len(rgb), dtype=bool)
+    unique[[later for _, later in KDTree(steps).query_pairs(SAME_COLOUR, p=np.inf)]] = False
+    widths = np.zeros(len(rgb))
+    nearest = KDTree(steps[unique]).query(steps[unique], k=2, p=np.inf)[0][:, 1]
+    widths[unique] = np.minimum(MAX_HALF_WIDTH, nearest / 2)
+    return widths
 
 
 @dataclass(frozen=True, eq=False, repr=False)

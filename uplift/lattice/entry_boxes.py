@@ -1,6 +1,6 @@
 """Boxes around atlas entries: a query at the colour of an entry returns the spectrum of the entry.
 
-Each entry has a box of half widths given by `half_widths`; no two boxes overlap. A colour x inside a box
+No two boxes overlap; `uplift.fit.seeds.half_widths` makes them as wide as that allows. A colour x inside a box
 is x = (1 − t) e + t y, with the entry's colour e and the point y where the ray from e through x leaves the box. The
 answer mixes the spectra at e and y by the same weights. It has exactly the colour x and stays within [0, 1]. It equals
 the lattice on the faces of the box, and the entry at its centre. Needs numpy only.
@@ -19,33 +19,10 @@ from uplift.common.arrays import Array, Indices, Mask
 from uplift.lattice.lattice import Lattice
 from uplift.lattice.point_table import NO_ENTRY
 
-MAX_HALF_WIDTH = 1.0
-"""Lattice steps: the half width of an entry box without other entries nearby."""
-SAME_COLOUR = 1e-6
-"""Lattice steps. Entries that are closer have the same colour, and only the first of them is used."""
 CELL_BLOCK = np.array(list(product((-1, 0, 1), repeat=3)))
 """(27, 3) steps to the cells that a box can touch: its half width is at most one step."""
 MARGIN = 1e-6
 """Linear RGB by which rounding, to float32 too, can move a colour across the face of a cell."""
-
-
-def half_widths(lattice: Lattice, rgb: Array) -> Array:
-    """Half widths (E,) in lattice steps, 0 to 1, of the boxes around entries of linear RGB (E, 3).
-
-    No two boxes overlap: a box extends at most half the distance to the nearest other entry (docs/mathematics.md, 8).
-    An entry whose colour an earlier entry has gets 0.
-    """
-    from scipy.spatial import KDTree
-
-    if len(rgb) < 2:
-        return np.full(len(rgb), MAX_HALF_WIDTH)
-    steps = lattice.to_steps(rgb)
-    unique = np.ones(len(rgb), dtype=bool)
-    unique[[later for _, later in KDTree(steps).query_pairs(SAME_COLOUR, p=np.inf)]] = False
-    widths = np.zeros(len(rgb))
-    nearest = KDTree(steps[unique]).query(steps[unique], k=2, p=np.inf)[0][:, 1]
-    widths[unique] = np.minimum(MAX_HALF_WIDTH, nearest / 2)
-    return widths
 
 
 class BoxHits(NamedTuple):

@@ -24,10 +24,9 @@ from uplift.fit.growth_thesis import grow_from_neighbours
 from uplift.fit.improve import STEPS, THESIS_STEPS, improve
 from uplift.fit.prior import fit_prior
 from uplift.fit.problem import Problem, nodes_of
-from uplift.fit.seeds import FULL_ENTRY, InitialGuess, learnt_blend, seed
+from uplift.fit.seeds import FULL_ENTRY, InitialGuess, half_widths, learnt_blend, seed
 from uplift.fit.store import store
 from uplift.lattice import EntryBoxes, Lattice, SceneLike
-from uplift.lattice.entry_boxes import half_widths
 from uplift.lookup import Cube
 from uplift.models.moments import MAX_COUNT
 from uplift.pipeline import entries as spectra
