@@ -16,7 +16,7 @@ from uplift.common.errors import PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.scene_colours import Images
 from uplift.lookup import Cube
-from uplift.pipeline import build
+from uplift.pipeline.build import build
 from uplift.scene.plan.context import PlanContext, SearchGrid, prepare_context, quiet_warnings
 from uplift.scene.plan.decisions import (
     Storage,
