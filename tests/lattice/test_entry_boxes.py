@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from uplift.lattice import Lattice
 from uplift.fit.seeds import half_widths
+from uplift.lattice import Lattice
 from uplift.lattice.entry_boxes import EntryBoxes
 
 LATTICE = Lattice(np.linspace(0, 1, 7) ** 2)
