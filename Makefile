@@ -9,7 +9,7 @@ OUT := out
 PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: golden golden-before build environment lint test bare basic site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files osl axe cameras examples showcase first-steps looks emission environment measurements
+.PHONY: golden golden-before build environment lint test bare basic site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files axe cameras examples showcase first-steps looks emission environment measurements
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -64,11 +64,6 @@ axe: $(AXE)
 
 $(AXE): $(INSTALLED)
 	-$(PIP) --no-deps --upgrade --target $(OUT)/axe axe-playwright-python==0.1.8 && touch $(AXE)
-
-# Blender as a Python module, with which the tests run exported OSL programs: 0.9 GB, Python 3.11.
-osl:
-	python3.11 -m venv .osl
-	.osl/bin/pip install --quiet bpy==4.5.15
 
 bench: $(INSTALLED)
 	$(BIN)/python -m benchmarks.bench

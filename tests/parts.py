@@ -18,13 +18,10 @@ import pytest
 from benchmarks.browser import browser
 from uplift.common.processes import call_in_child
 
-ROOT = Path(__file__).parents[1]
 PATIENCE = 60.0
 """Seconds that a trial may take."""
-BLENDER_PYTHON = ROOT / ".osl" / "bin" / "python"
 EMPTY_KERNEL = "__global__ void nothing() {}\n"
 EMPTY_PROGRAM = "int main(void) { return 0; }\n"
-EMPTY_OSL = "shader nothing(output color found = 0) {}\n"
 EMPTY_SHADER = "#version 430\nlayout(local_size_x = 1) in;\nvoid main() {}\n"
 
 
@@ -104,10 +101,4 @@ GLSLANG = Part(
     "glslangValidator",
     "apt install glslang-tools",
     partial(_compile, "a.comp", EMPTY_SHADER, "glslangValidator a.comp"),
-)
-OSLC = Part("oslc", "Open Shading Language", partial(_compile, "a.osl", EMPTY_OSL, "oslc -q a.osl"))
-BLENDER = Part(
-    "Blender as a Python module",
-    "make osl",
-    partial(subprocess.run, [str(BLENDER_PYTHON), "-c", "import bpy"], check=True, capture_output=True),
 )

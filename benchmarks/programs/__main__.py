@@ -20,7 +20,6 @@ from benchmarks.programs import header, live, shaders
 from benchmarks.programs.header import Floats, Rates
 from benchmarks.record import ROOT, write
 from uplift.io.export import write_program
-from uplift.io.export.programs import FORMATS
 from uplift.lookup import Cube, bulk
 from uplift.viz.figure import ACCENT, GREY, new_figure, style_axes, write_png
 
@@ -38,7 +37,6 @@ class ShaderRate:
     """Million colours per CPU second at four wavelengths; the largest difference of reflectance from Python."""
 
     language: str
-    table: str
     mode: str
     lookup: float
     worst: float
@@ -70,12 +68,7 @@ def main(runs: int) -> None:
         for mode in MODES
     ]
     python = [_python(cube, mode, rgb, runs) for mode in ("bulk", *MODES)]
-    shader = [
-        _shader(cube, language, table, mode, rgb, runs)
-        for language in ("glsl", "wgsl")
-        for table in FORMATS[language].tables
-        for mode in MODES
-    ]
+    shader = [_shader(cube, mode, rgb, runs) for mode in MODES]
     frames, product = live.measure(cube, runs)
     version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True).stdout
     write(
@@ -123,19 +116,18 @@ def _python(cube: Cube, mode: str, rgb: Floats, runs: int) -> PythonRate:
     return PythonRate(name, len(colours) / best / 1e6)
 
 
-def _shader(cube: Cube, language: str, table: str, mode: str, rgb: Floats, runs: int) -> ShaderRate:
+def _shader(cube: Cube, mode: str, rgb: Floats, runs: int) -> ShaderRate:
     """Time a shader in the browser: CPU seconds of all processes."""
-    run = {"glsl": shaders.glsl, "wgsl": shaders.wgsl}[language]
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"cube.{language}"
-        write_program(cube.data, path, style=language, mode=mode, form=table)
-        found = run(path, rgb[:PIXELS], FOUR, table, runs)
+        path = Path(folder) / "cube.glsl"
+        write_program(cube.data, path, style="glsl", mode=mode)
+        found = shaders.glsl(path, rgb[:PIXELS], FOUR, runs)
     if found is None:
-        raise click.ClickException(f"the browser has no interface for {language}")
+        raise click.ClickException("the browser has no WebGL 2")
     checked = found.reflectances[: header.CHECKED]
     expected = cube.reflectance(rgb[: header.CHECKED].astype(float), FOUR, mode=mode)
     worst = float(np.abs(checked - expected).max())
-    return ShaderRate(language.upper(), table, mode, PIXELS / found.seconds / 1e6, worst)
+    return ShaderRate("GLSL", mode, PIXELS / found.seconds / 1e6, worst)
 
 
 def _picture(rows: list[Rates], python: list[PythonRate], shader: list[ShaderRate], path: Path) -> None:
@@ -143,11 +135,7 @@ def _picture(rows: list[Rates], python: list[PythonRate], shader: list[ShaderRat
     models = {"moments": "9 coefficients", "sigmoid": "sigmoids"}
     bars = [(f"C, {row.mode}, {models[row.model]}", row.many, RAY.size, ACCENT) for row in rows]
     bars += [(row.what.replace("`", ""), row.lookup, RAY.size, GREY) for row in python]
-    bars += [
-        (f"{row.language}, {row.mode}, software rendering", row.lookup, len(FOUR), ACCENT)
-        for row in shader
-        if row.table == "file"
-    ]
+    bars += [(f"{row.language}, {row.mode}, software rendering", row.lookup, len(FOUR), ACCENT) for row in shader]
     names, rates, sizes, colours = zip(*bars[::-1], strict=True)
     figure = new_figure(7.4, 0.3 * len(bars) + 1)
     axes = figure.subplots()

@@ -18,7 +18,7 @@ from ..startup import enable_jit_cache
 if TYPE_CHECKING:
     from uplift.cube import CubeData
 
-PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl", "osl": ".osl", "wgsl": ".wgsl"}
+PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl"}
 SUFFIXES = {"coeff": ".coeff", **PROGRAMS, "npz": ".npz", "csv": ".csv", "html": ".html"}
 
 
@@ -46,7 +46,7 @@ SUFFIXES = {"coeff": ".coeff", **PROGRAMS, "npz": ".npz", "csv": ".csv", "html":
 )
 @click.option(
     "--table",
-    type=click.Choice(("header", "file", "textures")),
+    type=click.Choice(("header", "file")),
     help="Where the table of a program is. [default: header for c, else file]",
 )
 @fill_option()
@@ -64,7 +64,7 @@ def command(
     """Write a cube in a format that other tools read.
 
     \b
-    c, cuda, glsl, hlsl, osl, wgsl
+    c, cuda, glsl, hlsl
            program that looks up colours
     coeff  table of rgb2spec, for Mitsuba and colour-science
     html   page that relights images in a browser
@@ -72,9 +72,8 @@ def command(
     csv    one line per node
 
     Names in a program start with the file's. A C header, also valid C++, contains the table, or loads it from a file
-    of numbers. Programs in other languages come with a second file, which they explain. GLSL, HLSL and WGSL can have
-    3-D textures instead. A coeff table stores sigmoid spectra of the cube's colours:
-    three coefficients cannot represent the atlas.
+    of numbers. Programs in other languages come with a second file, which they explain. A coeff table stores sigmoid
+    spectra of the cube's colours: three coefficients cannot represent the atlas.
 
     \b
     Examples:
@@ -82,7 +81,7 @@ def command(
       uplift export macbeth-32.uplift -o srgb.coeff
       uplift export macbeth-32.uplift -o cube.h
       uplift export macbeth-32.uplift -o filed.h --table file
-      uplift export macbeth-32.uplift -o moments.wgsl --mode moments --table textures
+      uplift export macbeth-32.uplift -o moments.glsl --mode moments
       uplift export macbeth-32.uplift --format csv
     """
     style = style or _format_of(out)

@@ -10,9 +10,6 @@ from tests.helpers import with_points
 from uplift.lookup import Cube
 from uplift.models import Moments, Phase
 
-collect_ignore = ["render_osl.py"]
-"""It runs in Blender."""
-
 
 @pytest.fixture(scope="session")
 def warped_cube(small_cube) -> Cube:

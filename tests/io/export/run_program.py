@@ -5,17 +5,14 @@ It returns reflectances (n, 4), and skips the test if the compiler, the browser 
 
 from __future__ import annotations
 
-import struct
 import subprocess
-from pathlib import Path
 
 import numpy as np
-import OpenEXR
 import pytest
 
 from benchmarks.programs import shaders
-from benchmarks.programs.shaders import listed, padded, textures
-from tests.parts import BLENDER, BLENDER_PYTHON, CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need
+from benchmarks.programs.shaders import listed, padded
+from tests.parts import CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need
 from uplift.common.processes import call_in_child
 
 HOST = r"""
@@ -41,19 +38,6 @@ LOAD = """static float table[{size}];
     FILE *file = fopen("cube.bin", "rb");
     if (!file || fread(table, 1, sizeof table, file) != sizeof table) return 1;"""
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-unused-function", "-O1")
-SHADER = """{code}
-shader lookup(output color found = 0)
-{{
-    float rgb[3], place[4], lanes[3] = {{{wavelengths}}}, total[3];
-    for (int k = 0; k < 3; ++k) {{
-        total[k] = 0;
-        rgb[k] = texture("{colours}", (P[0] + 1) / 2, (1 - P[1]) / 2, "firstchannel", k, "interp", "closest");
-    }}
-    int entry = cube_locate("{table}", rgb, place);
-    cube_answer("{table}", place, entry, lanes, total);
-    found = color(total[0], total[1], total[2]);
-}}
-"""
 KERNEL = """#include "{header}"
 extern "C" __global__ void lookup(const float *table, const float *rgb, const float *wavelengths, float *found)
 {{
@@ -62,8 +46,8 @@ extern "C" __global__ void lookup(const float *table, const float *rgb, const fl
 }}
 """
 PIXEL = """{code}
-StructuredBuffer<float4> colours : register(t{binding});
-RWStructuredBuffer<float4> found : register(u{after});
+StructuredBuffer<float4> colours : register(t1);
+RWStructuredBuffer<float4> found : register(u2);
 [numthreads(64, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {{
     found[id.x] = cube_reflectances(colours[id.x].xyz, float4({wavelengths}));
@@ -104,30 +88,6 @@ def ptx(path):
     return path.with_suffix(".ptx").read_text()
 
 
-def osl(path, rgb, wavelengths, form="file"):
-    """In Blender, three wavelengths at a time."""
-    need(BLENDER)
-    side = int(np.ceil(np.sqrt(len(rgb))))
-    pixels = np.ascontiguousarray(padded(rgb, side * side)[:, :3].reshape(side, side, 3))
-    colours, shader, out = (path.with_name(name) for name in ("colours.exr", "lookup.osl", "found.exr"))
-    _exr(colours, pixels)
-    code, table = path.read_text(), path.with_suffix(".exr")
-    code = code[: code.index("shader cube_reflectance")]
-    found = []
-    for three in (wavelengths[:3], wavelengths[1:]):
-        words = {"wavelengths": listed(three), "colours": colours, "table": table}
-        shader.write_text(SHADER.format(code=code, **words))
-        command = [BLENDER_PYTHON, Path(__file__).with_name("render_osl.py"), shader, str(side), out]
-        subprocess.run(command, check=True, capture_output=True)
-        found.append(OpenEXR.File(str(out)).channels()["RGBA"].pixels.reshape(-1, 4)[: len(rgb), :3])
-    return np.concatenate([found[0], found[1][:, 2:]], axis=1)
-
-
-def _exr(path, pixels):
-    header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
-    OpenEXR.File(header, {"RGB": pixels}).write(str(path))
-
-
 def _compiled(path, rgb, wavelengths, compiler, call, load):
     need({"cc": CC, "c++": CXX}[compiler[0]])
     folder = path.parent
@@ -142,19 +102,10 @@ def _compiled(path, rgb, wavelengths, compiler, call, load):
 
 def glsl(path, rgb, wavelengths, form="file"):
     """In Chromium, by WebGL 2."""
-    return _in_browser(shaders.glsl, path, rgb, wavelengths, form)
-
-
-def wgsl(path, rgb, wavelengths, form="file"):
-    """In Chromium, by WebGPU."""
-    return _in_browser(shaders.wgsl, path, rgb, wavelengths, form)
-
-
-def _in_browser(run, *arguments):
     need(CHROMIUM)
-    found = run(*arguments)
+    found = shaders.glsl(path, rgb, wavelengths)
     if found is None:
-        pytest.skip("the browser has no such graphics interface")
+        pytest.skip("the browser has no WebGL 2")
     return found.reflectances
 
 
@@ -162,33 +113,27 @@ def hlsl(path, rgb, wavelengths, form="file"):
     """Compiled to SPIR-V, and by Vulkan: needs glslangValidator and wgpu."""
     need(GLSLANG, VULKAN)
     folder, count = path.parent, -(-len(rgb) // 64) * 64
-    binding = 1 if form == "file" else len(textures(path, ".dds"))
-    places = {"wavelengths": listed(wavelengths), "binding": binding, "after": binding + 1}
-    (folder / "main.hlsl").write_text(PIXEL.format(code=path.read_text(), **places))
+    (folder / "main.hlsl").write_text(PIXEL.format(code=path.read_text(), wavelengths=listed(wavelengths)))
     command = ["glslangValidator", "-D", "-V", "-S", "comp", "-e", "main", "main.hlsl", "-o", "main.spv"]
     subprocess.run(command, cwd=folder, check=True, capture_output=True)
-    return call_in_child(_by_vulkan, path, rgb, form, count, seconds=60)
+    return call_in_child(_by_vulkan, path, rgb, count, seconds=60)
 
 
-def _by_vulkan(path, rgb, form, count):
+def _by_vulkan(path, rgb, count):
     """Run in a child process: drivers may crash."""
     import wgpu
 
     device = wgpu.gpu.request_adapter_sync().request_device_sync()
     storage, source = wgpu.BufferUsage.STORAGE, wgpu.BufferUsage.COPY_SRC
     colours = padded(rgb, count)
-    if form == "file":
-        data = path.with_suffix(".bin").read_bytes()
-        held = [_whole(device.create_buffer_with_data(data=data, usage=storage))]
-    else:
-        held = [_dds(wgpu, device, each.read_bytes()) for each in textures(path, ".dds")]
+    table = device.create_buffer_with_data(data=path.with_suffix(".bin").read_bytes(), usage=storage)
     given = device.create_buffer_with_data(data=colours.tobytes(), usage=storage)
     found = device.create_buffer(size=colours.nbytes, usage=storage | source)
     module = device.create_shader_module(code=path.with_name("main.spv").read_bytes())
     compute = {"module": module, "entry_point": "main"}
     pipeline = device.create_compute_pipeline(layout="auto", compute=compute)
-    resources = [*held, _whole(given), _whole(found)]
-    entries = [{"binding": place, "resource": each} for place, each in enumerate(resources)]
+    buffers = enumerate((table, given, found))
+    entries = [{"binding": k, "resource": {"buffer": each, "offset": 0, "size": each.size}} for k, each in buffers]
     group = device.create_bind_group(layout=pipeline.get_bind_group_layout(0), entries=entries)
     commands = device.create_command_encoder()
     work = commands.begin_compute_pass()
@@ -198,19 +143,3 @@ def _by_vulkan(path, rgb, form, count):
     work.end()
     device.queue.submit([commands.finish()])
     return np.frombuffer(device.queue.read_buffer(found), np.float32).reshape(-1, 4)[: len(rgb)]
-
-
-def _whole(buffer):
-    return {"buffer": buffer, "offset": 0, "size": buffer.size}
-
-
-def _dds(wgpu, device, data):
-    """Upload a texture."""
-    height, width = struct.unpack_from("<2I", data, 12)
-    depth = struct.unpack_from("<I", data, 24)[0]
-    size, dimension = (width, height, depth or 1), "3d" if depth else "2d"
-    usage = wgpu.TextureUsage.TEXTURE_BINDING | wgpu.TextureUsage.COPY_DST
-    texture = device.create_texture(size=size, dimension=dimension, format="rgba32float", usage=usage)
-    layout = {"bytes_per_row": 16 * width, "rows_per_image": height}
-    device.queue.write_texture({"texture": texture}, data[148:], layout, size)
-    return texture.create_view()

@@ -78,9 +78,9 @@ def test_nan_and_infinity_are_0(table, tmp_path):
 @pytest.mark.parametrize(
     ("options", "code"),
     [
-        ({"style": "wgsl"}, "unknown-language"),
-        ({"style": "glsl", "form": "textures"}, "unknown-table"),
-        ({"style": "glsl", "form": "header"}, "unknown-table"),
+        ({"style": "hlsl"}, "option"),
+        ({"style": "glsl", "form": "textures"}, "option"),
+        ({"style": "glsl", "form": "header"}, "option"),
     ],
 )
 def test_unknown_options_are_refused(table, tmp_path, options, code):

@@ -8,12 +8,10 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
-import OpenEXR
 import pytest
 
-from tests.parts import BLENDER, BLENDER_PYTHON, CC, CXX, MITSUBA, OSLC, need
+from tests.parts import CC, CXX, MITSUBA, need
 from uplift.io.export import write_program
-from uplift.lookup.interpolate import refined_multipliers
 
 PAGE = (Path(__file__).parents[3] / "docs" / "integrate.md").read_text(encoding="utf-8")
 STORED = "moments-8-macbeth.uplift"
@@ -66,33 +64,3 @@ def test_mitsuba(folder, small_cube):
     assert mi.variant() == "scalar_spectral"
     np.testing.assert_allclose(image[30:34, 30:34].mean(axis=(0, 1)), COLOUR, atol=0.05)
     np.testing.assert_allclose(image[:4, :4].mean(axis=(0, 1)), 1, atol=0.05)
-
-
-@pytest.fixture
-def shader(folder):
-    """Path of the shader."""
-    (folder / "uplift_reflectance.osl").write_text(code("Blender, OSL", "osl"))
-    return folder / "uplift_reflectance.osl"
-
-
-def test_osl_compiles(shader):
-    need(OSLC)
-    subprocess.run(["oslc", "-q", shader], check=True)
-
-
-def test_cycles_renders_the_shader(shader, folder, small_cube):
-    """Four texels at three wavelengths, rendered by Blender."""
-    need(BLENDER)
-    rgb = np.array([[[0.8, 0.2, 0.1], [0.1, 0.1, 0.1]], [[0.9, 0.95, 0.9], [0.05, 0.3, 0.6]]])
-    multipliers = refined_multipliers(small_cube.data, rgb.reshape(-1, 3)).reshape(2, 2, -1)
-    channels = {
-        f"multiplier.{k:02}": np.ascontiguousarray(multipliers[..., k], dtype=np.float32)
-        for k in range(multipliers.shape[-1])
-    }
-    channels["A"] = np.ones((2, 2), dtype=np.float32)
-    OpenEXR.File({"type": OpenEXR.scanlineimage}, channels).write("texture.exr")
-    script = Path(__file__).with_name("in_blender.py")
-    subprocess.run([BLENDER_PYTHON, script, shader, "texture.exr", "image.exr"], check=True, capture_output=True)
-    image = OpenEXR.File("image.exr").channels()["RGBA"].pixels[..., :3]
-    expected = small_cube.reflectance(rgb, [610, 550, 460], mode="refined")
-    np.testing.assert_allclose(image[::7, ::7], expected, atol=1e-5)

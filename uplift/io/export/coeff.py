@@ -41,42 +41,14 @@ START, END = 360.0, 830.0
 
 
 def write_coeff(data: CubeData, path: str | os.PathLike[str], *, res: int = RES, force: bool = False) -> float:
-    """Write a cube as an rgb2spec table.
+    """Write a cube as an rgb2spec table of ``res`` points along each axis, 2 to 256.
 
-    Readers interpret RGB in the cube's space under its illuminant. Mitsuba assumes sRGB under D65.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-    path : path-like
-        File to write.
-    res : int
-        Points along each axis, 2 to 256.
-    force : bool
-        Whether to replace an existing file.
-
-    Returns
-    -------
-    float
-        Largest error of a component of linear RGB, compared with the cube's colours.
-
-    Raises
-    ------
-    ColourError
-        The cube is that of a camera (``camera-without-xyz``).
-    OptionError
-        ``res`` is out of range (code ``resolution-out-of-range``).
-    OutputError
-        The file cannot be written, or exists and ``force`` is off.
+    Readers interpret RGB in the cube's space under its illuminant. Mitsuba assumes sRGB under D65. Returns the largest
+    error of a component of linear RGB, compared with the cube's colours. A camera's cube is a `ColourError`.
     """
     data.sensor.require_xyz()
     if not MIN_RES <= res <= MAX_RES:
-        raise OptionError(
-            f"res must be from {MIN_RES} to {MAX_RES}, got {res}",
-            code="resolution-out-of-range",
-            hint=f"{RES} is the default",
-        )
+        raise OptionError(f"res must be from {MIN_RES} to {MAX_RES}, got {res}", hint=f"{RES} is the default")
     with atomic_write(path, force=force) as temporary:
         scale = _scale(res)
         coefficients, max_error = _fit(data, scale)

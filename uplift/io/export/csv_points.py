@@ -19,29 +19,10 @@ BLOCK = 1 << 12
 
 
 def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
-    """Write the nodes of a cube as CSV, below a line of column names.
+    """Write the nodes of a cube as CSV, below a line of column names; return their number.
 
     Columns are linear target and lattice RGB, fitting distance, status, the atlas entry that the node is based on, if
-    any, round and standard error of cubes that have them, and the coefficients.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube. Absent nodes of a cube built for a scene are left out.
-    path : path-like
-        File to write.
-    force : bool
-        Whether to replace an existing file.
-
-    Returns
-    -------
-    int
-        Number of nodes.
-
-    Raises
-    ------
-    OutputError
-        The file cannot be written, or exists and ``force`` is off.
+    any, round and standard error of cubes that have them, and the coefficients. Absent nodes are left out.
     """
     with (
         atomic_write(path, force=force) as temporary,

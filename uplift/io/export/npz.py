@@ -12,30 +12,11 @@ from uplift.cube import CubeData, contents
 
 
 def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
-    """Write a cube as an ``.npz`` file without pickled objects.
+    """Write a cube as an ``.npz`` file without pickled objects; return the number of arrays.
 
     The file has the arrays of docs/cube-file.md under their names. In addition, it has ``multipliers`` (n, C) of the
     nodes in ``model`` and ``atlas.multipliers`` (E, K) of the entries in ``entry_model``, from which spectra are
     evaluated directly, ``atlas.names`` (E,), and ``metadata``, the JSON text with both models.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-    path : path-like
-        File to write.
-    force : bool
-        Whether to replace an existing file.
-
-    Returns
-    -------
-    int
-        Number of arrays.
-
-    Raises
-    ------
-    OutputError
-        The file cannot be written, or exists and ``force`` is off.
     """
     tensors, metadata = contents(data)
     arrays = tensors | {

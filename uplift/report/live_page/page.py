@@ -13,9 +13,8 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.files import write_text
 from uplift.cube import CubeData
-from uplift.io.export.kernel.language import GLSL
-from uplift.io.export.kernel.program import Program
-from uplift.io.export.kernel.table import COLUMNS, make_table
+from uplift.io.export.program import cube_program
+from uplift.io.export.table import COLUMNS, make_table
 from uplift.viz.html import Markup, render, resource
 
 LIGHTS = ("D65", "A", "D50", "FL2", "FL11", "HP1", "LED-B3")
@@ -71,7 +70,7 @@ def write_page(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fa
 def page(data: CubeData) -> str:
     """Render the page."""
     table = make_table(data, "spectra")
-    program = Program(data, table, "spectra", "cube", GLSL, "glsl.glsl", "file", "cube")
+    program = cube_program(data, table, "glsl", "spectra", "cube", "file")
     image = table.image()
     at, weights = _weights(data)
     names = list(weights)
@@ -93,7 +92,7 @@ def page(data: CubeData) -> str:
         lights=names,
         second=next(name for name in ("A", "FL11") if name != names[0]),
         numbers=numbers,
-        kernel=Markup("".join(program.parts()).replace("</", "< /")),
+        kernel=Markup(program.replace("</", "< /")),
         table=base64.b64encode(image.astype("<f4").tobytes()).decode(),
         script=resource(f"{FOLDER}/page.js"),
     )

@@ -1,10 +1,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static float *${name}_table;
+static float *up_table;
 
 /* Load the table, ${stem}.bin: float32 numbers, little-endian. Returns NULL, or the reason why it cannot be used. */
-static inline const char *${name}_load(const char *path)
+static inline const char *up_load(const char *path)
 {
     FILE *file = fopen(path, "rb");
     size_t size = ${size} * sizeof(float), count = 0, k;
@@ -33,7 +33,7 @@ static inline const char *${name}_load(const char *path)
         free(table);
         return problem;
     }
-    free(${name}_table);
-    ${name}_table = table;
+    free(up_table);
+    up_table = table;
     return NULL;
 }

@@ -1,7 +1,8 @@
-"""The numbers that the kernel reads: one array in single precision, laid out alike for all languages."""
+"""The numbers that programs read: one array in single precision, laid out alike for all languages."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +19,7 @@ BIN_COUNT = 1024
 TEXEL = 4
 """Rows are padded to whole texels of four channels."""
 COLUMNS = 2048
-"""Texels in a row of the table as an image: every graphics card that can run the kernel has textures of this width."""
+"""Texels in a row of the table as an image: every graphics card that can run the program has textures of this width."""
 MODES = ("spectra", "moments")
 
 Floats = NDArray[np.float32]
@@ -26,63 +27,21 @@ Floats = NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Numbers, and the constants with which the kernel finds them.
-
-    Parameters
-    ----------
-    numbers : ndarray, shape (n,)
-        Rows of lattice points and entries, multipliers of entries, axis nodes, bins, lists of boxes, boxes.
-    constants : mapping
-        Values of the constants of `intrinsics`, but for ``WIDTH``.
-    """
+    """Numbers (n,), and the constants with which a program finds them."""
 
     numbers: Floats
     constants: dict[str, Any]
 
     def image(self) -> Floats:
-        """Return the numbers as an image of (rows, COLUMNS, 4), filled up with zeros."""
-        return as_image(self.numbers)
-
-    def points(self) -> Floats:
-        """Return the rows of lattice points as textures of (STRIDE / 4, red, green, blue, 4)."""
-        dim, stride = self.constants["DIM"], self.constants["STRIDE"]
-        rows = self.numbers[: dim**3 * stride].reshape(dim, dim, dim, -1, TEXEL)
-        return np.moveaxis(rows, 3, 0)
-
-    def others(self) -> Floats:
-        """Return the numbers behind the rows of lattice points as an image of (rows, COLUMNS, 4)."""
-        return as_image(self.numbers[self.constants["LATTICE"] * self.constants["STRIDE"] :])
-
-
-def as_image(numbers: Floats) -> Floats:
-    """Return numbers as an image of (rows, COLUMNS, 4), filled up with zeros.
-
-    Parameters
-    ----------
-    numbers : ndarray, shape (n,)
-        The numbers.
-
-    Returns
-    -------
-    ndarray, shape (rows, COLUMNS, 4)
-    """
-    row = COLUMNS * TEXEL
-    return np.pad(numbers, (0, -len(numbers) % row)).reshape(-1, COLUMNS, TEXEL)
+        """Return the numbers as a little-endian image of (rows, COLUMNS, 4), filled up with zeros."""
+        numbers = np.pad(self.numbers, (0, -len(self.numbers) % (COLUMNS * TEXEL)))
+        return numbers.astype("<f4").reshape(-1, COLUMNS, TEXEL)
 
 
 def make_table(data: CubeData, mode: str) -> Table:
-    """Lay out a cube with all lattice points.
+    """Lay out a cube with all lattice points: sections by the constants that locate them.
 
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-    mode : {"spectra", "moments"}
-        Rows hold multipliers, whose spectra are interpolated, or coefficients.
-
-    Returns
-    -------
-    Table
+    Rows hold multipliers, whose spectra are interpolated, in mode ``spectra``, or coefficients in mode ``moments``.
     """
     model, size = data.model, data.lattice.size
     stride = -(-(model.count + 1) // TEXEL) * TEXEL
@@ -100,12 +59,7 @@ def make_table(data: CubeData, mode: str) -> Table:
         "LISTS": lists,
         "BOXES": _boxes(data.entry_boxes),
     }
-    parts, offsets, end = [rows.ravel()], {}, rows.size
-    for name, section in sections.items():
-        offsets[name] = end
-        parts.append(section.ravel())
-        end += section.size
-    parts.append(np.zeros(-end % TEXEL, dtype=np.float32))
+    numbers, offsets = concatenate({"ROWS": rows, **sections})
     constants = {
         "COUNT": model.count,
         "ENTRY_COUNT": data.entry_spectra.model.count,
@@ -113,10 +67,19 @@ def make_table(data: CubeData, mode: str) -> Table:
         "DIM": data.lattice.dim,
         "LATTICE": size,
         "BIN_COUNT": BIN_COUNT,
+        "SPECTRA": int(mode == "spectra"),
         **offsets,
-        **_range(model),
+        **_model_constants(model),
     }
-    return Table(np.concatenate(parts, dtype=np.float32), constants)
+    return Table(numbers, constants)
+
+
+def concatenate(sections: Mapping[str, NDArray[Any]]) -> tuple[Floats, dict[str, int]]:
+    """Return sections one after the other, filled up with zeros to whole texels, and the index where each begins."""
+    ends = np.cumsum([section.size for section in sections.values()]).tolist()
+    parts = [section.ravel() for section in sections.values()]
+    numbers = np.concatenate([*parts, np.zeros(-ends[-1] % TEXEL)], dtype=np.float32)
+    return numbers, dict(zip(sections, [0, *ends], strict=False))
 
 
 def _bins(nodes: Floats) -> Floats:
@@ -147,10 +110,12 @@ def _boxes(boxes: EntryBoxes) -> Floats:
     return np.concatenate([boxes.rgb, below, above], axis=1).astype(np.float32)
 
 
-def _range(model: object) -> dict[str, float]:
+def _model_constants(model: object) -> dict[str, float]:
+    """Return the model, its wavelength range in nm, and the start and reciprocal length of the warped range."""
     if isinstance(model, Sigmoid):
-        return {"START": model.start, "END": model.end}
+        return {"SIGMOIDS": 1, "START": model.start, "END": model.end}
     assert isinstance(model, Moments)
     phase = model.phase
     low, high = WARPS[phase.warp](np.array([phase.start, phase.end])).tolist()
-    return {"START": phase.start, "END": phase.end, "LOW": low, "SCALE": 1 / (high - low)}
+    constants = {"SIGMOIDS": 0, "WARPED": int(phase.warp == "vision"), "START": phase.start, "END": phase.end}
+    return constants | {"LOW": low, "SCALE": 1 / (high - low)}

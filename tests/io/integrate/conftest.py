@@ -1,3 +1,0 @@
-"""Code of the integration pages."""
-
-collect_ignore = ["in_blender.py"]

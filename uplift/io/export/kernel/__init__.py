@@ -1,1 +1,0 @@
-"""The lookup as a program for renderers: written once, in restricted Python, and printed in several languages."""

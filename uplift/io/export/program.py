@@ -1,0 +1,183 @@
+"""Programs for renderers and shaders: one C-like source, preceded by macros of each language."""
+
+from __future__ import annotations
+
+import os
+import re
+import warnings
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.common.errors import OptionError, UpliftWarning
+from uplift.common.files import atomic_write, check_output
+from uplift.common.version import VERSION
+from uplift.cube import CubeData, digest
+from uplift.io.export.table import COLUMNS, MODES, Table, make_table
+
+LARGE = 16_000_000
+"""Size in bytes above which compilation of a header is slow."""
+
+
+@dataclass(frozen=True)
+class Language:
+    """Suffix of programs, files of macros, suffix of the file of public functions, and wavelengths of one call.
+
+    The table is, by ``forms``, the default first: in the program, a ``"header"``, or in a ``"file"`` of numbers.
+    """
+
+    suffix: str
+    macros: tuple[str, ...]
+    calls: str
+    width: int = 4
+    forms: tuple[str, ...] = ("file",)
+
+
+LANGUAGES = {
+    "c": Language(".h", ("c.h",), ".c", 16, ("header", "file")),
+    "cuda": Language(".cuh", ("cuda.cuh",), ".cuh"),
+    "glsl": Language(".glsl", ("glsl.glsl", "shader.glsl"), ".glsl"),
+    "hlsl": Language(".hlsl", ("hlsl.hlsl", "shader.glsl"), ".glsl"),
+}
+"""Languages of `write_program`."""
+
+
+def write_program(
+    data: CubeData,
+    path: str | os.PathLike[str],
+    *,
+    style: str = "c",
+    mode: str = "spectra",
+    form: str | None = None,
+    force: bool = False,
+) -> list[Path]:
+    """Write a cube as a program in C, CUDA, GLSL or HLSL that evaluates it in single precision; return the files.
+
+    Names in the program begin with the name of the file, converted to an identifier. ``mode`` is what it interpolates,
+    as in `Cube.reflectance`: "spectra", with exact colours, or coefficients, "moments". The table is by ``form`` in the
+    program, a "header", the default of C; or in a "file" with the same stem: float32 numbers, little-endian. A cube that
+    was built for a scene is an `OptionError` of the code ``sparse-cube``.
+    """
+    if style not in LANGUAGES:
+        raise OptionError(f"unknown language '{style}'", hint=f"use one of {', '.join(LANGUAGES)}")
+    if mode not in MODES:
+        raise OptionError(f"unknown mode '{mode}'", hint=f"use one of {', '.join(MODES)}")
+    if data.complete_cells is not None:
+        raise OptionError(
+            "a program needs all nodes, but the cube was built for the colours of a scene",
+            code="sparse-cube",
+            hint="pass cube.fill_missing().data",
+        )
+    path, form, table = Path(path), check_form(style, form), make_table(data, mode)
+    text = cube_program(data, table, style, mode, path.stem, form)
+    written = write_files(text, table, path, form, per_line=table.constants["STRIDE"], force=force)
+    size = path.stat().st_size
+    if size > LARGE:
+        problem = f"the header has {size / 1e6:.0f} MB and is slow to compile"
+        warnings.warn(UpliftWarning(problem, path=path, hint="use a cube of smaller dim"), stacklevel=2)
+    return written
+
+
+def cube_program(data: CubeData, table: Table, style: str, mode: str, stem: str, form: str) -> str:
+    """Return the program of a cube, with ``${numbers}`` in place of the numbers of a header."""
+    sensor = data.sensor
+    words = {
+        "digest": digest(data),
+        "space": comment(sensor.space),
+        "illuminant": comment(sensor.illuminant),
+        "observer": comment(sensor.observer),
+        "entries": len(data.atlas.names),
+        "mode": mode,
+    }
+    return compose("cube", table, style, stem, form, words)
+
+
+def check_form(style: str, form: str | None) -> str:
+    """Return the form of the table, the default of the language if None; raise `OptionError` if it has no such form."""
+    forms = LANGUAGES[style].forms
+    if form is not None and form not in forms:
+        raise OptionError(f"a program in {style} has no table of the form '{form}'", hint=f"use {' or '.join(forms)}")
+    return form or forms[0]
+
+
+def compose(kind: str, table: Table, style: str, stem: str, form: str, words: dict[str, Any]) -> str:
+    """Return the program of ``kind``, "cube" or "lights", with ``${numbers}`` in place of the numbers of a header.
+
+    ``up_`` and ``UP_`` in the source become the name of the program.
+    """
+    language, name, image = LANGUAGES[style], identifier(stem), table.image()
+    text = _read(f"{kind}.c")
+    text = text.replace("${macros}", "".join(_read(each) for each in language.macros))
+    text = text.replace("${calls}", _read(f"{kind}_calls{language.calls}"))
+    text = text.replace("${table}", _read(f"table_{form}.c"))
+    text = re.sub(r"\bup_", f"{name}_", text)
+    text = re.sub(r"\bUP_", f"{name.upper()}_", text)
+    constants = (f"#define {name.upper()}_{key} {_literal(value)}" for key, value in table.constants.items())
+    shared = {
+        "version": VERSION,
+        "stem": comment(stem),
+        "width": language.width,
+        "constants": "\n".join(constants),
+        "columns": COLUMNS,
+        "rows": len(image),
+        "size": image.size,
+        "checksum": zlib.crc32(image.tobytes()),
+    }
+    return Template(text).safe_substitute(shared | words)
+
+
+def write_files(text: str, table: Table, path: Path, form: str, *, per_line: int, force: bool) -> list[Path]:
+    """Write a program, and its table to a file of the same stem unless it is a header; return the files."""
+    numbers = path.with_suffix(".bin")
+    if form == "file":
+        check_output(numbers, force=force)
+    with (
+        atomic_write(path, force=force) as temporary,
+        temporary.open("w", encoding="ascii", newline="\n") as opened,
+    ):
+        opened.writelines(_with_numbers(text, table.numbers, per_line))
+    if form != "file":
+        return [path]
+    with atomic_write(numbers, force=force) as temporary:
+        temporary.write_bytes(table.image().tobytes())
+    return [path, numbers]
+
+
+def identifier(stem: str) -> str:
+    """Convert a file name to an identifier: 'macbeth-32' → 'macbeth_32', '32' → 'cube_32'."""
+    name = re.sub(r"\W+|__+", "_", stem, flags=re.ASCII)
+    return name if re.match(r"[A-Za-z]", name) else f"cube_{name}".rstrip("_")
+
+
+def comment(text: str) -> str:
+    """Return text that cannot end a comment; names in a cube file are arbitrary."""
+    return text.encode("ascii", "replace").decode().replace("*", "").replace("\n", " ").replace("$", "")
+
+
+def _read(name: str) -> str:
+    return (files("uplift.io.export") / "source" / name).read_text(encoding="ascii")
+
+
+def _literal(value: float) -> str:
+    """Return an integer, or a number of single precision in nine digits."""
+    if isinstance(value, int):
+        return str(value)
+    text = f"{value:.9g}"
+    return f"{text}f" if {".", "e"} & set(text) else f"{text}.0f"
+
+
+def _with_numbers(text: str, numbers: NDArray[np.float32], per_line: int) -> Iterator[str]:
+    """Yield a program, with its table as text where it has ``${numbers}``."""
+    before, found, after = text.partition("${numbers}")
+    yield before
+    if found:
+        for start in range(0, len(numbers), per_line):
+            yield ", ".join(map(_literal, numbers[start : start + per_line].tolist())) + ",\n"
+    yield after

@@ -1,0 +1,47 @@
+/* C99 and C++. The table is static: include this file in one source file.
+   UP_WIDTH wavelengths are evaluated at a time. Loops over them vectorise: cc -O3 -march=x86-64-v3. */
+#ifndef UP_UPLIFT_H
+#define UP_UPLIFT_H
+
+#include <math.h>
+#include <string.h>
+
+#ifndef UP_WIDTH
+#define UP_WIDTH ${width}
+#endif
+#define UP_LANES 16
+#define UP_FUNCTION static inline
+#define UP_READS
+#define UP_TABLE
+#define UP_IN const
+#define UP_OUT
+#define UP_ARRAY(name, size) float name[size]
+#define UP_ROW(name, index) const float *name = up_table + (index) * UP_STRIDE
+#define UP_BOOL int
+#define UP_INT(x) ((int)(x))
+#define UP_REAL(x) ((float)(x))
+#define UP_ABS fabsf
+#define UP_SQRT sqrtf
+#define UP_TANH tanhf
+#define UP_COPYSIGN copysignf
+/* Loops over wavelengths and lanes are vectorised, not unrolled; short loops in them are unrolled. */
+#if defined(__clang__)
+#define UP_EXPANDED static inline __attribute__((always_inline))
+#define UP_VECTORISE _Pragma("clang loop vectorize(enable) interleave_count(1)")
+#define UP_UNROLL _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define UP_EXPANDED static inline __attribute__((always_inline))
+#define UP_VECTORISE _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
+#define UP_UNROLL _Pragma("GCC unroll 64")
+#else
+#define UP_EXPANDED static inline
+#define UP_VECTORISE
+#define UP_UNROLL
+#endif
+${constants}
+
+${table}
+UP_FUNCTION float up_number(int index)
+{
+    return up_table[index];
+}

@@ -1,0 +1,450 @@
+/* A spectral uplifting cube: linear RGB in, reflectances out, in single precision.
+
+   Written by uplift ${version} from the cube ${digest}.
+   RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries. Mode ${mode}. */
+${macros}
+#ifdef UP_VEC4
+
+/* Copy the row of a lattice point or entry: UP_COUNT numbers of a spectrum, and the tag of a point, filled up with 0. */
+void up_load_row(int index, inout float row[UP_STRIDE])
+{
+    for (int t = 0; t < UP_STRIDE / 4; ++t) {
+        UP_VEC4 texel = up_texel(index * (UP_STRIDE / 4) + t);
+        for (int c = 0; c < 4; ++c) row[4 * t + c] = texel[c];
+    }
+}
+
+#endif
+
+/* Position of the list of entries whose boxes touch the cell above a lattice point, 0 for none. */
+UP_FUNCTION float up_tag(UP_READS int index)
+{
+    return up_number(UP_TABLE index * UP_STRIDE + UP_COUNT);
+}
+
+/* Spectra are 1/2 + deviation(x), where x(lambda) is a polynomial with the multipliers as coefficients. */
+#if UP_SIGMOIDS
+
+/* Weighted x / (2 sqrt(1 + x^2)): the sigmoid around 1/2. */
+UP_FUNCTION float up_deviation(float weight, float x)
+{
+    return weight * 0.5f * x / UP_SQRT(1.0f + x * x);
+}
+
+/* Wavelength scaled from the range to [-1, 1]; differences of magnitudes clip it. */
+UP_FUNCTION float up_scaled(float wavelength)
+{
+    float x = (2.0f * wavelength - (UP_START + UP_END)) / (UP_END - UP_START);
+    return 0.5f * (UP_ABS(x + 1.0f) - UP_ABS(x - 1.0f));
+}
+
+/* x = c_0 s^2 + c_1 s + c_2 of the multipliers from an index in the table. */
+UP_FUNCTION float up_argument(UP_READS int first, float wavelength)
+{
+    float s = up_scaled(wavelength);
+    return (up_number(UP_TABLE first) * s + up_number(UP_TABLE first + 1)) * s
+        + up_number(UP_TABLE first + 2);
+}
+
+/* Tabulate s^2, s, 1 at wavelengths in nm. */
+UP_FUNCTION void up_tabulate(UP_IN float wavelengths[UP_WIDTH], UP_OUT float basis[UP_COUNT * UP_WIDTH])
+{
+    UP_VECTORISE
+    for (int w = 0; w < UP_WIDTH; ++w) {
+        float s = up_scaled(wavelengths[w]);
+        basis[w] = s * s;
+        basis[UP_WIDTH + w] = s;
+        basis[2 * UP_WIDTH + w] = 1.0f;
+    }
+}
+
+#else
+
+/* sin(pi x) for x in [-1/2, 1/2], to 6e-8 of the value. */
+UP_FUNCTION float up_sine_of_turn(float x)
+{
+    float u = x * x;
+    float series = 2.55006973f + u * (-0.59824213f + u * 0.07756039f);
+    return x * (3.14159264f + u * (-5.16770968f + u * series));
+}
+
+/* Weighted arctan(x) / pi, to 6e-7, by arctan |x| = pi/4 + arctan t: conditions would keep loops from vectorising. */
+UP_FUNCTION float up_deviation(float weight, float x)
+{
+    float size = UP_ABS(x);
+    float t = (size - 1.0f) / (size + 1.0f);
+    float u = t * t;
+    float high = 0.0616058142f + u * -0.0370596857f + u * u * (0.0167581496f + u * -0.0037303064f);
+    return UP_COPYSIGN(weight, x) * (0.25f + t * (0.318302635f + u * -0.105877136f + u * u * high));
+}
+
+/* Wavelengths, evenly or as the eye distinguishes them. */
+UP_FUNCTION float up_warp(float wavelength)
+{
+#if UP_WARPED
+    return UP_TANH(0.0072f * (wavelength - 538.0f));
+#else
+    return wavelength;
+#endif
+}
+
+/* Phase phi in turns, [-1/2, 1/2]; differences of magnitudes clip it to the range. */
+UP_FUNCTION float up_phase(float wavelength)
+{
+    float turn = (up_warp(wavelength) - UP_LOW) * UP_SCALE - 0.5f;
+    return 0.5f * (UP_ABS(turn + 0.5f) - UP_ABS(turn - 0.5f));
+}
+
+/* x = p_0 + 2 p_1 cos(phi) + 2 p_2 cos(2 phi) + ... of the multipliers from an index in the table, by Chebyshev's
+   2 cos(k + 1)phi = 2 cos(phi) 2 cos(k phi) - 2 cos(k - 1)phi. */
+UP_FUNCTION float up_argument(UP_READS int first, float wavelength)
+{
+    float cosine = 2.0f * up_sine_of_turn(up_phase(wavelength)), before = 2.0f, now = cosine;
+    float x = up_number(UP_TABLE first);
+    for (int k = 1; k < UP_ENTRY_COUNT; ++k) {
+        float held = now;
+        x += now * up_number(UP_TABLE first + k);
+        now = cosine * now - before;
+        before = held;
+    }
+    return x;
+}
+
+/* Tabulate 1, 2 cos(phi), ..., 2 cos(m phi) at wavelengths in nm, order by order:
+   2 cos(j phi) 2 cos(k phi) = 2 cos(j + k)phi + 2 cos(j - k)phi. */
+UP_FUNCTION void up_tabulate(UP_IN float wavelengths[UP_WIDTH], UP_OUT float basis[UP_COUNT * UP_WIDTH])
+{
+    UP_VECTORISE
+    for (int w = 0; w < UP_WIDTH; ++w) {
+        UP_ARRAY(cosine, UP_COUNT);
+        cosine[1] = 2.0f * up_sine_of_turn(up_phase(wavelengths[w]));
+        UP_UNROLL
+        for (int k = 2; k < UP_COUNT; ++k)
+            cosine[k] = cosine[k / 2] * cosine[k - k / 2] - (k % 2 == 0 ? 2.0f : cosine[1]);
+        basis[w] = 1.0f;
+        UP_UNROLL
+        for (int k = 1; k < UP_COUNT; ++k) basis[k * UP_WIDTH + w] = cosine[k];
+    }
+}
+
+#endif
+
+/* x: sum of multipliers times basis, even and odd orders apart. */
+UP_FUNCTION float up_polynomial(
+    UP_IN float values[UP_STRIDE], UP_IN float basis[UP_COUNT * UP_WIDTH], int w)
+{
+    float even = values[0] * basis[w] + values[2] * basis[2 * UP_WIDTH + w];
+    float odd = values[1] * basis[UP_WIDTH + w];
+    UP_UNROLL
+    for (int k = 3; k < UP_COUNT; k += 2) odd += values[k] * basis[k * UP_WIDTH + w];
+    UP_UNROLL
+    for (int k = 4; k < UP_COUNT; k += 2) even += values[k] * basis[k * UP_WIDTH + w];
+    return even + odd;
+}
+
+/* Reflectances of multipliers: 1/2 + deviation(x). */
+UP_FUNCTION void up_evaluate_block(
+    UP_IN float multipliers[UP_COUNT], UP_IN float basis[UP_COUNT * UP_WIDTH], UP_OUT float total[UP_WIDTH])
+{
+    UP_ARRAY(values, UP_STRIDE);
+    for (int k = 0; k < UP_COUNT; ++k) values[k] = multipliers[k];
+    UP_VECTORISE
+    for (int w = 0; w < UP_WIDTH; ++w) total[w] = 0.5f + up_deviation(1.0f, up_polynomial(values, basis, w));
+}
+
+/* Add `weight` times the deviation from 1/2 of the spectrum of the multipliers in a row. */
+UP_FUNCTION void up_add_spectrum(
+    UP_IN float values[UP_STRIDE], float weight, UP_IN float basis[UP_COUNT * UP_WIDTH],
+    UP_OUT float total[UP_WIDTH])
+{
+    UP_VECTORISE
+    for (int w = 0; w < UP_WIDTH; ++w) total[w] += up_deviation(weight, up_polynomial(values, basis, w));
+}
+
+/* Index of the last node up to x, for x in [0, 1]. */
+UP_FUNCTION int up_cell(UP_READS float x)
+{
+    int low = UP_INT(up_number(UP_TABLE UP_BINS + UP_INT(x * UP_REAL(UP_BIN_COUNT))));
+    while (low < UP_DIM - 2 && x >= up_number(UP_TABLE UP_NODES + low + 1)) low += 1;
+    return low;
+}
+
+/* Row of the lowest corner of a colour's cell. */
+UP_FUNCTION int up_first_corner(UP_READS UP_IN float rgb[3])
+{
+    int red = up_cell(UP_TABLE rgb[0]), green = up_cell(UP_TABLE rgb[1]), blue = up_cell(UP_TABLE rgb[2]);
+    return (red * UP_DIM + green) * UP_DIM + blue;
+}
+
+/* Clip to [0, 1]; NaN becomes 0. */
+UP_FUNCTION float up_clip(float x)
+{
+    return x > 0.0f ? (x > 1.0f ? 1.0f : x) : 0.0f;
+}
+
+/* Find the entry in whose box a colour lies, or -1; set the colour and the weight of the lattice.
+
+   In a box, x = (1 - t) e + t y, where the ray from the entry's colour e through x leaves the box at y. The lattice at y
+   has weight t, the entry the rest. */
+UP_FUNCTION int up_locate(UP_READS UP_IN float rgb[3], UP_OUT float place[4])
+{
+    UP_ARRAY(query, 3);
+    for (int axis = 0; axis < 3; ++axis) place[axis] = up_clip(rgb[axis]);
+    for (int axis = 0; axis < 3; ++axis) query[axis] = place[axis];
+    int entry = -1;
+    int listed = UP_INT(up_tag(UP_TABLE up_first_corner(UP_TABLE query)));
+    place[3] = 1.0f;
+    if (listed > 0) {
+        int last = listed + UP_INT(up_number(UP_TABLE UP_LISTS + listed));
+        while (listed < last) {
+            listed += 1;
+            int candidate = UP_INT(up_number(UP_TABLE UP_LISTS + listed));
+            int box = UP_BOXES + 9 * candidate;
+            float reached = 0.0f;
+            for (int axis = 0; axis < 3; ++axis) {
+                float ray = query[axis] - up_number(UP_TABLE box + axis);
+                float part = ray > 0.0f ? ray * up_number(UP_TABLE box + 6 + axis)
+                                        : -ray * up_number(UP_TABLE box + 3 + axis);
+                reached = part > reached ? part : reached;
+            }
+            if (reached < 1.0f) {
+                entry = candidate;
+                place[3] = reached;
+                listed = last;
+            }
+        }
+    }
+    if (entry >= 0 && place[3] > 0.0f)
+        for (int axis = 0; axis < 3; ++axis) {
+            float centre = up_number(UP_TABLE UP_BOXES + 9 * entry + axis);
+            place[axis] = up_clip(centre + (query[axis] - centre) / place[3]);
+        }
+    return entry;
+}
+
+/* Set the weights of the lower and upper side of each axis; return the row of the lowest corner. */
+UP_FUNCTION int up_weigh(UP_READS UP_IN float place[4], UP_OUT float sides[6])
+{
+    int first = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        int low = up_cell(UP_TABLE place[axis]);
+        float start = up_number(UP_TABLE UP_NODES + low);
+        float share = (place[axis] - start) / (up_number(UP_TABLE UP_NODES + low + 1) - start);
+        sides[2 * axis] = 1.0f - share;
+        sides[2 * axis + 1] = share;
+        first = first * UP_DIM + low;
+    }
+    return first;
+}
+
+/* Mix the spectrum of the lattice in `total` with that of an entry, which may have more multipliers. */
+UP_FUNCTION void up_add_entry(
+    UP_READS float lattice_weight, int entry, UP_IN float wavelengths[UP_WIDTH], UP_OUT float total[UP_WIDTH])
+{
+    UP_VECTORISE
+    for (int w = 0; w < UP_WIDTH; ++w) {
+        float x = up_argument(UP_TABLE UP_ENTRIES + entry * UP_ENTRY_COUNT, wavelengths[w]);
+        total[w] = 0.5f + lattice_weight * (total[w] - 0.5f) + up_deviation(1.0f - lattice_weight, x);
+    }
+}
+
+/* Reflectances of multipliers, mixed with those of an entry unless it is negative. */
+UP_FUNCTION void up_mix(
+    UP_READS UP_IN float multipliers[UP_COUNT], float lattice_weight, int entry,
+    UP_IN float wavelengths[UP_WIDTH], UP_OUT float total[UP_WIDTH])
+{
+    UP_ARRAY(basis, UP_COUNT * UP_WIDTH);
+    up_tabulate(wavelengths, basis);
+    up_evaluate_block(multipliers, basis, total);
+    if (entry >= 0) up_add_entry(UP_TABLE lattice_weight, entry, wavelengths, total);
+}
+
+#if UP_SPECTRA
+
+/* Add the weighted spectra of the eight lattice points around a colour. */
+UP_FUNCTION void up_add_nodes(
+    UP_READS UP_IN float place[4], UP_IN float basis[UP_COUNT * UP_WIDTH], UP_OUT float total[UP_WIDTH])
+{
+    UP_ARRAY(sides, 6);
+    int first = up_weigh(UP_TABLE place, sides);
+    for (int red = 0; red < 2; ++red)
+        for (int green = 0; green < 2; ++green)
+            for (int blue = 0; blue < 2; ++blue) {
+                UP_ROW(values, first + (red * UP_DIM + green) * UP_DIM + blue);
+                up_add_spectrum(values, sides[red] * sides[2 + green] * sides[4 + blue], basis, total);
+            }
+}
+
+/* Evaluate a colour that is located: the weighted spectra of lattice points and entry, with exact colours. */
+UP_FUNCTION void up_answer(
+    UP_READS UP_IN float place[4], int entry, UP_IN float wavelengths[UP_WIDTH],
+    UP_OUT float total[UP_WIDTH])
+{
+    UP_ARRAY(basis, UP_COUNT * UP_WIDTH);
+    UP_VECTORISE
+    for (int w = 0; w < UP_WIDTH; ++w) total[w] = 0.5f;
+    up_tabulate(wavelengths, basis);
+    up_add_nodes(UP_TABLE place, basis, total);
+    if (entry >= 0) up_add_entry(UP_TABLE place[3], entry, wavelengths, total);
+}
+
+#else
+
+/* Weighted coefficients of the eight lattice points around a colour. */
+UP_FUNCTION void up_sum_nodes(UP_READS UP_IN float place[4], UP_OUT float coefficients[UP_COUNT])
+{
+    UP_ARRAY(sides, 6);
+    UP_ARRAY(sum, UP_STRIDE);
+    int first = up_weigh(UP_TABLE place, sides);
+    for (int k = 0; k < UP_STRIDE; ++k) sum[k] = 0.0f;
+    for (int red = 0; red < 2; ++red)
+        for (int green = 0; green < 2; ++green)
+            for (int blue = 0; blue < 2; ++blue) {
+                UP_ROW(values, first + (red * UP_DIM + green) * UP_DIM + blue);
+                float weight = sides[red] * sides[2 + green] * sides[4 + blue];
+                for (int k = 0; k < UP_STRIDE; ++k) sum[k] += weight * values[k];
+            }
+    for (int k = 0; k < UP_COUNT; ++k) coefficients[k] = sum[k];
+}
+
+/* Weighted coefficients of the lattice and of an entry, in as many coefficients. */
+UP_FUNCTION void up_sum_coefficients(
+    UP_READS UP_IN float place[4], int entry, UP_OUT float coefficients[UP_COUNT])
+{
+    up_sum_nodes(UP_TABLE place, coefficients);
+    if (entry >= 0)
+        for (int k = 0; k < UP_COUNT; ++k) {
+            float value = up_number(UP_TABLE (UP_LATTICE + entry) * UP_STRIDE + k);
+            coefficients[k] = place[3] * coefficients[k] + (1.0f - place[3]) * value;
+        }
+}
+
+#if UP_SIGMOIDS
+
+/* Coefficients of sigmoids are their multipliers: always true. */
+UP_FUNCTION UP_BOOL up_dual(UP_IN float coefficients[UP_COUNT], UP_OUT float multipliers[UP_COUNT])
+{
+    for (int k = 0; k < UP_COUNT; ++k) multipliers[k] = coefficients[k];
+    return UP_COUNT > 0;
+}
+
+#else
+
+/* Multipliers of moments by Schur's algorithm [Schur 1917, see uplift.models.real_moments]; false where it breaks down.
+   Loops have constant bounds and no branches, so that compilers unroll them and compute several colours side by side. */
+UP_EXPANDED UP_BOOL up_dual(UP_IN float moments[UP_COUNT], UP_OUT float multipliers[UP_COUNT])
+{
+    float middle = moments[0] - 0.5f;
+    float sine = up_sine_of_turn(0.5f - UP_ABS(middle)), cosine = -up_sine_of_turn(middle);
+    UP_ARRAY(slope, UP_COUNT);
+    UP_ARRAY(even, UP_COUNT);
+    UP_ARRAY(odd, UP_COUNT);
+    UP_ARRAY(upper, UP_COUNT);
+    UP_ARRAY(lower, UP_COUNT);
+    UP_ARRAY(first, UP_COUNT);
+    UP_ARRAY(second, UP_COUNT);
+    /* Power series of the exponential function of the moments: its odd and its even part. */
+    UP_UNROLL
+    for (int k = 0; k < UP_COUNT; ++k) {
+        slope[k] = 3.14159265f * UP_REAL(k) * moments[k];
+        odd[k] = slope[k];
+        even[k] = first[k] = second[k] = k == 0 ? 1.0f : 0.0f;
+    }
+    UP_UNROLL
+    for (int order = 1; order < UP_COUNT; ++order) {
+        even[order] *= 1.0f / UP_REAL(order);
+        odd[order] *= 1.0f / UP_REAL(order);
+        UP_UNROLL
+        for (int k = 2; k < UP_COUNT; ++k)
+            if (k > order) {
+                even[k] -= slope[k - order] * odd[order];
+                odd[k] += slope[k - order] * even[order];
+            }
+    }
+    UP_UNROLL
+    for (int k = 0; k < UP_COUNT - 1; ++k) {
+        upper[k] = odd[k + 1];
+        lower[k] = sine * even[k] + cosine * odd[k];
+    }
+    /* Schur's steps: the reflection coefficients g, and the orthogonal polynomials of both kinds by their recurrence. */
+    float room = 0.25f - middle * middle, scale = 2.0f;
+    UP_UNROLL
+    for (int order = 0; order < UP_COUNT - 1; ++order) {
+        float g = upper[0] / lower[0], rest = 1.0f - g * g;
+        room = rest < room ? rest : room;
+        scale *= rest;
+        UP_UNROLL
+        for (int k = 0; k < UP_COUNT - 2; ++k)
+            if (k < UP_COUNT - 2 - order) {
+                float held = upper[k + 1] - g * lower[k + 1];
+                lower[k] -= g * upper[k];
+                upper[k] = held;
+            }
+        UP_UNROLL
+        for (int k = 0; k < UP_COUNT / 2; ++k)
+            if (k < order / 2 + 1) {
+                float held = first[k];
+                first[k] += g * first[order + 1 - k];
+                first[order + 1 - k] += g * held;
+                held = second[k];
+                second[k] -= g * second[order + 1 - k];
+                second[order + 1 - k] -= g * held;
+            }
+        if (order % 2 == 1) {
+            first[(order + 1) / 2] *= 1.0f + g;
+            second[(order + 1) / 2] *= 1.0f - g;
+        }
+    }
+    /* Multipliers: weighted autocorrelations of both polynomials. */
+    float opposite = cosine > 0.0f ? sine : 1.0f - cosine, adjacent = cosine > 0.0f ? 1.0f + cosine : sine;
+    float first_weight = opposite / (adjacent * scale), second_weight = adjacent / (opposite * scale);
+    UP_UNROLL
+    for (int lag = 0; lag < UP_COUNT; ++lag) {
+        float first_sum = first[0] * first[lag], second_sum = second[0] * second[lag];
+        UP_UNROLL
+        for (int k = 1; k < UP_COUNT; ++k)
+            if (k < UP_COUNT - lag) {
+                first_sum += first[k] * first[k + lag];
+                second_sum += second[k] * second[k + lag];
+            }
+        multipliers[lag] = first_weight * first_sum - second_weight * second_sum;
+    }
+    return room > 0.0f && scale > 1e-30f;
+}
+
+#endif
+
+/* Multipliers, with as little grey as necessary; false, and those of a grey, if no spectrum fits. */
+UP_FUNCTION UP_BOOL up_multipliers_of(UP_IN float coefficients[UP_COUNT], UP_OUT float multipliers[UP_COUNT])
+{
+    UP_ARRAY(mixed, UP_COUNT);
+    float share = 0.0f;
+    int attempt = 0;
+    UP_BOOL valid;
+    do {
+        for (int k = 0; k < UP_COUNT; ++k) mixed[k] = coefficients[k] * (1.0f - share);
+        mixed[0] += 0.5f * share;
+        valid = up_dual(mixed, multipliers);
+        share = attempt == 0 ? 0.0000001f : share * 10.0f;
+        attempt += 1;
+    } while (!valid && attempt < 5);
+    if (!valid)
+        for (int k = 0; k < UP_COUNT; ++k) multipliers[k] = 0.0f;
+    return valid;
+}
+
+/* Evaluate a colour that is located: the spectrum of the lattice's weighted coefficients, mixed with that of the entry. */
+UP_FUNCTION void up_answer(
+    UP_READS UP_IN float place[4], int entry, UP_IN float wavelengths[UP_WIDTH],
+    UP_OUT float total[UP_WIDTH])
+{
+    UP_ARRAY(coefficients, UP_COUNT);
+    UP_ARRAY(multipliers, UP_COUNT);
+    up_sum_nodes(UP_TABLE place, coefficients);
+    up_multipliers_of(coefficients, multipliers);
+    up_mix(UP_TABLE multipliers, place[3], entry, wavelengths, total);
+}
+
+#endif
+
+${calls}

@@ -1,0 +1,149 @@
+/* Reflectances of multipliers, mixed with those of an entry unless it is negative, at wavelengths in nm. */
+UP_FUNCTION void up_mix_all(
+    const float multipliers[UP_COUNT], float lattice_weight, int entry, const float *wavelengths, int count,
+    float *reflectances)
+{
+    int start;
+    for (start = 0; start + UP_WIDTH <= count; start += UP_WIDTH)
+        up_mix(multipliers, lattice_weight, entry, wavelengths + start, reflectances + start);
+    if (start < count) {
+        float block[UP_WIDTH] = {0}, found[UP_WIDTH];
+        memcpy(block, wavelengths + start, (count - start) * sizeof *block);
+        up_mix(multipliers, lattice_weight, entry, block, found);
+        memcpy(reflectances + start, found, (count - start) * sizeof *found);
+    }
+}
+
+/* Reflectances of stored multipliers at wavelengths in nm. */
+UP_FUNCTION void up_evaluate(
+    const float multipliers[UP_COUNT], const float *wavelengths, int count, float *reflectances)
+{
+    up_mix_all(multipliers, 1, -1, wavelengths, count, reflectances);
+}
+
+#if UP_SPECTRA
+
+/* Reflectances of linear RGB at wavelengths in nm; their colour is exactly this RGB. Clips RGB to [0, 1].
+
+       float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[4] = {450, 500, 550, 600}, reflectances[4];
+       up_reflectances(rgb, wavelengths, 4, reflectances); */
+UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, int count, float *reflectances)
+{
+    float place[4];
+    int start, entry = up_locate(rgb, place);
+    for (start = 0; start + UP_WIDTH <= count; start += UP_WIDTH)
+        up_answer(place, entry, wavelengths + start, reflectances + start);
+    if (start < count) {
+        float block[UP_WIDTH] = {0}, found[UP_WIDTH];
+        memcpy(block, wavelengths + start, (count - start) * sizeof *block);
+        up_answer(place, entry, block, found);
+        memcpy(reflectances + start, found, (count - start) * sizeof *found);
+    }
+}
+
+/* The same of n colours, each at count wavelengths of its own. */
+UP_FUNCTION void up_reflectances_n(
+    const float *rgb, const float *wavelengths, int count, int n, float *reflectances)
+{
+    for (int i = 0; i < n; ++i)
+        up_reflectances(rgb + 3 * i, wavelengths + (size_t)count * i, count, reflectances + (size_t)count * i);
+}
+
+#else
+
+/* Coefficients of linear RGB, which are linear in the spectrum: they can be filtered. Clips RGB to [0, 1]. */
+UP_FUNCTION void up_coefficients(const float rgb[3], float coefficients[UP_COUNT])
+{
+    float place[4];
+    int entry = up_locate(rgb, place);
+    up_sum_coefficients(place, entry, coefficients);
+}
+
+/* Multipliers of coefficients, once per texel. Returns 0 for numbers that are the coefficients of no spectrum. */
+UP_FUNCTION int up_multipliers(const float coefficients[UP_COUNT], float multipliers[UP_COUNT])
+{
+    return up_multipliers_of(coefficients, multipliers);
+}
+
+/* Multipliers of UP_LANES colours side by side, in the lanes of vector registers: moment k of colour i is
+   moments[k * UP_LANES + i]; `valid` is 0 where the algorithm breaks down. */
+UP_FUNCTION void up_duals(
+    const float moments[UP_COUNT * UP_LANES], float multipliers[UP_COUNT * UP_LANES], float valid[UP_LANES])
+{
+    UP_VECTORISE
+    for (int lane = 0; lane < UP_LANES; ++lane) {
+        float given[UP_COUNT], found[UP_COUNT];
+        UP_UNROLL
+        for (int k = 0; k < UP_COUNT; ++k) given[k] = moments[k * UP_LANES + lane];
+        valid[lane] = up_dual(given, found) ? 1.0f : 0.0f;
+        UP_UNROLL
+        for (int k = 0; k < UP_COUNT; ++k) multipliers[k * UP_LANES + lane] = found[k];
+    }
+}
+
+/* Multipliers of the coefficients of up to UP_LANES colours, in one pass. Returns how many have no spectrum. */
+UP_FUNCTION int up_multipliers_of_lanes(const float *coefficients, int colours, float *multipliers)
+{
+    float given[UP_COUNT * UP_LANES] = {0}, found[UP_COUNT * UP_LANES], valid[UP_LANES];
+    int failed = 0;
+    for (int lane = 0; lane < colours; ++lane)
+        for (int k = 0; k < UP_COUNT; ++k) given[UP_LANES * k + lane] = coefficients[UP_COUNT * lane + k];
+    up_duals(given, found, valid);
+    for (int lane = 0; lane < colours; ++lane) {
+        float *own = multipliers + UP_COUNT * lane;
+        if (valid[lane] > 0)
+            for (int k = 0; k < UP_COUNT; ++k) own[k] = found[UP_LANES * k + lane];
+        else
+            failed += !up_multipliers_of(coefficients + UP_COUNT * lane, own);
+    }
+    return failed;
+}
+
+/* Multipliers of the coefficients of n colours: faster than one by one. Returns how many have no spectrum. */
+UP_FUNCTION int up_multipliers_n(const float *coefficients, int n, float *multipliers)
+{
+    int failed = 0;
+    for (int start = 0; start < n; start += UP_LANES) {
+        size_t first = (size_t)UP_COUNT * start;
+        int colours = n - start < UP_LANES ? n - start : UP_LANES;
+        failed += up_multipliers_of_lanes(coefficients + first, colours, multipliers + first);
+    }
+    return failed;
+}
+
+/* Reflectances of linear RGB at wavelengths in nm; their colour is this RGB, approximately. Clips RGB to [0, 1].
+
+       float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[4] = {450, 500, 550, 600}, reflectances[4];
+       up_reflectances(rgb, wavelengths, 4, reflectances); */
+UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, int count, float *reflectances)
+{
+    float place[4], coefficients[UP_COUNT], multipliers[UP_COUNT];
+    int entry = up_locate(rgb, place);
+    up_sum_nodes(place, coefficients);
+    up_multipliers_of(coefficients, multipliers);
+    up_mix_all(multipliers, place[3], entry, wavelengths, count, reflectances);
+}
+
+/* The same of n colours, each at count wavelengths of its own: faster than one by one. */
+UP_FUNCTION void up_reflectances_n(
+    const float *rgb, const float *wavelengths, int count, int n, float *reflectances)
+{
+    for (int start = 0; start < n; start += UP_LANES) {
+        float places[4 * UP_LANES], numbers[UP_COUNT * UP_LANES], multipliers[UP_COUNT * UP_LANES];
+        int entries[UP_LANES], colours = n - start < UP_LANES ? n - start : UP_LANES;
+        for (int lane = 0; lane < colours; ++lane) {
+            entries[lane] = up_locate(rgb + 3 * (start + lane), places + 4 * lane);
+            up_sum_nodes(places + 4 * lane, numbers + UP_COUNT * lane);
+        }
+        up_multipliers_of_lanes(numbers, colours, multipliers);
+        for (int lane = 0; lane < colours; ++lane) {
+            size_t first = (size_t)count * (start + lane);
+            up_mix_all(
+                multipliers + UP_COUNT * lane, places[4 * lane + 3], entries[lane], wavelengths + first, count,
+                reflectances + first);
+        }
+    }
+}
+
+#endif
+#endif

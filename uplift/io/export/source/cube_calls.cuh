@@ -1,0 +1,33 @@
+/* Reflectances of stored multipliers at wavelengths in nm. */
+UP_FUNCTION void up_evaluate(
+    const float multipliers[UP_COUNT], const float wavelengths[UP_WIDTH], float reflectances[UP_WIDTH])
+{
+    float basis[UP_COUNT * UP_WIDTH];
+    up_tabulate(wavelengths, basis);
+    up_evaluate_block(multipliers, basis, reflectances);
+}
+
+/* Reflectances of linear RGB at wavelengths in nm. Clips RGB to [0, 1].
+
+       float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[UP_WIDTH] = {450, 500, 550, 600}, found[UP_WIDTH];
+       up_reflectances(table, rgb, wavelengths, found); */
+UP_FUNCTION void up_reflectances(
+    const float *table, const float rgb[3], const float wavelengths[UP_WIDTH], float reflectances[UP_WIDTH])
+{
+    float place[4];
+    int entry = up_locate(table, rgb, place);
+    up_answer(table, place, entry, wavelengths, reflectances);
+}
+
+#if !UP_SPECTRA
+
+/* Coefficients of linear RGB, which are linear in the spectrum: they can be filtered. Clips RGB to [0, 1]. */
+UP_FUNCTION void up_coefficients(const float *table, const float rgb[3], float coefficients[UP_COUNT])
+{
+    float place[4];
+    int entry = up_locate(table, rgb, place);
+    up_sum_coefficients(table, place, entry, coefficients);
+}
+
+#endif
+#endif

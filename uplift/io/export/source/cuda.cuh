@@ -1,0 +1,38 @@
+/* CUDA, and C++ on the host. ${stem}.bin has the ${size} numbers (float32, little-endian) of the table. Its CRC-32 is
+   ${checksum}. */
+#ifndef UP_UPLIFT_H
+#define UP_UPLIFT_H
+
+#include <math.h>
+
+#ifndef UP_WIDTH
+#define UP_WIDTH ${width}
+#endif
+#ifdef __CUDACC__
+#define UP_FUNCTION static __host__ __device__ inline
+#define UP_UNROLL _Pragma("unroll")
+#else
+#define UP_FUNCTION static inline
+#define UP_UNROLL
+#endif
+#define UP_EXPANDED UP_FUNCTION
+#define UP_VECTORISE
+#define UP_READS const float *table,
+#define UP_TABLE table,
+#define UP_IN const
+#define UP_OUT
+#define UP_ARRAY(name, size) float name[size]
+#define UP_ROW(name, index) const float *name = table + (index) * UP_STRIDE
+#define UP_BOOL int
+#define UP_INT(x) ((int)(x))
+#define UP_REAL(x) ((float)(x))
+#define UP_ABS fabsf
+#define UP_SQRT sqrtf
+#define UP_TANH tanhf
+#define UP_COPYSIGN copysignf
+${constants}
+
+UP_FUNCTION float up_number(const float *table, int index)
+{
+    return table[index];
+}

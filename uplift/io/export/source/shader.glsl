@@ -1,0 +1,23 @@
+#define UP_WIDTH ${width}
+#define UP_FUNCTION
+#define UP_EXPANDED
+#define UP_VECTORISE
+#define UP_READS
+#define UP_TABLE
+#define UP_IN in
+#define UP_OUT inout
+#define UP_ARRAY(name, size) float name[size]; for (int fill = 0; fill < size; ++fill) name[fill] = 0.0f
+#define UP_ROW(name, index) UP_ARRAY(name, UP_STRIDE); up_load_row(index, name)
+#define UP_BOOL bool
+#define UP_INT(x) int(x)
+#define UP_REAL(x) float(x)
+#define UP_ABS abs
+#define UP_SQRT sqrt
+#define UP_TANH tanh
+#define UP_COPYSIGN(size, sign) ((sign) > 0.0f ? (size) : -(size))
+${constants}
+
+float up_number(int index)
+{
+    return up_texel(index / 4)[index % 4];
+}

@@ -1,0 +1,2 @@
+static const float up_table[] = {
+${numbers}};

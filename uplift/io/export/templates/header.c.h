@@ -1,2 +1,0 @@
-static const float ${name}_table[] = {
-${table}};
