@@ -62,8 +62,8 @@ def write_program(
 
     Names in the program begin with the name of the file, converted to an identifier. ``mode`` is what it interpolates,
     as in `Cube.reflectance`: "spectra", with exact colours, or coefficients, "moments". The table is by ``form`` in the
-    program, a "header", the default of C; or in a "file" with the same stem: float32 numbers, little-endian. A cube that
-    was built for a scene is an `OptionError` of the code ``sparse-cube``.
+    program, a "header", the default of C; or in a "file" with the same stem: float32 numbers, little-endian. A cube
+    that was built for a scene is an `OptionError` of the code ``sparse-cube``.
     """
     if style not in LANGUAGES:
         raise OptionError(f"unknown language '{style}'", hint=f"use one of {', '.join(LANGUAGES)}")
