@@ -83,10 +83,10 @@ def test_plot(choose, home):
 @pytest.mark.parametrize(
     ("options", "code"),
     [
-        (["--count", "0"], "count-out-of-range"),
+        (["--count", "0"], "option"),
         (["--count", "4", "--light", "D66"], "unknown-illuminant"),
         (["--tolerance", "-1"], "target-not-positive"),
-        (["--tolerance", "0.001", "--method", "uniform"], "target-unreachable"),
+        (["--tolerance", "0.001", "--method", "uniform"], "option"),
         (["--count", "3", "--method", "meyer"], "undefined-rule"),
         (["--wavelengths", "300:700:50"], "invalid-wavelengths"),
         (["--wavelengths", "some"], "invalid-wavelengths"),

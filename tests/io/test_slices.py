@@ -105,7 +105,7 @@ def test_numbers_beyond_float32_become_its_largest(tmp_path):
 
 
 def test_nan_raises(tmp_path):
-    with raises(OutputError, "nan-in-channel") as caught:
+    with raises(OutputError) as caught:
         write_slices(hand_made(coefficients=np.full((64, 3), np.nan)), tmp_path / "nan.exr")
     assert "'coefficient.00'" in caught.value.problem
     assert not list(tmp_path.iterdir())

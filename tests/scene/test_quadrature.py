@@ -125,22 +125,22 @@ def test_rule_is_equivariant_to_scale_and_shift() -> None:
 
 
 @pytest.mark.parametrize(
-    ("points", "masses", "order", "code"),
+    ("points", "masses", "order"),
     [
-        ([1, 2, 3], [1, 1], 1, "invalid-points"),
-        ([1, 3, 2], [1, 1, 1], 1, "invalid-points"),
-        ([1, 2, 3], [0, 0, 0], 1, "invalid-masses"),
-        ([1, 2, 3], [1, np.nan, 1], 1, "invalid-masses"),
-        ([], [], 1, "invalid-masses"),
-        ([1, 2, 3], [1, 1, 1], 0, "order-out-of-range"),
-        ([1, 2, 3], [1, 0, 1], 3, "order-out-of-range"),
+        ([1, 2, 3], [1, 1], 1),
+        ([1, 3, 2], [1, 1, 1], 1),
+        ([1, 2, 3], [0, 0, 0], 1),
+        ([1, 2, 3], [1, np.nan, 1], 1),
+        ([], [], 1),
+        ([1, 2, 3], [1, 1, 1], 0),
+        ([1, 2, 3], [1, 0, 1], 3),
     ],
 )
-def test_invalid_measures_and_orders_raise(points: list[float], masses: list[float], order: int, code: str) -> None:
-    with raises(OptionError, code):
+def test_invalid_measures_and_orders_raise(points: list[float], masses: list[float], order: int) -> None:
+    with raises(OptionError):
         gauss_rule(points, masses, order)
 
 
 def test_duplicate_nodes_raise() -> None:
-    with raises(OptionError, "duplicate-node"):
+    with raises(OptionError):
         interpolatory_rule([500, 500], POINTS, BELL)

@@ -98,9 +98,7 @@ def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRu
     used = masses != 0
     if not 1 <= order <= used.sum():
         raise OptionError(
-            f"order must be in [1, {used.sum()}], got {order}",
-            code="order-out-of-range",
-            hint="an order needs as many masses that are not 0",
+            f"order must be in [1, {used.sum()}], got {order}", hint="an order needs as many masses that are not 0"
         )
     x, masses = _to_unit(points, points)[used], masses[used]
     basis = _orthonormal_basis(x, np.abs(masses), order)
@@ -134,7 +132,7 @@ def interpolatory_rule(nodes: ArrayLike, points: ArrayLike, masses: ArrayLike) -
     points, masses = _checked(points, masses)
     nodes = np.sort(np.asarray(nodes, dtype=float))
     if np.any(np.diff(nodes) == 0):
-        raise OptionError("nodes must be distinct", code="duplicate-node", hint="give each node once")
+        raise OptionError("nodes must be distinct", hint="give each node once")
     degree = len(nodes) - 1
     values = chebyshev.chebvander(_to_unit(nodes, points), degree)
     moments = masses @ chebyshev.chebvander(_to_unit(points, points), degree)
@@ -166,15 +164,10 @@ def _checked(points: ArrayLike, masses: ArrayLike) -> tuple[Array, Array]:
     if points.ndim != 1 or points.shape != masses.shape or not np.all(np.diff(points) > 0):
         raise OptionError(
             f"points must ascend and have a mass each, got shapes {points.shape} and {masses.shape}",
-            code="invalid-points",
             hint="sort the points",
         )
     if not (np.isfinite(points).all() and np.isfinite(masses).all() and masses.any()):
-        raise OptionError(
-            "points and masses must be finite, and not all masses 0",
-            code="invalid-masses",
-            hint="remove NaN and infinity",
-        )
+        raise OptionError("points and masses must be finite, and not all masses 0", hint="remove NaN and infinity")
     return points, masses
 
 

@@ -228,7 +228,7 @@ def test_encoded_spaces_of_opencolorio_decode_floats(small_cube, tmp_path):
     codes, *_ = convert(named, save(tmp_path / "b.png", None, CODES))
     np.testing.assert_allclose(codes, colour.models.eotf_sRGB(CODES / 255), rtol=0, atol=2e-5)
     linear = texture.prepare(small_cube, encoding="linear", space="sRGB - Texture", threads=1)
-    with raises(OptionError, "encoding-contradicts-space"):
+    with raises(OptionError):
         convert(linear, tmp_path / "a.exr")
 
 

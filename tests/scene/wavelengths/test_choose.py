@@ -61,10 +61,10 @@ def test_choice_is_deterministic(smooth: RenderSetup) -> None:
 @pytest.mark.parametrize(
     ("options", "code"),
     [
-        ({}, "count-or-target"),
-        ({"count": 4, "target": 1.0}, "count-or-target"),
-        ({"count": 0}, "count-out-of-range"),
-        ({"count": 41}, "count-out-of-range"),
+        ({}, "option"),
+        ({"count": 4, "target": 1.0}, "option"),
+        ({"count": 0}, "option"),
+        ({"count": 41}, "option"),
         ({"target": 0.0}, "target-not-positive"),
         ({"target": float("nan")}, "target-not-positive"),
     ],
@@ -76,7 +76,7 @@ def test_invalid_options_raise(smooth: RenderSetup, options: dict[str, float], c
 
 def test_unreachable_target_raises_and_states_the_best_error(spiky: RenderSetup) -> None:
     best = choose(spiky, count=40, method="uniform").errors.max
-    with raises(OptionError, "target-unreachable") as caught:
+    with raises(OptionError) as caught:
         choose(spiky, target=0.01, method="uniform")
     assert f"{best:.3g}" in str(caught.value)
 

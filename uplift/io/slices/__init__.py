@@ -4,7 +4,4 @@ from __future__ import annotations
 
 from uplift.io.slices.slices import check_slices, write_slices
 
-__all__ = [
-    "check_slices",
-    "write_slices",
-]
+__all__ = ["check_slices", "write_slices"]

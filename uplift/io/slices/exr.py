@@ -39,7 +39,7 @@ def attributes(data: CubeData) -> dict[str, Any]:
 
 
 def make_part(name: str, header: Mapping[str, Any], channels: Mapping[str, NDArray[Any]]) -> Any:
-    """Make an `OpenEXR.Part` of channels (height, width). Raises `OutputError` for NaN (``nan-in-channel``)."""
+    """Make an `OpenEXR.Part` of channels (height, width). Raises `OutputError` for NaN."""
     import OpenEXR
 
     lossless = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
@@ -61,7 +61,7 @@ def write_parts(parts: Iterable[Any], path: str | os.PathLike[str], *, force: bo
 def _float32(channel: str, plane: NDArray[Any]) -> NDArray[np.float32]:
     """Convert to float32. Integers up to 2²⁴ are exact; numbers that are too large become the largest float."""
     if np.isnan(plane).any():
-        raise OutputError(f"channel '{channel}' contains NaN", code="nan-in-channel", hint="rebuild the cube")
+        raise OutputError(f"channel '{channel}' contains NaN", hint="rebuild the cube")
     return np.ascontiguousarray(np.clip(plane, -MAX_FLOAT32, MAX_FLOAT32), dtype=np.float32)
 
 

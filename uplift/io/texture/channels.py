@@ -70,9 +70,7 @@ def colour_channels(part: Part) -> ColourChannels | None:
     if len(layers) > 1:
         found = ", ".join(layer[:-1] for layer in layers)
         raise TextureError(
-            f"a part must have one layer of colour, got {found}",
-            code="ambiguous-colour-layers",
-            hint="write each layer as a part or a file",
+            f"a part must have one layer of colour, got {found}", hint="write each layer as a part or a file"
         )
     if layers:
         names, alpha = [layers[0] + letter for letter in "RGB"], layers[0] + "A"
@@ -83,9 +81,7 @@ def colour_channels(part: Part) -> ColourChannels | None:
     red, green, blue = map(part.channels.index, names)
     if types := {part.types[channel] for channel in (red, green, blue)} - COLOUR_TYPES:
         raise TextureError(
-            f"colour channels must be 8-bit, 16-bit, half or float, got {min(types)}",
-            code="unsupported-colour-type",
-            hint="convert them",
+            f"colour channels must be 8-bit, 16-bit, half or float, got {min(types)}", hint="convert them"
         )
     is_multiplied = part.has_associated_alpha and alpha in part.channels
     return ColourChannels((red, green, blue), part.channels.index(alpha) if is_multiplied else None)
@@ -96,9 +92,7 @@ def colour_channels_by_part(image: Image) -> list[tuple[Part, ColourChannels | N
     parts = [(part, colour_channels(part)) for part in image.parts]
     if not any(colours for _, colours in parts):
         names = ", ".join(dict.fromkeys(name for part in image.parts for name in part.channels))
-        raise TextureError(
-            f"no colour channels among {names}", code="no-colour-channels", hint="name them R, G and B, or Y"
-        )
+        raise TextureError(f"no colour channels among {names}", hint="name them R, G and B, or Y")
     return parts
 
 

@@ -207,9 +207,7 @@ def _all_inside(colours: Values) -> bool:
 def check_encoding(encoding: str) -> None:
     """Raise `OptionError` unless ``encoding`` is one of `ENCODINGS`."""
     if encoding not in ENCODINGS:
-        raise OptionError(
-            f"unknown encoding '{encoding}'", code="unknown-encoding", hint=f"use one of {', '.join(ENCODINGS)}"
-        )
+        raise OptionError(f"unknown encoding '{encoding}'", hint=f"use one of {', '.join(ENCODINGS)}")
 
 
 def make_decoder(
@@ -226,7 +224,6 @@ def make_decoder(
     if source is not None and source.floats_are_codes and encoding == "linear":
         raise OptionError(
             f"the encoding must not be linear for the encoded space '{source.name}'",
-            code="encoding-contradicts-space",
             hint="name its linear counterpart, or leave the encoding to the space",
         )
     is_encoded = encoding == "encoded" and not reads_codes(part, source)

@@ -131,7 +131,6 @@ def _layout(converter: Converter, image: Image, part: Part, found: ColourChannel
         if duplicates := set(converted) & set(names):
             raise TextureError(
                 f"channel '{min(duplicates)}' exists next to the colour and would be written twice",
-                code="duplicate-channel",
                 hint="remove that channel",
             )
         names, types = (*converted, *names), (*(converter.depth,) * len(converted), *types)

@@ -70,7 +70,7 @@ def check_size(path: Path) -> None:
 
 def _check_limit(count: int, limit: int, things: str, hint: str) -> None:
     if count > limit:
-        raise TextureError(f"an image must have at most {limit} {things}", code=f"too-many-{things}", hint=hint)
+        raise TextureError(f"an image must have at most {limit} {things}", hint=hint)
 
 
 def seal(path: Path) -> None:

@@ -136,7 +136,6 @@ class Image:
                 raise TextureError(
                     f"integers must be at most {MAX_EXACT_INTEGER}, got {numbers.max()} in channel "
                     f"'{part.channels[index]}'",
-                    code="integer-too-large",
                     hint="remove that channel",
                 )
             values[..., index] = numbers / UINT32_SCALE
@@ -262,7 +261,7 @@ def _silence(*, is_png: bool) -> contextlib.AbstractContextManager[None]:
 def _parts(handle: Any) -> Iterator[Part]:
     if handle.format_name() not in FORMATS:
         problem = f"unsupported image format {handle.format_name()}"
-        raise TextureError(problem, code="unsupported-image-format", hint=FORMAT_HINT)
+        raise TextureError(problem, hint=FORMAT_HINT)
     number = 0
     while handle.seek_subimage(number, 0):
         yield _part(handle.spec(), number)
@@ -273,7 +272,7 @@ def _parts(handle: Any) -> Iterator[Part]:
 
 def _part(spec: Any, number: int) -> Part:
     if spec.deep or spec.depth > 1:
-        raise TextureError("an image must have one value per pixel", code="deep-image", hint="flatten it")
+        raise TextureError("an image must have one value per pixel", hint="flatten it")
     formats = spec.channelformats or (spec.format,) * spec.nchannels
     display = (spec.full_x, spec.full_y, spec.full_width, spec.full_height)
     aspect = spec.get_float_attribute("PixelAspectRatio", 1.0)
@@ -330,11 +329,7 @@ def _check_names(part: Part) -> None:
     """Raise `TextureError` for names of the part or its channels that are not UTF-8."""
     for name in (part.name, *part.channels):
         if not _is_text(name):
-            raise TextureError(
-                f"names of parts and channels must be UTF-8, got {name!a}",
-                code="name-not-text",
-                hint="rename it",
-            )
+            raise TextureError(f"names of parts and channels must be UTF-8, got {name!a}", hint="rename it")
 
 
 def _is_text(name: str) -> bool:
@@ -350,7 +345,6 @@ def _check_memory(part: Part, *, is_interlaced: bool) -> None:
         raise TextureError(
             f"blocks of {rows} rows must be decoded together and need {needed / 1e9:.1f} GB, "
             f"more than the memory of {total / 1e9:.1f} GB",
-            code="image-too-large",
             hint="write the image with smaller tiles or strips, or without interlacing",
         )
 
@@ -369,5 +363,5 @@ def utf8_name(path: Path, error: type[UpliftError]) -> str:
     try:
         name.encode()
     except UnicodeEncodeError as cause:
-        raise error("the file name is not UTF-8", code="name-not-utf8", path=path, hint="rename the file") from cause
+        raise error("the file name is not UTF-8", path=path, hint="rename the file") from cause
     return name

@@ -58,9 +58,7 @@ class LightUplifter(Converter):
         source = source_space(part, self.sensor, self.space)
         if self.encoding == "encoded" and not reads_codes(part, source):
             raise OptionError(  # a transfer function ends at 1, lights do not
-                "floats of lights must be linear",
-                code="encoded-lights",
-                hint="leave out encoding='encoded', or name an encoded space",
+                "floats of lights must be linear", hint="leave out encoding='encoded', or name an encoded space"
             )
         matrix = None if source is None else conversion(source.gamut, self.table)
         to_linear = linear_reader(self.sensor, part, self.encoding, source)

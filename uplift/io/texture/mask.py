@@ -57,19 +57,13 @@ def open_mask(path: str | os.PathLike[str], cubes: int, window: tuple[int, int])
         if size != window:
             raise TextureError(
                 f"a mask must have the size of its image, {window[0]} × {window[1]}, got {size[0]} × {size[1]}",
-                code="mask-size",
                 path=path,
                 hint="scale the mask",
             )
         found = colour_channels(part)
         channels = (0, 0, 0) if found is None and len(part.channels) == 1 else found and found.rgb
         if not channels:
-            raise TextureError(
-                f"no mask among the channels {', '.join(part.channels)}",
-                code="mask-values",
-                path=path,
-                hint=HINT,
-            )
+            raise TextureError(f"no mask among the channels {', '.join(part.channels)}", path=path, hint=HINT)
         summary = _summarise(image, part, channels)
         yield Mask(image, part, channels, _to_weights(Path(path), part.max_code, cubes, summary))
 
@@ -95,7 +89,7 @@ def _summarise(image: Image, part: Part, channels: tuple[int, int, int]) -> _Sum
 
 
 def _to_weights(path: Path, max_code: int, cubes: int, found: _Summary) -> ToWeights:
-    """Choose the meaning of a mask. Raises `TextureError` (``mask-values``) if it has none."""
+    """Choose the meaning of a mask. Raises `TextureError` if it has none."""
     if max_code and found.is_grey and found.high < cubes:
         return lambda numbers: _one_hot(numbers[..., 0], cubes)
     scale = max_code or 1
@@ -106,14 +100,10 @@ def _to_weights(path: Path, max_code: int, cubes: int, found: _Summary) -> ToWei
         return _normalised
     kind = "grey" if found.is_grey else "coloured"
     black = " with black pixels" if not found.is_grey and found.has_black else ""
-    meanings = {
-        2: "0 and 1, or weights up to white",
-        3: "0 to 2, or weights in R, G and B that are not all 0",
-    }
+    meanings = {2: "0 and 1, or weights up to white", 3: "0 to 2, or weights in R, G and B that are not all 0"}
     raise TextureError(
         f"a mask of {cubes} cubes must hold {meanings.get(cubes, f'0 to {cubes - 1}')}, got {kind} values "
         f"from {found.low:g} to {found.high:g}{f' of {max_code}' if max_code else ''}{black}",
-        code="mask-values",
         path=path,
         hint=HINT,
     )

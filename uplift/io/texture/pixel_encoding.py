@@ -177,7 +177,6 @@ def spectral_channels(quantity: str, wavelengths: Array) -> tuple[str, ...]:
     if (np.diff(wavelengths) <= 0).any() or len(set(names)) < len(names):
         raise OptionError(
             "wavelengths of a spectral image must ascend in steps of at least 1e-6 nm",
-            code="wavelengths-not-ascending",
             hint="sort them and remove duplicates",
         )
     return names

@@ -248,7 +248,6 @@ def _dask_executor(address: str) -> Iterator[Executor]:
             reason = " ".join(str(error).split())
             raise OptionError(
                 f"no Dask scheduler can be used at '{address}'" + (f": {reason}" if reason else ""),
-                code="dask-unreachable",
                 hint="start one: dask scheduler",
             ) from error
         try:
@@ -290,7 +289,6 @@ def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
         if len(sources) > 1:
             raise TextureError(
                 f"every image needs its own target, got {target} for {' and '.join(sources)}",
-                code="duplicate-target",
                 hint="write them to different folders",
             )
     remaining = [job for job in jobs if not (resume and _is_up_to_date(job))]

@@ -359,7 +359,6 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
     if len(uplifters) < 2:
         raise OptionError(
             f"a mask chooses among at least two cubes, got {len(uplifters)}",
-            code="mask-without-cubes",
             hint="name the cubes in the order of the numbers in the mask",
         )
     first = uplifters[0]
@@ -369,7 +368,6 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
     if len({each.channels for each in uplifters}) > 1 or (is_model_stored and len(models) > 1):
         raise OptionError(
             "cubes of one texture must have the same wavelengths or, for moments and multipliers, the same model",
-            code="masked-cubes-differ",
             hint="write spectra at given wavelengths, or build the cubes with the same options",
         )
     check_regular(mask, TextureError, hint="name an image")

@@ -119,9 +119,7 @@ class Writer:
                 for part in image.parts:
                     image.rows(part, part.window.height - 1, 1)
         except TextureError as error:
-            raise OutputError(
-                "the file is incomplete", code="incomplete-write", hint="free space on the disk"
-            ) from error
+            raise OutputError("the file is incomplete", hint="free space on the disk") from error
 
     def _check_space(self) -> None:
         """Raise `OutputError` at the first rows if the rest of the image will not fit on the disk."""

@@ -56,7 +56,7 @@ def sample_colours(
     """
     total, scene = sum(map(_pixel_count, textures)), Images(textures, encoding)
     if not total:
-        raise PlanFileError("textures must have pixels, got none", code="no-pixels", hint="name an image with pixels")
+        raise PlanFileError("textures must have pixels, got none", hint="name an image with pixels")
     first = sizes[0] / total
     last = first + sizes[1] / total
     rng, bins = np.random.default_rng(0), np.full((BINS**3, 3), np.nan)

@@ -229,12 +229,7 @@ def read_plan(path: StrPath) -> PlanFile:
     table = file.validate(_PlanTable, hint=HINT)
     textures, atlases = (_check_sources(file, key, getattr(table.scene, key)) for key in ("textures", "atlases"))
     return PlanFile(
-        file.path,
-        textures,
-        atlases,
-        table.scene.encoding,
-        table.cells == "sparse",
-        recorded_options(table.build),
+        file.path, textures, atlases, table.scene.encoding, table.cells == "sparse", recorded_options(table.build)
     )
 
 

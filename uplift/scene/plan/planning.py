@@ -150,7 +150,6 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         raise PlanFileError(
             f"tolerance must be at least the error of the reference cube, ΔE00 {format_error(worst.quantile)} of "
             f"{worst.group} under {worst.light}, got {scene.tolerance:g}",
-            code="tolerance-unreachable",
             path=scene.path,
             hint=f"set tolerance = {np.ceil(worst.quantile * 110) / 100:g} or more",
         )
@@ -215,11 +214,7 @@ def _file_size(cube: Cube) -> int:
 
 
 def _confirm(
-    context: PlanContext,
-    final_build: FinalBuild,
-    options: Mapping[str, Any],
-    sampling: Sampling,
-    storage: Storage,
+    context: PlanContext, final_build: FinalBuild, options: Mapping[str, Any], sampling: Sampling, storage: Storage
 ) -> tuple[ErrorSummary, tuple[Preview, ...]]:
     """Error and previews of the final cube on the second sample of pixels."""
     tests, _ = context.evaluation_set(context.colours.confirming)

@@ -99,7 +99,7 @@ def choose(
         return _with_count(setup, method, count)
     if target is not None and count is None:
         return _with_target(setup, method, target, measure)
-    raise OptionError("exactly one of count and target is required", code="count-or-target", hint="give one of them")
+    raise OptionError("exactly one of count and target is required", hint="give one of them")
 
 
 def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:
@@ -161,11 +161,7 @@ def choose_orders(setup: RenderSetup, orders: tuple[int, int, int], channels: st
 
 def _with_count(setup: RenderSetup, method: str, count: int) -> Choice:
     if not 1 <= count <= MAX_COUNT:
-        raise OptionError(
-            f"count must be in [1, {MAX_COUNT}], got {count}",
-            code="count-out-of-range",
-            hint="tables at 10 nm have 40",
-        )
+        raise OptionError(f"count must be in [1, {MAX_COUNT}], got {count}", hint="tables at 10 nm have 40")
     sampling = METHODS[method](setup, count).ordered()
     return Choice(method, sampling, evaluate(setup, sampling))
 
@@ -190,6 +186,5 @@ def _with_target(setup: RenderSetup, method: str, target: float, measure: str) -
     raise OptionError(
         f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method '{method}'; "
         f"{len(choice.sampling)} wavelengths reach {error:.3g}",
-        code="target-unreachable",
         hint="raise the target or choose another method",
     )

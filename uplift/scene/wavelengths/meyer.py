@@ -166,9 +166,7 @@ def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: ChannelSpace)
     for channel, by_order, order in zip(space.channels, defined, orders, strict=True):
         if order not in by_order:
             raise OptionError(
-                f"orders must be in [1, {MAX_ORDER}], got {order}",
-                code="order-out-of-range",
-                hint="the paper tabulates orders 1 to 10",
+                f"orders must be in [1, {MAX_ORDER}], got {order}", hint="the paper tabulates orders 1 to 10"
             )
         rule = by_order[order]
         if isinstance(rule, UndefinedRule):
@@ -199,9 +197,7 @@ def meyer(setup: RenderSetup, count: int) -> Sampling:
         candidates.append(four_wavelength_rule(rules, channel_functions(space, nm, cmfs)))
     if not candidates:
         raise OptionError(
-            f"method 'meyer' has no rule of {count} wavelengths",
-            code="undefined-rule",
-            hint="give a count in [4, 30]",
+            f"method 'meyer' has no rule of {count} wavelengths", code="undefined-rule", hint="give a count in [4, 30]"
         )
     samplings = (combine_rules(setup, space, allocation).balanced() for allocation in candidates)
     return min(samplings, key=lambda sampling: evaluate(setup, sampling).mean)

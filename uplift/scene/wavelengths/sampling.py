@@ -165,7 +165,7 @@ def make_setup(
     _check(nm, materials)
     lights = tuple(dict.fromkeys(lights))
     if not lights:
-        raise OptionError("lights must not be empty", code="no-lights", hint="name at least one, such as D65")
+        raise OptionError("lights must not be empty", hint="name at least one, such as D65")
     # The tables have steps of whole nanometres; the grid may have any step.
     shape = np.floor(nm[0]), np.ceil(nm[-1]), 1.0
     table = np.arange(shape[0], shape[1] + 0.5)
@@ -184,21 +184,15 @@ def _check(nm: Array, materials: Array) -> None:
     if nm.ndim != 1 or len(nm) < MIN_SAMPLES or not np.allclose(steps, steps[0], rtol=1e-6) or steps[0] <= 0:
         raise OptionError(
             f"wavelengths must be at least {MIN_SAMPLES}, ascending and evenly spaced",
-            code="uneven-wavelengths",
             hint="give a grid such as 380, 381, …, 770 nm",
         )
     if materials.ndim != 2 or not len(materials) or materials.shape[1] != len(nm):
         raise OptionError(
             f"reflectances must have shape (M, {len(nm)}) with M > 0, got {materials.shape}",
-            code="shape-mismatch",
             hint="give one row per material",
         )
     if not np.isfinite(materials).all() or materials.min() < 0:
-        raise OptionError(
-            "reflectances must be finite and at least 0",
-            code="invalid-reflectance",
-            hint="give values from 0 to 1",
-        )
+        raise OptionError("reflectances must be finite and at least 0", hint="give values from 0 to 1")
 
 
 @dataclass(frozen=True, eq=False)
