@@ -87,11 +87,7 @@ def test_list_states_name_content_source_licence_and_entries():
         count = SHIPPED[atlas.path.name][0]
         header = read_atlas(ATLASES / atlas.path.name).sources[0].header
         assert (atlas.name, atlas.entries) == (atlas.path.stem, count)
-        assert (atlas.content, atlas.source, atlas.licence) == (
-            header.content,
-            header.copyright,
-            header.licence,
-        )
+        assert (atlas.content, atlas.source, atlas.licence) == (header.content, header.copyright, header.licence)
 
 
 def test_bare_name_reads_the_shipped_atlas_from_an_empty_folder(empty_folder):

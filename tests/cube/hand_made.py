@@ -26,11 +26,7 @@ def hand_made(dim: int = 4, **changes: object) -> CubeData:
         sensor=sensor(),
         threshold=1e-4,
         atlas=AtlasTable(
-            ("grey", "über"),
-            np.full((2, 3), 0.5),
-            np.full((2, 3), 0.25),
-            np.array([0.5, 0.0]),
-            np.full(2, 0.1),
+            ("grey", "über"), np.full((2, 3), 0.5), np.full((2, 3), 0.25), np.array([0.5, 0.0]), np.full(2, 0.1)
         ),
         points=PointTable(
             coefficients=rng.normal(size=(lattice.size, 3)),

@@ -80,8 +80,7 @@ def test_metadata_out_of_range_are_refused(refused, key, value):
 
 
 @pytest.mark.parametrize(
-    "value",
-    [nested(40), nested(983), nested(100_000), r'"\ud800"', r'{"\ud800": 1}', "NaN", "1e999", "9" * 5000],
+    "value", [nested(40), nested(983), nested(100_000), r'"\ud800"', r'{"\ud800": 1}', "NaN", "1e999", "9" * 5000]
 )
 def test_other_values_are_refused_before_the_digest(tmp_path, value):
     path = tmp_path / "cube"

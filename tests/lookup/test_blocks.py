@@ -59,15 +59,15 @@ def test_a_table_of_all_points_gives_equal_spectra(small_cube, monkeypatch, mode
 
 @pytest.mark.parametrize("dtype", [np.float16, int, "complex128", "paint", object, 3])
 def test_unsupported_types_are_refused(small_cube, dtype):
-    with raises(OptionError, "unsupported-dtype"):
+    with raises(OptionError, "option"):
         small_cube.reflectance([0.5, 0.5, 0.5], dtype=dtype)
-    with raises(OptionError, "unsupported-dtype"):
+    with raises(OptionError, "option"):
         small_cube.coefficients([0.5, 0.5, 0.5], dtype=dtype)
 
 
 @pytest.mark.parametrize("threads", [0, -1, 1.0, "2", None, True])
 def test_invalid_numbers_of_threads_are_refused(small_cube, threads):
-    with raises(OptionError, "invalid-threads"):
+    with raises(OptionError, "option"):
         small_cube.reflectance([0.5, 0.5, 0.5], threads=threads)
 
 

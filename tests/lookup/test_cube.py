@@ -158,18 +158,7 @@ def test_unknown_modes_are_refused(small_cube, name):
 
 @pytest.mark.parametrize(
     "wavelengths",
-    [
-        [],
-        [0],
-        [-500],
-        [500, np.nan],
-        [np.inf],
-        "red",
-        ["a"],
-        [[400, 500], [600, 700]],
-        [[400], [500, 600]],
-        {},
-    ],
+    [[], [0], [-500], [500, np.nan], [np.inf], "red", ["a"], [[400, 500], [600, 700]], [[400], [500, 600]], {}],
 )
 def test_invalid_wavelengths_are_refused(small_cube, mode, wavelengths):
     with raises(OptionError, "invalid-wavelengths"):

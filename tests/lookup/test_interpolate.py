@@ -142,10 +142,7 @@ def test_nearest_is_the_entry_or_the_point_of_larger_weight(small_cube):
     data = small_cube.data
     own = reflectance(data.entry_spectra.model, data.entry_spectra.coefficients, data.sensor.wavelengths)
     _, high = data.entry_boxes.faces
-    inner, off = (
-        data.atlas.rgb + 0.1 * (high - data.atlas.rgb),
-        data.atlas.rgb + 0.95 * (high - data.atlas.rgb),
-    )
+    inner, off = (data.atlas.rgb + 0.1 * (high - data.atlas.rgb), data.atlas.rgb + 0.95 * (high - data.atlas.rgb))
     np.testing.assert_allclose(small_cube.reflectance(inner, mode="nearest"), own, rtol=0, atol=1e-12)
     apart = np.abs(small_cube.reflectance(off, mode="nearest") - own).max(axis=1)
     assert (apart > 1e-3).mean() > 0.7

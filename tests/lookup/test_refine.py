@@ -16,11 +16,7 @@ MODELS = [Sigmoid(), Moments(9)]
 def setting(request, sensor):
     """A model, its forward map, and 40 spectra of it."""
     forward = minimum_norm.forward_map(request.param, sensor.wavelengths, sensor.matrix)
-    return (
-        request.param,
-        forward,
-        RNG.normal(size=(40, request.param.count)) / (1 + np.arange(request.param.count)),
-    )
+    return (request.param, forward, RNG.normal(size=(40, request.param.count)) / (1 + np.arange(request.param.count)))
 
 
 def test_the_step_is_that_of_the_fit(setting):
@@ -28,10 +24,7 @@ def test_the_step_is_that_of_the_fit(setting):
     off, damping = 0.1 * RNG.normal(size=(40, 3)), RNG.random(40)
     found = refine.step(model, forward, forward.basis @ multipliers.T, off.T, damping).T
     np.testing.assert_allclose(
-        found,
-        minimum_norm.minimum_norm_step(model, forward, multipliers, off, damping),
-        rtol=1e-8,
-        atol=1e-12,
+        found, minimum_norm.minimum_norm_step(model, forward, multipliers, off, damping), rtol=1e-8, atol=1e-12
     )
 
 

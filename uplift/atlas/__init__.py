@@ -5,11 +5,10 @@ from __future__ import annotations
 import os
 import warnings
 
-from uplift.atlas import art_write, table
 from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source, merge
 from uplift.atlas.distributions import from_distributions
 from uplift.atlas.document import read_document
-from uplift.atlas.formats import FORMATS, Format, read_any
+from uplift.atlas.formats import FORMATS, Format, art_write, read_any, table
 from uplift.atlas.measurements import MEASURED, Measured, check_measured
 from uplift.atlas.resample import Clip, Resampled, on_grid, resample
 from uplift.atlas.shipped import ShippedAtlas, find_atlas_file, shipped_atlases
@@ -106,10 +105,7 @@ def write_atlas(atlas: Atlas, path: StrPath, header: Header | None = None, *, fo
     """
     if not atlas.entries:
         raise OutputError(
-            "an atlas to write must have entries, got none",
-            code="empty-atlas",
-            path=path,
-            hint="give an atlas that contains reflectances",
+            "an atlas to write must have entries, got none", path=path, hint="give an atlas that contains reflectances"
         )
     is_table = os.fspath(path).lower().endswith(".csv")
     text = table.text(atlas) if is_table else art_write.text(atlas, header or _merge_headers(atlas))

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import art_write
 from uplift.atlas.atlas import Atlas, Entry, Header, Source
 from uplift.atlas.document import SourceLocation
+from uplift.atlas.formats import art_write
 
 FORMS = (
     "pass a mapping of names to distributions with .wavelengths and .values, "
@@ -66,7 +66,7 @@ def _samples(distribution: Any, name: str) -> tuple[Any, Any]:
         return distribution.wavelengths, distribution.values
     except AttributeError:
         problem = f"'{type(distribution).__name__}' is not a spectral distribution"
-        raise SourceLocation(entry=name).error(problem, FORMS, code="not-a-distribution") from None
+        raise SourceLocation(entry=name).error(problem, FORMS) from None
 
 
 def _columns(distributions: Any) -> Iterator[tuple[str, Any, Any]]:
@@ -74,6 +74,6 @@ def _columns(distributions: Any) -> Iterator[tuple[str, Any, Any]]:
     names = [str(label) for label in distributions.labels]
     if np.ndim(values) != 2 or np.shape(values)[1] != len(names):
         problem = f"values must have shape (N, {len(names)}) for {len(names)} labels, got {np.shape(values)}"
-        raise SourceLocation().error(problem, "give one column of values per label", code="shape-mismatch")
+        raise SourceLocation().error(problem, "give one column of values per label")
     for name, column in zip(names, np.transpose(values), strict=True):
         yield name, wavelengths, column

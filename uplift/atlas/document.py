@@ -40,7 +40,7 @@ class SourceLocation:
         """Return the location after ``text``, which starts here."""
         return self.at((self.line or 1) + text.count("\n")) if "\n" in text else self
 
-    def error(self, problem: str, hint: str, *, code: str) -> AtlasError:
+    def error(self, problem: str, hint: str, *, code: str | None = None) -> AtlasError:
         """Create an error at this location."""
         entry = None if self.entry is None else truncate(self.entry)
         return AtlasError(problem, code=code, path=self.path, line=self.line, entry=entry, hint=hint)
@@ -70,7 +70,7 @@ class Document:
         location = SourceLocation(self.path)
         text = _decode(self.data, location)
         if not text.strip():
-            raise location.error("the file is empty", "name a file that contains atlas entries", code="empty-file")
+            raise location.error("the file is empty", "name a file that contains atlas entries")
         return text
 
     @cached_property
@@ -89,23 +89,15 @@ def _decode(data: bytes, location: SourceLocation) -> str:
     encoding = _utf_16(data)
     if encoding is None and b"\0" in data:
         line = data[: data.index(b"\0")].count(b"\n") + 1
-        raise location.at(line).error(
-            "binary data (a NUL byte) instead of text", "save the atlas as UTF-8 text", code="binary-file"
-        )
+        raise location.at(line).error("binary data (a NUL byte) instead of text", "save the atlas as UTF-8 text")
     try:
         text = data.decode(encoding or "utf-8-sig")
     except UnicodeDecodeError:
         if encoding is not None:
-            raise location.at(1).error(
-                "the UTF-16 text is damaged", "save the atlas as UTF-8 text", code="binary-file"
-            ) from None
+            raise location.at(1).error("the UTF-16 text is damaged", "save the atlas as UTF-8 text") from None
         text = data.decode("latin-1")
     if encoding is not None and "\0" in text:
-        raise location.at(1).error(
-            "binary data (a NUL character) instead of text",
-            "save the atlas as UTF-8 text",
-            code="binary-file",
-        )
+        raise location.at(1).error("binary data (a NUL character) instead of text", "save the atlas as UTF-8 text")
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -128,7 +120,7 @@ def parse_number(token: str, location: SourceLocation, label: str) -> float:
         return parse_float(token)
     except ValueError:
         problem = f"{label} '{truncate(token)}' is not a number"
-        raise location.error(problem, "write a plain number such as 0.125", code="not-a-number") from None
+        raise location.error(problem, "write a plain number such as 0.125") from None
 
 
 def parse_nanometres(token: str, location: SourceLocation, label: str) -> float:

@@ -12,8 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source
-from uplift.atlas.checks import HIGHEST
+from uplift.atlas.atlas import HIGHEST, Atlas, Entry, Header, SkippedEntry, Source
 from uplift.atlas.document import Document, SourceLocation, truncate
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError, UpliftWarning
@@ -178,9 +177,7 @@ def parsed_by(library: str, kind: str, path: str) -> Iterator[None]:
         except Exception as error:
             reason = truncate(str(error)) or type(error).__name__
             raise SourceLocation(path).error(
-                f"cannot be read as {kind} by {library}: {reason}",
-                "export the file again, or export a CSV table",
-                code="unreadable-measurements",
+                f"cannot be read as {kind} by {library}: {reason}", "export the file again, or export a CSV table"
             ) from error
 
 

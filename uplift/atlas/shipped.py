@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from uplift.atlas.art import read_header
 from uplift.atlas.document import SourceLocation, read_document
+from uplift.atlas.formats.art import read_header
 from uplift.common.arrays import StrPath
 from uplift.common.errors import UpliftWarning
 

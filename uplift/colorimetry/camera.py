@@ -58,26 +58,21 @@ class Camera:
             raise OptionError(
                 f"sensitivities need at least 2 wavelengths (N,) and values (N, 3), got {wavelengths.shape} and "
                 f"{sensitivities.shape}",
-                code="sensitivities-shape",
                 hint=LAYOUT,
             )
         if not (np.isfinite(wavelengths).all() and np.isfinite(sensitivities).all()):
-            raise OptionError(
-                "wavelengths and sensitivities must be finite", code="sensitivity-not-finite", hint=LAYOUT
-            )
+            raise OptionError("wavelengths and sensitivities must be finite", hint=LAYOUT)
         bad = np.flatnonzero(np.diff(wavelengths) <= 0)
         if len(bad):
             first, second = wavelengths[bad[0] : bad[0] + 2]
             raise OptionError(
                 f"wavelengths must ascend, got {first:g} nm, then {second:g} nm",
-                code="camera-wavelengths",
                 hint="sort the rows by wavelength, each wavelength once",
             )
         if (sensitivities < 0).any():
             row, channel = np.argwhere(sensitivities < 0)[0]
             raise OptionError(
                 f"sensitivities must not be negative, got {sensitivities[row, channel]:g} at {wavelengths[row]:g} nm",
-                code="sensitivity-negative",
                 hint="set noise below zero to 0",
             )
         object.__setattr__(self, "wavelengths", wavelengths)
@@ -124,7 +119,7 @@ def read_camera(path: StrPath) -> Camera:
         table = np.array(list(_rows(text, path))).reshape(-1, COLUMNS)
     except csv.Error as error:
         problem = f"not a readable table: {error}"
-        raise OptionError(problem, code="not-sensitivities", path=path, hint=LAYOUT) from error
+        raise OptionError(problem, path=path, hint=LAYOUT) from error
     name = Path(path).stem.encode(errors="backslashreplace").decode()
     try:
         return Camera(name, table[:, 0], table[:, 1:])
@@ -145,7 +140,7 @@ def _rows(text: str, path: StrPath) -> Iterator[list[float]]:
             yield known
         elif begun or known:
             problem = f"a row must have {COLUMNS} numbers, got {format_value(','.join(cells))}"
-            raise OptionError(problem, code="not-sensitivities", path=path, line=reader.line_num, hint=LAYOUT)
+            raise OptionError(problem, path=path, line=reader.line_num, hint=LAYOUT)
         begun = True
 
 

@@ -80,11 +80,7 @@ def largest_difference(volumes: MismatchVolumes, xyz: Array) -> LargestDifferenc
         np.concatenate([sampled, found.delta_e.reshape(-1, PARTS)], axis=1),
         np.concatenate([volumes.xyz, found.xyz.reshape(-1, PARTS, 3)], axis=1),
         np.concatenate(
-            [
-                np.broadcast_to(volumes.normals, volumes.xyz.shape),
-                found.direction.reshape(-1, PARTS, 3),
-            ],
-            axis=1,
+            [np.broadcast_to(volumes.normals, volumes.xyz.shape), found.direction.reshape(-1, PARTS, 3)], axis=1
         ),
         np.concatenate([volumes.basis, found.basis.reshape(-1, PARTS, 3)], axis=1),
     ).best()

@@ -181,15 +181,12 @@ def find_camera(camera: str | Camera) -> Camera:
 
 def _camera_sensor(camera: Camera, illuminant: str) -> Sensor:
     if camera.name in colour_science().RGB_COLOURSPACES:
-        raise OptionError(
-            f"a camera must not have the name of an RGB space, got '{camera.name}'", code="camera-name-taken"
-        )
+        raise OptionError(f"a camera must not have the name of an RGB space, got '{camera.name}'")
     build_light, power, sensitivities = light(illuminant), illuminant_spd(illuminant), camera.at(grid())
     weights = sensitivities * power[:, None]
     if not (weights.sum(axis=0) > 0).all():
         raise OptionError(
             f"every channel must respond to {build_light.name} within {START:g}–{END:g} nm",
-            code="camera-without-response",
             hint="give wavelengths in nm, and sensitivities of red, green and blue",
         )
     balanced = (weights / weights.sum(axis=0)).T
@@ -197,9 +194,7 @@ def _camera_sensor(camera: Camera, illuminant: str) -> Sensor:
     expected = correlation @ build_light.xyz.T
     matrix = balanced @ expected @ np.linalg.inv(build_light.xyz @ expected)
     if np.linalg.cond(matrix) > MAX_CONDITION:
-        raise OptionError(
-            "the channels of a camera must have different sensitivities", code="camera-channels-dependent"
-        )
+        raise OptionError("the channels of a camera must have different sensitivities")
     return Sensor(
         space=camera.name,
         illuminant=build_light.name,
@@ -214,11 +209,7 @@ def _camera_sensor(camera: Camera, illuminant: str) -> Sensor:
 
 
 def display_sensors(
-    illuminants: Sequence[str],
-    observer: str,
-    start: float = START,
-    end: float = END,
-    step: float = STEP,
+    illuminants: Sequence[str], observer: str, start: float = START, end: float = END, step: float = STEP
 ) -> tuple[Sensor, ...]:
     """Create an sRGB sensor for each illuminant, without duplicates.
 
@@ -268,11 +259,7 @@ def primaries(space: str) -> Primaries:
 
 
 def light(
-    illuminant: str,
-    observer: str = DEFAULT_OBSERVER,
-    start: float = START,
-    end: float = END,
-    step: float = STEP,
+    illuminant: str, observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
 ) -> Light:
     """Create a light, by default on the wavelengths of `grid`.
 

@@ -123,7 +123,6 @@ def _invalid(place: str, error: Exception) -> OptionError:
     reason = " ".join(str(error).split())
     return OptionError(
         f"the configuration of OpenColorIO cannot be used: {reason}",
-        code="invalid-ocio-config",
         path=place,
         hint="correct the environment variable OCIO, or unset it to use the built-in configuration",
     )

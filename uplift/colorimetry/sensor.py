@@ -77,11 +77,7 @@ class Sensor:
     @property
     def range(self) -> tuple[float, float, float]:
         """First and last wavelength and step in nm."""
-        return (
-            float(self.wavelengths[0]),
-            float(self.wavelengths[-1]),
-            float(np.diff(self.wavelengths[:2])[0]),
-        )
+        return (float(self.wavelengths[0]), float(self.wavelengths[-1]), float(np.diff(self.wavelengths[:2])[0]))
 
     @cached_property
     def light(self) -> Light:

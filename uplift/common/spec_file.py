@@ -41,10 +41,7 @@ class SpecModel(BaseModel):
     """A table of a spec file: frozen, with an error and a suggestion for unknown keys."""
 
     model_config = ConfigDict(
-        extra="forbid",
-        frozen=True,
-        alias_generator=lambda name: name.replace("_", "-"),
-        arbitrary_types_allowed=True,
+        extra="forbid", frozen=True, alias_generator=lambda name: name.replace("_", "-"), arbitrary_types_allowed=True
     )
 
     @model_validator(mode="before")

@@ -5,13 +5,4 @@ from __future__ import annotations
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
 from uplift.cube.file import contents, digest, read, write
 
-__all__ = [
-    "AtlasTable",
-    "CubeData",
-    "EntrySpectra",
-    "LeftOut",
-    "contents",
-    "digest",
-    "read",
-    "write",
-]
+__all__ = ["AtlasTable", "CubeData", "EntrySpectra", "LeftOut", "contents", "digest", "read", "write"]

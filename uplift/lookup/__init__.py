@@ -12,22 +12,10 @@ from uplift.lookup.query import QueryResult, query, query_xyz
 if TYPE_CHECKING:
     from uplift.lookup.metamer_bounds import Bounds, bounds
 
-__all__ = [
-    "MODES",
-    "Bounds",
-    "Cube",
-    "QueryResult",
-    "bounds",
-    "load",
-    "query",
-    "query_xyz",
-]
+__all__ = ["MODES", "Bounds", "Cube", "QueryResult", "bounds", "load", "query", "query_xyz"]
 
 
-_LATER = {
-    "Bounds": "metamer_bounds",
-    "bounds": "metamer_bounds",
-}
+_LATER = {"Bounds": "metamer_bounds", "bounds": "metamer_bounds"}
 """Modules that are imported when they are needed: plain queries start without them."""
 
 

@@ -19,12 +19,7 @@ Function = Callable[[Array], NDArray[Any]]
 
 
 def blockwise(
-    function: Function,
-    rows: Array,
-    width: int,
-    dtype: DTypeLike = np.float64,
-    threads: int = 1,
-    block: int = BLOCK,
+    function: Function, rows: Array, width: int, dtype: DTypeLike = np.float64, threads: int = 1, block: int = BLOCK
 ) -> NDArray[Any]:
     """Apply a function, from rows (k, K) to rows (k, width), to rows (…, K) block by block: (…, width).
 

@@ -124,12 +124,7 @@ class Cube:
         return self.data.atlas.names
 
     def coefficients(
-        self,
-        rgb: ArrayLike,
-        count: int | None = None,
-        *,
-        dtype: DTypeLike = np.float64,
-        threads: int = 1,
+        self, rgb: ArrayLike, count: int | None = None, *, dtype: DTypeLike = np.float64, threads: int = 1
     ) -> NDArray[Any]:
         """Interpolate the coefficients of the model between the lattice points and atlas entries.
 

@@ -45,13 +45,13 @@ def as_float_type(dtype: DTypeLike) -> np.dtype[Any]:
     with contextlib.suppress(TypeError):
         if np.dtype(dtype) in FLOAT_TYPES:
             return np.dtype(dtype)
-    raise OptionError(f"dtype must be float64 or float32, got {dtype!r}", code="unsupported-dtype")
+    raise OptionError(f"dtype must be float64 or float32, got {dtype!r}")
 
 
 def as_thread_count(threads: int) -> int:
     """Convert to a whole number from 1; `OptionError` for anything else."""
     if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
-        raise OptionError(f"threads must be a whole number from 1, got {threads!r}", code="invalid-threads")
+        raise OptionError(f"threads must be a whole number from 1, got {threads!r}")
     return int(threads)
 
 
@@ -62,7 +62,7 @@ def as_coefficient_count(count: int | None, data: CubeData) -> int:
         return counts[0]
     if isinstance(count, bool) or count not in counts:
         numbers = " or ".join(str(each) for each in sorted(set(counts)))
-        raise OptionError(f"count must be {numbers} for this cube, got {count!r}", code="unsupported-count")
+        raise OptionError(f"count must be {numbers} for this cube, got {count!r}")
     return int(count)
 
 

@@ -113,9 +113,7 @@ def test_scaling_keeps_the_luminance_of_saturated_colours(gamut):
     rng = np.random.default_rng(3)
     rgb = 0.3 * rng.random((200, 3)) + [0.1, 0.1, -0.4]
     np.testing.assert_allclose(
-        luminance(map_to_gamut(rgb, gamut, "scale").rgb, gamut),
-        np.maximum(luminance(rgb, gamut), 0),
-        atol=1e-12,
+        luminance(map_to_gamut(rgb, gamut, "scale").rgb, gamut), np.maximum(luminance(rgb, gamut), 0), atol=1e-12
     )
 
 
@@ -244,8 +242,5 @@ def _largest(margin):
 def test_vectorised_code_agrees_with_scalar_code(method, gamut, outside):
     some = outside[:: len(outside) // 80]
     np.testing.assert_allclose(
-        map_to_gamut(some, gamut, method).rgb,
-        [scalar_mapping(rgb, gamut, method) for rgb in some],
-        rtol=0,
-        atol=1e-6,
+        map_to_gamut(some, gamut, method).rgb, [scalar_mapping(rgb, gamut, method) for rgb in some], rtol=0, atol=1e-6
     )

@@ -138,5 +138,5 @@ def test_empty_atlases_raise():
 
 def test_duplicate_names_raise(repository):
     path = repository / "atlases" / "macbeth.txt"
-    with raises(AtlasError, "duplicate-name"):
+    with raises(AtlasError, "atlas"):
         study_moments({"one": read_atlas(path), "two": read_atlas(path)})

@@ -64,7 +64,7 @@ def test_both_numbers_of_coefficients_are_those_of_numpy(small_cube, count):
     rgb = colours(small_cube.data)
     expected = small_cube.coefficients(rgb, count)
     np.testing.assert_allclose(bulk.coefficients(small_cube, count)(rgb), expected, rtol=0, atol=1e-6)
-    with raises(OptionError, "unsupported-count"):
+    with raises(OptionError, "option"):
         bulk.coefficients(small_cube, 12)
 
 
@@ -153,9 +153,9 @@ def test_invalid_wavelengths_and_threads_are_refused(small_cube):
     with raises(OptionError, "invalid-wavelengths"):
         bulk.spectra(small_cube, [0])
     for threads in (0, -1, 1.5, None, True):
-        with raises(OptionError, "invalid-threads"):
+        with raises(OptionError, "option"):
             bulk.spectra(small_cube, AT, threads=threads)
-        with raises(OptionError, "invalid-threads"):
+        with raises(OptionError, "option"):
             bulk.coefficients(small_cube, threads=threads)
 
 

@@ -2,14 +2,7 @@
 
 from __future__ import annotations
 
-from uplift.colorimetry.gamut.apply import (
-    METHODS,
-    GamutMapped,
-    as_rgb,
-    check_method,
-    map_to_gamut,
-    raise_out_of_gamut,
-)
+from uplift.colorimetry.gamut.apply import METHODS, GamutMapped, as_rgb, check_method, map_to_gamut, raise_out_of_gamut
 from uplift.colorimetry.gamut.boundary import SRGB, Gamut, Primaries, conversion
 
 __all__ = [

@@ -116,9 +116,7 @@ def check_method(method: str) -> None:
     """
     if method not in METHODS:
         raise OptionError(
-            f"unknown gamut mapping '{method}'",
-            code="unknown-gamut-mapping",
-            hint=f"use one of {', '.join(METHODS)}",
+            f"unknown gamut mapping '{method}'", code="unknown-gamut-mapping", hint=f"use one of {', '.join(METHODS)}"
         )
 
 

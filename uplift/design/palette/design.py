@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.atlas import Atlas, Entry, Header, write_atlas
-from uplift.atlas.checks import HIGHEST, LOWEST
+from uplift.atlas.atlas import HIGHEST, LOWEST
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import PaletteError, UpliftWarning

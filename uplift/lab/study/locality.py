@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import Atlas, Entry
-from uplift.atlas.checks import HIGHEST, LOWEST
+from uplift.atlas.atlas import HIGHEST, LOWEST
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array

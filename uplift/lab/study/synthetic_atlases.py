@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from uplift.atlas import Atlas, Entry
-from uplift.atlas.checks import LOWEST
+from uplift.atlas.atlas import LOWEST
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from uplift.atlas.checks import SLACK, VISIBLE
+from uplift.atlas.atlas import SLACK, VISIBLE
 from uplift.atlas.document import SourceLocation, parse_number, without_unit
 from uplift.atlas.measurements import Measurements, Spectrum, check_quantity, not_used_note, refuse_quantity
 from uplift.common.text import parse_float
@@ -94,10 +94,7 @@ def read_grid(rows: Sequence[Row], path: str, comments: str = "") -> Measurement
     name = name_column(table)
     spectra = [
         Spectrum(
-            _name(row, name, number),
-            nm,
-            _values(row, table, name, path),
-            None if name is None else row[name].line,
+            _name(row, name, number), nm, _values(row, table, name, path), None if name is None else row[name].line
         )
         for number, row in enumerate(body, 1)
     ]
@@ -117,7 +114,7 @@ def find_table(rows: Sequence[Row], path: str) -> Table:
     header = table.rows[0]
     is_plain = all(_is_number(cell.text) for cell in header[table.first : table.last])
     if not table.others and is_plain:
-        raise SourceLocation(path, header[0].line).error("the header row is missing", LAYOUT, code="header-row-missing")
+        raise SourceLocation(path, header[0].line).error("the header row is missing", LAYOUT)
     if len(table.rows) < 2:
         raise _not_a_table(rows, path)
     return table
@@ -259,7 +256,7 @@ def _check_width(row: Row, header: Row, path: str) -> None:
     if len(row) != len(header):
         problem = f"a row must have {len(header)} cells like the header row, got {len(row)}"
         hint = "fill in the missing cells or remove the row"
-        raise SourceLocation(path, row[0].line).error(problem, hint, code="row-of-wrong-length")
+        raise SourceLocation(path, row[0].line).error(problem, hint)
 
 
 def _nanometres(cell: Cell, location: SourceLocation) -> float:

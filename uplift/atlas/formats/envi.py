@@ -50,7 +50,7 @@ def read(document: Document) -> Measurements:
     factor = TO_NANOMETRES.get(unit if unit != "<unspecified>" else "")
     if centers is None or factor is None:
         problem = "the header has no wavelengths" if centers is None else f"unknown wavelength unit '{truncate(unit)}'"
-        raise location.error(problem, HINT, code="unknown-wavelength-unit")
+        raise location.error(problem, HINT)
     with np.errstate(over="ignore"):  # infinite wavelengths are refused later
         nm = factor * np.asarray(centers, dtype=float)
     spectra = tuple(Spectrum(name, nm, row) for name, row in zip(names, values, strict=True))
@@ -79,11 +79,7 @@ def _check_size(fields: dict[str, Any], data: Path, location: SourceLocation) ->
         raise location.error("is an ENVI image, not a spectral library", HINT, code="not-an-atlas")
     count = int(fields["samples"]) * int(fields["lines"])
     if count <= 0 or count > data.stat().st_size or int(fields.get("header offset", 0)) != 0:
-        raise location.error(
-            f"the header states {count:,} values, which the file {data.name} does not hold",
-            HINT,
-            code="damaged-library",
-        )
+        raise location.error(f"the header states {count:,} values, which the file {data.name} does not hold", HINT)
 
 
 def _scale(fields: dict[str, Any], location: SourceLocation) -> float | None:
@@ -92,9 +88,5 @@ def _scale(fields: dict[str, Any], location: SourceLocation) -> float | None:
         return None
     factor = float(fields["reflectance scale factor"])
     if not 0 < factor < float("inf"):
-        raise location.error(
-            f"the reflectance scale factor must be positive and finite, got {factor:g}",
-            HINT,
-            code="invalid-scale",
-        )
+        raise location.error(f"the reflectance scale factor must be positive and finite, got {factor:g}", HINT)
     return factor

@@ -12,7 +12,7 @@ import numpy as np
 
 from uplift.atlas.atlas import Atlas
 from uplift.atlas.document import Document, SourceLocation
-from uplift.atlas.grid import LAYOUT, NO_TABLE, Cell, Row, read_grid, trimmed, wavelength
+from uplift.atlas.formats.grid import LAYOUT, NO_TABLE, Cell, Row, read_grid, trimmed, wavelength
 from uplift.atlas.measurements import Measurements, Spectrum
 from uplift.common.csv import csv_text, plain_cell
 from uplift.common.errors import OutputError
@@ -56,11 +56,7 @@ def text(atlas: Atlas) -> str:
     for entry in atlas:
         if not np.array_equal(entry.wavelengths, first.wavelengths):
             problem = f"entries '{first.name}' and '{entry.name}' are sampled at different wavelengths"
-            raise OutputError(
-                problem,
-                code="different-samplings",
-                hint="write atlas text, which keeps each sampling, or separate tables",
-            )
+            raise OutputError(problem, hint="write atlas text, which keeps each sampling, or separate tables")
     rows = ([entry.name, *entry.values.tolist()] for entry in atlas)
     return csv_text(["name", *first.wavelengths.tolist()], rows, quote_text=True)
 
@@ -83,7 +79,7 @@ def _rows(document: Document) -> list[Row]:
     try:
         rows = list(_split(document, delimiter))
     except csv.Error as error:
-        raise location.error(f"not a readable table: {error}", LAYOUT, code="not-a-table") from None
+        raise location.error(f"not a readable table: {error}", LAYOUT) from None
     if len(rows) < 2:
         raise location.at(1).error(NO_TABLE, LAYOUT, code="not-an-atlas")
     return rows
@@ -119,10 +115,7 @@ def _delimiter(document: Document) -> str:
             rows = list(itertools.islice(_split(document, delimiter), SAMPLE_ROWS))
         except csv.Error:
             return 0
-        return max(
-            (sum(wavelength(cell.text) is not None for cell in row) for row in rows if len(row) > 1),
-            default=0,
-        )
+        return max((sum(wavelength(cell.text) is not None for cell in row) for row in rows if len(row) > 1), default=0)
 
     return max((*DELIMITERS, BLANKS), key=numbers)
 

@@ -6,8 +6,8 @@ from typing import Any
 
 from uplift.atlas.atlas import Header, SkippedEntry
 from uplift.atlas.document import Document
+from uplift.atlas.formats.xml import check_xml, root_name
 from uplift.atlas.measurements import Measurements, Spectrum, not_used_note, parsed_by
-from uplift.atlas.xml_text import check_xml, root_name
 from uplift.common.errors import AtlasError, needs_extra
 
 NAMESPACE = "http://colorexchangeformat.com/CxF3-core"

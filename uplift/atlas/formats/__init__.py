@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from uplift.atlas import art, cgats, cxf, envi, jcamp_dx, spreadsheet, table, tm27
 from uplift.atlas.atlas import Atlas
 from uplift.atlas.document import Document
+from uplift.atlas.formats import art, cgats, cxf, envi, jcamp_dx, spreadsheet, table, tm27
 from uplift.atlas.measurements import Measurements, to_atlas
 
 
@@ -44,12 +44,7 @@ class Format:
 
 FORMATS = (
     Format(
-        "spreadsheet",
-        (".xlsx", ".xls", ".ods"),
-        spreadsheet.is_spreadsheet,
-        spreadsheet.read,
-        "python-calamine",
-        "io",
+        "spreadsheet", (".xlsx", ".xls", ".ods"), spreadsheet.is_spreadsheet, spreadsheet.read, "python-calamine", "io"
     ),
     Format("ENVI spectral library", (".sli", ".hdr"), envi.is_envi, envi.read, "spectral", "io"),
     Format("CxF3", (".cxf",), cxf.is_cxf, cxf.read, "colour-cxf", "io"),

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from uplift.atlas.art_fields import NOT_STATED
 from uplift.atlas.atlas import Atlas, Entry, Header
+from uplift.atlas.formats.art import NOT_STATED
 from uplift.common.arrays import Array
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from uplift.atlas.document import Document, SourceLocation
-from uplift.atlas.grid import NO_TABLE, Cell, Row, read_grid, trimmed
+from uplift.atlas.formats.grid import NO_TABLE, Cell, Row, read_grid, trimmed
 from uplift.atlas.measurements import Measurements, parsed_by
 from uplift.common.csv import plain_cell
 from uplift.common.errors import AtlasError, needs_extra
@@ -91,10 +91,7 @@ def _check_content(document: Document) -> None:
         return
     location = SourceLocation(document.path)
     total = 0
-    with (
-        parsed_by("zipfile", "a spreadsheet", document.path),
-        zipfile.ZipFile(io.BytesIO(document.data)) as archive,
-    ):
+    with parsed_by("zipfile", "a spreadsheet", document.path), zipfile.ZipFile(io.BytesIO(document.data)) as archive:
         for size in _sizes(archive):
             total += size
             if total > MAX_CONTENT:

@@ -54,9 +54,7 @@ def read(document: Document) -> Measurements:
     for count in POINTS.findall(document.text):
         if not re.fullmatch(r"\d{1,7}(\.0*)?", count) or float(count) > MAX_POINTS:
             raise location.error(
-                f"NPOINTS must be at most {MAX_POINTS:,}, got {truncate(count)}",
-                "export the file again",
-                code="too-many-points",
+                f"NPOINTS must be at most {MAX_POINTS:,}, got {truncate(count)}", "export the file again"
             )
     with needs_extra("io", "JCAMP-DX files", AtlasError):
         import jcamp
@@ -65,11 +63,7 @@ def read(document: Document) -> Measurements:
         blocks = content.get("children") or [content]
     if "failed" in printed.getvalue() or "Mismatch" in printed.getvalue():
         problem = truncate(printed.getvalue())
-        raise location.error(
-            f"the data contradict their check values: {problem}",
-            "export the file again",
-            code="unreadable-measurements",
-        )
+        raise location.error(f"the data contradict their check values: {problem}", "export the file again")
     found = [_spectrum(block, document, len(blocks)) for block in blocks]
     scales = {scale for _, scale in found}
     return Measurements(
@@ -107,7 +101,6 @@ def _nanometres(block: dict[str, Any], location: SourceLocation) -> Array:
         raise location.error(
             f"XUNITS must be nanometers, micrometers or 1/cm, got '{truncate(unit)}'",
             "export the file with wavelengths in nm",
-            code="unknown-wavelength-unit",
         )
     with np.errstate(all="ignore"):
         return np.asarray(TO_NANOMETRES[unit](np.asarray(block.get("x", ()), dtype=float)))

@@ -13,7 +13,7 @@ import numpy as np
 
 from uplift.atlas.atlas import Header
 from uplift.atlas.document import Document, SourceLocation, parse_number
-from uplift.atlas.grid import Cell, Row, find_table, read_grid, wavelength
+from uplift.atlas.formats.grid import Cell, Row, find_table, read_grid, wavelength
 from uplift.atlas.measurements import Measurements, check_quantity, refuse_quantity
 from uplift.common.text import parse_float
 
@@ -50,9 +50,7 @@ def read(document: Document) -> Measurements:
         )
     if not any(wavelength(cell.text) is not None for cell in rows[0]):
         raise location.at(rows[0][0].line).error(
-            "the CGATS file has no spectral fields",
-            "export the spectra with the colours",
-            code="cgats-without-spectra",
+            "the CGATS file has no spectral fields", "export the spectra with the colours"
         )
     keywords = {match[1]: match[2] or match[3] or "" for line in preamble if (match := KEYWORD.match(line))}
     found = read_grid(rows, document.path)
@@ -85,9 +83,7 @@ def _parse(document: Document) -> tuple[list[str], list[Row]]:
             preamble.append(text)
     if not fields or not sets:
         location = SourceLocation(document.path, len(document.lines))
-        raise location.error(
-            "a CGATS file must have fields and sets of data", "export the file again", code="cgats-incomplete"
-        )
+        raise location.error("a CGATS file must have fields and sets of data", "export the file again")
     return preamble, [tuple(fields), *sets]
 
 
@@ -115,9 +111,7 @@ def _stated_scale(keywords: dict[str, str], location: SourceLocation) -> float |
     norm = parse_number(keywords["SPECTRAL_NORM"], location, "SPECTRAL_NORM")
     if not 0 < norm < float("inf"):
         raise location.error(
-            f"SPECTRAL_NORM must be positive and finite, got {norm:g}",
-            "write 100 for percent, 1 for values in [0, 1]",
-            code="invalid-scale",
+            f"SPECTRAL_NORM must be positive and finite, got {norm:g}", "write 100 for percent, 1 for values in [0, 1]"
         )
     return norm
 

@@ -56,11 +56,7 @@ def check_xml(document: Document) -> None:
     try:
         parser.Parse(document.data, True)
     except ForbiddenError as problem:
-        raise location.error(
-            f"the XML has {problem}", "export the file again, or export a CSV table", code="xml-not-accepted"
-        ) from None
+        raise location.error(f"the XML has {problem}", "export the file again, or export a CSV table") from None
     except (expat.ExpatError, ValueError, LookupError) as error:
         line = getattr(error, "lineno", 1)
-        raise location.at(line).error(
-            f"not a valid XML file: {error}", "export the file again", code="invalid-xml"
-        ) from None
+        raise location.at(line).error(f"not a valid XML file: {error}", "export the file again") from None

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from uplift.atlas.document import Document, SourceLocation, truncate
+from uplift.atlas.formats.xml import check_xml, root_name
 from uplift.atlas.measurements import Measurements, Spectrum, parsed_by, refuse_as_lamp, refuse_quantity
-from uplift.atlas.xml_text import check_xml, root_name
 from uplift.common.colour_science import colour_science
 
 ROOT = "IESTM2714"
