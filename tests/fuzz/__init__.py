@@ -1,5 +1,1 @@
-"""Fuzzing programs, one module per target, and their tests. `make nightly` runs them with many inputs.
-
-Accepted input must be usable. Rejected input must raise an `UpliftError` of one line. Anything else is a failure.
-Results are written to docs/data/stability-hostile.json.
-"""
+"""Fuzzing (`make nightly`): accepted input is usable, rejected input raises an `UpliftError` of one line."""

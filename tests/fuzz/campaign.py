@@ -32,17 +32,7 @@ class HangError(BaseException):
 
 @dataclass
 class Tally:
-    """Numbers of inputs by outcome.
-
-    Parameters
-    ----------
-    target : str
-        Name of the target.
-    inputs, accepted, rejected : int
-        All inputs, those used without an error, and those that raised `UpliftError`.
-    failures : Counter of str
-        Other outcomes, by description.
-    """
+    """Numbers of inputs of a target: all, those used without an error, those that raised `UpliftError`, others."""
 
     target: str
     inputs: int = 0
@@ -57,12 +47,6 @@ class Tally:
         self.rejected += other.rejected
         self.failures += other.failures
 
-    def count(self, ok: bool, failure: str) -> None:
-        """Count one input, as a failure unless ``ok``."""
-        self.inputs += 1
-        if not ok:
-            self.failures[failure] += 1
-
 
 def fuzz(target: Target, seed: int, inputs: range, folder: Path, kept: Path) -> Tally:
     """Run a target with numbered inputs, written to ``folder``; copy the first of each kind of failure to ``kept``."""
@@ -73,7 +57,10 @@ def fuzz(target: Target, seed: int, inputs: range, folder: Path, kept: Path) -> 
             with warnings.catch_warnings(action="ignore"):
                 target.generate(np.random.default_rng([seed, number]), path)
             failure = _run(target, path, tally)
-            tally.count(not failure, failure)
+            tally.inputs += 1
+            if not failure:
+                continue
+            tally.failures[failure] += 1
             if tally.failures[failure] == 1:
                 name = target.name.replace(",", "").replace(" ", "-")
                 shutil.copy(path, kept / f"{name}-{seed}-{number}")

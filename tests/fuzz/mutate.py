@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +22,11 @@ def mutate(content: bytes, random: Random, tokens: Sequence[bytes]) -> bytes:
     for _ in range(int(random.integers(1, 9))):
         content = CHANGES[random.integers(len(CHANGES))](content, random, tokens)
     return content
+
+
+def choose(random: Random, items: Sequence[Any]) -> Any:
+    """Return one of the items."""
+    return items[random.integers(len(items))]
 
 
 def _position(content: bytes, random: Random) -> int:

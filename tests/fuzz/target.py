@@ -13,18 +13,8 @@ ROOT = Path(__file__).parents[2]
 
 @dataclass(frozen=True)
 class Target:
-    """A reader under test.
-
-    Parameters
-    ----------
-    name : str
-        Name for reports.
-    generate : callable
-        Write an input, made from a random generator, to a path.
-    use : callable
-        Read the input and use the result. It may raise `UpliftError` and no other exception.
-    """
+    """A reader under test: ``generate`` writes an input, ``use`` reads it and may raise `UpliftError` alone."""
 
     name: str
     generate: Callable[[np.random.Generator, Path], None]
-    use: Callable[[Path], None]
+    use: Callable[[Path], object]

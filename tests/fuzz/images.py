@@ -116,4 +116,4 @@ def _use(path: Path) -> None:
                 raise RuntimeError(f"a second line: {text[:80]!r}")
 
 
-TARGET = Target("image", _generate, _use)
+TARGETS = (Target("image", _generate, _use),)
