@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import click
 
-from tests.fuzz.campaign import Tally, fuzz
-from tests.fuzz.target import ROOT
-from tests.fuzz.targets import COMMANDS, READERS
+from tests.fuzz.campaign import Tally
+from tests.fuzz.targets import COMMANDS, KEPT, READERS, fuzz_target
 from uplift.lab.timing import environment
 
 BLOCK = 5000
 """Inputs per process. A new process releases leaked memory."""
-KEPT = ROOT / "out" / "fuzz"
 
 
 @click.command()
@@ -38,7 +35,7 @@ def main(inputs: int, chosen: tuple[str, ...], seed: int, processes: int, output
     ]
     tallies = {name: Tally(name) for name in counts}
     with ProcessPoolExecutor(processes, max_tasks_per_child=1) as pool:
-        for tally in pool.map(_fuzz, [seed] * len(blocks), *zip(*blocks, strict=True)):
+        for tally in pool.map(fuzz_target, [seed] * len(blocks), *zip(*blocks, strict=True)):
             tallies[tally.target].add(tally)
     rows = [
         {"target": tally.target, "tried": tally.inputs, "taken": tally.accepted, "refused": tally.rejected}
@@ -50,13 +47,6 @@ def main(inputs: int, chosen: tuple[str, ...], seed: int, processes: int, output
     for row in rows:
         click.echo("{target}: {tried:,} inputs, {taken:,} accepted, failures: {failures}".format(**row))
     raise SystemExit(any(tally.failures for tally in tallies.values()))
-
-
-def _fuzz(seed: int, name: str, inputs: range) -> Tally:
-    """Run a block in a folder in memory, if there is one."""
-    memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
-    with tempfile.TemporaryDirectory(dir=memory) as folder:
-        return fuzz((READERS | COMMANDS)[name], seed, inputs, Path(folder), KEPT)
 
 
 if __name__ == "__main__":

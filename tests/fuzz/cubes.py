@@ -42,7 +42,7 @@ TYPES = (np.float64, np.float32, np.float16, np.int64, np.int32, np.int16, np.ui
 VALUES = (
     None, True, False, 0, -1, 1, 3, 1 << 40, 1 << 70, 10**400, 5e-324, 1e-13, 1e300, float("nan"), float("inf"), "",
     "grey", "moments", "D65", "../macbeth.txt", "/etc/shadow", "/proc/kmsg", "\0", "\n", "\x1b]0;t\x07", "\u202e",
-    "=1+1", "ü" * 9999, "x" * 100_000, ["grey"] * 65, ["grey"] * 100_000, [], [None], {}, {"name": "moments"}, ["debug"],
+    "=1+1", "ü" * 9999, "x" * 100_000, ["grey"] * 65, ["grey"] * 100_000, [], [None], {}, {"name": "moments"}, ["x"],
     [1 << 40] * 3,
 )  # fmt: skip
 DEPTHS = (1, 2, 3, 20, 33, 300)
@@ -179,7 +179,9 @@ def _missing(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None
 
 def _metadata(tensors: Tensors, metadata: dict[str, Any], random: Random) -> None:
     """Replace, remove or add a value anywhere in the metadata."""
-    place: Any = metadata if random.random() < 0.5 else metadata["provenance"]
+    place: Any = metadata.get("provenance")
+    if not isinstance(place, dict) or random.random() < 0.5:
+        place = metadata
     while True:
         keys = list(place) if isinstance(place, dict) else list(range(len(place)))
         if not keys:
