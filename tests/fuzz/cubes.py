@@ -21,7 +21,7 @@ from uplift.cube.file import POINTS
 from uplift.lattice import Lattice, PointTable
 from uplift.lookup import MODES, load, query
 from uplift.pipeline.options import Options, recorded_options
-from uplift.pipeline.provenance import recorded_atlas
+from uplift.pipeline.rebuild import recorded_atlas
 from uplift.report.summary import summarise
 
 Tensors = dict[str, NDArray[Any]]
