@@ -53,13 +53,6 @@ def test_rule_is_exact_to_degree_2n_minus_1_and_no_further(order: int) -> None:
         assert _moment_error(rule, POINTS, BELL, 2 * order) > 1e-9
 
 
-@pytest.mark.parametrize("order", [2, 4])
-def test_rule_for_masses_of_both_signs_is_exact(order: int) -> None:
-    rule = _rule(POINTS, OPPONENT, order)
-    assert rule.weights.min() < 0 < rule.weights.max()
-    assert _moment_error(rule, POINTS, OPPONENT, 2 * order - 1) < 1e-11
-
-
 def _exact_nodes(points: list[int], masses: list[int], order: int) -> np.ndarray:
     """Roots of the orthogonal polynomial from its moments, by elimination in fractions."""
     moments = [sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True)) for k in range(2 * order)]
@@ -74,10 +67,7 @@ def _exact_nodes(points: list[int], masses: list[int], order: int) -> np.ndarray
     return np.roots([1.0, *(float(row[-1]) for row in reversed(rows))])
 
 
-@given(
-    st.lists(st.integers(-9, 9), min_size=6, max_size=12).filter(lambda m: sum(map(bool, m)) > 4),
-    st.integers(1, 4),
-)
+@given(st.lists(st.integers(-9, 9), min_size=6, max_size=12).filter(lambda m: sum(map(bool, m)) > 4), st.integers(1, 4))
 def test_nodes_agree_with_elimination_in_fractions(masses: list[int], order: int) -> None:
     points = list(range(len(masses)))
     result = gauss_rule(points, masses, order)
@@ -103,12 +93,6 @@ def test_undefined_order_states_its_reason(masses: list[int], order: int, reason
     assert isinstance(result, UndefinedRule)
     assert result.order == order
     assert reason in result.reason
-
-
-def test_order_above_an_undefined_one_exists() -> None:
-    rule = _rule(np.array([0, 1, 2, 3]), np.array([1, 1, -1, -1]), 2)
-    assert isinstance(gauss_rule([0, 1, 2, 3], [1, 1, -1, -1], 1), UndefinedRule)
-    np.testing.assert_allclose(rule.nodes, 1.5 + np.array([-1, 1]) * np.sqrt(1.75), atol=1e-12)
 
 
 @pytest.mark.parametrize("nodes", [[560.0], [631.4, 490.9, 557.7], np.linspace(400, 700, 12)])

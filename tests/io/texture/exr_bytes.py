@@ -14,9 +14,7 @@ def attribute(name: bytes, kind: bytes, value: bytes) -> bytes:
 
 
 def exr_bytes(
-    channels: Sequence[bytes] = (b"B", b"G", b"R"),
-    extra: bytes = b"",
-    size: tuple[int, int] = (WIDTH, HEIGHT),
+    channels: Sequence[bytes] = (b"B", b"G", b"R"), extra: bytes = b"", size: tuple[int, int] = (WIDTH, HEIGHT)
 ) -> bytes:
     """An image of half-float zeros, uncompressed, with further attributes; its pixels end after `HEIGHT` rows."""
     width, height = size

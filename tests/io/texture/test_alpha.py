@@ -12,7 +12,6 @@ from uplift.io.mitsuba.texture_file import read_colours
 from uplift.io.scene_colours import Images
 from uplift.io.texture.channels import ColourChannels
 from uplift.io.texture.picture import read_picture
-from uplift.report.relight import RGB_PRODUCT, relight
 
 CHANNELS = ColourChannels((0, 1, 2), 3)
 
@@ -60,14 +59,6 @@ def test_moments_are_multiplied_and_multipliers_are_not(multiplied, colours, alp
         np.testing.assert_allclose(numbers[1][visible], by_opacity(numbers[0], weight)[visible], rtol=1e-3, atol=2e-3)
 
 
-def test_bands_do_not_change_the_result(multiplied, spectral, tmp_path, monkeypatch):
-    texture.convert(spectral, multiplied, tmp_path / "whole.exr")
-    monkeypatch.setattr("uplift.io.texture.image.MAX_BAND_BYTES", 1)
-    monkeypatch.setattr("uplift.io.texture.writer.MAX_BAND_BYTES", 1)
-    texture.convert(spectral, multiplied, tmp_path / "bands.exr")
-    assert (tmp_path / "bands.exr").read_bytes() == (tmp_path / "whole.exr").read_bytes()
-
-
 def test_alpha_of_a_layer_counts(colours, alpha, spectral, tmp_path):
     rgb = by_opacity(colours, alpha)
     layer = {f"view.{name}": plane for name, plane in {**planes(rgb), "A": alpha}.items()}
@@ -98,23 +89,13 @@ def test_tiffs_state_whether_they_are_multiplied(is_multiplied, small_cube, spec
     np.testing.assert_array_equal(np.rint(channels(tmp_path / "out.exr")["A"][0] * 255.0), codes[0, :, 3])
 
 
-def test_half_floats_leave_the_unit_interval_by_rounding_only(spectral, tmp_path):
-    alpha = np.linspace(0.01, 1, 600).reshape(20, 30)
-    white = np.repeat(alpha[..., None] * (1 + 1e-4), 3, axis=-1).astype(np.float16)
-    source = write_exr(tmp_path / "a.exr", {**planes(white), "A": alpha.astype(np.float16)})
-    assert texture.convert(spectral, source, tmp_path / "out.exr").warnings == ()
-
-
 def test_odd_alpha_gives_finite_colours_and_warnings(spectral, tmp_path):
     alpha = np.array([[0, np.nan, np.inf, 2, -1, 0.5]], np.float32)
     rgb = np.full((1, 6, 3), 0.75, np.float32)
     source = write_exr(tmp_path / "a.exr", {**planes(rgb), "A": alpha})
     result = texture.convert(spectral, source, tmp_path / "out.exr")
     assert {each.code for each in result.warnings} == {"pixels-not-finite", "pixels-out-of-gamut"}
-    assert (result.counts.not_finite, result.counts.outside) == (
-        2,
-        2,
-    )  # alpha 0 and NaN; below 0 and the colour
+    assert (result.counts.not_finite, result.counts.outside) == (2, 2)  # alpha 0 and NaN; below 0 and the colour
     found = read_channels(tmp_path / "out.exr", (*"RGB", *spectral.channels))
     assert np.isfinite(found).all()
     assert (found[0, [0, 1, 4]] == 0).all()
@@ -140,14 +121,6 @@ def test_pictures_weigh_colours_by_alpha(max_side, multiplied, colours, alpha, s
             mean = (colours[block] * weights).sum(axis=(0, 1)) / max(weights.sum(), 1e-9)
             np.testing.assert_allclose(found.rgb[row, column], mean, rtol=0, atol=2e-6)
             np.testing.assert_allclose(found.opacity[row, column], weights.mean(), rtol=1e-5)
-
-
-def test_relit_images_lie_on_black(small_cube, colours, alpha):
-    cubes = {"cube": small_cube}
-    solid = relight("a", colours, cubes, ("A",)).renderings[0]
-    found = relight("a", colours, cubes, ("A",), opacity=alpha[..., None]).renderings[0]
-    for method in (RGB_PRODUCT, "cube"):
-        np.testing.assert_allclose(found.colours[method], by_opacity(solid.colours[method], alpha), rtol=1e-6)
 
 
 def test_codes_are_divided_and_limited():

@@ -119,16 +119,6 @@ def test_blocks_that_do_not_fit_into_memory_are_refused(tmp_path, monkeypatch):
         pass
 
 
-def test_errors_that_quote_bytes_are_text():
-    from uplift.io.texture.image import UNKNOWN_PROBLEM, read_error
-
-    class Handle:
-        def geterror(self):
-            return b"bad \xff".decode()
-
-    assert read_error(Handle()) == UNKNOWN_PROBLEM
-
-
 def test_damaged_png_files_print_nothing(tmp_path, capfd):
     from PIL import Image
 

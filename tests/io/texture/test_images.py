@@ -13,7 +13,7 @@ from PIL import Image
 from tests.helpers import raises
 from tests.io.texture.conftest import WAVELENGTHS, channels, planes, read_channels, small_tiles, write_exr
 from uplift.colorimetry.gamut import map_to_gamut
-from uplift.common.errors import ColourError, OptionError, TextureError
+from uplift.common.errors import ColourError, TextureError
 from uplift.common.progress import Progress
 from uplift.io import texture
 
@@ -67,13 +67,6 @@ def test_grey_and_alpha(codes, convert_image, small_cube, tmp_path):
     assert found["A"].dtype == np.float16
     np.testing.assert_array_equal(np.rint(found["A"] * 255.0), codes[..., 3])
     assert "Y" not in found
-
-
-def test_colours_are_not_multiplied_by_alpha(codes, convert_image, small_cube, tmp_path):
-    Image.fromarray(codes).save(tmp_path / "a.png")
-    _, found = convert_image(tmp_path / "a.png")
-    expected = small_cube.decode(codes[..., :3].astype(float))
-    np.testing.assert_allclose(rgb_of(found), expected, rtol=0, atol=1e-7)
 
 
 @pytest.mark.parametrize("suffix", ["png", "tif"])
@@ -134,11 +127,7 @@ def test_only_invalid_pixels_are_clamped_and_counted(colours, convert_image, spe
 
 @pytest.mark.parametrize(
     ("method", "past_tense"),
-    [
-        ("scale", "scaled"),
-        ("desaturate", "desaturated"),
-        ("desaturate-oklab", "desaturated in Oklab"),
-    ],
+    [("scale", "scaled"), ("desaturate", "desaturated"), ("desaturate-oklab", "desaturated in Oklab")],
 )
 def test_pixels_outside_are_mapped_by_the_method(method, past_tense, colours, convert_image, spectral, tmp_path):
     bad = colours.copy()
@@ -169,13 +158,6 @@ def test_pixels_outside_can_be_an_error(bad, colours, spectral, tmp_path):
     assert caught.value.path == source
     assert f"({bad:g}, " in caught.value.problem
     assert not (tmp_path / "bad-out.exr").exists()
-
-
-def test_encoded_floats_cannot_be_mapped(colours, spectral, tmp_path):
-    Image.fromarray(colours[..., 0]).save(tmp_path / "float.tif")
-    scaled = replace(spectral, encoding="encoded", out_of_gamut="scale")
-    with raises(OptionError, "encoded-floats-not-mapped"):
-        texture.convert(scaled, tmp_path / "float.tif", tmp_path / "out.exr")
 
 
 def other_planes(shape):
@@ -260,16 +242,6 @@ def test_bands_are_bounded_and_do_not_change_the_result(spectral, colours, tmp_p
     assert [each.done for each in rows] == sorted({each.done for each in rows})
 
 
-def test_an_image_of_another_space_is_converted(colours, convert_image, tmp_path):
-    acescg = (0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767)
-    srgb = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)
-    result, _ = convert_image(write_exr(tmp_path / "a.exr", planes(colours), chromaticities=acescg))
-    assert {warning.code for warning in result.warnings} == {"pixels-out-of-gamut"}
-    assert result.spaces == ("chromaticities",)
-    result, _ = convert_image(write_exr(tmp_path / "b.exr", planes(colours), chromaticities=srgb))
-    assert (result.warnings, result.spaces) == ((), ())
-
-
 def layers(*names):
     return {f"{name}.{letter}": np.zeros((4, 5), np.float32) for name in names for letter in "RGB"}
 
@@ -293,12 +265,7 @@ def test_images_without_a_unique_colour_raise(content, value, spectral, tmp_path
 def test_files_that_are_not_images_raise(spectral, colours, tmp_path):
     (tmp_path / "text.png").write_text("no image")
     Image.fromarray((colours * 255).astype(np.uint8)).save(tmp_path / "a.bmp")
-    codes = {
-        "none.png": "file-not-found",
-        ".": "file-not-found",
-        "text.png": "unreadable-image",
-        "a.bmp": "texture",
-    }
+    codes = {"none.png": "file-not-found", ".": "file-not-found", "text.png": "unreadable-image", "a.bmp": "texture"}
     for name, code in codes.items():
         with raises(TextureError, code) as caught:
             texture.convert(spectral, tmp_path / name, tmp_path / "out.exr")

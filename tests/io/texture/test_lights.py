@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import warnings
-from pathlib import Path
 
 import numpy as np
-import OpenEXR
 import pytest
 
 from tests.helpers import raises
-from tests.io.texture.conftest import channels, planes, small_tiles, write_exr
+from tests.io.texture.conftest import channels, planes, write_exr
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import OptionError
 from uplift.io import texture
@@ -73,16 +71,6 @@ def test_colour_science_reads_emission(table, lights, sky, tmp_path, sensor):
     assert not others
     np.testing.assert_array_equal(at, table.wavelengths)
     assert largest_difference(sensor, sky, table.rgb(found.astype(float))) < 0.001
-
-
-def test_pixels_of_tiles_equal_those_of_rows(lights, sky, tmp_path):
-    rows = write_exr(tmp_path / "rows.exr", planes(sky))
-    OpenEXR.File({"type": OpenEXR.tiledimage, "tiles": small_tiles()}, planes(sky)).write(str(tmp_path / "tiles.exr"))
-    for path in (rows, tmp_path / "tiles.exr"):
-        texture.convert(lights, path, tmp_path / f"out-{path.name}")
-    np.testing.assert_array_equal(
-        spectral_channels(tmp_path / "out-rows.exr"), spectral_channels(tmp_path / "out-tiles.exr")
-    )
 
 
 @pytest.mark.parametrize("kind", ["LatLong Environment", "CubeFace Environment"])
@@ -171,18 +159,6 @@ def test_colours_of_another_space_are_converted(table, lights, tmp_path):
     assert found.min() < 0
 
 
-def test_codes_are_decoded(table, lights, tmp_path):
-    from PIL import Image
-
-    codes = np.array([[[255, 128, 0], [64, 64, 64]]], np.uint8)
-    Image.fromarray(codes).save(tmp_path / "screen.png")
-    texture.convert(lights, tmp_path / "screen.png", tmp_path / "out.exr")
-    from uplift.colorimetry.srgb import decode
-
-    found = table.rgb(spectral_channels(tmp_path / "out.exr").astype(float))
-    np.testing.assert_allclose(found, decode(codes / 255), atol=1e-4)
-
-
 @pytest.mark.parametrize(
     ("options", "code"),
     [
@@ -203,14 +179,3 @@ def test_encoded_floats_are_refused(table, sky, tmp_path):
     with raises(OptionError):
         texture.convert(converter, path, tmp_path / "out.exr")
     assert not (tmp_path / "out.exr").exists()
-
-
-def test_a_sequence_resumes(sky, tmp_path):
-    settings = texture.TextureSettings(
-        pixel_encoding=texture.Spectrum((450.0, 550.0)), depth="half", emission=True, threads=1
-    )
-    source = write_exr(tmp_path / "sky.exr", planes(sky / 2))
-    job = texture.Job(settings, source, Path(tmp_path / "out.exr"))
-    assert texture.pending([job], resume=True) == [job]
-    texture.convert(texture.converter_for(settings), job.source, job.target)
-    assert texture.pending([job], resume=True) == []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import pickle
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 
@@ -49,14 +48,6 @@ def check(jobs, results, small_cube, colours):
     for frame in (0, 2):
         expected = small_cube.coefficients(np.roll(colours, frame, axis=0))
         np.testing.assert_allclose(read_channels(jobs[frame].target, names), expected, rtol=0, atol=1e-6)
-
-
-def test_warnings_survive_pickling(spectral, colours, tmp_path):
-    source = write_exr(tmp_path / "in.exr", planes(3 * colours))
-    conversion = texture.convert(spectral, source, tmp_path / "out.exr")
-    (warning,) = pickle.loads(pickle.dumps(conversion)).warnings
-    assert (warning.code, warning.path) == ("pixels-out-of-gamut", source)
-    assert str(warning) == str(conversion.warnings[0])
 
 
 @pytest.mark.parametrize("count", [1, 2])

@@ -85,12 +85,3 @@ def test_a_disk_that_is_too_small_is_reported_at_the_first_rows(spectral, source
     assert [path.name for path in tmp_path.iterdir()] == ["in.exr"]
     monkeypatch.setattr("shutil.disk_usage", lambda folder: Usage(20_000))
     texture.convert(spectral, source, tmp_path / "out.exr")
-
-
-def test_the_image_itself_is_not_replaced(spectral, source, tmp_path):
-    before = source.read_bytes()
-    (tmp_path / "link.exr").symlink_to(source)
-    for target in (source, tmp_path / "link.exr"):
-        with raises(OutputError, "output-is-input"):
-            texture.convert(spectral, source, target, force=True)
-    assert source.read_bytes() == before

@@ -34,8 +34,7 @@ def kitchen(tmp_path_factory):
     shutil.copy(MACBETH, folder)
     path = folder / "kitchen.toml"
     path.write_text(
-        'textures = "wood.exr"\natlases = ["macbeth.txt"]\nlights = ["D65", "FL11"]\ntolerance = 4\n',
-        encoding="utf-8",
+        'textures = "wood.exr"\natlases = ["macbeth.txt"]\nlights = ["D65", "FL11"]\ntolerance = 4\n', encoding="utf-8"
     )
     return path
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from tests.io.texture.conftest import planes, write_exr
-from uplift.lattice import Lattice
-from uplift.scene.plan.colours import BINS, occupied_cells, sample_colours
+from uplift.scene.plan.colours import BINS, sample_colours
 
 
 @pytest.fixture
@@ -49,12 +48,3 @@ def test_rare_colours_have_a_bin(image, sensor):
     wide = sample_colours((image(np.random.default_rng(2).random((64, 64, 3))),), sensor, "auto", (50, 50))
     codes = np.interp(wide.colour_bins, sensor.decoding, np.linspace(0, BINS, 256)).astype(int)
     assert len(np.unique(codes, axis=0)) == len(codes)
-
-
-def test_occupied_cells_contain_the_colours():
-    lattice = Lattice(np.linspace(0, 1, 5))
-    rgb = np.random.default_rng(0).random((20, 3))
-    expected = {tuple((colour * 4).astype(int)) for colour in rgb}
-    assert {
-        tuple(lattice.position(np.array(cell))) for cell in np.flatnonzero(occupied_cells(lattice, rgb))
-    } == expected

@@ -46,19 +46,6 @@ def test_json_output_equals_the_file(run, here):
     assert (here / "p.html").exists()
 
 
-def test_existing_files_are_kept_without_force(refuse, here):
-    (here / "kitchen.plan.html").write_text("mine")
-    error = refuse("plan", "kitchen.toml")
-    assert (error.code, str(error.path)) == ("file-exists", "kitchen.plan.html")
-    assert (here / "kitchen.plan.html").read_text() == "mine"
-
-
-def test_an_invalid_scene_file_is_refused_with_its_line(refuse, here):
-    (here / "bad.toml").write_text('textures = "wood.exr"\ntolerence = 1\n')
-    error = refuse("plan", "bad.toml")
-    assert (error.code, error.where) == ("unknown-key", "bad.toml:2")
-
-
 def test_other_files_are_refused_as_plans(refuse, here):
     (here / "deep.json").write_text("[" * 100_000)
     for name, code in (

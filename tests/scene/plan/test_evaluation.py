@@ -64,16 +64,6 @@ def test_reference_spectra_have_no_error_and_nan_has_the_largest(tests):
     assert {part.largest for part in error.parts if part.group == "textures"} == {WORST_DELTA_E}
 
 
-def test_a_subsample_keeps_the_total_weight(tests):
-    few = tests.subsample(10)
-    textures, materials = few.groups
-    assert len(textures.rgb) <= 10
-    assert len(materials.rgb) == 7
-    assert textures.weights.sum() == pytest.approx(1)
-    kept = [tuple(colour) for colour in tests.groups[0].rgb]
-    assert all(tuple(colour) in kept for colour in textures.rgb)
-
-
 def test_previews_have_the_errors_of_their_shares(tests):
     xyz = [(0.9 * tests.reflectances) @ light.xyz.T for light in tests.lights]
     previews = make_previews(tests, xyz, observer.DEFAULT_OBSERVER)

@@ -3,51 +3,25 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 import shlex
-from html.parser import HTMLParser
 
 import click
-import pytest
 from uplift_cli.main import main
 
 from tests.browsing import check_page
 from uplift.scene.plan.commands import build_command, cube_name, expanded_command, texture_command
-from uplift.scene.plan.page import _budget, page, summary_rows, verdict
-from uplift.viz.format import format_size
-
-EMPTY = {"meta", "br", "col", "input"}
-
-
-class Reader(HTMLParser):
-    """Collects text and open elements; fails at unbalanced tags and at links to other files."""
-
-    def __init__(self):
-        super().__init__()
-        self.open, self.texts = [], []
-
-    def handle_starttag(self, tag, attrs):
-        if tag not in EMPTY:
-            self.open.append(tag)
-        assert not {"src", "href"} & {name for name, value in attrs if not (value or "").startswith("#")}
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        self.texts.append(data)
+from uplift.scene.plan.page import page, summary_rows, verdict
 
 
 def test_the_page_is_self_contained_and_lists_every_candidate(planned, tmp_path):
     plan, _ = planned
     text = page(plan, tmp_path / "kitchen.plan.json")
-    reader = Reader()
-    reader.feed(text)
-    assert reader.open == []
-    content = "\n".join(reader.texts)
+    assert not re.search(r'(src|href)="(?!#)', text)
     for decision in plan.decisions:
-        assert decision.title in content
-        assert all(trial.name in content for trial in decision.trials)
-    assert f"{verdict(plan)}." in content
+        assert decision.title in text
+        assert all(trial.name in text for trial in decision.trials)
+    assert f"{verdict(plan)}." in text
     charts = sum(len(decision.trials) > 1 for decision in plan.decisions)
     assert text.count("<svg") == charts
     assert text == page(plan, tmp_path / "kitchen.plan.json")
@@ -63,28 +37,10 @@ def test_names_cannot_break_the_page(planned, tmp_path):
     assert "<script" not in page(plan, tmp_path / "<b>.plan.json")
 
 
-def test_bars_are_proportional_to_errors_and_stay_on_the_axis(planned):
-    plan, _ = planned
-    bars = _budget(plan)
-    assert [bar["title"] for bar in bars] == [*(each.title for each in plan.chain), "Confirmed"]
-    ratio = bars[0]["error"] / bars[-1]["error"]
-    assert ratio == pytest.approx(plan.chain[0].trial.error.quantile / plan.confirmed.quantile)
-    assert bars[-1]["limit"] / bars[-1]["error"] == pytest.approx(plan.scene.tolerance / plan.confirmed.quantile)
-    assert all(0 <= bar[key] < 100 for bar in bars for key in ("error", "limit"))
-
-
 def test_every_row_of_the_summary_has_a_cost(planned):
     rows = summary_rows(planned[0])
     assert [row.title for row in rows][:3] == ["Coefficients per spectrum", "Lattice", "Cells"]
     assert all(row.chosen and row.cost and row.error for row in rows)
-
-
-def test_a_full_cube_states_the_size_of_the_sparse_one(planned):
-    build = planned[0].final_build
-    assert not build.is_sparse
-    assert build.sparse_size <= build.full_size == build.size
-    (row,) = (row for row in summary_rows(planned[0]) if row.title == "Cells")
-    assert format_size(build.sparse_size) in row.cost
 
 
 def test_commands_are_accepted_by_the_command_line(planned, tmp_path):

@@ -38,12 +38,6 @@ def test_smooth_part_is_the_largest_with_limited_gradient(table, threshold):
     np.testing.assert_array_equal(spikes.storage, 2 * (spikes.heights > 0).sum(axis=1))
 
 
-def test_mercury_lines_are_spikes_and_daylight_has_none():
-    lines, none = (split_spikes(observer.illuminant_spd(name, step=1.0)[None], 0.3)[1] for name in ("FL2", "C"))
-    assert observer.grid()[lines.positions].tolist() == [405, 435, 545]
-    assert none.positions.size == 0
-
-
 @pytest.mark.parametrize("count", [1, 5, 15])
 def test_fourier_coefficients_equal_equation_4_7(count):
     table = np.random.default_rng(6).random((2, 81))

@@ -5,14 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.scene.representations.filters import (
-    COARSE_STRIDE,
-    EXTENTS,
-    KINDS,
-    Filter,
-    candidates,
-    resampling_matrix,
-)
+from uplift.scene.representations.filters import COARSE_STRIDE, EXTENTS, KINDS, Filter, candidates, resampling_matrix
 
 SOME = [
     Filter("box", 5),

@@ -37,15 +37,6 @@ def test_colour_is_linear_in_the_light(every, checker, light_powers, name):
     np.testing.assert_allclose(twice, 2 * once, rtol=1e-9)
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if not name.startswith("HW")])
-def test_rows_are_independent(every, checker, light_powers, name):
-    """Hero wavelengths are omitted: a row is a pixel with its own random numbers."""
-    one = every[name]
-    whole = one.xyz(one.multiply(one.encode_light(light_powers("FL2")), one.encode_surface(checker.surfaces)))
-    part = one.xyz(one.multiply(one.encode_light(light_powers("FL2")[5:7]), one.encode_surface(checker.surfaces[5:7])))
-    np.testing.assert_allclose(part, whole[5:7], rtol=1e-9)
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_product_can_be_multiplied_again(every, checker, light_powers, name):
     one, surfaces = every[name], every[name].encode_surface(checker.surfaces)

@@ -28,8 +28,7 @@ def test_errors_are_those_of_a_renderer_with_count_wavelengths(smooth: RenderSet
             delta_e = observer.colour_science().delta_E(
                 smooth.lab[light, material],
                 observer.colour_science().XYZ_to_Lab(
-                    np.array(radiance) @ sampling.to_xyz,
-                    observer.colour_science().XYZ_to_xy(smooth.whites[light]),
+                    np.array(radiance) @ sampling.to_xyz, observer.colour_science().XYZ_to_xy(smooth.whites[light])
                 ),
                 method="CIE 2000",
             )
@@ -48,16 +47,6 @@ def test_target_skips_counts_without_a_rule(smooth: RenderSetup) -> None:
     assert len(choice.sampling) == 4
 
 
-def test_mean_target_needs_fewer_wavelengths_than_maximum(spiky: RenderSetup) -> None:
-    assert len(choose(spiky, target=1.5, measure="mean").sampling) < len(choose(spiky, target=1.5).sampling)
-
-
-def test_choice_is_deterministic(smooth: RenderSetup) -> None:
-    first, second = (choose(smooth, count=4).sampling for _ in range(2))
-    np.testing.assert_array_equal(first.wavelengths, second.wavelengths)
-    np.testing.assert_array_equal(first.to_xyz, second.to_xyz)
-
-
 @pytest.mark.parametrize(
     ("options", "code"),
     [
@@ -72,13 +61,6 @@ def test_choice_is_deterministic(smooth: RenderSetup) -> None:
 def test_invalid_options_raise(smooth: RenderSetup, options: dict[str, float], code: str) -> None:
     with raises(OptionError, code):
         choose(smooth, **options)
-
-
-def test_unreachable_target_raises_and_states_the_best_error(spiky: RenderSetup) -> None:
-    best = choose(spiky, count=40, method="uniform").errors.max
-    with raises(OptionError) as caught:
-        choose(spiky, target=0.01, method="uniform")
-    assert f"{best:.3g}" in str(caught.value)
 
 
 def test_unknown_names_raise_with_the_nearest_name(smooth: RenderSetup) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.wavelengths.experiments import allocation_error, bin_shares, run_trials
+from benchmarks.wavelengths.experiments import allocation_error, run_trials
 from benchmarks.wavelengths.printed import CHANNELS, rows
 from tests.helpers import raises
 from uplift.colorimetry import observer
@@ -55,12 +55,6 @@ def test_matrices_equal_the_printed_ones(cmfs: Array, opponent: OpponentSpace) -
 def test_eigenvalues_equal_the_printed_ones(opponent: OpponentSpace) -> None:
     printed = [float(row["eigenvalue"]) for row in rows("matrices") if row["eigenvalue"]]
     np.testing.assert_allclose(opponent.eigenvalues, printed, rtol=3e-3)
-
-
-def test_chromaticities_of_the_cones_are_the_confusion_points(cmfs: Array) -> None:
-    alone = np.linalg.inv(cone_space(grid(), cmfs).matrix)
-    chromaticities = (alone / alone.sum(axis=0))[:2].T
-    np.testing.assert_allclose(chromaticities, [[0.171, -0.003], [1.14, -0.14], [0.735, 0.265]], atol=1e-12)
 
 
 def test_opponent_channels_are_uncorrelated(cmfs: Array, opponent: OpponentSpace) -> None:
@@ -115,28 +109,6 @@ def test_figure_6_opponent_space_needs_the_fewest_wavelengths(
         assert curves[0][total] < min(curves[1][total], curves[2][total]), total
 
 
-def test_figure_7_favours_a_and_balanced_shares(opponent: OpponentSpace, setting_c: RenderSetup) -> None:
-    trials = run_trials(setting_c, opponent.space)
-    bins = bin_shares(trials)
-    middle = np.abs(bins.corners.mean(axis=1) - 1 / 3).max(axis=1) < 0.2
-    assert bins.errors[middle].mean() < bins.errors[~middle].mean()
-    most = trials.counts.argmax(axis=1)
-    assert trials.errors[most == 0].mean() < min(trials.errors[most == channel].mean() for channel in (1, 2))
-
-
-def test_small_triangles_average_the_trials_inside(opponent: OpponentSpace, setting_c: RenderSetup) -> None:
-    trials = run_trials(setting_c, opponent.space)
-    bins = bin_shares(trials, divisions=4)
-    np.testing.assert_allclose(bins.corners.sum(axis=2), 1)
-    assert bins.corners.min() >= 0
-    for corners, error in zip(bins.corners, bins.errors, strict=True):
-        inside = np.linalg.solve(corners.T, trials.shares.T).min(axis=0)
-        within, touching = trials.errors[inside > 1e-6], trials.errors[inside > -1e-6]
-        assert touching.min() <= error <= touching.max()
-        if len(within) == len(touching):
-            assert error == pytest.approx(within.mean())
-
-
 def test_printed_weights_of_every_order_have_the_same_sum() -> None:
     """Guards the transcription of the printed tables."""
     printed = rows("table1")
@@ -169,12 +141,6 @@ def test_given_orders_have_the_wavelengths_of_the_paper(setting_c: RenderSetup) 
     assert choice.method == "meyer"
     printed = [456.4, 483.0, 490.9, 557.7, 631.4, 632.3]
     np.testing.assert_allclose(choice.sampling.wavelengths, printed, atol=0.08)
-
-
-def test_opponent_channels_are_better_than_cones_and_xyz(setting_c: RenderSetup) -> None:
-    """Figure 6, at two wavelengths per channel."""
-    means = {name: choose_orders(setting_c, (2, 2, 2), name).errors.mean for name in ("opponent", "cones", "xyz")}
-    assert min(means, key=means.__getitem__) == "opponent"
 
 
 def test_impossible_orders_are_refused(setting_c: RenderSetup) -> None:

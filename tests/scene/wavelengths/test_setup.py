@@ -26,24 +26,6 @@ def test_colours_agree_with_observer_light_on_its_grid() -> None:
     np.testing.assert_allclose(setup.lab[0], lab(reflectances @ light.xyz.T, light.white), rtol=1e-9)
 
 
-@pytest.mark.parametrize("count", [101, 64])
-def test_colours_hardly_depend_on_the_step(smooth: RenderSetup, count: int) -> None:
-    nm = np.linspace(380, 770, count)
-    coarse = make_setup(smooth.curves(nm), smooth.lights, wavelengths=nm)
-    np.testing.assert_allclose(coarse.lab, smooth.lab, atol=0.2)
-
-
-def test_repeated_lights_count_once(checker: Array) -> None:
-    assert make_setup(checker, ["A", "A"]).lights == ("A",)
-
-
-def test_only_selects_materials(smooth: RenderSetup) -> None:
-    """Matrix products of other shapes may sum in another order, so the colours agree up to rounding."""
-    few = smooth.only([3, 1])
-    np.testing.assert_array_equal(few.reflectances, smooth.reflectances[[3, 1]])
-    np.testing.assert_allclose(few.xyz, smooth.xyz[:, [3, 1]], rtol=1e-14, atol=1e-14)
-
-
 @pytest.mark.parametrize(
     ("reflectances", "nm"),
     [
