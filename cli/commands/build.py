@@ -233,9 +233,9 @@ def _build(files: tuple[str, ...], scale: Any, **options: Any) -> Cube:
 
 def _scene(images: tuple[str, ...], encoding: str, method: str, space: str | None) -> Images | None:
     """Return the images of the scene. Raises click's error for their options without images."""
-    from uplift.io.scene_colours import Images
-
     if images:
+        from uplift.io.scene_colours import Images
+
         return Images(tuple(map(Path, expand_patterns(images))), encoding, method, space)
     options = (
         ("--encoding", encoding, "auto"),

@@ -53,7 +53,7 @@ def test_neighbours_are_those_within_one_step():
 
 @pytest.mark.parametrize("nodes", [[0.0], [0.0, 0.0], [1.0, 0.0], [[0.0, 1.0]], [0.0, np.nan]])
 def test_nodes_must_increase(nodes):
-    with raises(OptionError, "nodes-not-increasing"):
+    with raises(OptionError, "option"):
         Lattice(np.array(nodes))
 
 

@@ -22,10 +22,9 @@ def setting(request, sensor):
 def test_the_step_is_that_of_the_fit(setting):
     model, forward, multipliers = setting
     off, damping = 0.1 * RNG.normal(size=(40, 3)), RNG.random(40)
-    found = refine.step(model, forward, forward.basis @ multipliers.T, off.T, damping).T
-    np.testing.assert_allclose(
-        found, minimum_norm.minimum_norm_step(model, forward, multipliers, off, damping), rtol=1e-8, atol=1e-12
-    )
+    found = minimum_norm.minimum_norm_step(model, forward, forward.basis @ multipliers.T, off.T, damping).T
+    expected = minimum_norm.anchored_step(model, forward, multipliers, off, damping, 0 * multipliers) @ forward.root.T
+    np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-12)
 
 
 def test_accumulated_distances_equal_a_direct_evaluation(setting, monkeypatch):

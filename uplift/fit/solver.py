@@ -21,7 +21,7 @@ from uplift.common.arrays import Array
 from uplift.fit.batch import batches, replicate, shard
 from uplift.models import Model
 from uplift.models.matmul import matmul_rows
-from uplift.models.minimum_norm import ForwardMap, least_change_step, residual
+from uplift.models.minimum_norm import ForwardMap, anchored_step, residual
 from uplift.models.roots import MAX_MULTIPLIER
 
 FIRST_DAMPING = 1e-6
@@ -67,7 +67,7 @@ def take_step(
     where = y.__array_namespace__().where
     # Δx = A⁺ (t − r + A d) − d, and p changes by R Δx.
     anchored = state.displacement * state.anchor_weight[:, None]
-    change = least_change_step(model, forward, y, state.residual, state.damping, anchored)
+    change = anchored_step(model, forward, y, state.residual, state.damping, anchored)
     trial = y + matmul_rows(change, forward.root.T)
     residual = residual_of(trial)
     better = ((residual**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (abs(trial).max(axis=1) <= MAX_MULTIPLIER)

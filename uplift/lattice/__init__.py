@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from uplift.lattice.entry_boxes import BoxHits, EntryBoxes
+from uplift.lattice.entry_boxes import BoxHits, EntryBoxes, SceneLike
 from uplift.lattice.lattice import CORNERS, Lattice, weighted_sum
 from uplift.lattice.point_table import ABSENT_VALUES, NO_ENTRY, NOT_FITTED, PointTable, Status
-from uplift.lattice.scene import SceneLike
 
 __all__ = [
     "ABSENT_VALUES",

@@ -11,11 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.progress import ProgressCallback
 from uplift.lattice.lattice import Lattice
 from uplift.lattice.point_table import NO_ENTRY
 
@@ -40,17 +42,7 @@ class BoxHits(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EntryBoxes:
-    """Boxes around atlas entries in a lattice.
-
-    Parameters
-    ----------
-    lattice : Lattice
-        The lattice that the boxes lie in.
-    rgb : ndarray, shape (E, 3)
-        Linear RGB of the entries, the centres of the boxes.
-    half_width : ndarray, shape (E,)
-        Half widths in lattice steps, 0 to 1; 0 for no box.
-    """
+    """Boxes in a lattice around entries of linear RGB (E, 3), of half widths (E,) in steps: 0 to 1, 0 for none."""
 
     lattice: Lattice
     rgb: Array
@@ -84,20 +76,10 @@ class EntryBoxes:
         return touched
 
     def required_points(self, cells: Mask) -> Mask:
-        """Return the lattice points needed to answer any colour in a set of cells.
+        """Nodes needed to answer any colour in a set of cells, both as masks (dim³,).
 
         They are the corners of the cells and, where a box touches one, the corners of all cells that the box
         touches: a colour in the box is answered from a point on its faces, within `MARGIN`.
-
-        Parameters
-        ----------
-        cells : ndarray of bool, shape (dim³,)
-            Mask of cells.
-
-        Returns
-        -------
-        ndarray of bool, shape (dim³,)
-            Mask of points.
         """
         requested = cells.reshape(self.lattice.shape)
         required = requested.copy()
@@ -110,39 +92,16 @@ class EntryBoxes:
         return self.lattice.corner_points(required.ravel())
 
     def find(self, rgb: Array) -> BoxHits:
-        """Find the colours that lie in boxes.
-
-        Parameters
-        ----------
-        rgb : ndarray, shape (n, 3)
-            Linear RGB.
-
-        Returns
-        -------
-        BoxHits
-            The colours inside boxes, and the weights that answer them.
-        """
+        """Find which of the linear RGB (n, 3) lie in boxes."""
         return self.find_in_cells(rgb, self.lattice.index(self.lattice.lowest_corner(rgb)))
 
     def find_in_cells(self, rgb: Array, cell: Indices) -> BoxHits:
-        """Find the colours that lie in boxes, given their cells.
-
-        Parameters
-        ----------
-        rgb : ndarray, shape (n, 3)
-            Linear RGB.
-        cell : ndarray of int, shape (n,)
-            Number of the cell that contains each colour.
-
-        Returns
-        -------
-        BoxHits
-            The colours inside boxes, and the weights that answer them.
-        """
+        """Do the same as `find` for colours whose cells (n,) are known."""
         rows, entry = self._boxes(rgb, cell)
         centre = self.rgb[entry]
         ray = rgb[rows] - centre
         low, high = (face[entry] for face in self.faces)
+        # x = (1 − t) e + t y: t is the largest fraction, over the axes, of the way from e to the face that x moves to.
         room = np.where(ray > 0, high - centre, centre - low)
         weight = np.divide(np.abs(ray), room, out=np.zeros_like(ray), where=ray != 0).max(axis=1)
         exit_rgb, moved = rgb[rows], weight > 0
@@ -163,3 +122,15 @@ class EntryBoxes:
             found[rows[inside]] = candidate[inside]
         hit = found != NO_ENTRY
         return near[hit], found[hit]
+
+
+class SceneLike(Protocol):
+    """Colours that restrict a build to the nodes that they require."""
+
+    def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
+        """Return the mask (dim³,) of the required nodes, and report events of stage ``"images"``."""
+        ...
+
+    def describe(self) -> list[dict[str, Any]]:
+        """Describe the sources of the colours for the provenance of the cube, in JSON values."""
+        ...

@@ -31,13 +31,7 @@ class Status(IntEnum):
 
     @property
     def label(self) -> str:
-        """The name in lower-case words.
-
-        Returns
-        -------
-        str
-            Such as ``"atlas primary"``.
-        """
+        """The name in lower-case words, such as ``"atlas primary"``."""
         return self.name.lower().replace("_", " ")
 
 
@@ -47,27 +41,14 @@ ABSENT_VALUES = {"status": int(Status.ABSENT), "entry": NO_ENTRY, "round": NOT_F
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PointTable:
-    """Arrays over the lattice points, in the order of `Lattice.points` (blue fastest).
+    """Arrays over the n nodes of a lattice, in their order (blue fastest).
 
-    Absent points have status ``ABSENT``, entry and round −1, and 0 everywhere else.
-
-    Parameters
-    ----------
-    coefficients : ndarray, shape (n, C)
-        Argument of ``model.from_storage``. float32 or, where single precision is not accurate enough, float64.
-    rgb : ndarray of float32, shape (n, 3)
-        Lattice RGB: the linear RGB that the stored spectrum evaluates to.
-    distance : ndarray of float32, shape (n,)
-        Fitting distance, max |target RGB − lattice RGB|.
-    status : ndarray of uint8, shape (n,)
-        Values of `Status`.
-    entry : ndarray of int32, shape (n,)
-        Row of the atlas table that the point is based on, −1 for none.
-    round : ndarray of int16, shape (n,), optional
-        Round of growth that fitted the point, −1 for none. Stored with ``debug=True`` only.
-    standard_error : ndarray of float32, shape (n,), optional
-        Root-mean-square ΔE00 expected between the answer and a measurement. None where the atlas is too small
-        to estimate it.
+    ``coefficients`` (n, C) are the argument of ``model.from_storage``: float32 or, where single precision is not
+    accurate enough, float64. ``rgb`` (n, 3) is the linear RGB that the stored spectrum evaluates to, and ``distance``
+    (n,) max |target RGB − rgb|. ``entry`` (n,) is the row of the atlas table that a node is based on, −1 for none.
+    ``round`` (n,), stored with ``debug=True`` only, is the round of growth that fitted the node, −1 for none.
+    ``standard_error`` (n,), the root-mean-square ΔE00 expected between the answer and a measurement, is None where the
+    atlas is too small to estimate it. Absent nodes have status ``ABSENT``, entry and round −1, and 0 everywhere else.
     """
 
     coefficients: NDArray[Any]
@@ -90,17 +71,7 @@ class PointTable:
         return self.status != Status.ABSENT
 
     def restricted_to(self, points: Indices) -> PointTable:
-        """Return the table with all other points absent.
-
-        Parameters
-        ----------
-        points : ndarray of int, shape (k,)
-            Numbers of the points to keep.
-
-        Returns
-        -------
-        PointTable
-        """
+        """Return the table with all nodes but some (k,) absent."""
         absent = np.ones(len(self), dtype=bool)
         absent[points] = False
         columns = {key.name: getattr(self, key.name) for key in fields(self)}
@@ -111,12 +82,6 @@ class PointTable:
         return PointTable(**columns)
 
     def counts(self) -> dict[str, int]:
-        """Count the points of each status.
-
-        Returns
-        -------
-        dict
-            Number of points by `Status.label`, in the order of `Status`.
-        """
+        """Count the nodes of each status, by `Status.label`."""
         numbers = np.bincount(self.status, minlength=len(Status))
         return {status.label: int(numbers[status]) for status in Status}

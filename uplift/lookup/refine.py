@@ -13,7 +13,7 @@ from uplift.common.arrays import Array, Indices, Values
 from uplift.cube import CubeData
 from uplift.models import Model
 from uplift.models.matmul import matmul_columns, matmul_rows
-from uplift.models.minimum_norm import ForwardMap, forward_map, solve_3x3
+from uplift.models.minimum_norm import ForwardMap, forward_map, minimum_norm_step
 from uplift.models.roots import MAX_MULTIPLIER
 
 TOLERANCE = 1e-8
@@ -128,7 +128,7 @@ def _move(
     """
     current, off, mu = multipliers[:, columns], residual[:, columns], damping[columns]
     with np.errstate(over="ignore", invalid="ignore"):  # overflowing steps are rejected
-        change = step(model, forward, linear, off, mu)
+        change = minimum_norm_step(model, forward, linear, off, mu)
         trial = current + change
         difference = model.squash_difference(linear, matmul_columns(forward.basis, change))
         trial_off = off - matmul_columns(forward.sensor, difference)
@@ -137,14 +137,3 @@ def _move(
     multipliers[:, columns] = np.where(better, trial, current)
     residual[:, columns] = np.where(better, trial_off, off)
     damping[columns] = np.where(better, mu / 16, 4 * mu + FIRST_DAMPING)
-
-
-def step(model: Model, forward: ForwardMap, linear: Array, residual: Array, damping: Array) -> Array:
-    """Minimum-norm step (C, n) from the linear part (N, n) and residual (3, n), spectra as columns.
-
-    R Aᵀ (A Aᵀ + μ tr I)⁻¹ residual, with the Jacobian A and the root R of docs/mathematics.md, 5.
-    """
-    jacobian = matmul_columns(forward.products.T, model.slope(linear)).reshape(3, len(forward.root), -1)
-    gram = [[np.einsum("cn,cn->n", jacobian[a], jacobian[b]) for b in range(a + 1)] for a in range(3)]
-    y = solve_3x3(gram, damping * (gram[0][0] + gram[1][1] + gram[2][2]), residual)
-    return matmul_columns(forward.root, np.einsum("an,acn->cn", np.stack(y), jacobian))

@@ -1,9 +1,10 @@
 """Steps towards a colour: of all steps that reach it, the one that changes the spectrum least.
 
-Multipliers p are changed in the metric M = (R Rᵀ)⁻¹, as x = R⁻¹ p; A is the Jacobian of the RGB r with respect to x.
-The minimum-norm step Δx = A⁺ (t − r) changes the current spectrum least. The step of least change,
-Δx = A⁺ (t − r + A d) − d, changes the prior spectrum least, from which x differs by d. A⁺ = Aᵀ (A Aᵀ + μ tr I)⁻¹
-(docs/mathematics.md, 5). The functions use the array API: the fit runs them on JAX, the refined lookup on numpy.
+Multipliers p are changed in the metric M = (R Rᵀ)⁻¹, as x = R⁻¹ p; A = ∂r/∂x is the Jacobian of the RGB r, and t the
+target (docs/mathematics.md, 5). With the damped pseudo-inverse A⁺ = Aᵀ (A Aᵀ + μ tr I)⁻¹,
+
+- Δx = A⁺ (t − r) changes the current spectrum least: the minimum-norm step, of the lookup,
+- Δx = A⁺ (t − r + A d) − d changes the prior spectrum least, from which x differs by d: the step of the fit.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
-from uplift.models.matmul import matmul_rows
+from uplift.models.matmul import matmul_columns, matmul_rows
 from uplift.models.model import Model
 
 
@@ -23,9 +24,9 @@ class ForwardMap(NamedTuple):
     """Arrays of the map from multipliers to RGB, a pytree for JAX."""
 
     basis: Any
-    """Basis of the linear part, shape (N, C)."""
+    """Basis B of the linear part, shape (N, C)."""
     sensor: Any
-    """Spectrum to RGB, shape (3, N)."""
+    """W, spectrum to RGB, shape (3, N)."""
     root: Any
     """R with R Rᵀ = M⁻¹, shape (C, C)."""
     inverse_root: Any
@@ -43,71 +44,63 @@ def forward_map(model: Model, wavelengths: ArrayLike, sensor: Array, inverse_met
 
 
 def forward_rgb(model: Model, forward_map: ForwardMap, multipliers: Any) -> Any:
-    """Compute linear RGB (n, 3) of multipliers (n, C)."""
+    """Linear RGB r = W S(B p), (n, 3), of multipliers (n, C)."""
     return matmul_rows(model.squash(matmul_rows(multipliers, forward_map.basis.T)), forward_map.sensor.T)
 
 
 def residual(model: Model, forward_map: ForwardMap, multipliers: Any, target: Any) -> Any:
-    """Compute target minus RGB, (n, 3), of multipliers (n, C)."""
+    """Target minus RGB, t − r, (n, 3), of multipliers (n, C)."""
     return target - forward_rgb(model, forward_map, multipliers)
 
 
-def minimum_norm_step(model: Model, forward_map: ForwardMap, multipliers: Any, residual: Any, damping: Any) -> Any:
-    """Compute the change of multipliers (n, C) that cancels residual (n, 3) to first order; damping (n,) is μ."""
-    step = least_change_step(model, forward_map, multipliers, residual, damping, 0 * multipliers)
-    return matmul_rows(step, forward_map.root.T)
-
-
-def least_change_step(
-    model: Model, forward_map: ForwardMap, multipliers: Any, residual: Any, damping: Any, moved: Any
+def anchored_step(
+    model: Model, forward_map: ForwardMap, multipliers: Any, residual: Any, damping: Any, displacement: Any
 ) -> Any:
-    """Compute the change of x (n, C) that cancels residual (n, 3) to first order, nearest to the prior.
+    """Change Δx (n, C) that cancels residuals (n, 3) to first order, nearest to the prior; R Δx is that of multipliers.
 
-    Parameters
-    ----------
-    model : Model
-        Spectrum model.
-    forward_map : ForwardMap
-        Map from multipliers to RGB.
-    multipliers : array, shape (n, C)
-        Current multipliers.
-    residual : array, shape (n, 3)
-        Target minus RGB.
-    damping : array, shape (n,)
-        μ, 0 or more.
-    moved : array, shape (n, C)
-        Difference d of x from the prior; 0 for the minimum-norm step.
-
-    Returns
-    -------
-    array, shape (n, C)
-        Change of x; multiplied by R it is that of the multipliers.
+    ``damping`` (n,) is μ, ``displacement`` (n, C) the difference d of x from the prior, 0 for the minimum-norm step.
+    Spectra are rows of arrays of numpy or of JAX.
     """
+    # A = W diag(S′(B p)) B R
     slope = model.slope(matmul_rows(multipliers, forward_map.basis.T))
     jacobian = matmul_rows(slope, forward_map.products).reshape(-1, 3, forward_map.basis.shape[1])
+    # y = (A Aᵀ + μ tr I)⁻¹ (t − r + A d), Δx = Aᵀ y − d
     gram = jacobian @ jacobian.mT
     lower = [[gram[:, a, b] for b in range(a + 1)] for a in range(3)]
-    goal = residual + (jacobian @ moved[:, :, None])[:, :, 0]
-    y = solve_3x3(lower, damping * (lower[0][0] + lower[1][1] + lower[2][2]), goal.T)
+    goal = residual + (jacobian @ displacement[:, :, None])[:, :, 0]
+    y = solve_damped(lower, damping, goal.T)
     y = jacobian.__array_namespace__().stack(y, axis=-1)
-    return (y[:, None, :] @ jacobian)[:, 0, :] - moved
+    return (y[:, None, :] @ jacobian)[:, 0, :] - displacement
 
 
-def solve_3x3(matrix: Sequence[Sequence[Any]], shift: Any, right: Any) -> tuple[Any, Any, Any]:
-    """Solve (A + shift I) y = b for n symmetric positive A by L D Lᵀ; all elements are arrays (n,).
+def minimum_norm_step(model: Model, forward_map: ForwardMap, linear: Array, residual: Array, damping: Array) -> Array:
+    """Change R Δx (C, n) of multipliers that cancels residuals (3, n) to first order, from the linear part (N, n).
 
-    ``matrix`` is the lower half of A, row by row. A pivot that rounding made zero or negative is replaced by a
-    millionth of an ulp of the trace. The step is then long, never NaN, and the caller's check of the residual rejects
-    it.
+    Spectra are columns of numpy arrays here, so that all arithmetic runs along contiguous memory.
     """
-    (a00,), (a10, a11), (a20, a21, a22) = matrix
+    jacobian = matmul_columns(forward_map.products.T, model.slope(linear)).reshape(3, len(forward_map.root), -1)
+    lower = [[np.einsum("cn,cn->n", jacobian[a], jacobian[b]) for b in range(a + 1)] for a in range(3)]
+    y = solve_damped(lower, damping, residual)
+    return matmul_columns(forward_map.root, np.einsum("an,acn->cn", np.stack(y), jacobian))
+
+
+def solve_damped(gram: Sequence[Sequence[Any]], damping: Any, right: Any) -> tuple[Any, Any, Any]:
+    """Solve (G + μ tr(G) I) y = b for n symmetric positive G by L D Lᵀ; all elements are arrays (n,).
+
+    ``gram`` is the lower half of G, row by row. A pivot that rounding made zero or negative is replaced by a millionth
+    of an ulp of the trace. The step is then long, never NaN, and the caller's check of the residual rejects it.
+    """
+    (a00,), (a10, a11), (a20, a21, a22) = gram
     xp = a00.__array_namespace__()
-    floor = 1e-22 * (a00 + a11 + a22) + 1e-300
+    trace = a00 + a11 + a22
+    shift, floor = damping * trace, 1e-22 * trace + 1e-300
+    # G + μ tr(G) I = L D Lᵀ
     d0 = xp.maximum(a00 + shift, floor)
     l10, l20 = a10 / d0, a20 / d0
     d1 = xp.maximum(a11 + shift - l10 * a10, floor)
     l21 = (a21 - l20 * a10) / d1
     d2 = xp.maximum(a22 + shift - l20 * a20 - l21 * l21 * d1, floor)
+    # L z = b, Lᵀ y = D⁻¹ z
     z0 = right[0]
     z1 = right[1] - l10 * z0
     z2 = right[2] - l20 * z0 - l21 * z1
