@@ -29,7 +29,7 @@ from uplift.lab.timing import time_calls
 from uplift.lookup import Bounds, Cube, bounds, load
 from uplift.lookup.light_errors import LIKELY, NORMAL_RADIUS, lab_errors
 from uplift.report.look_page import write_look_page
-from uplift.viz.bounds import plot_bounds
+from uplift.viz.plots import plot_bounds
 
 ATLAS = ROOT / "atlases" / "macbeth.txt"
 CUBE = ROOT / "cubes" / "moments-16-macbeth.uplift"

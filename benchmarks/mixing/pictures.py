@@ -11,7 +11,7 @@ from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.design.mixing import Ingredients, Medium, dispersive, make_coat, mixers, ramp
 from uplift.lookup import Cube
-from uplift.viz.swatches import Strip, plot_strips
+from uplift.viz.plots import Strip, plot_strips
 
 STEPS = 11
 PAIRS = {

@@ -286,7 +286,7 @@ def query(
     at = parse_wavelengths(wavelengths)
     results = _answers(table, blocks, table.wavelengths if at is None else at, outside)
     if plot_path is not None:
-        from uplift.viz.spectra import plot_lights
+        from uplift.viz.plots import plot_lights
 
         hide_drawing_notes()
         found = list(results)

@@ -136,7 +136,7 @@ def command(lights: tuple[str, ...], style: str, plot_path: str | None, force: b
     check_outputs((plot_path,), inputs=(colours["cube_path"], colours["input_path"]), force=force)
     answers, results, single = ask(lights=lights, **colours)
     if plot_path is not None:
-        from uplift.viz.spectra import plot_spectra
+        from uplift.viz.plots import plot_spectra
 
         hide_drawing_notes()
         results = list(results)

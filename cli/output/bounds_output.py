@@ -39,7 +39,7 @@ def write_bounds(
     if plot_path is not None or html is not None:
         blocks = list(blocks)
     if plot_path is not None:
-        from uplift.viz.bounds import plot_bounds
+        from uplift.viz.plots import plot_bounds
 
         hide_drawing_notes()
         plot_bounds(cube, [found for _, found in blocks], plot_path, force=force)

@@ -125,7 +125,7 @@ def _ramp(cube: Cube, mixture: Mixture) -> dict[str, str]:
 def plot(cube: Cube, mixture: Mixture, path: str, *, force: bool) -> None:
     """Write swatches of the mixture and of the ramp as PNG. Raises `OutputError`."""
     from uplift.colorimetry.srgb import to_display_codes
-    from uplift.viz.swatches import Strip, plot_strips
+    from uplift.viz.plots import Strip, plot_strips
 
     codes = to_display_codes(mixture.rgb, cube.data.sensor) / 255
     strips = [Strip(f"{mixture.kind}: {mixture.recipe}", codes[:1])]

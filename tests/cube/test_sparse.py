@@ -15,8 +15,7 @@ from uplift.cube.file import POINTS
 from uplift.io.slices import write_slices
 from uplift.io.slices.slices import channels
 from uplift.lattice import Lattice, Status
-from uplift.viz.sheet import write_sheet
-from uplift.viz.sheet.panels import BACKGROUND, panels
+from uplift.viz.sheet import BACKGROUND, panels, write_sheet
 
 
 @pytest.fixture

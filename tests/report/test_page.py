@@ -19,10 +19,9 @@ from tests.report.conftest import HOSTILE
 from uplift.atlas import read_atlas
 from uplift.lookup import MODES, Cube
 from uplift.report.assessment import assess
-from uplift.report.charts import histogram_chart, spectra_chart
+from uplift.report.charts import histogram_chart, log_edges, make_histogram, spectra_chart
 from uplift.report.json_export import to_json
 from uplift.report.page import render_report
-from uplift.viz.histogram import log_edges, make_histogram
 
 
 @pytest.fixture(scope="module")

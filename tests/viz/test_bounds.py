@@ -10,7 +10,7 @@ from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.errors import OutputError
 from uplift.lookup import bounds
-from uplift.viz.bounds import plot_bounds
+from uplift.viz.plots import plot_bounds
 
 
 @pytest.fixture(scope="module")

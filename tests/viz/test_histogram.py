@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.viz.histogram import linear_edges, log_edges, make_histogram
+from uplift.report.charts import linear_edges, log_edges, make_histogram
 
 
 def test_histogram_counts_every_value():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from uplift.viz.labels import place_labels
+from uplift.viz.scatter import place_labels
 
 PANEL = np.array([0.0, 0.0, 300.0, 200.0])
 

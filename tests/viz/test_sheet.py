@@ -15,9 +15,7 @@ from tests.helpers import raises, with_points
 from uplift.colorimetry.srgb import decode, encode
 from uplift.common.errors import OutputError
 from uplift.lattice import Status
-from uplift.viz.sheet import write_sheet
-from uplift.viz.sheet.panels import HIGHLIGHT, RAMP, STATUS, panels
-from uplift.viz.sheet.sheet import BACKGROUND, GAP, Layout, compose
+from uplift.viz.sheet import BACKGROUND, GAP, HIGHLIGHT, RAMP, STATUS, Layout, compose, panels, write_sheet
 
 COLOUR, DISTANCE, STATE, ERROR, ROUND = range(5)
 

@@ -22,40 +22,20 @@ WITHOUT_ATLAS, JAKOB_HANIKA = "without atlas", "Jakob & Hanika"
 
 @dataclass(frozen=True, eq=False)
 class Alternative:
-    """Answers of another method at the colours of E entries.
+    """Answers of another method at the colours of E entries."""
 
-    Parameters
-    ----------
-    name : str
-        Name of the method.
-    answer : ndarray, shape (E, N)
-        Reflectances; NaN for colours that the method does not answer.
-    delta_e : ndarray, shape (E, L)
-        ΔE00 to the measured spectra under L lights; NaN likewise.
-    """
-
-    name: str
-    answer: Array
-    delta_e: Array
+    name: str  # Name of the method
+    answer: Array  # (E, N) Reflectances; NaN for colours that the method does not answer
+    delta_e: Array  # (E, L) ΔE00 to the measured spectra under L lights; NaN likewise
 
     @property
     def mean(self) -> Array:
-        """Return the mean ΔE00 of the answers under each light, shape (L,); NaN without any.
-
-        Returns
-        -------
-        ndarray
-        """
+        """Return the mean ΔE00 of the answers under each light, shape (L,); NaN without any."""
         return self._statistic(np.mean)
 
     @property
     def largest(self) -> Array:
-        """Return the largest ΔE00 of the answers under each light, shape (L,); NaN without any.
-
-        Returns
-        -------
-        ndarray
-        """
+        """Return the largest ΔE00 of the answers under each light, shape (L,); NaN without any."""
         return self._statistic(np.max)
 
     def _statistic(self, function: Callable[..., Array]) -> Array:
@@ -64,22 +44,7 @@ class Alternative:
 
 
 def find_alternatives(data: CubeData, errors: EntryErrors, lights: tuple[Sensor, ...]) -> tuple[Alternative, ...]:
-    """Compute the answers of other methods at the colours of entries.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube that is assessed; the other methods answer for its sensor.
-    errors : EntryErrors
-        Its errors at the entries.
-    lights : tuple of Sensor
-        Sensors of the lights to compare under.
-
-    Returns
-    -------
-    tuple of Alternative
-        The packaged cube, which knows no atlas, and the sigmoid of Jakob & Hanika 2019, fitted to each colour.
-    """
+    """Compute the answers of other methods at the colours of entries."""
     answers = {
         WITHOUT_ATLAS: _without_atlas(errors.target, data.sensor),
         JAKOB_HANIKA: _sigmoid(data, errors.rgb),

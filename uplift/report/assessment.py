@@ -17,6 +17,7 @@ from uplift.cube import CubeData
 from uplift.lookup import Cube
 from uplift.report.alternatives import Alternative, find_alternatives
 from uplift.report.calibration import Calibration, check_calibration
+from uplift.report.charts import Histogram, linear_edges, log_edges, make_histogram
 from uplift.report.crowding import Crowding, find_crowding
 from uplift.report.failures import Failures, collect_failures
 from uplift.report.fidelity import (
@@ -30,7 +31,6 @@ from uplift.report.fidelity import (
 from uplift.report.round_trip import round_trip_errors
 from uplift.report.smoothness import compute_smoothness
 from uplift.report.summary import summarise
-from uplift.viz.histogram import Histogram, linear_edges, log_edges, make_histogram
 
 MIN_ERROR = 1e-9
 """Smaller distances and ΔE00 are rounding errors and are counted in the lowest bin."""
@@ -40,109 +40,42 @@ MIN_STEP = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Assessment:
-    """Quality of one cube.
+    """Quality of one cube."""
 
-    Parameters
-    ----------
-    name : str
-        Base name of the cube's file.
-    size : int
-        Bytes of the file.
-    data : CubeData
-        The cube.
-    facts : dict
-        The result of `summarise`.
-    failures : Failures
-        Points over the threshold and missing entries.
-    distance : Histogram
-        Fitting distance of the lattice points, max |linear RGB|.
-    round_trips : dict of str to Histogram
-        ΔE00 of random colours under the cube's illuminant, by mode of lookup.
-    standard_error : Histogram or None
-        Standard errors of the lattice points, ΔE00 under ``data.error_illuminant``; None if the cube has none.
-    smoothness : Histogram
-        rms difference of reflectance between neighbouring points.
-    steepest : ndarray, shape (2, 3)
-        Linear RGB of the two neighbours that differ most.
-    lights : tuple of Sensor
-        Display sensors of the lights under which entries are compared.
-    sources : tuple of str
-        Names of the files that the measured spectra come from.
-    own : bool
-        Whether the cube was built from these files.
-    entries : EntryErrors or None
-        Errors of the entries; None without a measured spectrum to compare with.
-    alternatives : tuple of Alternative
-        Answers of other methods at the colours of ``entries``; empty without entries.
-    delta_e : dict of str to Histogram
-        ΔE00 of the entries by name of the light.
-    out_of_gamut : tuple of str
-        Entries of ``sources`` outside the cube's RGB space.
-    not_covered : tuple of str
-        Entries of ``sources`` for which a sparse cube has no points.
-    calibration : Calibration or None
-        Actual against predicted errors; None if the cube was built from the entries or has no standard errors.
-    light_calibrations : dict of str to Calibration
-        The same under the other of ``lights``, by their names; empty without ``calibration``, and for cubes of earlier
-        versions.
-    unlike : float
-        Share of the entries whose colours are unlike those of the cube's atlas; 0 without ``calibration``.
-    crowding : Crowding or None
-        Close entries of the cube, None if it has no entries. Errors are relative to the measured spectra if ``own``,
-        otherwise relative to the stored ones.
-    """
-
-    name: str
-    size: int
-    data: CubeData
-    facts: dict[str, Any]
-    failures: Failures
-    distance: Histogram
-    round_trips: dict[str, Histogram]
+    name: str  # Base name of the cube's file
+    size: int  # Bytes of the file
+    data: CubeData  # The cube
+    facts: dict[str, Any]  # The result of `summarise`
+    failures: Failures  # Points over the threshold and missing entries
+    distance: Histogram  # Fitting distance of the lattice points, max |linear RGB|
+    round_trips: dict[str, Histogram]  # ΔE00 of random colours under the cube's illuminant, by mode of lookup
+    # Standard errors of the lattice points, ΔE00 under ``data.error_illuminant``; None if the cube has none
     standard_error: Histogram | None
-    smoothness: Histogram
-    steepest: Array
-    lights: tuple[Sensor, ...]
-    sources: tuple[str, ...]
-    own: bool
-    entries: EntryErrors | None
+    smoothness: Histogram  # rms difference of reflectance between neighbouring points
+    steepest: Array  # (2, 3) Linear RGB of the two neighbours that differ most
+    lights: tuple[Sensor, ...]  # Display sensors of the lights under which entries are compared
+    sources: tuple[str, ...]  # Names of the files that the measured spectra come from
+    own: bool  # Whether the cube was built from these files
+    entries: EntryErrors | None  # Errors of the entries; None without a measured spectrum to compare with
+    # Answers of other methods at the colours of ``entries``; empty without entries
     alternatives: tuple[Alternative, ...]
-    delta_e: dict[str, Histogram]
-    out_of_gamut: tuple[str, ...]
-    not_covered: tuple[str, ...]
+    delta_e: dict[str, Histogram]  # ΔE00 of the entries by name of the light
+    out_of_gamut: tuple[str, ...]  # Entries of ``sources`` outside the cube's RGB space
+    not_covered: tuple[str, ...]  # Entries of ``sources`` for which a sparse cube has no points
+    # Actual against predicted errors; None if the cube was built from the entries or has no standard errors
     calibration: Calibration | None
+    # The same under the other of ``lights``, by their names; empty without ``calibration``, and for cubes of
+    # earlier versions
     light_calibrations: dict[str, Calibration]
+    # Share of the entries whose colours are unlike those of the cube's atlas; 0 without ``calibration``
     unlike: float
+    # Close entries of the cube, None if it has no entries. Errors are relative to the measured spectra if ``own``,
+    # otherwise relative to the stored ones
     crowding: Crowding | None
 
 
 def assess(cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequence[str] = REPORT_LIGHTS) -> Assessment:
-    """Assess a cube by its own lattice and, if given, by measured spectra.
-
-    Parameters
-    ----------
-    cube : Cube
-        The cube.
-    name : str
-        Base name of its file.
-    size : int
-        Bytes of the file.
-    atlas : Atlas or None
-        Measured spectra. If the cube was built from these files, judged by their digests, they are its own entries;
-        otherwise they are unknown to it and show whether its standard errors hold.
-    lights : sequence of str, default REPORT_LIGHTS
-        Names of the lights under which entries are compared.
-
-    Returns
-    -------
-    Assessment
-        All numbers of a report.
-
-    Raises
-    ------
-    UnknownNameError
-        If a light is not in the tables.
-    """
+    """Assess a cube by its own lattice and, if given, by measured spectra."""
     data = cube.data
     sensors = display_sensors(lights, data.sensor.observer, *data.sensor.range)
     own = atlas is not None and _built_from(data, atlas)

@@ -15,24 +15,14 @@ TOLERANCE = 1.25
 
 @dataclass(frozen=True)
 class Calibration:
-    """Actual errors of entries against predicted ones, ΔE00 under the cube's error illuminant.
+    """Actual errors of entries against predicted ones, ΔE00 under the cube's error illuminant."""
 
-    Parameters
-    ----------
-    count : int
-        Number of entries.
-    predicted : float
-        Mean of the standard errors.
-    actual : float
-        Mean that they should have had, so that 68 % of the entries were within.
-    within_error, within_bound : float
-        Shares in [0, 1] of the entries whose error is at most its standard error, and its error bound.
-    """
-
-    count: int
-    actual: float
-    predicted: float
+    count: int  # Number of entries
+    actual: float  # Mean that they should have had, so that 68 % of the entries were within
+    predicted: float  # Mean of the standard errors
+    # Shares in [0, 1] of the entries whose error is at most its standard error, and its error bound
     within_error: float
+    # Shares in [0, 1] of the entries whose error is at most its standard error, and its error bound
     within_bound: float
 
     @property
@@ -43,13 +33,7 @@ class Calibration:
         return -1 if self.predicted > TOLERANCE * self.actual else 0
 
     def to_json(self) -> dict[str, float]:
-        """Return the numbers by their names in JSON output.
-
-        Returns
-        -------
-        dict
-            ``real`` and ``stated`` are ``actual`` and ``predicted``.
-        """
+        """Return the numbers by their names in JSON output."""
         return {
             "count": self.count,
             "real": self.actual,
@@ -60,27 +44,7 @@ class Calibration:
 
 
 def check_calibration(actual: Array, predicted: Array | None, bound: Array | None) -> Calibration | None:
-    """Compare errors with standard errors and error bounds.
-
-    Parameters
-    ----------
-    actual : ndarray, shape (n,)
-        Errors, ΔE00.
-    predicted : ndarray, shape (n,), or None
-        Standard errors, ΔE00; None if the cube has none.
-    bound : ndarray, shape (n,), or None
-        Error bounds, ΔE00; None likewise.
-
-    Returns
-    -------
-    Calibration or None
-        None without standard errors.
-
-    Examples
-    --------
-    >>> check_calibration(np.array([1.0, 3.0]), np.array([2.0, 2.0]), np.array([4.0, 4.0]))
-    Calibration(count=2, actual=2.36, predicted=2.0, within_error=0.5, within_bound=1.0)
-    """
+    """Compare actual errors (n,) with standard errors and error bounds (n,); None if the cube has none."""
     if predicted is None or bound is None:
         return None
     mean, ratio = float(predicted.mean()), actual / np.maximum(predicted, np.finfo(float).tiny)

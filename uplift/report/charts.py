@@ -1,15 +1,17 @@
-"""Small charts for pages, as ``svg`` elements."""
+"""Small charts for pages, as svg elements: histograms with their statistics, and spectra."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from markupsafe import Markup
+from numpy.typing import ArrayLike
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices
 from uplift.viz.figure import ACCENT, BAND, INK, STYLE, new_figure, style_axes, to_page_svg
 from uplift.viz.format import format_power_of_ten
-from uplift.viz.histogram import Histogram
 
 SIZE = (3.3, 1.75)
 """Inches at 72 dpi; the page scales charts to its columns."""
@@ -76,3 +78,50 @@ def _new_axes(position: tuple[float, float, float, float]) -> tuple[Any, Any]:
     axes.spines[["top", "right"]].set_visible(False)
     axes.set_axisbelow(True)
     return figure, axes
+
+
+BINS_PER_DECADE = 6
+LINEAR_BINS = 24
+STEPS = (1, 2, 2.5, 5, 10)
+"""Bin widths in units of a power of ten."""
+
+
+@dataclass(frozen=True, eq=False)
+class Histogram:
+    """Distribution of values."""
+
+    edges: Array  # (B + 1,) Edges of the bins
+    counts: Indices  # (B,) Values per bin; values outside the edges are counted in the outermost bins
+    mean: float  # Mean, median, 95 % quantile and maximum of the values
+    median: float  # Mean, median, 95 % quantile and maximum of the values
+    p95: float  # Mean, median, 95 % quantile and maximum of the values
+    largest: float  # Mean, median, 95 % quantile and maximum of the values
+
+    @property
+    def logarithmic(self) -> bool:
+        """Return whether the edges are a geometric series."""
+        return bool(self.edges[0] > 0)
+
+
+def make_histogram(values: ArrayLike, edges: Array) -> Histogram:
+    """Count values (n,) in bins with edges (B + 1,)."""
+    array = np.asarray(values, dtype=float)
+    counts, _ = np.histogram(np.clip(array, edges[0], edges[-1]), edges)
+    median, p95 = np.quantile(array, (0.5, 0.95)).tolist()
+    return Histogram(edges, counts.astype(np.int64), float(array.mean()), median, p95, float(array.max()))
+
+
+def log_edges(values: ArrayLike, floor: float) -> Array:
+    """Choose edges (B + 1,) of logarithmic bins; values below ``floor`` count as ``floor``."""
+    array = np.maximum(np.asarray(values, dtype=float), floor)
+    low = np.floor(np.log10(array.min()))
+    high = max(np.ceil(np.log10(array.max())), low + 2)
+    return np.logspace(low, high, int(BINS_PER_DECADE * (high - low)) + 1)
+
+
+def linear_edges(values: ArrayLike) -> Array:
+    """Choose edges (B + 1,) of linear bins with round widths."""
+    target = max(float(np.max(values)), 1e-12) / LINEAR_BINS
+    decade = 10.0 ** np.floor(np.log10(target))
+    width = decade * next(step for step in STEPS if step * decade >= target * (1 - 1e-9))
+    return width * np.arange(int(np.ceil(np.max(values) / width)) + 2)[: LINEAR_BINS + 1]

@@ -16,41 +16,17 @@ MAX_DISTANCE = 1 + 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Crowding:
-    """Entries of a cube that have another one within a lattice step, largest error of the lattice first.
+    """Entries of a cube that have another one within a lattice step, largest error of the lattice first."""
 
-    Parameters
-    ----------
-    entries : EntryErrors
-        Errors of the k close entries.
-    nearest : tuple of str
-        Name of the nearest other entry, for each of the k.
-    distances : ndarray, shape (k,)
-        Lattice steps to the nearest other entry, along the axis on which they differ most.
-    lost : tuple of (str, str)
-        Entries that no colour returns because another one has the same colour, and the name of the other.
-    """
-
-    entries: EntryErrors
-    nearest: tuple[str, ...]
-    distances: Array
+    entries: EntryErrors  # Errors of the k close entries
+    nearest: tuple[str, ...]  # Name of the nearest other entry, for each of the k
+    distances: Array  # (k,) Lattice steps to the nearest other entry, along the axis on which they differ most
+    # Entries that no colour returns because another one has the same colour, and the name of the other
     lost: tuple[tuple[str, str], ...]
 
 
 def find_crowding(data: CubeData, entries: EntryErrors) -> Crowding:
-    """Find the entries that have another one within a lattice step.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-    entries : EntryErrors
-        Errors of some or all of the cube's entries.
-
-    Returns
-    -------
-    Crowding
-        The close entries among them.
-    """
+    """Find the entries that have another one within a lattice step."""
     assert entries.worst_lattice is not None
     names = data.atlas.names
     nearest, distances = _nearest(data.lattice.to_steps(data.atlas.rgb))

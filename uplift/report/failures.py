@@ -17,45 +17,18 @@ MAX_LISTED = 24
 
 @dataclass(frozen=True, eq=False)
 class Failures:
-    """Failures that a cube records.
+    """Failures that a cube records."""
 
-    Parameters
-    ----------
-    counts : dict of str to int
-        Lattice points by status.
-    over_threshold : int
-        Number of lattice points over the threshold.
-    worst_points : ndarray of int, shape (k,)
-        Indices of the worst of these, worst first.
-    improvements : tuple of dict
-        Steps of the improvement pass.
-    left_out : tuple of str
-        Entries outside the RGB space.
-    skipped : tuple of str
-        Entries that the atlas reader could not use.
-    """
-
-    counts: dict[str, int]
-    over_threshold: int
-    worst_points: Indices
-    improvements: tuple[dict[str, Any], ...]
-    left_out: tuple[str, ...]
-    skipped: tuple[str, ...]
+    counts: dict[str, int]  # Lattice points by status
+    over_threshold: int  # Number of lattice points over the threshold
+    worst_points: Indices  # (k,) Indices of the worst of these, worst first
+    improvements: tuple[dict[str, Any], ...]  # Steps of the improvement pass
+    left_out: tuple[str, ...]  # Entries outside the RGB space
+    skipped: tuple[str, ...]  # Entries that the atlas reader could not use
 
 
 def collect_failures(data: CubeData) -> Failures:
-    """Collect the failures that a cube records.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-
-    Returns
-    -------
-    Failures
-        Counts and names.
-    """
+    """Collect the failures that a cube records."""
     points, recorded = data.points, data.provenance
     failed = np.isin(points.status, (Status.UNFITTED, Status.UNREALISABLE))
     rows = np.flatnonzero(failed | ~(points.distance <= data.threshold))

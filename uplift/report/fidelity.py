@@ -20,44 +20,17 @@ from uplift.lookup.interpolate import lattice_spectra
 
 @dataclass(frozen=True, eq=False)
 class EntryQuery:
-    """Colours to query, and the spectra that would be the best answers.
+    """Colours to query, and the spectra that would be the best answers."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        Names of E entries.
-    rgb : ndarray, shape (E, 3)
-        Linear RGB in [0, 1].
-    target : ndarray, shape (E, N)
-        Reflectances at the sensor's wavelengths.
-    rows : ndarray of int, shape (E,), or None
-        Rows of the cube's atlas table; None for entries that it was not built from.
-    out_of_gamut : tuple of str
-        Names of the entries outside the cube's RGB space.
-    not_covered : tuple of str
-        Names of the entries for which a sparse cube has no points.
-    """
-
-    names: tuple[str, ...]
-    rgb: Array
-    target: Array
-    rows: Indices | None
-    out_of_gamut: tuple[str, ...] = ()
-    not_covered: tuple[str, ...] = ()
+    names: tuple[str, ...]  # Names of E entries
+    rgb: Array  # (E, 3) Linear RGB in [0, 1]
+    target: Array  # (E, N) Reflectances at the sensor's wavelengths
+    rows: Indices | None  # (E,) Rows of the cube's atlas table; None for entries that it was not built from
+    out_of_gamut: tuple[str, ...] = ()  # Names of the entries outside the cube's RGB space
+    not_covered: tuple[str, ...] = ()  # Names of the entries for which a sparse cube has no points
 
     def answerable_by(self, cube: Cube) -> EntryQuery:
-        """Keep the entries that a cube has points for.
-
-        Parameters
-        ----------
-        cube : Cube
-            A cube, perhaps a sparse one.
-
-        Returns
-        -------
-        EntryQuery
-            The covered entries; the names of all others are in ``not_covered``.
-        """
+        """Keep the entries that a cube has points for."""
         covered = cube.covers(self.rgb)
         names, not_covered = _partition(self.names, covered)
         rows = None if self.rows is None else self.rows[covered]
@@ -66,55 +39,25 @@ class EntryQuery:
 
 @dataclass(frozen=True, eq=False)
 class EntryErrors:
-    """Errors of E entries at their own RGB, worst first: by the largest ΔE00 under any of L lights.
+    """Errors of E entries at their own RGB, worst first: by the largest ΔE00 under any of L lights."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        Names of the entries.
-    rgb : ndarray, shape (E, 3)
-        Linear RGB.
-    target : ndarray, shape (E, N)
-        Reflectances as measured or, without measurements, as stored.
-    answer : ndarray, shape (E, N)
-        Reflectances that the cube returns.
-    delta_e : ndarray, shape (E, L)
-        ΔE00 between ``answer`` and ``target``.
-    rms : ndarray, shape (E,)
-        rms difference over wavelength between ``answer`` and ``target``.
-    actual : ndarray, shape (E,)
-        ΔE00 between ``answer`` and ``target`` under the cube's error illuminant.
-    predicted : ndarray, shape (E,), or None
-        Standard error of the cube at ``rgb``; None if it has none.
-    cells : ndarray of int, shape (E, 3)
-        Position of the lowest corner of the cell along the axes.
-    lattice : ndarray, shape (E, N), or None
-        Reflectances interpolated from the lattice without the entries. This and all further fields are None for
-        entries that the cube was not built from.
-    delta_e_lattice : ndarray, shape (E, L), or None
-        ΔE00 between ``lattice`` and ``target``.
-    rms_lattice : ndarray, shape (E,), or None
-        rms difference between ``lattice`` and ``target``.
-    half_width : ndarray, shape (E,), or None
-        Lattice steps from the entry to the faces of its box; 0 if no colour returns the entry.
-    half_width_codes : ndarray, shape (E,), or None
-        The same in 8-bit codes, to the nearest pair of faces.
-    """
-
-    names: tuple[str, ...]
-    rgb: Array
-    target: Array
-    answer: Array
-    delta_e: Array
-    rms: Array
-    actual: Array
-    predicted: Array | None
-    cells: Indices
+    names: tuple[str, ...]  # Names of the entries
+    rgb: Array  # (E, 3) Linear RGB
+    target: Array  # (E, N) Reflectances as measured or, without measurements, as stored
+    answer: Array  # (E, N) Reflectances that the cube returns
+    delta_e: Array  # (E, L) ΔE00 between ``answer`` and ``target``
+    rms: Array  # (E,) rms difference over wavelength between ``answer`` and ``target``
+    actual: Array  # (E,) ΔE00 between ``answer`` and ``target`` under the cube's error illuminant
+    predicted: Array | None  # (E,) Standard error of the cube at ``rgb``; None if it has none
+    cells: Indices  # (E, 3) Position of the lowest corner of the cell along the axes
+    # (E, N) Reflectances interpolated from the lattice without the entries. This and all further fields are None
+    # for entries that the cube was not built from
     lattice: Array | None = None
-    delta_e_lattice: Array | None = None
-    rms_lattice: Array | None = None
+    delta_e_lattice: Array | None = None  # (E, L) ΔE00 between ``lattice`` and ``target``
+    rms_lattice: Array | None = None  # (E,) rms difference between ``lattice`` and ``target``
+    # (E,) Lattice steps from the entry to the faces of its box; 0 if no colour returns the entry
     half_width: Array | None = None
-    half_width_codes: Array | None = None
+    half_width_codes: Array | None = None  # (E,) The same in 8-bit codes, to the nearest pair of faces
 
     @property
     def worst(self) -> Array:
@@ -127,18 +70,7 @@ class EntryErrors:
         return None if self.delta_e_lattice is None else self.delta_e_lattice.max(axis=1)
 
     def take(self, rows: ArrayLike) -> EntryErrors:
-        """Select entries.
-
-        Parameters
-        ----------
-        rows : array_like of int, shape (k,)
-            Their rows, in the new order.
-
-        Returns
-        -------
-        EntryErrors
-            The selected entries.
-        """
+        """Select entries by their rows (k,)."""
         order = np.asarray(rows, dtype=np.int64)
         selected: dict[str, Any] = {
             field.name: value[order]
@@ -149,20 +81,7 @@ class EntryErrors:
 
 
 def from_own_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
-    """Query the entries that the cube was built from; targets are the measured spectra.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-    atlas : Atlas
-        The atlas that it was built from.
-
-    Returns
-    -------
-    EntryQuery
-        The entries of the cube; those that it left out are out of gamut.
-    """
+    """Query the entries that the cube was built from; targets are the measured spectra."""
     measured = resample(atlas, data.sensor.wavelengths).values
     row_of = {name: row for row, name in enumerate(data.atlas.names)}
     in_cube = np.array([name in row_of for name in atlas.names], dtype=bool)
@@ -172,20 +91,7 @@ def from_own_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
 
 
 def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
-    """Query entries that the cube was not built from.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-    atlas : Atlas
-        Other measurements.
-
-    Returns
-    -------
-    EntryQuery
-        The entries inside the cube's RGB space.
-    """
+    """Query entries that the cube was not built from."""
     measured = resample(atlas, data.sensor.wavelengths).values
     rgb = data.sensor.rgb(measured)
     inside = data.sensor.contains(rgb)
@@ -194,40 +100,14 @@ def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
 
 
 def from_stored_entries(data: CubeData) -> EntryQuery:
-    """Query the cube's own entries; without measurements, targets are the stored spectra.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-
-    Returns
-    -------
-    EntryQuery
-        All entries of the cube.
-    """
+    """Query the cube's own entries; without measurements, targets are the stored spectra."""
     table = data.atlas
     stored = data.entry_spectra.reflectance(np.arange(len(table.names)), data.sensor.wavelengths)
     return EntryQuery(table.names, table.rgb, stored, np.arange(len(table.names)))
 
 
 def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> EntryErrors:
-    """Compare the answers of a cube in its default mode with the targets of a query.
-
-    Parameters
-    ----------
-    cube : Cube
-        The cube.
-    query : EntryQuery
-        At least one entry, all covered by the cube.
-    lights : tuple of Sensor
-        Sensors of the lights to compare under.
-
-    Returns
-    -------
-    EntryErrors
-        Errors, worst first.
-    """
+    """Compare the answers of a cube in its default mode with the targets of a query."""
     data, target = cube.data, query.target
     answer = cube.reflectance(query.rgb)
     errors = EntryErrors(

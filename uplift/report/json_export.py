@@ -12,24 +12,13 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import hex_codes
 from uplift.report.alternatives import Alternative
 from uplift.report.assessment import Assessment
+from uplift.report.charts import Histogram
 from uplift.report.fidelity import EntryErrors
 from uplift.report.round_trip import SEED
-from uplift.viz.histogram import Histogram
 
 
 def to_json(assessment: Assessment) -> dict[str, Any]:
-    """Convert an assessment to JSON values.
-
-    Parameters
-    ----------
-    assessment : Assessment
-        The assessment of a cube.
-
-    Returns
-    -------
-    dict
-        Plain values; numbers that are not finite are None, as JSON has no notation for them.
-    """
+    """Convert an assessment to JSON values."""
     data = assessment.data
     return _plain(
         {

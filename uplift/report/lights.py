@@ -12,12 +12,11 @@ from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.lights.lattice import chromaticity
 from uplift.lights.lookup import EmissionTable
-from uplift.report.charts import histogram_chart
+from uplift.report.charts import Histogram, histogram_chart, linear_edges, log_edges, make_histogram
 from uplift.report.round_trip import COLOURS, SEED
 from uplift.report.summary import summarise_emission
 from uplift.viz.chromaticity import draw_colours, draw_errors, draw_lamps
 from uplift.viz.figure import STYLE, to_page_svg
-from uplift.viz.histogram import Histogram, linear_edges, log_edges, make_histogram
 from uplift.viz.html import render
 from uplift.viz.scatter import new_panels
 

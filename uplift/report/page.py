@@ -19,20 +19,7 @@ VISIBLE, LARGE = 1.0, 3.0
 
 
 def render_report(assessment: Assessment, worst: int) -> str:
-    """Render the report of a cube.
-
-    Parameters
-    ----------
-    assessment : Assessment
-        The assessment of the cube.
-    worst : int
-        Number of entries whose spectra are drawn, worst first.
-
-    Returns
-    -------
-    str
-        The HTML text. The same cube gives the same text.
-    """
+    """Render the report of a cube."""
     from uplift.viz.html import render
 
     return render(

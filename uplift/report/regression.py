@@ -33,22 +33,14 @@ functions, and many of these meet the colour equally well: rounding decides betw
 
 @dataclass(frozen=True)
 class RebuildDifference:
-    """Differences between a stored cube and a rebuilt one.
+    """Differences between a stored cube and a rebuilt one."""
 
-    Parameters
-    ----------
-    path : Path
-        File of the stored cube.
-    measures : dict of str to float
-        Largest differences by the names in `LIMITS`, over the entries and the points whose spectra are well determined.
-    stored_counts, rebuilt_counts : dict of str to int
-        Number of these points by status, and of all unfitted points.
-    """
-
-    path: Path
+    path: Path  # File of the stored cube
+    # Largest differences by the names in `LIMITS`, over the entries and the points whose spectra are well
+    # determined
     measures: dict[str, float]
-    stored_counts: dict[str, int]
-    rebuilt_counts: dict[str, int]
+    stored_counts: dict[str, int]  # Number of these points by status, and of all unfitted points
+    rebuilt_counts: dict[str, int]  # Number of these points by status, and of all unfitted points
 
     @property
     def failures(self) -> tuple[str, ...]:
@@ -58,25 +50,7 @@ class RebuildDifference:
 
 
 def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildDifference:
-    """Compare a stored cube with a rebuilt one.
-
-    Parameters
-    ----------
-    path : Path
-        File of the stored cube.
-    stored, rebuilt : CubeData
-        The cubes.
-
-    Returns
-    -------
-    RebuildDifference
-        The differences, and whether they are within the limits.
-
-    Raises
-    ------
-    CubeFileError
-        If the lattices or the names of the entries differ.
-    """
+    """Compare a stored cube with a rebuilt one."""
     if not _same_lattice(stored, rebuilt):
         raise CubeFileError(
             "its lattice is not the one that its options give",

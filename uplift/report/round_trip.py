@@ -15,18 +15,7 @@ SEED = 20200617
 
 
 def round_trip_errors(cube: Cube) -> dict[str, Array]:
-    """Compute the round-trip errors of random colours.
-
-    Parameters
-    ----------
-    cube : Cube
-        The cube.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (n,)
-        ΔE00 under the cube's illuminant, by mode of lookup.
-    """
+    """Compute ΔE00 (n,) between random colours and those of their spectra, by mode of lookup."""
     rgb, sensor = _random_rgb(cube.data), cube.data.sensor
     rgb = rgb[cube.covers(rgb)]
     return {mode: delta_e_rgb(sensor, rgb, sensor.rgb(cube.reflectance(rgb, mode=mode))) for mode in MODES}

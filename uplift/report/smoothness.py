@@ -17,34 +17,16 @@ NO_PAIR = -1.0
 
 @dataclass(frozen=True, eq=False)
 class Smoothness:
-    """rms differences over wavelength between the spectra of neighbours along an axis.
+    """rms differences over wavelength between the spectra of neighbours along an axis."""
 
-    Parameters
-    ----------
-    differences : ndarray, shape (k,)
-        Difference of every pair of neighbours, in units of reflectance.
-    steepest : ndarray, shape (2, 3)
-        Linear RGB of the pair that differs most.
-    """
-
-    differences: NDArray[np.float32]
-    steepest: Array
+    differences: NDArray[np.float32]  # (k,) Difference of every pair of neighbours, in units of reflectance
+    steepest: Array  # (2, 3) Linear RGB of the pair that differs most
 
 
 def compute_smoothness(data: CubeData) -> Smoothness:
     """Compare the spectra of all neighbours, each pair once.
 
     The lattice is processed by planes of equal red: spectra of two planes are in memory at a time.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-
-    Returns
-    -------
-    Smoothness
-        The differences, and the largest one.
     """
     parts: list[NDArray[np.float32]] = []
     largest = NO_PAIR

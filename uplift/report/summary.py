@@ -11,19 +11,7 @@ from uplift.lights.table import KIND, EmissionData, emission_digest
 
 
 def summarise(data: CubeData) -> dict[str, Any]:
-    """Summarise a cube, most general facts first.
-
-    Parameters
-    ----------
-    data : CubeData
-        The cube.
-
-    Returns
-    -------
-    dict
-        JSON values. ``points`` counts the points present, of dim³; distances are max |linear RGB|; standard errors
-        are ΔE00 under ``reference``.
-    """
+    """Summarise a cube, most general facts first."""
     points = data.points
     present, errors = points.present, points.standard_error
     return {
@@ -51,19 +39,7 @@ def summarise(data: CubeData) -> dict[str, Any]:
 
 
 def summarise_emission(data: EmissionData) -> dict[str, Any]:
-    """Summarise an emission table, most general facts first.
-
-    Parameters
-    ----------
-    data : EmissionData
-        The emission table.
-
-    Returns
-    -------
-    dict
-        JSON values. Expected errors are ΔE00 of surfaces, over the nodes of all chromaticities; wavelengths
-        are in nm.
-    """
+    """Summarise an emission table, most general facts first."""
     knots, rings = data.lattice.shape
     first, second = data.wavelengths[:2].tolist()
     return {

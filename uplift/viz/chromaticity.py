@@ -13,8 +13,7 @@ from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.lights.lattice import chromaticity, unit_xyz
 from uplift.lights.lookup import EmissionTable
-from uplift.viz.figure import GREY, INK, STYLE
-from uplift.viz.ramp import colour_map
+from uplift.viz.figure import GREY, INK, STYLE, colour_map
 from uplift.viz.scatter import LEGEND, Label, draw_labels, new_panels, style_title
 
 PANEL = (5.6, 5.4)

@@ -6,36 +6,17 @@ import hashlib
 import io
 import os
 import re
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
 from markupsafe import Markup, escape
 from numpy.typing import NDArray
 
+from uplift.common.arrays import Array
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write
 from uplift.common.text import printable
-
-__all__ = [
-    "ACCENT",
-    "BAND",
-    "GREY",
-    "INK",
-    "OTHER",
-    "PALE",
-    "STYLE",
-    "SUFFIXES",
-    "check_suffix",
-    "figure_text",
-    "new_figure",
-    "rendered",
-    "style_axes",
-    "style_spectrum_axes",
-    "to_page_svg",
-    "to_svg",
-    "write_figure",
-    "write_png",
-]
 
 INK, GREY, PALE, ACCENT = "#262626", "#6e6e6e", "#d6d6d6", "#20509a"
 BAND = "#c2c2c2"
@@ -84,89 +65,34 @@ def figure_text(text: str) -> str:
 
     matplotlib reads text between dollar signs as mathematics, and leaves labels that begin with an underscore out of
     legends.
-
-    Parameters
-    ----------
-    text : str
-        Any text.
-
-    Returns
-    -------
-    str
-        Text for matplotlib, control characters escaped.
-
-    Examples
-    --------
-    >>> figure_text("$5 a tube")
-    '\\\\$5 a tube'
     """
     shown = printable(text).replace("$", r"\$")
     return f"{HAIR_SPACE}{shown}" if shown.startswith("_") else shown
 
 
 def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Any:
-    """Create an empty figure without a window.
-
-    Parameters
-    ----------
-    width, height : float
-        Size in inches.
-    layout : {"constrained", None}, default "constrained"
-        Layout engine; None if positions must be known before drawing.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-    """
+    """Create an empty figure without a window."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout=layout)
 
 
 def style_axes(axes: Any) -> None:
-    """Remove the frame above and on the right, and draw a grid behind the data.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The axes to change.
-    """
+    """Remove the frame above and on the right, and draw a grid behind the data."""
     axes.grid(color=PALE, linewidth=0.5)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
 
 
 def style_spectrum_axes(axes: Any) -> None:
-    """Style axes of reflectance over wavelength.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The axes to change.
-    """
+    """Style axes of reflectance over wavelength."""
     axes.set(xlabel="wavelength / nm", ylabel="reflectance", ylim=(-0.02, 1.02))
     axes.margins(x=0.01)
     style_axes(axes)
 
 
 def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write a figure as PNG.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The figure.
-    path : path-like
-        The file to write.
-    force : bool, default False
-        Replace an existing file.
-
-    Raises
-    ------
-    OutputError
-        If the file exists and ``force`` is false, or cannot be written.
-    """
+    """Write a figure as PNG."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     # Without this entry matplotlib writes its name and version, and files would differ between versions.
@@ -175,18 +101,7 @@ def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False)
 
 
 def rendered(figure: Any) -> NDArray[np.uint8]:
-    """Return the pixels of a figure.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The figure, with an opaque background.
-
-    Returns
-    -------
-    ndarray of uint8, shape (height, width, 3)
-        Encoded sRGB.
-    """
+    """Return the pixels (height, width, 3) of a figure."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     canvas = FigureCanvasAgg(figure)
@@ -195,23 +110,7 @@ def rendered(figure: Any) -> NDArray[np.uint8]:
 
 
 def check_suffix(path: str | os.PathLike[str]) -> str:
-    """Return the format of a figure's file, by its suffix.
-
-    Parameters
-    ----------
-    path : path-like
-        The file to write.
-
-    Returns
-    -------
-    {".png", ".svg", ".pdf"}
-        The suffix.
-
-    Raises
-    ------
-    OutputError
-        If the suffix is another one.
-    """
+    """Return the format of a figure's file, by its suffix."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in SUFFIXES:
         problem = f"the suffix of a plot must be one of {', '.join(SUFFIXES)}, got '{suffix}'"
@@ -221,22 +120,7 @@ def check_suffix(path: str | os.PathLike[str]) -> str:
 
 
 def write_figure(figure: Any, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write a figure as PNG, SVG or PDF, by the suffix of its file. Equal figures give equal files.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The figure.
-    path : path-like
-        The file to write.
-    force : bool, default False
-        Replace an existing file.
-
-    Raises
-    ------
-    OutputError
-        If the suffix is another one, or the file exists and ``force`` is false, or cannot be written.
-    """
+    """Write a figure as PNG, SVG or PDF, by the suffix of its file. Equal figures give equal files."""
     import matplotlib
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
     from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -253,21 +137,7 @@ def write_figure(figure: Any, path: str | os.PathLike[str], *, force: bool = Fal
 
 
 def to_svg(figure: Any, label: str = "") -> Markup:
-    """Render a figure as an ``svg`` element for a page that sets its size.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The figure.
-    label : str, optional
-        Text that screen readers read in place of the texts in the figure.
-
-    Returns
-    -------
-    Markup
-        The element. Its identifiers depend on its content: no other figure of the page has them, and equal figures
-        give equal text.
-    """
+    """Render a figure as an ``svg`` element for a page that sets its size."""
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     out = io.StringIO()
@@ -285,22 +155,27 @@ def to_svg(figure: Any, label: str = "") -> Markup:
 
 
 def to_page_svg(figure: Any, label: str = "") -> Markup:
-    """Render a figure as an ``svg`` element whose colours follow the light or dark scheme of ``viz/page.css``.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The figure.
-    label : str, optional
-        Text that screen readers read in place of the texts in the figure.
-
-    Returns
-    -------
-    Markup
-        The element, as `to_svg` returns it but for its colours.
-    """
+    """Render a figure as an ``svg`` element whose colours follow the light or dark scheme of ``viz/page.css``."""
     return Markup(_COLOUR.sub(lambda found: _page_colour(found[0]), to_svg(figure, label)))
 
 
 def _page_colour(colour: str) -> str:
     return PAGE_COLOURS.get(colour) or f"color-mix(in oklab, {colour}, var(--lift))"
+
+
+RAMP = ("#eef5f8", "#a9cfe3", "#5a9fcb", "#20609a", "#0b1d51")
+
+
+def colour_map() -> Any:
+    """Return the ramp as a colour map of matplotlib."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list("ramp", RAMP)
+
+
+def ramp_codes(values: Array | Sequence[float]) -> NDArray[np.uint8]:
+    """Return 8-bit sRGB codes (..., 3) of values (...) in [0, 1]."""
+    anchors = np.array([list(bytes.fromhex(code[1:])) for code in RAMP], dtype=float)
+    positions = np.linspace(0, 1, len(RAMP))
+    channels = [np.interp(values, positions, column) for column in anchors.T]
+    return np.rint(np.stack(channels, axis=-1)).astype(np.uint8)

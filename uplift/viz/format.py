@@ -25,113 +25,31 @@ SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def format_time(ns: float) -> str:
-    """Format a time in ns with three digits and its unit.
-
-    Parameters
-    ----------
-    ns : float
-        Time in nanoseconds.
-
-    Returns
-    -------
-    str
-        The time in ns, µs, ms or s.
-
-    Examples
-    --------
-    >>> format_time(4217), format_time(2.5e12)
-    ('4.22 µs', '2,500 s')
-    """
+    """Format a time in ns with three digits and its unit."""
     return _with_unit(ns, TIME_UNITS)
 
 
 def format_size(size: float) -> str:
-    """Format a number of bytes with three digits and a decimal unit.
-
-    Parameters
-    ----------
-    size : float
-        Number of bytes.
-
-    Returns
-    -------
-    str
-        The size in B, kB, MB or GB.
-
-    Examples
-    --------
-    >>> format_size(18_900_000)
-    '18.9 MB'
-    """
+    """Format a number of bytes with three digits and a decimal unit."""
     return _with_unit(size, SIZE_UNITS)
 
 
 def format_error(error: float) -> str:
-    """Format a ΔE00 or an rms with three digits.
-
-    Parameters
-    ----------
-    error : float
-        The error, at least 0.
-
-    Returns
-    -------
-    str
-        The number, or ``< 0.0001`` for errors that are not visible.
-
-    Examples
-    --------
-    >>> format_error(0.4567), format_error(1e-7)
-    ('0.457', '< 0.0001')
-    """
+    """Format a ΔE00 or an rms with three digits."""
     if error < SMALLEST_ERROR:
         return f"< {SMALLEST_ERROR:.4f}"
     return f"{error:.4f}" if error < 0.01 else f"{error:.3g}"
 
 
 def format_build_time(seconds: float | None) -> str:
-    """Format the time that a build takes.
-
-    Parameters
-    ----------
-    seconds : float or None
-        CPU time; 0 if there is nothing to build, None if it is unknown.
-
-    Returns
-    -------
-    str
-        The time, ``nothing`` for 0, an empty string for None.
-
-    Examples
-    --------
-    >>> format_build_time(4.1), format_build_time(0), format_build_time(None)
-    ('4.1 s', 'nothing', '')
-    """
+    """Format the time that a build takes."""
     if seconds is None:
         return ""
     return format_time(seconds * 1e9) if seconds else "nothing"
 
 
 def format_scientific(value: float) -> str:
-    """Format a number with three digits, or as a product with a power of ten.
-
-    Parameters
-    ----------
-    value : float
-        Any number.
-
-    Returns
-    -------
-    str
-        Plain digits from 0.01 to 1000, otherwise scientific notation with no-break spaces.
-
-    Examples
-    --------
-    >>> format_scientific(0.0271)
-    '0.0271'
-    >>> format_scientific(1.6e-5).replace("\\u00a0", " ")
-    '1.6 × 10⁻⁵'
-    """
+    """Format a number with three digits, or as a product with a power of ten."""
     if not math.isfinite(value):
         return "not finite"
     if value == 0:
@@ -143,90 +61,22 @@ def format_scientific(value: float) -> str:
 
 
 def format_power_of_ten(value: float) -> str:
-    """Format the power of ten nearest to a value, as axis labels show it.
-
-    Parameters
-    ----------
-    value : float
-        A positive number.
-
-    Returns
-    -------
-    str
-        The power of ten with a superscript exponent.
-
-    Examples
-    --------
-    >>> format_power_of_ten(1e-9)
-    '10⁻⁹'
-    """
+    """Format the power of ten nearest to a value, as axis labels show it."""
     return _power_of_ten(round(math.log10(value)))
 
 
 def format_rgb(rgb: Iterable[float]) -> str:
-    """Format linear RGB with four decimals.
-
-    Parameters
-    ----------
-    rgb : iterable of float, shape (3,)
-        Linear RGB.
-
-    Returns
-    -------
-    str
-        The components, separated by commas.
-
-    Examples
-    --------
-    >>> format_rgb((1, 0.5, 0))
-    '1.0000, 0.5000, 0.0000'
-    """
+    """Format linear RGB (3,) with four decimals."""
     return ", ".join(f"{value:.4f}" for value in rgb)
 
 
 def pluralise(count: int, singular: str, plural: str | None = None) -> str:
-    """Format a count with its noun.
-
-    Parameters
-    ----------
-    count : int
-        The count.
-    singular : str
-        The noun for one.
-    plural : str, optional
-        The noun for several, by default ``singular`` with an s.
-
-    Returns
-    -------
-    str
-        The count with separated thousands, and the noun.
-
-    Examples
-    --------
-    >>> pluralise(1, "point"), pluralise(2000, "entry", "entries")
-    ('1 point', '2,000 entries')
-    """
+    """Format a count with its noun."""
     return f"{count:,} {singular if count == 1 else plural or singular + 's'}"
 
 
 def capitalise(text: str) -> str:
-    """Turn the first letter into a capital and keep all others.
-
-    Parameters
-    ----------
-    text : str
-        Any text.
-
-    Returns
-    -------
-    str
-        The text to begin a line with.
-
-    Examples
-    --------
-    >>> capitalise("spiky lights (FL2)")
-    'Spiky lights (FL2)'
-    """
+    """Turn the first letter into a capital and keep all others."""
     return text[:1].upper() + text[1:]
 
 

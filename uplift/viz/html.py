@@ -13,7 +13,7 @@ import hashlib
 import json
 from functools import cache
 from importlib.resources import files
-from typing import Any
+from typing import Any, TypedDict
 
 import jinja2
 from markupsafe import Markup
@@ -21,62 +21,34 @@ from markupsafe import Markup
 from uplift.common.text import json_escapes, printable
 from uplift.viz import format as formats
 
-__all__ = ["Markup", "render", "resource"]
+__all__ = ["Markup", "Tooltip", "render", "resource"]
+
+
+class Tooltip(TypedDict):
+    """Tooltip of the markers of one row, for pages that extend ``viz/templates/interactive.html.j2``.
+
+    The parts of the picture that belong to row r have the identifiers ``marker-<panel>-<r>``, ``whisker-<panel>-<r>``
+    and ``label-<panel>-<r>``. ``family`` is the checkbox that hides them; ``lines`` are names and values, a line
+    without a name takes the full width.
+    """
+
+    title: str
+    family: str
+    lines: list[tuple[str, str]]
 
 
 def render(template: str, /, **values: Any) -> str:
-    """Render a template as text that needs no other file.
-
-    Parameters
-    ----------
-    template : str
-        Path of the template below the package ``uplift``.
-    **values
-        What the template refers to.
-
-    Returns
-    -------
-    str
-        The page. Equal values give equal text.
-
-    Examples
-    --------
-    >>> text = render("viz/templates/base.html.j2", title="R & D", lead="A page.")
-    >>> "<h1>R &amp; D</h1>" in text
-    True
-    """
+    """Render a template as text that needs no other file."""
     return _environment().get_template(template).render(**values)
 
 
 def resource(*paths: str) -> Markup:
-    """Read style sheets or scripts to be inlined in a page.
-
-    Parameters
-    ----------
-    *paths : str
-        Paths below the package ``uplift``.
-
-    Returns
-    -------
-    Markup
-        The texts of the files, one after the other, not to be escaped.
-    """
+    """Read style sheets or scripts to be inlined in a page."""
     return Markup("".join(files("uplift").joinpath(path).read_text(encoding="utf-8") for path in paths))
 
 
 def content_security_policy(script: str) -> str:
-    """Return the policy of a page: no addresses, and no script but one.
-
-    Parameters
-    ----------
-    script : str
-        Text of the script; empty for none.
-
-    Returns
-    -------
-    str
-        For ``<meta http-equiv="Content-Security-Policy">``.
-    """
+    """Return the policy of a page: no addresses, and no script but one."""
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     scripts = f"'sha256-{digest}'" if script else "'none'"
     return (

@@ -32,22 +32,7 @@ SPARKLINE = (120, 24)
 
 
 def plot_cube(cube: Cube, rgb: ArrayLike, wavelengths: ArrayLike | None = None) -> Figure:
-    """Plot the reflectance spectra of colours, each in its own colour.
-
-    Parameters
-    ----------
-    cube : Cube
-        The cube.
-    rgb : array_like, shape (..., 3)
-        Linear RGB in [0, 1].
-    wavelengths : array_like, shape (N,), optional
-        Wavelengths in nm, by default those of the sensor.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure.
-    """
+    """Plot the reflectance spectra of colours (..., 3), each in its own colour, at wavelengths (N,) in nm."""
     colours = np.asarray(as_rgb(rgb), dtype=float).reshape(-1, 3)
     at = cube.resolve_wavelengths(wavelengths)
     spectra = cube.reflectance(colours, at)
@@ -61,18 +46,7 @@ def plot_cube(cube: Cube, rgb: ArrayLike, wavelengths: ArrayLike | None = None) 
 
 
 def cube_html(cube: Cube) -> Markup:
-    """Summarise a cube: facts, swatches of its atlas entries, and spectra.
-
-    Parameters
-    ----------
-    cube : Cube
-        The cube.
-
-    Returns
-    -------
-    Markup
-        An HTML element; all text is escaped.
-    """
+    """Summarise a cube: facts, swatches of its atlas entries, and spectra."""
     rows = Markup().join(
         Markup("<tr><th style='text-align:left'>{}</th><td>{}</td></tr>").format(*fact) for fact in _facts(cube).items()
     )
@@ -85,18 +59,7 @@ def cube_html(cube: Cube) -> Markup:
 
 
 def atlas_html(atlas: Atlas) -> Markup:
-    """Format an atlas as a table: a swatch under D65, the name and a small plot of each entry.
-
-    Parameters
-    ----------
-    atlas : Atlas
-        The atlas.
-
-    Returns
-    -------
-    Markup
-        An HTML element; all text is escaped.
-    """
+    """Format an atlas as a table: a swatch under D65, the name and a small plot of each entry."""
     shown, screen = atlas[:MAX_ROWS], sensor()
     spectra = resample(shown, screen.wavelengths).values
     codes = hex_codes(screen.rgb(spectra), screen)

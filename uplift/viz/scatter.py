@@ -1,4 +1,4 @@
-"""Scatter plots of error over cost: axes, Pareto fronts, labels next to markers."""
+"""Scatter plots of error over cost: axes, Pareto fronts, and labels next to markers where they cover nothing."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask
 from uplift.viz.figure import GREY, INK, figure_text, new_figure, style_axes
-from uplift.viz.labels import place_labels
 
 MARKER: dict[str, Any] = {
     "linestyle": "none",
@@ -80,13 +79,7 @@ def style_log_axes(axes: Any, label: str) -> None:
 
 
 def set_log_ticks(axis: Any) -> None:
-    """Place ticks at round numbers, the more of them the fewer decades a logarithmic axis has.
-
-    Parameters
-    ----------
-    axis : matplotlib.axis.Axis
-        An axis whose limits are final.
-    """
+    """Place ticks at round numbers, the more of them the fewer decades a logarithmic axis has."""
     from matplotlib.ticker import LogLocator
 
     low, high = sorted(axis.get_view_interval())
@@ -101,25 +94,7 @@ def style_title(axes: Any, title: str) -> None:
 
 
 def pareto_front(points: Array, ratio: float = 1.0) -> list[int]:
-    """Find the points that no cheaper point beats.
-
-    Parameters
-    ----------
-    points : ndarray, shape (k, 2)
-        Cost and error.
-    ratio : float, default 1.0
-        Share in (0, 1] of the previous error that a point on the front must stay below.
-
-    Returns
-    -------
-    list of int
-        Rows of the front, cheapest first.
-
-    Examples
-    --------
-    >>> pareto_front(np.array([[3, 1.0], [1, 2.0], [2, 2.5], [4, 0.999]]), ratio=0.99)
-    [1, 0]
-    """
+    """Find the points of (k, 2), cost and error, whose error is below ``ratio`` times that of every cheaper one."""
     front: list[int] = []
     for row in np.lexsort((points[:, 1], points[:, 0])).tolist():
         if not front or points[row, 1] < ratio * points[front[-1], 1]:
@@ -178,3 +153,50 @@ def _join(axes: Any, end: Array, start: Array) -> None:
         style = {"arrowstyle": "-", "color": GREY, "linewidth": 0.5}
         units = {"xycoords": "figure points", "textcoords": "figure points"}
         axes.annotate("", end, start, arrowprops=style, zorder=1, **units)
+
+
+DISTANCES = (6.0, 9.0, 14.0, 20.0, 28.0, 38.0)
+"""Points between a marker and its label."""
+CLEARANCE = (4.5, 2.5)
+"""Points that labels keep from markers, sideways and upwards."""
+_SIDES = [(x, y) for x in (1.0, -1.0) for y in (0.0, 0.5, -0.5, 1.0, -1.0)]
+DIRECTIONS = np.array([*_SIDES, *((x, y) for y in (1.0, -1.0) for x in (0.0, 0.5, -0.5))])
+
+
+def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> Array:
+    """Choose corners (L, 2) for labels in turn, each the nearest to its anchor that covers nothing; NaN for none.
+
+    Labels have sizes (L, 2); they keep clear of one another, of markers (M, 2), and stay within a panel (4,).
+    """
+    placed = np.empty((0, 4))
+    corners = np.full_like(anchors, np.nan)
+    for row, (anchor, size) in enumerate(zip(anchors, sizes, strict=True)):
+        options = np.concatenate([_corners_around(anchor, size, distance) for distance in DISTANCES])
+        boxes = np.concatenate([options, options + size], axis=1)
+        over_label, over_marker = (each.any(axis=1) for each in (_overlaps(boxes, placed), _contains(boxes, markers)))
+        taken = np.asarray(_outside(boxes, panel) | over_label | over_marker)
+        if not taken.all():
+            first = int(taken.argmin())
+            corners[row] = options[first]
+            placed = np.concatenate([placed, boxes[first : first + 1]])
+    return corners
+
+
+def _corners_around(anchor: Array, size: Array, distance: float) -> Array:
+    """Corners (16, 2) of a label at a distance from its anchor, in all directions."""
+    return np.asarray(anchor + distance * DIRECTIONS + size * (np.sign(DIRECTIONS) - 1) / 2)
+
+
+def _overlaps(boxes: Array, others: Array) -> Mask:
+    low = np.maximum(boxes[:, None, :2], others[None, :, :2])
+    high = np.minimum(boxes[:, None, 2:], others[None, :, 2:])
+    return np.asarray((high > low).all(axis=-1))
+
+
+def _contains(boxes: Array, points: Array) -> Mask:
+    near = (points > boxes[:, None, :2] - CLEARANCE) & (points < boxes[:, None, 2:] + CLEARANCE)
+    return np.asarray(near.all(axis=-1))
+
+
+def _outside(boxes: Array, panel: Array) -> Mask:
+    return np.asarray(((boxes[:, :2] < panel[:2]) | (boxes[:, 2:] > panel[2:])).any(axis=1))

@@ -9,7 +9,7 @@ from uplift.lab.chart.picture import page_key, page_panels
 from uplift.lab.chart.table import BATCH, Chart, MethodResult, State
 from uplift.lab.chart.timing import REFERENCE
 from uplift.viz.format import format_build_time, format_error, format_size, format_time
-from uplift.viz.tooltip import Tooltip
+from uplift.viz.html import Tooltip
 
 TITLE = "Spectral upsampling: speed against accuracy"
 ERRORS = {

@@ -11,7 +11,7 @@ from uplift.lab.comparison.filters import TunedFilter
 from uplift.lab.comparison.measure import Comparison
 from uplift.lab.comparison.statistics import HEADINGS
 from uplift.viz.format import format_error, format_time
-from uplift.viz.tooltip import Tooltip
+from uplift.viz.html import Tooltip
 
 TITLE = "Representations of spectra"
 SOURCES = (

@@ -12,8 +12,7 @@ from uplift.common.arrays import Array, StrPath
 from uplift.cube import CubeData
 from uplift.lab.study.lipschitz import LipschitzConstants
 from uplift.lab.study.locality import MOVED_DELTA_E, Change
-from uplift.viz.figure import new_figure, style_axes, write_png
-from uplift.viz.ramp import colour_map
+from uplift.viz.figure import colour_map, new_figure, style_axes, write_png
 
 CHANNELS = ("red", "green", "blue")
 LINE, HIGHLIGHT, INK = "#1f6fb4", "#ff5a00", "#111111"

@@ -11,8 +11,7 @@ import numpy as np
 from uplift.common.arrays import Array, Mask, StrPath
 from uplift.lab.study.stability import RunConfig, RunResult
 from uplift.lab.study.stability_design import Grid
-from uplift.viz.figure import figure_text, new_figure, write_png
-from uplift.viz.ramp import colour_map
+from uplift.viz.figure import colour_map, figure_text, new_figure, write_png
 
 HIGHLIGHT, FAINT, INK = "#ff5a00", "#ffcfae", "#1b2733"
 CELL_WIDTH, CELL_HEIGHT = 0.56, 0.34

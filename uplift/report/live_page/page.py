@@ -26,30 +26,7 @@ FOLDER = "report/live_page"
 
 
 def write_page(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
-    """Write the live page of a cube: it relights images by spectra, next to a product of RGB.
-
-    Parameters
-    ----------
-    data : CubeData
-        A cube of sRGB with all nodes.
-    path : path-like
-        File to write.
-    force : bool
-        Whether to replace an existing file.
-
-    Returns
-    -------
-    int
-        Size of the page in bytes.
-
-    Raises
-    ------
-    OptionError
-        The cube was built for a scene (code ``sparse-cube``) or for another RGB space than sRGB (code
-        ``page-needs-srgb``).
-    OutputError
-        The file cannot be written, or exists and ``force`` is off.
-    """
+    """Write the live page of a cube: it relights images by spectra, next to a product of RGB."""
     if data.complete_cells is not None:
         raise OptionError(
             "a page needs all nodes, but the cube was built for the colours of a scene",

@@ -37,31 +37,7 @@ CODE_SLACK = 1e-6
 
 
 def write_look_page(cube: Cube, found: Sequence[Bounds], path: StrPath, *, force: bool = False) -> int:
-    """Write a page on which the look of a colour is chosen.
-
-    Parameters
-    ----------
-    cube : Cube
-        The cube that was queried.
-    found : sequence of Bounds
-        Bounds of one colour under each light to choose on.
-    path : path-like
-        The file to write.
-    force : bool, default False
-        Replace an existing file.
-
-    Returns
-    -------
-    int
-        Size of the page in bytes.
-
-    Raises
-    ------
-    OptionError
-        The bounds are those of several colours or of none (code ``page-needs-one-colour``).
-    OutputError
-        The file exists and ``force`` is off, or cannot be written.
-    """
+    """Write a page on which the look of a colour is chosen."""
     text = page(cube, found)
     write_text(text, path, force=force)
     return len(text.encode())

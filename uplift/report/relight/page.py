@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from uplift.common.arrays import StrPath
 from uplift.common.files import write_text
 from uplift.report.relight.relight import RGB_PRODUCT, Relit, Rendering
+from uplift.viz.figure import RAMP, ramp_codes
 from uplift.viz.html import render, resource
-from uplift.viz.ramp import RAMP, ramp_codes
 
 FOLDER = "report/relight"
 JPEG_QUALITY = 92
@@ -44,27 +44,7 @@ class Section:
 
 
 def write_relit_page(relit: Sequence[Relit], path: StrPath, *, force: bool = False) -> int:
-    """Write relit images as one self-contained HTML page.
-
-    Parameters
-    ----------
-    relit : sequence of Relit
-        The images, under the same lights and by the same methods.
-    path : path-like
-        The file to write.
-    force : bool
-        Replace an existing file.
-
-    Returns
-    -------
-    int
-        Size of the page in bytes.
-
-    Raises
-    ------
-    OutputError
-        The file exists and ``force`` is off, or cannot be written.
-    """
+    """Write relit images as one self-contained HTML page."""
     text = page(relit)
     write_text(text, path, force=force)
     return len(text.encode())

@@ -30,15 +30,9 @@ ROWS = 64
 
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """ΔE00 between the colours of two methods.
+    """ΔE00 between the colours of two methods."""
 
-    Parameters
-    ----------
-    delta_e : ndarray, shape (height, width)
-        ΔE00 of each pixel.
-    """
-
-    delta_e: Array
+    delta_e: Array  # (height, width) ΔE00 of each pixel
 
     @property
     def mean(self) -> float:
@@ -58,17 +52,10 @@ class Difference:
 
 @dataclass(frozen=True, eq=False)
 class Rendering:
-    """An image under one light.
+    """An image under one light."""
 
-    Parameters
-    ----------
-    sensor : Sensor
-        The light with an sRGB screen, whose white is that of the light.
-    colours : dict
-        Linear RGB (height, width, 3) of ``sensor`` by the name of the method; `RGB_PRODUCT` is the first.
-    """
-
-    sensor: Sensor
+    sensor: Sensor  # The light with an sRGB screen, whose white is that of the light
+    # Linear RGB (height, width, 3) of ``sensor`` by the name of the method; `RGB_PRODUCT` is the first
     colours: Mapping[str, Floats]
 
     @property
@@ -83,31 +70,11 @@ class Rendering:
         return f"{self.light}, {description}" if description else self.light
 
     def difference(self, first: str, second: str) -> Difference:
-        """Compare two methods, relative to the white of the light.
-
-        Parameters
-        ----------
-        first, second : str
-            Names of methods.
-
-        Returns
-        -------
-        Difference
-        """
+        """Compare two methods, relative to the white of the light."""
         return Difference(delta_e_rgb(self.sensor, self.colours[first], self.colours[second]))
 
     def screen_codes(self, method: str) -> NDArray[np.uint8]:
-        """Return 8-bit sRGB codes of a method; colours outside the screen's gamut are desaturated.
-
-        Parameters
-        ----------
-        method : str
-            Name of a method.
-
-        Returns
-        -------
-        ndarray of uint8, shape (height, width, 3)
-        """
+        """Return 8-bit sRGB codes (height, width, 3) of a method; colours outside the gamut are desaturated."""
         return to_display_codes(self.colours[method], SRGB).astype(np.uint8)
 
     @property
@@ -119,21 +86,11 @@ class Rendering:
 
 @dataclass(frozen=True, eq=False)
 class Relit:
-    """An image under several lights.
+    """An image under several lights."""
 
-    Parameters
-    ----------
-    name : str
-        Name of the image.
-    reduction : int
-        Pixels of the image per pixel of the colours, along each side.
-    renderings : tuple of Rendering
-        One for each light.
-    """
-
-    name: str
-    reduction: int
-    renderings: tuple[Rendering, ...]
+    name: str  # Name of the image
+    reduction: int  # Pixels of the image per pixel of the colours, along each side
+    renderings: tuple[Rendering, ...]  # One for each light
 
     @property
     def methods(self) -> tuple[str, ...]:
@@ -151,37 +108,9 @@ def relight(
     reduction: int = 1,
     threads: int = 2,
 ) -> Relit:
-    """Compute the colours of an image under lights.
+    """Compute the colours of an image, linear RGB (height, width, 3), under lights, by each of the cubes.
 
-    Parameters
-    ----------
-    name : str
-        Name of the image.
-    rgb : ndarray, shape (height, width, 3)
-        Linear RGB in [0, 1], in the space of the cubes, not multiplied by alpha.
-    cubes : mapping of str to Cube
-        At least one cube, by the name of its method. All have the same space, illuminant and observer.
-    lights : sequence of str
-        Illuminants.
-    opacity : ndarray, shape (height, width, 1), optional
-        Alpha in [0, 1] to multiply the colours of the renderings by: the image on black.
-    reduction : int
-        Pixels of the image per pixel of ``rgb``.
-    threads : int
-        Number of threads.
-
-    Returns
-    -------
-    Relit
-
-    Raises
-    ------
-    OptionError
-        The cubes have different spaces (code ``cubes-of-different-spaces``).
-    ColourError
-        A cube that was built for a scene lacks colours of the image.
-    UnknownNameError
-        A light is unknown.
+    ``opacity`` (height, width, 1) multiplies them; ``reduction`` is that of the image, along each side.
     """
     sensor = common_sensor(cubes.values())
     screens = display_sensors(lights, sensor.observer, *sensor.range)

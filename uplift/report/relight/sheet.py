@@ -7,8 +7,7 @@ from typing import Any
 
 from uplift.common.arrays import StrPath
 from uplift.report.relight.relight import RGB_PRODUCT, Difference, Relit, Rendering
-from uplift.viz.figure import GREY, INK, figure_text, new_figure, write_figure
-from uplift.viz.ramp import colour_map
+from uplift.viz.figure import GREY, INK, colour_map, figure_text, new_figure, write_figure
 
 PANEL = 3.4
 """Width of a panel in inches."""
@@ -18,23 +17,7 @@ LABELS = 0.3
 
 
 def write_relit_sheet(relit: Sequence[Relit], path: StrPath, *, force: bool = False) -> None:
-    """Write relit images as one figure: PNG, SVG or PDF, by the suffix of its file.
-
-    Parameters
-    ----------
-    relit : sequence of Relit
-        The images, below one another.
-    path : path-like
-        The file to write.
-    force : bool
-        Replace an existing file.
-
-    Raises
-    ------
-    OutputError
-        The suffix is another one (code ``unknown-plot-format``), the file exists and ``force`` is off, or it cannot be
-        written.
-    """
+    """Write relit images as one figure: PNG, SVG or PDF, by the suffix of its file."""
     rows = [(image, rendering) for image in relit for rendering in image.renderings]
     columns = len(relit[0].methods) + 1
     heights = [_aspect(rendering) * PANEL + LABELS for _, rendering in rows]

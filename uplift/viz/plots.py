@@ -1,22 +1,107 @@
-"""Plots of bounds: all colours of the metamers of a colour under other lights, in a* and b*."""
+"""Plots that commands write: spectra, powers of lights, strips of colour, and bounds of metamers in a* and b*."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry.delta_e import lab_to_xyz
-from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.gamut import SRGB, Gamut
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.lookup import Bounds, Cube
+from uplift.lookup import Bounds, Cube, QueryResult
 from uplift.lookup.light_errors import LIKELY
-from uplift.viz.figure import ACCENT, GREY, INK, new_figure, style_axes, write_figure
+from uplift.viz.figure import (
+    ACCENT,
+    GREY,
+    INK,
+    PALE,
+    figure_text,
+    new_figure,
+    style_axes,
+    style_spectrum_axes,
+    write_figure,
+)
+
+MAX_LEGEND = 12
+"""Largest number of lines with a legend."""
+
+
+def plot_spectra(
+    cube: Cube, results: Sequence[QueryResult], path: str | os.PathLike[str], *, force: bool = False
+) -> None:
+    """Plot reflectances over wavelength as PNG, SVG or PDF, each in its own colour."""
+    figure = new_figure(7.2, 4.0)
+    axes = figure.subplots()
+    for result in results:
+        codes = "".join(f"{round(code):02x}" for code in cube.encode(result.rgb).tolist())
+        colour = tuple(to_display_codes(result.rgb, cube.data.sensor) / 255)
+        axes.plot(result.wavelengths, result.reflectance, color="0.25", linewidth=3.4, solid_capstyle="round")
+        axes.plot(
+            result.wavelengths,
+            result.reflectance,
+            color=colour,
+            linewidth=2.4,
+            label=figure_text(result.entry or f"#{codes}"),
+        )
+    style_spectrum_axes(axes)
+    if len(results) <= MAX_LEGEND:
+        axes.legend(frameon=False)
+    write_figure(figure, path, force=force)
+
+
+def plot_lights(
+    lights: Sequence[tuple[Array, Array, Array]],
+    gamut: Gamut,
+    path: str | os.PathLike[str],
+    *,
+    force: bool = False,
+) -> None:
+    """Plot spectral powers over wavelength as PNG, SVG or PDF, each in its own colour."""
+    figure = new_figure(7.2, 4.0)
+    axes = figure.subplots()
+    for rgb, wavelengths, power in lights:
+        colour = tuple(to_display_codes(np.clip(rgb / max(rgb.max(), 1e-300), 0, 1), gamut) / 255)
+        label = " ".join(f"{value:.4g}" for value in rgb)
+        axes.plot(wavelengths, power, color="0.25", linewidth=3.4, solid_capstyle="round")
+        axes.plot(wavelengths, power, color=colour, linewidth=2.4, label=figure_text(label))
+    axes.set(xlabel="wavelength / nm", ylabel="power")
+    axes.set_ylim(bottom=0)
+    axes.margins(x=0.01)
+    style_axes(axes)
+    if len(lights) <= MAX_LEGEND:
+        axes.legend(frameon=False)
+    write_figure(figure, path, force=force)
+
+
+WIDTH, HEIGHT, TITLE_HEIGHT = 7.2, 0.62, 0.24
+"""Inches of a picture's width, and of the heights of a strip and its title."""
+
+
+@dataclass(frozen=True, eq=False)
+class Strip:
+    """Encoded colours (k, 3) in [0, 1] under a title."""
+
+    title: str
+    codes: Array
+
+
+def plot_strips(strips: Sequence[Strip], path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Plot strips of colour below one another as PNG, SVG or PDF."""
+    figure = new_figure(WIDTH, len(strips) * (HEIGHT + TITLE_HEIGHT) + 0.1)
+    for axes, strip in zip(figure.subplots(len(strips), 1, squeeze=False)[:, 0], strips, strict=True):
+        axes.imshow(strip.codes[None], aspect="auto", interpolation="nearest")
+        axes.set(xticks=(), yticks=())
+        axes.spines[:].set(color=PALE, linewidth=0.6)
+        axes.set_title(figure_text(strip.title), loc="left", fontsize=9, color=INK, pad=3)
+    write_figure(figure, path, force=force)
+
 
 MAX_COLOURS = 24
 """Largest number of colours in one plot."""
@@ -31,24 +116,7 @@ MIN_EXTENT = 5.0
 def plot_bounds(
     cube: Cube, blocks: Sequence[Sequence[Bounds]], path: str | os.PathLike[str], *, force: bool = False
 ) -> None:
-    """Plot the region of each colour under each light, as PNG, SVG or PDF: a row per colour, a column per light.
-
-    Parameters
-    ----------
-    cube : Cube
-        The cube that was queried.
-    blocks : sequence of sequence of Bounds
-        Blocks of colours, each with the bounds under the lights. The first `MAX_COLOURS` colours are drawn.
-    path : path-like
-        The file to write.
-    force : bool, default False
-        Replace an existing file.
-
-    Raises
-    ------
-    OutputError
-        If the file exists and ``force`` is false, or cannot be written.
-    """
+    """Plot the region of each colour under each light, as PNG, SVG or PDF: a row per colour, a column per light."""
     panels = [(found, row) for found in blocks for row in range(len(found[0].xyz))][:MAX_COLOURS]
     names = [each.light.name for each in panels[0][0]]
     screens = display_sensors(names, cube.observer, *cube.data.sensor.range)
