@@ -23,7 +23,7 @@ from uplift.lab.chart.methods import mallett2019, otsu2018, smits1999
 from uplift.lab.chart.task import make_task
 from uplift.lattice import Status
 from uplift.lookup import Cube
-from uplift.report.smoothness import compute_smoothness
+from uplift.report.measures import compute_smoothness
 
 DIM = 16
 COUNTS = (9, 17)

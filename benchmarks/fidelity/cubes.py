@@ -31,7 +31,7 @@ from uplift.fit.families import families_with
 from uplift.lab.study.held_out import HALF, NO_ATLAS, SIGMOID, HoldoutSplit, holdout
 from uplift.lookup import Cube
 from uplift.models import Moments
-from uplift.report.smoothness import compute_smoothness
+from uplift.report.measures import compute_smoothness
 
 DIM, COARSE = 32, 16
 COUNTS = (9, 13, 17)

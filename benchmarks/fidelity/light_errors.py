@@ -17,7 +17,7 @@ from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Mask
 from uplift.lookup import Cube
-from uplift.report.calibration import check_calibration
+from uplift.report.measures import check_calibration
 
 SPLITS = 3
 """Random splits. Each half predicts the other, so that every material is known and queried equally often."""

@@ -106,7 +106,8 @@ def command(
 
 def _writer(output: str) -> Callable[..., object]:
     from uplift.common.errors import OutputError
-    from uplift.report.relight import write_relit_page, write_relit_sheet
+    from uplift.report.relight import write_relit_sheet
+    from uplift.report.relight_page import write_relit_page
     from uplift.viz.figure import SUFFIXES
 
     suffix = Path(output).suffix.lower()

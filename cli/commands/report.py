@@ -116,7 +116,7 @@ def _measured(cube: Cube, path: str, atlases: tuple[str, ...], folders: tuple[st
 
 def _text(assessment: Assessment, style: str, worst: int) -> str:
     if style == "json":
-        from uplift.report.json_export import to_json
+        from uplift.report.page import to_json
 
         return json_text(to_json(assessment)) + "\n"
     from uplift.report.page import render_report

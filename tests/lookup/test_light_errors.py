@@ -18,7 +18,7 @@ from uplift.common.errors import OptionError, UnknownNameError
 from uplift.cube import CubeData, read, write
 from uplift.lookup import Cube
 from uplift.lookup.light_errors import LIKELY, lab_errors, light_errors
-from uplift.report.calibration import check_calibration
+from uplift.report.measures import check_calibration
 
 LIGHTS = [observer.light(name) for name in ("FL2", "FL11", "LED-RGB1", "HP1")]
 """Two of them are not among the lights that entries are fitted to."""

@@ -14,7 +14,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import on_range
 from uplift.cube import digest
 from uplift.report.assessment import assess
-from uplift.report.live_page.page import page
+from uplift.report.live_page import page
 from uplift.report.regression import compare_rebuilt
 from uplift.report.relight import relight
 

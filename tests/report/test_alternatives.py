@@ -7,8 +7,8 @@ import pytest
 
 from uplift.colorimetry.observer import display_sensors
 from uplift.lookup import load
-from uplift.report.alternatives import JAKOB_HANIKA, WITHOUT_ATLAS, find_alternatives
-from uplift.report.json_export import to_json
+from uplift.report.fidelity import JAKOB_HANIKA, WITHOUT_ATLAS, find_alternatives
+from uplift.report.page import to_json
 
 
 @pytest.fixture(scope="module")

@@ -20,12 +20,16 @@ from uplift.cube import AtlasTable
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
 from uplift.report.assessment import assess
-from uplift.report.calibration import Calibration, check_calibration
-from uplift.report.crowding import find_crowding
-from uplift.report.failures import MAX_LISTED, collect_failures
-from uplift.report.fidelity import entry_errors, from_other_atlas, from_own_atlas, from_stored_entries
-from uplift.report.round_trip import COLOURS, round_trip_errors
-from uplift.report.smoothness import compute_smoothness
+from uplift.report.fidelity import entry_errors, find_crowding, from_other_atlas, from_own_atlas, from_stored_entries
+from uplift.report.measures import (
+    COLOURS,
+    MAX_LISTED,
+    Calibration,
+    check_calibration,
+    collect_failures,
+    compute_smoothness,
+    round_trip_errors,
+)
 
 
 def delta_e(first, second, name):

@@ -20,8 +20,7 @@ from uplift.atlas import read_atlas
 from uplift.lookup import MODES, Cube
 from uplift.report.assessment import assess
 from uplift.report.charts import histogram_chart, log_edges, make_histogram, spectra_chart
-from uplift.report.json_export import to_json
-from uplift.report.page import render_report
+from uplift.report.page import render_report, to_json
 
 
 @pytest.fixture(scope="module")

@@ -15,21 +15,27 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lookup import Cube
-from uplift.report.alternatives import Alternative, find_alternatives
-from uplift.report.calibration import Calibration, check_calibration
 from uplift.report.charts import Histogram, linear_edges, log_edges, make_histogram
-from uplift.report.crowding import Crowding, find_crowding
-from uplift.report.failures import Failures, collect_failures
 from uplift.report.fidelity import (
+    Alternative,
+    Crowding,
     EntryErrors,
     EntryQuery,
     entry_errors,
+    find_alternatives,
+    find_crowding,
     from_other_atlas,
     from_own_atlas,
     from_stored_entries,
 )
-from uplift.report.round_trip import round_trip_errors
-from uplift.report.smoothness import compute_smoothness
+from uplift.report.measures import (
+    Calibration,
+    Failures,
+    check_calibration,
+    collect_failures,
+    compute_smoothness,
+    round_trip_errors,
+)
 from uplift.report.summary import summarise
 
 MIN_ERROR = 1e-9

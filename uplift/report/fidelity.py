@@ -1,7 +1,8 @@
-"""Errors of a cube at the colours of atlas entries."""
+"""Errors of a cube at the colours of atlas entries, next to the answers of other methods; entries close to others."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -10,12 +11,14 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, resample
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.colorimetry.observer import light
+from uplift.colorimetry.observer import light, on_range
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.cube import CubeData
-from uplift.lookup import Cube
+from uplift.lookup import Cube, load
 from uplift.lookup.interpolate import lattice_spectra
+from uplift.lookup.refine import refine_to_rgb
+from uplift.models import Sigmoid, evaluate
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,3 +157,112 @@ def _delta_e(lights: tuple[Sensor, ...], first: Array, second: Array) -> Array:
 
 def _rms(first: Array, second: Array) -> Array:
     return np.sqrt(((first - second) ** 2).mean(axis=1))
+
+
+WITHOUT_ATLAS, JAKOB_HANIKA = "without atlas", "Jakob & Hanika"
+
+
+@dataclass(frozen=True, eq=False)
+class Alternative:
+    """Answers of another method at the colours of E entries."""
+
+    name: str  # Name of the method
+    answer: Array  # (E, N) Reflectances; NaN for colours that the method does not answer
+    delta_e: Array  # (E, L) ΔE00 to the measured spectra under L lights; NaN likewise
+
+    @property
+    def mean(self) -> Array:
+        """Return the mean ΔE00 of the answers under each light, shape (L,); NaN without any."""
+        return self._statistic(np.mean)
+
+    @property
+    def largest(self) -> Array:
+        """Return the largest ΔE00 of the answers under each light, shape (L,); NaN without any."""
+        return self._statistic(np.max)
+
+    def _statistic(self, function: Callable[..., Array]) -> Array:
+        known = self.delta_e[~np.isnan(self.delta_e).any(axis=1)]
+        return function(known, axis=0) if len(known) else np.full(self.delta_e.shape[1], np.nan)
+
+
+def find_alternatives(data: CubeData, errors: EntryErrors, lights: tuple[Sensor, ...]) -> tuple[Alternative, ...]:
+    """Compute the answers of other methods at the colours of entries."""
+    answers = {
+        WITHOUT_ATLAS: _without_atlas(errors.target, data.sensor),
+        JAKOB_HANIKA: _sigmoid(data, errors.rgb),
+    }
+    alternatives = []
+    for name, answer in answers.items():
+        known = ~np.isnan(answer).any(axis=1)
+        delta_e = np.full((len(answer), len(lights)), np.nan)
+        delta_e[known] = _delta_e(lights, answer[known], errors.target[known])
+        alternatives.append(Alternative(name, answer, delta_e))
+    return tuple(alternatives)
+
+
+def _without_atlas(target: Array, assessed: Sensor) -> Array:
+    """Reflectance (E, N) of the packaged cube at the colours of measured spectra (E, N)."""
+    cube = load()
+    rgb = on_range(cube.data.sensor, *assessed.range).rgb(target)
+    inside = cube.data.sensor.contains(rgb)
+    answer = np.full_like(target, np.nan)
+    answer[inside] = cube.reflectance(np.clip(rgb[inside], 0, 1), assessed.wavelengths)
+    return answer
+
+
+def _sigmoid(data: CubeData, rgb: Array) -> Array:
+    """Reflectance (E, N) of the sigmoid with exactly the colours (E, 3), from grey on."""
+    model = Sigmoid()
+    multipliers = refine_to_rgb(data, model, np.zeros((len(rgb), model.count)), rgb)
+    answer = evaluate(model, multipliers, data.sensor.wavelengths)
+    distance = np.abs(data.sensor.rgb(answer) - rgb).max(axis=1)
+    return np.where((distance <= data.threshold)[:, None], answer, np.nan)
+
+
+MAX_DISTANCE = 1 + 1e-9
+"""Lattice steps; two entries of one cell are never farther apart."""
+
+
+@dataclass(frozen=True, eq=False)
+class Crowding:
+    """Entries of a cube that have another one within a lattice step, largest error of the lattice first."""
+
+    entries: EntryErrors  # Errors of the k close entries
+    nearest: tuple[str, ...]  # Name of the nearest other entry, for each of the k
+    distances: Array  # (k,) Lattice steps to the nearest other entry, along the axis on which they differ most
+    # Entries that no colour returns because another one has the same colour, and the name of the other
+    lost: tuple[tuple[str, str], ...]
+
+
+def find_crowding(data: CubeData, entries: EntryErrors) -> Crowding:
+    """Find the entries that have another one within a lattice step."""
+    assert entries.worst_lattice is not None
+    names = data.atlas.names
+    nearest, distances = _nearest(data.lattice.to_steps(data.atlas.rgb))
+    row_of = {name: row for row, name in enumerate(names)}
+    rows = np.array([row_of[name] for name in entries.names])
+    order = np.argsort(-entries.worst_lattice, kind="stable")
+    kept = order[distances[rows[order]] <= MAX_DISTANCE]
+    return Crowding(
+        entries.take(kept),
+        tuple(names[other] for other in nearest[rows[kept]]),
+        distances[rows[kept]],
+        _lost(data),
+    )
+
+
+def _nearest(steps: Array) -> tuple[Indices, Array]:
+    """Index of the nearest other row of ``steps`` (n, 3), and its maximum-norm distance, infinite for n < 2."""
+    from scipy.spatial import KDTree
+
+    if len(steps) < 2:
+        return np.zeros(len(steps), dtype=np.int64), np.full(len(steps), np.inf)
+    distances, rows = KDTree(steps).query(steps, k=2, p=np.inf)
+    # The first of the two is the row itself, unless another has the same colour.
+    return np.where(rows[:, 0] == np.arange(len(steps)), rows[:, 1], rows[:, 0]), distances[:, 1]
+
+
+def _lost(data: CubeData) -> tuple[tuple[str, str], ...]:
+    names, rows = data.atlas.names, np.flatnonzero(data.atlas.half_width == 0)
+    hits = data.entry_boxes.find(data.atlas.rgb[rows])
+    return tuple((names[rows[row]], names[other]) for row, other in zip(hits.rows, hits.entry, strict=True))

@@ -9,7 +9,7 @@ from benchmarks.browser import browser
 from tests.parts import CHROMIUM, need
 from uplift.colorimetry import observer
 from uplift.lookup import bounds
-from uplift.report.look_page.page import page
+from uplift.report.look_page import page
 
 LIGHTS = ("A", "FL11")
 

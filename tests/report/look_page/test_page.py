@@ -14,8 +14,7 @@ from tests.pages import Page, external_links
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError, OutputError
 from uplift.lookup import bounds
-from uplift.report.look_page import write_look_page
-from uplift.report.look_page.page import page
+from uplift.report.look_page import page, write_look_page
 
 
 def numbers(html):

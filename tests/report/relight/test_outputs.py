@@ -12,7 +12,8 @@ from tests.helpers import raises
 from tests.pages import Page
 from tests.parts import CHROMIUM, need
 from uplift.common.errors import OutputError
-from uplift.report.relight import RGB_PRODUCT, relight, write_relit_page, write_relit_sheet
+from uplift.report.relight import RGB_PRODUCT, relight, write_relit_sheet
+from uplift.report.relight_page import write_relit_page
 
 
 @pytest.fixture(scope="module")

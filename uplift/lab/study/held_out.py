@@ -21,7 +21,7 @@ from uplift.fit.families import families_with
 from uplift.lab.study.baselines import local_linear, mismatch_centroids
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
-from uplift.report.calibration import Calibration, check_calibration
+from uplift.report.measures import Calibration, check_calibration
 
 __all__ = [
     "HoldoutSplit",

@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import StrPath
 from uplift.common.files import write_text
-from uplift.report.relight.relight import RGB_PRODUCT, Relit, Rendering
+from uplift.report.relight import RGB_PRODUCT, Relit, Rendering
 from uplift.viz.figure import RAMP, ramp_codes
 from uplift.viz.html import render, resource
 
-FOLDER = "report/relight"
 JPEG_QUALITY = 92
 
 
@@ -60,7 +59,7 @@ def page(relit: Sequence[Relit]) -> str:
         for number in range(len(lights))
     ]
     return render(
-        f"{FOLDER}/templates/page.html.j2",
+        "report/templates/relight_page.html.j2",
         title="Images under other lights",
         lead="The same RGB, lit by products of RGB and by spectra. Drag the line, or use the arrow keys.",
         lights=lights,
@@ -69,7 +68,7 @@ def page(relit: Sequence[Relit]) -> str:
         limits=[_limit(relit, number) for number in range(len(lights))],
         ramp=RAMP,
         sections=[_section(image, [_limit(relit, number) for number in range(len(lights))]) for image in relit],
-        script=resource(f"{FOLDER}/page.js"),
+        script=resource("report/relight_page.js"),
     )
 
 

@@ -26,8 +26,6 @@ from uplift.models.moments import MAX_COUNT
 from uplift.models.phase import Phase
 from uplift.viz.html import render, resource
 
-FOLDER = "report/look_page"
-SCRIPTS = ("colour.js", "solver.js", "draw.js", "page.js")
 DIGITS = 12
 """Digits of the numbers of the page: the RGB of its spectra is exact to far less than a code."""
 MARGIN = 1e-6
@@ -60,7 +58,7 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
     }
     lights = [_light(each, screens[each.light.name]) for each in found]
     return render(
-        f"{FOLDER}/templates/page.html.j2",
+        "report/templates/look_page.html.j2",
         title=f"Looks of {written if isinstance(written, str) else ' '.join(f'{each:.4g}' for each in written)}",
         lead=(
             f"Many spectra have this RGB under {sensor.illuminant}. Drag its colour under another light: the spectrum "
@@ -71,7 +69,7 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
         numbers=_model(sensor, found[0].reflectance[0], rgb)
         | {"build": _view(sensor.light, conversion(sensor, SRGB) @ sensor.xyz_to_rgb), "lights": lights}
         | {"rgb": written, "luminance": SRGB.rgb_to_xyz[1].tolist()},
-        script=resource(*(f"{FOLDER}/{name}" for name in SCRIPTS)),
+        script=resource("report/look_page.js"),
     )
 
 

@@ -22,7 +22,6 @@ LIGHTS = ("D65", "A", "D50", "FL2", "FL11", "HP1", "LED-B3")
 GROUP = 4
 """Wavelengths of one call of the program."""
 SPACE = "sRGB"
-FOLDER = "report/live_page"
 
 
 def write_page(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
@@ -60,7 +59,7 @@ def page(data: CubeData) -> str:
         "entries": hex_codes(data.atlas.rgb),
     }
     return render(
-        f"{FOLDER}/templates/page.html.j2",
+        "report/templates/live_page.html.j2",
         title="Images under other lights",
         lead=(
             f"Spectra of a cube of {data.lattice.dim}³ nodes and {len(data.atlas.names)} atlas entries, evaluated in "
@@ -71,7 +70,7 @@ def page(data: CubeData) -> str:
         numbers=numbers,
         kernel=Markup(program.replace("</", "< /")),
         table=base64.b64encode(image.astype("<f4").tobytes()).decode(),
-        script=resource(f"{FOLDER}/page.js"),
+        script=resource("report/live_page.js"),
     )
 
 
