@@ -278,6 +278,6 @@ def _space_name(name: str) -> str:
 
     if name in ("sRGB", CAMERA):
         return name
-    from uplift.colorimetry.observer import look_up_space
+    from uplift.colorimetry.spaces import look_up_space
 
     return str(look_up_space(name).name)

@@ -39,7 +39,7 @@ def list_entries(atlas: Atlas, sensor: Sensor) -> Listing:
     from uplift.atlas import resample
     from uplift.colorimetry.gamut import SRGB
     from uplift.colorimetry.observer import sensor as make_sensor
-    from uplift.colorimetry.spaces import smallest_space
+    from uplift.colorimetry.observer import smallest_space
     from uplift.colorimetry.srgb import to_display_codes
 
     resampled = resample(atlas, sensor.wavelengths)

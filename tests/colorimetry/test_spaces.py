@@ -11,7 +11,8 @@ from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer, ocio
 from uplift.colorimetry.gamut import SRGB, conversion
-from uplift.colorimetry.spaces import COMMON_SPACES, find_space, holding_note, smallest_space
+from uplift.colorimetry.observer import COMMON_SPACES, holding_note, smallest_space
+from uplift.colorimetry.spaces import find_space, look_up_space
 from uplift.common.errors import OptionError, UnknownNameError
 
 NAMES = {
@@ -24,7 +25,7 @@ NAMES = {
 
 @pytest.mark.parametrize(("name", "expected"), NAMES.items())
 def test_names_of_a_space(name, expected):
-    assert observer.look_up_space(name).name == expected
+    assert look_up_space(name).name == expected
     assert observer.sensor(name).space == expected
 
 

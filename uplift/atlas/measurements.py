@@ -37,52 +37,35 @@ MAX_LISTED = 8
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """One spectrum of a file, not validated.
-
-    Parameters
-    ----------
-    name : str
-        Name of the entry.
-    wavelengths, values : sequence of float or ndarray, shape (N,)
-        Wavelengths in nm, ascending or descending, and values in units of the file.
-    line : int, optional
-        First line of the spectrum in the file.
-    description, device, date : str
-        Statements of the file about the measurement.
-    """
+    """One spectrum of a file, not validated."""
 
     name: str
+    """Name of the entry."""
     wavelengths: Sequence[float] | Array
     values: Sequence[float] | Array
+    """(N,) Wavelengths in nm, ascending or descending, and values in units of the file."""
     line: int | None = None
+    """First line of the spectrum in the file."""
     description: str = ""
     device: str = ""
     date: str = ""
+    """Statements of the file about the measurement."""
 
 
 @dataclass(frozen=True, eq=False)
 class Measurements:
-    """Content of a file.
-
-    Parameters
-    ----------
-    spectra : tuple of Spectrum
-        Reflectances.
-    skipped : tuple of SkippedEntry
-        Other spectra.
-    scale : float, optional
-        Divisor to units of 1 that the file states.
-    header : Header
-        Statements of the file about itself.
-    notes : tuple of str
-        How the content was understood.
-    """
+    """Content of a file."""
 
     spectra: tuple[Spectrum, ...]
+    """Reflectances."""
     skipped: tuple[SkippedEntry, ...] = ()
+    """Other spectra."""
     scale: float | None = None
+    """Divisor to units of 1 that the file states."""
     header: Header = field(default_factory=Header)
+    """Statements of the file about itself."""
     notes: tuple[str, ...] = ()
+    """How the content was understood."""
 
 
 def check_measured(measured: str) -> None:
@@ -96,18 +79,7 @@ def check_measured(measured: str) -> None:
 
 
 def to_atlas(document: Document, measurements: Measurements, format_name: str, measured: str = "auto") -> Atlas:
-    """Validate the spectra of a file: turn descending ones round, and scale all of them by one number.
-
-    Raises
-    ------
-    AtlasError
-        A spectrum is invalid, or the file mixes percent with units of 1 (code ``mixed-scales``).
-
-    Warns
-    -----
-    UpliftWarning
-        Values are read as percent because they are too large for units of 1 (``values-in-percent``).
-    """
+    """Validate the spectra of a file: turn descending ones round, and scale all of them by one number."""
     spectra = measurements.spectra
     scale, scale_note = _scale(document.path, spectra, measurements.scale, measured)
     entries = [_entry(document.path, spectrum, scale) for spectrum in spectra]

@@ -61,13 +61,6 @@ class ShippedAtlas:
 def shipped_atlases() -> tuple[ShippedAtlas, ...]:
     """Return the atlases that are installed with uplift, by name.
 
-    Returns
-    -------
-    tuple of ShippedAtlas
-        Empty if only the library is present, without the package ``uplift_atlases``.
-
-    Examples
-    --------
     >>> for atlas in shipped_atlases():
     ...     if atlas.name == "macbeth":
     ...         print(atlas.entries, atlas.content)
@@ -81,16 +74,6 @@ def find_atlas_file(path: StrPath, folder: StrPath = "") -> StrPath:
 
     An existing file takes precedence. Otherwise a path without a folder may name a shipped atlas, with or without the
     suffix. Warnings refer to the caller of the caller.
-
-    Raises
-    ------
-    AtlasError
-        The file does not exist, and its name resembles that of a shipped atlas.
-
-    Warns
-    -----
-    UpliftWarning
-        A shipped atlas replaces a missing file (``shipped-atlas``).
     """
     name = os.fspath(path)
     file = os.path.join(folder, path)

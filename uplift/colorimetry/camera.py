@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError
 from uplift.common.files import read_bytes
@@ -20,36 +21,26 @@ CAMERA = "camera"
 LAYOUT = "give rows of a wavelength in nm and the sensitivities of red, green and blue"
 MAX_BYTES = 1_000_000
 COLUMNS = 4
+CORRELATED = 50.0
+"""Distance in nm at which the correlation of reflectances that a camera's matrix is fitted to falls to 1/e."""
+MAX_CONDITION = 1e4
+"""Limit of the condition number of a camera's matrix: one channel is a mixture of the others beyond it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Camera:
     """Spectral sensitivities of a camera with three channels, validated on creation.
 
-    Parameters
-    ----------
-    name : str
-        Name.
-    wavelengths : array_like, shape (N,)
-        Wavelengths in nm, ascending.
-    sensitivities : array_like, shape (N, 3)
-        Sensitivities of red, green and blue, not negative, in any one unit. They are divided by the largest.
-
-    Raises
-    ------
-    OptionError
-        The shapes differ (``sensitivities-shape``), a number is not finite (``sensitivity-not-finite``) or negative
-        (``sensitivity-negative``), or the wavelengths do not ascend (``camera-wavelengths``).
-
-    Examples
-    --------
     >>> Camera("narrow", [400, 550, 700], [[0, 0, 2], [0, 4, 0], [3, 0, 0]]).sensitivities.tolist()
     [[0.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.75, 0.0, 0.0]]
     """
 
     name: str
+    """Name."""
     wavelengths: Array
+    """(N,) Wavelengths in nm, ascending."""
     sensitivities: Array
+    """(N, 3) Sensitivities of red, green and blue, not negative, in any one unit. They are divided by the largest."""
 
     def __post_init__(self) -> None:
         wavelengths = np.array(self.wavelengths, dtype=float)
@@ -81,38 +72,49 @@ class Camera:
     def at(self, wavelengths: ArrayLike) -> Array:
         """Interpolate the sensitivities linearly; outside the measured range they are 0.
 
-        Parameters
-        ----------
-        wavelengths : array_like, shape (M,)
-            Wavelengths in nm.
-
-        Returns
-        -------
-        ndarray, shape (M, 3)
+        Shapes: ``wavelengths`` (M,) → (M, 3).
         """
         at = np.asarray(wavelengths, dtype=float)
         channels = (np.interp(at, self.wavelengths, channel, left=0, right=0) for channel in self.sensitivities.T)
         return np.stack(list(channels), axis=1)
 
 
+def camera_sensor(camera: Camera, wavelengths: Array, light: Light, power: Array, observer: str, cmfs: Array) -> Sensor:
+    """Make the sensor of a camera's raw values, balanced so that the perfect reflector is (1, 1, 1).
+
+    Its matrix from XYZ, for distances between colours only, is the least-squares fit for smooth reflectances, whose
+    values at two wavelengths correlate as exp(−|Δλ| / `CORRELATED`).
+    """
+    sensitivities = camera.at(wavelengths)
+    weights = sensitivities * power[:, None]
+    if not (weights.sum(axis=0) > 0).all():
+        raise OptionError(
+            f"every channel must respond to {light.name} within {wavelengths[0]:g}–{wavelengths[-1]:g} nm",
+            hint="give wavelengths in nm, and sensitivities of red, green and blue",
+        )
+    balanced = (weights / weights.sum(axis=0)).T
+    correlation = np.exp(-np.abs(np.subtract.outer(wavelengths, wavelengths)) / CORRELATED)
+    expected = correlation @ light.xyz.T
+    matrix = balanced @ expected @ np.linalg.inv(light.xyz @ expected)
+    if np.linalg.cond(matrix) > MAX_CONDITION:
+        raise OptionError("the channels of a camera must have different sensitivities")
+    return Sensor(
+        space=camera.name,
+        illuminant=light.name,
+        observer=observer,
+        wavelengths=wavelengths,
+        cmfs=cmfs,
+        power=power,
+        xyz_to_rgb=matrix / (matrix @ light.white)[:, None],
+        decoding=np.arange(256) / 255,
+        sensitivities=sensitivities,
+    )
+
+
 def read_camera(path: StrPath) -> Camera:
     """Read sensitivities from a CSV file: rows of a wavelength in nm, red, green and blue.
 
     A first row without numbers is a header; lines that begin with ``#`` are comments.
-
-    Parameters
-    ----------
-    path : path-like
-        The file. Its name without the suffix is the name of the camera.
-
-    Returns
-    -------
-    Camera
-
-    Raises
-    ------
-    OptionError
-        The file cannot be read, is not such a table (``not-sensitivities``), or its values are not valid; see `Camera`.
     """
     text = read_bytes(path, OptionError, limit=MAX_BYTES, hint=LAYOUT).decode("utf-8-sig", errors="replace")
     try:

@@ -53,40 +53,14 @@ def lab_of(xyz: Any, white: Any) -> Any:
 
 
 def lab_to_xyz(lab: ArrayLike, white: ArrayLike) -> Array:
-    """Convert CIE 1976 L*a*b* to XYZ, the inverse of `lab`.
-
-    Parameters
-    ----------
-    lab : array_like, shape (..., 3)
-        CIE L*a*b*.
-    white : array_like, shape (3,)
-        XYZ of the white.
-
-    Returns
-    -------
-    ndarray, shape (..., 3)
-        XYZ, in the units of ``white``.
-    """
+    """Convert CIE 1976 L*a*b* to XYZ, the inverse of `lab`. Shapes: ``lab`` (…, 3), ``white`` (3,) → (…, 3)."""
     compressed = (np.asarray(lab, dtype=float) + np.array([16.0, 0, 0])) @ np.linalg.inv(OPPONENTS.T)
     linear = (compressed - 4 / 29) * 3 * (6 / 29) ** 2
     return np.asarray(np.where(compressed > 6 / 29, compressed**3, linear) * np.asarray(white, dtype=float))
 
 
 def lab_jacobian(xyz: ArrayLike, white: ArrayLike) -> Array:
-    """Compute the derivative of L*a*b* with respect to XYZ.
-
-    Parameters
-    ----------
-    xyz : array_like, shape (..., 3)
-        XYZ, in the units of ``white``.
-    white : array_like, shape (3,)
-        XYZ of the white.
-
-    Returns
-    -------
-    ndarray, shape (..., 3, 3)
-        The last axis is XYZ.
-    """
+    """Compute the derivative of L*a*b* with respect to XYZ. Shapes: ``xyz`` (…, 3), ``white`` (3,) → (…, 3, 3)."""
     white = np.asarray(white, dtype=float)
     t = np.asarray(xyz, dtype=float) / white
     root = np.cbrt(np.maximum(t, (6 / 29) ** 3))  # the linear part has the slope of its upper end
@@ -94,19 +68,7 @@ def lab_jacobian(xyz: ArrayLike, white: ArrayLike) -> Array:
 
 
 def rgb_to_lab(sensor: Sensor, rgb: ArrayLike) -> Array:
-    """Convert linear RGB to CIE L*a*b* under the build illuminant.
-
-    Parameters
-    ----------
-    sensor : Sensor
-        Sensor of the RGB.
-    rgb : array_like, shape (..., 3)
-        Linear RGB.
-
-    Returns
-    -------
-    ndarray, shape (..., 3)
-    """
+    """Convert linear RGB to CIE L*a*b* under the build illuminant. Shapes: ``rgb`` (…, 3) → (…, 3)."""
     return lab(sensor.xyz(rgb), sensor.light.white)
 
 
@@ -154,13 +116,15 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     g = 1.5 - 0.5 * _weight_7((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2)
     a1, a2 = g * a1, g * a2
     c1, c2 = np.hypot(a1, b1), np.hypot(a2, b2)
-    h1, h2 = _hue(a1, b1), _hue(a2, b2)
+    h1, h2 = np.degrees(np.arctan2(b1, a1)) % 360, np.degrees(np.arctan2(b2, a2)) % 360
     coloured = c1 * c2 > 0
     turn = np.where(coloured, (h2 - h1 + 180) % 360 - 180, 0)
     # The paper defines a difference of exactly half a turn as +180 if h2 is larger.
     turn = np.where((turn == -180) & (h2 > h1), 180, turn)
     light, chroma = (l1 + l2) / 2, (c1 + c2) / 2
-    hue = np.where(coloured, _mean_hue(h1, h2), h1 + h2)
+    total = h1 + h2
+    across = np.where(total < 360, total + 360, total - 360)  # the mean hue lies on the shorter arc
+    hue = np.where(coloured, np.where(np.abs(h1 - h2) <= 180, total, across) / 2, total)
     tone = 1 - 0.17 * _cos(hue - 30) + 0.24 * _cos(2 * hue) + 0.32 * _cos(3 * hue + 6) - 0.20 * _cos(4 * hue - 63)
     delta_l = (l2 - l1) / (1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2))
     delta_c = (c2 - c1) / (1 + 0.045 * chroma)
@@ -174,18 +138,7 @@ def delta_e_2000_weights(lab: ArrayLike) -> Array:
 
     The norm of the differences is CIEDE2000, but for its corrections of neutral and of blue colours.
 
-    Parameters
-    ----------
-    lab : array_like, shape (..., 3)
-        CIE L*a*b*.
-
-    Returns
-    -------
-    ndarray, shape (..., 3, 3)
-
-    References
-    ----------
-    Sharma, Wu & Dalal 2005, eq. 15–17, 19 and 20, with G and T of a neutral colour.
+    Shapes: ``lab`` (…, 3) → (…, 3, 3). Sharma, Wu & Dalal 2005, eq. 15–17, 19 and 20, with G and T of a neutral colour.
     """
     light, a, b = np.moveaxis(np.asarray(lab, dtype=float), -1, 0)
     chroma, hue = np.hypot(a, b), np.arctan2(b, a)
@@ -235,16 +188,6 @@ def delta_e_rgb(sensor: Sensor, first: ArrayLike, second: ArrayLike) -> Array:
 def _weight_7(chroma: Array) -> Array:
     """√(C⁷ / (C⁷ + 25⁷))."""
     return np.sqrt(chroma**7 / (chroma**7 + 25.0**7))
-
-
-def _hue(a: Array, b: Array) -> Array:
-    return np.degrees(np.arctan2(b, a)) % 360
-
-
-def _mean_hue(h1: Array, h2: Array) -> Array:
-    total = h1 + h2
-    across = np.where(total < 360, total + 360, total - 360)
-    return np.where(np.abs(h1 - h2) <= 180, total, across) / 2
 
 
 def _cos(degrees: Array) -> Array:

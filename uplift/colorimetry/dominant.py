@@ -19,23 +19,16 @@ SLACK = 1e-9
 
 @dataclass(frozen=True)
 class DominantWavelength:
-    """Chromaticity relative to white.
-
-    Parameters
-    ----------
-    wavelength : float or None
-        Wavelength in nm at which the line from white through the colour meets the spectrum locus; that of the opposite
-        direction for purples. None for greys and for black.
-    complementary : bool
-        Whether the colour is a purple, and the wavelength that of its complement.
-    purity : float
-        Distance of the colour from white relative to that of the spectrum locus, or of the line of purples. Above 1
-        for colours that no light has.
-    """
+    """Chromaticity relative to white."""
 
     wavelength: float | None
+    """Wavelength in nm at which the line from white through the colour meets the spectrum locus; that of the
+    opposite direction for purples. None for greys and for black."""
     complementary: bool
+    """Whether the colour is a purple, and the wavelength that of its complement."""
     purity: float
+    """Distance of the colour from white relative to that of the spectrum locus, or of the line of purples. Above 1
+    for colours that no light has."""
 
 
 GREY = DominantWavelength(None, False, 0.0)
@@ -44,16 +37,7 @@ GREY = DominantWavelength(None, False, 0.0)
 def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
     """Find the dominant wavelength and the purity of a colour relative to the white of a sensor.
 
-    Parameters
-    ----------
-    xyz : array_like, shape (3,)
-        XYZ in any unit.
-    sensor : Sensor
-        Its colour-matching functions are the spectrum locus, linear between its wavelengths.
-
-    Returns
-    -------
-    DominantWavelength
+    Shapes: ``xyz`` (3,).
     """
     colour = np.asarray(xyz, dtype=float)
     if not colour.sum() > 0:

@@ -49,27 +49,18 @@ class Radii(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ExpectedError:
-    """Expected squares of errors around left-out entries, and the radii that errors stay within.
-
-    Parameters
-    ----------
-    locations : ndarray, shape (E, 3)
-        CIE L*a*b* of the entries.
-    squares : ndarray, shape (E, K)
-        Squares or products of the errors of each entry when left out, per unit of variance.
-    floor : ndarray, shape (K,)
-        Squares or products that remain at the entries themselves.
-    left_out : ndarray, shape (E, K)
-        Expected squares or products of each entry when left out, from the other entries.
-    radii : Radii
-        Radii in roots of the expected squares.
-    """
+    """Expected squares of errors around left-out entries, and the radii that errors stay within."""
 
     locations: Array
+    """(E, 3) CIE L*a*b* of the entries."""
     squares: Array
+    """(E, K) Squares or products of the errors of each entry when left out, per unit of variance."""
     floor: Array
+    """(K,) Squares or products that remain at the entries themselves."""
     left_out: Array
+    """(E, K) Expected squares or products of each entry when left out, from the other entries."""
     radii: Radii
+    """Radii in roots of the expected squares."""
 
     @property
     def columns(self) -> Array:
@@ -102,19 +93,7 @@ def expected_products(
 ) -> ExpectedError:
     """Learn products of errors.
 
-    Parameters
-    ----------
-    locations : ndarray, shape (E, 3)
-        CIE L*a*b* of the entries.
-    left_out, kept : ndarray, shape (E,)
-        ΔE00 of each entry when left out, and when kept.
-    left_out_products, kept_products : ndarray, shape (E, K)
-        Squares or products of the components of these errors.
-
-    Returns
-    -------
-    ExpectedError
-        Expected products.
+    Shapes: ``locations`` (E, 3), ``left_out``, ``kept`` (E,), ``left_out_products``, ``kept_products`` (E, K).
     """
     weights = np.exp(_distances(locations, locations) / -LENGTH)
     np.fill_diagonal(weights, 0)
@@ -144,17 +123,7 @@ def learn_radii(ratio: Array, coverage: Sequence[tuple[float, float]]) -> list[f
 
     The quantiles are those of conformal prediction: they hold on average for one more entry.
 
-    Parameters
-    ----------
-    ratio : ndarray, shape (E,)
-        Error of each entry when left out, in the expected one.
-    coverage : sequence of tuple
-        Shares of materials, and the radii if errors were normal, which few entries lean towards.
-
-    Returns
-    -------
-    list of float
-        Radii, in expected errors.
+    Shapes: ``ratio`` (E,).
     """
     trust = len(ratio) / (len(ratio) + TRUST)
     return [_radius(ratio, share, normal, trust) for share, normal in coverage]

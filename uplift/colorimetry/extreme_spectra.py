@@ -45,21 +45,7 @@ class ExtremeSpectra(NamedTuple):
 def extreme_spectra(matrix: Array, rgb: Array, response: Array, basis: Indices | None = None) -> ExtremeSpectra:
     """Find the reflectances of given colours with the largest responses.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (3, N)
-        W, `Sensor.matrix`.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB r.
-    response : ndarray, shape (n, N)
-        c, the response of each problem to unit reflectance at each wavelength.
-    basis : ndarray of int, shape (n, 3), optional
-        Wavelengths to start from, such as the optimum of a similar problem.
-
-    Returns
-    -------
-    ExtremeSpectra
-        The optima, which depend on other problems and on the start by rounding alone.
+    Shapes: ``matrix`` (3, N), ``rgb`` (n, 3), ``response`` (n, N), ``basis`` (n, 3).
     """
     start = np.tile(first_basis(matrix), (len(rgb), 1)) if basis is None else basis
     found = ExtremeSpectra(np.empty(response.shape), start.copy(), np.zeros(len(rgb), dtype=bool))
@@ -78,14 +64,7 @@ def extreme_spectra(matrix: Array, rgb: Array, response: Array, basis: Indices |
 def first_basis(matrix: Array) -> Indices:
     """Choose three wavelengths with independent colours: of each row, the largest part that others do not share.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (3, N)
-        W.
-
-    Returns
-    -------
-    ndarray of int, shape (3,)
+    Shapes: ``matrix`` (3, N) → (3,).
     """
     rest, chosen = matrix.copy(), []
     for _ in range(3):

@@ -33,38 +33,19 @@ MIN_RISE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class LargestDifference:
-    """The metamers that differ most from given ones, n of them.
-
-    Parameters
-    ----------
-    delta_e_2000 : ndarray, shape (n,)
-        ΔE00 of the most different metamer that was found.
-    outer : ndarray, shape (n,)
-        Largest ΔE00 to a corner of the polyhedron around the volume, at least ``delta_e_2000``. A difference that
-        grows along all straight lines from the given colour would be bounded by it; ΔE00 nearly does.
-    xyz : ndarray, shape (n, 3)
-        XYZ of the most different metamers.
-    """
+    """The metamers that differ most from given ones, n of them."""
 
     delta_e_2000: Array
+    """(n,) ΔE00 of the most different metamer that was found."""
     outer: Array
+    """(n,) Largest ΔE00 to a corner of the polyhedron around the volume, at least ``delta_e_2000``. A difference
+    that grows along all straight lines from the given colour would be bounded by it; ΔE00 nearly does."""
     xyz: Array
+    """(n, 3) XYZ of the most different metamers."""
 
 
 def largest_difference(volumes: MismatchVolumes, xyz: Array) -> LargestDifference:
-    """Find the metamers that differ most from given ones.
-
-    Parameters
-    ----------
-    volumes : MismatchVolumes
-        The volumes of n colours.
-    xyz : ndarray, shape (n, 3)
-        XYZ of reflectances of these colours under the light.
-
-    Returns
-    -------
-    LargestDifference
-    """
+    """Find the metamers that differ most from given ones. Shapes: ``xyz`` (n, 3)."""
     white = volumes.light.white
     reference = lab(xyz, white)
     sampled = delta_e_2000(volumes.lab, reference[:, None])

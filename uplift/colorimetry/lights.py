@@ -64,40 +64,18 @@ STANDARD_ILLUMINANTS = ("A", "D50", "D55", "D65", "D75")
 
 @dataclass(frozen=True, eq=False)
 class Lamps:
-    """Spectral powers of lamps.
-
-    Parameters
-    ----------
-    names : tuple of str
-        Names, each once.
-    power : ndarray, shape (L, N)
-        Power at the wavelengths of a sensor, not negative, relative to the equal-energy light of luminance 1.
-    """
+    """Spectral powers of lamps."""
 
     names: tuple[str, ...]
+    """Names, each once."""
     power: Array
+    """(L, N) Power at the wavelengths of a sensor, not negative, relative to the equal-energy light of luminance 1."""
 
     def __len__(self) -> int:
         return len(self.names)
 
     def without(self, names: Collection[str]) -> Lamps:
-        """Leave out lamps.
-
-        Parameters
-        ----------
-        names : collection of str
-            Names of lamps, spelled as in ``names``.
-
-        Returns
-        -------
-        Lamps
-            The others.
-
-        Raises
-        ------
-        UnknownNameError
-            A name is unknown (``unknown-lamp``).
-        """
+        """Leave out lamps."""
         for name in names:
             if name not in self.names:
                 raise unknown_name(name, self.names, "lamp")

@@ -38,33 +38,22 @@ BLOCK_PROBLEMS = 1 << 14
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MismatchVolumes:
-    """Mismatch volumes of n colours under a light.
-
-    Parameters
-    ----------
-    sensor : Sensor
-        Sensor of the RGB.
-    light : Light
-        The second light.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB.
-    directions : Sphere
-        D directions in the scaled space, and the triangles between them.
-    scale : ndarray, shape (3, 3)
-        From the scaled space to XYZ.
-    xyz : ndarray, shape (n, D, 3)
-        XYZ on the boundary, the extreme of each direction.
-    basis : ndarray of int, shape (n, D, 3)
-        Wavelengths at which the extreme reflectances are neither 0 nor 1.
-    """
+    """Mismatch volumes of n colours under a light."""
 
     sensor: Sensor
+    """Sensor of the RGB."""
     light: Light
+    """The second light."""
     rgb: Array
+    """(n, 3) Linear RGB."""
     directions: Sphere
+    """D directions in the scaled space, and the triangles between them."""
     scale: Array
+    """(3, 3) From the scaled space to XYZ."""
     xyz: Array
+    """(n, D, 3) XYZ on the boundary, the extreme of each direction."""
     basis: Indices
+    """(n, D, 3) Wavelengths at which the extreme reflectances are neither 0 nor 1."""
 
     @cached_property
     def lab(self) -> Array:
@@ -93,42 +82,13 @@ class MismatchVolumes:
     def excess(self, xyz: Array) -> Array:
         """Compute by how much colours exceed the body in the direction in which they do so most.
 
-        Parameters
-        ----------
-        xyz : ndarray, shape (n, 3)
-            XYZ under the light, one for each colour.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            Not positive for all colours of the body; in XYZ, along the outward normal.
+        Shapes: ``xyz`` (n, 3) → (n,).
         """
         return np.asarray(np.einsum("kdi,di->kd", xyz[:, None] - self.xyz, self.normals).max(axis=1))
 
 
 def mismatch_volumes(sensor: Sensor, light: Light, rgb: Array, divisions: int = DIVISIONS) -> MismatchVolumes:
-    """Compute the mismatch volumes of colours under a light.
-
-    Parameters
-    ----------
-    sensor : Sensor
-        Sensor of the RGB.
-    light : Light
-        The second light, at the wavelengths of the sensor.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB.
-    divisions : int, default 2
-        Divisions of the icosahedron of directions: 12, 42, 162, 642 directions for 0 to 3.
-
-    Returns
-    -------
-    MismatchVolumes
-
-    Raises
-    ------
-    ColourError
-        No reflectance has a colour (code ``colour-unrealisable``).
-    """
+    """Compute the mismatch volumes of colours under a light. Shapes: ``rgb`` (n, 3)."""
     _require_realisable(sensor, rgb)
     directions, scale = sphere(divisions), _scale(sensor, light)
     response = directions.directions @ np.linalg.solve(scale, light.xyz)

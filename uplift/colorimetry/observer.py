@@ -1,20 +1,24 @@
-"""Observers, illuminants and RGB spaces by name: the one module that reads colour-science's tables."""
+"""Sensors, lights and observers by name, from the tables of colour-science.
+
+Tables are sampled from ``start`` to ``end`` every ``step`` nm; outside their range values are extrapolated as constant.
+Names that are unknown raise `UnknownNameError`, whose hint gives the nearest ones.
+"""
 
 from __future__ import annotations
 
 import functools
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from uplift.colorimetry.camera import CAMERA, Camera, read_camera
-from uplift.colorimetry.gamut import Primaries, conversion
+from uplift.colorimetry.camera import CAMERA, Camera, camera_sensor, read_camera
+from uplift.colorimetry.gamut import Primaries
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, Lamps
-from uplift.colorimetry.ocio import AP0, OcioSpace, find_ocio_space
 from uplift.colorimetry.sensor import Light, Sensor
+from uplift.colorimetry.spaces import look_up_space
 from uplift.colorimetry.srgb import decode_portably
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
@@ -23,25 +27,8 @@ from uplift.common.errors import OptionError, unknown_name
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
 CRT = "Typical CRT Brainard 1997"
 """Phosphors of a cathode-ray tube, measured by D. H. Brainard."""
-SHORT_NAMES = {
-    "ap0": "ACES2065-1",
-    "ap1": "ACEScg",
-    "rec709": "ITU-R BT.709",
-    "bt709": "ITU-R BT.709",
-    "rec2020": "ITU-R BT.2020",
-    "bt2020": "ITU-R BT.2020",
-    "p3": "Display P3",
-    "prophoto": "ProPhoto RGB",
-}
-"""Names of colour-science by usual short ones, in lower case and without punctuation."""
-FIRST_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "Adobe RGB (1998)")
-"""Spaces of colour-science that stand for others with the same primaries."""
-MAX_MATRIX_DIFFERENCE = 1e-3
-"""Largest difference between matrices of the same primaries, of which some are rounded."""
-CORRELATED = 50.0
-"""Distance in nm at which the correlation of reflectances that a camera's matrix is fitted to falls to 1/e."""
-MAX_CONDITION = 1e4
-"""Limit of the condition number of a camera's matrix: one channel is a mixture of the others beyond it."""
+COMMON_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
+"""Names of colour-science, by the area of the gamut in CIE 1976 u′, v′."""
 LAMP_TABLES = ("SDS_ILLUMINANTS", "SDS_LIGHT_SOURCES")
 VISIBLE = (400.0, 700.0)
 """Range in nm that a lamp must cover."""
@@ -93,7 +80,11 @@ def sensor(
     [0.5, 0.5, 0.5]
     """
     if space == CAMERA:
-        return _camera_sensor(find_camera(observer), illuminant)
+        camera = find_camera(observer)
+        if camera.name in colour_science().RGB_COLOURSPACES:
+            raise OptionError(f"a camera must not have the name of an RGB space, got '{camera.name}'")
+        standard = (DEFAULT_OBSERVER, matching_functions())
+        return camera_sensor(camera, grid(), light(illuminant), illuminant_spd(illuminant), *standard)
     colour = colour_science()
     if isinstance(observer, Camera) or observer in colour.MSDS_CAMERA_SENSITIVITIES:
         raise OptionError(
@@ -119,21 +110,7 @@ def sensor(
 
 
 def on_range(sensor: Sensor, start: float, end: float, step: float) -> Sensor:
-    """Return a sensor with another range of wavelengths, where the perfect reflector is white again.
-
-    Parameters
-    ----------
-    sensor : Sensor
-        The sensor.
-    start, end, step : float
-        Range and step in nm. Outside their tables, illuminant and observer are extrapolated as constants; the
-        sensitivities of a camera are 0.
-
-    Returns
-    -------
-    Sensor
-        The sensor itself for its own range.
-    """
+    """Return a sensor with another range of wavelengths, where the perfect reflector is white again."""
     if sensor.range == (start, end, step):
         return sensor
     wide = light(sensor.illuminant, sensor.observer, start, end, step)
@@ -152,25 +129,7 @@ def on_range(sensor: Sensor, start: float, end: float, step: float) -> Sensor:
 
 
 def find_camera(camera: str | Camera) -> Camera:
-    """Find the sensitivities of a camera.
-
-    Parameters
-    ----------
-    camera : str or Camera
-        Name of colour-science, such as ``"Nikon 5100 (NPL)"``, or the path of a CSV file; see
-        `uplift.colorimetry.camera.read_camera`.
-
-    Returns
-    -------
-    Camera
-
-    Raises
-    ------
-    UnknownNameError
-        The name is unknown (``unknown-camera``).
-    OptionError
-        The file cannot be used.
-    """
+    """Find the sensitivities of a camera."""
     if isinstance(camera, Camera):
         return camera
     if camera.casefold().endswith(".csv"):
@@ -179,81 +138,19 @@ def find_camera(camera: str | Camera) -> Camera:
     return Camera(found.name, found.wavelengths, found.values)
 
 
-def _camera_sensor(camera: Camera, illuminant: str) -> Sensor:
-    if camera.name in colour_science().RGB_COLOURSPACES:
-        raise OptionError(f"a camera must not have the name of an RGB space, got '{camera.name}'")
-    build_light, power, sensitivities = light(illuminant), illuminant_spd(illuminant), camera.at(grid())
-    weights = sensitivities * power[:, None]
-    if not (weights.sum(axis=0) > 0).all():
-        raise OptionError(
-            f"every channel must respond to {build_light.name} within {START:g}–{END:g} nm",
-            hint="give wavelengths in nm, and sensitivities of red, green and blue",
-        )
-    balanced = (weights / weights.sum(axis=0)).T
-    correlation = np.exp(-np.abs(np.subtract.outer(grid(), grid())) / CORRELATED)
-    expected = correlation @ build_light.xyz.T
-    matrix = balanced @ expected @ np.linalg.inv(build_light.xyz @ expected)
-    if np.linalg.cond(matrix) > MAX_CONDITION:
-        raise OptionError("the channels of a camera must have different sensitivities")
-    return Sensor(
-        space=camera.name,
-        illuminant=build_light.name,
-        observer=DEFAULT_OBSERVER,
-        wavelengths=grid(),
-        cmfs=matching_functions(),
-        power=power,
-        xyz_to_rgb=matrix / (matrix @ build_light.white)[:, None],
-        decoding=np.arange(256) / 255,
-        sensitivities=sensitivities,
-    )
-
-
 def display_sensors(
     illuminants: Sequence[str], observer: str, start: float = START, end: float = END, step: float = STEP
 ) -> tuple[Sensor, ...]:
     """Create an sRGB sensor for each illuminant, without duplicates.
 
     Their linear RGB can be displayed directly: the white of each illuminant becomes the white of the screen.
-
-    Parameters
-    ----------
-    illuminants : sequence of str
-        Illuminants; aliases of one illuminant give one sensor.
-    observer : str
-        Colour-matching functions.
-    start, end, step : float
-        Range and step in nm, as `Sensor.range`.
-
-    Returns
-    -------
-    tuple of Sensor
-
-    Raises
-    ------
-    UnknownNameError
-        A name is unknown.
     """
     sensors = (on_range(sensor("sRGB", name, observer), start, end, step) for name in illuminants)
     return tuple({each.illuminant: each for each in sensors}.values())
 
 
 def primaries(space: str) -> Primaries:
-    """Return the primaries and white of an RGB space.
-
-    Parameters
-    ----------
-    space : str
-        RGB space.
-
-    Returns
-    -------
-    Primaries
-
-    Raises
-    ------
-    UnknownNameError
-        The space is unknown.
-    """
+    """Return the primaries and white of an RGB space."""
     rgb_space = look_up_space(space)
     return Primaries.of([*rgb_space.primaries.ravel(), *rgb_space.whitepoint])
 
@@ -288,20 +185,7 @@ def light(
 
 
 def aligned(sensor: Sensor, start: float = START, end: float = END, step: float = STEP) -> tuple[Any, Any]:
-    """Return the observer and illuminant of a sensor as objects of colour-science.
-
-    Parameters
-    ----------
-    sensor : Sensor
-        The sensor.
-    start, end, step : float
-        Range and step in nm; outside the table, values are extrapolated as constants.
-
-    Returns
-    -------
-    tuple
-        Colour-matching functions and spectral distribution of the illuminant.
-    """
+    """Return the observer and illuminant of a sensor as objects of colour-science."""
     colour = colour_science()
     shape = colour.SpectralShape(start, end, step)
     cmfs, light = colour.MSDS_CMFS[sensor.observer], colour.SDS_ILLUMINANTS[sensor.illuminant]
@@ -313,22 +197,7 @@ def axis_nodes(spacing: str, dim: int) -> Array:
 
     They are the same doubles on every CPU, so cubes of one dim and spacing have equal nodes wherever they were built.
 
-    Parameters
-    ----------
-    spacing : {"srgb", "linear"}
-        Transfer curve in which the nodes are evenly spaced.
-    dim : int
-        Number of nodes.
-
-    Returns
-    -------
-    ndarray, shape (dim,)
-        Positions from 0 to 1, ascending.
-
-    Raises
-    ------
-    UnknownNameError
-        The spacing is unknown.
+    Shape (dim,).
     """
     even = np.linspace(0.0, 1.0, dim)
     if spacing == "linear":
@@ -341,46 +210,12 @@ def axis_nodes(spacing: str, dim: int) -> Array:
 def matching_functions(
     observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
 ) -> Array:
-    """Return colour-matching functions.
-
-    Parameters
-    ----------
-    observer : str
-        Their name.
-    start, end, step : float
-        Range and step in nm; outside the table, values are extrapolated as constants.
-
-    Returns
-    -------
-    ndarray, shape (N, 3)
-
-    Raises
-    ------
-    UnknownNameError
-        The observer is unknown.
-    """
+    """Return colour-matching functions. Shape (N, 3)."""
     return _samples("MSDS_CMFS", observer, "observer", start, end, step)
 
 
 def illuminant_spd(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
-    """Return the relative spectral power of an illuminant.
-
-    Parameters
-    ----------
-    illuminant : str
-        Its name.
-    start, end, step : float
-        Range and step in nm; outside the table, values are extrapolated as constants.
-
-    Returns
-    -------
-    ndarray, shape (N,)
-
-    Raises
-    ------
-    UnknownNameError
-        The illuminant is unknown.
-    """
+    """Return the relative spectral power of an illuminant. Shape (N,)."""
     return _samples("SDS_ILLUMINANTS", illuminant, "illuminant", start, end, step)
 
 
@@ -388,23 +223,6 @@ def lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: float = E
     """Return the lights of colour-science: CIE illuminants and measured lamps.
 
     Lights that are measured on less than 400–700 nm, and lights with the spectrum of an earlier one, are left out.
-
-    Parameters
-    ----------
-    observer : str
-        Colour-matching functions.
-    start, end, step : float
-        Range and step in nm; outside the table, values are extrapolated as constants.
-
-    Returns
-    -------
-    Lamps
-        Powers of luminance 1.
-
-    Raises
-    ------
-    UnknownNameError
-        The observer is unknown.
     """
     luminance = matching_functions(observer, start, end, step)[:, 1]
     colour = colour_science()
@@ -423,37 +241,13 @@ def lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: float = E
 
 
 def display_primaries(display: str = CRT, start: float = START, end: float = END, step: float = STEP) -> Array:
-    """Return the relative spectral power of the primaries of a display.
-
-    Parameters
-    ----------
-    display : str
-        Its name.
-    start, end, step : float
-        Range and step in nm; outside the table, values are extrapolated as constants.
-
-    Returns
-    -------
-    ndarray, shape (N, 3)
-
-    Raises
-    ------
-    UnknownNameError
-        The display is unknown.
-    """
+    """Return the relative spectral power of the primaries of a display. Shape (N, 3)."""
     return _samples("MSDS_DISPLAY_PRIMARIES", display, "display", start, end, step)
 
 
 def illuminant_names() -> tuple[str, ...]:
     """Return the names of all illuminants.
 
-    Returns
-    -------
-    tuple of str
-        Names of colour-science, aliases included, in the order of its tables.
-
-    Examples
-    --------
     >>> "FL11" in illuminant_names()
     True
     """
@@ -463,13 +257,6 @@ def illuminant_names() -> tuple[str, ...]:
 def observer_names() -> tuple[str, ...]:
     """Return the names of all standard observers.
 
-    Returns
-    -------
-    tuple of str
-        Names of colour-science, aliases included, in the order of its tables.
-
-    Examples
-    --------
     >>> DEFAULT_OBSERVER in observer_names()
     True
     """
@@ -479,13 +266,6 @@ def observer_names() -> tuple[str, ...]:
 def camera_names() -> tuple[str, ...]:
     """Return the names of all cameras.
 
-    Returns
-    -------
-    tuple of str
-        Names of colour-science.
-
-    Examples
-    --------
     >>> camera_names()
     ('Nikon 5100 (NPL)', 'Sigma SDMerill (NPL)')
     """
@@ -495,54 +275,41 @@ def camera_names() -> tuple[str, ...]:
 def space_names() -> tuple[str, ...]:
     """Return the names of all RGB spaces.
 
-    Returns
-    -------
-    tuple of str
-        Names of colour-science, aliases included, in the order of its tables.
-
-    Examples
-    --------
     >>> "sRGB" in space_names()
     True
     """
     return tuple(colour_science().RGB_COLOURSPACES)
 
 
-def look_up_space(name: str, *, ocio: bool = True) -> Any:
-    """Find an RGB space of colour-science.
+def smallest_space(
+    reflectances: ArrayLike, illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
+) -> str | None:
+    """Find the smallest of the common RGB spaces that holds all colours of reflectances.
 
-    Parameters
-    ----------
-    name : str
-        Its name, a short name, or the name of a space of OpenColorIO with the same primaries and white.
-    ocio : bool
-        Whether to accept names of OpenColorIO.
+    Shapes: ``reflectances`` (…, N).
 
-    Returns
-    -------
-    RGB_Colourspace
-        The object of colour-science.
-
-    Raises
-    ------
-    UnknownNameError
-        The name is unknown.
+    >>> import numpy as np
+    >>> smallest_space(np.full(81, 0.5))
+    'sRGB'
     """
-    table = colour_science().RGB_COLOURSPACES
-    for each in (name, SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name)):
-        if each in table:
-            return table[each]
-    found = find_ocio_space(name) if ocio else None
-    if found is not None:
-        for each in (*FIRST_SPACES, *table):
-            if _same_primaries(table[each], found):
-                return table[each]
-    raise unknown_name(name, table, "RGB space")
+    for space in COMMON_SPACES:
+        candidate = sensor(space, illuminant, observer)
+        if candidate.contains(candidate.rgb(reflectances)).all():
+            return space
+    return None
 
 
-def _same_primaries(space: Any, found: OcioSpace) -> bool:
-    expected = conversion(Primaries.of([*space.primaries.ravel(), *space.whitepoint]), AP0)
-    return bool(np.abs(found.to_ap0(np.eye(3)).T - expected).max() <= MAX_MATRIX_DIFFERENCE)
+def holding_note(
+    reflectances: ArrayLike, illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
+) -> str:
+    """Describe the smallest of the common RGB spaces that holds all colours of reflectances.
+
+    Shapes: ``reflectances`` (E, N).
+    """
+    space = smallest_space(reflectances, illuminant, observer)
+    if space is None:
+        return f"none of {', '.join(COMMON_SPACES)} holds all"
+    return f"{space} holds all {len(np.asarray(reflectances))}"
 
 
 def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:

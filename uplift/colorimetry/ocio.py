@@ -24,35 +24,17 @@ AP0 = Primaries((0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), (0.32168, 0.3376
 
 @dataclass(frozen=True, eq=False)
 class OcioSpace:
-    """A colour space of a configuration.
-
-    Parameters
-    ----------
-    name : str
-        Its name in the configuration.
-    is_linear : bool
-        Whether its values are linear.
-    processor : object
-        CPU processor to linear RGB of `AP0`.
-    """
+    """A colour space of a configuration."""
 
     name: str
+    """Its name in the configuration."""
     is_linear: bool
+    """Whether its values are linear."""
     processor: Any
+    """CPU processor to linear RGB of `AP0`."""
 
     def to_ap0(self, values: Array) -> Array:
-        """Convert values.
-
-        Parameters
-        ----------
-        values : ndarray, shape (..., 3)
-            Values of the space.
-
-        Returns
-        -------
-        ndarray, shape (..., 3)
-            Linear RGB of `AP0`; white stays (1, 1, 1).
-        """
+        """Convert values. Shapes: ``values`` (…, 3) → (…, 3)."""
         converted = np.array(values, dtype=np.float32, order="C")
         if converted.size:
             self.processor.applyRGB(converted.reshape(-1, 3))
@@ -60,25 +42,7 @@ class OcioSpace:
 
 
 def find_ocio_space(name: str, *, built_in: bool = True) -> OcioSpace | None:
-    """Find a colour space by name, alias or role.
-
-    Parameters
-    ----------
-    name : str
-        The name; case does not matter.
-    built_in : bool
-        Search the built-in configuration too, after that of ``$OCIO``.
-
-    Returns
-    -------
-    OcioSpace or None
-        None for unknown names, and for data that are not colours.
-
-    Raises
-    ------
-    OptionError
-        The configuration of ``$OCIO`` cannot be used (code ``invalid-ocio-config``).
-    """
+    """Find a colour space by name, alias or role."""
     places = [os.environ.get(VARIABLE, "")] + ([BUILT_IN] if built_in else [])
     for place in filter(None, places):
         config = _configuration(place)
@@ -89,12 +53,7 @@ def find_ocio_space(name: str, *, built_in: bool = True) -> OcioSpace | None:
 
 
 def ocio_names() -> Iterable[str]:
-    """Return the names of the colour spaces of the built-in configuration, for suggestions.
-
-    Returns
-    -------
-    iterable of str
-    """
+    """Return the names of the colour spaces of the built-in configuration, for suggestions."""
     return tuple(_configuration(BUILT_IN).getColorSpaceNames())
 
 

@@ -14,19 +14,7 @@ MIN_ROUNDNESS = 1e-12
 def outline(points: Array, faces: Indices, angles: int = ANGLES) -> Array:
     """Compute the outline of a triangle mesh that is projected to a plane.
 
-    Parameters
-    ----------
-    points : ndarray, shape (D, 2)
-        Projected corners.
-    faces : ndarray of int, shape (F, 3)
-        Triangles of a closed mesh.
-    angles : int, default 120
-        Number of points, evenly spaced in angle around the mean of the corners once the shape is made round.
-
-    Returns
-    -------
-    ndarray, shape (angles, 2)
-        In each direction the farthest point of the projected triangles.
+    Shapes: ``points`` (D, 2), ``faces`` (F, 3) → (angles, 2).
     """
     centre = points.mean(axis=0)
     values, axes = np.linalg.eigh(np.cov(points.T))

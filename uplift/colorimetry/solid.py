@@ -93,21 +93,7 @@ def toward_grey(limits: Solid, grey: Array, target: Array, margin: float) -> Arr
 
     Colours deeper inside are unchanged, bit for bit, and the result is continuous.
 
-    Parameters
-    ----------
-    limits : Solid
-        The solid.
-    grey : ndarray, shape (n, 3)
-        Linear RGB inside the solid.
-    target : ndarray, shape (n, 3)
-        Linear RGB anywhere.
-    margin : float
-        Largest change of a channel between the boundary and the results, along the line.
-
-    Returns
-    -------
-    ndarray, shape (n, 3)
-        Colours inside the solid.
+    Shapes: ``grey`` (n, 3), ``target`` (n, 3) → (n, 3).
     """
     result = target.copy()
     near = np.flatnonzero(limits.signed_distance(target) > -2 * margin)
@@ -120,17 +106,7 @@ def toward_grey(limits: Solid, grey: Array, target: Array, margin: float) -> Arr
 
 
 def solid(matrix: Array) -> Solid:
-    """Compute the object-colour solid of a sensor.
-
-    Parameters
-    ----------
-    matrix : ndarray, shape (3, N)
-        `Sensor.matrix`.
-
-    Returns
-    -------
-    Solid
-    """
+    """Compute the object-colour solid of a sensor. Shapes: ``matrix`` (3, N)."""
     segments = matrix.T
     first, second = np.triu_indices(len(segments), k=1)
     cross = np.cross(segments[first], segments[second])
@@ -148,14 +124,7 @@ def solid_volume(matrix: Array) -> float:
     The zonotope consists of a parallelepiped for each triple of segments; each pair of segments takes part in those of
     all third ones.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (3, N)
-        Responses, such as `Sensor.matrix` or `Light.xyz`.
-
-    Returns
-    -------
-    float
+    Shapes: ``matrix`` (3, N).
     """
     first, second = np.triu_indices(matrix.shape[1], k=1)
     normals = np.cross(matrix.T[first], matrix.T[second])

@@ -5,13 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from uplift.colorimetry.gamut import Gamut, Primaries, conversion
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
-from uplift.colorimetry.observer import DEFAULT_OBSERVER, look_up_space, sensor
 from uplift.colorimetry.ocio import AP0, OcioSpace, find_ocio_space, ocio_names
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import encode
@@ -20,8 +18,21 @@ from uplift.common.colour_science import colour_science
 from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value, parse_float
 
-COMMON_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
-"""Names of colour-science, by the area of the gamut in CIE 1976 u′, v′."""
+SHORT_NAMES = {
+    "ap0": "ACES2065-1",
+    "ap1": "ACEScg",
+    "rec709": "ITU-R BT.709",
+    "bt709": "ITU-R BT.709",
+    "rec2020": "ITU-R BT.2020",
+    "bt2020": "ITU-R BT.2020",
+    "p3": "Display P3",
+    "prophoto": "ProPhoto RGB",
+}
+"""Names of colour-science by usual short ones, in lower case and without punctuation."""
+FIRST_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "Adobe RGB (1998)")
+"""Spaces of colour-science that stand for others with the same primaries."""
+MAX_MATRIX_DIFFERENCE = 1e-3
+"""Largest difference between matrices of the same primaries, of which some are rounded."""
 MAX_PRIMARIES_DIFFERENCE = 5e-3
 """Largest difference in linear RGB between primaries that count as equal."""
 MAX_CURVE_DIFFERENCE = 0.5
@@ -31,64 +42,27 @@ NUMBERS = re.compile(r"[-+\d.eE,;\s]+")
 
 @dataclass(frozen=True, eq=False)
 class ImageSpace:
-    """The RGB space of colours to read.
-
-    Parameters
-    ----------
-    name : str
-        Name for messages.
-    gamut : Gamut
-        Primaries of the linear RGB that `decode` returns.
-    decode : callable or None
-        From codes (..., 3), 0 to 1, to linear RGB (..., 3). None for the transfer function of the cube's space.
-    floats_are_codes : bool
-        Whether floats of the space are codes, too, as those of encoded spaces of OpenColorIO.
-    mixes_channels : bool
-        Whether `decode` computes each component from all three.
-    """
+    """The RGB space of colours to read."""
 
     name: str
+    """Name for messages."""
     gamut: Gamut
+    """Primaries of the linear RGB that `decode` returns."""
     decode: Callable[[Array], Array] | None = None
+    """From codes (..., 3), 0 to 1, to linear RGB (..., 3). None for the transfer function of the cube's space."""
     floats_are_codes: bool = False
+    """Whether floats of the space are codes, too, as those of encoded spaces of OpenColorIO."""
     mixes_channels: bool = False
+    """Whether `decode` computes each component from all three."""
 
     def matrix_to(self, sensor: Sensor) -> Array | None:
-        """Compute the matrix to the linear RGB of a sensor.
-
-        Parameters
-        ----------
-        sensor : Sensor
-            The sensor.
-
-        Returns
-        -------
-        ndarray of shape (3, 3), or None
-            None if the primaries agree.
-
-        Raises
-        ------
-        ColourError
-            The sensor is a camera (``camera-without-xyz``).
-        """
+        """Compute the matrix to the linear RGB of a sensor. Shape (3, 3)."""
         sensor.require_xyz()
         matrix = conversion(self.gamut, sensor)
         return None if np.abs(matrix - np.eye(3)).max() <= MAX_PRIMARIES_DIFFERENCE else matrix
 
     def agrees_with(self, sensor: Sensor, *, encoded: bool) -> bool:
-        """Whether the space is that of a sensor, up to rounding.
-
-        Parameters
-        ----------
-        sensor : Sensor
-            The sensor.
-        encoded : bool
-            Whether to compare the transfer functions, too.
-
-        Returns
-        -------
-        bool
-        """
+        """Whether the space is that of a sensor, up to rounding."""
         if sensor.sensitivities is not None or self.mixes_channels or self.matrix_to(sensor) is not None:
             return False
         if not encoded or self.decode is None:
@@ -104,24 +78,6 @@ def find_space(text: str) -> ImageSpace:
     Names of the configuration in ``$OCIO`` come first, then those of colour-science and short ones such as ``AP1`` or
     ``rec2020``, then those of the configuration that OpenColorIO contains.
 
-    Parameters
-    ----------
-    text : str
-        Such as ``"ACEScg"``, ``"lin_rec2020"``, ``"sRGB - Texture"``, or x,y of red, green, blue and white.
-
-    Returns
-    -------
-    ImageSpace
-
-    Raises
-    ------
-    UnknownNameError
-        The name is unknown.
-    OptionError
-        The chromaticities are not those of a display, or the configuration of ``$OCIO`` cannot be used.
-
-    Examples
-    --------
     >>> find_space("rec2020").name, find_space("lin_ap1_scene").name
     ('ITU-R BT.2020', 'ACEScg')
     """
@@ -141,17 +97,7 @@ def find_space(text: str) -> ImageSpace:
 
 
 def from_ocio(space: OcioSpace) -> ImageSpace:
-    """Make the image space of a colour space of OpenColorIO.
-
-    Parameters
-    ----------
-    space : OcioSpace
-        The colour space.
-
-    Returns
-    -------
-    ImageSpace
-    """
+    """Make the image space of a colour space of OpenColorIO."""
     if space.is_linear:
         matrix = space.to_ap0(np.eye(3)).T
         return ImageSpace(space.name, LinearGamut(AP0.rgb_to_xyz @ matrix), lambda codes: codes)
@@ -177,68 +123,20 @@ def _parse_primaries(text: str) -> Primaries:
     return Primaries.of(numbers)
 
 
-def smallest_space(
-    reflectances: ArrayLike, illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
-) -> str | None:
-    """Find the smallest of the common RGB spaces that holds all colours of reflectances.
-
-    Parameters
-    ----------
-    reflectances : array_like, shape (..., N)
-        Reflectances in units of 1 on the wavelengths of `uplift.colorimetry.observer.grid`.
-    illuminant : str
-        Illuminant that the RGB refer to.
-    observer : str
-        Colour-matching functions.
-
-    Returns
-    -------
-    str or None
-        One of `COMMON_SPACES`; None if none of them holds all colours.
-
-    Raises
-    ------
-    UnknownNameError
-        The illuminant or the observer is unknown.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> smallest_space(np.full(81, 0.5))
-    'sRGB'
-    """
-    for space in COMMON_SPACES:
-        candidate = sensor(space, illuminant, observer)
-        if candidate.contains(candidate.rgb(reflectances)).all():
-            return space
-    return None
+def look_up_space(name: str, *, ocio: bool = True) -> Any:
+    """Find an RGB space of colour-science."""
+    table = colour_science().RGB_COLOURSPACES
+    for each in (name, SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name)):
+        if each in table:
+            return table[each]
+    found = find_ocio_space(name) if ocio else None
+    if found is not None:
+        for each in (*FIRST_SPACES, *table):
+            if _same_primaries(table[each], found):
+                return table[each]
+    raise unknown_name(name, table, "RGB space")
 
 
-def holding_note(
-    reflectances: ArrayLike, illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
-) -> str:
-    """Describe the smallest of the common RGB spaces that holds all colours of reflectances.
-
-    Parameters
-    ----------
-    reflectances : array_like, shape (E, N)
-        Reflectances, as for `smallest_space`.
-    illuminant : str
-        Illuminant that the RGB refer to.
-    observer : str
-        Colour-matching functions.
-
-    Returns
-    -------
-    str
-        Such as "Display P3 holds all 24".
-
-    Raises
-    ------
-    UnknownNameError
-        The illuminant or the observer is unknown.
-    """
-    space = smallest_space(reflectances, illuminant, observer)
-    if space is None:
-        return f"none of {', '.join(COMMON_SPACES)} holds all"
-    return f"{space} holds all {len(np.asarray(reflectances))}"
+def _same_primaries(space: Any, found: OcioSpace) -> bool:
+    expected = conversion(Primaries.of([*space.primaries.ravel(), *space.whitepoint]), AP0)
+    return bool(np.abs(found.to_ap0(np.eye(3)).T - expected).max() <= MAX_MATRIX_DIFFERENCE)

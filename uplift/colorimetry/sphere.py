@@ -14,35 +14,18 @@ COUNTS = (12, 42, 162, 642, 2562)
 
 @dataclass(frozen=True, eq=False)
 class Sphere:
-    """Directions as the corners of a triangle mesh.
-
-    Parameters
-    ----------
-    directions : ndarray, shape (D, 3)
-        Unit vectors; those of coarser meshes come first.
-    faces : ndarray of int, shape (F, 3)
-        Triangles, their corners counter-clockwise from outside.
-    parents : ndarray of int, shape (D,)
-        A neighbour of each direction in the coarser mesh; −1 for the corners of the icosahedron.
-    """
+    """Directions as the corners of a triangle mesh."""
 
     directions: Array
+    """(D, 3) Unit vectors; those of coarser meshes come first."""
     faces: Indices
+    """(F, 3) Triangles, their corners counter-clockwise from outside."""
     parents: Indices
+    """(D,) A neighbour of each direction in the coarser mesh; −1 for the corners of the icosahedron."""
 
 
 def sphere(divisions: int) -> Sphere:
-    """Divide the icosahedron.
-
-    Parameters
-    ----------
-    divisions : int
-        0 or more; see `COUNTS`.
-
-    Returns
-    -------
-    Sphere
-    """
+    """Divide the icosahedron."""
     found = _icosahedron()
     for _ in range(divisions):
         found = _divided(found)

@@ -21,18 +21,7 @@ DISPLAY_MAPPING = "desaturate"
 
 
 def decode(codes: Array) -> Array:
-    """Convert encoded sRGB to linear values, both in [0, 1].
-
-    Parameters
-    ----------
-    codes : ndarray
-        Encoded values.
-
-    Returns
-    -------
-    ndarray
-        Linear values of the same shape.
-    """
+    """Convert encoded sRGB to linear values, both in [0, 1]."""
     return np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
 
 
@@ -43,18 +32,8 @@ def decode_portably(codes: Array) -> Array:
     they are computed in decimal arithmetic and rounded once; every other operation is a single one of IEEE 754, which
     defines its rounding. This is slow and intended for the nodes of a lattice axis.
 
-    Parameters
-    ----------
-    codes : ndarray, shape (n,)
-        Encoded values in [0, 1].
+    Shapes: ``codes`` (n,) → (n,).
 
-    Returns
-    -------
-    ndarray, shape (n,)
-        Linear values.
-
-    Examples
-    --------
     >>> import numpy as np
     >>> decode_portably(np.array([0.0, 0.5, 1.0])).tolist()
     [0.0, 0.21404114048223255, 1.0]
@@ -66,37 +45,13 @@ def decode_portably(codes: Array) -> Array:
 
 
 def encode(linear: ArrayLike) -> Array:
-    """Convert linear values to encoded sRGB in [0, 1], clipping values outside.
-
-    Parameters
-    ----------
-    linear : array_like
-        Linear values.
-
-    Returns
-    -------
-    ndarray
-        Encoded values of the same shape.
-    """
+    """Convert linear values to encoded sRGB in [0, 1], clipping values outside."""
     inside = np.clip(np.asarray(linear, dtype=float), 0, 1)
     return np.where(inside <= 0.0031308, inside * 12.92, 1.055 * inside ** (1 / 2.4) - 0.055)
 
 
 def to_display_codes(rgb: ArrayLike, gamut: Gamut) -> Array:
-    """Convert linear RGB of a gamut to 8-bit sRGB codes, white to white.
-
-    Parameters
-    ----------
-    rgb : array_like, shape (..., 3)
-        Linear RGB of ``gamut``; colours outside sRGB are desaturated.
-    gamut : Gamut
-        The RGB space of ``rgb``.
-
-    Returns
-    -------
-    ndarray of float, shape (..., 3)
-        Integers from 0 to 255.
-    """
+    """Convert linear RGB of a gamut to 8-bit sRGB codes, white to white. Shapes: ``rgb`` (…, 3) → (…, 3)."""
     linear = np.asarray(rgb, dtype=float) @ conversion(gamut, SRGB).T
     return np.rint(255 * encode(map_to_gamut(linear, SRGB, DISPLAY_MAPPING).rgb))
 
@@ -104,19 +59,8 @@ def to_display_codes(rgb: ArrayLike, gamut: Gamut) -> Array:
 def hex_codes(rgb: Array, gamut: Gamut = SRGB) -> list[str]:
     """Convert linear RGB of a gamut to ``#rrggbb`` codes, by `to_display_codes`.
 
-    Parameters
-    ----------
-    rgb : ndarray, shape (n, 3)
-        Linear RGB of ``gamut``.
-    gamut : Gamut
-        The RGB space of ``rgb``.
+    Shapes: ``rgb`` (n, 3).
 
-    Returns
-    -------
-    list of str, length n
-
-    Examples
-    --------
     >>> import numpy as np
     >>> hex_codes(np.array([[1.0, 0.5, 0.0]]))
     ['#ffbc00']

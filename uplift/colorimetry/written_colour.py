@@ -26,39 +26,13 @@ class WrittenColour:
     linear: tuple[float, ...] = ()
 
     def rgb(self, sensor: Sensor) -> Array:
-        """Convert to the linear RGB of a sensor.
-
-        Parameters
-        ----------
-        sensor : Sensor
-            The sensor, whose encoding codes have.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-        """
+        """Convert to the linear RGB of a sensor. Shape (3,)."""
         return sensor.decode(self.codes) if self.codes else np.array(self.linear)
 
 
 def parse_colour(value: Any) -> WrittenColour:
     """Parse ``"#rrggbb"`` or three linear numbers.
 
-    Parameters
-    ----------
-    value : object
-        Text, or a sequence of numbers.
-
-    Returns
-    -------
-    WrittenColour
-
-    Raises
-    ------
-    ColourError
-        Anything else (``invalid-colour``).
-
-    Examples
-    --------
     >>> parse_colour("#cc3319").codes
     (204, 51, 25)
     """
@@ -76,16 +50,5 @@ def parse_colour(value: Any) -> WrittenColour:
 
 
 def is_number(value: object) -> bool:
-    """Test whether a value is a finite number, and not absurdly large.
-
-    Parameters
-    ----------
-    value : object
-        Any value.
-
-    Returns
-    -------
-    bool
-        False for booleans, too.
-    """
+    """Test whether a value is a finite number, and not absurdly large."""
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= MAX_NUMBER

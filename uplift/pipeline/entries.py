@@ -11,9 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from uplift.atlas import Atlas, on_grid, read_atlas, resample
-from uplift.colorimetry.observer import grid
+from uplift.colorimetry.observer import grid, holding_note
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.spaces import holding_note
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.cube import AtlasTable, EntrySpectra, LeftOut

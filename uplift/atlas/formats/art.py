@@ -58,13 +58,7 @@ def is_art_archive(document: Document) -> bool:
 
 
 def read(document: Document) -> Atlas:
-    """Read the reflectances of an archive; entries of other types are skipped.
-
-    Raises
-    ------
-    AtlasError
-        The text deviates from the format; with line, entry and hint.
-    """
+    """Read the reflectances of an archive; entries of other types are skipped."""
     preamble, blocks = split_entries(document)
     header = _header(preamble, SourceLocation(document.path))
     entries = [_entry(block) for block in blocks]

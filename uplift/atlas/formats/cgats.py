@@ -31,13 +31,7 @@ def is_cgats(document: Document) -> bool:
 
 
 def read(document: Document) -> Measurements:
-    """Read the sets of a CGATS file. Fields other than the name and the spectrum are not used.
-
-    Raises
-    ------
-    AtlasError
-        The text deviates from the format, has no spectral fields, or is not of reflectances.
-    """
+    """Read the sets of a CGATS file. Fields other than the name and the spectrum are not used."""
     location = SourceLocation(document.path)
     preamble, rows = _parse(document)
     text = "\n".join(preamble)

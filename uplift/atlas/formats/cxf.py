@@ -27,13 +27,7 @@ def is_cxf(document: Document) -> bool:
 
 
 def read(document: Document) -> Measurements:
-    """Read the reflectance spectra of the objects of a CxF3 file; objects with other spectra only are skipped.
-
-    Raises
-    ------
-    AtlasError
-        The file is not valid, or colour-cxf is not installed.
-    """
+    """Read the reflectance spectra of the objects of a CxF3 file; objects with other spectra only are skipped."""
     check_xml(document)
     with needs_extra("io", "CxF files", AtlasError):
         from colour_cxf import cxf3

@@ -28,13 +28,7 @@ def is_envi(document: Document) -> bool:
 
 
 def read(document: Document) -> Measurements:
-    """Read the spectra of a library, from the path of either of its two files.
-
-    Raises
-    ------
-    AtlasError
-        A file is missing or not valid, or spectral is not installed.
-    """
+    """Read the spectra of a library, from the path of either of its two files."""
     location = SourceLocation(document.path)
     header, data = _pair(document)
     with needs_extra("io", "ENVI libraries", AtlasError):

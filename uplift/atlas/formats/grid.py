@@ -66,26 +66,7 @@ class Table:
 
 
 def read_grid(rows: Sequence[Row], path: str, comments: str = "") -> Measurements:
-    """Read the spectra of a grid of cells.
-
-    Parameters
-    ----------
-    rows : sequence of Row
-        Rows that are not blank, without empty cells at their ends.
-    path : str
-        The file.
-    comments : str
-        Text of the file outside of the table, for statements about the quantity.
-
-    Returns
-    -------
-    Measurements
-
-    Raises
-    ------
-    AtlasError
-        The cells are not a table of reflectances, or a cell is not a number; with line, entry and hint.
-    """
+    """Read the spectra of a grid of cells."""
     table = find_table(rows, path)
     header, *body = table.rows
     check_table_quantity(table, rows, path, comments)
@@ -151,8 +132,6 @@ def check_table_quantity(table: Table, rows: Sequence[Row], path: str, comments:
 def wavelength(text: str) -> float | None:
     """Return the wavelength in nm that a cell states, None if it states none.
 
-    Examples
-    --------
     >>> [wavelength(text) for text in ("400", "nm400", "R_400", "400.5 nm", "SPECTRAL_NM400", "LAB_L", "patch 400")]
     [400.0, 400.0, 400.0, 400.5, 400.0, None, None]
     """

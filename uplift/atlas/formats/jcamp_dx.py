@@ -43,13 +43,7 @@ def is_jcamp(document: Document) -> bool:
 
 
 def read(document: Document) -> Measurements:
-    """Read the spectrum of a file, or those of the blocks of a compound file.
-
-    Raises
-    ------
-    AtlasError
-        The file is not valid or holds another quantity than reflectance, or jcamp is not installed.
-    """
+    """Read the spectrum of a file, or those of the blocks of a compound file."""
     location = SourceLocation(document.path)
     for count in POINTS.findall(document.text):
         if not re.fullmatch(r"\d{1,7}(\.0*)?", count) or float(count) > MAX_POINTS:

@@ -27,13 +27,7 @@ def is_spreadsheet(document: Document) -> bool:
 
 
 def read(document: Document) -> Measurements:
-    """Read the first sheet that has a table of spectra.
-
-    Raises
-    ------
-    AtlasError
-        No sheet has such a table, the file is damaged or too large, or python-calamine is not installed.
-    """
+    """Read the first sheet that has a table of spectra."""
     _check_content(document)
     with needs_extra("io", "spreadsheets", AtlasError):
         import python_calamine as calamine

@@ -31,11 +31,6 @@ def read(document: Document) -> Measurements:
     """Read the entries of a table: a row or a column per spectrum, or the two columns of a single spectrum.
 
     Lines that begin with ``#`` are comments. Rows before the table are its preamble.
-
-    Raises
-    ------
-    AtlasError
-        The text is not a table of reflectances, or a cell is not a number; with line, entry and hint.
     """
     comments = "\n".join(line for line in document.lines if line.lstrip().startswith("#"))
     rows = _rows(document)
@@ -45,13 +40,7 @@ def read(document: Document) -> Measurements:
 
 
 def text(atlas: Atlas) -> str:
-    """Format a row per entry; `read` returns the same wavelengths and values, bit for bit.
-
-    Raises
-    ------
-    OutputError
-        The entries are sampled at different wavelengths.
-    """
+    """Format a row per entry; `read` returns the same wavelengths and values, bit for bit."""
     first = atlas[0]
     for entry in atlas:
         if not np.array_equal(entry.wavelengths, first.wavelengths):

@@ -20,13 +20,7 @@ def is_tm27(document: Document) -> bool:
 
 
 def read(document: Document) -> Measurements:
-    """Read the spectrum of a file.
-
-    Raises
-    ------
-    AtlasError
-        The file is not valid, or holds another quantity than reflectance, or than power within `accept_power`.
-    """
+    """Read the spectrum of a file."""
     check_xml(document)
     colour = colour_science()
     with parsed_by("colour-science", "IES TM-27", document.path):

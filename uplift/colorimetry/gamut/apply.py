@@ -102,18 +102,7 @@ def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMa
 
 
 def check_method(method: str) -> None:
-    """Validate the name of a gamut mapping method.
-
-    Parameters
-    ----------
-    method : str
-        The name to check.
-
-    Raises
-    ------
-    OptionError
-        It is not one of `METHODS`.
-    """
+    """Validate the name of a gamut mapping method."""
     if method not in METHODS:
         raise OptionError(
             f"unknown gamut mapping '{method}'", code="unknown-gamut-mapping", hint=f"use one of {', '.join(METHODS)}"
@@ -121,22 +110,7 @@ def check_method(method: str) -> None:
 
 
 def as_rgb(rgb: ArrayLike) -> Values:
-    """Convert to an array of RGB triples.
-
-    Parameters
-    ----------
-    rgb : array_like, shape (..., 3)
-        Colours. A float32 array is returned as it is.
-
-    Returns
-    -------
-    ndarray of float32 or float64, shape (..., 3)
-
-    Raises
-    ------
-    ColourError
-        The values are not numbers, or the last axis has not three of them.
-    """
+    """Convert to an array of RGB triples. Shapes: ``rgb`` (…, 3) → (…, 3)."""
     is_single = isinstance(rgb, np.ndarray) and rgb.dtype == np.float32
     try:
         array: Values = np.asarray(rgb) if is_single else np.asarray(rgb, dtype=float)
@@ -148,18 +122,7 @@ def as_rgb(rgb: ArrayLike) -> Values:
 
 
 def raise_out_of_gamut(outside: Array) -> NoReturn:
-    """Raise the error for colours outside [0, 1].
-
-    Parameters
-    ----------
-    outside : ndarray, shape (n, 3)
-        The colours, of which the message quotes the first.
-
-    Raises
-    ------
-    ColourError
-        Always.
-    """
+    """Raise the error for colours outside [0, 1]. Shapes: ``outside`` (n, 3)."""
     raise ColourError(
         f"linear RGB {_format_rgb(outside[0])} lies outside [0, 1]",
         code="rgb-out-of-gamut",

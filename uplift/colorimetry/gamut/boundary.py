@@ -31,12 +31,7 @@ class Gamut(Protocol):
 
     @property
     def rgb_to_xyz(self) -> Array:
-        """Matrix from linear RGB to XYZ; white, (1, 1, 1), has Y = 1.
-
-        Returns
-        -------
-        ndarray, shape (3, 3)
-        """
+        """Matrix from linear RGB to XYZ; white, (1, 1, 1), has Y = 1. Shape (3, 3)."""
         ...
 
 
@@ -130,18 +125,8 @@ SRGB = Primaries((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), (0.3127, 0.3290))
 def conversion(source: Gamut, target: Gamut) -> Array:
     """Compute the matrix between the linear RGB of two gamuts, with Bradford adaptation of the white.
 
-    Parameters
-    ----------
-    source, target : Gamut
-        The gamuts to convert from and to.
+    Shape (3, 3).
 
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        White, (1, 1, 1), stays white.
-
-    Examples
-    --------
     >>> import numpy as np
     >>> bool(np.allclose(conversion(SRGB, SRGB), np.eye(3)))
     True
