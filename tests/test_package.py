@@ -68,7 +68,6 @@ def test_nothing_else_is_in_it(wheel, repository):
     assert data == library | atlases
     assert {Path(name).suffix for name in library} == {
         ".c",
-        ".cpp",
         ".css",
         ".csv",
         ".cxf",

@@ -21,10 +21,11 @@ import uplift
 from benchmarks.record import ROOT, write
 from uplift.common.processes import call_in_child
 
-VARIANTS = ("llvm_ad_spectral", "scalar_spectral", "cuda_ad_spectral")
+VARIANTS = ("llvm_ad_spectral", "cuda_ad_spectral")
 REFERENCE = "Mitsuba's bitmap"
 SIZE = 512
-"""Rows and columns of the texture and of the LLVM variant's image."""
+"""Rows and columns of the texture and of the image."""
+SPP = 8
 SAMPLES = 1 << 22
 ROUNDS = 5
 LIMIT = 3600
@@ -61,16 +62,14 @@ def measure(variant: str) -> list[dict[str, Any]]:
     """Measure a variant in this process."""
     import mitsuba
 
-    from uplift.io.mitsuba import compile_plugin, register
+    from uplift.io.mitsuba import register
 
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     mitsuba.set_variant(variant)
-    if variant.startswith("scalar"):
-        compile_plugin()
     register()
     with tempfile.TemporaryDirectory() as folder:
         textures = {name: mitsuba.load_dict(texture) for name, texture in _textures(Path(folder)).items()}
-    return [row for work in _works(variant) for row in _rows(variant, work, textures)]
+    return [row for work in _works() for row in _rows(variant, work, textures)]
 
 
 def _rows(variant: str, work: Work, textures: dict[str, Any]) -> Iterator[dict[str, Any]]:
@@ -128,12 +127,10 @@ def _image(size: int) -> Any:
     return (tiles * (1 - 0.1 * rng.random((size, size, 1)))).astype(np.float32)
 
 
-def _works(variant: str) -> Iterator[Work]:
-    size, spp = (128, 8) if variant.startswith("scalar") else (SIZE, 8)
-    if not variant.startswith("scalar"):
-        yield Work("evaluation at random places", SAMPLES, _evaluation)
+def _works() -> Iterator[Work]:
+    yield Work("evaluation at random places", SAMPLES, _evaluation)
     for depth in DEPTHS:
-        yield Work(f"rendering, path depth {depth}", size * size * spp, _rendering(size, spp, depth))
+        yield Work(f"rendering, path depth {depth}", SIZE * SIZE * SPP, _rendering(depth))
 
 
 def _evaluation(texture: Any, seed: int) -> Callable[[], None]:
@@ -154,7 +151,7 @@ def _evaluation(texture: Any, seed: int) -> Callable[[], None]:
     return run
 
 
-def _rendering(size: int, spp: int, depth: int) -> Callable[[Any, int], Callable[[], None]]:
+def _rendering(depth: int) -> Callable[[Any, int], Callable[[], None]]:
     scenes: dict[int, Any] = {}
 
     def start(texture: Any, seed: int) -> Callable[[], None]:
@@ -162,12 +159,11 @@ def _rendering(size: int, spp: int, depth: int) -> Callable[[Any, int], Callable
         import mitsuba as mi
 
         if id(texture) not in scenes:
-            scenes[id(texture)] = mi.load_dict(_scene(texture, size, depth))
+            scenes[id(texture)] = mi.load_dict(_scene(texture, SIZE, depth))
 
         def run() -> None:
-            dr.eval(mi.render(scenes[id(texture)], spp=spp, seed=seed))
-            if not mi.variant().startswith("scalar"):
-                dr.sync_thread()
+            dr.eval(mi.render(scenes[id(texture)], spp=SPP, seed=seed))
+            dr.sync_thread()
 
         return run
 

@@ -1,4 +1,4 @@
-"""Images as textures: position, filtering and decoding of texels, in Python, C++ and JIT variants."""
+"""Images as textures: position, filtering and decoding of texels, in scalar and JIT variants."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ WITHIN = 1e-5
 
 
 @pytest.fixture
-def texture(mi, cube_path, language):
+def texture(mi, cube_path):
     """Function that makes a texture, by default of `IMAGE`."""
 
     def texture(image=IMAGE, **options):
@@ -83,7 +83,7 @@ def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(texture, spectrum
     np.testing.assert_allclose(spectrum(found, (0.75, 0.5), [450, 650]), other, atol=1e-5)
 
 
-def test_only_encoded_files_are_decoded(mi, language, spectrum, small_cube, tmp_path, cube_path):
+def test_only_encoded_files_are_decoded(mi, spectrum, small_cube, tmp_path, cube_path):
     codes = np.array([[[200, 30, 90]]], dtype=np.uint8)
     linear = small_cube.decode(codes).astype(np.float32)
     mi.Bitmap(codes).write(str(tmp_path / "image.png"))
@@ -118,26 +118,25 @@ def test_invalid_properties_raise(texture, options, message):
         texture(**options)
 
 
-def test_colours_outside_are_mapped_with_a_warning(texture, spectrum, language, sensor):
+def test_colours_outside_are_mapped_with_a_warning(texture, spectrum, sensor):
     image = np.array([[[1.4, 0.2, -0.01], [0.1, 0.2, np.nan]]], dtype=np.float32)
-    slow = ["texture-in-python"] * (language == "python")
-    with warns("pixels-out-of-gamut", "pixels-not-finite", *slow):
+    with warns("pixels-out-of-gamut", "pixels-not-finite", "texture-in-python"):
         found = texture(image, filter_type="nearest")
     for u, expected in ((0.25, [1, 0.2, 0]), (0.75, [0.1, 0.2, 0])):
         rgb = sensor.rgb(spectrum(found, (u, 0.5), sensor.wavelengths))
         np.testing.assert_allclose(rgb, expected, rtol=0, atol=1e-4)
-    with warns("pixels-out-of-gamut", *slow):
+    with warns("pixels-out-of-gamut", "texture-in-python"):
         scaled = texture(image[:, :1], out_of_gamut="scale")
     rgb = sensor.rgb(spectrum(scaled, (0.5, 0.5), sensor.wavelengths))
     assert rgb[0] == pytest.approx(1, abs=1e-4)
     assert rgb[1] < 0.2
 
 
-def test_layers_and_other_channels_of_openexr_are_accepted(mi, language, spectrum, small_cube, tmp_path, cube_path):
+def test_layers_and_other_channels_of_openexr_are_accepted(mi, spectrum, small_cube, tmp_path, cube_path):
     rgb = np.array([0.2, 0.4, 1.5])
     channels = {f"paint.{name}": np.full((2, 3), value) for name, value in zip("RGB", rgb, strict=True)}
     write_channels(tmp_path / "layers.exr", {**channels, "Z": np.ones((2, 3))})
-    with warns("pixels-out-of-gamut", *["texture-in-python"] * (language == "python")):
+    with warns("pixels-out-of-gamut", "texture-in-python"):
         found = mi.load_dict({"type": "uplift", "cube": cube_path, "filename": str(tmp_path / "layers.exr")})
     expected = small_cube.reflectance(rgb.clip(0, 1), [450, 650], mode="refined")
     np.testing.assert_allclose(spectrum(found, (0.5, 0.5), [450, 650]), expected, atol=1e-5)
@@ -151,7 +150,7 @@ def test_the_stochastic_filter_chooses_texels_by_their_weights(texture, spectrum
     assert (values < 0.4).mean() == pytest.approx(0.8, abs=0.05)
 
 
-def test_scalar_variants_advise_to_compile(mi, in_python, cube_path):
+def test_scalar_variants_warn(mi, cube_path):
     with warns("texture-in-python"):
         mi.load_dict({"type": "uplift", "cube": cube_path, "bitmap": mi.Bitmap(IMAGE)})
 
@@ -183,7 +182,7 @@ print(json.dumps(found))
 """
 
 
-def test_a_wavefront_agrees_with_single_rays(mi, language, small_cube, cube_path, tmp_path):
+def test_a_wavefront_agrees_with_single_rays(mi, small_cube, cube_path, tmp_path):
     need(LLVM)
     import drjit
 

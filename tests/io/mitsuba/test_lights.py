@@ -57,7 +57,6 @@ def test_one_colour_has_the_spectrum_of_the_table(mi, table, spectrum):
     np.testing.assert_allclose(spectrum(light, (0.5, 0.5), exact), table.spectrum(SUNSET, exact), rtol=1e-5)
 
 
-@pytest.mark.usefixtures("language")
 def test_texels_have_the_spectra_of_the_table(mi, table, sky, spectrum):
     light = mi.load_dict({"type": "uplift", "emission": True, "bitmap": mi.Bitmap(sky)})
     for row, column in ((0, 0), (2, 3), (7, 15)):
@@ -65,7 +64,6 @@ def test_texels_have_the_spectra_of_the_table(mi, table, sky, spectrum):
         np.testing.assert_allclose(found, table.spectrum(sky[row, column], WAVELENGTHS), rtol=1e-4)
 
 
-@pytest.mark.usefixtures("in_python")
 def test_images_and_spectral_images_agree(mi, table, sky, spectrum, tmp_path):
     source = write_exr(tmp_path / "sky.exr", planes(sky))
     texture.convert(texture.prepare_lights(table, threads=1), source, tmp_path / "spectral.exr")

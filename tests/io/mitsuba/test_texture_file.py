@@ -30,7 +30,7 @@ WAVELENGTHS = np.array([362.5, 402.5, 555, 650, 823])
     ],
     ids=["spectrum", "moments", "multipliers"],
 )
-def test_a_texture_has_the_spectra_of_the_cube(mi, language, spectrum, small_cube, tmp_path, encoding, mode, within):
+def test_a_texture_has_the_spectra_of_the_cube(mi, spectrum, small_cube, tmp_path, encoding, mode, within):
     write_image(tmp_path / "image.exr", IMAGE)
     uplifter = texture.prepare(small_cube, encoding, depth="float")
     texture.convert(uplifter, tmp_path / "image.exr", tmp_path / "texture.exr")
@@ -50,7 +50,7 @@ def test_half_precision_suffices_for_moments(small_cube, tmp_path):
     np.testing.assert_allclose(first, second, rtol=0, atol=0.02)
 
 
-def test_a_cube_is_not_accepted_with_a_texture(mi, in_python, cube_path, tmp_path):
+def test_a_cube_is_not_accepted_with_a_texture(mi, cube_path, tmp_path):
     write_channels(tmp_path / "texture.exr", {f"T.{at},000000nm": np.ones((2, 2)) for at in (400, 500)})
     with pytest.raises(RuntimeError, match="unreferenced"):
         mi.load_dict({"type": "uplift", "filename": str(tmp_path / "texture.exr"), "cube": cube_path})
@@ -68,20 +68,20 @@ GREY = {f"moment.{order:02}": np.full((2, 2), 0.5 * (order == 0)) for order in r
 
 
 @pytest.mark.parametrize(
-    ("channels", "header", "code"),
+    ("channels", "header", "problem"),
     [
-        ({f"T.{at},000000nm": np.ones((2, 2)) for at in (400, 500, 700)}, {}, "uneven-wavelengths"),
-        ({"T.400,000000nm": np.ones((2, 2))}, {}, "uneven-wavelengths"),
-        ({f"T.{at}nm": np.full((2, 2), np.nan) for at in (400, 500)}, {}, "values-not-finite"),
-        (GREY, {}, "missing-model"),
-        (GREY, {"uplift.model": "{"}, "missing-model"),
-        (GREY, {"uplift.model": json.dumps(Moments(8).describe())}, "missing-model"),
-        ({**GREY, "moment.01": np.full((2, 2), 0.6)}, {"uplift.model": MODEL}, "invalid-moments"),
+        ({f"T.{at},000000nm": np.ones((2, 2)) for at in (400, 500, 700)}, {}, "equidistant"),
+        ({"T.400,000000nm": np.ones((2, 2))}, {}, "equidistant"),
+        ({f"T.{at}nm": np.full((2, 2), np.nan) for at in (400, 500)}, {}, "finite"),
+        (GREY, {}, "uplift.model"),
+        (GREY, {"uplift.model": "{"}, "uplift.model"),
+        (GREY, {"uplift.model": json.dumps(Moments(8).describe())}, "uplift.model"),
+        ({**GREY, "moment.01": np.full((2, 2), 0.6)}, {"uplift.model": MODEL}, "no reflectance"),
     ],
 )
-def test_invalid_textures_raise(tmp_path, channels, header, code):
+def test_invalid_textures_raise(tmp_path, channels, header, problem):
     write_channels(tmp_path / "texture.exr", channels, **header)
-    with raises(TextureError, code):
+    with pytest.raises(TextureError, match=problem):
         read_texels(tmp_path / "texture.exr")
 
 
@@ -89,7 +89,7 @@ def test_damaged_textures_raise(tmp_path):
     write_channels(tmp_path / "texture.exr", GREY)
     content = (tmp_path / "texture.exr").read_bytes()
     (tmp_path / "texture.exr").write_bytes(content[:-20])
-    with raises(TextureError, "damaged-image"):
+    with raises(TextureError, "texture"):
         read_texels(tmp_path / "texture.exr")
 
 

@@ -15,7 +15,6 @@ from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftError, UpliftWarning
 from uplift.io.mitsuba.environment import make_environment
-from uplift.io.mitsuba.native import find_plugin, native_properties
 from uplift.io.mitsuba.texels import Placement, Texels, light_texels, uplift_texels
 from uplift.io.mitsuba.texture import make_texture
 from uplift.io.mitsuba.texture_file import read_colours, read_lights, read_texels
@@ -26,7 +25,6 @@ from uplift.lookup import Cube, load
 
 START, END = 360, 830
 """Wavelength range of Mitsuba in nm."""
-NATIVE_VARIANT = "scalar_spectral"
 IMAGES = ("filename", "bitmap")
 SOURCES = ("rgb", *IMAGES)
 HINTS = {
@@ -97,45 +95,34 @@ def _make_light(props: Any, source: str) -> Any:
 
 
 def _make_environment(props: Any) -> Any:
-    import mitsuba
-
     _source(props, IMAGES)
-    if mitsuba.variant() == NATIVE_VARIANT:
-        _warn_of_python("environment", "set llvm_ad_spectral")
+    _warn_in_scalar_variants("environment")
     return make_environment(props, _light_texels(props))
 
 
-def _warn_of_python(name: str, hint: str) -> None:
-    problem = f"the {name} calls Python for every ray in scalar variants"
-    warnings.warn(UpliftWarning(problem, code="texture-in-python", hint=hint), stacklevel=3)
+def _warn_in_scalar_variants(name: str) -> None:
+    import mitsuba
+
+    if mitsuba.variant().startswith("scalar"):
+        problem = f"the {name} calls Python for every ray in scalar variants"
+        warnings.warn(UpliftWarning(problem, code="texture-in-python", hint="set llvm_ad_spectral"), stacklevel=3)
 
 
 def _source(props: Any, names: tuple[str, ...]) -> str:
-    """Return the only one of the properties that is given. Raises `OptionError` (``texture-source``)."""
+    """Return the only one of the properties that is given."""
     sources = [name for name in names if name in props]
     if len(sources) != 1:
         raise OptionError(
             f"an uplift texture must have one of {', '.join(names)}, got {len(sources)}",
-            code="texture-source",
             hint="pass one of them",
         )
     return sources[0]
 
 
 def _texture(props: Any, texels: Texels) -> Any:
-    """Return the texture in C++ in scalar variants, if it was compiled, else the texture in Python."""
-    import mitsuba
-
     placement = Placement.read(props)
-    if mitsuba.variant() != NATIVE_VARIANT:
-        return make_texture(props, texels, placement)
-    folder = find_plugin()
-    if folder is None:
-        _warn_of_python("texture", "run 'python -m uplift.io.mitsuba' once to compile it, or set llvm_ad_spectral")
-        return make_texture(props, texels, placement)
-    if str(folder) not in map(str, mitsuba.file_resolver()):
-        mitsuba.file_resolver().append(str(folder))
-    return mitsuba.load_dict(native_properties(texels, placement))
+    _warn_in_scalar_variants("texture")
+    return make_texture(props, texels, placement)
 
 
 def _uplifted(props: Any) -> Texels:
@@ -193,14 +180,13 @@ def _resolve(name: str) -> Path:
 
 
 def _parse_rgb(value: Any) -> Array:
-    """Return linear RGB (3,) of '0.8, 0.2, 0.1' or a sequence. Raises `OptionError` (``invalid-rgb``)."""
+    """Return linear RGB (3,) of '0.8, 0.2, 0.1' or a sequence."""
     try:
         words = value.replace(",", " ").split() if isinstance(value, str) else value
         red, green, blue = (float(word) for word in words)
     except (TypeError, ValueError) as error:
         raise OptionError(
             f"rgb must be three numbers, got {value!r}",
-            code="invalid-rgb",
             hint="for example '0.8, 0.2, 0.1'",
         ) from error
     return np.array([red, green, blue])

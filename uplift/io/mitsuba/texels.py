@@ -101,8 +101,8 @@ class Placement:
     def read(props: Any) -> Placement:
         """Read the properties ``filter_type``, ``wrap_mode`` and ``to_uv``. Raises `OptionError`."""
         return Placement(
-            _choice(props, "filter_type", FILTERS, code="unknown-filter-type"),
-            _choice(props, "wrap_mode", tuple(WRAPS), code="unknown-wrap-mode"),
+            _choice(props, "filter_type", FILTERS),
+            _choice(props, "wrap_mode", tuple(WRAPS)),
             _uv_transform(props),
         )
 
@@ -111,15 +111,11 @@ class Placement:
         return np.pad(numbers, ((PADDING, PADDING), (PADDING, PADDING), (0, 0)), WRAPS[self.wrap])  # type: ignore[call-overload]
 
 
-def _choice(props: Any, name: str, choices: tuple[str, ...], code: str) -> str:
-    """Return a property; the first choice is the default. Raises `OptionError`."""
+def _choice(props: Any, name: str, choices: tuple[str, ...]) -> str:
+    """Return a property; the first choice is the default."""
     chosen = str(props.get(name, choices[0]))
     if chosen not in choices:
-        raise OptionError(
-            f"unknown {name} '{chosen}'",
-            code=code,
-            hint=f"use one of {', '.join(choices)}",
-        )
+        raise OptionError(f"unknown {name} '{chosen}'", hint=f"use one of {', '.join(choices)}")
     return chosen
 
 

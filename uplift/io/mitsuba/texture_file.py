@@ -36,24 +36,10 @@ EVEN = 1e-3
 
 
 def read_texels(path: Path) -> Texels | None:
-    """Read a spectral texture.
+    """Read a spectral texture; None if the file is not OpenEXR, or has no channels of spectra, moments or multipliers.
 
-    Parameters
-    ----------
-    path : Path
-        An image file.
-
-    Returns
-    -------
-    Texels or None
-        None if the file is not OpenEXR, or has no channels of spectra, moments or multipliers.
-
-    Raises
-    ------
-    TextureError
-        The file is damaged (code ``damaged-image``), holds numbers that are not finite (``values-not-finite``) or not
-        moments of a reflectance (``invalid-moments``), lacks the description of its model (``missing-model``), or has
-        wavelengths that are not equidistant (``uneven-wavelengths``).
+    Raises `TextureError` if its numbers are not finite or not moments of a reflectance, its wavelengths not
+    equidistant, or its header lacks the description of the model.
     """
     if not (path.is_file() and exr_file.is_exr(path)):
         return None
@@ -120,7 +106,6 @@ def _read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     except (RuntimeError, IndexError) as error:
         raise TextureError(
             "the OpenEXR file is damaged or incomplete",
-            code="damaged-image",
             path=path,
             hint="write the file again",
         ) from error
@@ -138,7 +123,6 @@ def _stack(path: Path, channels: dict[str, Any], names: list[str]) -> NDArray[An
     if not np.isfinite(numbers).all():
         raise TextureError(
             "the numbers of a texture must be finite",
-            code="values-not-finite",
             path=path,
             hint="write the texture again with 'uplift texture'",
         )
@@ -150,7 +134,6 @@ def _samples(path: Path, wavelengths: Array) -> Samples:
     if len(wavelengths) < 2 or np.abs(wavelengths - even).max() > EVEN:
         raise TextureError(
             "wavelengths of a spectral texture must be at least two and equidistant",
-            code="uneven-wavelengths",
             path=path,
             hint="write the texture with --wavelengths START:END:STEP",
         )
@@ -170,7 +153,6 @@ def _model(path: Path, header: dict[str, Any], count: int) -> Model:
 def _missing_model(path: Path) -> TextureError:
     return TextureError(
         "the header of a texture must describe the model of its channels in uplift.model",
-        code="missing-model",
         path=path,
         hint="write the texture with 'uplift texture', and keep its header in other programs",
     )
@@ -197,7 +179,6 @@ def _multipliers(path: Path, model: Moments, moments: Array) -> Array:
     if not valid.all():
         raise TextureError(
             "the moments of a texel belong to no reflectance in [0, 1]",
-            code="invalid-moments",
             path=path,
             hint="write the texture with --depth float, and do not sharpen it",
         )
