@@ -161,6 +161,13 @@ def test_colours_near_a_face_touch_both_cells(small_cube):
     assert len(cells_touched(lattice, np.array([[node + 1e-3, 0.3, 0.3]]))) == 1
 
 
+def test_all_images_of_a_scene_are_read(plain_cube, tmp_path):
+    dark = write_exr(tmp_path / "a.exr", planes(np.full((4, 4, 3), 0.01, np.float32)))
+    light = write_exr(tmp_path / "b.exr", planes(np.full((4, 4, 3), 0.9, np.float32)))
+    both = points_of(plain_cube, dark, light)
+    np.testing.assert_array_equal(both, points_of(plain_cube, dark) | points_of(plain_cube, light))
+
+
 def test_images_are_decoded_by_type_or_by_the_encoding_option(plain_cube, tmp_path):
     codes = np.full((2, 2, 3), 128, np.uint8)
     Image.fromarray(codes).save(tmp_path / "grey.png")

@@ -144,21 +144,6 @@ def test_alpha_passes_through_and_divides_nothing(table, lights, tmp_path):
     np.testing.assert_allclose(table.rgb(spectral_channels(tmp_path / "out.exr")), rgb, rtol=1e-5)
 
 
-def test_colours_of_another_space_are_converted(table, lights, tmp_path):
-    rgb = np.array([[[0.2, 0.9, 0.1]]], np.float32)
-    path = write_exr(tmp_path / "a.exr", planes(rgb))
-    converter = texture.prepare_lights(table, space="ACEScg", threads=1)
-    conversion = texture.convert(converter, path, tmp_path / "out.exr")
-    assert conversion.spaces == ("ACEScg",)
-    found = table.rgb(spectral_channels(tmp_path / "out.exr").astype(float))
-    from uplift.colorimetry.gamut import conversion as gamut_conversion
-    from uplift.colorimetry.spaces import find_space
-
-    expected = rgb @ gamut_conversion(find_space("ACEScg").gamut, table).T
-    np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-5)
-    assert found.min() < 0
-
-
 @pytest.mark.parametrize(
     ("options", "code"),
     [
