@@ -19,6 +19,14 @@ STEP = 1e-3
 """Length of the finite differences, in units of L*a*b*."""
 MIN_EIGENVALUE = 1e-3
 """Lower bound of the eigenvalues of the form; rounding may make them negative."""
+MAX_EVALUATIONS = 60
+"""More evaluations gain nothing on materials outside the fit."""
+START_RANGES = ((400.0, 700.0), (410.0, 680.0))
+"""Ranges in nm of the two starting points: least squares ends in the nearest local minimum."""
+MAX_FITTED_PAIRS = 1600
+"""Most pairs of material and light that are fitted. Materials are thinned evenly; the errors cover all of them."""
+MIN_FITTED = 32
+"""Fewest materials that are fitted, however many lights there are."""
 
 
 def delta_e_factors(setup: RenderSetup) -> Array:
@@ -44,10 +52,6 @@ def _quadratic_form(lab: Array) -> Array:
             mixed = (squared(steps[i] + steps[j]) - diagonal[i] - diagonal[j]) / 2
             form[..., i, j] = form[..., j, i] = mixed
     return form
-
-
-MAX_EVALUATIONS = 60
-"""More evaluations gain nothing on materials outside the fit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,14 +125,6 @@ def local_fit(problem: FitProblem, start: Sampling, *, fix_wavelengths: bool = F
             max_nfev=MAX_EVALUATIONS,
         )
     return problem.unpack(with_fixed(solution.x))
-
-
-START_RANGES = ((400.0, 700.0), (410.0, 680.0))
-"""Ranges in nm of the two starting points: least squares ends in the nearest local minimum."""
-MAX_FITTED_PAIRS = 1600
-"""Most pairs of material and light that are fitted. Materials are thinned evenly; the errors cover all of them."""
-MIN_FITTED = 32
-"""Fewest materials that are fitted, however many lights there are."""
 
 
 def optimise(setup: RenderSetup, count: int) -> Sampling:
